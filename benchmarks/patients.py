@@ -12,9 +12,8 @@ import numpy
 
 from ballsocket.hip import HipSimulation, PatientVariability, logarithmic, population
 from ballsocket.hip.cohort import sample_patients
-from ballsocket.hip.cohort_results import RESULT_UNITS, result_table
 from ballsocket.hip.config import read_hip
-from ballsocket.hip.variability import Patient
+from ballsocket.hip.variability import RESULT_UNITS, Patient, result_table
 
 from .report import Report, Rows
 from .timing import Work, interleaved, one_core

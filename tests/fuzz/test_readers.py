@@ -21,7 +21,7 @@ from ballsocket.evidence.question import read_question
 from ballsocket.files.units import parse
 from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import TableOptions, read_cycle
-from ballsocket.hip.law_fields import wear_factor, wear_per_energy, wear_per_slide
+from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.identify.file import read_identify
 
 from ..cli.command import run

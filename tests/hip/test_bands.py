@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from ballsocket.hip.bands import Bands, SharedCoefficient
-from ballsocket.hip.cohort_results import RESULT_UNITS, CohortResult
 from ballsocket.hip.uncertainty import _Response
+from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
@@ -57,7 +57,7 @@ def test_patients_without_a_result_are_left_out():
     table[2], refused[2] = np.nan, "dislocated: by 8 degrees"
     table[0], refused[0] = np.nan, "worn through: 9 mm"
     some = bands(replace(result, table=table, refused=refused))
-    assert (some.patients, some.n_failed) == (5, 3)
+    assert (some.n_patients, some.n_failed) == (5, 3)
     np.testing.assert_allclose(some.quantile("volume", 0.5), [2.0, 4.0])
     assert "3 of 5 patients have no result, most often: dislocated; the bands are for the others" in some.notes
     assert some.edge_loading(0) == 0.0

@@ -7,8 +7,7 @@ import pytest
 
 from ballsocket.core.storage.array_files import read_arrays, write_arrays
 from ballsocket.hip import Archard, CustomWearLaw, logarithmic
-from ballsocket.hip.checkpoint import checkpoint
-from ballsocket.hip.simulation import make_report
+from ballsocket.hip.report_points import make_checkpoint, make_report
 from ballsocket.hip.wear_integrator import WearIntegrator
 
 from .test_wear import K, hip
@@ -93,7 +92,7 @@ def test_state_and_reports_are_read_as_they_were_written(tmp_path):
     use = hip()
     run = WearIntegrator(setup=use)
     reports = [make_report(run.run_until(cycles, lambda cycles: None)) for cycles in (1e4, 2e4)]
-    stored = checkpoint(use, tmp_path / "new" / "folder")
+    stored = make_checkpoint(use, tmp_path / "new" / "folder")
     assert stored.read() is None
     stored.write(run.state, tuple(reports))
     state, read_reports = stored.read()
@@ -125,7 +124,7 @@ def test_the_identity_depends_on_every_input_of_the_run(tmp_path):
         replace(use, seconds_per_cycle=2.0),
         replace(use, cup=use.cup.tilted(0.1)),
     ]
-    identities = {checkpoint(other, tmp_path).identity for other in others}
+    identities = {make_checkpoint(other, tmp_path).identity for other in others}
     assert len(identities) == len(others)
     assert {len(identity) for identity in identities} == {64}
-    assert checkpoint(hip(), tmp_path).identity in identities
+    assert make_checkpoint(hip(), tmp_path).identity in identities

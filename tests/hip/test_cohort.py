@@ -21,7 +21,7 @@ from ballsocket.hip.cohort import (
     table_columns,
     write_csv,
 )
-from ballsocket.hip.cohort_results import RESULT_UNITS, CohortResult, join_results
+from ballsocket.hip.variability import RESULT_UNITS, CohortResult, join_results
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run
@@ -88,8 +88,8 @@ def test_counts_and_seeds_that_are_not_allowed_are_refused(count, seed, message)
 def test_a_piece_has_sixteen_patients_or_the_last_ones(n_patients, sizes):
     run = cohort_run(n_patients)
     assert len(run) == n_patients
-    assert [len(run.patients(piece)) for piece in run.pieces] == sizes
-    assert [number for piece in run.pieces for number in run.patients(piece)] == list(range(n_patients))
+    assert [len(run.patient_numbers(piece)) for piece in run.pieces] == sizes
+    assert [number for piece in run.pieces for number in run.patient_numbers(piece)] == list(range(n_patients))
 
 
 def test_every_patient_is_simulated_in_order(monkeypatch):

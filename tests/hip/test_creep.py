@@ -20,23 +20,25 @@ def test_creep_under_a_pressure_step_is_exact_for_any_time_steps(steps, last):
     ends = np.sort(np.append(rng.uniform(0.0, last, steps - 1), last))
     pressure, strain = np.array([0.0, 3.0, 11.0]), LADDER.initial_strain(3)
     for seconds in np.diff(ends, prepend=0.0):
-        strain = LADDER.advanced(strain, pressure, seconds)
+        strain = LADDER.advance_strain(strain, pressure, seconds)
     assert strain.sum(axis=0) == pytest.approx(LADDER.response(last) * pressure, rel=1e-10)
     closed = sum(J * (1 - np.exp(-last / time)) for J, time in zip(LADDER.compliances, LADDER.times, strict=True))
     assert LADDER.response(last) == pytest.approx(closed, rel=1e-10)
 
 
 def test_unloaded_creep_strain_recovers():
-    strain = LADDER.advanced(LADDER.initial_strain(1), np.array([5.0]), 1e9)
+    strain = LADDER.advance_strain(LADDER.initial_strain(1), np.array([5.0]), 1e9)
     assert strain.sum() == pytest.approx(5 * sum(LADDER.compliances), rel=1e-10)
-    assert LADDER.advanced(strain, np.zeros(1), 1e9).sum() == pytest.approx(0.0, abs=1e-15)
+    assert LADDER.advance_strain(strain, np.zeros(1), 1e9).sum() == pytest.approx(0.0, abs=1e-15)
 
 
 def test_linear_response_equals_the_advanced_strain():
     rng = np.random.default_rng(4)
     strain, pressure = rng.uniform(size=(3, 5)), rng.uniform(size=5)
     stays, adds = LADDER.linear_response(strain, 500.0)
-    assert stays + adds * pressure == pytest.approx(LADDER.advanced(strain, pressure, 500.0).sum(axis=0), rel=1e-12)
+    assert stays + adds * pressure == pytest.approx(
+        LADDER.advance_strain(strain, pressure, 500.0).sum(axis=0), rel=1e-12
+    )
 
 
 def test_logarithmic_creep_is_within_two_percent_of_its_formula():
@@ -104,7 +106,7 @@ def test_confinement_scales_the_strain_of_a_free_bar():
     for seconds in (1.0, 1e4, 1e8):
         assert confined.response(seconds) == pytest.approx(share * LADDER.response(seconds), rel=1e-15)
         pressure = np.array([1.0, 10.0])
-        after = [one.advanced(one.initial_strain(2), pressure, seconds) for one in (LADDER, confined)]
+        after = [one.advance_strain(one.initial_strain(2), pressure, seconds) for one in (LADDER, confined)]
         assert after[1] == pytest.approx(share * after[0], rel=1e-14)
     assert (replace(LADDER, confinement=1.0).response(1e4) == LADDER.response(1e4)).all()
     with pytest.raises(ValueError, match="confinement = 1.5 is not allowed"):

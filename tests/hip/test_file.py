@@ -6,7 +6,7 @@ import pytest
 
 from ballsocket.hip import constrained_share
 from ballsocket.hip.config import read_hip
-from ballsocket.hip.law_fields import wear_factor, wear_per_slide
+from ballsocket.hip.wear_law import wear_factor, wear_per_slide
 
 from ..cli.command import run
 from ..places import EXAMPLES

@@ -229,6 +229,6 @@ def test_a_ball_that_nothing_holds_is_dislocated():
 def test_a_mismatch_moves_the_contact_towards_the_rim():
     """The spring's 400 N tilt the load by their share of it."""
     pulled, straight = (hip(cycle=make(50)) for make in (iso_14242_4, iso_14242_1))
-    near, far = (use.edge_distance(use.unworn)[use.largest[0]] for use in (pulled, straight))
+    near, far = (use.edge_distance(use.unworn)[use.largest_load_index[0]] for use in (pulled, straight))
     tilt = np.arctan2(400.0, straight.cycle.force_magnitudes.max())
     assert near == pytest.approx(far - straight.joint.socket_radius * tilt, abs=0.1)

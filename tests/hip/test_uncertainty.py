@@ -46,7 +46,7 @@ def test_the_volume_has_the_distribution_of_the_coefficient():
     low, high = bands.band("volume")
     assert high[-1] / low[-1] == pytest.approx(1.5 ** (2 * 1.96), rel=0.1)
     assert bands.quantile("volume", 0.5)[-1] == pytest.approx(history.last.volume, rel=0.03)
-    assert bands.patients == 64
+    assert bands.n_patients == 64
 
 
 def test_indices_are_the_fractions_of_the_variance():
@@ -114,7 +114,7 @@ def test_a_cohort_has_the_errors_of_the_coarse_simulation():
 def test_dislocated_patients_are_counted_and_left_out():
     loose = variability(tilt=Rectangular(low=0.0, high=2.0))
     bands = uncertainty(loose, loose.use.after(FEW_CYCLES), count=8)
-    assert 0 < bands.n_failed < bands.patients
+    assert 0 < bands.n_failed < bands.n_patients
     assert np.isfinite(bands.band("volume")).all()
     assert bands.indices is None
     assert bands.summary()["sobol"] is None
@@ -306,7 +306,7 @@ def test_the_nominal_patient_has_the_weight_and_the_years_of_the_file(tmp_path):
     assert one.cycles_per_year == 1e6
     assert one.body_weight == 900.0
     assert one.patient({"body_weight": 990.0}).use.cycle.largest_force == pytest.approx(
-        1.1 * one.quick.cycle.largest_force
+        1.1 * one.coarse_simulation.cycle.largest_force
     )
     two = text.replace("per_year = 1e6", 'per_year = 1e6\nbody_weight = "800 N"')
     with pytest.raises(ValueError, match="body_weight has several values, but patients need one"):

@@ -19,8 +19,7 @@ from ballsocket.hip import (
     logarithmic,
     rocking,
 )
-from ballsocket.hip.cohort_results import RESULT_UNITS, contact_table, result_table
-from ballsocket.hip.variability import Patient
+from ballsocket.hip.variability import RESULT_UNITS, Patient, contact_table, result_table
 from ballsocket.problem.cup import Side
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
@@ -52,7 +51,7 @@ def test_a_patient_has_the_given_quantities():
     )
     values = {"body_weight": 900.0, "inclination": 0.4, "anteversion": 0.1, "clearance": 0.15, "cycles_per_year": 2e6}
     patient = every.patient(values)
-    assert patient.use.cycle.largest_force == pytest.approx(1.2 * every.quick.cycle.largest_force)
+    assert patient.use.cycle.largest_force == pytest.approx(1.2 * every.coarse_simulation.cycle.largest_force)
     assert patient.use.placed == bs.Cup(inclination=0.4, anteversion=0.1)
     assert patient.use.joint.clearance == 0.15
     assert patient.cycle_ratio == 2.0
@@ -67,19 +66,19 @@ def test_a_patient_without_values_is_the_nominal_patient():
     assert patient.use.joint == one.use.joint
     assert patient.use.wear == one.use.wear
     assert patient.use.placed == one.use.placed
-    assert patient.use.cycle is one.quick.cycle
+    assert patient.use.cycle is one.coarse_simulation.cycle
 
 
 def test_the_median_weight_belongs_to_the_forces_of_the_cycle_by_default():
     one = variability(body_weight=WEIGHT)
     patient = one.patient({"body_weight": 1000.0})
-    assert patient.use.cycle.largest_force == pytest.approx(1.25 * one.quick.cycle.largest_force)
+    assert patient.use.cycle.largest_force == pytest.approx(1.25 * one.coarse_simulation.cycle.largest_force)
 
 
 def test_a_tilt_turns_the_cup():
     one = variability(tilt=Rectangular(low=0.0, high=1.0))
     tilted = one.patient({"tilt": 0.3}).use.placed
-    assert tilted == one.quick.cup.tilted(0.3)
+    assert tilted == one.coarse_simulation.cup.tilted(0.3)
     assert tilted != one.use.placed
 
 
@@ -144,18 +143,18 @@ def test_distributions_that_are_not_allowed_are_refused(distributions, message):
 
 
 def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants():
-    fine = variability(hip(surface=bs.ClosedShell(), ring_width=radians(3.0)), clearance=TIGHT).quick
+    fine = variability(hip(surface=bs.ClosedShell(), ring_width=radians(3.0)), clearance=TIGHT).coarse_simulation
     assert isinstance(fine.surface, type(hip().surface))
     assert (fine.ring_width, fine.cycle.n_steps) == (radians(8.0), 32)
     coarse = hip(cycle=iso_14242_1(16), ring_width=radians(9.0))
-    same = variability(coarse, clearance=TIGHT).quick
+    same = variability(coarse, clearance=TIGHT).coarse_simulation
     assert (same.ring_width, same.cycle.n_steps) == (radians(9.0), 16)
     assert same.surface is coarse.surface
 
 
 @pytest.mark.parametrize("cycle", [iso_14242_1(40), iso_14242_4(), rocking()], ids=lambda cycle: cycle.name)
 def test_the_coarse_cycle_has_the_forces_and_angles_of_the_cycle_at_its_instants(cycle):
-    coarse = variability(hip(cycle=cycle), clearance=TIGHT).quick.cycle
+    coarse = variability(hip(cycle=cycle), clearance=TIGHT).coarse_simulation.cycle
     midpoints, starts = (np.arange(32) + 0.5) / 32, np.arange(32) / 32
     np.testing.assert_allclose(coarse.force(midpoints), cycle.force(midpoints), rtol=1e-12)
     np.testing.assert_allclose(coarse.angles(starts), cycle.angles(starts), atol=1e-12)
@@ -176,7 +175,7 @@ def test_the_coarse_cycle_has_the_forces_and_angles_of_the_cycle_at_its_instants
 )
 def test_the_coarse_hip_can_be_pickled_and_wears_as_the_full_one(cycle):
     use = hip(cycle=cycle, cup=bs.Cup(inclination=radians(30.0), side=Side.LEFT))
-    sent = pickle.loads(pickle.dumps(variability(use, clearance=TIGHT).quick))
+    sent = pickle.loads(pickle.dumps(variability(use, clearance=TIGHT).coarse_simulation))
     volume = Patient(use=sent, cycle_ratio=1.0).simulate([FEW_CYCLES])[0].volume
     assert 1e6 / FEW_CYCLES * volume == pytest.approx(use.first.volume, rel=2e-2)
 

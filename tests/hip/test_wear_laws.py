@@ -19,8 +19,16 @@ from ballsocket.hip import (
 )
 from ballsocket.hip.creep_law import confinement_note
 from ballsocket.hip.creep_laws import CREEP_LAWS, read_creep_law
-from ballsocket.hip.law_fields import law_keys, law_summary, wear_factor, wear_per_energy, wear_per_slide
-from ballsocket.hip.wear_law import CycleExposure, coefficient_field, max_wear_sensitivity, with_coefficient
+from ballsocket.hip.law_fields import law_keys, law_summary
+from ballsocket.hip.wear_law import (
+    CycleExposure,
+    coefficient_field,
+    max_wear_sensitivity,
+    wear_factor,
+    wear_per_energy,
+    wear_per_slide,
+    with_coefficient,
+)
 from ballsocket.hip.wear_laws import WEAR_LAWS, read_ball_law, read_wear_law
 
 PRESSURE = np.array([[2.0, 0.0, 4.0], [3.0, 0.0, 0.0]])
@@ -209,6 +217,8 @@ def test_old_names_of_laws_warn_and_work():
         assert law.of is np.sum
     with pytest.warns(DeprecationWarning, match="AreaLaw is deprecated: use ContactAreaWear"):
         assert wear_laws.AreaLaw is ContactAreaWear
+    with pytest.warns(DeprecationWarning, match="advanced is deprecated: use advance_strain"):
+        assert KelvinVoigtChain.advanced is KelvinVoigtChain.advance_strain
     from ballsocket.hip.coefficients import wear_factor as moved
 
     assert moved is wear_factor
@@ -231,7 +241,12 @@ def test_old_names_of_simulations_warn_and_work():
     use, seen = hip(ring_width=0.15, cycle=flexion(8)), []
     assert isinstance(use.first, First)
     renamed = {"rest": "solve_equilibrium", "bed": "foundation", "halved": "discretization_error"}
-    for old, new in {**renamed, "tether": "lateral_stiffness"}.items():
+    for old, new in {
+        **renamed,
+        "tether": "lateral_stiffness",
+        "moved": "side_cycle",
+        "largest": "largest_load_index",
+    }.items():
         with pytest.warns(DeprecationWarning, match=f"{old} is deprecated: use {new}"):
             value = getattr(use, old)
         assert np.array_equal(value, getattr(use, new))

@@ -96,7 +96,7 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
     told(Reached(share=0.3, words="pressing through the cycle"))
     rest, lubricant = hip.unworn, Lubricant()
     told(Reached(share=0.7, words="film and edge"))
-    found, edge = film(hip, hip.foundation, hip.sliding, rest, lubricant), hip.edge(rest)
+    found, edge = film(hip.frame, hip.foundation, hip.sliding, rest, lubricant), hip.edge(rest)
     worst, first = edge.closest_approach(hip), hip.first
     checks = hip.unworn_checks
     utilisation, valid = largest_utilisation(checks), all(check.valid for check in checks)

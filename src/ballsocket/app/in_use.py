@@ -35,13 +35,13 @@ _CREEP_PREFIX = "creep_"
 def _inputs(laws: Mapping[str, type[Law]], prefix: str = "") -> dict[str, LawField]:
     """Return the required numbers of laws by the names of their inputs."""
     parts = (part for law in reversed(list(laws.values())) for part in law.law_fields())
-    return {prefix + part.key: part for part in parts if part.required and not part.listed}
+    return {prefix + part.key: part for part in parts if part.required and not part.is_list}
 
 
 def _creep_choices() -> tuple[str, ...]:
     """Return "no", "yes" for the default law, and the other laws whose required fields are numbers."""
     _, *others = CREEP_LAWS.items()
-    names = (name for name, law in others if not any(part.listed and part.required for part in law.law_fields()))
+    names = (name for name, law in others if not any(part.is_list and part.required for part in law.law_fields()))
     return (_NO_CREEP, _DEFAULT_CREEP, *names)
 
 

@@ -126,9 +126,9 @@ def _plain(hip: HipSimulation, history: History, bands: Any) -> Worn:
         band = f"band: what the run may be off by, {100 * history.error.depth:.2g} %"
     else:
         low, high = (numpy.array([0.0, *ends]) for ends in bands.band("penetration"))
-        share = f"{100 * bands.level:g} % of the predictions for {bands.patients} patients"
+        share = f"{100 * bands.level:g} % of the predictions for {bands.n_patients} patients"
         band = f"band: {share}, for a wear coefficient known within a factor"
-    largest = hip.loads[hip.largest[0]]
+    largest = hip.loads[hip.largest_load_index[0]]
     return Worn(
         cycles=numpy.array([0.0, *(report.cycles / 1e6 for report in reports)]),
         penetration=whole,

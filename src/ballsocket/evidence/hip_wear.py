@@ -10,14 +10,13 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..hip.bands import DEFAULT_LEVEL
-from ..hip.cohort_results import RESULT_UNITS
 from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.cycle_registry import named_cycle
 from ..hip.simulation import HipSimulation
 from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
 from ..hip.uncertainty import population
-from ..hip.variability import PatientVariability
+from ..hip.variability import RESULT_UNITS, PatientVariability
 from ..hip.wear_law import WearLaw
 from ..hip.wear_laws import Archard, ContactAreaWear
 from ..problem import Joint, Material

@@ -30,7 +30,7 @@ class BilinearInterpolation:
     weights: Numbers
 
     def interpolate(self, fields: Numbers) -> Numbers:
-        """Interpolate fields (n or 1, all cells) at the points: (n, points)."""
+        """Interpolate fields of cell values (n or 1, all cells) at the points: (n, points)."""
         count, points, corners = self.cells.shape
         fields = numpy.broadcast_to(fields, (count, fields.shape[-1]))
         values = numpy.take_along_axis(fields, self.cells.reshape(count, -1), axis=1)
@@ -38,7 +38,7 @@ class BilinearInterpolation:
 
 
 def interpolation_at(grid: Grid, directions: Numbers) -> BilinearInterpolation:
-    """Create the interpolation at unit vectors (3, n, points) between the centres of a grid's cells."""
+    """Create the bilinear interpolation from the cells of a grid to points, given as unit vectors (3, n, points)."""
     x, y, z = directions
     polar, azimuth = numpy.arctan2(numpy.hypot(x, y), z), numpy.arctan2(y, x)
     ring = numpy.clip(numpy.searchsorted(grid.polar, polar) - 1, 0, grid.rings - 2)
@@ -99,7 +99,7 @@ class CounterfaceMap:
         return self.on_socket.interpolate(field)
 
     def ball_exposure(self, cycle: CycleExposure) -> CycleExposure:
-        """Map the exposure of the socket to the ball, with the same work of friction in each instant."""
+        """Compute pressure and sliding of the ball's cells, with the friction work of the socket in each instant."""
         pressure = self._interpolate_on_ball(cycle.pressure)
         socket_work = (cycle.pressure * cycle.sliding.distances) @ self.socket_areas
         ball_work = (pressure * self.sliding.distances) @ self.areas
@@ -111,7 +111,7 @@ class CounterfaceMap:
         )
 
     def _interpolate_on_ball(self, values: Numbers) -> Numbers:
-        """Interpolate values of the socket's cells (instants, n) at those of the ball: (instants, m)."""
+        """Interpolate values of the socket's cells (instants, n) at the ball's cells: (instants, m)."""
         field = numpy.zeros((len(values), self.socket_size))
         field[:, self.socket_cells] = values
         return self.on_ball.interpolate(field)
@@ -119,8 +119,8 @@ class CounterfaceMap:
 
 def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
     """Map cells of the socket to the cells of the ball that pass over them during a cycle."""
-    cup_frame = numpy.array(setup.placed.frame)
-    rotated = cup_frame @ setup.moved.midpoint_rotations[setup.loaded]
+    cup_frame = numpy.array(setup.frame.placed.frame)
+    rotated = cup_frame @ setup.frame.side_cycle.midpoint_rotations[setup.frame.loaded]
     grid = setup.ball_grid
     directions = ball_directions(grid)
     to_ball = interpolation_at(setup.grid, numpy.einsum("tij,jp->itp", rotated, directions))
@@ -133,7 +133,7 @@ def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
         cells=ball_cells,
         sliding=SurfaceSliding(
             radius=radius,
-            rotation_increments=numpy.einsum("tji,tj->ti", rotated, setup.rotation_increments),
+            rotation_increments=numpy.einsum("tji,tj->ti", rotated, setup.frame.rotation_increments),
             directions=directions[:, ball_cells],
         ),
         areas=numpy.repeat(grid.areas[:, 0], grid.meridians)[ball_cells] * radius**2,
@@ -181,7 +181,7 @@ class ActiveCells:
 
 
 def select_active_cells(setup: HipSetup, cells: Numbers) -> ActiveCells:
-    """Select cells of the socket, and those of a wearing ball that pass over them."""
+    """Select cells of the socket by their numbers, with the cells of a wearing ball that pass over them."""
     counterface = None if setup.ball_wear is None else map_counterface(setup, cells)
     return ActiveCells(
         cells=cells,

@@ -11,10 +11,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_arguments
-from ..elasticity.off_axis.surfaces import Springs
-from .cohort_results import RESULT_UNITS, CohortResult
 from .contact_checks import list_notes
-from .variability import PatientVariability, summarize_distributions
+from .variability import RESULT_UNITS, CohortResult, PatientVariability, summarize_distributions
 from .wear_law import coefficient_field
 
 DEFAULT_LEVEL = 0.95
@@ -32,7 +30,7 @@ INFLUENCED_RESULTS = ("volume", "depth", "penetration")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SharedCoefficient:
-    """Results of all patients with one shared wear coefficient, for three coefficients.
+    """Results of a cohort in which all patients share one wear coefficient: a low, a median or a high one.
 
     Attributes
     ----------
@@ -52,7 +50,7 @@ class SharedCoefficient:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Bands:
-    """Bands of the results of a patient cohort.
+    """Uncertainty bands (quantiles) of the results of a patient cohort.
 
     Attributes
     ----------
@@ -86,11 +84,11 @@ class Bands:
 
     @property
     def subject(self) -> str:
-        """Noun for the members of a band: "predictions" for an unknown wear coefficient, else "patients"."""
+        """Word for the members of a band in texts: "predictions" for an unknown wear coefficient, else "patients"."""
         return "predictions" if COEFFICIENT in self.variability.distributions else "patients"
 
     @property
-    def patients(self) -> int:
+    def n_patients(self) -> int:
         """Number of patients."""
         return len(self.cohort.refused)
 
@@ -101,19 +99,19 @@ class Bands:
 
     @property
     def _tails(self) -> tuple[float, float]:
-        """Fractions of the predictions below the lower and below the upper end of a band."""
+        """Probabilities of the lower and the upper end of a band, such as 0.025 and 0.975."""
         tail = (1 - self.level) / 2
         return tail, 1 - tail
 
     @property
     def _fractions(self) -> dict[str, float]:
-        """Fractions of the predictions below the ends and the median of a band."""
+        """Probabilities of the ends and the median of a band, by name."""
         low, high = self._tails
         return {"low": low, "median": 0.5, "high": high}
 
     @renamed_arguments(share="fraction")
     def quantile(self, name: str, fraction: float) -> Numbers:
-        """Compute the quantile of a result over the patients at each report; NaN if no patient has a result.
+        """Compute a quantile of one result over the patients at each report; NaN if no patient has a result.
 
         Parameters
         ----------
@@ -122,17 +120,17 @@ class Bands:
         fraction : float
             Fraction of the patients below the quantile.
         """
-        if self.n_failed == self.patients:
+        if self.n_failed == self.n_patients:
             return numpy.full(len(self.counts), numpy.nan)
         return numpy.nanquantile(self.cohort.table[:, :, list(RESULT_UNITS).index(name)], fraction, axis=0)
 
     def band(self, name: str) -> tuple[Numbers, Numbers]:
-        """Compute both ends of the band of a result of `RESULT_UNITS` at each report, over all predictions."""
+        """Compute the lower and the upper end of the band of one result (a name of `RESULT_UNITS`) at each report."""
         low, high = (self.quantile(name, fraction) for fraction in self._tails)
         return low, high
 
     def population_band(self, name: str, coefficient: str = "median") -> tuple[Numbers, Numbers]:
-        """Compute the ends of the band of the patients at each report, for one shared wear coefficient.
+        """Compute both ends of the band of patients with the same wear coefficient, two arrays (reports,).
 
         Parameters
         ----------
@@ -157,9 +155,9 @@ class Bands:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Assumptions and limits of the bands."""
+        """Notes on the assumptions and limits of the bands."""
         assumed = f"assumed: given and independent distributions of {', '.join(self.variability.distributions)}"
-        surface = () if isinstance(self.variability.use.surface, Springs) else ("the bands are for radial springs",)
+        surface = () if self.variability.use.uses_springs else ("the bands are for radial springs",)
         return (
             assumed,
             *self._coefficient_note,
@@ -172,7 +170,7 @@ class Bands:
     @property
     def nominal_notes(self) -> tuple[str, ...]:
         """Notes of the nominal patient's simulation: contact model in the first cycle, cycle, cup and laws."""
-        checks = [("nominal patient, in the first cycle", self.variability.quick.unworn_checks)]
+        checks = [("nominal patient, in the first cycle", self.variability.coarse_simulation.unworn_checks)]
         return (*list_notes(checks), *self.variability.use.notes)
 
     @property
@@ -193,23 +191,23 @@ class Bands:
             return ()
         reasons = Counter(str(error).split(":")[0] for error in self.cohort.refused if error)
         reason = reasons.most_common(1)[0][0]
-        failed = f"{self.n_failed} of {self.patients} patients have no result, most often: {reason}"
+        failed = f"{self.n_failed} of {self.n_patients} patients have no result, most often: {reason}"
         return (f"{failed}; the bands are for the others",)
 
     @property
     def _wear_through_note(self) -> tuple[str, ...]:
         """Note on patients whose liner is worn through."""
         depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
-        n_patients = int((depth > self.variability.use.joint.liner_thickness).sum())
-        return (f"{n_patients} of {self.patients} patients wear their liner through",) if n_patients else ()
+        n_worn_through = int((depth > self.variability.use.joint.liner_thickness).sum())
+        return (f"{n_worn_through} of {self.n_patients} patients wear their liner through",) if n_worn_through else ()
 
     @property
     def _validity_note(self) -> tuple[str, ...]:
         """Note on patients whose contact leaves the validity of its model."""
         outside = int((self.cohort.valid[:, -1] == 0).sum())
-        model = self.variability.quick.contact_model.name
+        model = self.variability.coarse_simulation.contact_model.name
         sentence = (
-            f"{outside} of {self.patients} patients have contacts outside the validity of the contact model ({model})"
+            f"{outside} of {self.n_patients} patients have contacts outside the validity of the contact model ({model})"
         )
         return (sentence,) if outside else ()
 
@@ -226,13 +224,13 @@ class Bands:
 
     @property
     def valid(self) -> bool:
-        """True if every patient with an answer has valid contacts from the first cycle to each report."""
+        """True if every patient with a result has valid contacts from the first cycle to each report."""
         valid = self.cohort.valid[self.cohort.refused == ""]
         return bool(valid.size and (valid == 1).all())
 
     @renamed_arguments(share="fraction")
     def utilisation_quantile(self, fraction: float) -> Numbers:
-        """Compute the quantile of the largest utilisation so far at each report; NaN if unknown."""
+        """Compute a quantile of the patients' largest utilisation up to each report; NaN if unknown."""
         known = self.peak_utilisation[~numpy.isnan(self.peak_utilisation).any(axis=1)]
         return numpy.quantile(known, fraction, axis=0) if len(known) else numpy.full(len(self.counts), numpy.nan)
 
@@ -249,7 +247,7 @@ class Bands:
             "bands": [self._summarize_report(report) for report in range(len(self.counts))],
             "sobol": self._summarize_indices(),
             "uncertainty": {
-                "patients": self.patients,
+                "patients": self.n_patients,
                 "without_answer": self.n_failed,
                 "seed": self.seed,
                 "level": self.level,
@@ -260,7 +258,7 @@ class Bands:
         }
 
     def _summarize_report(self, report: int) -> dict[str, Any]:
-        """Return the bands at a report."""
+        """Return the bands at one report as data for JSON."""
         bands: dict[str, dict[str, Any]] = {
             name: {
                 end: _finite_or_none(self.quantile(name, fraction)[report]) for end, fraction in self._fractions.items()
@@ -284,7 +282,7 @@ class Bands:
         }
 
     def _summarize_coefficients(self, shared: SharedCoefficient, name: str, report: int) -> dict[str, Any]:
-        """Return the bands of the patients for each shared coefficient."""
+        """Return the bands of one result at one report for each shared wear coefficient, as data for JSON."""
         return {
             coefficient: {
                 end: _finite_or_none(shared.quantile(coefficient, name, fraction)[report])
@@ -294,7 +292,7 @@ class Bands:
         }
 
     def _summarize_indices(self) -> dict[str, Any] | None:
-        """Return the Sobol indices by result and sampled quantity; None without indices."""
+        """Return the Sobol indices by result and sampled quantity as data for JSON; None without indices."""
         if self.indices is None:
             return None
         return {
@@ -308,11 +306,12 @@ class Bands:
     scatter = RenamedAttribute("variability")
     lived = RenamedAttribute("cohort")
     without = RenamedAttribute("n_failed")
+    patients = RenamedAttribute("n_patients")
     off = RenamedAttribute("quick_run_errors")
     usual_notes = RenamedAttribute("nominal_notes")
     valid_share = RenamedAttribute("valid_fraction")
 
 
 def _finite_or_none(value: float) -> float | None:
-    """Return a finite number, else None."""
+    """Convert a number for JSON: NaN and infinity become None."""
     return float(value) if numpy.isfinite(value) else None

@@ -19,9 +19,16 @@ from ..core.storage.atomic_files import write_text
 from ..core.storage.fingerprint import check_worker_code, digest_of, fingerprint
 from ..core.storage.pieces import PieceRun, PieceStore
 from ..studies.axes import SampleAxis
-from .checkpoint import checkpoint
-from .cohort_results import RESULT_UNITS, CohortResult, contact_table, join_results, result_table
-from .variability import ANGLES, PatientVariability
+from .report_points import make_checkpoint
+from .variability import (
+    ANGLES,
+    RESULT_UNITS,
+    CohortResult,
+    PatientVariability,
+    contact_table,
+    join_results,
+    result_table,
+)
 
 PATIENTS_PER_PIECE = 16
 """Patients of one piece of work: about half a second."""
@@ -42,7 +49,9 @@ ProgressCallback = Callable[[int], None]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CohortRun:
-    """Simulation of sampled patients in pieces of a few patients; a call with a number computes that piece.
+    """Simulation of a sampled patient cohort, divided into pieces of a few patients.
+
+    A call with the number of a piece simulates its patients.
 
     Attributes
     ----------
@@ -67,10 +76,10 @@ class CohortRun:
 
     @property
     def pieces(self) -> range:
-        """Numbers of the pieces."""
+        """Numbers of the pieces of the cohort, from 0."""
         return range(ceil(len(self) / PATIENTS_PER_PIECE))
 
-    def patients(self, piece: int) -> range:
+    def patient_numbers(self, piece: int) -> range:
         """Return the numbers of the patients in a piece."""
         return range(piece * PATIENTS_PER_PIECE, min((piece + 1) * PATIENTS_PER_PIECE, len(self)))
 
@@ -83,7 +92,7 @@ class CohortRun:
             This worker has another version of the package than the process that started the run.
         """
         check_worker_code(self.code)
-        tables, contacts, errors = zip(*(self._simulate(number) for number in self.patients(piece)), strict=True)
+        tables, contacts, errors = zip(*(self._simulate(number) for number in self.patient_numbers(piece)), strict=True)
         return CohortResult(table=numpy.stack(tables), refused=numpy.array(errors), contact=numpy.stack(contacts))
 
     def _simulate(self, number: int) -> tuple[Numbers, Numbers, str]:
@@ -113,14 +122,14 @@ class CohortRun:
         """
         if store is not None:
             store.create()
-        coarse = replace(self, variability=replace(self.variability, use=self.variability.quick))
+        coarse = replace(self, variability=replace(self.variability, use=self.variability.coarse_simulation))
         run = PieceRun(coarse, self.pieces, None if store is None else replace(store, n_patients=len(self)))
         results = dict(run.stored)
-        finished = sum(len(self.patients(piece)) for piece in results)
+        finished = sum(len(self.patient_numbers(piece)) for piece in results)
         progress(finished)
         for piece, result in run.compute_missing(engine):
             results[piece] = result
-            finished += len(self.patients(piece))
+            finished += len(self.patient_numbers(piece))
             progress(finished)
         return join_results([results[piece] for piece in self.pieces])
 
@@ -145,13 +154,15 @@ class CohortStore(PieceStore):
 
     @property
     def _label_path(self) -> Path:
+        """Path of the file with the identity of the cohort."""
         return self.folder / _LABEL_NAME
 
     def _piece_path(self, piece: int) -> Path:
+        """Return the path of the file with the results of a piece."""
         return self.folder / f"patients_{piece:06d}.npz"
 
     def create(self) -> None:
-        """Create the folder and its label, unless they exist.
+        """Create the folder of the store and its label file, unless they exist.
 
         Raises
         ------
@@ -181,12 +192,12 @@ class CohortStore(PieceStore):
             raise ValueError(f"{self.folder} has another cohort, or one of another version; choose another folder")
 
     def load(self, numbers: Sequence[int]) -> dict[int, CohortResult]:
-        """Load the stored pieces that are complete and undamaged."""
+        """Load the stored results of pieces that are complete and undamaged."""
         results = {piece: self._read(piece) for piece in numbers}
         return {piece: result for piece, result in results.items() if result is not None}
 
     def save(self, number: int, result: CohortResult) -> CohortResult:
-        """Store the result of a piece, and return it.
+        """Store the result of a piece in a file, and return the result.
 
         Raises
         ------
@@ -212,7 +223,7 @@ class CohortStore(PieceStore):
 
 @renamed_arguments(scatter="variability")
 def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence[float], seed: int) -> CohortStore:
-    """Return the store of a sampled cohort in a folder.
+    """Create the store of a sampled cohort in a folder, and check that the folder has no other cohort.
 
     Parameters
     ----------
@@ -230,7 +241,7 @@ def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence
     ValueError
         The folder has another cohort or a damaged label.
     """
-    nominal = checkpoint(variability.quick, folder).identity
+    nominal = make_checkpoint(variability.coarse_simulation, folder).identity
     distributions = dict(variability.distributions)
     identity = digest_of(fingerprint(), nominal, distributions, variability.body_weight, tuple(counts), seed)
     store = CohortStore(folder=folder.absolute(), identity=identity)
@@ -283,9 +294,9 @@ __getattr__ = renamed_names(
         "kept": "cohort_store",
         "drawn": "sample_patients",
         "Lives": "CohortRun",
-        "Lived": "ballsocket.hip.cohort_results.CohortResult",
+        "Lived": "ballsocket.hip.variability.CohortResult",
         "Kept": "CohortStore",
-        "joined": "ballsocket.hip.cohort_results.join_results",
+        "joined": "ballsocket.hip.variability.join_results",
         "columns": "table_columns",
     },
 )

@@ -27,11 +27,10 @@ from .creep_laws import CREEP_LAWS, read_creep_law
 from .cycle_file import KEYS as CYCLE_KEYS
 from .cycle_file import parse_cycle
 from .film import Lubricant
-from .law_fields import law_keys, wear_factor
-from .mix import Mix
+from .law_fields import law_keys
 from .simulation import HipSimulation, check_cycles
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
-from .wear_law import coefficient_field
+from .wear_law import coefficient_field, wear_factor
 from .wear_laws import BALL_COEFFICIENT, WEAR_LAWS, read_ball_law, read_wear_law
 
 UNCERTAINTY_KEYS = ("count", "seed", *SAMPLED_QUANTITIES)
@@ -110,7 +109,7 @@ def read_hip(path: str | Path) -> HipFile:
 
 
 def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
-    """Read the contents of a hip file; `folder` is that of the tables and joint files it names."""
+    """Build a `HipFile` from the content of a hip file; paths in the file are relative to a folder."""
     check_keys(content, "", "at the top", FILE_KEYS)
     for name in ("cup", "cycle", "wear", "creep", "film", "uncertainty"):
         check_keys(table_of(content, name), name, f"in [{name}]", FILE_KEYS)
@@ -128,8 +127,8 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         seconds_per_cycle=_parse_seconds(table_of(content, "creep")),
         **width,
     )
-    if isinstance(cycle, Mix) and "years" in content:
-        cycles, report_at = _parse_years(content, cycle)
+    if cycle.per_year is not None and "years" in content:
+        cycles, report_at = _parse_years(content, cycle.per_year)
     else:
         cycles, report_at = _parse_cycles(content)
     check_cycles(cycles, report_at)
@@ -143,12 +142,12 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
 
 
 def parse_creep(content: Mapping[str, Any], poisson: float) -> CreepLaw | None:
-    """Read the creep law of a file for a liner of this Poisson's ratio; None without a table [creep]."""
+    """Read the creep law of the table [creep], for a liner with a Poisson's ratio; None without the table."""
     return read_creep_law(table_of(content, "creep"), poisson) if "creep" in content else None
 
 
 def _parse_seconds(table: Mapping[str, Any]) -> float | None:
-    """Read the time in s that a cycle stands for in the table [creep]; None without it."""
+    """Read `seconds_per_cycle` in s from the table [creep]; None without the key."""
     value = table.get("seconds_per_cycle")
     return None if value is None else parse("seconds_per_cycle", value, Kind.NUMBER)
 
@@ -195,18 +194,18 @@ def _parse_cycles(content: Mapping[str, Any]) -> tuple[float, tuple[float, ...]]
     return cycles, _parse_report_points(content, "report_at", cycles)
 
 
-def _parse_years(content: Mapping[str, Any], mix: Mix) -> tuple[float, tuple[float, ...]]:
-    """Read the years and the years of the reports as numbers of cycles of a mix of activities."""
+def _parse_years(content: Mapping[str, Any], per_year: float) -> tuple[float, tuple[float, ...]]:
+    """Read the years of a run and of its reports, and convert both to numbers of cycles."""
     for name in ("cycles", "report_at"):
         if name in content:
             raise ValueError(f"{name} and years exclude each other: both set the length of the run; remove one")
     years = _parse_count("years", content["years"])
     reports = _parse_report_points(content, "report_years", years)
-    return years * mix.per_year, tuple(year * mix.per_year for year in reports)
+    return years * per_year, tuple(year * per_year for year in reports)
 
 
 def _parse_report_points(content: Mapping[str, Any], name: str, end: float) -> tuple[float, ...]:
-    """Read the list of report points, ten equal steps by default."""
+    """Read the cycle counts or years of the reports; ten equal steps by default."""
     steps = range(1, _DEFAULT_N_REPORTS + 1)
     points = content.get(name, [step * end / _DEFAULT_N_REPORTS for step in steps])
     if not isinstance(points, list):
@@ -226,7 +225,10 @@ def _parse_count(name: str, value: Any) -> float:
 
 
 def _parse_joint(content: Mapping[str, Any], folder: Path) -> JointFile:
-    """Read joint and cup. The cup may have a tilt instead of an orientation, and accompany the name of a joint."""
+    """Read the joint and the cup of a hip file.
+
+    The cup may have a tilt instead of an orientation, also next to the name of a joint.
+    """
     cup_table = dict(table_of(content, "cup"))
     tilt = cup_table.pop("tilt", None)
     file = joint_in({name: table for name, table in content.items() if name != "cup"}, folder)
@@ -236,7 +238,7 @@ def _parse_joint(content: Mapping[str, Any], folder: Path) -> JointFile:
 
 
 def _tilt_cup(cup: Cup, tilt: Any, cup_table: Mapping[str, Any]) -> Cup:
-    """Tilt a cup from the load by the angle of a file."""
+    """Return the cup tilted from the load by the angle that a hip file states."""
     for name in ("inclination", "anteversion"):
         if name in cup_table:
             raise ValueError(f"tilt and {name} exclude each other: both set the orientation of the cup; remove one")
@@ -281,7 +283,7 @@ class UncertaintySettings:
 
 
 def read_uncertainty(content: Mapping[str, Any], use: HipSimulation) -> UncertaintySettings:
-    """Read the table [uncertainty] of a file.
+    """Read distributions and sample settings from the table [uncertainty] of a hip file.
 
     Parameters
     ----------
@@ -297,31 +299,30 @@ def read_uncertainty(content: Mapping[str, Any], use: HipSimulation) -> Uncertai
         A value or a name that is not allowed.
     """
     table = table_of(content, "uncertainty")
-    distributions = {
-        name: distribution_of(name, table[name], _read(name, use)) for name in SAMPLED_QUANTITIES if name in table
-    }
+    names = [name for name in SAMPLED_QUANTITIES if name in table]
+    distributions = {name: distribution_of(name, table[name], _quantity_reader(name, use)) for name in names}
     count = _read_integer("count", table.get("count", DEFAULT_COUNT))
     seed = _read_integer("seed", table.get("seed", 0))
     if count < 2 or count & (count - 1):
         raise ValueError(f"count = {count} is not allowed: it must be a power of two, such as {DEFAULT_COUNT}")
     weight = _read_body_weight(content) if "body_weight" in distributions else None
     variability = PatientVariability(use=use, distributions=distributions, body_weight=weight)
-    for name, value in _nominal(use).items():
+    for name, value in _nominal_values(use).items():
         if name in distributions:
             check_nominal(name, value, distributions[name], _SAMPLED_KINDS.get(name, Kind.NUMBER).written)
     return UncertaintySettings(variability=variability, count=count, seed=seed)
 
 
-def _nominal(use: HipSimulation) -> dict[str, float]:
+def _nominal_values(use: HipSimulation) -> dict[str, float]:
     """Return the nominal values of the quantities that may differ between patients."""
-    coefficient, cup = coefficient_field(use.wear), use.placed
+    coefficient, cup = coefficient_field(use.wear), use.frame.placed
     values = {"clearance": use.joint.clearance, "inclination": cup.inclination, "anteversion": cup.anteversion}
     known = values if coefficient is None else {**values, "coefficient": getattr(use.wear, coefficient.name)}
     return {name: float(value) for name, value in known.items()}
 
 
 def _read_body_weight(content: Mapping[str, Any]) -> float | None:
-    """Read the body weight that the forces belong to; return None if the file does not state it."""
+    """Read the body weight in N that the forces refer to; None if the file states no body weight."""
     tables = (content, table_of(content, "cycle"), *content.get("activity", []))
     weights = {parse("body_weight", table["body_weight"], Kind.FORCE) for table in tables if "body_weight" in table}
     if len(weights) > 1:
@@ -329,7 +330,8 @@ def _read_body_weight(content: Mapping[str, Any]) -> float | None:
     return weights.pop() if weights else None
 
 
-def _read(name: str, use: HipSimulation) -> Read:
+def _quantity_reader(name: str, use: HipSimulation) -> Read:
+    """Return the function that reads a sampled quantity from text with a unit."""
     if name != "coefficient":
         return lambda key, value: parse(key, value, _SAMPLED_KINDS[name])
     coefficient = coefficient_field(use.wear)
@@ -337,6 +339,7 @@ def _read(name: str, use: HipSimulation) -> Read:
 
 
 def _read_integer(name: str, value: Any) -> int:
+    """Read an integer from 0 to the largest allowed one."""
     if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _MAX_INTEGER:
         raise ValueError(f"{name} = {shown(value)} is not allowed: it must be an integer from 0 to {_MAX_INTEGER}")
     return value

@@ -27,7 +27,7 @@ COLUMNS = ("instant", "force", "indentation", "half_angle", "max_pressure")
 
 @dataclass(frozen=True, kw_only=True)
 class GridLaws:
-    """Quantities of contacts on a grid; NaN for quantities that the run does not compute."""
+    """Contact quantities of a wear simulation for a `Contact`; NaN where the simulation does not compute them."""
 
     half_angle: Array
     max_pressure: Array
@@ -45,13 +45,14 @@ class GridLaws:
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class GridContact(Contact):
-    """Contact on the grid of a run.
+    """Contact of a wear simulation as a `Contact` of the matching model, for validity and strength.
 
     Its von Mises stress is a fitted ratio times the largest pressure, with an error of typically 6 %. If the yield
     stress is within that error, the ratio is computed from the exact solution at the same half angle.
     """
 
     def _compute_von_mises(self) -> Array:
+        """Compute the largest von Mises stress in MPa."""
         estimate = super()._compute_von_mises()
         if not isinstance(self.max_pressure, float) or not self._may_yield(estimate):
             return estimate
@@ -59,7 +60,7 @@ class GridContact(Contact):
         return ratio * self.max_pressure if isfinite(ratio) else estimate
 
     def _may_yield(self, estimate: float) -> bool:
-        """Check if yield or the end of linear elasticity is within the error of an estimate of the stress (MPa)."""
+        """Check if the yield stress or the elastic limit lies within the error of a von Mises stress (MPa)."""
         yield_stress = self.joint.liner.yield_stress
         low, high = strength.von_mises_bounds(self, estimate)
         return yield_stress is not None and any(low <= limit * yield_stress <= high for limit in _NOTED_UTILISATIONS)
@@ -71,7 +72,10 @@ _NOTED_UTILISATIONS = 1.0, strength.MAX_ELASTIC_UTILISATION
 
 @lru_cache(maxsize=256)
 def exact_stress_ratio(joint: Joint, half_angle: float) -> float:
-    """Compute the largest von Mises stress in the liner over the largest pressure; NaN without an exact solution."""
+    """Compute the ratio of the liner's largest von Mises stress to the largest pressure by the exact solution.
+
+    It is NaN without an exact solution.
+    """
     try:
         contact = Exact().press(joint, half_angle=half_angle)
         return float(contact.von_mises / contact.max_pressure)
@@ -81,7 +85,7 @@ def exact_stress_ratio(joint: Joint, half_angle: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactCheck:
-    """Verdict of the contact model on the worst instant of one activity.
+    """Validity, strength and notes of the contact model at the worst instant of one activity.
 
     Attributes
     ----------
@@ -126,7 +130,7 @@ class ContactCheck:
 
 
 def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
-    """Compute half angles in rad of round contacts of the same area: (contacts,).
+    """Compute half angles in rad of round contacts with the areas of contacts on a grid: (contacts,).
 
     Parameters
     ----------
@@ -153,12 +157,12 @@ def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
 
 
 def _solid_angle_fraction(polar: float, reach: float) -> float:
-    """Compute the solid angle between two polar angles, divided by 2π."""
+    """Compute the solid angle between two polar angles in rad, divided by 2π."""
     return float(numpy.cos(polar) - numpy.cos(reach))
 
 
 def grid_contact(model: Model, joint: Joint, worst: Numbers) -> GridContact:
-    """Build the contact of one row of a table of worst contacts, or of a table (contacts, `COLUMNS`)."""
+    """Build a `GridContact` from one row of a table of worst contacts, or from a table (contacts, `COLUMNS`)."""
     plain = worst.ndim == 1
     force, indentation, half_angle, max_pressure = (float(x) if plain else x for x in worst.T[1:])
     return GridContact(
@@ -188,7 +192,7 @@ def utilisation_and_validity(model: Model, joint: Joint, stages: Sequence[Number
 
 
 def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, instant: str) -> ContactCheck:
-    """Check the contact of one row of a table of worst contacts."""
+    """Check validity and strength of one contact, a row of a table of worst contacts."""
     contact = grid_contact(model, joint, worst)
     utilisation = float(contact.utilisation)
     return ContactCheck(
@@ -205,7 +209,7 @@ def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, ins
 
 
 def largest_utilisation(checks: Sequence[ContactCheck]) -> float | None:
-    """Return the largest utilisation of some checks; None where none is known."""
+    """Return the largest utilisation of some checks; None if no utilisation is known."""
     return max((check.utilisation for check in checks if check.utilisation is not None), default=None)
 
 
@@ -221,7 +225,7 @@ def list_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator
     """
     listed = set()
     for stage, checks in stages:
-        for check in sorted(checks, key=_severity):
+        for check in sorted(checks, key=_severity_key):
             for note in check.notes:
                 kind = "".join(letter for letter in note if not letter.isdigit())
                 if kind not in listed:
@@ -229,6 +233,6 @@ def list_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator
                     yield note if note == check.utilisation_note else f"{note} ({stage}, at {check.instant})"
 
 
-def _severity(check: ContactCheck) -> tuple[float, float]:
-    """Return the key that sorts checks from the largest utilisation and pressure to the smallest."""
+def _severity_key(check: ContactCheck) -> tuple[float, float]:
+    """Return the sort key of a check: large utilisations and pressures come first."""
     return -(check.utilisation or 0.0), -check.max_pressure

@@ -9,6 +9,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..core.deprecation import RenamedAttribute
 from .law_fields import Law
 
 
@@ -28,6 +29,7 @@ class CreepLaw(Law):
     """
 
     confinement: float = 1.0
+    advanced = RenamedAttribute("advance_strain")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -41,11 +43,12 @@ class CreepLaw(Law):
 
     @property
     def _confined_elements(self) -> tuple[Numbers, Numbers]:
+        """Compliances in 1/MPa and retardation times in s of the elements in the confined liner."""
         compliances, times = self.elements
         return self.confinement * numpy.array(compliances), numpy.array(times)
 
     def response(self, seconds: Numbers | float) -> Numbers:
-        """Compute the strain per MPa after a constant pressure of this duration in s."""
+        """Compute the creep compliance (strain per MPa) after a time in s under constant pressure."""
         compliance, time = self._confined_elements
         return -numpy.expm1(-numpy.asarray(seconds)[..., None] / time) @ compliance
 
@@ -53,7 +56,7 @@ class CreepLaw(Law):
         """Return the strains of an unloaded liner: zeros (elements, points)."""
         return numpy.zeros((len(self.elements[1]), points))
 
-    def advanced(self, strain: Numbers, pressure: Numbers, seconds: float) -> Numbers:
+    def advance_strain(self, strain: Numbers, pressure: Numbers, seconds: float) -> Numbers:
         """Compute the strains (elements, points) after a time in s under constant pressures in MPa (points,)."""
         compliance, growth = self._growth(seconds)
         return strain + growth[:, None] * (compliance[:, None] * pressure - strain)
@@ -70,13 +73,13 @@ class CreepLaw(Law):
         return ((1 - growth)[:, None] * strain).sum(axis=0), float(growth @ compliance)
 
     def _growth(self, seconds: float) -> tuple[Numbers, Numbers]:
-        """Compute the compliance of each element in 1/MPa, and the share of its remaining strain gained in a time."""
+        """Compute the compliance of each element in 1/MPa, and the share of its final strain that a time in s adds."""
         compliance, time = self._confined_elements
         return compliance, -numpy.expm1(-seconds / time)
 
 
 def constrained_share(poisson: float) -> float:
-    """Compute the strain of a laterally constrained layer over the strain of a bar under the same pressure.
+    """Compute the ratio of the strain of a laterally constrained layer to the strain of a free bar.
 
     This is E/M, with the constrained (oedometric) modulus M = E (1 - ν)/((1 + ν)(1 - 2ν)), for a Poisson's ratio that
     is the same at all times. If the volume creeps less than the shape does, the strain is smaller still.
@@ -98,6 +101,11 @@ def constrained_share(poisson: float) -> float:
     """
     require("poisson", poisson, 0 <= poisson <= 0.5, "Poisson's ratio of a creeping layer is 0 to 0.5")
     return (1 + poisson) * (1 - 2 * poisson) / (1 - poisson)
+
+
+def creep_notes(creep: CreepLaw | None, poisson: float) -> tuple[str, ...]:
+    """List the notes on a creep law and its confinement, for a liner with a Poisson's ratio; empty without a law."""
+    return () if creep is None else (*creep.notes, *filter(None, [confinement_note(creep, poisson)]))
 
 
 def confinement_note(creep: CreepLaw, poisson: float) -> str:

@@ -33,7 +33,9 @@ UNVERIFIED_NOTE = "the logarithmic law of creep has coefficients whose source wa
 
 @dataclass(frozen=True, kw_only=True)
 class KelvinVoigtChain(CreepLaw):
-    """Kelvin-Voigt elements in series: each strains towards J p under a pressure p, with its own time constant.
+    """Creep law of Kelvin-Voigt elements in series.
+
+    Under a pressure p, the strain of each element approaches J p with a retardation time of the element.
 
     Parameters
     ----------
@@ -79,7 +81,7 @@ class KelvinVoigtChain(CreepLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class LogarithmicCreep(CreepLaw):
-    """Creep of UHMWPE with the logarithm of time t in minutes: strain per MPa of 3.491e-3 + 7.966e-4 (log10 t - 4).
+    """Creep law of UHMWPE: strain per MPa of 3.491e-3 + 7.966e-4 (log10 t - 4) after a time t in minutes.
 
     It is accurate within 2 % after ten minutes. It has one element for each decade of time, all with the same
     compliance. Its coefficients are not verified, as its notes state.
@@ -116,7 +118,7 @@ class LogarithmicCreep(CreepLaw):
 
 
 def logarithmic(confinement: float = 1.0) -> LogarithmicCreep:
-    """Return the logarithmic creep law of UHMWPE; see `LogarithmicCreep`."""
+    """Create the logarithmic creep law of UHMWPE; see `LogarithmicCreep`."""
     return LogarithmicCreep(confinement=confinement)
 
 

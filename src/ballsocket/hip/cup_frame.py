@@ -1,15 +1,15 @@
-"""Loads and rotations of a cycle in the cup's frame."""
+"""Loads and rotations of a cycle in the frame of a cup."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees
+from typing import Any, Generic, TypeVar, overload
 
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.deprecation import RenamedAttribute
 from ..problem import Joint
 from ..problem.cup import Cup, Side
 from .cycle import Cycle, Frame
@@ -23,18 +23,32 @@ _MIN_RELATIVE_FORCE = 1e-6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CupFrame:
-    """Cycle of loads and rotations in the frame of the cup; the fields are those of `HipSimulation`."""
+    """Loads and rotations of a cycle in the frame of a cup.
+
+    The axis x points upwards along the rim's plane, z to the dome's pole.
+
+    Parameters
+    ----------
+    joint : Joint
+        Joint of single numbers.
+    cycle : Cycle or Mix
+        Loads and rotations in the body's frame, for the right side of the body.
+    cup : Cup
+        Arc of cover and orientation. A cup without a given orientation takes the tilt of the cycle's standard.
+
+    Raises
+    ------
+    ValueError
+        A load that pushes the ball over the rim, unless a spring balances the load there.
+    """
 
     joint: Joint
     cycle: Cycle | Mix
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
-    tether = RenamedAttribute("lateral_stiffness")
-    carried = RenamedAttribute("socket_forces")
-    turns = RenamedAttribute("rotation_increments")
 
-    def _check_dislocation(self) -> None:
-        """Refuse a load that pushes the ball over the rim, unless a spring holds the ball."""
-        outside = self._beyond_rim
+    def __post_init__(self) -> None:
+        """Check that no load pushes the ball over the rim, unless a spring balances the load there."""
+        outside = self._instants_beyond_rim
         if self.separation is not None:
             outside = outside[numpy.isnan(self.separation.displacement[:, 0])]
         if len(outside):
@@ -47,15 +61,15 @@ class CupFrame:
             )
 
     @cached_property
-    def moved(self) -> Cycle | Mix:
-        """Cycle on the side of the body that the cup belongs to."""
+    def side_cycle(self) -> Cycle | Mix:
+        """Cycle for the side of the body that the cup belongs to: mirrored for a left cup."""
         return self.cycle.mirrored() if self.cup.side is Side.LEFT else self.cycle
 
     @cached_property
     def forces(self) -> Numbers:
         """Forces of the ball on the socket in N, in the cup's frame: (instants, 3)."""
-        forces = self.moved.forces
-        return forces if self.cycle.frame is Frame.CUP else _in_cup(self.placed, forces)
+        forces = self.side_cycle.forces
+        return forces if self.cycle.frame is Frame.CUP else _convert_to_cup_frame(self.placed, forces)
 
     @property
     def _force_angles(self) -> Numbers:
@@ -63,15 +77,15 @@ class CupFrame:
         return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
 
     @cached_property
-    def _has_load(self) -> Numbers:
+    def _load_mask(self) -> Numbers:
         """Mask of the instants with a load: (instants,)."""
         sizes = self.cycle.force_magnitudes
         return numpy.asarray(sizes > _MIN_RELATIVE_FORCE * max(float(sizes.max()), 1e-300))
 
     @cached_property
-    def _pulled(self) -> SpringLoadedBall | None:
-        """Ball on its lateral spring; None without a spring."""
-        spring = self.moved.spring
+    def _spring_loaded_ball(self) -> SpringLoadedBall | None:
+        """Ball on the lateral spring of the cycle; None without a spring."""
+        spring = self.side_cycle.spring
         if spring is None:
             return None
         return SpringLoadedBall(
@@ -89,8 +103,11 @@ class CupFrame:
 
     @cached_property
     def lateral_stiffness(self) -> Numbers:
-        """Stiffness in N/mm of the cycle's spring, which unloads the ball as it moves: (3, 3)."""
-        spring = self.moved.spring
+        """Stiffness matrix in N/mm of the cycle's lateral spring: (3, 3).
+
+        A displacement of the ball times this matrix is the decrease of the force on the socket.
+        """
+        spring = self.side_cycle.spring
         return numpy.outer(self._spring_axis, self._spring_axis) * (0.0 if spring is None else spring.stiffness)
 
     def socket_forces(self, displacement: Numbers) -> Numbers:
@@ -98,38 +115,51 @@ class CupFrame:
         return self.loads - displacement @ self.lateral_stiffness
 
     @cached_property
-    def _beyond_rim(self) -> Numbers:
+    def _instants_beyond_rim(self) -> Numbers:
         """Indices of the instants in which the load pushes the ball over the rim."""
-        beyond = numpy.flatnonzero(self._has_load & (self._force_angles >= self.reach))
-        return beyond if self._pulled is None else beyond[self._pulled.leaves_bore(self.forces[beyond])]
+        beyond = numpy.flatnonzero(self._load_mask & (self._force_angles >= self.reach))
+        return (
+            beyond
+            if self._spring_loaded_ball is None
+            else beyond[self._spring_loaded_ball.leaves_bore(self.forces[beyond])]
+        )
 
     @cached_property
     def separation(self) -> Microseparation | None:
         """Instants in which a spring has pushed the ball onto the rim; None without such instants."""
-        beyond = self._beyond_rim
+        beyond = self._instants_beyond_rim
         return (
             None
-            if self._pulled is None or not len(beyond)
-            else self._pulled.solve_separation(self.forces[beyond], beyond)
+            if self._spring_loaded_ball is None or not len(beyond)
+            else self._spring_loaded_ball.solve_separation(self.forces[beyond], beyond)
         )
 
     @cached_property
     def placed(self) -> Cup:
-        """Cup with its own orientation if set, else with the tilt of the cycle's standard."""
+        """Cup in its orientation: that of `cup` if set, else the tilt of the cycle's standard."""
         tilt = self.cycle.cup_tilt
         return self.cup if self.cup.oriented or tilt is None else self.cup.tilted(tilt)
 
     @property
     def reach(self) -> float:
-        """End of the bore, in rad from the dome's pole."""
+        """Polar angle in rad of the end of the bore, from the dome's pole."""
         return float(self.cup.rim - self.cup.chamfer / self.joint.socket_radius)
 
     @cached_property
     def loaded(self) -> Numbers:
         """Indices of the instants in which the ball is pressed into the bore: (loaded,)."""
-        mask = self._has_load.copy()
-        mask[self._beyond_rim] = False
+        mask = self._load_mask.copy()
+        mask[self._instants_beyond_rim] = False
         return numpy.flatnonzero(mask)
+
+    @cached_property
+    def activities(self) -> tuple[tuple[str, Numbers], ...]:
+        """Name of each activity with contact, and its loads as indices into the loaded instants."""
+        indices = {
+            number: numpy.flatnonzero((self.loaded >= part.start) & (self.loaded < part.stop))
+            for number, (_, part) in enumerate(self.cycle.activity_slices)
+        }
+        return tuple((self.cycle.activity_slices[number][0], loads) for number, loads in indices.items() if len(loads))
 
     @cached_property
     def loads(self) -> Numbers:
@@ -137,26 +167,26 @@ class CupFrame:
         return numpy.ascontiguousarray(self.forces[self.loaded])
 
     @property
-    def largest(self) -> Numbers:
-        """Index of the largest load: one number, or none without loads."""
+    def largest_load_index(self) -> Numbers:
+        """Index of the largest load among the loaded instants: (1,), or (0,) without loads."""
         sizes = numpy.linalg.norm(self.loads, axis=1)
         return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
 
     @cached_property
     def rotation_increments(self) -> Numbers:
         """Rotation vectors of the ball in the loaded instants in rad, in the cup's frame: (loaded, 3)."""
-        return _in_cup(self.placed, self.moved.rotation_increments[self.loaded])
+        return _convert_to_cup_frame(self.placed, self.side_cycle.rotation_increments[self.loaded])
 
     @property
     def slide(self) -> float:
-        """Sliding distance of the ball past the line of the load in a cycle, in mm."""
+        """Sliding distance in mm of the ball in a cycle, at the point of the socket where the load points."""
         sizes = self.cycle.force_magnitudes[:, None]
         directions = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
-        rotations = _in_cup(self.placed, self.moved.rotation_increments)
+        rotations = _convert_to_cup_frame(self.placed, self.side_cycle.rotation_increments)
         return sliding_distance(float(self.joint.ball_radius), rotations, _fill_unloaded(directions, self.loaded))
 
     @property
-    def _frame_notes(self) -> tuple[str, ...]:
+    def notes(self) -> tuple[str, ...]:
         """Notes on the orientation of the cup, unloaded instants and microseparation."""
         tilted = () if self.placed == self.cup else (_TILTED.format(degrees(self.cycle.cup_tilt or 0.0)),)
         separated = () if self.separation is None else (self.separation.describe(self.cycle),)
@@ -165,7 +195,7 @@ class CupFrame:
     @property
     def _unloaded_notes(self) -> tuple[str, ...]:
         """Note on the instants without a load."""
-        unloaded = numpy.flatnonzero(~self._has_load)
+        unloaded = numpy.flatnonzero(~self._load_mask)
         if len(unloaded) == self.cycle.n_steps:
             return (_NEVER_LOADED,)
         if not len(unloaded):
@@ -178,14 +208,37 @@ _NEVER_LOADED = "no wear: the ball is never in contact during this cycle"
 _LIFTS_OFF = "the ball lifts off, first at {}: {} of {} instants have no contact and no wear"
 
 
-def _in_cup(cup: Cup, vectors: Numbers) -> Numbers:
-    """Rotate vectors (n, 3) of the body into the cup's frame."""
+def _convert_to_cup_frame(cup: Cup, vectors: Numbers) -> Numbers:
+    """Convert vectors (n, 3) from the body's frame to the cup's frame."""
     return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
 
 
 def _fill_unloaded(directions: Numbers, loaded: Numbers) -> Numbers:
-    """Replace the directions of unloaded instants by those of the last loaded instant before them."""
+    """Replace the direction of each unloaded instant by that of the last loaded instant before."""
     if not len(loaded):
         return directions
     last = numpy.searchsorted(loaded, numpy.arange(len(directions)), side="right") - 1
     return directions[loaded[last]]
+
+
+T = TypeVar("T")
+
+
+class FromFrame(Generic[T]):
+    """Descriptor for an attribute that a simulation reads from its `frame`: `loads = FromFrame[Numbers]()`."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+        self.__doc__ = getattr(CupFrame, name).__doc__
+
+    @overload
+    def __get__(self, instance: None, owner: type) -> FromFrame[T]: ...
+
+    @overload
+    def __get__(self, instance: Any, owner: type) -> T: ...
+
+    def __get__(self, instance: Any, owner: type) -> FromFrame[T] | T:
+        if instance is None:
+            return self
+        value: T = getattr(instance.frame, self._name)
+        return value

@@ -38,7 +38,10 @@ PhaseFunction = Callable[[Numbers], Numbers]
 
 
 class Frame(Enum):
-    """Reference frame of forces: the body's, or the cup's with x upwards along its rim and z to its dome."""
+    """Reference frame of the forces of a cycle: the body or the cup.
+
+    In the cup, x points upwards along the rim's plane and z to the dome.
+    """
 
     BODY = "body"
     CUP = "cup"
@@ -46,7 +49,9 @@ class Frame(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Spring:
-    """Lateral spring that pulls the ball to the side while the load is small, as a translational mismatch does.
+    """Lateral spring between ball and socket, which models a translational mismatch of their centres.
+
+    It pulls the ball to the side while the load is small.
 
     Attributes
     ----------
@@ -141,7 +146,7 @@ class Cycle:
         return self._forces_at(self.phases)
 
     def _forces_at(self, phases: Numbers) -> Numbers:
-        """Compute the force vectors at phases, spring included: (n, 3)."""
+        """Compute the force vectors in N at phases, with the force of the spring: (n, 3)."""
         force = numpy.asarray(self.force(phases), dtype=float)
         if force.ndim == 1:
             upward = numpy.maximum(force, 0.0)
@@ -183,8 +188,18 @@ class Cycle:
         return numpy.full(self.n_steps, self.duration / self.n_steps)
 
     @property
+    def activity_cycles(self) -> tuple[Cycle, ...]:
+        """Cycles of all activities, as in a mix: a tuple of one cycle."""
+        return (self,)
+
+    @property
+    def per_year(self) -> None:
+        """Number of cycles a year: None, because only a mix states this number."""
+        return None
+
+    @property
     def activity_slices(self) -> tuple[tuple[str, slice], ...]:
-        """Name and steps of the only activity."""
+        """Name and range of steps of each activity, as in a mix: one activity."""
         return ((self.name, slice(0, self.n_steps)),)
 
     def describe_step(self, step: int) -> str:
@@ -194,6 +209,10 @@ class Cycle:
     def finer(self) -> Cycle:
         """Return this cycle with twice as many steps, up to the largest allowed number."""
         return replace(self, n_steps=min(2 * self.n_steps, _MAX_STEPS))
+
+    def transformed(self, transform: Callable[[Cycle], Cycle]) -> Cycle:
+        """Apply a function to this cycle, as `Mix.transformed` does to the cycle of each activity."""
+        return transform(self)
 
     def mirrored(self) -> Cycle:
         """Return this cycle for the other side of the body: lateral forces and rotations change sign."""
@@ -209,7 +228,7 @@ class Cycle:
         )
 
     def _mirrored_force(self, phases: Numbers) -> Numbers:
-        """Compute the forces on the other side of the body."""
+        """Compute the forces in N of the mirrored cycle at phases."""
         force = numpy.asarray(self.force(phases), dtype=float)
         return force if force.ndim == 1 or self.frame is Frame.CUP else _MIRRORED_FORCE * force
 
@@ -238,7 +257,7 @@ def check_step_count(count: Any, name: str = "n_steps") -> int:
 
 @dataclass(frozen=True, kw_only=True)
 class CycleParameter:
-    """Number that a named cycle accepts, with its name in files.
+    """Adjustable number of a named cycle, with its key in files.
 
     Attributes
     ----------
@@ -257,7 +276,7 @@ class CycleParameter:
 
 @dataclass(frozen=True, kw_only=True)
 class CycleDefinition:
-    """Cycle that can be requested by name: its function, source and parameters.
+    """Definition of a named cycle: function, source and parameters.
 
     Attributes
     ----------

@@ -19,11 +19,18 @@ from ..files.units import parse
 from ..problem.cup import Side
 from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction, check_step_count
 from .cycle_registry import CYCLES, named_cycle
-from .cycle_tables import ANGLES, FORCES, HipColumns, combine_columns, hip_columns, read_table
+from .cycle_tables import ANGLES, FORCES, HipColumns, combine_columns, extract_hip_columns, read_table
 from .in_vivo import check_body_weight
 from .kinematics import parse_rotation_order, rotation_matrices
 from .mix import Activity, Mix
-from .waveforms import DEFAULT_CLOSURE, check_closed, cut_out, monotone_periodic, phases_and_duration, time_column
+from .waveforms import (
+    DEFAULT_CLOSURE,
+    check_closed,
+    monotone_periodic,
+    phases_and_duration,
+    select_time_range,
+    time_column,
+)
 
 __getattr__ = renamed_names(__name__, {"Reading": "TableOptions"})
 
@@ -114,8 +121,10 @@ def read_cycle(
     if not paths:
         raise ValueError("no table is named")
     try:
-        tables = [hip_columns(read_table(file), body_weight, options.side) for file in paths]
-        parts = [replace(table, columns=cut_out(table.columns, options.begin, options.end)) for table in tables]
+        tables = [extract_hip_columns(read_table(file), body_weight, options.side) for file in paths]
+        parts = [
+            replace(table, columns=select_time_range(table.columns, options.begin, options.end)) for table in tables
+        ]
         return replace(_table_cycle(combine_columns(parts), order, options), name=paths[0].stem, n_steps=n_steps)
     except ValueError as error:
         raise ValueError(f"{', '.join(file.name for file in paths)}: {error}") from error
@@ -138,7 +147,7 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
     force = monotone_periodic(phase, _socket_force(columns, options.side, loaded_body))
     return Cycle(
         name="",
-        force=_rotated_force(force, angles, order) if frame == "femur" and "force" not in columns else force,
+        force=_force_in_body_frame(force, angles, order) if frame == "femur" and "force" not in columns else force,
         angles=angles,
         order=order,
         duration=duration,
@@ -148,21 +157,24 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
 
 
 def _check_force(title: str, values: Numbers) -> None:
-    """Raise ValueError for a force (N) beyond any hip joint, as from a wrong unit or a damaged table."""
+    """Check a column of forces (N); ValueError beyond the forces of any hip, as from a wrong unit."""
     largest = float(abs(values).max())
     if largest > _MAX_FORCE:
         raise ValueError(f"{title} goes to {largest:.4g} N; allowed are forces up to {_MAX_FORCE:g} N")
 
 
 def _check_angle(title: str, values: Numbers) -> None:
-    """Raise ValueError for an angle (rad) beyond 180°, as from degrees under a head in rad."""
+    """Check a column of angles (rad); ValueError beyond 180°, as from degrees under a head in rad."""
     largest = float(values[abs(values).argmax()])
     if abs(largest) > pi:
         raise ValueError(f"{title} goes to {180 / pi * largest:.4g}°; allowed are angles up to 180°: check its unit")
 
 
 def _angle_function(phase: Numbers, columns: dict[str, Numbers], motion: Cycle | None) -> PhaseFunction:
-    """Return the angles as a function of phase, from the table or, without angle columns, from another cycle."""
+    """Return the angles in rad as a function of phase, from the table or from another cycle.
+
+    The other cycle counts if the table has no columns of angles.
+    """
     if motion is None:
         return monotone_periodic(phase, numpy.stack([columns.get(name, 0.0 * phase) for name in ANGLES]))
     if any(name in columns for name in ANGLES):
@@ -171,7 +183,7 @@ def _angle_function(phase: Numbers, columns: dict[str, Numbers], motion: Cycle |
 
 
 def _socket_force(columns: dict[str, Numbers], side: Side, loaded_body: str) -> Numbers:
-    """Return the force on the socket to the side, to the front and upwards, or its upward magnitude alone."""
+    """Return the force of the ball on the socket in N: (3, rows), or its upward magnitude alone: (rows,)."""
     complete = all(name in columns for name in FORCES)
     if ("force" in columns) == complete or (not complete and any(name in columns for name in FORCES)):
         raise ValueError("the table needs either a column force [N], or force_x, force_y and force_z")
@@ -182,7 +194,7 @@ def _socket_force(columns: dict[str, Numbers], side: Side, loaded_body: str) -> 
     return force if loaded_body == "socket" else -force
 
 
-def _rotated_force(force: PhaseFunction, angles: PhaseFunction, order: str) -> PhaseFunction:
+def _force_in_body_frame(force: PhaseFunction, angles: PhaseFunction, order: str) -> PhaseFunction:
     """Convert a force in the femur's frame, which rotates with the ball, to the body's frame."""
     return lambda phases: numpy.einsum("nij,jn->in", rotation_matrices(angles(phases).T, order), force(phases))
 
@@ -221,7 +233,10 @@ def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
 def _parse_activity(
     table: Mapping[str, Any], folder: Path, weight: float | None, content: Mapping[str, Any]
 ) -> Activity:
-    """Create one activity from its table; a share refers to `cycles_per_year` of the file."""
+    """Create an activity from a table [[activity]] of a hip file.
+
+    A share in the table refers to `cycles_per_year` of the file.
+    """
     check_names(table, (*KEYS, *_COUNT_KEYS), "in [[activity]]")
     if ("per_year" in table) == ("share" in table):
         raise ValueError("an [[activity]] needs either per_year (cycles a year) or share (of cycles_per_year)")
@@ -236,7 +251,7 @@ def _parse_activity(
 
 
 def _parse_weight(table: Mapping[str, Any]) -> float | None:
-    """Return the body weight of a table in N, if it has one."""
+    """Read the body weight in N of a table; None without the key."""
     if "body_weight" not in table:
         return None
     return check_body_weight(parse("body_weight", table["body_weight"], Kind.FORCE))
@@ -280,7 +295,7 @@ def _cycle_by_name(
 def _cycle_from_file(
     table: Mapping[str, Any], folder: Path, weight: float | None, where: str, n_steps: int, order: str
 ) -> Cycle:
-    """Read the cycle of measured tables."""
+    """Read a cycle from the measured tables that a hip file names."""
     check_names(table, ("file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS), f"with a file in {where}")
     files = table["file"] if isinstance(table["file"], list) else [table["file"]]
     if not files or not all(files):
@@ -290,7 +305,7 @@ def _cycle_from_file(
 
 
 def _table_options(table: Mapping[str, Any], weight: float | None, order: str) -> TableOptions:
-    """Create the options for measured tables."""
+    """Create the `TableOptions` for measured tables from a table of a hip file."""
     options: dict[str, Any] = {name: check_text(name, table[name]) for name in ("frame", "force_on") if name in table}
     if "side" in table:
         options["side"] = Side(known_name("side", table["side"], [side.value for side in Side]))

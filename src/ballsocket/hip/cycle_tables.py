@@ -35,7 +35,7 @@ NumberedRow = tuple[int, list[str]]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TextTable:
-    """Columns of text under their heads, as written in the file.
+    """Table of a file as text: column heads and rows of cells.
 
     Attributes
     ----------
@@ -122,7 +122,7 @@ def _parse_setting(line: str) -> tuple[str, str]:
 
 
 def _parse_columns(title: str, lines: Sequence[tuple[int, str]]) -> TextTable:
-    """Split lines into heads and rows; lines before a head of time or phase are skipped."""
+    """Split lines of columns into a `TextTable`: heads with units, and rows below the head of time or phase."""
     begin = next((index for index, (_, line) in enumerate(lines[:_MAX_PREAMBLE]) if _has_time_head(line)), 0)
     below = lines[begin + 1 :]
     _check_row_count(len(below))
@@ -180,7 +180,7 @@ _OPENSIM_AXES = MappingProxyType({"z": "force_x", "x": "force_y", "y": "force_z"
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HipColumns:
-    """Time, force and angles of a hip.
+    """Columns of time (s), force (N) and angles (rad) of one hip.
 
     Attributes
     ----------
@@ -197,7 +197,7 @@ class HipColumns:
     frame: str | None = None
 
 
-def hip_columns(table: TextTable, body_weight: float | None, side: Side) -> HipColumns:
+def extract_hip_columns(table: TextTable, body_weight: float | None, side: Side) -> HipColumns:
     """Extract the columns of the hip on one side from a table.
 
     Raises
@@ -205,10 +205,10 @@ def hip_columns(table: TextTable, body_weight: float | None, side: Side) -> HipC
     ValueError
         A column is unknown, repeated or has no unit, or an OpenSim header does not state the unit of angles.
     """
-    return _opensim_columns(table, side) if table.is_opensim else _text_columns(table, body_weight)
+    return _convert_opensim_columns(table, side) if table.is_opensim else _convert_text_columns(table, body_weight)
 
 
-def _text_columns(table: TextTable, body_weight: float | None) -> HipColumns:
+def _convert_text_columns(table: TextTable, body_weight: float | None) -> HipColumns:
     """Convert the columns of a text table to s, N and rad."""
     columns: dict[str, Numbers] = {}
     parsed_heads = [parse_head(head) for head in table.heads]
@@ -258,7 +258,7 @@ def _unit_factor(name: str, unit: str | None, written: str, body_weight: float |
     return factors[plain] * body_weight
 
 
-def _opensim_columns(table: TextTable, side: Side) -> HipColumns:
+def _convert_opensim_columns(table: TextTable, side: Side) -> HipColumns:
     """Extract angles and joint reaction of one hip from an OpenSim table; other columns are ignored."""
     letter = side.value[0]
     columns = {"time": table.column("time", "time")} if "time" in table.heads else {}
@@ -295,7 +295,7 @@ def _reaction_frame(reactions: set[tuple[str, str]]) -> dict[str, str]:
 
 
 def combine_columns(tables: Sequence[HipColumns]) -> HipColumns:
-    """Combine tables of the same cycle, at the times of the first.
+    """Combine the columns of several tables of one cycle, interpolated at the times of the first table.
 
     Raises
     ------

@@ -40,7 +40,7 @@ _PARALLEL_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoadInterpolation:
-    """Load levels that are solved, and the weights that interpolate all loads between them.
+    """Interpolation of results for many loads between a few solved load levels.
 
     Attributes
     ----------
@@ -54,23 +54,23 @@ class LoadInterpolation:
     weights: Numbers
 
     def interpolate(self, solved: Numbers) -> Numbers:
-        """Interpolate results at the levels (levels, ...) to all loads: (loads, ...)."""
+        """Interpolate results from the levels (levels, ...) to all loads: (loads, ...)."""
         return self.weights @ solved
 
 
-def uninterpolated(loads: Numbers) -> LoadInterpolation:
-    """Return all loads (loads, 3) as levels."""
+def levels_at_all_loads(loads: Numbers) -> LoadInterpolation:
+    """Create an interpolation in which every load (loads, 3) is a level."""
     return LoadInterpolation(loads=loads, weights=numpy.eye(len(loads)))
 
 
 def interpolate_loads(loads: Numbers, max_levels: int = _MAX_LEVELS) -> LoadInterpolation:
-    """Choose levels for loads (loads, 3) in N of one direction; loads of several directions are all solved.
+    """Create the interpolation for loads (loads, 3) in N: a few levels for one direction, else every load.
 
     The levels are closer to each other at small loads, where the contacts change most.
     """
     size = numpy.linalg.norm(loads, axis=1)
     if len(loads) <= max_levels or abs(numpy.cross(loads, loads[0])).max() > _PARALLEL_TOLERANCE * size.max() ** 2:
-        return uninterpolated(loads)
+        return levels_at_all_loads(loads)
     levels = numpy.linspace(size.min() ** 0.5, size.max() ** 0.5, max_levels) ** 2
     levels[0], levels[-1] = size.min(), size.max()
     if levels[-1] - levels[0] <= _PARALLEL_TOLERANCE * levels[-1]:
@@ -86,7 +86,9 @@ def interpolate_loads(loads: Numbers, max_levels: int = _MAX_LEVELS) -> LoadInte
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GridSmoothing:
-    """Filter [1 2 1]/4 along the meridians and around the axis, there as wide as the rings are. It conserves volume.
+    """Smoothing filter for fields on a grid, which conserves their volume.
+
+    The filter is [1 2 1]/4 along the meridians and around the axis, there with the width of the rings.
 
     An elastic socket answers a wave of the worn depth with a pressure that increases as the wavelength decreases. The
     shortest waves are artefacts of the grid. Near the pole, where cells are narrow, the filter around the axis is wider
@@ -101,7 +103,7 @@ class GridSmoothing:
 
     @cached_property
     def _harmonic_factors(self) -> Numbers:
-        """Factors of the harmonics about the axis: (rings, harmonics)."""
+        """Filter factors of the harmonics about the axis: (rings, harmonics)."""
         # cos²(π m / 2M') is [1 2 1]/4 on M' cells a half circle
         half_circle = numpy.maximum(self.grid.meridians / 2 * numpy.sin(self.grid.polar), 1.0)[:, None]
         m = numpy.arange(self.grid.max_harmonic + 1)
@@ -109,7 +111,7 @@ class GridSmoothing:
 
     @cached_property
     def _ring_flux(self) -> Numbers:
-        """Area of exchange between neighbouring rings: (rings - 1, 1)."""
+        """Weights of the exchange between neighbouring rings in the filter, as areas: (rings - 1, 1)."""
         areas = self.grid.areas
         return numpy.minimum(areas[1:], areas[:-1]) / 4
 
@@ -163,15 +165,19 @@ class ElasticFoundation:
 
     @cached_property
     def _smoothing(self) -> GridSmoothing:
+        """Smoothing filter on the grid of the bore."""
         return GridSmoothing(grid=self.grid)
 
-    def smoothed(self, depth: Numbers) -> Numbers:
-        """Remove the waves that the grid cannot resolve from a depth, at the same volume: (cells,)."""
+    def smooth(self, depth: Numbers) -> Numbers:
+        """Smooth a depth in mm to waves that the grid resolves, at the same volume: (cells,)."""
         return self._smoothing(depth.reshape(self.grid.rings, -1)).ravel()
 
     @cached_property
     def max_stiffness(self) -> float:
-        """Largest change of the pressure by the depth of a smoothed wave, in MPa/mm, by power iteration."""
+        """Largest ratio of pressure change to depth over all smoothed waves of the bore, in MPa/mm.
+
+        It is computed by power iteration.
+        """
         field = numpy.random.default_rng(_SEED).normal(size=(1, self.grid.rings, self.grid.meridians))
         growth = 0.0
         for _ in range(_POWER_ITERATIONS):
@@ -181,20 +187,20 @@ class ElasticFoundation:
         return growth
 
     def select_cells(self, cells: Numbers) -> ElasticFoundation:
-        """Return the foundation of all cells: they are coupled."""
+        """Return this foundation with all its cells, because elastic cells are coupled."""
         return self
 
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
-        """Mark all cells: (cells,)."""
+        """Return a mask of all cells, because elastic cells are coupled: (cells,)."""
         return numpy.ones(len(self.areas), dtype=bool)
 
     @property
     def edge_inset(self) -> float:
-        """Distance of the contact edge inside the zero of `edge_field`, as a fraction of a ring."""
+        """Distance from the zero of `edge_field` inwards to the contact edge, as a fraction of a ring's width."""
         return self.edges.inset
 
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute the levels in mm, with 0 at the edge of the contacts: (loads, cells)."""
+        """Compute a field in mm that is 0 at the edge of each contact and positive inside: (loads, cells)."""
         shape = (len(equilibrium.pressure), self.grid.rings, self.grid.meridians)
         pressure = equilibrium.pressure.reshape(shape)
         overlap = equilibrium.displacement @ self.normals - self.clearance - depth
@@ -203,6 +209,7 @@ class ElasticFoundation:
 
     @cached_property
     def _neighbours(self) -> Numbers:
+        """Indices of the four neighbours of every cell: (2, 2, cells)."""
         return grid_neighbours(self.grid)
 
     def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
@@ -216,12 +223,14 @@ class ElasticFoundation:
         start: CycleEquilibrium | None = None,
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
-        """Solve the equilibria of the ball under all loads; see `SpringFoundation.solve_equilibrium`.
+        """Solve displacements and pressures under all loads by full elasticity.
+
+        The parameters are those of `SpringFoundation.solve_equilibrium`.
 
         For a fixed load direction, a few load levels are solved, and linear interpolation gives the others. It
         balances every load exactly.
         """
-        levels = uninterpolated(loads) if lateral_stiffness.any() else interpolate_loads(loads)
+        levels = levels_at_all_loads(loads) if lateral_stiffness.any() else interpolate_loads(loads)
         shape = (len(levels.loads), self.grid.rings, self.grid.meridians)
         gap = GapField(
             grid=self.grid,
@@ -243,7 +252,7 @@ class ElasticFoundation:
     def _solve_levels(
         self, bed: BoreContact, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
     ) -> EquilibriumBatch:
-        """Solve the load levels from the previous equilibrium; others start again from a deeper displacement."""
+        """Solve the equilibria of the load levels; those without convergence start again from deeper displacements."""
         count, sizes = len(levels.loads), magnitudes_and_directions(levels.loads)
         deep = initial_displacement(self, self.compliance.uniform_stiffness, depth, *sizes)
         previous = None if start is None else start.levels
@@ -261,7 +270,10 @@ class ElasticFoundation:
 
 @lru_cache(maxsize=4)
 def elastic_foundation(surface: RealCup | ClosedShell, joint: Joint, cup: Cup, width: float) -> ElasticFoundation:
-    """Create the foundation of a joint in rings of one width (rad); the last four are cached."""
+    """Create the elastic foundation of a joint, on a grid of rings of one width in rad.
+
+    The last four foundations are cached.
+    """
     cells = even_grid(socket_shape(joint, cup).reach, width)
     return ElasticFoundation(
         compliance=make_compliance(surface, joint, cup, cells),

@@ -84,13 +84,13 @@ def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float
 
 
 def _plane_strain_compliance(material: Material) -> float:
-    """Compute (1 - ν²)/E in 1/MPa."""
+    """Compute the plane-strain compliance (1 - ν²)/E of a material in 1/MPa."""
     return float((1 - material.poisson**2) / material.young)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Film:
-    """Film and friction of a cycle in the loaded instants.
+    """Lubricant film and friction in the loaded instants of a cycle.
 
     Attributes
     ----------
@@ -147,7 +147,7 @@ class Film:
 
 
 class LoadedCycle(Protocol):
-    """Joint and cycle of a film, in the cup's frame: a `CupFrame`."""
+    """Loads and rotations of a cycle in the cup's frame, as in `CupFrame`."""
 
     @property
     def joint(self) -> Joint:
@@ -175,31 +175,29 @@ class LoadedCycle(Protocol):
 
 
 def film(
-    cup_frame: LoadedCycle,
+    frame: LoadedCycle,
     foundation: SocketFoundation,
     sliding: SurfaceSliding,
     equilibrium: CycleEquilibrium,
     lubricant: Lubricant,
 ) -> Film:
-    """Compute film and friction of a cycle from its contacts and its sliding."""
-    durations = cup_frame.cycle.seconds[cup_frame.loaded]
-    forces = cup_frame.socket_forces(equilibrium.displacement)
+    """Compute film thickness, friction moment, power and heat of a cycle from its contacts and sliding."""
+    durations = frame.cycle.seconds[frame.loaded]
+    forces = frame.socket_forces(equilibrium.displacement)
     size = numpy.linalg.norm(forces, axis=1)
-    spin = numpy.linalg.norm(numpy.cross(cup_frame.rotation_increments, forces), axis=1) / numpy.where(
-        size > 0, size, 1.0
-    )
-    least, central = film_thickness(cup_frame.joint, size, spin / durations, lubricant.viscosity)
+    spin = numpy.linalg.norm(numpy.cross(frame.rotation_increments, forces), axis=1) / numpy.where(size > 0, size, 1.0)
+    least, central = film_thickness(frame.joint, size, spin / durations, lubricant.viscosity)
     roughness = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
     work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.distances, foundation.areas)
     return Film(
-        phases=cup_frame.cycle.phases[cup_frame.loaded],
+        phases=frame.cycle.phases[frame.loaded],
         least=least,
         central=central,
         ratio=least / roughness if roughness > 0 else numpy.full_like(least, inf),
         moment=lubricant.friction * _unit_moment(foundation, sliding, equilibrium.pressure),
         power=1e-3 * work / durations,
         heat=1e-3 * float(work.sum()),
-        duration=cup_frame.cycle.duration,
+        duration=frame.cycle.duration,
     )
 
 

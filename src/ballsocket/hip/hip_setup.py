@@ -1,7 +1,8 @@
-"""Set-up of a wear simulation: joint, cup, cycle and laws, with the contacts and the wear of single cycles."""
+"""Joint, cup, cycle and laws of a hip, with the contacts and the wear of a single cycle."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property, partial
 from math import inf, pi, radians
@@ -22,16 +23,16 @@ from ..models.foundation import RadialFoundation
 from ..problem import Joint
 from ..problem.cup import Cup
 from .contact_checks import ContactCheck, check_contact, half_angles
-from .creep_law import CreepLaw, confinement_note
-from .cup_frame import CupFrame
+from .creep_law import CreepLaw, creep_notes
+from .cup_frame import CupFrame, FromFrame
 from .cycle import Cycle
 from .elastic_foundation import elastic_foundation
 from .film import Film, Lubricant, film
 from .kinematics import SurfaceSliding
 from .mix import Mix
-from .rim import RimDistance, rim_distance
+from .rim import Microseparation, RimDistance, rim_distance
 from .socket_foundation import CycleEquilibrium, SocketFoundation, spring_foundation
-from .wear_law import AnyWearLaw, CycleExposure
+from .wear_law import AnyWearLaw, CycleExposure, FirstCycleResult
 
 MIN_RING_WIDTH = radians(0.5)
 """Smallest ring width in rad."""
@@ -46,49 +47,69 @@ _CYCLES_PER_MILLION = 1e6
 """Cycles to which wear rates refer."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class FirstCycleResult:
-    """Results of the first cycle, on an unworn bore.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HipSetup:
+    """Joint, cup, cycle and laws of a hip, with the contacts and the wear of a single cycle.
 
     Attributes
     ----------
-    slide : float
-        Sliding distance of the ball past the line of the load, in mm.
-    work : float
-        ∫∫ p v dA dt in N m.
-    cross_shear : float
-        Mean cross-shear over the socket, weighted by p v.
-    volume, depth : float
-        Worn volume in mm³ and largest worn depth in mm of a million such cycles.
-    max_pressure, max_force : float
-        Largest pressure in MPa and largest force in N.
+    joint : Joint
+        Joint of single numbers.
+    cycle : Cycle or Mix
+        Loads and rotations in the body's frame, for the right side of the body.
+    wear : WearLaw
+        Wear law of the socket.
+    cup : Cup
+        Arc of cover and orientation of the cup.
+    surface : Springs, ClosedShell or RealCup
+        Foundation of the socket.
+    ring_width : float
+        Width of the rings of the wear map in rad.
+    ball_wear : WearLaw, optional
+        Wear law of the ball; None for a ball without wear.
+    creep : CreepLaw, optional
+        Creep law of the liner; None for a liner without creep.
+    seconds_per_cycle : float, optional
+        Time in s that a cycle stands for in the creep of the liner; None is the duration of the cycle.
+    tolerance : float
+        Allowed error of a block of cycles, relative to the largest depth so far.
     """
 
-    slide: float
-    work: float
-    cross_shear: float
-    volume: float
-    depth: float
-    max_pressure: float
-    max_force: float
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class HipSetup(CupFrame):
-    """Set-up of a wear simulation, with the contacts of single cycles; the fields are those of `HipSimulation`."""
-
+    joint: Joint
+    cycle: Cycle | Mix
     wear: AnyWearLaw
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
     surface: Springs | ClosedShell | RealCup = Springs()  # noqa: RUF009 (frozen)
     ring_width: float = radians(3.0)
     ball_wear: AnyWearLaw | None = None
     creep: CreepLaw | None = None
     seconds_per_cycle: float | None = None
     tolerance: float = 4e-3
+
+    forces = FromFrame[Numbers]()
+    largest_load_index = FromFrame[Numbers]()
+    lateral_stiffness = FromFrame[Numbers]()
+    loaded = FromFrame[Numbers]()
+    loads = FromFrame[Numbers]()
+    placed = FromFrame[Cup]()
+    reach = FromFrame[float]()
+    rotation_increments = FromFrame[Numbers]()
+    separation = FromFrame[Microseparation | None]()
+    side_cycle = FromFrame[Cycle | Mix]()
+    slide = FromFrame[float]()
+    socket_forces = FromFrame[Callable[[Numbers], Numbers]]()
+
+    carried = RenamedAttribute("socket_forces")
+    largest = RenamedAttribute("largest_load_index")
+    moved = RenamedAttribute("side_cycle")
+    tether = RenamedAttribute("lateral_stiffness")
+    turns = RenamedAttribute("rotation_increments")
     bed = RenamedAttribute("foundation")
     rest = RenamedAttribute("solve_equilibrium")
     passed = RenamedAttribute("exposure")
 
     def __post_init__(self) -> None:
+        """Check kinds and limits of the fields, and that no load dislocates the ball."""
         for name, kind in (("joint", Joint), ("cycle", Cycle | Mix), ("cup", Cup)):
             if not isinstance(getattr(self, name), kind):
                 raise TypeError(f"{name} must be a {name.capitalize()}, got {shown(getattr(self, name))}")
@@ -102,19 +123,29 @@ class HipSetup(CupFrame):
             "ring_width", self.ring_width, MIN_RING_WIDTH <= self.ring_width <= _MAX_RING_WIDTH, "0.5 to 10 degrees"
         )
         require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
-        if not isinstance(self.surface, Springs):
+        if not self.uses_springs:
             check_domain(Sphere(cup=self._unoriented_cup).domain, self.joint, "full elasticity")
         if self.creep is not None:
             thickness = float(self.joint.liner_thickness)
             require("liner_thickness", thickness, thickness < inf, "creep needs a liner of finite thickness")
-        if self.ball_wear is not None and (self.creep is not None or not isinstance(self.surface, Springs)):
+        if self.ball_wear is not None and (self.creep is not None or not self.uses_springs):
             raise ValueError("ball_wear needs surface=Springs() and no creep law")
         require("seconds_per_cycle", self.seconds, 0 < self.seconds < inf, "a time (s) is positive and finite")
-        self._check_dislocation()
+        _ = self.frame  # checks the loads
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the fields for other processes, without cached results."""
+        """Return the fields for pickling, without cached results."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+    @cached_property
+    def frame(self) -> CupFrame:
+        """Loads and rotations of the cycle in the frame of the cup."""
+        return CupFrame(joint=self.joint, cycle=self.cycle, cup=self.cup)
+
+    @property
+    def uses_springs(self) -> bool:
+        """True if the foundation is independent radial springs, False if it is full elasticity."""
+        return isinstance(self.surface, Springs)
 
     @property
     def seconds(self) -> float:
@@ -125,25 +156,18 @@ class HipSetup(CupFrame):
     def notes(self) -> tuple[str, ...]:
         """Notes on the cycle, the cup and the laws."""
         law_notes = (*self.wear.notes, *(self.ball_wear.notes if self.ball_wear else ()))
-        return (*self.cycle.notes, *self._frame_notes, *law_notes, *self._creep_notes)
-
-    @property
-    def _creep_notes(self) -> tuple[str, ...]:
-        """Notes on the creep law and its confinement."""
-        if self.creep is None:
-            return ()
-        confinement = confinement_note(self.creep, float(self.joint.liner.poisson))
-        return (*self.creep.notes, *([confinement] if confinement else []))
+        return (
+            *self.cycle.notes,
+            *self.frame.notes,
+            *law_notes,
+            *creep_notes(self.creep, float(self.joint.liner.poisson)),
+        )
 
     @cached_property
     def grid(self) -> Grid:
-        """Grid of the bore."""
+        """Grid of cells on the bore."""
         reach = socket_shape(self.joint, self.cup).reach
-        return (
-            graded_grid(reach, self.ring_width)
-            if isinstance(self.surface, Springs)
-            else even_grid(reach, self.ring_width)
-        )
+        return (graded_grid if self.uses_springs else even_grid)(reach, self.ring_width)
 
     @cached_property
     def foundation(self) -> SocketFoundation:
@@ -160,7 +184,10 @@ class HipSetup(CupFrame):
 
     @cached_property
     def ball_grid(self) -> Grid:
-        """Grid of the ball: rings about the axis to the front, so that the cells in contact have similar widths."""
+        """Grid of cells on the ball, in rings about the axis to the front.
+
+        The cells in contact then have similar widths.
+        """
         return even_grid(pi, self.ring_width)
 
     @cached_property
@@ -178,13 +205,13 @@ class HipSetup(CupFrame):
         """Sliding of the ball over the cells of the socket in the loaded instants."""
         return SurfaceSliding(
             radius=float(self.joint.ball_radius),
-            rotation_increments=self.rotation_increments,
+            rotation_increments=self.frame.rotation_increments,
             directions=self.foundation.directions,
         )
 
     @renamed_arguments(rest="equilibrium")
     def edge(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> RimDistance:
-        """Find the edge of each contact nearest to the end of the bore, on a bore worn by a depth in mm."""
+        """Compute the distance from each contact to the rim, on a bore worn by a depth in mm."""
         field = self.foundation.edge_field(equilibrium, self._depth_field(depth))
         return rim_distance(
             self.grid, self.foundation.socket_radius, field, equilibrium.pressure, self.foundation.edge_inset
@@ -209,7 +236,8 @@ class HipSetup(CupFrame):
         start : CycleEquilibrium, optional
             Initial guess.
         """
-        return self.foundation.solve_equilibrium(self.loads, self._depth_field(depth), start, self.lateral_stiffness)
+        frame = self.frame
+        return self.foundation.solve_equilibrium(frame.loads, self._depth_field(depth), start, frame.lateral_stiffness)
 
     def _depth_field(self, depth: Numbers | float) -> Numbers:
         """Return a depth as an array: (cells,), or (loaded, cells) for a depth that differs between instants."""
@@ -223,20 +251,11 @@ class HipSetup(CupFrame):
             return RadialFoundation(modulus=self.surface.modulus)
         return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=self.ring_width)
 
-    @cached_property
-    def _activities(self) -> tuple[tuple[str, Numbers], ...]:
-        """Name of each activity with contact, and its loads as indices into the loaded instants."""
-        indices = {
-            number: numpy.flatnonzero((self.loaded >= part.start) & (self.loaded < part.stop))
-            for number, (_, part) in enumerate(self.cycle.activity_slices)
-        }
-        return tuple((self.cycle.activity_slices[number][0], loads) for number, loads in indices.items() if len(loads))
-
     @renamed_arguments(rest="equilibrium")
     def worst_contacts(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
-        """Compute the contact with the largest pressure in each activity with contact: (activities, `COLUMNS`)."""
+        """Tabulate the contact with the largest pressure of each activity: (activities with contact, `COLUMNS`)."""
         largest = equilibrium.pressure.max(axis=1, initial=0.0)
-        rows = numpy.array([loads[largest[loads].argmax()] for _, loads in self._activities], dtype=int)
+        rows = numpy.array([loads[largest[loads].argmax()] for _, loads in self.frame.activities], dtype=int)
         worn = self._depth_field(depth)
         worn = worn[rows] if worn.ndim == 2 else worn
         overlap = equilibrium.displacement[rows] @ self.foundation.normals - self.foundation.clearance - worn
@@ -248,36 +267,36 @@ class HipSetup(CupFrame):
         return numpy.stack(
             [
                 rows,
-                numpy.linalg.norm(self.loads[rows], axis=1),
+                numpy.linalg.norm(self.frame.loads[rows], axis=1),
                 numpy.maximum(overlap.max(axis=1, initial=0.0), 0.0),
-                half_angles(self.grid, self.reach, self.foundation.edge_field(chosen, worn)),
+                half_angles(self.grid, self.frame.reach, self.foundation.edge_field(chosen, worn)),
                 largest[rows],
             ],
             axis=1,
         )
 
     def contact_checks(self, worst: Numbers) -> tuple[ContactCheck, ...]:
-        """Check the contact model for each activity with contact, from a table of `worst_contacts`."""
+        """Check validity and strength of the worst contact of each activity, from a table of `worst_contacts`."""
+        frame = self.frame
+        instants = [self.cycle.describe_step(step) for step in frame.loaded[worst[:, 0].astype(int)]]
         return tuple(
-            check_contact(
-                self.contact_model, self.joint, row, activity, self.cycle.describe_step(int(self.loaded[int(row[0])]))
-            )
-            for (activity, _), row in zip(self._activities, worst, strict=True)
+            check_contact(self.contact_model, self.joint, row, activity, instant)
+            for (activity, _), row, instant in zip(frame.activities, worst, instants, strict=True)
         )
 
     @cached_property
-    def unworn_worst(self) -> Numbers:
-        """Worst contacts of the first cycle; see `worst_contacts`."""
+    def unworn_worst_contacts(self) -> Numbers:
+        """Table of the worst contacts of the first cycle, as of `worst_contacts`."""
         return self.worst_contacts(self.unworn)
 
     @cached_property
     def unworn_checks(self) -> tuple[ContactCheck, ...]:
-        """Checks of the contact model in the first cycle."""
-        return self.contact_checks(self.unworn_worst)
+        """Validity and strength of the worst contact of each activity in the first cycle."""
+        return self.contact_checks(self.unworn_worst_contacts)
 
     @renamed_arguments(rest="equilibrium")
     def exposure(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> CycleExposure:
-        """Collect pressures and slides of the socket's points for these contacts, on a bore worn by a depth in mm."""
+        """Collect pressure and sliding of the socket's cells, as a wear law needs, on a bore worn by a depth in mm."""
         contact_shares = partial(self.foundation.contact_shares, equilibrium, self._depth_field(depth))
         return CycleExposure(pressure=equilibrium.pressure, sliding=self.sliding, contact_shares=contact_shares)
 
@@ -288,7 +307,7 @@ class HipSetup(CupFrame):
 
     def film(self, lubricant: Lubricant, depth: Numbers | float = 0.0) -> Film:
         """Compute film and friction of a cycle on a bore worn by a depth in mm: (cells,)."""
-        return film(self, self.foundation, self.sliding, self.solve_equilibrium(depth), lubricant)
+        return film(self.frame, self.foundation, self.sliding, self.solve_equilibrium(depth), lubricant)
 
     @cached_property
     def first(self) -> FirstCycleResult:
@@ -297,7 +316,7 @@ class HipSetup(CupFrame):
         depth, work = self.wear.depth(cycle), cycle.work * self.foundation.areas
         total_work = float(work.sum())
         return FirstCycleResult(
-            slide=self.slide,
+            slide=self.frame.slide,
             work=total_work / 1e3,
             cross_shear=float(cycle.cross_shear @ work) / total_work if total_work > 0 else 0.0,
             volume=_CYCLES_PER_MILLION * float(depth @ self.foundation.areas),
@@ -319,4 +338,4 @@ class HipSetup(CupFrame):
     def largest_speed(self) -> float:
         """Largest speed of sliding in contact in the first cycle, in mm/s."""
         distances = numpy.where(self.unworn.pressure > 0, self.sliding.distances, 0.0)
-        return float((distances / self.cycle.seconds[self.loaded][:, None]).max(initial=0.0))
+        return float((distances / self.cycle.seconds[self.frame.loaded][:, None]).max(initial=0.0))

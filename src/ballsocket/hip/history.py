@@ -17,7 +17,6 @@ from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_not
 from .film import Lubricant
 from .hip_setup import HipSetup
 from .law_fields import law_summary
-from .mix import Mix
 from .rim import ClosestApproach, RimDistance
 
 
@@ -90,7 +89,7 @@ class Report:
 
     @property
     def edge(self) -> RimDistance:
-        """Edges of the contacts nearest to the rim."""
+        """Distance from each contact to the rim."""
         return RimDistance(distance=self.edge_distance, azimuth=self.edge_place, pressure=self.edge_pressure)
 
     def summary(self) -> dict[str, Any]:
@@ -151,7 +150,7 @@ class History:
 
     @property
     def last(self) -> Report:
-        """Report at the end."""
+        """Report at the end of the run."""
         return self.reports[-1]
 
     @property
@@ -171,17 +170,17 @@ class History:
 
     @property
     def contact_valid(self) -> bool:
-        """True if the worst contacts, unworn and at the reports, are inside the validity of their model."""
+        """True if the worst contacts in the first cycle and at the reports are inside the validity of their model."""
         return all(check.valid for check in (*self.use.unworn_checks, *chain(*self.contact_checks)))
 
     @property
     def utilisation(self) -> float | None:
-        """Largest utilisation, unworn and at the reports; None where no yield stress is known."""
+        """Largest utilisation in the first cycle and at the reports; None where no yield stress is known."""
         return largest_utilisation((*self.use.unworn_checks, *chain(*self.contact_checks)))
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on cycle, cup, laws, contact model and rim."""
+        """Notes on cycle, cup, laws, contact model and rim, for reports."""
         unbalanced = () if self.converged else (_NOT_CONVERGED,)
         return (*self._contact_notes, *self.use.notes, *self._thin_liner_notes, *self._rim_notes, *unbalanced)
 
@@ -206,24 +205,24 @@ class History:
     @property
     def worst(self) -> ClosestApproach | None:
         """Instant of the first cycle in which the contact is nearest to the rim; None without contact."""
-        return self.use.edge(self.use.unworn).closest_approach(self.use)
+        return self.use.edge(self.use.unworn).closest_approach(self.use.frame)
 
     @property
     def _rim_notes(self) -> tuple[str, ...]:
         """Note on the first stage at which a contact reaches the rim."""
-        stages = [(_FIRST_CYCLE, self.worst)]
+        frame, stages = self.use.frame, [(_FIRST_CYCLE, self.worst)]
         stages += [
-            (_AFTER_CYCLES.format(report.cycles), report.edge.closest_approach(self.use)) for report in self.reports
+            (_AFTER_CYCLES.format(report.cycles), report.edge.closest_approach(frame)) for report in self.reports
         ]
         for stage, worst in stages:
             if worst is not None and worst.steps_at_rim:
-                count = len(self.use.loaded)
+                count = len(frame.loaded)
                 return (_AT_RIM.format(stage, worst.steps_at_rim, count, worst.location, worst.pressure),)
         return ()
 
     def summary(self) -> dict[str, Any]:
         """Return the results as data for JSON."""
-        first, separation = self.use.first, self.use.separation
+        first, separation = self.use.first, self.use.frame.separation
         return {
             "cycle": {
                 "name": self.use.cycle.name,
@@ -259,15 +258,15 @@ class History:
         }
 
     def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
-        """Return a report as data for JSON, with its contacts, and with years if the cycles per year are known."""
-        mix = self.use.cycle
-        years = {"years": report.cycles / mix.per_year} if isinstance(mix, Mix) else {}
+        """Return a report as data for JSON, with checks of its contacts, and with years if they are known."""
+        per_year, edge = self.use.cycle.per_year, report.edge.closest_approach(self.use.frame)
+        years = {} if per_year is None else {"years": report.cycles / per_year}
         contact = {
             "valid": report.converged and all(check.valid for check in checks),
             "utilisation": largest_utilisation(checks),
             "contact": [check.summary() for check in checks],
         }
-        return {**report.summary(), **years, "edge": _edge_summary(report.edge.closest_approach(self.use)), **contact}
+        return {**report.summary(), **years, "edge": _edge_summary(edge), **contact}
 
 
 _THIN_LINER = 0.25
@@ -294,6 +293,6 @@ __getattr__ = renamed_names(
     __name__,
     {
         "Error": "NumericalError",
-        "First": "ballsocket.hip.hip_setup.FirstCycleResult",
+        "First": "ballsocket.hip.wear_law.FirstCycleResult",
     },
 )

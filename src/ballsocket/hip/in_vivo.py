@@ -38,17 +38,17 @@ def _single_peak(end: float) -> PhaseFunction:
 
 
 def _double_peak(phases: Numbers) -> Numbers:
-    """Compute a waveform with one peak in each half of the cycle."""
+    """Compute a waveform (force as a share of its peak) with one peak in each half of the cycle."""
     return _single_peak(0.5)(phases % 0.5)
 
 
 def _no_motion(phases: Numbers) -> Numbers:
-    """Return zero angles."""
+    """Return zero angles for phases (n,): (3, n)."""
     return numpy.zeros((3, len(phases)))
 
 
 def _sit_to_stand(phases: Numbers) -> Numbers:
-    """Compute the angles of standing up from 80° of flexion and sitting down."""
+    """Compute the angles in rad of standing up from 80° of flexion and sitting down: (3, n)."""
     return radians(80.0) * numpy.stack([numpy.cos(pi * phases) ** 2, 0 * phases, 0 * phases])
 
 
@@ -133,7 +133,7 @@ def check_body_weight(body_weight: float) -> float:
 
 @renamed_arguments(instants="n_steps")
 def in_vivo(name: str, body_weight: float, n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
-    """Create a cycle from a load measured in patients, directed upwards in the body.
+    """Create the cycle of an activity from a peak load measured in patients, directed upwards in the body.
 
     Only the peak force was measured; the notes state the assumed waveform and motion.
 

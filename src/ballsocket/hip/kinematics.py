@@ -1,4 +1,4 @@
-"""Rotations of the ball, and its sliding over the socket."""
+"""Rotations of the ball, and sliding of the ball over the socket."""
 
 from __future__ import annotations
 
@@ -162,11 +162,11 @@ class SurfaceSliding:
         return self.radius * numpy.sqrt(numpy.maximum(square - along * along, 0.0))
 
     def select_points(self, points: Numbers) -> SurfaceSliding:
-        """Select the sliding over some of the points, by their indices or a mask."""
+        """Return the sliding over some of the points, selected by their indices or a mask."""
         selected = SurfaceSliding(
             radius=self.radius, rotation_increments=self.rotation_increments, directions=self.directions[:, points]
         )
-        vars(selected)["distances"] = self.distances[:, points]
+        vars(selected)["distances"] = self.distances[:, points]  # cached: not computed again
         return selected
 
     def velocities(self, seconds: Numbers) -> Numbers:
@@ -222,7 +222,7 @@ def sliding_distance(radius: float, rotation_increments: Numbers, direction: Num
 
 
 def tracks(rotations: Numbers, points: Numbers, radius: float = 1.0) -> Numbers:
-    """Compute the tracks that points of the ball draw on the socket.
+    """Compute the tracks in mm of points of the ball over the socket during a cycle.
 
     Parameters
     ----------

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from abc import ABC
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import MISSING, dataclass, field, fields
@@ -13,107 +12,7 @@ from typing import Any, ClassVar, TypeVar
 
 from ..core.checks import known_name, require, shown
 from ..core.kinds import Kind
-from ..files.units import convert, parse, parse_units, split_quantity
-
-_WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")
-"""Force times length in a denominator, which people write without brackets."""
-
-_WEAR_FACTOR = "mm^3/(N m)"
-_FACTOR_UNITS = (_WEAR_FACTOR, "m^3/(N m)")
-"""Accepted units of a wear factor: each is for metres of sliding."""
-
-_ENERGY_UNITS = (*_FACTOR_UNITS, "mm^3/J", "mm^3/kJ", "mm^3/MJ", "m^3/J")
-"""Accepted units of a wear volume per energy."""
-
-
-def wear_factor(name: str, value: Any) -> float:
-    """Read a wear factor k in mm³/(N m): a number, or text such as "1.066e-6 mm^3/(N m)".
-
-    Raises
-    ------
-    ValueError
-        Text without a number, a unit of another dimension, or a unit for another length of sliding than the metre.
-        The message states the factor between both lengths.
-
-    Examples
-    --------
-    >>> wear_factor("coefficient", "1.066e-6 mm³/(N·m)")
-    1.066e-06
-    >>> wear_factor("coefficient", "1.066e-9 mm^3/(N mm)")
-    Traceback (most recent call last):
-    ValueError: coefficient = '1.066e-9 mm^3/(N mm)' is for mm of sliding: 1 mm^3/(N mm) is 1000 mm^3/(N m), \
-so that this is 1.066e-06 mm^3/(N m); write it so
-    """
-    number, unit = _split(name, value, _WEAR_FACTOR)
-    if unit:
-        number *= _factor_in_metres(name, value, number, unit, _FACTOR_UNITS)
-    require(name, number, 0 <= number < inf, f"a wear coefficient is at least 0 {_WEAR_FACTOR}, and finite")
-    return number
-
-
-def wear_per_energy(name: str, value: Any) -> float:
-    """Read a wear volume per friction energy in mm³/J: a number, or text such as "1e-5 mm^3/J".
-
-    Raises
-    ------
-    ValueError
-        As `wear_factor`.
-    """
-    number, unit = _split(name, value, "mm^3/J")
-    if unit:
-        number *= _factor_in_metres(name, value, number, unit, _ENERGY_UNITS)
-    require(name, number, 0 <= number < inf, "a wear coefficient is at least 0 mm^3/J, and finite")
-    return number
-
-
-def wear_per_slide(name: str, value: Any) -> float:
-    """Read a wear depth per length of sliding in mm/mm: a number, or text such as "1e-6 mm/m".
-
-    Raises
-    ------
-    ValueError
-        Text without a number, or a unit of another dimension.
-    """
-    number, unit = _split(name, value, "mm/m")
-    if unit:
-        number *= _unit_factor(name, value, unit, "", "mm/mm, a depth over a length of sliding")
-    require(name, number, 0 <= number < inf, "a wear coefficient is at least 0, and finite")
-    return number
-
-
-def _split(name: str, value: Any, example: str) -> tuple[float, str]:
-    """Split a coefficient into its number and the text of its unit."""
-    if isinstance(value, int | float) and not isinstance(value, bool):
-        return parse(name, value, Kind.NUMBER), ""
-    try:
-        number, unit = split_quantity(value if isinstance(value, str) else "")
-        unit = _WORK.sub(r"(N*\1)", unit)
-        parse_units(unit)
-    except ValueError as error:
-        raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'") from error
-    return number, unit
-
-
-def _factor_in_metres(name: str, value: Any, number: float, unit: str, allowed: tuple[str, ...]) -> float:
-    """Compute the factor from a unit to mm³/(N m), and reject units for other lengths of sliding."""
-    meaning = f"{_WEAR_FACTOR}, a volume over a force and a length of sliding"
-    factor = _unit_factor(name, value, unit, _WEAR_FACTOR, meaning)
-    if parse_units(unit) not in [parse_units(accepted) for accepted in allowed]:
-        written = unit.replace("**", "^").replace("N*m", "N m")
-        length = "for mm of sliding" if abs(factor / 1000 - 1) < 1e-9 else "for another length of sliding"
-        raise ValueError(
-            f"{name} = {shown(value)} is {length}: 1 {written} is {factor:.6g} {_WEAR_FACTOR}, "
-            f"so that this is {number * factor:.6g} {_WEAR_FACTOR}; write it so"
-        )
-    return factor
-
-
-def _unit_factor(name: str, value: Any, unit: str, target: str, meaning: str) -> float:
-    """Compute the factor from a unit to a target unit, or refuse a unit of another dimension."""
-    try:
-        return convert(1.0, parse_units(unit), parse_units(target))
-    except ValueError as error:
-        raise ValueError(f"{name} = {shown(value)} has the wrong unit; expected {meaning}") from error
+from ..files.units import parse
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,7 +37,7 @@ class LawUnit:
     read: Callable[[str, Any], Any]
 
     def example(self, value: Any) -> str:
-        """Write a value as an example for files."""
+        """Format a value as an example for files, with its unit."""
         if isinstance(value, tuple):
             return f"[{', '.join(f'{number:g}' for number in value)}]"
         return f"'{value:g} {self.typed}'" if self.typed else f"{value:g}"
@@ -166,15 +65,6 @@ def list_unit(text: str, suffix: str) -> LawUnit:
 
     return LawUnit(text=text, typed=text, suffix=suffix, read=read)
 
-
-WEAR_FACTOR = LawUnit(text="mm³/(N m)", typed=_WEAR_FACTOR, suffix="mm3_per_Nm", read=wear_factor)
-"""Unit of a worn volume over force and length of sliding."""
-
-WEAR_PER_ENERGY = LawUnit(text="mm³/J", typed="mm^3/J", suffix="mm3_per_J", read=wear_per_energy)
-"""Unit of a worn volume over friction energy."""
-
-WEAR_PER_SLIDE = LawUnit(text="mm/mm", typed="mm/mm", suffix="mm_per_mm", read=wear_per_slide)
-"""Unit of a worn depth over a length of sliding."""
 
 NUMBER = kind_unit(Kind.NUMBER)
 """Unit of a plain number."""
@@ -217,18 +107,18 @@ class LawField:
     low_included: bool
 
     @property
-    def listed(self) -> bool:
+    def is_list(self) -> bool:
         """True if the value is a tuple of numbers."""
         return isinstance(self.example, tuple)
 
     @property
-    def allowed(self) -> str:
-        """Limits in words."""
+    def allowed_range(self) -> str:
+        """Allowed range in words, for messages."""
         low = f"{self.meaning} ({self.unit.text or 'a number'}) is {'at least' if self.low_included else 'above'} "
         return f"{low}{self.low:g}, and {'finite' if self.high == inf else f'below {self.high:g}'}"
 
     def check(self, value: Any) -> None:
-        """Check a value of this field.
+        """Check kind and limits of a value of this field.
 
         Raises
         ------
@@ -237,13 +127,13 @@ class LawField:
         ValueError
             The value is outside the limits.
         """
-        for number in value if self.listed else (value,):
+        for number in value if self.is_list else (value,):
             if not isinstance(number, Real) or isinstance(number, bool):
-                wanted = "a tuple of numbers" if self.listed else "one number"
+                wanted = "a tuple of numbers" if self.is_list else "one number"
                 raise TypeError(f"{self.name} must be {wanted}, got {value!r:.60}")
             real = float(number)
             above_low = self.low <= real if self.low_included else self.low < real
-            require(self.name, number, above_low and real < self.high, self.allowed)
+            require(self.name, number, above_low and real < self.high, self.allowed_range)
 
 
 def law_field(
@@ -278,7 +168,7 @@ def law_field(
 
 
 class Law(ABC):
-    """Law with a name, and fields with units, of which files, JSON and the explorer are made.
+    """Base of wear and creep laws: a name, and fields with units, which files, JSON and the explorer use.
 
     A law is a frozen dataclass; `law_field` defines its fields.
     """
@@ -295,7 +185,7 @@ class Law(ABC):
 
     @classmethod
     def law_fields(cls) -> tuple[LawField, ...]:
-        """Return the fields of the law."""
+        """Return the fields of the law with their units and limits."""
         return tuple(
             LawField(
                 name=part.name,
@@ -308,7 +198,7 @@ class Law(ABC):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the numbers of the law."""
+        """Notes on the numbers of the law, for reports."""
         return ()
 
     def summary(self) -> dict[str, Any]:
@@ -322,7 +212,7 @@ class Law(ABC):
 
 def _as_json(value: Any, part: LawField) -> Any:
     """Convert the value of a field to a number or a list of numbers."""
-    return list(map(float, value)) if part.listed else float(value)
+    return list(map(float, value)) if part.is_list else float(value)
 
 
 def law_summary(law: Any) -> dict[str, Any] | None:
@@ -336,7 +226,7 @@ AnyLaw = TypeVar("AnyLaw", bound=Law)
 
 
 def law_keys(laws: Mapping[str, type[AnyLaw]]) -> tuple[str, ...]:
-    """Return the keys in files of all laws, each once."""
+    """Return the keys that files use for the fields of any of the laws, without repetitions."""
     return tuple(dict.fromkeys(part.key for law in laws.values() for part in law.law_fields()))
 
 
@@ -395,7 +285,7 @@ def select_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun:
 
 
 def _laws_with_keys(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]]) -> Iterator[type[AnyLaw]]:
-    """List the laws that have a key of a table."""
+    """Yield the laws of which a table has at least one key."""
     for law in laws.values():
         if any(part.key in table for part in law.law_fields()):
             yield law

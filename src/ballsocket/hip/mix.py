@@ -17,7 +17,7 @@ from .cycle import Cycle, Frame
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Activity:
-    """Cycle that a patient repeats a number of times a year.
+    """Activity of a patient: a cycle of load and motion, and its number a year.
 
     Parameters
     ----------
@@ -72,12 +72,12 @@ class Mix:
     def __post_init__(self) -> None:
         if not self.activities:
             raise ValueError("a mix needs at least one activity")
-        for cycle in self._cycles:
+        for cycle in self.activity_cycles:
             if cycle.frame is not Frame.BODY or cycle.spring is not None:
                 raise ValueError(f"{cycle.name} has forces in the cup's frame, or a spring: it cannot be part of a mix")
 
     @property
-    def _cycles(self) -> tuple[Cycle, ...]:
+    def activity_cycles(self) -> tuple[Cycle, ...]:
         """Cycles of the activities."""
         return tuple(activity.cycle for activity in self.activities)
 
@@ -94,18 +94,18 @@ class Mix:
     @property
     def name(self) -> str:
         """Names of the activities, joined by +."""
-        return " + ".join(cycle.name for cycle in self._cycles)
+        return " + ".join(cycle.name for cycle in self.activity_cycles)
 
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes of the activities for reports, without repetitions."""
-        notes = tuple(dict.fromkeys(note for cycle in self._cycles for note in cycle.notes))
-        return notes if len({cycle.cup_tilt for cycle in self._cycles}) == 1 else (*notes, _NO_COMMON_TILT)
+        notes = tuple(dict.fromkeys(note for cycle in self.activity_cycles for note in cycle.notes))
+        return notes if len({cycle.cup_tilt for cycle in self.activity_cycles}) == 1 else (*notes, _NO_COMMON_TILT)
 
     @property
     def cup_tilt(self) -> float | None:
         """Tilt of the cup in rad by a standard, if it is the same for all activities."""
-        tilts = {cycle.cup_tilt for cycle in self._cycles}
+        tilts = {cycle.cup_tilt for cycle in self.activity_cycles}
         return tilts.pop() if len(tilts) == 1 else None
 
     @property
@@ -121,7 +121,7 @@ class Mix:
     @property
     def n_steps(self) -> int:
         """Number of steps of all activities."""
-        return sum(cycle.n_steps for cycle in self._cycles)
+        return sum(cycle.n_steps for cycle in self.activity_cycles)
 
     @property
     def phases(self) -> Numbers:
@@ -141,7 +141,7 @@ class Mix:
     @cached_property
     def forces(self) -> Numbers:
         """Forces at the midpoints of the steps in N: (steps, 3)."""
-        return numpy.concatenate([cycle.forces for cycle in self._cycles])
+        return numpy.concatenate([cycle.forces for cycle in self.activity_cycles])
 
     @cached_property
     def force_magnitudes(self) -> Numbers:
@@ -151,7 +151,7 @@ class Mix:
     @cached_property
     def midpoint_rotations(self) -> Numbers:
         """Rotation matrices of the ball at the midpoints of the steps: (steps, 3, 3)."""
-        return numpy.concatenate([cycle.midpoint_rotations for cycle in self._cycles])
+        return numpy.concatenate([cycle.midpoint_rotations for cycle in self.activity_cycles])
 
     @cached_property
     def rotation_increments(self) -> Numbers:
@@ -159,9 +159,9 @@ class Mix:
         return self._weighted(lambda cycle: cycle.rotation_increments)
 
     def _weighted(self, values_of: Callable[[Cycle], Numbers]) -> Numbers:
-        """Concatenate values of the steps, multiplied by the fractions of the activities."""
+        """Concatenate values of all steps, each multiplied by the fraction of its activity."""
         return numpy.concatenate(
-            [fraction * values_of(cycle) for fraction, cycle in zip(self.fractions, self._cycles, strict=True)]
+            [fraction * values_of(cycle) for fraction, cycle in zip(self.fractions, self.activity_cycles, strict=True)]
         )
 
     @property
@@ -172,20 +172,20 @@ class Mix:
     @property
     def largest_force(self) -> float:
         """Largest force of all activities in N."""
-        return max(cycle.largest_force for cycle in self._cycles)
+        return max(cycle.largest_force for cycle in self.activity_cycles)
 
     @property
     def activity_slices(self) -> tuple[tuple[str, slice], ...]:
-        """Name and steps of each activity."""
+        """Name and range of steps of each activity."""
         begin, slices = 0, []
-        for cycle in self._cycles:
+        for cycle in self.activity_cycles:
             slices.append((cycle.name, slice(begin, begin + cycle.n_steps)))
             begin += cycle.n_steps
         return tuple(slices)
 
     def describe_step(self, step: int) -> str:
         """Describe the activity and phase of a step in words."""
-        for cycle in self._cycles:
+        for cycle in self.activity_cycles:
             if step < cycle.n_steps:
                 return f"{100 * cycle.phases[step]:.1f} % of {cycle.name}"
             step -= cycle.n_steps
@@ -193,18 +193,18 @@ class Mix:
 
     def finer(self) -> Mix:
         """Return this mix with twice as many steps."""
-        return self._transformed(lambda cycle: cycle.finer())
+        return self.transformed(lambda cycle: cycle.finer())
 
     def mirrored(self) -> Mix:
         """Return this mix for the other side of the body."""
-        return self._transformed(lambda cycle: cycle.mirrored())
+        return self.transformed(lambda cycle: cycle.mirrored())
 
     def scaled(self, factor: float) -> Mix:
         """Return this mix with all forces multiplied by a factor."""
-        return self._transformed(lambda cycle: cycle.scaled(factor))
+        return self.transformed(lambda cycle: cycle.scaled(factor))
 
-    def _transformed(self, transform: Callable[[Cycle], Cycle]) -> Mix:
-        """Return a mix of transformed cycles."""
+    def transformed(self, transform: Callable[[Cycle], Cycle]) -> Mix:
+        """Return this mix with a function applied to the cycle of each activity."""
         return Mix(activities=tuple(replace(activity, cycle=transform(activity.cycle)) for activity in self.activities))
 
 

@@ -81,7 +81,7 @@ class ClosestApproach:
         return f"{self.step_description}, {abs(degrees(self.azimuth)):.0f}° from the cup's uppermost point"
 
     def summary(self) -> dict[str, Any]:
-        """Return the values for JSON."""
+        """Return the closest approach as data for JSON, in mm and degrees."""
         azimuth = degrees(self.azimuth)
         return {
             "distance_mm": self.distance,
@@ -133,7 +133,7 @@ class RimDistance:
 
 
 def rim_distance(grid: Grid, radius: float, field: Numbers, pressure: Numbers, inset: float) -> RimDistance:
-    """Compute the distances from contacts to the rim.
+    """Compute the distance in mm from each contact to the rim.
 
     Parameters
     ----------
@@ -201,13 +201,13 @@ class Microseparation:
         return float(numpy.linalg.norm(self.displacement, axis=1).max(initial=0.0))
 
     def _interval(self, n_steps: int) -> tuple[int, int]:
-        """Return the first and the last step; the interval may continue from one cycle into the next."""
+        """Return the first and the last step of the microseparation, which may continue into the next cycle."""
         distances = numpy.diff(self.steps, append=self.steps[0] + n_steps)
         longest = int(distances.argmax())
         return int(self.steps[(longest + 1) % len(distances)]), int(self.steps[longest])
 
     def summary(self, cycle: StepSequence) -> dict[str, Any]:
-        """Return the values for JSON."""
+        """Return the microseparation as data for JSON, in mm and degrees."""
         first, last = (cycle.describe_step(step) for step in self._interval(cycle.n_steps))
         azimuth = self.azimuth[int(numpy.linalg.norm(self.displacement, axis=1).argmax())]
         return {"from": first, "to": last, "largest_mm": self.largest, "place_deg": degrees(azimuth)}
@@ -253,7 +253,7 @@ class SpringLoadedBall:
         return numpy.sign(self.spring.mismatch) * self.side
 
     def leaves_bore(self, forces: Numbers) -> Numbers:
-        """Return True for each force (n, 3) beyond the rim that moves the ball out of the bore.
+        """Check if the ball leaves the bore under each force (n, 3) in N that points beyond the rim: (n,).
 
         The ball stays in the bore if its displacement within the clearance reduces the spring force enough.
         """
@@ -262,7 +262,7 @@ class SpringLoadedBall:
         return leaves
 
     def solve_separation(self, forces: Numbers, steps: Numbers) -> Microseparation:
-        """Solve the balance of the ball on the rim in these steps.
+        """Solve the equilibrium of the ball on the rim under each force.
 
         Parameters
         ----------

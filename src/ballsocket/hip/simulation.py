@@ -8,21 +8,13 @@ from functools import cached_property
 from math import inf
 from pathlib import Path
 
-import numpy
-
-from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
-from .ball_wear import map_counterface
-from .checkpoint import Checkpoint, checkpoint
 from .film import Lubricant
 from .hip_setup import MIN_RING_WIDTH, HipSetup
-from .history import History, NumericalError, Report
-from .socket_foundation import CycleEquilibrium
+from .history import History, NumericalError
+from .report_points import check_total_wear, make_checkpoint, run_to_report_points
 from .wear_integrator import WearIntegrator
-
-_MAX_WORN_LINERS = 10.0
-"""Largest wear by the rate of the first cycle, in liner thicknesses."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,7 +92,7 @@ class HipSimulation(HipSetup):
         """
         counts = check_cycles(cycles, report_at)
         check_total_wear(self, cycles)
-        stored, (volume, depth) = None if store is None else checkpoint(self, store), self.discretization_error
+        stored, (volume, depth) = None if store is None else make_checkpoint(self, store), self.discretization_error
         integrator = WearIntegrator(setup=self)
         reports = run_to_report_points(integrator, counts, progress, stored)
         blocks = integrator.relative_volume_error
@@ -129,7 +121,7 @@ the error by 3.
 
 
 def _halving_error(values: list[float]) -> float:
-    """Estimate the relative error of a value from three results: given steps, half steps, and half steps and rings."""
+    """Estimate the relative discretization error of a result from three: coarse, half steps, half steps and rings."""
     value, finer_steps, finer_rings = values
     if not finer_rings:
         return 0.0
@@ -137,7 +129,9 @@ def _halving_error(values: list[float]) -> float:
 
 
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
-    """Return the cycle counts of all reports in order, with the total count as the last one.
+    """Check the cycle counts of a run, and return those of its reports in ascending order.
+
+    The last one is the total count.
 
     Raises
     ------
@@ -148,96 +142,6 @@ def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
     for count in report_at:
         require("report_at", count, 0 <= count <= cycles, f"it lies between 0 and the {cycles:g} cycles of the run")
     return sorted({float(count) for count in (*report_at, cycles)})
-
-
-def check_total_wear(setup: HipSetup, cycles: float) -> None:
-    """Raise ValueError for cycles that would wear away more than ten liner thicknesses at the initial wear rate.
-
-    Raises
-    ------
-    ValueError
-        The extrapolated wear of the first cycle exceeds ten liner thicknesses.
-    """
-    exposure = setup.exposure(setup.unworn)
-    thickness = float(min(setup.joint.liner_thickness, setup.joint.socket_radius))
-    laws = (law for law in (setup.wear, setup.ball_wear) if law is not None)
-    worn = cycles * max(float(law.depth(exposure).max(initial=0.0)) for law in laws)
-    if not worn <= _MAX_WORN_LINERS * thickness:
-        raise ValueError(
-            f"{cycles:g} cycles at the rate of the first one would wear {worn:.3g} mm away, more than "
-            f"{_MAX_WORN_LINERS:g} times the {thickness:g} mm of the liner: reduce the wear coefficient or the cycles"
-        )
-
-
-def run_to_report_points(
-    integrator: WearIntegrator, counts: Sequence[float], progress: Callable[[float], None], stored: Checkpoint | None
-) -> tuple[Report, ...]:
-    """Run a simulation to the requested cycle counts, resuming from a checkpoint."""
-    reports: tuple[Report, ...] = ()
-    checkpointed = stored.read() if stored else None
-    if checkpointed is not None:
-        state, reports = checkpointed
-        integrator.resume(state)
-        reports = tuple(report for report in reports if report.cycles in counts)
-    reported = {report.cycles for report in reports}
-    for count in counts:
-        if count in reported:
-            continue
-        if count < integrator.cycles:
-            raise ValueError(
-                f"the store has reached {integrator.cycles:g} cycles without a report at {count:g}; give another folder"
-            )
-
-        def store_block(cycles: float) -> None:
-            """Store the state after a block, and report the progress."""
-            if stored is not None and cycles < count:  # noqa: B023 (called before the next)
-                stored.write(integrator.state, reports)  # noqa: B023
-            progress(cycles)
-
-        reports = (*reports, make_report(integrator.run_until(count, store_block)))
-        if stored is not None:
-            stored.write(integrator.state, reports)
-    return reports
-
-
-def make_report(integrator: WearIntegrator) -> Report:
-    """Report the state of a simulation."""
-    setup, creep_depth, shape = integrator.setup, integrator.creep_depth, (integrator.setup.grid.rings, -1)
-    depth = integrator.depth + creep_depth
-    if setup.ball_wear is not None:
-        counterface = map_counterface(setup, numpy.arange(len(depth)))
-        depth = depth + counterface.on_socket.interpolate(integrator.ball[None])
-    combined = setup.solve_equilibrium(depth, integrator.equilibrium)
-    worn = combined if setup.creep is None else _solve_or_unworn(setup, integrator.depth)
-    states = (combined, worn, _solve_or_unworn(setup, creep_depth))
-    displacements = [(state.displacement - setup.unworn.displacement)[setup.largest].sum(axis=0) for state in states]
-    edge = setup.edge(combined, depth)
-    return Report(
-        cycles=integrator.cycles,
-        wear=integrator.depth.reshape(shape),
-        volume=integrator.volume,
-        depth=float(integrator.depth.max()),
-        work=integrator.work,
-        displacement=displacements[0],
-        wear_displacement=displacements[1],
-        creep_displacement=displacements[2],
-        max_pressure=float(combined.pressure.max(initial=0.0)),
-        edge_distance=edge.distance,
-        edge_place=edge.azimuth,
-        edge_pressure=edge.pressure,
-        crept=creep_depth.reshape(shape),
-        creep_depth=float(creep_depth.max()),
-        ball_wear=integrator.ball,
-        ball_volume=integrator.ball_volume,
-        ball_depth=float(integrator.ball.max(initial=0.0)),
-        worst_contacts=setup.worst_contacts(combined, depth),
-        converged=integrator.converged and all(state.converged for state in states),
-    )
-
-
-def _solve_or_unworn(setup: HipSetup, depth: Numbers) -> CycleEquilibrium:
-    """Solve the contacts on a worn bore, or return those of the unworn bore for zero depth."""
-    return setup.solve_equilibrium(depth) if depth.any() else setup.unworn
 
 
 __getattr__ = renamed_names(__name__, {"InUse": "HipSimulation"})

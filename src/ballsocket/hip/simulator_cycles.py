@@ -36,7 +36,10 @@ def _iso_force(phases: Numbers) -> Numbers:
 
 
 def _iso_angles(phases: Numbers) -> Numbers:
-    """Compute one cosine per angle: flexion 25° to -18°, adduction 7° to -4°, inward rotation -10° to 2°."""
+    """Compute the angles of ISO 14242-1 in rad, one cosine each.
+
+    Flexion is 25° to -18°, adduction 7° to -4°, inward rotation -10° to 2°.
+    """
     cycle_angle = 2 * pi * phases
     flexion = 3.5 + 21.5 * numpy.cos(cycle_angle)
     adduction = 1.5 + 5.5 * numpy.cos(cycle_angle - 2 * pi * 0.21)
@@ -45,7 +48,7 @@ def _iso_angles(phases: Numbers) -> Numbers:
 
 
 def _iso_key_points(phases: Numbers) -> Numbers:
-    """Compute the angles of ISO 14242-1 by half cosines between its key points."""
+    """Compute the angles of ISO 14242-1 in rad by half cosines between its key points."""
     return numpy.stack([half_cosines(phases, *key_points) for key_points in _ISO_ANGLES])
 
 

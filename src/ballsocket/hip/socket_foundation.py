@@ -52,7 +52,7 @@ class CycleEquilibrium:
 
 
 class SocketFoundation(Protocol):
-    """Socket in cells, under all loads of a cycle at once."""
+    """Foundation of the socket: pressures of its cells under all loads of a cycle."""
 
     @property
     def clearance(self) -> float:
@@ -81,12 +81,12 @@ class SocketFoundation(Protocol):
 
     @property
     def max_stiffness(self) -> float:
-        """Largest change of the pressure by the depth of a wave of the bore, in MPa/mm."""
+        """Largest ratio of pressure change to depth over all waves of the bore, in MPa/mm."""
         ...
 
     @property
     def edge_inset(self) -> float:
-        """Distance of the contact edge inside the zero of `edge_field`, as a fraction of a cell."""
+        """Distance from the zero of `edge_field` inwards to the contact edge, as a fraction of a cell's width."""
         ...
 
     def select_cells(self, cells: Numbers) -> SocketFoundation:
@@ -94,7 +94,10 @@ class SocketFoundation(Protocol):
         ...
 
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
-        """Mark the cells within a margin of any contact, relative to the largest overlap: (cells,)."""
+        """Return the mask of the cells in or near a contact: (cells,).
+
+        The margin is relative to the largest overlap.
+        """
         ...
 
     def solve_equilibrium(
@@ -104,11 +107,11 @@ class SocketFoundation(Protocol):
         start: CycleEquilibrium | None = None,
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
-        """Solve the equilibria of the ball under all loads; see `SpringFoundation.solve_equilibrium`."""
+        """Solve displacements and pressures under all loads; see `SpringFoundation.solve_equilibrium`."""
         ...
 
-    def smoothed(self, depth: Numbers) -> Numbers:
-        """Remove the waves that the grid cannot resolve from a depth, at the same volume: (cells,)."""
+    def smooth(self, depth: Numbers) -> Numbers:
+        """Smooth a depth in mm to waves that the grid resolves, at the same volume: (cells,)."""
         ...
 
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
@@ -121,7 +124,7 @@ class SocketFoundation(Protocol):
 
 
 def spring_foundation(grid: Grid, modulus: float, clearance: float, socket_radius: float) -> SpringFoundation:
-    """Create a foundation of springs in the cells of a grid; see `SpringFoundation`."""
+    """Create a foundation of radial springs, one for each cell of a grid."""
     return SpringFoundation(
         directions=numpy.ascontiguousarray(grid.middles.reshape(3, -1)),
         normals=numpy.ascontiguousarray(grid.normals.reshape(3, -1)),
@@ -170,7 +173,9 @@ class SpringFoundation:
         )
 
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
-        """Mark the cells in contact with any displaced ball, or within a margin of it: (cells,).
+        """Return the mask of the cells in or near a contact under any load: (cells,).
+
+        The margin is relative to the largest overlap.
 
         The margin is relative to the largest overlap.
         """
@@ -178,17 +183,17 @@ class SpringFoundation:
         mask: Numbers = overlap > -margin * float(overlap.max())
         return mask
 
-    def smoothed(self, depth: Numbers) -> Numbers:
-        """Return the depth unchanged: springs resolve every wave of the grid."""
+    def smooth(self, depth: Numbers) -> Numbers:
+        """Return the depth unchanged, because springs resolve every wave of the grid."""
         return depth
 
     @property
     def edge_inset(self) -> float:
-        """Distance of the contact edge inside the zero of `edge_field`, as a fraction of a cell: 0 for springs."""
+        """Distance from the zero of `edge_field` inwards to the contact edge, as a fraction of a cell's width: 0."""
         return 0.0
 
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute the overlap in mm, with 0 at the edge of the contacts: (loads, cells)."""
+        """Compute the overlap of ball and bore in mm, positive inside the contacts: (loads, cells)."""
         return equilibrium.displacement @ self.normals - self.clearance - depth
 
     def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
@@ -197,7 +202,7 @@ class SpringFoundation:
 
     @property
     def max_stiffness(self) -> float:
-        """Largest change of the pressure by the depth of a wave of the bore, in MPa/mm."""
+        """Largest ratio of pressure change to depth over all waves of the bore, in MPa/mm."""
         return self.modulus
 
     @cached_property
@@ -207,7 +212,7 @@ class SpringFoundation:
 
     @cached_property
     def _stiffness_weights(self) -> Numbers:
-        """Products n nᵀ dA of the cells: (cells, 9)."""
+        """Stiffness in N/mm of each cell per foundation modulus, n nᵀ dA: (cells, 9)."""
         n = self.normals
         return (n[:, None] * n[None] * self.areas).reshape(9, -1).T.copy()
 
@@ -218,7 +223,7 @@ class SpringFoundation:
         start: CycleEquilibrium | None = None,
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
-        """Solve the equilibria of the ball under all loads by Newton's method.
+        """Solve displacements and pressures under all loads by Newton's method.
 
         Parameters
         ----------
@@ -254,7 +259,10 @@ class SpringFoundation:
     def _newton_step(
         self, in_contact: Numbers, residual: Numbers, loads: Numbers, lateral_stiffness: Numbers
     ) -> Numbers:
-        """Compute Newton's step; a ball without contact moves along its load until it touches the bore."""
+        """Compute the step of Newton's method for the displacements in mm: (loads, 3).
+
+        A ball without contact moves along its load until it touches the bore.
+        """
         tangent = self.modulus * (in_contact @ self._stiffness_weights).reshape(-1, 3, 3)
         trace = numpy.trace(tangent, axis1=1, axis2=2)
         separated = trace <= 0

@@ -16,9 +16,16 @@ from ..studies.room import check_samples
 from ..studies.sobol import sobol
 from .bands import COEFFICIENT, CONVERTED, DEFAULT_LEVEL, INFLUENCED_RESULTS, Bands, SharedCoefficient
 from .cohort import CohortRun, CohortStore, ProgressCallback, sample_patients
-from .cohort_results import RESULT_UNITS, CohortResult, join_results, result_table
 from .history import History, Report
-from .variability import DEFAULT_COUNT, Patient, PatientVariability
+from .variability import (
+    DEFAULT_COUNT,
+    RESULT_UNITS,
+    CohortResult,
+    Patient,
+    PatientVariability,
+    join_results,
+    result_table,
+)
 
 _CONVERTED_COLUMNS = [list(RESULT_UNITS).index(name) for name in CONVERTED]
 
@@ -145,7 +152,7 @@ def population(
 
 @dataclass
 class _SampleSimulation:
-    """Function of samples (quantities, points) for Sobol indices that stores the results of all samples.
+    """Simulation of samples as a function for Sobol indices, which stores the results of all samples.
 
     It returns `INFLUENCED_RESULTS` at the last report, with the shape (results, points).
     """
@@ -159,6 +166,7 @@ class _SampleSimulation:
     n_finished: int = 0
 
     def __call__(self, samples: Numbers) -> Numbers:
+        """Simulate samples (quantities, points), and return their results: (results, points)."""
         values = dict(zip(self.variability.distributions, samples.reshape(len(samples), -1), strict=True))
         run = CohortRun(variability=self.variability, counts=self.counts, values=values)
         result = run.simulate(self.engine, None, lambda finished: self.progress(self.n_finished + finished))
@@ -190,7 +198,7 @@ def share_coefficient(
     level: float,
     engine: Engine,
 ) -> SharedCoefficient | None:
-    """Convert the results of patients to shared wear coefficients.
+    """Compute the results of patients who all share a low, a median or a high wear coefficient.
 
     Each result is multiplied by the ratio of the nominal patient's results at both coefficients. Twice the cycles wear
     as much as twice the coefficient. The ratio is therefore taken at the coefficient times the patient's cycle ratio.

@@ -1,4 +1,4 @@
-"""Variability between patients: distributions of their quantities, and the simulation set-up of each patient."""
+"""Variability between patients: distributions of their quantities, simulation of one patient, tables of results."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from ..core.checks import check_names, require
 from ..core.deprecation import RenamedAttribute, renamed_names
 from ..elasticity.off_axis.surfaces import Springs
 from ..studies.distributions import Distribution
+from .contact_checks import utilisation_and_validity
 from .cycle import Cycle
 from .history import Report
-from .mix import Mix
-from .simulation import HipSimulation, check_total_wear, make_report
+from .report_points import check_total_wear, make_report
+from .simulation import HipSimulation
 from .wear_integrator import WearIntegrator
 from .wear_law import with_coefficient
 
@@ -44,6 +45,17 @@ _COARSE_INSTANTS = 32
 
 ANGLES = ("inclination", "anteversion", "tilt")
 """Quantities that summaries and tables show in degrees."""
+
+
+RESULT_UNITS: Mapping[str, str] = {
+    "volume": "mm3",
+    "depth": "mm",
+    "penetration": "mm",
+    "max_pressure": "MPa",
+    "creep_depth": "mm",
+    "edge_distance": "mm",
+}
+"""Results of each patient with their units; see `Report`."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -83,8 +95,10 @@ class PatientVariability:
     use: HipSimulation
     distributions: Mapping[str, Distribution]
     body_weight: float | None = None
+    quick = RenamedAttribute("coarse_simulation")
 
     def __post_init__(self) -> None:
+        """Check names and medians of the distributions."""
         check_names(self.distributions, SAMPLED_QUANTITIES, "among the quantities of patients")
         if not self.distributions:
             raise ValueError("no quantity differs between patients: give one of " + ", ".join(SAMPLED_QUANTITIES))
@@ -101,28 +115,29 @@ class PatientVariability:
 
     @cached_property
     def _medians(self) -> dict[str, float]:
+        """Medians of the sampled quantities by name."""
         return {name: float(distribution.frozen.median()) for name, distribution in self.distributions.items()}
 
     @property
     def cycles_per_year(self) -> float | None:
         """Cycles of the nominal patient in a year: those of a mix or the median; None if unknown."""
-        cycle = self.use.cycle
-        return cycle.per_year if isinstance(cycle, Mix) else self._medians.get("cycles_per_year")
+        per_year = self.use.cycle.per_year
+        return self._medians.get("cycles_per_year") if per_year is None else per_year
 
     @cached_property
-    def quick(self) -> HipSimulation:
-        """Hip of the nominal patient with the coarse discretization of the other patients."""
+    def coarse_simulation(self) -> HipSimulation:
+        """Simulation of the nominal patient with the coarse discretization of the sampled patients."""
         use = self.use
         return replace(
             use,
-            surface=use.surface if isinstance(use.surface, Springs) else Springs(),
+            surface=use.surface if use.uses_springs else Springs(),
             ring_width=max(use.ring_width, _COARSE_RINGS),
-            cycle=_tabulate(use.cycle),
-            cup=use.placed,
+            cycle=use.cycle.transformed(_tabulate_cycle),
+            cup=use.frame.placed,
         )
 
     def patient(self, values: Mapping[str, float]) -> Patient:
-        """Build the patient with these values.
+        """Create a patient from values of the sampled quantities.
 
         Parameters
         ----------
@@ -134,7 +149,7 @@ class PatientVariability:
         ValueError
             A value that is not allowed, or an orientation in which the cup does not hold the ball.
         """
-        use, cup = self.quick, self.quick.cup
+        use, cup = self.coarse_simulation, self.coarse_simulation.cup
         cup = cup.tilted(values["tilt"]) if "tilt" in values else cup
         orientation: Any = {name: values[name] for name in ("inclination", "anteversion") if name in values}
         cup = replace(cup, **orientation)
@@ -170,7 +185,7 @@ class PatientVariability:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Patient:
-    """Hip of one patient.
+    """Wear simulation of one patient of a cohort.
 
     Attributes
     ----------
@@ -184,7 +199,7 @@ class Patient:
     cycle_ratio: float
 
     def simulate(self, counts: Sequence[float]) -> tuple[Report, ...]:
-        """Simulate the wear of this patient, and report after given cycles of the nominal patient.
+        """Simulate the wear of this patient, with reports at cycle counts of the nominal patient.
 
         Raises
         ------
@@ -204,7 +219,7 @@ class Patient:
 
 @dataclass(frozen=True, eq=False)
 class _CycleTable:
-    """Periodic function of the phase, linear between tabulated values; unlike a local function it can be pickled.
+    """Periodic function of the phase, linear between tabulated values, which can be pickled.
 
     Attributes
     ----------
@@ -218,21 +233,13 @@ class _CycleTable:
     values: Numbers
 
     def __call__(self, phases: Numbers) -> Numbers:
+        """Interpolate the values at phases (n,): (..., n)."""
         rows = [numpy.interp(phases, self.phases, row, period=1.0) for row in numpy.atleast_2d(self.values)]
         return numpy.reshape(rows, (*self.values.shape[:-1], -1))
 
 
-def _tabulate(cycle: Cycle | Mix) -> Cycle | Mix:
-    """Tabulate a cycle, or each cycle of a mix, at a few instants."""
-    if isinstance(cycle, Mix):
-        return Mix(
-            activities=tuple(replace(activity, cycle=_tabulate_one(activity.cycle)) for activity in cycle.activities)
-        )
-    return _tabulate_one(cycle)
-
-
-def _tabulate_one(cycle: Cycle) -> Cycle:
-    """Tabulate the force at the midpoints and the angles at the starts of a few steps."""
+def _tabulate_cycle(cycle: Cycle) -> Cycle:
+    """Convert a cycle to a few steps with tabulated forces at their midpoints and angles at their starts."""
     coarse = replace(cycle, n_steps=min(cycle.n_steps, _COARSE_INSTANTS))
     midpoints, starts = coarse.phases, numpy.arange(coarse.n_steps) / coarse.n_steps
     force, angles = (
@@ -242,12 +249,71 @@ def _tabulate_one(cycle: Cycle) -> Cycle:
     return replace(coarse, force=_CycleTable(midpoints, force), angles=_CycleTable(starts, angles))
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CohortResult:
+    """Results of several patients as arrays.
+
+    Attributes
+    ----------
+    table : array (patients, reports, results)
+        Results by `RESULT_UNITS`; NaN for a patient without a result.
+    refused : array of str (patients,)
+        Error messages of the patients without a result; empty for the others.
+    contact : array (patients, 1 + reports, 2)
+        Utilisation and validity (1 or 0) of the contact, unworn and at each report.
+    """
+
+    table: Numbers
+    refused: Numbers
+    contact: Numbers
+
+    @property
+    def peak_utilisation(self) -> Numbers:
+        """Largest utilisation from the first cycle to each report: (patients, reports), NaN if unknown."""
+        return numpy.maximum.accumulate(self.contact[:, :, 0], axis=1)[:, 1:]
+
+    @property
+    def valid(self) -> Numbers:
+        """Validity from the first cycle to each report, 1 or 0: (patients, reports)."""
+        return numpy.minimum.accumulate(self.contact[:, :, 1], axis=1)[:, 1:]
+
+
+def join_results(results: Sequence[CohortResult]) -> CohortResult:
+    """Concatenate the results of consecutive groups of patients."""
+    return CohortResult(
+        table=numpy.concatenate([result.table for result in results]),
+        refused=numpy.concatenate([result.refused for result in results]),
+        contact=numpy.concatenate([result.contact for result in results]),
+    )
+
+
+def result_table(reports: Sequence[Report]) -> Numbers:
+    """Convert the results of `RESULT_UNITS` at the reports to an array: (reports, results)."""
+    return numpy.array([[_result_number(report, name) for name in RESULT_UNITS] for report in reports])
+
+
+def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
+    """Compute utilisation and validity of the contact in the first cycle and at each report: (1 + reports, 2)."""
+    return utilisation_and_validity(
+        use.contact_model, use.joint, [use.unworn_worst_contacts, *(report.worst_contacts for report in reports)]
+    )
+
+
+def _result_number(report: Report, name: str) -> float:
+    """Return one result of a report as a number; for `edge_distance`, the least of the cycle."""
+    value = getattr(report, name)
+    return float(value.min(initial=inf)) if name == "edge_distance" else float(value)
+
+
 def summarize_distributions(variability: PatientVariability) -> dict[str, Any]:
     """Return the distributions of the patients as plain data in mm, N and degrees."""
-    return {name: _summarize(name, distribution) for name, distribution in variability.distributions.items()}
+    return {
+        name: _summarize_distribution(name, distribution) for name, distribution in variability.distributions.items()
+    }
 
 
-def _summarize(name: str, distribution: Distribution) -> dict[str, Any]:
+def _summarize_distribution(name: str, distribution: Distribution) -> dict[str, Any]:
+    """Return name and parameters of a distribution as data for JSON; angles in degrees."""
     factor = degrees(1.0) if name in ANGLES else 1.0
     parameters = {parameter.name: getattr(distribution, parameter.name) for parameter in fields(distribution)}
     shown = {key: factor * value for key, value in parameters.items() if isfinite(value)}
@@ -259,8 +325,8 @@ __getattr__ = renamed_names(
     {
         "Scatter": "PatientVariability",
         "SCATTERS": "SAMPLED_QUANTITIES",
-        "ANSWERS": "ballsocket.hip.cohort_results.RESULT_UNITS",
-        "answers_of": "ballsocket.hip.cohort_results.result_table",
-        "contact_over": "ballsocket.hip.cohort_results.contact_table",
+        "ANSWERS": "RESULT_UNITS",
+        "answers_of": "result_table",
+        "contact_over": "contact_table",
     },
 )

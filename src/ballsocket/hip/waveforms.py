@@ -77,8 +77,8 @@ def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict
     return {title: numpy.interp(wanted, time, values) for title, values in columns.items() if title != name}
 
 
-def cut_out(columns: dict[str, Numbers], begin: float | None, end: float | None) -> dict[str, Numbers]:
-    """Cut the rows between two times out of a table, with interpolated rows at both times.
+def select_time_range(columns: dict[str, Numbers], begin: float | None, end: float | None) -> dict[str, Numbers]:
+    """Select the rows of a table between two times, with interpolated rows at both times.
 
     Raises
     ------
@@ -121,7 +121,7 @@ def phases_and_duration(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
 
 
 def _check_increasing(name: str, time: Numbers) -> None:
-    """Raise ValueError where times do not increase."""
+    """Check that times increase from row to row; ValueError if they do not."""
     steps = numpy.diff(time)
     if not (steps > 0).all():
         row = int((steps <= 0).argmax())
@@ -129,7 +129,7 @@ def _check_increasing(name: str, time: Numbers) -> None:
 
 
 def check_closed(name: str, values: Numbers, closure: float, unit: str, factor: float) -> None:
-    """Raise ValueError where a column ends with another value than it begins with.
+    """Check that a column ends with its first value, as a cycle does; ValueError if it does not.
 
     `closure` is the allowed difference as a share of the column's range; `factor` converts values to `unit` for the
     message.

@@ -49,7 +49,7 @@ _MARGIN = 0.3
 
 @dataclass(kw_only=True, eq=False)
 class WearIntegrator:
-    """Wear simulation in progress.
+    """Integrator of wear and creep: state of a run, advanced in blocks of cycles.
 
     Attributes
     ----------
@@ -88,6 +88,7 @@ class WearIntegrator:
     margin: float = _MARGIN
 
     def __post_init__(self) -> None:
+        """Set the state of an unworn bore."""
         self.depth = numpy.zeros(len(self.setup.foundation.areas))
         self.ball = numpy.zeros(0 if self.setup.ball_wear is None else len(self.setup.ball_areas))
         creep, count = self.setup.creep, len(self.depth)
@@ -103,7 +104,7 @@ class WearIntegrator:
         strain = self.strain.sum(axis=0)
         if not strain.any():
             return strain
-        return self.setup.foundation.smoothed(float(self.setup.joint.liner_thickness) * strain)
+        return self.setup.foundation.smooth(float(self.setup.joint.liner_thickness) * strain)
 
     @property
     def volume(self) -> float:
@@ -136,13 +137,13 @@ class WearIntegrator:
         return numpy.concatenate([self.depth[active.cells], self.ball[active.ball_cells], [self.work]])
 
     def _compute_rate(self, values: Numbers) -> Numbers:
-        """Compute the change of the state per cycle."""
+        """Compute the change of the state vector per cycle."""
         active, count = self._active, len(self._active.cells)
         depth = values[:count] + self._active_creep
         if active.counterface is not None:
             depth = depth + active.counterface.depth_on_socket(values[count:-1])
         equilibrium = active.foundation.solve_equilibrium(
-            self.setup.loads, depth, self.equilibrium, self.setup.lateral_stiffness
+            self.setup.frame.loads, depth, self.equilibrium, self.setup.frame.lateral_stiffness
         )
         self.equilibrium = equilibrium
         self.converged = self.converged and equilibrium.converged
@@ -150,7 +151,7 @@ class WearIntegrator:
         self._exposure = CycleExposure(
             pressure=equilibrium.pressure, sliding=active.sliding, contact_shares=contact_shares
         )
-        worn = active.foundation.smoothed(self.setup.wear.depth(self._exposure))
+        worn = active.foundation.smooth(self.setup.wear.depth(self._exposure))
         work = float(self._exposure.work @ active.foundation.areas)
         return numpy.concatenate([worn, self._ball_rate, [work]])
 
@@ -164,7 +165,7 @@ class WearIntegrator:
 
     @property
     def _max_decay_rate(self) -> float:
-        """Fastest decay of a wave of the worn depth per cycle: sensitivity of the laws times largest stiffness."""
+        """Largest decay rate per cycle of waves of the worn depth: wear sensitivity times largest stiffness."""
         sensitivity = max_wear_sensitivity(self.setup.wear, self._exposure)
         counterface = self._active.counterface
         if counterface is not None and self.setup.ball_wear is not None:
@@ -173,7 +174,10 @@ class WearIntegrator:
 
     @property
     def state(self) -> dict[str, Any]:
-        """State of the run before the next block: a resumed run equals an uninterrupted run bit by bit."""
+        """State of the run before the next block, as arrays by name for a checkpoint.
+
+        A resumed run equals an uninterrupted run bit by bit.
+        """
         numbers = {name: getattr(self, name) for name in _STATE}
         cells = {"cells": self._active.cells, "rate": self._rate}
         return {**numbers, **cells, **_equilibrium_arrays(self.equilibrium)}
@@ -196,7 +200,7 @@ class WearIntegrator:
         return self
 
     def _advance(self, count: float) -> None:
-        """Integrate a block, limited by its error and by a number of cycles."""
+        """Integrate one block of cycles, as long as its error and the final number of cycles allow."""
         decay_rate, remaining = self._max_decay_rate, count - self.cycles
         while True:
             length = _block_length(min(self.length, max_step_length(decay_rate), self._max_creep_step), remaining)
@@ -234,15 +238,18 @@ class WearIntegrator:
         return max(_CREEP_GROWTH * self.cycles, _FIRST_CREEP_BLOCK / self.setup.seconds)
 
     def _advance_creep(self, creep: CreepLaw, seconds: float) -> None:
-        """Creep under the mean pressure at the end of a block, which decreases by the creep itself: iterate both."""
+        """Advance the creep strains by a time in s, under the mean pressure at the end of a block.
+
+        Creep decreases this pressure: both are iterated.
+        """
         active, setup = self._active, self.setup
-        weights = setup.cycle.seconds[setup.loaded] / setup.cycle.duration
+        weights = setup.cycle.seconds[setup.frame.loaded] / setup.cycle.duration
         recovered, strain_per_pressure = creep.linear_response(self.strain[:, active.cells], seconds)
         thickness = float(setup.joint.liner_thickness)
         mean = weights @ self._exposure.pressure
         stiffness = active.foundation.max_stiffness * (weights @ (self._exposure.pressure > 0))
         for _ in range(_MAX_CREEP_SWEEPS):
-            self._active_creep = active.foundation.smoothed(thickness * (recovered + strain_per_pressure * mean))
+            self._active_creep = active.foundation.smooth(thickness * (recovered + strain_per_pressure * mean))
             self._compute_rate(self._state_vector)
             change = (weights @ self._exposure.pressure - mean) / (1 + stiffness * thickness * strain_per_pressure)
             mean = numpy.maximum(mean + change, 0.0)
@@ -250,7 +257,7 @@ class WearIntegrator:
                 break
         pressure = numpy.zeros(len(self.depth))
         pressure[active.cells] = mean
-        self.strain = creep.advanced(self.strain, pressure, seconds)
+        self.strain = creep.advance_strain(self.strain, pressure, seconds)
 
     def _block_error(self, block: ChebyshevStep, decay_rate: float) -> float:
         """Estimate the root mean square error of a block over the cells, relative to the allowed error."""
@@ -260,7 +267,7 @@ class WearIntegrator:
         return float(numpy.sqrt(error @ error / max(len(error), 1))) / allowed if allowed > 0 else 0.0
 
     def _contact_left_active_cells(self, block: ChebyshevStep) -> bool:
-        """Check if a block has brought the contact to inactive cells."""
+        """Check if the contact at the end of a block includes inactive cells."""
         depth = self.creep_depth
         depth += self.depth
         depth[self._active.cells] = block.values[: len(self._active.cells)] + self._active_creep
@@ -270,7 +277,7 @@ class WearIntegrator:
 
     @property
     def _contact_spreads(self) -> bool:
-        """True if the contact comes near to inactive cells."""
+        """True if the contact is close to inactive cells."""
         depth = self.depth + self.creep_depth
         mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)
         mask[self._active.cells] = False
@@ -295,7 +302,7 @@ _STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(
 
 
 def _equilibrium_arrays(equilibrium: CycleEquilibrium) -> dict[str, Any]:
-    """Return contacts as arrays of a stored state."""
+    """Convert contacts to arrays by name, for a stored state."""
     arrays = {
         "equilibrium_displacement": equilibrium.displacement,
         "equilibrium_pressure": equilibrium.pressure,

@@ -1,18 +1,23 @@
-"""Wear law: worn depth of each point of the socket from the pressures and slides of a cycle."""
+"""Base of wear laws: worn depth of each point from the pressures and slides of a cycle; units of wear coefficients."""
 
 from __future__ import annotations
 
+import re
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf
 from typing import Any, ClassVar, Protocol
 
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.checks import require, shown
+from ..core.kinds import Kind
+from ..files.units import convert, parse, parse_units, split_quantity
 from .kinematics import SurfaceSliding
-from .law_fields import Law, LawField
+from .law_fields import Law, LawField, LawUnit
 
 METRE = 1e-3
 """Wear factor per millimetre of sliding over wear factor per metre."""
@@ -26,10 +31,20 @@ _PRESSURE_STEP = 1e-6
 _PLAUSIBLE_FACTORS = 1e-9, 1e-4
 """Range of wear factors of materials in joints, in mm³/(N m)."""
 
+_WORK = re.compile(r"(?<!\()\bN[ *\u00b7]{0,3}(mm?)\b")
+"""Force times length in a denominator, which people write without brackets."""
+
+_WEAR_FACTOR = "mm^3/(N m)"
+_FACTOR_UNITS = (_WEAR_FACTOR, "m^3/(N m)")
+"""Accepted units of a wear factor: each is for metres of sliding."""
+
+_ENERGY_UNITS = (*_FACTOR_UNITS, "mm^3/J", "mm^3/kJ", "mm^3/MJ", "m^3/J")
+"""Accepted units of a wear volume per energy."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleExposure:
-    """Pressures and slides of all points of the socket during a cycle.
+    """Pressure and sliding of all points of a surface during a cycle, as a wear law needs.
 
     Attributes
     ----------
@@ -51,17 +66,44 @@ class CycleExposure:
 
     @cached_property
     def work(self) -> Numbers:
-        """∫ p v dt of each point, in N/mm: (points,)."""
+        """Integral ∫ p v dt of pressure times sliding speed at each point, in N/mm: (points,)."""
         return numpy.einsum("tp,tp->p", self.pressure, self.sliding.distances)
 
     @cached_property
     def cross_shear(self) -> Numbers:
-        """Cross-shear of each point: (points,)."""
+        """Cross-shear ratio at each point, from 0 to 1/2: (points,)."""
         return self.sliding.cross_shear(self.pressure)
 
 
+@dataclass(frozen=True, kw_only=True)
+class FirstCycleResult:
+    """Results of the first cycle, on an unworn bore.
+
+    Attributes
+    ----------
+    slide : float
+        Sliding distance of the ball past the line of the load, in mm.
+    work : float
+        ∫∫ p v dA dt in N m.
+    cross_shear : float
+        Mean cross-shear over the socket, weighted by p v.
+    volume, depth : float
+        Worn volume in mm³ and largest worn depth in mm of a million such cycles.
+    max_pressure, max_force : float
+        Largest pressure in MPa and largest force in N.
+    """
+
+    slide: float
+    work: float
+    cross_shear: float
+    volume: float
+    depth: float
+    max_pressure: float
+    max_force: float
+
+
 class AnyWearLaw(Protocol):
-    """Object that a simulation accepts as a wear law: a `WearLaw`, or any object with depth and notes."""
+    """Interface of a wear law for a simulation: a `WearLaw`, or any object with `depth` and `notes`."""
 
     def depth(self, cycle: CycleExposure) -> Numbers:
         """Compute the worn depth of each point in a cycle, in mm: (points,)."""
@@ -94,7 +136,7 @@ class WearLaw(Law):
         ValueError
             The law has no coefficient.
         """
-        changed: WearLaw = replace(self, **{_coefficient_field(self).name: value})  # type: ignore[type-var]
+        changed: WearLaw = replace(self, **{_require_coefficient_field(self).name: value})  # type: ignore[type-var]
         return changed
 
 
@@ -104,7 +146,8 @@ def coefficient_field(law: Any) -> LawField | None:
     return next((part for part in parts if part.key == COEFFICIENT), None)
 
 
-def _coefficient_field(law: Any) -> LawField:
+def _require_coefficient_field(law: Any) -> LawField:
+    """Return the field of the wear coefficient of a law; ValueError for a law without one."""
     part = coefficient_field(law)
     if part is None:
         raise ValueError("coefficient cannot be sampled: the wear law has no coefficient")
@@ -119,13 +162,13 @@ def with_coefficient(law: AnyWearLaw, value: float) -> AnyWearLaw:
     ValueError
         The law has no coefficient.
     """
-    _coefficient_field(law)
+    _require_coefficient_field(law)
     changed: AnyWearLaw = law.with_coefficient(value)  # type: ignore[attr-defined]  # it has fields: a `WearLaw`
     return changed
 
 
 def plausibility_notes(*factors: float) -> tuple[str, ...]:
-    """Note the first wear factor outside the range of materials in joints (mm³/(N m))."""
+    """Return a note on the first wear factor (mm³/(N m)) outside the range of joint materials, else nothing."""
     low, high = _PLAUSIBLE_FACTORS
     unusual = next((factor for factor in factors if factor > 0 and not low <= factor <= high), None)
     if unusual is None:
@@ -137,7 +180,7 @@ def plausibility_notes(*factors: float) -> tuple[str, ...]:
 
 
 def max_wear_sensitivity(law: AnyWearLaw, cycle: CycleExposure) -> float:
-    """Compute the largest increase of the depth of a cycle by the pressure, in mm/MPa."""
+    """Compute the largest derivative of the worn depth per cycle with respect to the pressure, in mm/MPa."""
     step = _PRESSURE_STEP * float(cycle.pressure.max(initial=0.0))
     if not step > 0:
         return 0.0
@@ -147,3 +190,103 @@ def max_wear_sensitivity(law: AnyWearLaw, cycle: CycleExposure) -> float:
         contact_shares=lambda: cycle.contact,
     )
     return float((law.depth(raised) - law.depth(cycle)).max() / step)
+
+
+def wear_factor(name: str, value: Any) -> float:
+    """Read a wear factor k in mm³/(N m): a number, or text such as "1.066e-6 mm^3/(N m)".
+
+    Raises
+    ------
+    ValueError
+        Text without a number, a unit of another dimension, or a unit for another length of sliding than the metre.
+        The message states the factor between both lengths.
+
+    Examples
+    --------
+    >>> wear_factor("coefficient", "1.066e-6 mm³/(N·m)")
+    1.066e-06
+    >>> wear_factor("coefficient", "1.066e-9 mm^3/(N mm)")
+    Traceback (most recent call last):
+    ValueError: coefficient = '1.066e-9 mm^3/(N mm)' is for mm of sliding: 1 mm^3/(N mm) is 1000 mm^3/(N m), \
+so that this is 1.066e-06 mm^3/(N m); write it so
+    """
+    number, unit = _split_unit(name, value, _WEAR_FACTOR)
+    if unit:
+        number *= _factor_in_metres(name, value, number, unit, _FACTOR_UNITS)
+    require(name, number, 0 <= number < inf, f"a wear coefficient is at least 0 {_WEAR_FACTOR}, and finite")
+    return number
+
+
+def wear_per_energy(name: str, value: Any) -> float:
+    """Read a wear volume per friction energy in mm³/J: a number, or text such as "1e-5 mm^3/J".
+
+    Raises
+    ------
+    ValueError
+        As `wear_factor`.
+    """
+    number, unit = _split_unit(name, value, "mm^3/J")
+    if unit:
+        number *= _factor_in_metres(name, value, number, unit, _ENERGY_UNITS)
+    require(name, number, 0 <= number < inf, "a wear coefficient is at least 0 mm^3/J, and finite")
+    return number
+
+
+def wear_per_slide(name: str, value: Any) -> float:
+    """Read a wear depth per length of sliding in mm/mm: a number, or text such as "1e-6 mm/m".
+
+    Raises
+    ------
+    ValueError
+        Text without a number, or a unit of another dimension.
+    """
+    number, unit = _split_unit(name, value, "mm/m")
+    if unit:
+        number *= _unit_factor(name, value, unit, "", "mm/mm, a depth over a length of sliding")
+    require(name, number, 0 <= number < inf, "a wear coefficient is at least 0, and finite")
+    return number
+
+
+def _split_unit(name: str, value: Any, example: str) -> tuple[float, str]:
+    """Split a coefficient into its number and the text of its unit."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return parse(name, value, Kind.NUMBER), ""
+    try:
+        number, unit = split_quantity(value if isinstance(value, str) else "")
+        unit = _WORK.sub(r"(N*\1)", unit)
+        parse_units(unit)
+    except ValueError as error:
+        raise ValueError(f"{name} = {shown(value)} is not a coefficient, such as '1e-6 {example}'") from error
+    return number, unit
+
+
+def _factor_in_metres(name: str, value: Any, number: float, unit: str, allowed: tuple[str, ...]) -> float:
+    """Compute the factor from a unit to mm³/(N m); ValueError for units with other lengths of sliding."""
+    meaning = f"{_WEAR_FACTOR}, a volume over a force and a length of sliding"
+    factor = _unit_factor(name, value, unit, _WEAR_FACTOR, meaning)
+    if parse_units(unit) not in [parse_units(accepted) for accepted in allowed]:
+        written = unit.replace("**", "^").replace("N*m", "N m")
+        length = "for mm of sliding" if abs(factor / 1000 - 1) < 1e-9 else "for another length of sliding"
+        raise ValueError(
+            f"{name} = {shown(value)} is {length}: 1 {written} is {factor:.6g} {_WEAR_FACTOR}, "
+            f"so that this is {number * factor:.6g} {_WEAR_FACTOR}; write it so"
+        )
+    return factor
+
+
+def _unit_factor(name: str, value: Any, unit: str, target: str, meaning: str) -> float:
+    """Compute the factor from a unit to a target unit; ValueError for a unit of another dimension."""
+    try:
+        return convert(1.0, parse_units(unit), parse_units(target))
+    except ValueError as error:
+        raise ValueError(f"{name} = {shown(value)} has the wrong unit; expected {meaning}") from error
+
+
+WEAR_FACTOR = LawUnit(text="mm³/(N m)", typed=_WEAR_FACTOR, suffix="mm3_per_Nm", read=wear_factor)
+"""Unit of a worn volume over force and length of sliding."""
+
+WEAR_PER_ENERGY = LawUnit(text="mm³/J", typed="mm^3/J", suffix="mm3_per_J", read=wear_per_energy)
+"""Unit of a worn volume over friction energy."""
+
+WEAR_PER_SLIDE = LawUnit(text="mm/mm", typed="mm/mm", suffix="mm_per_mm", read=wear_per_slide)
+"""Unit of a worn depth over a length of sliding."""

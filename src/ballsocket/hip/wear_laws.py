@@ -11,23 +11,22 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import NamedItems, require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
-from .law_fields import (
-    NUMBER,
-    PRESSURE,
+from .law_fields import NUMBER, PRESSURE, Law, law_field, read_law, select_law
+from .wear_law import (
+    COEFFICIENT,
+    METRE,
     WEAR_FACTOR,
     WEAR_PER_ENERGY,
     WEAR_PER_SLIDE,
-    Law,
-    law_field,
-    read_law,
-    select_law,
+    CycleExposure,
+    WearLaw,
+    plausibility_notes,
 )
-from .wear_law import COEFFICIENT, METRE, CycleExposure, WearLaw, plausibility_notes
 
 
 @dataclass(frozen=True, kw_only=True)
 class Archard(WearLaw):
-    """Archard's law dh = k p v dt, with the speed of sliding v.
+    """Archard's wear law dh = k p v dt, with pressure p and sliding speed v.
 
     Parameters
     ----------
@@ -49,7 +48,7 @@ class Archard(WearLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class FrictionEnergyWear(WearLaw):
-    """Wear by the work of friction, dh = e μ p v dt.
+    """Wear law by the work of friction, dh = e μ p v dt.
 
     Parameters
     ----------
@@ -74,7 +73,7 @@ class FrictionEnergyWear(WearLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class ContactAreaWear(WearLaw):
-    """Wear by sliding in contact, dh = C v dt, independent of the pressure.
+    """Wear law by sliding in contact, dh = C v dt, independent of the pressure.
 
     A cell at the edge of the contact wears in proportion to its contact share.
 
@@ -94,7 +93,7 @@ class ContactAreaWear(WearLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class CrossShear(WearLaw):
-    """Wear dh = k p v dt with a wear factor k that increases with cross-shear, and may depend on the pressure.
+    """Wear law dh = k p v dt with a wear factor k that increases with cross-shear, and may depend on pressure.
 
     k = [straight + 2 CS (circular - straight)] (p/reference)^exponent. CS is the cross-shear, and p the mean pressure
     of a point while it slides in contact.
@@ -137,7 +136,7 @@ class CrossShear(WearLaw):
 
 @dataclass(frozen=True, kw_only=True)
 class CustomWearLaw(Law):
-    """Wear law by a function, for Python only.
+    """Wear law defined by a Python function; files do not have it.
 
     Parameters
     ----------
@@ -166,6 +165,7 @@ class CustomWearLaw(Law):
     of = RenamedAttribute("function")
 
     def depth(self, cycle: CycleExposure) -> Numbers:
+        """Compute the worn depth of each point in a cycle by the function, in mm: (points,)."""
         depth, shape = numpy.asarray(self.function(cycle), dtype=float), cycle.pressure.shape[1:]
         if depth.shape != shape:
             raise ValueError(f"a CustomWearLaw returned depths of shape {depth.shape}; the points need {shape}")

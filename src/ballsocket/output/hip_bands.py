@@ -102,7 +102,7 @@ def share_figure(bands: Bands) -> Figure:
 
 
 def _told(bands: Bands) -> str:
-    share, patients = f"{100 * bands.level:g} %", bands.patients - bands.n_failed
+    share, patients = f"{100 * bands.level:g} %", bands.n_patients - bands.n_failed
     if bands.shared is None:
         among = "" if bands.subject == "patients" else "predictions from "
         return f"{share} of {among}{patients} patients"
@@ -137,9 +137,11 @@ def _contact(bands: Bands) -> str:
     """Describe validity and utilisation of the contacts from the first cycle to the last report."""
     rest = (1 - bands.level) / 2
     low, high = (bands.utilisation_quantile(share)[-1] for share in (rest, 1 - rest))
-    reasons = [check.utilisation_note for check in bands.variability.quick.unworn_checks] or ["nothing is pressed"]
+    reasons = [check.utilisation_note for check in bands.variability.coarse_simulation.unworn_checks] or [
+        "nothing is pressed"
+    ]
     peak = reasons[0] if isnan(low) else f"utilisation σv/σy {low:.3g} to {high:.3g}"
-    model = bands.variability.quick.contact_model.name
+    model = bands.variability.coarse_simulation.contact_model.name
     return f"contact ({model}): valid in {100 * bands.valid_fraction(-1):.3g} % of the {bands.subject}; {peak}"
 
 

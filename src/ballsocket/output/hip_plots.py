@@ -12,7 +12,6 @@ from ..hip.ball_wear import ball_directions
 from ..hip.bands import Bands
 from ..hip.history import History, Report
 from ..hip.kinematics import tracks
-from ..hip.mix import Mix
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -126,7 +125,7 @@ def track_map(history: History) -> Figure:
     use = history.use
     figure, axes = _figure((5.2, 4.8))
     frame = numpy.array(use.placed.frame)
-    turned = numpy.einsum("ij,njk,lk->nil", frame, use.moved.rotations, frame)
+    turned = numpy.einsum("ij,njk,lk->nil", frame, use.side_cycle.rotations, frame)
     for track in tracks(turned, _points(use.reach), float(use.joint.ball_radius)):
         axes.plot(track[:, 0], track[:, 1], color=_INK, linewidth=0.8)
     rim = numpy.linspace(0.0, 2 * pi, 200)
@@ -189,19 +188,19 @@ def _course(use: HipSetup, values: Numbers) -> tuple[Numbers, Numbers]:
 
 def _ends(use: HipSetup) -> list[int]:
     """Instants after which a cycle, or an activity of a mix, ends."""
-    parts = [each.cycle for each in use.cycle.activities] if isinstance(use.cycle, Mix) else [use.cycle]
-    return list(accumulate(part.n_steps for part in parts))
+    return list(accumulate(cycle.n_steps for cycle in use.cycle.activity_cycles))
 
 
 def _over_the_cycle(axes: Any, use: HipSetup) -> None:
     """The horizontal axis and a legend; where it is a mix, its activities side by side with their names."""
     axes.legend(frameon=False, loc="upper center", ncol=2)
     axes.set_xlim(0, 100)
-    if not isinstance(use.cycle, Mix):
+    cycles = use.cycle.activity_cycles
+    if use.cycle.per_year is None:
         axes.set_xlabel("% of the cycle")
         return
     ends = 100 * numpy.array([0, *_ends(use)]) / use.cycle.n_steps
-    axes.set_xticks((ends[1:] + ends[:-1]) / 2, [each.cycle.name for each in use.cycle.activities])
+    axes.set_xticks((ends[1:] + ends[:-1]) / 2, [cycle.name for cycle in cycles])
     axes.set_xlabel("each activity from its beginning to its end")
     for end in ends[1:-1]:
         axes.axvline(end, color="0.6", linewidth=0.8)

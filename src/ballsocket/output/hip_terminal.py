@@ -5,7 +5,6 @@ from __future__ import annotations
 from rich.table import Table
 
 from ..hip.history import History
-from ..hip.mix import Mix
 from .hip_contact import HEADS, contact_line, contact_rows
 from .terminal import console, print_folded
 
@@ -59,8 +58,8 @@ def _contacts(history: History) -> Table:
 
 
 def _table(history: History) -> Table:
-    table, mix = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0)), history.use.cycle
-    years = mix.per_year if isinstance(mix, Mix) else None
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    years = history.use.cycle.per_year
     heads = _HEADS if years is None else {"time": "years", **_HEADS}
     for head in heads:
         table.add_column(head, justify="right", no_wrap=True)
