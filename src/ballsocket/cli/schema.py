@@ -12,7 +12,7 @@ from ..core.checks import known_name
 from ..evidence.question import QuestionTable
 from ..files.joint_file import JointFileTable
 from ..files.schema import Table, json_schema
-from ..hip.config import HipTable
+from ..hip.schema import HipTable
 from ..identify.file import IdentifyTable
 from ..studies.file import StudyTable
 from .root import app

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import degrees, hypot, inf, pi
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
 from ..contact.assembly import select_and_check_load
-from ..core.checks import check_text, known_name, nearest, require, shown
+from ..core.checks import check_text, known_name, require, shown
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup, Interface, Side
@@ -301,36 +301,3 @@ def named_material(name: str, chosen: Any) -> Material:
     if isinstance(chosen, str) and "," in chosen:
         raise ValueError(f"{name} material {shown(chosen)} are several, and one is needed: optimise and studies choose")
     return materials[known_name(f"{name} material", check_text(f"{name}.material", chosen), materials)]
-
-
-KEYS = {
-    name: kind.__struct_fields__
-    for name, kind in (
-        ("", JointFileTable),
-        ("joint", LengthsTable),
-        ("liner", MaterialTable),
-        ("ball", MaterialTable),
-        ("cup", CupTable),
-        ("load", LoadTable),
-        ("backing", LayerTable),
-    )
-}
-
-
-_HEADS = {"backing": "[[backing]]"}
-
-
-def check_keys(part: Mapping[str, Any], name: str, where: str, tables: Mapping[str, Sequence[str]]) -> None:
-    """Raise ValueError for a key that the table of that name does not know, with the tables that do."""
-    for key in part:
-        if key not in tables[name]:
-            raise ValueError(f"{shown(key)} {where} is not known{_place(key, name, tables)}")
-
-
-def _place(key: str, name: str, tables: Mapping[str, Sequence[str]]) -> str:
-    """A hint: the tables that know a key, or that it is one, or the nearest key of its own."""
-    if others := [_HEADS.get(other, f"[{other}]") for other, known in tables.items() if other and key in known]:
-        return f"; it belongs in {' or '.join(others)}"
-    if key and key in tables:
-        return f"; it is a table of its own, {_HEADS.get(key, f'[{key}]')}"
-    return nearest(key, tables[name])

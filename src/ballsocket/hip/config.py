@@ -1,4 +1,4 @@
-"""Hip files: wear simulations in TOML with units. Unknown keys are rejected, as in joint files."""
+"""Hip files: wear simulations in TOML with units."""
 
 from __future__ import annotations
 
@@ -9,13 +9,16 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+import msgspec
+
 from ..catalogue import catalogue
 from ..core.checks import known_name, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
-from ..files.joint_file import KEYS, JointFile, check_keys, read_cup
-from ..files.named_joint import PARTS, joint_in
+from ..files.joint_file import CupTable, JointFile, cup_of
+from ..files.named_joint import joint_in
+from ..files.schema import quantities_of, read_table
 from ..files.toml import read_toml, table_of
 from ..files.units import parse
 from ..models.foundation import RadialFoundation
@@ -23,33 +26,14 @@ from ..problem.cup import Cup
 from ..studies.distributions import check_nominal
 from ..studies.scatter import Read, distribution_of
 from .creep_law import CreepLaw
-from .creep_laws import CREEP_LAWS, read_creep_law
-from .cycle_file import KEYS as CYCLE_KEYS
+from .creep_laws import read_creep_law
 from .cycle_file import parse_cycle
 from .film import Lubricant
-from .law_fields import law_keys
+from .schema import FilmTable, HipCupTable, HipTable
 from .simulation import HipSimulation, check_cycles
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
 from .wear_law import coefficient_field, wear_factor
-from .wear_laws import BALL_COEFFICIENT, WEAR_LAWS, read_ball_law, read_wear_law
-
-UNCERTAINTY_KEYS = ("count", "seed", *SAMPLED_QUANTITIES)
-"""Keys of the table."""
-
-_TABLES: Mapping[str, tuple[str, ...]] = {
-    "": (
-        *("name", "source", *PARTS, "cycle", "activity", "wear", "creep", "film", "uncertainty"),
-        *("body_weight", "cycles_per_year", "cycles", "report_at", "years", "report_years"),
-    ),
-    "cup": (*KEYS["cup"], "tilt"),
-    "cycle": CYCLE_KEYS,
-    "creep": ("law", *law_keys(CREEP_LAWS), "confinement", "seconds_per_cycle"),
-    "film": ("viscosity", "ball_roughness", "cup_roughness", "friction"),
-    "wear": ("law", *law_keys(WEAR_LAWS), BALL_COEFFICIENT, "contact", "model", "ring_width"),
-    "uncertainty": UNCERTAINTY_KEYS,
-}
-FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
-"""Keys of a hip file by table; an empty name stands for the top."""
+from .wear_laws import read_ball_law, read_wear_law
 
 _DEFAULT_CYCLES = 5e6
 _DEFAULT_N_REPORTS = 10
@@ -110,12 +94,9 @@ def read_hip(path: str | Path) -> HipFile:
 
 def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     """Build a `HipFile` from the content of a hip file; paths in the file are relative to a folder."""
-    check_keys(content, "", "at the top", FILE_KEYS)
-    for name in ("cup", "cycle", "wear", "creep", "film", "uncertainty"):
-        check_keys(table_of(content, name), name, f"in [{name}]", FILE_KEYS)
-    joint_file = _parse_joint(content, folder)
+    tables = read_table(content, HipTable)
+    joint_file = _parse_joint(tables, folder)
     cycle, wear = parse_cycle(content, folder), table_of(content, "wear")
-    width = {name: parse(name, wear[name], Kind.ANGLE) for name in ("ring_width",) if name in wear}
     use = HipSimulation(
         joint=joint_file.joint,
         cup=joint_file.cup,
@@ -124,19 +105,16 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         ball_wear=read_ball_law(wear),
         surface=parse_surface(wear),
         creep=parse_creep(content, float(joint_file.joint.liner.poisson)),
-        seconds_per_cycle=_parse_seconds(table_of(content, "creep")),
-        **width,
+        seconds_per_cycle=_seconds_per_cycle(tables),
+        **({} if tables.wear is None else quantities_of(tables.wear, "ring_width")),
     )
-    if cycle.per_year is not None and "years" in content:
-        cycles, report_at = _parse_years(content, cycle.per_year)
-    else:
-        cycles, report_at = _parse_cycles(content)
+    cycles, report_at = _length(tables, cycle.per_year)
     check_cycles(cycles, report_at)
     return HipFile(
         use=use,
         cycles=cycles,
         report_at=report_at,
-        lubricant=_parse_lubricant(table_of(content, "film")),
+        lubricant=Lubricant(**quantities_of(tables.film or FilmTable())),
         uncertain=read_uncertainty(content, use) if "uncertainty" in content else None,
     )
 
@@ -146,23 +124,10 @@ def parse_creep(content: Mapping[str, Any], poisson: float) -> CreepLaw | None:
     return read_creep_law(table_of(content, "creep"), poisson) if "creep" in content else None
 
 
-def _parse_seconds(table: Mapping[str, Any]) -> float | None:
-    """Read `seconds_per_cycle` in s from the table [creep]; None without the key."""
-    value = table.get("seconds_per_cycle")
-    return None if value is None else parse("seconds_per_cycle", value, Kind.NUMBER)
-
-
-_LUBRICANT_KINDS = {
-    **dict.fromkeys(("viscosity", "friction"), Kind.NUMBER),
-    **dict.fromkeys(("ball_roughness", "cup_roughness"), Kind.LENGTH),
-}
-
-
-def _parse_lubricant(table: Mapping[str, Any]) -> Lubricant:
-    """Read the lubricant of the table [film]."""
-    return Lubricant(
-        **{name: parse(name, table[name], kind) for name, kind in _LUBRICANT_KINDS.items() if name in table}
-    )
+def _seconds_per_cycle(tables: HipTable) -> float | None:
+    """Return the time in s that a cycle stands for in the creep of the liner; None without the key."""
+    creep: Any = tables.creep
+    return None if creep is None or creep.seconds_per_cycle is None else float(creep.seconds_per_cycle)
 
 
 _ELASTIC_SURFACES: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType(
@@ -185,64 +150,46 @@ def parse_surface(table: Mapping[str, Any]) -> Springs | ClosedShell | RealCup:
     return Springs(modulus=model.modulus)
 
 
-def _parse_cycles(content: Mapping[str, Any]) -> tuple[float, tuple[float, ...]]:
-    """Read the number of cycles and the cycle counts of the reports."""
-    for name in ("years", "report_years"):
-        if name in content:
-            raise ValueError(f"{name} needs activities with counts a year, and years: [[activity]]")
-    cycles = _parse_count("cycles", content.get("cycles", _DEFAULT_CYCLES))
-    return cycles, _parse_report_points(content, "report_at", cycles)
-
-
-def _parse_years(content: Mapping[str, Any], per_year: float) -> tuple[float, tuple[float, ...]]:
-    """Read the years of a run and of its reports, and convert both to numbers of cycles."""
+def _length(tables: HipTable, per_year: float | None) -> tuple[float, tuple[float, ...]]:
+    """Return the number of cycles of a run and of its reports, which a file may state in years."""
+    if per_year is None or tables.years is None:
+        for name in ("years", "report_years"):
+            if getattr(tables, name) is not None:
+                raise ValueError(f"{name} needs activities with counts a year, and years: [[activity]]")
+        cycles = float(_DEFAULT_CYCLES if tables.cycles is None else tables.cycles)
+        return cycles, _report_points(tables.report_at, cycles)
     for name in ("cycles", "report_at"):
-        if name in content:
+        if getattr(tables, name) is not None:
             raise ValueError(f"{name} and years exclude each other: both set the length of the run; remove one")
-    years = _parse_count("years", content["years"])
-    reports = _parse_report_points(content, "report_years", years)
-    return years * per_year, tuple(year * per_year for year in reports)
+    years = float(tables.years)
+    return years * per_year, tuple(year * per_year for year in _report_points(tables.report_years, years))
 
 
-def _parse_report_points(content: Mapping[str, Any], name: str, end: float) -> tuple[float, ...]:
-    """Read the cycle counts or years of the reports; ten equal steps by default."""
+def _report_points(points: list[float] | None, end: float) -> tuple[float, ...]:
+    """Return the points of the reports; ten equal steps by default."""
     steps = range(1, _DEFAULT_N_REPORTS + 1)
-    points = content.get(name, [step * end / _DEFAULT_N_REPORTS for step in steps])
-    if not isinstance(points, list):
-        raise ValueError(f"{name} = {shown(points)} must be a list of numbers of {_UNITS[name]}")
-    return tuple(_parse_count(name, point) for point in points)
+    return tuple(map(float, points if points is not None else (step * end / _DEFAULT_N_REPORTS for step in steps)))
 
 
-_UNITS = {"cycles": "cycles", "report_at": "cycles", "years": "years", "report_years": "years"}
-_EXAMPLES = {"cycles": "5e6", "report_at": "5e6", "years": "20", "report_years": "20"}
-
-
-def _parse_count(name: str, value: Any) -> float:
-    """Read a number of cycles or years."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise ValueError(f"{name} = {shown(value)} must be a number of {_UNITS[name]}, such as {_EXAMPLES[name]}")
-    return float(value)
-
-
-def _parse_joint(content: Mapping[str, Any], folder: Path) -> JointFile:
-    """Read the joint and the cup of a hip file.
+def _parse_joint(tables: HipTable, folder: Path) -> JointFile:
+    """Create the joint and the cup of a hip file.
 
     The cup may have a tilt instead of an orientation, also next to the name of a joint.
     """
-    cup_table = dict(table_of(content, "cup"))
-    tilt = cup_table.pop("tilt", None)
-    file = joint_in({name: table for name, table in content.items() if name != "cup"}, folder)
-    if cup_table:
-        file = replace(file, cup=read_cup(cup_table))
-    return file if tilt is None else replace(file, cup=_tilt_cup(file.cup, tilt, cup_table))
+    cup = tables.cup or HipCupTable()
+    file = joint_in(msgspec.structs.replace(tables, cup=None), folder)
+    if any(getattr(cup, key) is not None for key in CupTable.__struct_fields__):
+        file = replace(file, cup=cup_of(cup))
+    return file if cup.tilt is None else replace(file, cup=_tilt_cup(file.cup, cup))
 
 
-def _tilt_cup(cup: Cup, tilt: Any, cup_table: Mapping[str, Any]) -> Cup:
+def _tilt_cup(cup: Cup, table: HipCupTable) -> Cup:
     """Return the cup tilted from the load by the angle that a hip file states."""
     for name in ("inclination", "anteversion"):
-        if name in cup_table:
+        if getattr(table, name) is not None:
             raise ValueError(f"tilt and {name} exclude each other: both set the orientation of the cup; remove one")
-    angle = parse("tilt", tilt, Kind.ANGLE)
+    assert table.tilt is not None
+    angle = float(table.tilt)
     require("tilt", degrees(angle), 0 <= angle <= pi / 2, "a cup's tilt from the load is 0 to 90 degrees")
     return cup.tilted(angle)
 
