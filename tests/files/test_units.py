@@ -4,8 +4,8 @@ import time
 
 import pytest
 
-from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.files.units import LONGEST, convert, parse, parse_units
+from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
 
 ENDLESS = [
     "1e-6 9^9^9^9",

@@ -328,8 +328,13 @@ def _unknown_or_missing_key(place: _Place, struct: inspect.StructType, root: _Pl
 
 
 def _bracketed(table: str) -> str:
-    """Return the name of a table as its head in the file, except for one of an array of tables."""
+    """Return the name of a table in brackets; an element of an array of tables has its number in place of them."""
     return table if "[" in table else f"[{table}]"
+
+
+def _head(table: str) -> str:
+    """Return the head of a table in a file."""
+    return f"[[{table.partition('[')[0]}]]" if "[" in table else f"[{table}]"
 
 
 def _described(field: inspect.Field) -> str:
@@ -392,7 +397,7 @@ def _choices_in(kind: inspect.Type) -> str:
 
 _EXPECTED: Sequence[tuple[type[inspect.Type], Callable[[_Place, Any], str]]] = (
     (inspect.ListType, _array_of),
-    (inspect.StructType, lambda place, kind: f"a table: {_bracketed(place.key)}"),
+    (inspect.StructType, lambda place, kind: f"a table: {_head(place.key)}"),
     (inspect.BoolType, lambda place, kind: "true or false"),
     (inspect.StrType, lambda place, kind: "text"),
 )

@@ -140,8 +140,14 @@ class FreeMaterials(Table, kw_only=True):
 FreeTable = table_of_quantities("FreeTable", FREE_NUMBERS, PriorValue, (FreeMaterials,))
 """Unknowns with their priors."""
 
+class MachineKeys(Table, kw_only=True):
+    """Machine."""
+
+    qualified: ClassVar[bool] = True
+
+
 MachineTable = table_of_quantities(
-    "MachineTable", {name: error.quantity for name, error in MACHINE_ERRORS.items()}, ErrorSize
+    "MachineTable", {name: error.quantity for name, error in MACHINE_ERRORS.items()}, ErrorSize, (MachineKeys,)
 )
 """Errors of a machine."""
 
