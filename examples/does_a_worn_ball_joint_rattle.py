@@ -52,7 +52,8 @@ for spring, colour in SPRINGS.items():
     blows.plot(spring, largest(motion), "o", color=colour)
     print(
         f"spring {spring:3g} N: {motion.bounces:2d} times apart, up to {largest(motion):5.0f} N, "
-        f"{motion.work[-1]:5.1f} N mm put in, {motion.lost[-1]:5.1f} of them lost, balanced to {motion.drift:.0e}"
+        f"{motion.work[-1]:5.1f} N mm put in, {motion.dissipated_energy[-1]:5.1f} of them lost, "
+        f"balanced to {motion.drift:.0e}"
     )
 for clearance in CLEARANCES:
     force = largest(shaken(clearance, 0.0))

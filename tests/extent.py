@@ -1,4 +1,4 @@
-"""How much of the suite runs: everything with `pytest --long`; without it a few spread cases of each kind."""
+"""Extent of the suite: everything with `pytest --long`; without it a few spread cases of each kind."""
 
 from collections.abc import Iterable
 from typing import TypeVar

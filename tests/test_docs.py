@@ -1,4 +1,4 @@
-"""The pages of the docs say what the package does: their Python and their commands run, with the output they show."""
+"""Pages of the docs: their Python examples and commands run with the output shown."""
 
 import doctest
 import re
@@ -36,7 +36,7 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("path", pages("python", ">>>"), ids=lambda path: path.stem)
-def test_the_python_of_a_page_gives_what_it_shows(path, folder):
+def test_python_examples_of_a_page_have_the_output_shown(path, folder):
     text = path.read_text("utf-8")
     for library in ("jax", "torch"):
         if f"import {library}" in text and find_spec(library) is None:
@@ -50,7 +50,7 @@ def test_the_python_of_a_page_gives_what_it_shows(path, folder):
 
 
 @pytest.mark.parametrize("path", pages("console", "$ "), ids=lambda path: path.stem)
-def test_the_commands_of_a_page_print_what_it_shows(path, folder):
+def test_commands_of_a_page_print_the_output_shown(path, folder):
     for block in fenced(path.read_text("utf-8"), "console"):
         command, _, shown = block.partition("\n")
         program, *words = shlex.split(command.removeprefix("$ "))
@@ -65,14 +65,14 @@ def timeless(lines):
     return [re.sub(r"\b\d+\.\d\d s\b", "0.00 s", line) for line in lines]
 
 
-def test_python_on_a_page_is_tested():
+def test_python_blocks_of_a_page_are_examples_with_output():
     for path in PAGES:
         for block in fenced(path.read_text("utf-8"), "python"):
             assert block.startswith(">>> "), f"{path.name}: {block[:60]!r} is not an example with its output"
 
 
-def test_models_that_trust_themselves_are_within_ten_percent_of_the_presets():
-    """As the page on choosing says."""
+def test_valid_models_are_within_ten_percent_on_the_presets():
+    """The page on choosing a model states this limit."""
     for joint in bs.joints.values():
         answers = bs.compare(joint, force=3000.0)
         exact = answers["exact"].max_pressure
@@ -87,8 +87,8 @@ def test_an_example_begins_with_a_title(path):
     assert len(line) == len(title)
 
 
-def test_the_short_paper_cites_what_the_package_cites():
-    """Its bibliography is of the same entries, and has what is cited and no more."""
+def test_references_of_the_short_paper_are_in_the_bibliography():
+    """The bibliography of the paper has the entries of the package, and exactly the cited ones."""
     paper, entries = (DOCS / "paper" / "paper.md").read_text("utf-8"), (DOCS / "paper" / "paper.bib").read_text("utf-8")
     cited = set(re.findall(r"@(\w+\d{4})", paper))
     assert cited == set(re.findall(r"^@\w+\{(\w+),", entries, flags=re.MULTILINE))
@@ -96,7 +96,7 @@ def test_the_short_paper_cites_what_the_package_cites():
         assert entry.strip() in bibliography().values()
 
 
-def test_a_figure_in_two_palettes(monkeypatch):
+def test_a_figure_has_a_light_and_a_dark_palette(monkeypatch):
     """Over white the light one is what was drawn; on a dark page ink turns white and colours stay."""
     pytest.importorskip("sphinx")
     monkeypatch.syspath_prepend(DOCS / "_ext")

@@ -65,7 +65,7 @@ def test_only_the_module_of_units_calls_pint():
 
 
 def test_pint_evaluates_no_text():
-    """Its parsers of expressions are called nowhere; `Unit` and `Quantity` of text would call them too."""
+    """No parser of expressions is called; `Unit` and `Quantity` of text would call one."""
     calls = called(MODULES["io/units.py"])
     assert not calls & {"parse_expression", "parse_units_as_container"}
     assert {"UnitsContainer", "get_name"} <= calls
@@ -88,11 +88,11 @@ def test_files_that_users_name_are_opened_by_one_module():
         "evidence/signature.py",
     ],
 )
-def test_every_reader_uses_that_module(reader):
+def test_every_reader_uses_the_module_of_input_files(reader):
     assert "open_input" in called(MODULES[reader])
 
 
-def test_files_are_not_read_by_the_names_of_users_elsewhere():
+def test_other_modules_do_not_read_files_by_names_of_users():
     """Readers of other packages that take a path get one that was checked."""
     readers = {name for name, tree in MODULES.items() if called(tree) & {"ZipFile", "ParquetFile"}}
     assert readers == {

@@ -1,4 +1,4 @@
-"""The package as it is shipped: light to import, every example runs, its pages and its citations."""
+"""Package as users install it: light imports, running examples, README and citations."""
 
 import os
 import re
@@ -19,7 +19,7 @@ from .joints import HIP
 from .places import ROOT
 
 
-def test_import_brings_nothing_heavy():
+def test_import_loads_no_heavy_packages():
     heavy = "matplotlib pint typer rich scipy jax torch numba pandas xarray"
     code = f"import ballsocket, sys; print([name for name in {heavy.split()} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
@@ -27,13 +27,13 @@ def test_import_brings_nothing_heavy():
 
 
 @pytest.mark.parametrize("room", [bs, bs.studies], ids=lambda room: room.__name__)
-def test_everything_offered_is_there_once(room):
+def test_exported_names_exist_and_are_unique(room):
     assert len(set(room.__all__)) == len(room.__all__)
     assert set(room.__all__) <= set(dir(room))
     assert all(getattr(room, name) is not None for name in room.__all__)
 
 
-def test_questions_of_many_joints_are_one_word_away():
+def test_studies_exports_its_functions_and_suggests_similar_names():
     from ballsocket.output import study_plots
     from ballsocket.studies.pareto import pareto
 
@@ -43,7 +43,7 @@ def test_questions_of_many_joints_are_one_word_away():
         bs.studies.optimize  # noqa: B018
 
 
-def test_a_material_is_a_constant_and_a_name():
+def test_every_named_material_is_a_constant():
     for name, material in bs.materials.items():
         assert getattr(bs, name.replace("-", "_").upper()) is material
 
@@ -72,7 +72,7 @@ def test_examples_run(path, monkeypatch, tmp_path):
     runpy.run_path(str(path), run_name="__main__")
 
 
-def test_the_readme_shows_what_the_command_prints():
+def test_the_readme_shows_the_output_of_its_command():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     shown = re.search(r"^```text\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL).group(1)
     command = re.search(r"^pip install .* && ballsocket (press .*)$", text, flags=re.MULTILINE).group(1)
@@ -119,12 +119,12 @@ def test_a_comparison_cites_all_its_models():
 
 
 @pytest.mark.parametrize("thing", ["hertz", 3, None, [], bs.Hertz, bs.HessForsbach, bs.Joint])
-def test_what_cannot_be_cited_is_refused(thing):
+def test_objects_that_cannot_be_cited_are_refused(thing):
     with pytest.raises(TypeError, match="models, contacts, comparisons, materials and joints can be cited, not "):
         bs.cite(bs.Hertz(), thing)
 
 
-def test_a_source_that_names_no_publication_is_refused_alone_and_passed_over_inside():
+def test_a_source_without_a_publication_is_refused_alone_and_skipped_in_a_contact():
     own = bs.Material(young=1000.0, poisson=0.4, source="our lab")
     hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=own)
     for thing in (own, hip):
@@ -133,14 +133,14 @@ def test_a_source_that_names_no_publication_is_refused_alone_and_passed_over_ins
     assert keys(bs.Hertz().press(hip, force=1.0)) == ["hertz1882", "hess2021"]
 
 
-def test_every_publication_is_cited_by_something():
+def test_every_publication_is_cited():
     unused = set(bibliography()) - set(keys(*listed_models.values(), *CITABLE))
     unused -= {source.key for source in elsewhere.SOURCES}
     unused -= {source.key for used in (*relations.relations, Bristles, Motion, Viscoelastic) for source in used.sources}
     assert unused == set()
 
 
-def test_a_comparison_says_why():
+def test_a_comparison_states_reasons_of_invalid_models():
     answers = bs.compare(HIP, force=3000.0)
     reason = "hertz, steuermann: outside ε ≤ 7°: a half-space ignores that the surfaces curve"
     assert reason in repr(answers)
@@ -149,7 +149,7 @@ def test_a_comparison_says_why():
     assert repr(answers).split("\n")[-len(answers.notes()) :] == answers.notes()
 
 
-def test_one_list_of_columns():
+def test_all_summaries_have_one_list_of_columns():
     names = [*(column.name for column in COLUMNS), "utilisation", "utilisation_note"]
     assert list(bs.Hertz().press(HIP, force=1.0).summary())[1:-2] == names
     nothing = bs.compare(bs.joints["tilting-pad-pivot"], force=1.0, models={"bonded-layer": bs.BondedLayer()})

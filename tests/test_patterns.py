@@ -187,7 +187,7 @@ def test_every_module_with_patterns_is_measured_or_named():
 @pytest.mark.parametrize(
     ("name", "pattern", "method"), USES, ids=lambda entry: getattr(entry, "pattern", str(entry))[:30]
 )
-def test_the_time_of_a_pattern_grows_with_its_text(name, pattern, method):
+def test_matching_time_of_a_pattern_is_proportional_to_the_text(name, pattern, method):
     for attack in attacks(pattern):
         assert not grows_faster_than_its_text(pattern, method, attack), (name, pattern.pattern, attack(40))
 
@@ -200,6 +200,6 @@ def test_the_time_of_a_pattern_grows_with_its_text(name, pattern, method):
         (r"\s+$", "search"),
     ],
 )
-def test_a_pattern_whose_time_grows_faster_is_noticed(slow, method):
+def test_a_pattern_with_a_faster_growing_time_is_detected(slow, method):
     pattern = re.compile(slow)
     assert any(grows_faster_than_its_text(pattern, method, attack) for attack in attacks(pattern))

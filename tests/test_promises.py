@@ -1,13 +1,13 @@
-"""What is promised to stay is there: names, parameters, units, commands, options, keys of files and of JSON."""
+"""Promised names, parameters, units, commands, options, and keys of files and of JSON."""
 
 from .data.make_promised import missing, present, promised
 
 
-def test_what_is_promised_is_there():
+def test_all_promised_names_exist():
     assert missing(promised(), present()) == []
 
 
-def test_a_promise_that_is_broken_is_named():
+def test_broken_promises_are_named():
     now = present()
     now["units"]["force"] = "kN"
     now["commands"]["press"].remove("--json")

@@ -40,7 +40,7 @@ PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
         ),
     ],
 )
-def test_what_is_something_else_is_told_in_a_sentence(ask, message):
+def test_arguments_of_another_type_are_refused_in_one_sentence(ask, message):
     with pytest.raises(TypeError, match=message):
         ask()
 
@@ -54,12 +54,12 @@ def test_what_is_something_else_is_told_in_a_sentence(ask, message):
         (lambda: bs.compare(HIP, force=1.0)["herz"], "model 'herz' is not in this comparison; did you mean 'hertz'"),
     ],
 )
-def test_a_name_that_is_not_known_is_told_with_the_nearest(ask, message):
+def test_unknown_names_are_refused_with_the_closest_name(ask, message):
     with pytest.raises(KeyError, match=message):
         ask()
 
 
-def test_bibtex_of_what_was_used():
+def test_citations_are_those_of_the_cited_objects():
     text = bs.cite(bs.Bartel().press(HIP, force=1.0), bs.hess_forsbach, bs.PinInHole())
     for key in ("bartel1985", "hess2021", "persson1964", "ciavarella2001"):
         assert text.count("{" + key + ",") == 1
@@ -72,7 +72,7 @@ def test_every_source_is_in_the_bibliography():
     for model in (*bs.catalogue.values(), bs.PinInHole()):
         for source in model.sources:
             assert source.key in bibliography()
-            assert source.short
+            assert source.authors_and_year
             assert "\\" not in str(source)
     assert bs.HessForsbach().sources[0].doi == "10.3390/app112311170"
 
@@ -95,12 +95,12 @@ def test_every_source_is_in_the_bibliography():
         ),
     ],
 )
-def test_an_angle_that_can_only_be_degrees_is_told_in_radians(ask, message):
+def test_angles_that_can_only_be_degrees_get_a_hint_in_radians(ask, message):
     with pytest.raises(ValueError, match=message):
         ask()
 
 
-def test_angles_up_to_half_a_turn_are_taken():
+def test_angles_up_to_half_a_turn_are_accepted():
     angles = np.array([0.0, 1.0, np.pi, -1.0, np.nan])
     assert PRESSED.pressure(angles)[:3].tolist() == [PRESSED.pressure(0.0), 0.0, 0.0]
     assert PRESSED.pressure(np.float32(np.pi)) == 0.0
@@ -110,7 +110,7 @@ LEANING = re.compile(r"^(Of|The same|That of|Those of|As|Its|Their|Like) ")
 
 
 def test_the_first_line_of_a_docstring_names_its_noun():
-    """It is read in a list, beside a name, where nothing else says what it is about."""
+    """First lines are read in lists, beside a name and without their context."""
     leaning = []
     for path in sorted((ROOT / "src" / "ballsocket").rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):

@@ -39,14 +39,14 @@ def matrix(*values):
         (matrix(-1.0), "got a numpy.matrix: use numpy.asarray"),
     ],
 )
-def test_arrays_of_another_kind_are_refused(value, message):
+def test_data_frames_and_matrices_are_refused(value, message):
     with pytest.raises(TypeError, match=f"force must be a number or an array .* {message}"):
         bs.HessForsbach().press(HIP, force=value)
     with pytest.raises(TypeError, match=f"ball_radius must be a number or an array .* {message}"):
         bs.Joint(ball_radius=value, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
 
 
-def test_a_matrix_is_no_position():
+def test_a_matrix_as_a_position_is_refused():
     """A matrix as a position once ended the process inside NumPy."""
     with pytest.raises(TypeError, match="position must be a number or an array .* got a numpy.matrix"):
         ELEMENT(matrix(0.0, 0.0, 0.2))
@@ -62,13 +62,13 @@ def test_a_matrix_is_no_position():
         (None, 0.0, 0.0),
     ],
 )
-def test_three_components_are_real_numbers(position):
+def test_positions_have_three_real_components(position):
     with pytest.raises(ValueError, match="a state must have three components, x, y and z, all real numbers"):
         ELEMENT(position)
 
 
 @pytest.mark.parametrize("which", ["position", "velocity", "spin"])
-def test_no_imaginary_part_is_dropped(which):
+def test_complex_states_are_refused(which):
     words = {"position": numpy.array([0.0, 0.0, 0.2]), which: numpy.array([0.0, 0.0, 0.2 + 1j])}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -77,7 +77,7 @@ def test_no_imaginary_part_is_dropped(which):
 
 
 @pytest.mark.parametrize("engine", ["processes", 3, None, object(), Serial])
-def test_an_engine_of_another_kind_is_refused(engine):
+def test_an_engine_of_another_type_is_refused(engine):
     pytest.importorskip("xarray")
     with pytest.raises(TypeError, match=r"engine must be an Engine, such as Serial\(\)"):
         bs.study(bs.HessForsbach(), HIP, force=[1.0, 2.0], engine=engine)
@@ -86,13 +86,13 @@ def test_an_engine_of_another_kind_is_refused(engine):
 @pytest.mark.parametrize(
     ("name", "value"), [("cup", "steep"), ("cup", None), ("cycle", "iso-14242-1"), ("joint", "hip-28")]
 )
-def test_a_hip_of_other_parts_is_refused(name, value):
+def test_parts_of_a_hip_of_another_type_are_refused(name, value):
     words = {"joint": HIP, "cycle": iso_14242_1(), "wear": Archard(coefficient=1e-6), name: value}
     with pytest.raises(TypeError, match=f"{name} must be a {name.capitalize()}, got"):
         HipSimulation(**words)
 
 
-def test_a_scan_beyond_all_bounds_is_refused_by_its_points(tmp_path, capfd):
+def test_a_scan_with_huge_coordinates_is_refused(tmp_path, capfd):
     pytest.importorskip("meshio")
     rows = [f"v {i % 20}e200 {i // 20} 1" for i in range(400)]
     faces = [f"f {i + 1} {i + 2} {i + 3}" for i in range(300)]
@@ -105,7 +105,7 @@ def test_a_scan_beyond_all_bounds_is_refused_by_its_points(tmp_path, capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_an_archive_that_lost_members_is_damaged(tmp_path):
+def test_an_archive_without_all_of_its_members_is_damaged(tmp_path):
     """A damaged directory lists fewer members."""
     path = tmp_path / "kept.npz"
     write_arrays(path, rings=numpy.arange(12.0), count=3, identity="run")

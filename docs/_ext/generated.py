@@ -168,7 +168,7 @@ _ACCENTS = {r"{\ss}": "ß", r"{\"u}": "ü", r"{\"o}": "ö", r"{\'e}": "é", r"\&
 
 def _bibliography() -> str:
     entries = {key: _fields(text) for key, text in bibliography().items()}
-    ordered = sorted(entries, key=lambda key: (Source(key).short.casefold(), key))
+    ordered = sorted(entries, key=lambda key: (Source(key).authors_and_year.casefold(), key))
     return "\n\n".join(f"(ref-{key})=\n{_entry(entries[key])}" for key in ordered)
 
 

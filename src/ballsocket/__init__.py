@@ -16,7 +16,7 @@ from . import studies
 from .catalogue import catalogue
 from .compare import compare
 from .contact import Contact, Model
-from .core.deprecation import new_path, register_old_paths
+from .core.deprecation import present_module_path, register_old_paths
 from .core.sources import cite
 from .core.validity import OutsideDomainError, Range, Status
 from .dynamics.element import ForceElement
@@ -185,6 +185,6 @@ if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> ModuleType:
         """Import a moved module that version 1.0 offered as an attribute of the package."""
-        if new_path(f"{__name__}.{name}") is None:
+        if present_module_path(f"{__name__}.{name}") is None:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         return import_module(f"{__name__}.{name}")

@@ -1,4 +1,4 @@
-"""The same answer in every array library, in the caller's dtype, with derivatives."""
+"""Equal results in every array library, in the caller's dtype, with derivatives."""
 
 from dataclasses import replace
 
@@ -56,7 +56,7 @@ def central_differences(model):
 
 
 @EVERY
-def test_the_strict_standard_is_enough(model):
+def test_models_need_only_the_array_api_standard(model):
     expected = model.press(HIP, force=np.array(FORCES))
     contact = model.press(HIP, force=array_api_strict.asarray(FORCES))
     for name in NAMES:
@@ -76,7 +76,7 @@ def test_the_strict_standard_is_enough(model):
 
 
 @EVERY
-def test_single_precision_stays_single(model):
+def test_single_precision_is_preserved(model):
     contact = model.press(HIP, force=np.array(FORCES, dtype=np.float32))
     expected = model.press(HIP, force=np.array(FORCES))
     for name in NAMES:
@@ -85,21 +85,21 @@ def test_single_precision_stays_single(model):
     assert np.all(contact.status == bs.Status.OK) or model.name == "cosine-limit"
 
 
-def test_lists_and_integers_are_floats():
+def test_lists_and_integers_become_floats():
     contact = bs.HessForsbach().press(HIP, force=[1000, 3000])
     assert contact.max_pressure.dtype == np.float64
     assert bs.HessForsbach().press(HIP, force=3000).max_pressure == contact.max_pressure[1]
     assert isinstance(bs.HessForsbach().press(HIP, force=3000).max_pressure, float)
 
 
-def test_libraries_do_not_mix():
+def test_mixed_array_libraries_are_refused():
     joint = bs.Joint(ball_radius=np.array([16.0]), clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
     with pytest.raises(TypeError, match="all arrays must be of one library, got array_api_strict.Array, numpy.ndarray"):
         bs.Hertz().press(joint, force=array_api_strict.asarray([1.0]))
 
 
 @DIFFERENTIABLE
-def test_jax_gradient_and_jit(model):
+def test_jax_gradients_equal_differences_with_and_without_jit(model):
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
         numbers = [jax.numpy.asarray(value) for value in INPUTS]
@@ -123,7 +123,7 @@ def test_jax_arrays_stay_in_jax_and_bad_loads_become_a_status_under_jit():
     assert negative == bs.Status.NOT_REACHED
 
 
-def test_jax_trees():
+def test_joints_and_contacts_are_jax_trees():
     jax = pytest.importorskip("jax")
     import ballsocket.compiled.pytrees  # noqa: F401 - registers the words
 
@@ -184,7 +184,7 @@ def central_differences_of_clearance():
 
 
 @DIFFERENTIABLE
-def test_torch_gradient(model):
+def test_torch_gradients_equal_differences(model):
     torch = pytest.importorskip("torch")
     numbers = [torch.tensor(value, dtype=torch.float64, requires_grad=True) for value in INPUTS]
     of_numbers(model, *numbers).backward()
@@ -194,7 +194,7 @@ def test_torch_gradient(model):
 
 
 @EVERY
-def test_torch_keeps_dtype(model):
+def test_torch_tensors_preserve_their_dtype(model):
     torch = pytest.importorskip("torch")
     contact = model.press(HIP, force=torch.tensor(FORCES))
     for name in NAMES:
@@ -202,7 +202,7 @@ def test_torch_keeps_dtype(model):
     assert contact.valid.shape == (3,)
 
 
-def test_second_derivatives_of_an_implicit_answer():
+def test_second_derivative_of_an_inverted_law_equals_differences():
     """d²d/dF² = -S'/S³, through the bracketed inversion of the adhesive socket."""
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
@@ -218,7 +218,7 @@ def test_second_derivatives_of_an_implicit_answer():
 
 
 @DIFFERENTIABLE
-def test_a_point_without_load_does_not_spoil_the_derivatives_of_the_others(model):
+def test_derivatives_are_finite_beside_a_point_without_load(model):
     """d/d(joint) of a sum over loads that contains a zero, and of pressures beyond the edge, is finite."""
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
@@ -243,7 +243,7 @@ def test_a_massive_socket_has_derivatives():
         assert np.isfinite(float(jax.grad(pressure)(17.9)))
 
 
-def test_a_plain_contact_is_asked_with_other_arrays():
+def test_contacts_of_plain_numbers_accept_arrays_of_any_library():
     jax = pytest.importorskip("jax")
     torch = pytest.importorskip("torch")
     contact = bs.HessForsbach().press(HIP, force=3000.0)
@@ -260,7 +260,7 @@ def test_a_plain_contact_is_asked_with_other_arrays():
     )
 
 
-def test_the_exact_solution_says_that_it_cannot_be_traced():
+def test_tracing_the_exact_model_is_refused_with_alternatives():
     jax = pytest.importorskip("jax")
     with pytest.raises(TypeError, match="exact cannot be traced by JAX: use tabulated or refined"):
         jax.grad(lambda force: bs.Exact().press(HIP, force=force).max_pressure)(3000.0)

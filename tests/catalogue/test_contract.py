@@ -1,4 +1,4 @@
-"""What every model of the catalogue must obey, whatever it is made of."""
+"""Laws of contact that every model of the catalogue obeys."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def test_force_and_indentation_are_inverse(model):
 
 
 @EVERY
-def test_half_angle_is_inverse(model):
+def test_force_and_half_angle_are_inverse(model):
     angle = np.radians([20.0, 45.0, 70.0])
     contact = model.press(HIP, half_angle=angle)
     if model.name == "cosine-limit":  # every load has the half angle 90 degrees
@@ -64,7 +64,7 @@ def test_pressure_integral_lies_between_force_and_one_and_a_half_times_it(model)
 
 
 @EVERY
-def test_pressure_is_highest_where_it_says_and_vanishes_at_the_edge(model):
+def test_pressure_is_largest_at_the_stated_angle_and_zero_at_the_edge(model):
     contact = model.press(HIP, force=3000.0)
     assert contact.pressure(0.0) == pytest.approx(contact.pole_pressure, rel=1e-12)
     assert contact.pressure(contact.max_pressure_angle) == pytest.approx(contact.max_pressure, rel=1e-12)
@@ -95,7 +95,7 @@ def test_pressure_at_a_direction_is_that_at_its_polar_angle(model):
 
 
 @EVERY
-def test_lengths_and_moduli_scale(model):
+def test_force_scales_with_squared_length_and_modulus(model):
     """Lengths times a and moduli times b give force times a² b (and a work of adhesion times a b)."""
     a, b = 3.0, 0.2
     larger = bs.Joint(
@@ -118,7 +118,7 @@ def test_lengths_and_moduli_scale(model):
 
 
 @EVERY
-def test_everything_broadcasts(model):
+def test_joints_and_loads_broadcast(model):
     joint = bs.Joint(
         ball_radius=np.array([[14.0], [16.0]]),
         clearance=0.1,
@@ -143,7 +143,7 @@ def test_everything_broadcasts(model):
 
 
 @EVERY
-def test_no_load_is_no_contact(model):
+def test_zero_load_gives_zero_contact(model):
     contact = model.press(HIP, force=0.0)
     if model.name == "adhesive":
         assert contact.indentation > 0.0  # the surfaces pull the ball in
@@ -172,19 +172,19 @@ def test_no_load_is_no_contact(model):
         ({"force": 1.0, "half_angle": 0.1}, "got force, half_angle"),
     ],
 )
-def test_a_load_that_is_not_allowed_is_named(model, load, message):
+def test_messages_name_the_load_that_is_not_allowed(model, load, message):
     with pytest.raises(ValueError, match=message):
         model.press(HIP, **load)
 
 
 @EVERY
-def test_text_is_not_a_load(model):
+def test_text_as_a_load_is_refused(model):
     with pytest.raises(TypeError, match=r"force must be a number .* got '3 kN'; text with units belongs"):
         model.press(HIP, force="3 kN")
 
 
 @EVERY
-def test_models_are_frozen_and_sourced(model):
+def test_models_are_frozen_and_have_sources(model):
     with pytest.raises(AttributeError):
         model.name = "other"
     assert model.sources
@@ -221,7 +221,7 @@ def test_friction_torque_is_bounded_and_known_for_spin(model):
 @CLOSED
 @settings(max_examples=either(quick=8, long=60))
 @given(joint=joints, share=floats(-7.0, -2.0), two=st.booleans())
-def test_any_joint_presses_back_and_forth(model, joint, share, two):
+def test_force_and_indentation_of_random_joints_are_inverse(model, joint, share, two):
     d = joint.ball_radius * 10.0**share * (2.0 if two else 1.0)
     contact = model.press(joint, indentation=d)
     assume(contact.force > 0)
@@ -234,7 +234,7 @@ def test_any_joint_presses_back_and_forth(model, joint, share, two):
     assert deeper.half_angle >= contact.half_angle or model.name in {"bartel", "bonded-layer-exact"}
 
 
-def test_a_deviation_is_blank_where_there_is_no_truth_to_deviate_from():
+def test_deviation_is_nan_without_an_exact_value():
     joint = bs.joints["hip-28"]
     apart = bs.compare(joint, force=np.array([0.0, 3000.0, 1e9])).deviation("hess-forsbach")
     assert np.isnan(apart["max_pressure"]).tolist() == [False, False, True]

@@ -1,4 +1,4 @@
-"""A press of Python numbers takes a quicker way: to the same answer, the same status and the same types."""
+"""A press of Python numbers is computed faster, with the same results, statuses and types."""
 
 from dataclasses import replace
 
@@ -43,7 +43,7 @@ def assert_alike(one: bs.Contact, other: bs.Contact, rtol: float = 1e-12) -> Non
 
 @EACH
 @pytest.mark.parametrize("load", LOADS, ids=str)
-def test_numbers_and_arrays_of_one_number_are_answered_alike(model, load):
+def test_plain_numbers_and_arrays_of_one_number_have_equal_results(model, load):
     one = model.press(HIP, **load)
     other = model.press(HIP, **{kind: np.array([value]) for kind, value in load.items()})
     assert_alike(one, other)
@@ -55,7 +55,7 @@ def test_numbers_and_arrays_of_one_number_are_answered_alike(model, load):
 
 
 @EACH
-def test_so_are_joints_of_any_kind(model):
+def test_random_joints_have_equal_results_alone_and_in_an_array(model):
     size = 60
     many = random_joint(size, seed=3)
     force = many.liner.young * many.ball_radius**2 * 10 ** np.random.default_rng(3).uniform(-10, -1, size)
@@ -74,7 +74,7 @@ def test_so_are_joints_of_any_kind(model):
 
 
 @EACH
-def test_numbers_of_other_kinds_are_taken_as_they_are(model):
+def test_integers_and_numpy_scalars_give_the_results_of_floats(model):
     expected = model.press(HIP, force=3000.0)
     whole = replace(HIP, ball_radius=17, clearance=1, liner_thickness=7, liner=bs.Material(young=1000, poisson=0.4))
     assert type(model.press(whole, force=3000).indentation) is float
@@ -83,8 +83,8 @@ def test_numbers_of_other_kinds_are_taken_as_they_are(model):
     assert type(model.press(HIP, force=np.float64(3000.0)).pole_pressure) is float
 
 
-def test_where_python_numbers_raise_there_is_an_answer_all_the_same():
-    """Quotients by nothing and powers beyond all numbers become infinite or NaN, as in arrays, and have a status."""
+def test_overflow_and_division_by_zero_have_the_status_of_arrays():
+    """Divisions by zero and overflows become infinite or NaN, as in arrays, and have a status."""
     huge = bs.Joint(ball_radius=1e200, clearance=1e-3, liner_thickness=1e200, liner=bs.UHMWPE)
     for model in (bs.HessForsbach(), bs.Bartel(), bs.Hertz()):
         one, other = model.press(huge, force=1.0), model.press(huge, force=np.array([1.0]))

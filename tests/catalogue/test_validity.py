@@ -1,4 +1,4 @@
-"""What "valid" promises: two models that both say so agree, and agree with the elastic answer."""
+"""Validity: results that two models mark as valid agree with each other and with the elastic solution."""
 
 import json
 from dataclasses import replace
@@ -23,7 +23,7 @@ PROMISING = {name: model for name, model in bs.catalogue.items() if model.promis
 
 
 @pytest.mark.parametrize("model", PROMISING.values(), ids=PROMISING)
-def test_a_valid_answer_is_close_to_the_elastic_one(model):
+def test_valid_results_are_close_to_the_elastic_solution(model):
     for case in CASES:
         for step in case["steps"]:
             contact = model.press(joint_of(case), force=step["force"])
@@ -65,7 +65,7 @@ SPRINGS = (bs.HessForsbach(), bs.Vessel(), bs.BondedLayerExact())
 
 
 @pytest.mark.parametrize("model", [*SPRINGS, bs.PlaneLayer()], ids=str)
-def test_a_soft_backing_is_not_taken_for_a_rigid_one(model):
+def test_models_of_a_rigid_backing_are_invalid_on_a_soft_one(model):
     told = "outside E/E_backing ≤ 0.01: the model takes the liner's backing as rigid"
 
     def notes(**changes) -> str:
@@ -79,6 +79,6 @@ def test_a_soft_backing_is_not_taken_for_a_rigid_one(model):
         assert not model.press(replace(HIP, **changes), force=3000.0).valid
 
 
-def test_springs_are_not_trusted_at_first_touch():
+def test_spring_models_are_invalid_at_first_touch():
     for model in (bs.HessForsbach(), bs.Vessel(), bs.Bartel(), bs.BondedLayer()):
         assert not model.press(HIP, force=1.0).valid

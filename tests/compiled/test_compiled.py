@@ -39,13 +39,13 @@ def assert_same(one: bs.Contact, other: bs.Contact) -> None:
 
 
 @pytest.mark.parametrize("model", some(MODELS, 5), ids=lambda model: f"{model.modulus.name}-{model.kinematics.name}")
-def test_same_answer(model):
+def test_compiled_and_python_models_agree_on_random_joints(model):
     joint = random_joint(2_000, seed=11)
     force = joint.liner.young * joint.ball_radius**2 * 1e-6
     assert_same(Compiled(model=model).press(joint, force=force), model.press(joint, force=force))
 
 
-def test_shapes_numbers_and_strides():
+def test_compiled_presses_accept_shapes_numbers_and_strides():
     fast, model = Compiled(model=bs.HessForsbach()), bs.HessForsbach()
     force = np.linspace(0.0, 4000.0, 24).reshape(4, 6)
     assert_same(fast.press(HIP, force=force), model.press(HIP, force=force))
@@ -55,7 +55,7 @@ def test_shapes_numbers_and_strides():
     assert_same(fast.press(joint, force=row), model.press(joint, force=row))
 
 
-def test_what_is_not_compiled_is_passed_on():
+def test_loads_that_are_not_compiled_use_the_python_model():
     fast, model = Compiled(model=bs.Bartel()), bs.Bartel()
     assert fast.press(HIP, force=3000.0).indentation == model.press(HIP, force=3000.0).indentation
     for load in ({"indentation": np.array([0.01, 0.02])}, {"half_angle": np.array([0.3])}):
@@ -64,7 +64,7 @@ def test_what_is_not_compiled_is_passed_on():
     assert single.max_pressure.dtype == np.float32
 
 
-def test_failures_are_the_same_failures():
+def test_compiled_presses_fail_as_the_python_model():
     fast, model = Compiled(model=bs.Bartel()), bs.Bartel()
     force = np.array([3000.0, 1e13])
     assert_same(fast.press(HIP, force=force), model.press(HIP, force=force))
@@ -80,7 +80,7 @@ def test_failures_are_the_same_failures():
         fast.press(HIP, force=np.array([-1.0]))
 
 
-def test_angle_polynomial():
+def test_angle_polynomial_is_accurate_to_rounding():
     for versine in np.linspace(0.0, 1.0, 4001):
         assert _angle_polynomial(float(versine)) == pytest.approx(angle_of(versine), rel=6e-16, abs=0)
 
@@ -100,7 +100,7 @@ def liners(size: int, ball: bs.Material | None = None) -> bs.Joint:
 
 @pytest.mark.parametrize("ball", [None, bs.COCR], ids=["rigid ball", "elastic ball"])
 @pytest.mark.parametrize("model", [bs.Refined(), bs.Tabulated()], ids=lambda model: model.name)
-def test_solved_models_are_the_same_digit_for_digit(model, ball):
+def test_compiled_solved_models_agree_to_eleven_digits(model, ball):
     fast, joint = Compiled(model=model), liners(3_000, ball)
     force = np.random.default_rng(1).uniform(-1.0, 1.0, 3_000).clip(0.0) * 1e5  # a half of them without load
     by_force = model.press(joint, force=force)
@@ -115,7 +115,7 @@ def test_solved_models_are_the_same_digit_for_digit(model, ball):
 
 @pytest.mark.long
 @pytest.mark.parametrize("model", [bs.Refined(), bs.Tabulated()], ids=lambda model: model.name)
-def test_solved_models_in_shapes(model):
+def test_compiled_solved_models_broadcast_joints_and_loads(model):
     fast, row = Compiled(model=model), np.array([500.0, 3000.0])
     joint = bs.Joint(ball_radius=np.array([[14.0], [16.0]]), clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
     for pressed, force in ((joint, row), (HIP, row), (joint, 500.0), (HIP, row[:0]), (HIP, np.array(500.0))):
@@ -126,39 +126,41 @@ def test_solved_models_in_shapes(model):
 
 
 @numba.njit
-def asked(law, depths):  # type: ignore[no-untyped-def]
-    said = np.empty((depths.size, 2))
+def evaluate_compiled(law, depths):  # type: ignore[no-untyped-def]
+    results = np.empty((depths.size, 2))
     for i in range(depths.size):
-        said[i] = law(depths[i])
-    return said
+        results[i] = law(depths[i])
+    return results
 
 
 DEPTHS = np.concatenate([[-1.0, 0.0, np.nan, np.inf, 1e3], np.geomspace(1e-9, 10.0, 300)])
 
 
 @pytest.mark.parametrize("model", [*MODELS[:3], bs.Refined(), bs.Tabulated()], ids=lambda model: model.name)
-def test_a_compiled_law_is_the_law_in_python_and_in_compiled_programs(model):
+def test_compiled_law_equals_the_python_law_in_both_kinds_of_programs(model):
     law, plain = Compiled(model=model).law(HIP), model.law(HIP)
-    said = np.array([plain(depth) for depth in DEPTHS.tolist()])
-    np.testing.assert_allclose(asked(law, DEPTHS), said, rtol=1e-13)
-    np.testing.assert_array_equal([law(depth) for depth in DEPTHS.tolist()], asked(law, DEPTHS))
+    results = np.array([plain(depth) for depth in DEPTHS.tolist()])
+    np.testing.assert_allclose(evaluate_compiled(law, DEPTHS), results, rtol=1e-13)
+    np.testing.assert_array_equal([law(depth) for depth in DEPTHS.tolist()], evaluate_compiled(law, DEPTHS))
 
 
 @pytest.mark.parametrize("name", ["exact", "plane-layer", "hertz", "liu-reconstruction"])
 def test_the_law_of_any_model_compiles(name):
     plain = bs.catalogue[name].law(HIP)
     depths = np.geomspace(1e-6, 0.1, 100)
-    np.testing.assert_allclose(asked(compiled_law(plain), depths), [plain(d) for d in depths.tolist()], rtol=1e-7)
+    np.testing.assert_allclose(
+        evaluate_compiled(compiled_law(plain), depths), [plain(d) for d in depths.tolist()], rtol=1e-7
+    )
 
 
-def test_a_law_that_pulls_or_is_none_does_not():
+def test_adhesive_laws_and_plain_functions_do_not_compile():
     with pytest.raises(TypeError, match="must be above 0 N"):
         compiled_law(bs.AdhesiveSocket().law(HIP))
     with pytest.raises(TypeError, match="law must be"):
         compiled_law(lambda depth: (depth, 1.0))
 
 
-SAID = [
+DELEGATED = [
     name
     for name in dir(bs.Model)
     if not name.startswith("_")
@@ -168,11 +170,11 @@ SAID = [
 """What a model says of itself: its data, and no verbs."""
 
 
-def test_a_compiled_model_says_of_itself_what_its_model_says():
+def test_compiled_model_has_the_attributes_and_notes_of_its_model():
     cup = bs.Cup(arc_of_cover=2.0)
     for model in (bs.Bartel(), bs.Refined(), bs.Tabulated()):
         fast = Compiled(model=model)
-        for name in SAID:
+        for name in DELEGATED:
             assert getattr(fast, name) == getattr(model, name)
         assert fast.in_cup(cup).press(HIP, force=3000.0).notes == model.in_cup(cup).press(HIP, force=3000.0).notes
     with pytest.raises(TypeError, match="Refined"):

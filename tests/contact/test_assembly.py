@@ -136,7 +136,7 @@ def test_solutions_of_one_contact_need_one_contact():
 
 
 @pytest.mark.parametrize("peak", [0.0, 0.3, 0.62, 0.9])
-def test_the_largest_pressure_is_found_on_a_profile(peak):
+def test_the_largest_pressure_is_located_on_a_profile(peak):
     """Pressure falls with the squared distance from its peak, relative to the half angle."""
     edge = np.array([0.5, 1.0, 1.2])
 
@@ -211,12 +211,14 @@ def test_variables_of_the_hemisphere_estimate_are_clipped():
 def test_estimated_change_on_a_hemisphere_is_that_of_the_exact_solution(ball, load):
     joint = replace(bs.joints["hip-28"], ball=ball)
     contact = bs.Exact().press(joint, force=load)
-    assert closed_sphere.indentation_change(contact) == pytest.approx(
+    assert closed_sphere.hemisphere_indentation_change(contact) == pytest.approx(
         contact.hemisphere["indentation"], rel=0.3, abs=1e-4
     )
     largest = max(abs(value) for value in contact.hemisphere.values())
-    assert closed_sphere.largest_change(contact) == pytest.approx(largest, rel=0.4, abs=2e-4)
+    assert closed_sphere.max_hemisphere_change(contact) == pytest.approx(largest, rel=0.4, abs=2e-4)
     softer = replace(joint, ball=bs.Material(young=50e3, poisson=0.3))
     soft = bs.Exact().press(softer, force=load)
-    per_ratio = (closed_sphere.indentation_change(soft) - closed_sphere.indentation_change(contact)) / 0.02
+    per_ratio = (
+        closed_sphere.hemisphere_indentation_change(soft) - closed_sphere.hemisphere_indentation_change(contact)
+    ) / 0.02
     assert per_ratio > 0

@@ -22,7 +22,7 @@ CONTRACT = ("catalogue", "evidence", "models/test_limits.py", "contact/test_mode
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
-    """A folder with the package and one model more."""
+    """Copy the package into a folder and add the model of CONTRIBUTING."""
     folder = tmp_path_factory.mktemp("added")
     added = folder / "ballsocket"
     shutil.copytree(Path(bs.__file__).parent, added, ignore=shutil.ignore_patterns("__pycache__"))
@@ -38,20 +38,20 @@ def package(tmp_path_factory):
 
 
 def run(package, folder, *words):
-    told = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
     return subprocess.run(
         [sys.executable, *words],
         cwd=folder,
         capture_output=True,
         encoding="utf-8",
         check=False,
-        env={**told, "PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"},
+        env={**environment, "PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"},
     )
 
 
 @pytest.mark.long
 def test_a_new_file_and_a_line_of_the_catalogue_pass_the_contract(package):
-    assert FILE.count("\n") <= 80
+    assert FILE.count("\n") <= 48
     places = [str(ROOT / "tests" / name) for name in CONTRACT]
     done = run(package, ROOT, "-m", "pytest", "-v", "-n", "0", "-p", "no:cacheprovider", "-k", "mattress", *places)
     assert done.returncode == 0, done.stdout

@@ -64,7 +64,7 @@ def test_finite_elements_find_the_same_ring():
     assert on_plastic.max_pressure == on_plastic.pole_pressure
 
 
-def test_the_ring_of_each_of_many_loads_is_found():
+def test_the_ring_of_each_of_many_loads_is_located():
     joint, force = shell(25.0, 0.0725, 4.0, 20.0), np.array([0.0, 10.0, 1000.0, 3200.0])
     together = bs.Exact().press(joint, force=force)
     assert together.max_pressure_angle[0] == together.max_pressure[0] == 0.0

@@ -25,7 +25,7 @@ def test_eighty_kilonewtons_in_a_hip_are_valid_for_no_model(model):
 
 
 def test_yield_is_noted_above_one_and_ends_validity_at_the_stated_factor():
-    at = {times: _pressed_to(times) for times in (0.97, 1.1, 1.35, 1.41)}
+    at = {times: _press_to_utilisation(times) for times in (0.97, 1.1, 1.35, 1.41)}
     assert [contact.valid for contact in at.values()] == [True, True, True, False]
     told = [[note for note in contact.notes if "yield stress" in note] for contact in at.values()]
     assert [len(notes) for notes in told] == [0, 1, 1, 1]
@@ -35,7 +35,7 @@ def test_yield_is_noted_above_one_and_ends_validity_at_the_stated_factor():
     assert abs(MAX_ELASTIC_UTILISATION - 1.9**0.5) < 0.002
 
 
-def _pressed_to(utilisation: float):
+def _press_to_utilisation(utilisation: float):
     contact = bs.Exact().press(HIP, force=3000.0)
     liner = replace(HIP.liner, yield_stress=contact.peak_stress.von_mises / utilisation)
     return bs.Exact().press(replace(HIP, liner=liner), force=3000.0)

@@ -69,7 +69,7 @@ def test_bounds_of_the_stress_contain_the_fit():
     assert strength.von_mises_bounds(free, 5.0) == (0.0, inf)
 
 
-def test_elastic_limit_asks_for_stresses_only_where_bounds_do_not_decide():
+def test_elastic_limit_solves_for_stresses_only_where_bounds_do_not_decide():
     solved = []
 
     def utilisation_at(mask):
@@ -122,7 +122,7 @@ def test_ratios_above_one_are_printed_with_two_digits(ratio, text):
     contact = SimpleNamespace(
         joint=replace(HIP, liner=liner, ball=None), max_pressure=pressure, von_mises_bounds=(0.0, 0.0), von_mises=0.0
     )
-    notes = [note for _, note in strength.remarks(contact)]
+    notes = [note for _, note in strength.strength_remarks(contact)]
     assert notes == [f"pressure {text} the allowable pressure of the liner"]
 
 
@@ -130,7 +130,7 @@ def test_a_ball_without_a_yield_stress_is_noted_above_a_strain():
     ratio = strength.ball_stress_ratio(0.3)
     limit = 5e-4 * 2e5 / ratio
     contact = SimpleNamespace(joint=joint_of(), max_pressure=np.array([0.99, 1.01]) * limit)
-    ((good, note),) = strength.remarks(contact)
+    ((good, note),) = strength.strength_remarks(contact)
     np.testing.assert_array_equal(good, [True, False])
     assert note.startswith("strength of the ball not checked")
 

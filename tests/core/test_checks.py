@@ -117,7 +117,7 @@ def test_long_lists_of_names_are_cut():
     assert hint.endswith("name-019, ...")
 
 
-def test_names_are_found_regardless_of_spelling():
+def test_names_are_matched_regardless_of_spelling():
     assert checks.known_name("model", " Exact Curve", ["exact-curve"]) == "exact-curve"
     assert checks.known_name("model", "exact_curve", ["exact-curve"]) == "exact-curve"
     with pytest.raises(ValueError, match="model 'exct' is not known; did you mean 'exact'"):

@@ -10,11 +10,13 @@ import pytest
 from ballsocket.core.deprecation import (
     MOVED,
     RenamedAttribute,
-    new_path,
+    present_module_path,
     renamed_arguments,
     renamed_fields,
     renamed_names,
 )
+from ballsocket.core.validity import Range
+from ballsocket.identify import Machine, synthetic
 
 SUBMODULES = {
     "ballsocket.elastic.exact_curve": "ballsocket.elasticity.exact.exact_curve",
@@ -55,8 +57,8 @@ def test_imports_of_version_1_still_run():
 
 
 def test_unknown_names_are_not_found():
-    assert new_path("ballsocket") is None
-    assert new_path("ballsocket.models.liu") is None
+    assert present_module_path("ballsocket") is None
+    assert present_module_path("ballsocket.models.liu") is None
     with pytest.raises(ModuleNotFoundError):
         import_module("ballsocket.elastics")
     with pytest.raises(AttributeError, match="no attribute 'elastics'"):
@@ -97,7 +99,7 @@ def test_renamed_names_attributes_and_arguments_warn():
         work(progress=2, listen=1)
 
 
-def test_a_renamed_field_is_accepted_and_given_with_a_warning():
+def test_a_renamed_field_is_accepted_and_read_with_a_warning():
     with pytest.warns(DeprecationWarning, match=r"^argument 'told' of Note\(\) is deprecated: use 'text'"):
         note = Note(told="loose")
     with pytest.warns(DeprecationWarning, match=r"^Note.told is deprecated: use text"):
@@ -105,3 +107,15 @@ def test_a_renamed_field_is_accepted_and_given_with_a_warning():
     assert Note(text="loose") == note
     with pytest.warns(DeprecationWarning, match=r"^argument 'told' of Note\(\) is deprecated: use 'text'"):
         assert replace(note, told="tight").text == "tight"
+
+
+def test_old_names_of_a_range_and_a_machine_warn():
+    limit, machine = Range(quantity="half_angle", high=1.0), Machine(offset=(0.0, 0.1))
+    with pytest.warns(DeprecationWarning, match=r"Range.of is deprecated: use quantity_of"):
+        assert limit.of is limit.quantity_of
+    with pytest.warns(DeprecationWarning, match=r"Machine.known is deprecated: use known_errors"):
+        assert machine.known() == machine.known_errors()
+    with pytest.warns(DeprecationWarning, match=r"Machine.unknowns is deprecated: use unknown_errors"):
+        assert machine.unknowns == machine.unknown_errors
+    with pytest.warns(DeprecationWarning, match=r"synthetic.drawn is deprecated: use draw_data_sets"):
+        assert synthetic.drawn is synthetic.draw_data_sets

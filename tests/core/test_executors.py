@@ -153,7 +153,7 @@ class FakePool:
 
 def test_few_pieces_are_submitted_at_a_time():
     pool, pending = FakePool(), deque(range(10))
-    results = module._run_until_broken(pool, pending, 4)
+    results = module._submit_until_worker_dies(pool, pending, 4)
     next(results)
     assert pool.submitted == [0, 1, 2, 3]
     finished = [number for number, _ in results]
@@ -170,21 +170,21 @@ def test_two_pieces_are_submitted_for_each_worker(monkeypatch):
         pending.clear()
         return iter(())
 
-    monkeypatch.setattr(module, "_run_until_broken", record)
+    monkeypatch.setattr(module, "_submit_until_worker_dies", record)
     assert list(Processes(workers=3).run(abs, [1])) == []
     assert limits == [6]
 
 
 def test_a_broken_pool_leaves_the_other_pieces_pending():
     pool, pending = FakePool(dies_at={1}), deque(range(9))
-    results = dict(module._run_until_broken(pool, pending, 3))
+    results = dict(module._submit_until_worker_dies(pool, pending, 3))
     assert results[1] is module._WORKER_DIED
     assert sorted(results) == pool.submitted
     assert sorted([*results, *pending]) == list(range(9))
     assert pending
 
     pool, pending = FakePool(refuses_at={2}), deque(range(4))
-    results = dict(module._run_until_broken(pool, pending, 3))
+    results = dict(module._submit_until_worker_dies(pool, pending, 3))
     assert sorted(results) == [0, 1]
     assert list(pending) == [2, 3]
 

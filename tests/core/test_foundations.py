@@ -82,12 +82,12 @@ def test_labels_have_symbols_and_units():
 
 def test_angles_are_written_in_degrees():
     assert Kind.ANGLE.written == Unit("°", degrees(1.0))
-    assert (Kind.ANGLE.unit, Kind.ANGLE.suffix, Kind.ANGLE.typed) == ("rad", "deg", "deg")
-    assert (Kind.NUMBER.unit, Kind.NUMBER.suffix, Kind.NUMBER.typed) == ("1", "", "")
-    assert (Kind.LENGTH.unit, Kind.LENGTH.suffix, Kind.LENGTH.typed) == ("mm", "mm", "mm")
+    assert (Kind.ANGLE.unit, Kind.ANGLE.column_suffix, Kind.ANGLE.assumed_unit) == ("rad", "deg", "deg")
+    assert (Kind.NUMBER.unit, Kind.NUMBER.column_suffix, Kind.NUMBER.assumed_unit) == ("1", "", "")
+    assert (Kind.LENGTH.unit, Kind.LENGTH.column_suffix, Kind.LENGTH.assumed_unit) == ("mm", "mm", "mm")
     assert Kind.AREA.written.text == "mm²"
-    assert Unit("").bracketed == ""
-    assert Unit("mm").bracketed == " [mm]"
+    assert Unit("").text_in_brackets == ""
+    assert Unit("mm").text_in_brackets == " [mm]"
     assert all(kind.example.startswith("a") for kind in Kind)
 
 
@@ -95,14 +95,14 @@ def test_sources_have_authors_and_year():
     key = bs.HessForsbach().sources[0].key
     source = Source(key, "Eq. (13)")
     assert source.doi == "10.3390/app112311170"
-    assert source.short == "Heß & Forsbach 2021"
+    assert source.authors_and_year == "Heß & Forsbach 2021"
     assert str(source) == "Heß & Forsbach 2021, Eq. (13)"
     assert str(Source(key)) == "Heß & Forsbach 2021"
-    several = [Source(key).short for key in bibliography() if " et al. " in Source(key).short]
+    several = [Source(key).authors_and_year for key in bibliography() if " et al. " in Source(key).authors_and_year]
     assert several
 
 
-def test_publications_are_found_in_texts():
+def test_publications_are_recognized_in_texts():
     key = bs.HessForsbach().sources[0].key
     assert list(find_cited_keys("E of Heß & Forsbach 2021, Table 2")) == [key]
     assert list(find_cited_keys("doi 10.3390/app112311170")) == [key]

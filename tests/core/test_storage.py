@@ -14,12 +14,12 @@ from ballsocket.core.storage import array_files
 from ballsocket.core.storage.array_files import cache_folder, cached_array, read_arrays, write_arrays
 from ballsocket.core.storage.atomic_files import (
     check_parent_folder,
-    is_draft,
+    is_draft_folder,
     make_draft_folder,
     write_atomically,
     write_text,
 )
-from ballsocket.core.storage.fingerprint import check_worker_code, digest_of, fingerprint
+from ballsocket.core.storage.fingerprint import check_worker_code, fingerprint, hash_inputs
 from ballsocket.core.storage.pieces import PieceRun, PieceStore
 
 SECONDS_AGO = {"young": 30.0, "old": 90.0}
@@ -90,7 +90,7 @@ def test_an_error_of_another_file_keeps_its_name(tmp_path):
 
 @pytest.mark.parametrize(("name", "draft"), [(".a.x.draft", True), ("a.draft", False), (".a", False), ("a", False)])
 def test_names_of_drafts_are_recognized(name, draft):
-    assert is_draft(name) is draft
+    assert is_draft_folder(name) is draft
 
 
 def test_draft_folders_of_killed_processes_are_removed(tmp_path):
@@ -103,7 +103,7 @@ def test_draft_folders_of_killed_processes_are_removed(tmp_path):
     assert names(tmp_path) == [".a.txt.young.draft", "a.txt"]
 
 
-def test_a_locked_draft_folder_is_kept_at_any_age(tmp_path):
+def test_a_locked_draft_folder_is_not_removed_at_any_age(tmp_path):
     with make_draft_folder(tmp_path / "a.txt") as folder:
         os.utime(folder, (0, 0))
         write_text(tmp_path / "a.txt", "x")
@@ -111,7 +111,7 @@ def test_a_locked_draft_folder_is_kept_at_any_age(tmp_path):
     assert names(tmp_path) == ["a.txt"]
 
 
-def test_draft_folders_of_other_files_are_kept(tmp_path):
+def test_draft_folders_of_other_files_are_not_removed(tmp_path):
     folder = tmp_path / ".b.txt.x.draft"
     folder.mkdir()
     os.utime(folder, (0, 0))
@@ -275,10 +275,10 @@ def test_a_worker_of_another_version_is_refused():
 
 def test_digests_differ_by_value_type_and_order():
     inputs = [(1, 2), (2, 1), (1.0, 2), ("1", 2), ((1, 2),), (12,)]
-    digests = {digest_of(*values) for values in inputs}
+    digests = {hash_inputs(*values) for values in inputs}
     assert len(digests) == len(inputs)
     assert {len(digest) for digest in digests} == {64}
-    assert digest_of(1, "a") == digest_of(1, "a")
+    assert hash_inputs(1, "a") == hash_inputs(1, "a")
 
 
 # resumable runs

@@ -1,7 +1,10 @@
-"""Write `files_of_1_0.json`: texts of input files with what version 1.0 reads from each, or its refusal.
+"""Write `files_of_1_0.json`: texts of input files with the numbers that version 1.0 reads from each, or its refusal.
 
-Run with version 1.0 of the package on the path: python make_files.py. The files are drawn with a fixed seed: whole
-files of each kind, and the same files with one fault.
+The data were written by this file and `tests/files/read_files.py` with version 1.0 of the package on the path:
+
+    PYTHONPATH=path/of/1.0/src:tests/files python tests/data/make_files.py
+
+The files are drawn with a fixed seed: complete files of each kind, and the same files with one fault.
 """
 
 import json
@@ -70,7 +73,7 @@ def joint_tables(load=True):
         lines += maybe('support = "free"', 0.4)
     lines += material("liner")
     lines += material("ball") if draw.random() < 0.5 else []
-    for i in range(layers):
+    for _layer in range(layers):
         lines += ["[[backing]]", f"thickness = {length(draw.choice((2.0, 4.0)))}"]
         lines += [draw.choice(('material = "titanium"', "young = 500\npoisson = 0.3"))]
     if draw.random() < 0.4:
@@ -133,7 +136,7 @@ def hip_file():
         lines += body
         body = []
     else:
-        body = [line for line in joint_tables(load=False)]
+        body = joint_tables(load=False)
     if "[cup]" not in body:
         body += maybe(f"[cup]\ntilt = {angle(draw.choice((20, 30)))}", 0.4)
     tables += ["[wear]", *draw.choice(LAWS), *maybe(f"ring_width = {angle(draw.choice((3, 5)))}", 0.4)]
@@ -217,8 +220,12 @@ DATA = (
         'saturation = "10 MPa"',
     ],
 )
-FREE = ('clearance = "0.02..0.3 mm"', 'liner.young = "0.4..2 GPa"', 'liner.young = { median = "1 GPa", factor = 1.5 }',
-        'liner_poisson = { mean = 0.4, deviation = 0.02 }')  # fmt: skip
+FREE = (
+    'clearance = "0.02..0.3 mm"',
+    'liner.young = "0.4..2 GPa"',
+    'liner.young = { median = "1 GPa", factor = 1.5 }',
+    "liner_poisson = { mean = 0.4, deviation = 0.02 }",
+)
 
 
 def identify_file():
@@ -253,8 +260,10 @@ def question_file():
     return "\n".join(lines)
 
 
-ODD = ('"3 foo"', '"3 kN"', '"20 mm"', "-5", "0", "true", "[]", "{}", '"text"', "1979-05-27", "nan", '"1e999"', "[1, 2]",
-       '""', '["a"]', "{a = 1}", "1e12")  # fmt: skip
+ODD = ('"3 foo"', '"3 kN"', '"20 mm"', "-5", "0", "true", "[]", "{}", '"text"', "1979-05-27", "nan", '"1e999"')
+ODD += ("[1, 2]", '""', '["a"]', "{a = 1}", "1e12")
+STRAY = ("young = 1000", "force = 100", 'law = "archard"', "count = 3", 'material = "steel"', "clearance = 0.1")
+STRAY += ("tilt = 3", "name = 3", "values = 3", 'model = "hertzz"')
 
 
 def damaged(text):
@@ -276,8 +285,7 @@ def damaged(text):
         j = draw.choice(tables)
         lines[j] = lines[j].replace("]", "s]", 1)
     else:  # a key of another table
-        lines.insert(i + 1, draw.choice(("young = 1000", "force = 100", "law = \"archard\"", "count = 3", "material = \"steel\"",
-                                         "clearance = 0.1", "tilt = 3", "name = 3", "values = 3", "model = \"hertzz\"")))  # fmt: skip
+        lines.insert(i + 1, draw.choice(STRAY))
     return "\n".join(lines)
 
 

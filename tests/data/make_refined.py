@@ -19,7 +19,7 @@ import numpy as np
 from scipy.optimize import least_squares, linprog
 
 import ballsocket as bs
-from ballsocket.models.liner_compliance import liner_of
+from ballsocket.models.liner_compliance import liner_coefficients
 from ballsocket.models.refined_state import NUMBERS, Fit, make_fit, scaled_contact
 
 SIZES = {"waves": 4, "level": 4, "edge": 10, "exponent": 5}
@@ -77,7 +77,7 @@ def logs_of(x: np.ndarray, points: Points, angle: np.ndarray, which: np.ndarray)
     """ln d, ln p0, ln F of `Refined` with these coefficients at half angles."""
     joint = joint_of(*points.pairs[which].T)
     with np.errstate(all="ignore"):
-        liner = liner_of(joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius)
+        liner = liner_coefficients(joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius)
         at = scaled_contact(angle, liner, fit_from(x))
         d = joint.clearance * at.indentation
         p0 = d * joint.liner.young / (joint.socket_radius * at.compliance)

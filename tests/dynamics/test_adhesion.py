@@ -87,6 +87,6 @@ def test_bouncing_ball_loses_the_energy_jump_until_it_stays_attached():
     fast = simulate(ELEMENT, velocity=(0.0, 0.0, 30.0), duration=0.06, **thrown)
     assert fast.drift < 1e-6
     assert fast.bounces == 450.0e-3 // energy_jump  # kinetic energy in N mm over the loss of a bounce
-    assert fast.lost[-1] == pytest.approx((fast.bounces + 1) * energy_jump, rel=1e-5)
+    assert fast.dissipated_energy[-1] == pytest.approx((fast.bounces + 1) * energy_jump, rel=1e-5)
     assert fast.attached[-1]
-    assert fast.depth[-1] > -STRETCH
+    assert fast.indentation[-1] > -STRETCH

@@ -229,16 +229,16 @@ def test_bristles_hold_a_ball_below_the_limit_of_friction():
     element = replace(HELD, friction=replace(HELD.friction, viscous=1e-3), damping=Damping(time=2e-4))
     held = simulate(element, pull=(side, 0.0, normal), inertia=1e9, **thrown)  # too slow to roll
     assert held.drift < 1e-7
-    assert held.ended == ""
+    assert held.end_reason == ""
     assert held.load.force[-1, 0] == pytest.approx(-side, rel=2e-3)
     creeping = simulate(
         replace(element, friction=Friction(coefficient=0.1)), pull=(side, 0.0, normal), inertia=1e9, **thrown
     )
     assert abs(held.velocity[-1, 0]) < 0.01 * creeping.velocity[-1, 0]
     ended = simulate(element, **thrown | {"position": (np.nan, 0.0, 0.0)})
-    assert "after 0 s: the state is not finite" in ended.ended
+    assert "after 0 s: the state is not finite" in ended.end_reason
     fast = simulate(element, velocity=(0.0, 0.0, 1e7), **thrown)
-    assert "exceeds the wall thickness" in fast.ended
+    assert "exceeds the wall thickness" in fast.end_reason
 
 
 def test_old_name_of_the_dissipation_of_bristles_warns():

@@ -8,7 +8,16 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction, of_restitution, relations, simulate
+from ballsocket.dynamics import (
+    Bristles,
+    ContactState,
+    Damping,
+    Flores,
+    Friction,
+    damping_from_restitution,
+    relations,
+    simulate,
+)
 from ballsocket.dynamics.restitution import restitution_of
 
 from ..extent import either
@@ -69,7 +78,7 @@ def test_orbit_in_a_cup_conserves_angular_momentum_about_the_dome_axis():
     velocity = 60.0 * np.cross(dome, tangent) + 3.0 * tangent + 10.0 * dome
     thrown = {"mass": 0.35, "position": tuple(position), "velocity": tuple(velocity), "pull": tuple(30.0 * dome)}
     motion = simulate(replace(FREE, cup=cup), duration=either(0.006, 0.02), step=2e-5, **thrown)
-    assert motion.ended == ""
+    assert motion.end_reason == ""
     assert (np.asarray(motion.load.status) == ContactState.AT_RIM).sum() > 50
     assert motion.drift < 1e-12
     assert motion.angular_drift < 1e-13
@@ -99,8 +108,8 @@ def test_many_steps_conserve_energy_and_angular_momentum(model, step):
 def test_dissipated_energy_grows_and_balances():
     motion = simulate(LOSSY, duration=0.02, spin=(0.0, 3.0, 5.0), **THROW)
     assert motion.drift < 1e-12
-    assert (np.diff(motion.lost) >= 0).all()
-    assert motion.lost[-1] > 0.1 * motion.kinetic[0]
+    assert (np.diff(motion.dissipated_energy) >= 0).all()
+    assert motion.dissipated_energy[-1] > 0.1 * motion.kinetic_energy[0]
 
 
 def test_energy_balances_the_work_of_the_pull():
@@ -118,10 +127,10 @@ def test_nearly_circular_orbit_conserves_energy_and_angular_momentum():
     for faster in (1.0, 1.0 + 1e-9, 1.0001):
         thrown = {"mass": 1.0, "position": (distance, 0.0, 0.0), "velocity": (0.0, faster * speed, 0.0)}
         motion = simulate(FREE, duration=either(0.004, 0.02), step=4e-5, **thrown)
-        assert motion.ended == ""
+        assert motion.end_reason == ""
         assert motion.drift < 1e-13
         assert motion.angular_drift < 1e-13
-        assert np.ptp(motion.depth) < 2e-4 * distance
+        assert np.ptp(motion.indentation) < 2e-4 * distance
 
 
 def test_motion_converges_with_second_order_to_another_integrator():
@@ -158,7 +167,7 @@ def simulated_restitution(damping, speed, model):
 @pytest.mark.parametrize("relation", relations.relations, ids=lambda relation: relation.name)
 def test_simulated_restitution_equals_the_exact_relation(relation):
     for restitution, model in ((0.9, bs.HessForsbach()), (0.5, bs.Hertz())):
-        damping = of_restitution(relation, restitution, 100.0)
+        damping = damping_from_restitution(relation, restitution, 100.0)
         h = 100.0 * damping.hysteresis
         assert simulated_restitution(damping, 100.0, model) == pytest.approx(restitution_of(h), rel=1e-7)
         assert damping.restitution(100.0) == restitution_of(h)
@@ -191,17 +200,17 @@ def test_resting_ball_conserves_energy_at_short_steps(model, step):
     for damping in (None, Damping(hysteresis=0.01)):
         element = bs.ForceElement(model, HIP, damping=damping)
         motion = simulate(element, pull=lambda t: (0.0, 0.0, 500.0 + 400.0 * np.sin(150.0 * t)), **lying)
-        assert motion.ended == ""
+        assert motion.end_reason == ""
         assert motion.drift < 1e-11
 
 
 def test_motion_ends_with_a_note_at_a_state_without_a_result():
     motion = simulate(FREE, mass=1.0, position=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 1e7), duration=1e-3, step=1e-5)
     assert len(motion.time) == 1
-    assert "exceeds the wall thickness" in motion.ended
+    assert "exceeds the wall thickness" in motion.end_reason
     nan_motion = simulate(FREE, mass=1.0, position=(nan, 0.0, 0.0), duration=1e-3, step=1e-5)
-    assert "not finite" in nan_motion.ended
-    assert "r = (0, 0, 20) mm" in simulate(FREE, **{**THROW, "position": (0.0, 0.0, 20.0)}, duration=1e-3).ended
+    assert "not finite" in nan_motion.end_reason
+    assert "r = (0, 0, 20) mm" in simulate(FREE, **{**THROW, "position": (0.0, 0.0, 20.0)}, duration=1e-3).end_reason
 
 
 @pytest.mark.parametrize(
@@ -226,7 +235,7 @@ def test_invalid_arguments_are_rejected(arguments, message):
 def test_motion_ends_where_the_ball_leaves_the_cup(friction):
     element = replace(FREE, cup=bs.Cup(), friction=friction)
     motion = simulate(element, duration=0.01, **{**THROW, "velocity": (0.0, 0.0, -300.0)})
-    assert "has left the cup over its rim" in motion.ended
+    assert "has left the cup over its rim" in motion.end_reason
     assert len(motion.time) == pytest.approx(HIP.clearance / 300.0 / 2e-5, abs=2)
 
 

@@ -44,7 +44,7 @@ def test_simulated_bounces_recover_the_damping():
     throw = {"mass": 1.0, "position": (0.0, 0.0, 0.0), "velocity": (0.0, 0.0, 200.0)}
     motion = simulate(element, duration=0.02, step=5e-6, **throw)
     assert motion.bounces >= 4
-    speed = np.linalg.norm(motion.velocity, axis=1)[motion.depth < 0]
+    speed = np.linalg.norm(motion.velocity, axis=1)[motion.indentation < 0]
     levels = speed[np.append(True, np.diff(speed) < -1e-9)]
     estimate = from_restitution(speed=levels[:-1], restitution=levels[1:] / levels[:-1])
     assert estimate.damping.hysteresis == pytest.approx(CHI, rel=1e-3)

@@ -14,7 +14,7 @@ class _Callbacks(c.Structure):
 
 
 class Host:
-    """An instance of a unit; `said` is what it logged."""
+    """An instance of a unit; `messages` are its log."""
 
     def __init__(self, path, folder):
         with zipfile.ZipFile(path) as archive:
@@ -24,19 +24,19 @@ class Host:
         self.version = int(about.get("fmiVersion")[0])
         listed = about.find("ModelVariables")
         self.references = {each.get("name"): int(each.get("valueReference")) for each in listed}
-        self.said = []
+        self.messages = []
         self._begin(about.get("guid") or about.get("instantiationToken"))
 
     def _begin(self, token):
         made = self._function("Instantiate" if self.version == 2 else "InstantiateModelExchange")
         made.restype = c.c_void_p
         if self.version == 2:
-            log = LOG2(lambda env, name, status, category, form, text: self.said.append((status, text.decode())))
-            self.kept = _Callbacks(log=log), log
-            self.unit = made(b"joint", 0, token.encode(), None, c.byref(self.kept[0]), 0, 0)
+            log = LOG2(lambda env, name, status, category, form, text: self.messages.append((status, text.decode())))
+            self.callbacks = _Callbacks(log=log), log
+            self.unit = made(b"joint", 0, token.encode(), None, c.byref(self.callbacks[0]), 0, 0)
         else:
-            self.kept = LOG3(lambda env, status, category, text: self.said.append((status, text.decode())))
-            self.unit = made(b"joint", token.encode(), None, c.c_bool(), c.c_bool(), None, self.kept)
+            self.callbacks = LOG3(lambda env, status, category, text: self.messages.append((status, text.decode())))
+            self.unit = made(b"joint", token.encode(), None, c.c_bool(), c.c_bool(), None, self.callbacks)
 
     def _function(self, name):
         return getattr(self.functions, f"fmi{self.version}{name}")
@@ -48,7 +48,7 @@ class Host:
         return self._function(name)(c.c_void_p(self.unit), references, *count, values, *more)
 
     def set(self, **values):
-        """The status of setting numbers; `position` and its like take three."""
+        """Set numbers and return the status; vectors such as `position` take three."""
         flat = {name: value for name, value in values.items() if not isinstance(value, tuple)}
         for name, value in values.items():
             if isinstance(value, tuple):
@@ -63,7 +63,7 @@ class Host:
         return status, list(values)
 
     def directional(self, unknown, known):
-        """How fast one number changes with another."""
+        """Return the status and the derivative of one number with respect to another."""
         one, found = (c.c_double * 1)(1.0), (c.c_double * 1)()
         places = [(c.c_uint * 1)(self.references[name]) for name in (unknown, known)]
         count = c.c_size_t(1)

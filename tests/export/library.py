@@ -12,7 +12,7 @@ from ballsocket.export.compiler import LIBRARY_ENDING, NoCompiler, shared_librar
 
 
 def _missing():
-    """Why nothing can be compiled and loaded here, empty where it can."""
+    """Return the reason why no library can be compiled and loaded, empty if one can."""
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         Path(folder, "one.c").write_text("int one(void) { return 1; }\n")
         try:

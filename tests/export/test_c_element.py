@@ -70,7 +70,7 @@ def test_random_states_have_the_load_contact_and_tangent_of_the_python_element(e
     assert touched > either(150, 500)
 
 
-def test_slopes_are_those_of_differences(library):
+def test_slopes_equal_finite_differences(library):
     draw = np.random.default_rng(2)
     for state in zip(*states(30, seed=3), strict=True):
         if library.load(*state)[0] not in (ContactState.CONTACT, ContactState.AT_RIM):
@@ -91,7 +91,7 @@ def test_slopes_are_those_of_differences(library):
 
 
 @pytest.mark.parametrize("place", [0, 4, 8])
-def test_a_state_that_is_no_number_is_a_status(library, place):
+def test_a_state_of_nan_has_a_status(library, place):
     state = np.full(9, 0.08)
     state[place] = np.nan
     status, force, moment, energy = library.load(*state.reshape(3, 3))
@@ -99,21 +99,21 @@ def test_a_state_that_is_no_number_is_a_status(library, place):
     assert np.isnan([*force, *moment, *energy]).all()
 
 
-def test_a_state_too_large_to_square_is_a_status(library):
+def test_a_state_too_large_to_square_has_a_status(library):
     far = (0.0, 0.0, 1e200), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for turned in (0, 1, 2):
         assert library.load(*far[-turned:], *far[:-turned])[0] == ContactState.NO_NUMBER
     assert library.contact(far[0])[0] == library.tangent(far[0])[0] == ContactState.NO_NUMBER
 
 
-def test_a_ball_through_the_wall_is_a_status(library, plain):
+def test_a_ball_through_the_wall_has_a_status(library, plain):
     for each in (library, plain):
         status, force, *_ = each.load((0.0, 0.0, HIP.liner_thickness + 1.0), (0, 0, 0), (0, 0, 0))
         assert status == ContactState.THROUGH_WALL
         assert np.isnan(force).all()
 
 
-def test_a_law_that_solves_for_its_answer_comes_as_a_curve(tmp_path):
+def test_an_iterative_law_is_exported_as_a_curve(tmp_path):
     solved = ForceElement(bs.HessForsbach(), HIP)
     formula = solved.potential
     object.__setattr__(solved, "potential", lambda depth: formula(np.asarray(depth, dtype=float)))
@@ -139,7 +139,7 @@ def test_losses_can_be_tuned(plain):
     assert plain.load(*state)[2].tolist() == [0.0, 0.0, 0.0]
 
 
-def test_parameters_that_are_not_allowed_have_a_sentence(plain):
+def test_parameters_that_are_not_allowed_are_reported(plain):
     complaint = plain.functions.joint_complaint
     complaint.restype = ctypes.c_char_p
     given = (ctypes.c_double * 7)(*plain.defaults)

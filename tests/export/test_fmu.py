@@ -1,4 +1,4 @@
-"""The element as an FMU: what it holds, that hosts accept it, and that it reference_loads as the element in Python."""
+"""The element as an FMU: its contents, its use in hosts, and the loads of the element in Python."""
 
 import re
 import zipfile
@@ -12,7 +12,7 @@ import ballsocket as bs
 from ballsocket.dynamics import Damping, ForceElement, Friction
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.fmu import Fmu, write_cross_check
-from ballsocket.export.fmu.cross_check import in_si, reference_loads, trajectory
+from ballsocket.export.fmu.variables import in_si, reference_loads, trajectory
 
 from ..cli.command import run
 from ..joints import HIP
@@ -42,7 +42,7 @@ def table(path):
     return np.genfromtxt(path, delimiter=",", names=True, deletechars="")
 
 
-def test_the_same_element_is_the_same_archive(folder):
+def test_equal_elements_give_equal_archives(folder):
     same = {"damping": ELEMENT.damping, "friction": ELEMENT.friction}
     Fmu(element=ForceElement(bs.HessForsbach(), HIP, **same), name="hip").write(folder / "again.fmu")
     assert (folder / "again.fmu").read_bytes() == (folder / "hip3.fmu").read_bytes()
@@ -52,7 +52,7 @@ def test_the_same_element_is_the_same_archive(folder):
 
 @needs_compiler
 @pytest.mark.parametrize("version", VERSIONS)
-def test_an_archive_holds_sources_and_a_binary(version, folder):
+def test_an_archive_contains_sources_and_a_binary(version, folder):
     with zipfile.ZipFile(folder / f"hip{version}.fmu") as archive:
         names = archive.namelist()
     assert {"modelDescription.xml", "sources/hip.c", "sources/hip.h", f"sources/fmi{version}.c"} <= set(names)
@@ -60,7 +60,7 @@ def test_an_archive_holds_sources_and_a_binary(version, folder):
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_a_compiler_that_is_not_there_is_a_sentence_and_the_sources_are_written(version, tmp_path, monkeypatch):
+def test_a_missing_compiler_is_reported_and_the_sources_are_written(version, tmp_path, monkeypatch):
     monkeypatch.setenv("CC", "no-such-compiler")
     done = run("fmu", str(EXAMPLES / "hip.toml"), "--out", str(tmp_path / "my-hip.fmu"), "--fmi", str(version))
     assert done.returncode == 0
@@ -87,7 +87,7 @@ def test_variables_have_units_and_parameters_can_be_tuned(folder):
         assert (friction.get("causality"), friction.get("variability")) == ("parameter", "tunable")
 
 
-def test_the_files_of_the_cross_check_say_what_the_element_answers(folder):
+def test_the_files_of_the_cross_check_have_the_loads_of_the_element(folder):
     given, reference = table(folder / "hip3_in.csv"), table(folder / "hip3_ref.csv")
     assert (folder / "hip3_in.csv").read_text().startswith('"time","position[1]",')
     state = trajectory(ELEMENT, given["time"])
@@ -116,7 +116,7 @@ def test_the_velocity_of_the_trajectory_is_that_of_its_position():
         (("--out", "hip.fmu", "--friction", "-0.1"), "coefficient"),
     ],
 )
-def test_what_is_not_allowed_is_one_sentence(words, said, tmp_path):
+def test_invalid_options_are_refused_in_one_line(words, said, tmp_path):
     done = run("fmu", "hip-28", *words, folder=tmp_path)
     assert done.returncode == 2
     assert said in done.stderr
@@ -152,11 +152,11 @@ def test_the_declarations_are_those_of_the_standard(version, fmpy, tmp_path):
 @needs_compiler
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize(("kind", "late"), [("ModelExchange", 0), ("CoSimulation", 1)])
-def test_fmpy_runs_it_to_the_reference(version, kind, late, folder, fmpy):
+def test_fmpy_simulates_the_unit_to_the_reference(version, kind, late, folder, fmpy):
     path = str(folder / f"hip{version}.fmu")
     given, reference = table(folder / f"hip{version}_in.csv"), table(folder / f"hip{version}_ref.csv")
     found = fmpy.simulate_fmu(path, fmi_type=kind, input=given, stop_time=0.1, output_interval=1e-3)
-    for name in reference.dtype.names[1:]:  # a step of a co-simulation reference_loads to what went in before it
+    for name in reference.dtype.names[1:]:  # a step of a co-simulation returns the loads of the input before it
         wanted = reference[name][: len(reference) - late]
         assert_allclose(found[name][late:], wanted, rtol=1e-12, atol=1e-12 * abs(wanted).max())
 
@@ -164,7 +164,7 @@ def test_fmpy_runs_it_to_the_reference(version, kind, late, folder, fmpy):
 @pytest.mark.long
 @needs_compiler
 @pytest.mark.parametrize("version", VERSIONS)
-def test_fmpy_compiles_what_is_in_it(version, folder, fmpy, tmp_path):
+def test_fmpy_compiles_the_sources_of_the_unit(version, folder, fmpy, tmp_path):
     from shutil import rmtree
 
     from fmpy.build import build_platform_binary
@@ -188,7 +188,7 @@ def host(request, folder, tmp_path):
 
 
 @needs_compiler
-def test_a_host_is_given_the_load_and_its_slopes(host):
+def test_a_host_receives_the_load_and_its_slopes(host):
     assert host.set(**PRESSED) == GOOD
     load = ELEMENT((0.0, 0.01, 0.12), (1.0, 0.0, 20.0), PRESSED["spin"])
     status, (force, moment, pressure) = host.get("force[3]", "moment[1]", "max_pressure")
@@ -207,7 +207,7 @@ def test_a_host_is_given_the_load_and_its_slopes(host):
 
 
 @needs_compiler
-def test_a_parameter_is_tuned_while_it_runs(host):
+def test_a_parameter_is_tuned_during_a_simulation(host):
     host.set(**PRESSED)
     _, (before,) = host.get("moment[3]")
     host.set(friction_coefficient=0.1, static_coefficient=0.1)
@@ -215,35 +215,35 @@ def test_a_parameter_is_tuned_while_it_runs(host):
     assert_allclose(after, 2 * before, rtol=1e-12)
     assert host.set(friction_coefficient=-0.1) == GOOD
     assert host.get("force[1]")[0] == ERROR
-    assert host.said == [(ERROR, "friction_coefficient must be finite and 0 or more")]
+    assert host.messages == [(ERROR, "friction_coefficient must be finite and 0 or more")]
 
 
 @needs_compiler
-def test_a_state_that_is_no_number_is_a_status_and_one_message(host):
+def test_a_state_of_nan_has_a_status_and_one_message(host):
     host.set(position=(np.nan, 0.0, 0.0))
     for _ in range(3):
         status, (force,) = host.get("force[3]")
         assert status == ERROR
         assert np.isnan(force)
         host.set(position=(np.nan, 0.0, 0.1))
-    assert len(host.said) == 1
-    assert "the state is not finite, or too large; position (nan, 0, 0) mm" in host.said[0][1]
+    assert len(host.messages) == 1
+    assert "the state is not finite, or too large; position (nan, 0, 0) mm" in host.messages[0][1]
     host.set(**PRESSED)
-    assert host.get("force[3]")[0] == GOOD  # the host goes on, if it likes to
+    assert host.get("force[3]")[0] == GOOD  # the host may continue
 
 
 @needs_compiler
-def test_a_step_through_the_wall_is_discarded_and_a_law_beyond_its_validity_is_told_once(host):
+def test_a_step_through_the_wall_is_discarded_and_invalidity_is_reported_once(host):
     host.set(position=(0.0, 0.0, 8e-3))
     assert host.get("energy")[0] == DISCARD
-    host.said.clear()
+    host.messages.clear()
     for depth in (1e-3, 2e-3):
         host.set(position=(0.0, 0.0, depth))
         assert host.get("energy")[0] == GOOD
-    assert [text.partition(" beyond")[0] for _, text in host.said] == ["hess-forsbach is not valid"]
+    assert [text.partition(" beyond")[0] for _, text in host.messages] == ["hess-forsbach is not valid"]
 
 
 @needs_compiler
 def test_outputs_cannot_be_set(host):
     assert host.set(energy=1.0) == ERROR
-    assert "value reference" in host.said[0][1]
+    assert "value reference" in host.messages[0][1]

@@ -1,4 +1,4 @@
-"""The four-bar of the gallery: its equations balance, and it moves as Exudyn has it with the exported joint."""
+"""Four-bar linkage of the gallery: its energy balance, and its motion in Exudyn with the exported joint."""
 
 from importlib import import_module
 from importlib.util import find_spec
@@ -23,7 +23,7 @@ def energy(bar, y):
     return float(bar.mechanical(y[:, None])[0]) + bar.ELEMENT(position).energy
 
 
-def test_what_the_mechanism_loses_is_what_its_joint_takes(bar, monkeypatch):
+def test_energy_loss_of_the_mechanism_equals_the_dissipation_of_its_joint(bar, monkeypatch):
     """dE/dt along the equations of motion, wherever the links are and however they turn."""
     random = np.random.default_rng(5)
     for depth in (-0.1, 0.01, 0.02):
@@ -44,7 +44,7 @@ def test_what_the_mechanism_loses_is_what_its_joint_takes(bar, monkeypatch):
 @pytest.mark.long
 @needs_compiler
 @pytest.mark.parametrize("name", ["law", "sphere"])
-def test_exudyn_answers_what_is_kept_and_the_exported_law_as_this_element(name, bar, monkeypatch):
+def test_exudyn_reproduces_the_stored_motion_and_that_of_the_element(name, bar, monkeypatch):
     if find_spec("exudyn") is None:
         pytest.skip("exudyn is not installed")
     monkeypatch.syspath_prepend(str(ROOT))

@@ -1,5 +1,6 @@
 """A new export target costs one file and one entry of the registry, tried in a copy of the package."""
 
+import json
 import os
 import re
 import shutil
@@ -16,7 +17,10 @@ from ..places import ROOT
 
 SECTION = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("## A new export target")[2]
 FILE = re.search(r"^```python\n(.*?)^```$", SECTION, re.MULTILINE | re.DOTALL)[1]
-LINES = {"from .tunable": "from .julia import JULIA\n", '        Target(\n            name="table"': "        JULIA,\n"}
+LINES = {
+    "from .tunable": "from .octave import OCTAVE\n",
+    '        Target(\n            name="table"': "        OCTAVE,\n",
+}
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +29,7 @@ def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("target")
     copy = folder / "ballsocket"
     shutil.copytree(Path(bs.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    (copy / "export" / "julia.py").write_text(FILE, encoding="utf-8")
+    (copy / "export" / "octave.py").write_text(FILE, encoding="utf-8")
     registry = (copy / "export" / "targets.py").read_text("utf-8")
     for before, line in LINES.items():
         assert registry.count(before) == 1
@@ -47,18 +51,17 @@ def run(package, *arguments):
 
 
 def test_the_command_lists_and_writes_a_new_target(package):
-    assert FILE.count("\n") <= 26
-    assert "julia" in run(package, "export", "--help").stdout
+    assert FILE.count("\n") <= 20
+    assert "octave" in run(package, "export", "--help").stdout
     finished = run(
-        package, "export", "julia", "hip-28", "--out", "hip", "--friction", "0.1", "--model", "hess-forsbach"
+        package, "export", "octave", "hip-28", "--out", "hip", "--friction", "0.1", "--model", "hess-forsbach"
     )
     assert finished.returncode == 0, finished.stderr
-    assert finished.stderr == "ballsocket: julia cannot represent friction: omitted\n"
-    text = (package / "hip" / "hip.jl").read_text("utf-8")
-    rows = [tuple(map(float, line.split())) for line in text.splitlines() if re.match(r" +[0-9.]+ [0-9.e-]+$", line)]
-    depths, forces = np.array(rows).T
+    assert finished.stderr == "ballsocket: octave cannot represent friction: omitted\n"
+    text = (package / "hip" / "hip_force.m").read_text("utf-8")
+    depths, forces = (np.array(json.loads(row)) for row in re.findall(r"\[.*?\]", text))
     expected = bs.HessForsbach().press(bs.joints["hip-28"], indentation=depths[1:]).force
     np.testing.assert_allclose(forces[1:], expected, rtol=1e-8)
-    unknown = run(package, "export", "julie", "hip-28", "--out", "hip")
+    unknown = run(package, "export", "octavo", "hip-28", "--out", "hip")
     assert unknown.returncode == 2
-    assert unknown.stderr == "ballsocket: target 'julie' is not known; did you mean 'julia'?\n"
+    assert unknown.stderr == "ballsocket: target 'octavo' is not known; did you mean 'octave'?\n"

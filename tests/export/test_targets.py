@@ -1,4 +1,4 @@
-"""The element in the words of other programs: files that hold together, and one bounce in all that are installed."""
+"""Export targets: consistent files, and one bounce in every installed program."""
 
 import ctypes
 import sys
@@ -50,7 +50,7 @@ def tools():
 
 
 @needs_compiler
-def test_the_module_in_python_answers_as_the_element_and_needs_no_package(tools, tmp_path):
+def test_the_python_module_has_the_loads_of_the_element_and_needs_no_package(tools, tmp_path):
     assert written("exudyn", LOSSY, tmp_path)[1] == ""
     assert "import ballsocket" not in (tmp_path / "bouncing.py").read_text()
     wanted = LOSSY(*IN_MM)
@@ -68,7 +68,7 @@ def test_the_module_in_python_answers_as_the_element_and_needs_no_package(tools,
 
 
 @needs_compiler
-def test_what_modelica_calls_answers_as_the_element(tmp_path):
+def test_the_modelica_function_has_the_loads_of_the_element(tmp_path):
     written("modelica", LOSSY, tmp_path)
     package = (tmp_path / "bouncing" / "package.mo").read_text()
     assert package.count("end bouncing;") == package.count("package bouncing ") == 1
@@ -104,7 +104,7 @@ def test_the_expression_of_a_closed_form_is_the_closed_form():
     assert fit.error < 1e-12
 
 
-def test_one_expression_holds_any_law_as_deep_as_its_model_is_valid():
+def test_one_expression_fits_any_law_within_the_validity_of_its_model():
     fit = expression_fit(TABULATED, 0.05)
     assert fit.error < 1e-5
     assert_allclose(fit.depth, 1e-3 * valid_depth(TABULATED))
@@ -140,7 +140,7 @@ def test_the_terminal_and_the_file_state_the_range_of_an_expression(tmp_path):
 
 
 @pytest.mark.parametrize(("element", "near"), [(DAMPED, 1e-12), (TABULATED, 1e-5)])
-def test_an_expression_in_words_is_the_law_with_its_damping(element, near):
+def test_the_text_of_an_expression_is_the_law_with_its_damping(element, near):
     text = expression_fit(element, 0.05).text("d", "ddot", 4.0)
     words = {"max": max, "min": min, "sqrt": sqrt, "exp": exp, "d": 1.3e-4, "ddot": 0.02}
     force = eval(text.replace("^", "**"), words)
@@ -162,13 +162,13 @@ def test_the_best_power_law_is_balanced_and_no_other_is_better():
         assert worst(fit.stiffness * k, fit.exponent + n) > fit.error
 
 
-def test_a_power_law_is_found_as_it_is():
+def test_a_power_law_is_recovered_exactly():
     fit = power_fit(ForceElement(bs.Hertz(), HIP), 0.02)
     assert_allclose(fit.exponent, 1.5, atol=1e-6)
     assert fit.error < 1e-6
 
 
-def test_a_table_says_what_the_model_says_up_to_the_load_of_the_file(tmp_path):
+def test_a_table_has_the_values_of_the_model_up_to_the_load_of_the_file(tmp_path):
     done = run("export", "table", str(EXAMPLES / "hip.toml"), "--out", "hip", folder=tmp_path)
     assert (done.returncode, done.stdout) == (0, "hip: hip_law.csv, hip_power.txt\n")
     rows = np.genfromtxt(tmp_path / "hip" / "hip_law.csv", delimiter=",", names=True, deletechars="")
@@ -184,7 +184,7 @@ def test_missing_folders_are_created_with_their_parents(tmp_path):
     assert (tmp_path / "new" / "parts" / "hip" / "hip_law.csv").is_file()
 
 
-def test_the_cup_of_a_file_has_its_rim_and_a_file_without_one_is_a_whole_sphere():
+def test_a_cup_in_a_file_has_a_rim_and_a_file_without_a_cup_has_none():
     cup = bs.Cup(arc_of_cover=2.6)
     words = ElementWords(friction=0.1, restitution=0.8, impact_speed=100.0)
     element = words.element(JointFile(HIP, {}, cup))
@@ -195,7 +195,7 @@ def test_the_cup_of_a_file_has_its_rim_and_a_file_without_one_is_a_whole_sphere(
 
 
 @pytest.mark.parametrize("target", TARGETS)
-def test_every_target_takes_a_joint_without_a_load_and_says_what_is_missing(target, tmp_path, monkeypatch):
+def test_every_target_writes_a_joint_without_a_load_and_reports_a_missing_compiler(target, tmp_path, monkeypatch):
     monkeypatch.setenv("CC", "no-such-compiler")
     done = run("export", target, "hip-28", "--out", "hip", "--model", "hess-forsbach", folder=tmp_path)
     assert done.returncode == 0
@@ -209,7 +209,7 @@ def test_every_target_takes_a_joint_without_a_load_and_says_what_is_missing(targ
         fromstring(path.read_bytes())
 
 
-def test_what_a_program_has_no_words_for_is_said(tmp_path):
+def test_features_that_a_target_cannot_represent_are_reported(tmp_path):
     element = ForceElement(bs.HessForsbach(), HIP, damping=Damping(time=1e-4), friction=LOSSY.friction, cup=bs.Cup())
     lost = "friction and the retardation time of the liner and the rim of the cup: omitted"
     for target in ("c", "modelica", "opensim", "table"):
@@ -221,12 +221,12 @@ def test_what_a_program_has_no_words_for_is_said(tmp_path):
 @pytest.mark.parametrize(
     ("name", "taken"), [("class", True), ("end", True), ("mujoco", True), ("1 hip", True), ("hip", False)]
 )
-def test_a_name_is_no_word_of_the_languages_it_is_written_in(name, taken):
+def test_identifiers_avoid_keywords_of_the_target_languages(name, taken):
     assert (identifier(Path(name)) != name) == taken
 
 
 @pytest.mark.parametrize(("variable", "value"), [("CC", "'"), ("CFLAGS", "'")])
-def test_what_is_no_command_is_a_sentence_and_the_sources_are_there(variable, value, tmp_path, monkeypatch):
+def test_an_invalid_compiler_command_is_reported_and_the_sources_are_written(variable, value, tmp_path, monkeypatch):
     monkeypatch.setenv(variable, value)
     paths, missing = written("drake", PLAIN, tmp_path)
     assert f'{variable} is "\'", which is not a valid command; the sources are written' in missing
@@ -243,7 +243,7 @@ def test_what_is_no_command_is_a_sentence_and_the_sources_are_there(variable, va
         (("table", "--out", "hip", "--model", "fem"), "finite elements are too noisy for a law"),
     ],
 )
-def test_what_is_not_allowed_is_one_sentence(words, said, tmp_path):
+def test_invalid_options_are_refused_in_one_line(words, said, tmp_path):
     (tmp_path / "file").touch()
     done = run("export", words[0], "hip-28", *words[1:], folder=tmp_path)
     assert done.returncode == 2
@@ -259,7 +259,7 @@ def test_what_is_not_allowed_is_one_sentence(words, said, tmp_path):
         (ForceElement(bs.AdhesiveSocket(work_of_adhesion=2e-3), HIP), "an adhesive ball has a state; "),
     ],
 )
-def test_a_state_is_something_that_nothing_exported_or_compiled_has(element, said):
+def test_elements_with_a_state_are_not_exported_or_compiled(element, said):
     with pytest.raises(ValueError, match=said):
         CElement(element=element)
     with pytest.raises(ValueError, match=said):
@@ -278,7 +278,7 @@ def test_a_state_is_something_that_nothing_exported_or_compiled_has(element, sai
         ("opensim", "opensim", "opensim"),
     ],
 )
-def test_a_ball_bounces_as_it_does_here(target, program, package, tools, tmp_path):
+def test_a_ball_bounces_in_each_program_as_in_python(target, program, package, tools, tmp_path):
     if find_spec(package) is None:
         pytest.skip(f"{package} is not installed")
     element = DAMPED if target == "opensim" else LOSSY
@@ -432,7 +432,7 @@ def velocity_after():
         ("exudyn", exudyn_momentum, "exudyn"),
     ],
 )
-def test_ball_and_free_socket_keep_their_momentum_and_its_moment(
+def test_ball_and_free_socket_conserve_linear_and_angular_momentum(
     target, momentum, package, tools, velocity_after, tmp_path
 ):
     """The socket rotates and friction acts on it: action equals reaction, and velocities are those it sees."""
@@ -447,7 +447,7 @@ def test_ball_and_free_socket_keep_their_momentum_and_its_moment(
 
 @pytest.mark.long
 @needs_compiler
-def test_two_joints_on_one_plant_of_drake_act_as_each_does_alone(tools, tmp_path):
+def test_two_joints_on_one_plant_of_drake_act_independently(tools, tmp_path):
     if find_spec("pydrake") is None:
         pytest.skip("pydrake is not installed")
     from pydrake.multibody.plant import AddMultibodyPlantSceneGraph

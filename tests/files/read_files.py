@@ -1,4 +1,7 @@
-"""Read the text of an input file with any version of the package: numbers of the result, or the refusal."""
+"""Read the text of an input file with any version of the package: numbers of the result, or the refusal.
+
+`tests/data/make_files.py` wrote `files_of_1_0.json` with this module and version 1.0; it knows names of that version.
+"""
 
 import tempfile
 from dataclasses import fields, is_dataclass
@@ -9,14 +12,13 @@ from pathlib import Path
 import numpy
 
 PHASES = numpy.linspace(0.0, 1.0, 21)
+TIMES = numpy.linspace(0, 1, 11)
 FOLDER = {
-    "joint.toml": '[joint]\nball_radius = 16\nclearance = 0.1\nliner_thickness = 6\n[liner]\nmaterial = "uhmwpe"\n[cup]\n'
-    "inclination = 45\nanteversion = 15\n",
+    "joint.toml": "[joint]\nball_radius = 16\nclearance = 0.1\nliner_thickness = 6\n"
+    '[liner]\nmaterial = "uhmwpe"\n[cup]\ninclination = 45\nanteversion = 15\n',
     "hip.toml": 'joint = "hip-28"\n[cycle]\nname = "iso-14242-1"\n[wear]\nlaw = "archard"\ncoefficient = 1e-6\n',
     "cycle.csv": "time [s],force [N],flexion [deg],adduction [deg],rotation [deg]\n"
-    + "\n".join(
-        f"{t:.4g},{2000 + 900 * numpy.cos(6.2832 * t):.4g},{20 * t * (1 - t):.4g},0,0" for t in numpy.linspace(0, 1, 11)
-    ),
+    + "\n".join(f"{t:.4g},{2000 + 900 * numpy.cos(6.2832 * t):.4g},{20 * t * (1 - t):.4g},0,0" for t in TIMES),
     "force.csv": "phase [%],force [kN]\n" + "\n".join(f"{10 * i},{1 + i * (10 - i) / 20:.4g}" for i in range(11)),
     "points.csv": "force_N,indentation_um\n500,20\n1000,31\n2000,45\n",
     "rows.csv": "arc_of_cover_deg,ball_poisson\n150,0.3\n160,0.3\n",
@@ -24,9 +26,12 @@ FOLDER = {
 """Files that the drawn ones name."""
 
 READERS = {
-    "joint": ("ballsocket", "read_joint"), "hip": ("ballsocket.hip.file", "read_hip"), "study": ("ballsocket.studies.file", "read_study"),
-    "identify": ("ballsocket.identify.file", "read_identify"), "question": ("ballsocket.evidence.question", "read_question"),
-}  # fmt: skip
+    "joint": ("ballsocket", "read_joint"),
+    "hip": ("ballsocket.hip.file", "read_hip"),
+    "study": ("ballsocket.studies.file", "read_study"),
+    "identify": ("ballsocket.identify.file", "read_identify"),
+    "question": ("ballsocket.evidence.question", "read_question"),
+}
 
 
 def outcome(kind, text):
@@ -91,19 +96,36 @@ def _creep(law):
 
 def _hip(file):
     use = file.use
+    surface = use.surface
     return [
-        _joint(use.joint), numbers(use.cup), numbers(use.cycle.forces), numbers(use.forces), numbers(use.wear), _creep(use.creep),
-        float(use.surface.modulus(use.joint)) if hasattr(use.surface, "modulus") else type(use.surface).__name__, use.seconds, use.ring_width, file.cycles, list(file.report_at), numbers(file.lubricant),
+        _joint(use.joint),
+        numbers(use.cup),
+        numbers(use.cycle.forces),
+        numbers(use.forces),
+        numbers(use.wear),
+        _creep(use.creep),
+        float(surface.modulus(use.joint)) if hasattr(surface, "modulus") else type(surface).__name__,
+        use.seconds,
+        use.ring_width,
+        file.cycles,
+        list(file.report_at),
+        numbers(file.lubricant),
         *([] if file.uncertain is None else [file.uncertain.count, file.uncertain.seed]),
-    ]  # fmt: skip
+    ]
 
 
 def _study(file):
     design = file.design
     return [
-        file.model.name, _joint(file.joint), list(design.names), design.size, list(file.quantities), numbers(file.store),
-        type(file.engine).__name__, numbers(getattr(file.engine, "workers", None)),
-    ]  # fmt: skip
+        file.model.name,
+        _joint(file.joint),
+        list(design.names),
+        design.size,
+        list(file.quantities),
+        numbers(file.store),
+        type(file.engine).__name__,
+        numbers(getattr(file.engine, "workers", None)),
+    ]
 
 
 def _identify(file):
@@ -121,14 +143,25 @@ def _identify(file):
 
 
 def _question(file):
+    texts = [file.text, file.context, file.influence, file.consequence]
+    parts = (file.limits, dict(file.tolerances), dict(file.sources))
     return [
-        file.text, file.context, file.influence, file.consequence, file.accuracy, _joint(file.file.joint), numbers(dict(file.axes)),
-        numbers(file.limits), numbers(dict(file.tolerances)), numbers(dict(file.sources)), file.friction, numbers(file.hip),
-        file.finite_elements, sorted(path.name for path in file.files),
-    ]  # fmt: skip
+        *texts,
+        file.accuracy,
+        _joint(file.file.joint),
+        numbers(dict(file.axes)),
+        *map(numbers, parts),
+        file.friction,
+        numbers(file.hip),
+        file.finite_elements,
+        sorted(path.name for path in file.files),
+    ]
 
 
 DIGESTS = {
     "joint": lambda file: [_joint(file.joint), numbers(file.load), numbers(file.cup), numbers(file.aim)],
-    "hip": _hip, "study": _study, "identify": _identify, "question": _question,
-}  # fmt: skip
+    "hip": _hip,
+    "study": _study,
+    "identify": _identify,
+    "question": _question,
+}

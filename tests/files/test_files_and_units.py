@@ -409,8 +409,8 @@ def test_the_rules_for_angles_are_told_in_degrees():
 def test_every_kind_is_read_and_refused_in_its_own_words(kind):
     example = kind.example.split("such as ")[1].strip("'")
     assert parse("it", example, kind) > 0
-    assert parse("it", f"2 {kind.typed}".strip(), kind) == parse("it", 2, kind)
-    assert str(parse("it", f"-0 {kind.typed}".strip(), kind)) == "0.0"
+    assert parse("it", f"2 {kind.assumed_unit}".strip(), kind) == parse("it", 2, kind)
+    assert str(parse("it", f"-0 {kind.assumed_unit}".strip(), kind)) == "0.0"
     with pytest.raises(ValueError, match=f"it = '2 A' is not {re.escape(kind.example)}"):
         parse("it", "2 A", kind)
 

@@ -21,7 +21,7 @@ from ballsocket.hip.config import read_hip
 from ballsocket.studies import Normal
 
 from ..cli.command import run
-from .test_file import told
+from .test_file import write_edited_file
 from .test_wear import hip
 
 TILT = 'tilt = "30 deg" # between the load and the cup\'s axis'
@@ -32,7 +32,7 @@ def tilt_of(use):
 
 
 @pytest.mark.parametrize("words", [{"inclination": 0}, {"inclination": 0.0}, {"anteversion": 0.0}])
-def test_an_explicit_zero_is_worn_upright(words):
+def test_a_cup_with_an_explicit_zero_angle_is_upright(words):
     use = hip(cup=bs.Cup(**words))
     assert tilt_of(use) == 0
     assert not any("standard requires" in note for note in use.notes)
@@ -48,20 +48,20 @@ def test_a_sweep_of_tilts_is_continuous_at_zero():
 
 
 @pytest.mark.parametrize("change", [("30 deg", "0 deg"), (TILT, 'inclination = "0 deg"'), (TILT, "anteversion = 0")])
-def test_a_file_with_an_explicit_zero(tmp_path, change):
-    assert tilt_of(read_hip(told(tmp_path, change)).use) == 0
-    assert tilt_of(read_hip(told(tmp_path, (TILT, ""))).use) == 30
+def test_a_file_with_an_explicit_zero_angle_has_an_upright_cup(tmp_path, change):
+    assert tilt_of(read_hip(write_edited_file(tmp_path, change)).use) == 0
+    assert tilt_of(read_hip(write_edited_file(tmp_path, (TILT, ""))).use) == 30
 
 
-def test_the_command_wears_an_upright_cup(tmp_path):
+def test_the_command_simulates_an_upright_cup(tmp_path):
     short = ("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]")
-    upright = json.loads(run("hip", str(told(tmp_path, ("30 deg", "0 deg"), *short)), "--json").stdout)
-    tilted = json.loads(run("hip", str(told(tmp_path, (TILT, ""), *short)), "--json").stdout)
+    upright = json.loads(run("hip", str(write_edited_file(tmp_path, ("30 deg", "0 deg"), *short)), "--json").stdout)
+    tilted = json.loads(run("hip", str(write_edited_file(tmp_path, (TILT, ""), *short)), "--json").stdout)
     assert upright["cycle"]["edge"]["distance_mm"] > 4 + tilted["cycle"]["edge"]["distance_mm"]
     assert any("tilted by 30°" in note for note in tilted["notes"])
 
 
-def test_a_cup_remembers_that_an_angle_was_given():
+def test_a_cup_records_that_an_angle_was_set():
     given, default = bs.Cup(inclination=0.0), bs.Cup()
     assert given == default
     assert given.oriented
@@ -75,14 +75,14 @@ def test_a_cup_remembers_that_an_angle_was_given():
     assert "cup" in tables_of(JointFile(bs.joints["hip-28"], {}, cup=given))
 
 
-def test_patients_with_a_tilt_of_zero():
+def test_patients_with_a_tilt_of_zero_have_an_upright_cup():
     use = HipSimulation(joint=bs.joints["hip-28"], cycle=iso_14242_1(24), wear=Archard(coefficient=1e-6), cup=bs.Cup())
     scatter = PatientVariability(use=use, distributions={"tilt": Normal(mean=0.2, deviation=0.05)})
     assert tilt_of(scatter.patient({"tilt": 0.0}).use) == 0
     assert tilt_of(scatter.patient({}).use) == 30
 
 
-def test_the_explorer_keeps_an_explicit_zero(tmp_path):
+def test_the_explorer_preserves_an_explicit_zero_angle(tmp_path):
     upright = replace(START, file=replace(START.file, cup=bs.Cup(inclination=0.0)))
     assert tilt_of(hip_of(START.file, Use())) == 30
     assert tilt_of(hip_of(upright.file, Use())) == 0

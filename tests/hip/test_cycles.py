@@ -316,7 +316,7 @@ def test_step_counts_in_range_are_returned():
     assert [check_step_count(count) for count in (8, 100, 10_000)] == [8, 100, 10_000]
 
 
-def test_phases_are_midpoints_and_forces_are_taken_there():
+def test_phases_are_midpoints_at_which_forces_are_evaluated():
     cycle = iso_14242_1(10)
     assert cycle.phases == pytest.approx(np.arange(0.05, 1.0, 0.1))
     assert cycle.forces == pytest.approx(np.outer(cycle.force(cycle.phases), UP))
@@ -337,7 +337,7 @@ def test_upward_forces_below_zero_are_no_contact_and_vectors_pass():
     assert side.forces - vectors.forces == pytest.approx(np.tile([30.0, 0.0, 0.0], (8, 1)))
 
 
-def test_largest_force_is_found_between_midpoints():
+def test_largest_force_is_located_between_midpoints():
     cycle = Cycle(name="one", force=lambda t: 100 * np.cos(2 * pi * (t - 0.123)), angles=flexion().angles, n_steps=8)
     assert cycle.largest_force == pytest.approx(100.0, rel=1e-6)
     assert cycle.force_magnitudes.max() < 99.9

@@ -48,7 +48,7 @@ def test_worn_bore_balances_its_loads():
 
 
 def test_elasticity_changes_volume_and_depth_slightly():
-    """What full elasticity makes of a hip against springs: the volume within 1 %, the depth within 3 %."""
+    """Full elasticity against springs: the volume within 1 %, the depth within 3 %."""
     cup, springs = elastic("cup").after(1e6).last, hip(cycle=iso_14242_1(50)).after(1e6).last
     assert cup.volume == pytest.approx(springs.volume, rel=1e-2)
     assert cup.depth == pytest.approx(springs.depth, rel=3e-2)
@@ -66,7 +66,7 @@ def test_finer_rings_give_the_same_wear():
 
 
 def test_worn_depth_has_no_waves_of_the_grid():
-    """Where the bore is worn in, its depth has no differences of the fourth order."""
+    """The depth of a worn-in bore has no differences of the fourth order."""
     use = elastic()
     wear = use.after(1e6).last.wear
     rough = np.abs(np.diff(wear, n=4, axis=0))[wear[2:-2] > 0.5 * wear.max()]

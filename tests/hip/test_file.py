@@ -1,4 +1,4 @@
-"""The file and the command: what they say, and what they refuse."""
+"""Hip file and command: results, and inputs that are refused."""
 
 import json
 
@@ -15,7 +15,7 @@ from .test_cycle_file import write_table
 TEXT = (EXAMPLES / "hip_in_use.toml").read_text(encoding="utf-8")
 
 
-def told(path, *changes, text=TEXT):
+def write_edited_file(path, *changes, text=TEXT):
     for old, new in changes:
         assert old in text
         text = text.replace(old, new)
@@ -46,7 +46,7 @@ def test_command_prints_json():
 
 
 def test_command_prints_a_table(tmp_path):
-    done = run("hip", str(told(tmp_path, ("5e6\n", "1e6\n"), ("[1e6, 2e6, 5e6]", "[1e6]"))))
+    done = run("hip", str(write_edited_file(tmp_path, ("5e6\n", "1e6\n"), ("[1e6, 2e6, 5e6]", "[1e6]"))))
     assert done.returncode == 0
     assert "33.7" in done.stdout
     assert "cross-shear 0.107" in done.stdout
@@ -54,31 +54,31 @@ def test_command_prints_a_table(tmp_path):
 
 def test_file_reads_a_cycle_table_next_to_it(tmp_path):
     write_table(tmp_path / "walk.csv")
-    given = read_hip(told(tmp_path, ('name = "iso-14242-1"', 'file = "walk.csv"')))
+    given = read_hip(write_edited_file(tmp_path, ('name = "iso-14242-1"', 'file = "walk.csv"')))
     assert given.use.first.volume == pytest.approx(32.1, rel=5e-3)
 
 
 def test_tilt_and_inclination_orient_the_cup(tmp_path):
-    tilted = read_hip(told(tmp_path)).use
-    inclined = read_hip(told(tmp_path, ('tilt = "30 deg"', 'inclination = "30 deg"'))).use
+    tilted = read_hip(write_edited_file(tmp_path)).use
+    inclined = read_hip(write_edited_file(tmp_path, ('tilt = "30 deg"', 'inclination = "30 deg"'))).use
     assert tilted.placed == inclined.placed
     with pytest.raises(ValueError, match="tilt and inclination exclude each other"):
-        read_hip(told(tmp_path, ('tilt = "30 deg"', 'tilt = "30 deg"\ninclination = "30 deg"')))
+        read_hip(write_edited_file(tmp_path, ('tilt = "30 deg"', 'tilt = "30 deg"\ninclination = "30 deg"')))
 
 
 def test_file_selects_the_springs_of_a_model(tmp_path):
-    given = read_hip(told(tmp_path, ('contact = "springs"', 'contact = "springs"\nmodel = "vessel"')))
-    assert given.use.first.max_pressure > 1.01 * read_hip(told(tmp_path)).use.first.max_pressure
+    given = read_hip(write_edited_file(tmp_path, ('contact = "springs"', 'contact = "springs"\nmodel = "vessel"')))
+    assert given.use.first.max_pressure > 1.01 * read_hip(write_edited_file(tmp_path)).use.first.max_pressure
     with pytest.raises(ValueError, match="the model 'hertz' has no radial springs; models with springs: hess-forsbach"):
-        read_hip(told(tmp_path, ('contact = "springs"', 'model = "hertz"')))
+        read_hip(write_edited_file(tmp_path, ('contact = "springs"', 'model = "hertz"')))
 
 
 def test_file_accepts_the_name_of_a_joint(tmp_path):
     head, tail = TEXT.split("[joint]")[0], TEXT[TEXT.index("[cup]") :]
-    given = read_hip(told(tmp_path, text=f'{head}joint = "hip-28"\n{tail}'))
+    given = read_hip(write_edited_file(tmp_path, text=f'{head}joint = "hip-28"\n{tail}'))
     assert given.use.joint.ball_radius == 14.0
     with pytest.raises(ValueError, match=r"joint = 'hip-28' is a whole joint: \[liner\] belongs to a table \[joint\]"):
-        read_hip(told(tmp_path, text=f'{head}joint = "hip-28"\n[liner]\nyoung = 3\n{tail}'))
+        read_hip(write_edited_file(tmp_path, text=f'{head}joint = "hip-28"\n[liner]\nyoung = 3\n{tail}'))
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,7 @@ def test_file_accepts_the_name_of_a_joint(tmp_path):
     ],
 )
 def test_wrong_files_are_refused_in_one_line(tmp_path, old, new, refused):
-    file = told(tmp_path, (old, new))
+    file = write_edited_file(tmp_path, (old, new))
     with pytest.raises(ValueError, match=f"hip.toml: .*{refused}"):
         read_hip(file)
     done = run("hip", str(file))
@@ -137,7 +137,9 @@ def test_wrong_files_are_refused_in_one_line(tmp_path, old, new, refused):
 
 def test_file_reads_the_energy_law_and_ball_wear(tmp_path):
     energy = 'law = "energy"\nfriction = 0.05\nball_coefficient = "1e-6 mm^3/J"'
-    use = read_hip(told(tmp_path, ('law = "archard"', energy), ("1.066e-6 mm^3/(N m)", "2e-2 mm^3/kJ"))).use
+    use = read_hip(
+        write_edited_file(tmp_path, ('law = "archard"', energy), ("1.066e-6 mm^3/(N m)", "2e-2 mm^3/kJ"))
+    ).use
     assert (use.wear.coefficient, use.wear.friction) == (pytest.approx(2e-5), 0.05)
     assert use.ball_wear.coefficient == pytest.approx(1e-6)
 
@@ -175,14 +177,14 @@ def test_area_coefficients_are_read_in_many_spellings():
 
 def test_file_reads_creep_and_film(tmp_path):
     film = '[film]\nviscosity = 1e-3\ncup_roughness = "0.5 um"\nfriction = 0.04\n'
-    given = read_hip(told(tmp_path, text=f"{TEXT}\n[creep]\n{film}"))
+    given = read_hip(write_edited_file(tmp_path, text=f"{TEXT}\n[creep]\n{film}"))
     assert len(given.use.creep.times) == 9
     assert given.use.creep.confinement == 1.0
-    walls = read_hip(told(tmp_path, text=f'{TEXT}\n[creep]\nconfinement = "constrained"\n'))
+    walls = read_hip(write_edited_file(tmp_path, text=f'{TEXT}\n[creep]\nconfinement = "constrained"\n'))
     assert walls.use.creep.confinement == constrained_share(0.4)
     assert given.lubricant.cup_roughness == pytest.approx(5e-4)
     own = "[creep]\ncompliances = [1e-3, 2e-3]\ntimes = [60, 3600]\nseconds_per_cycle = 3\n"
-    given = read_hip(told(tmp_path, text=f"{TEXT}\n{own}"))
+    given = read_hip(write_edited_file(tmp_path, text=f"{TEXT}\n{own}"))
     assert given.use.creep.times == (60.0, 3600.0)
     assert given.use.seconds == 3.0
 
@@ -202,4 +204,4 @@ def test_file_reads_creep_and_film(tmp_path):
 )
 def test_invalid_creep_and_film_tables_are_refused(tmp_path, table, refused):
     with pytest.raises(ValueError, match=refused):
-        read_hip(told(tmp_path, text=f"{TEXT}\n{table}\n"))
+        read_hip(write_edited_file(tmp_path, text=f"{TEXT}\n{table}\n"))

@@ -56,7 +56,7 @@ def test_an_evenly_worn_bore_is_a_larger_clearance():
     assert worn.pressure == pytest.approx(larger.pressure, rel=1e-9, abs=1e-12)
 
 
-def test_a_start_without_contact_finds_the_same_equilibrium():
+def test_a_start_without_contact_reaches_the_same_equilibrium():
     depth = np.zeros(len(SPRINGS.areas))
     solved = SPRINGS.solve_equilibrium(TILTED, depth)
     far = replace(solved, displacement=-0.2 * TILTED / 1000.0)

@@ -14,12 +14,12 @@ from ballsocket.hip import Activity, Mix, logarithmic
 from ballsocket.output.hip_report import write_hip_report
 
 from ..cli.command import run
-from .test_file import told
+from .test_file import write_edited_file
 from .test_wear import hip, walked
 
 
 def test_a_report_has_figures_and_results(tmp_path):
-    file = told(tmp_path, ("5e6\n", "2e5\n"), ("[1e6, 2e6, 5e6]", "[1e5]"))
+    file = write_edited_file(tmp_path, ("5e6\n", "2e5\n"), ("[1e6, 2e6, 5e6]", "[1e5]"))
     done = run("hip", str(file), "--report", str(tmp_path / "hip.html"), "--store", str(tmp_path / "store"))
     assert done.returncode == 0, done.stderr
     page = (tmp_path / "hip.html").read_text(encoding="utf-8")
@@ -36,7 +36,7 @@ def test_a_report_without_contact_has_no_figure(tmp_path):
 
 
 def test_an_unwritable_report_is_refused_before_the_run(tmp_path):
-    file = str(told(tmp_path))
+    file = str(write_edited_file(tmp_path))
     assert "must end in .html" in run("hip", file, "--report", str(tmp_path / "hip.txt")).stderr
     assert "cannot write hip.html" in run("hip", file, "--report", str(tmp_path / "no" / "hip.html")).stderr
 
@@ -46,7 +46,7 @@ def test_results_are_printed_before_the_report_fails(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("ballsocket.cli.hip.write_hip_report", full)
-    words = ["hip", str(told(tmp_path, ("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]"))), "--json"]
+    words = ["hip", str(write_edited_file(tmp_path, ("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]"))), "--json"]
     done = CliRunner().invoke(app, [*words, "--report", str(tmp_path / "hip.html")])
     assert isinstance(done.exception, OSError)
     assert json.loads(done.stdout)["history"][0]["cycles"] == 1e4

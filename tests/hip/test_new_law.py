@@ -29,9 +29,9 @@ coefficient = "1e-6 mm^3/(N m)"
 threshold = "0.5 MPa"
 ring_width = "8 deg"
 [creep]
-law = "power"
-factor = 1e-3
-exponent = 0.2
+law = "exponential"
+compliance = 1e-3
+time = 3600.0
 [uncertainty]
 coefficient = {median = "1e-6 mm^3/(N m)", factor = 1.5}
 count = 4
@@ -39,12 +39,12 @@ count = 4
 PYTHON = """
 import ballsocket as bs
 from ballsocket.hip import InUse, iso_14242_1
+from ballsocket.hip.exponential_creep import ExponentialCreep
 from ballsocket.hip.file import read_hip
-from ballsocket.hip.power_creep import PowerCreep
 from ballsocket.hip.threshold_wear import ThresholdWear
 
-law, creep = ThresholdWear(coefficient=1e-6, threshold=0.5), PowerCreep(factor=1e-3, exponent=0.2)
-assert abs(creep.response(3600.0) / 1e-3 - 1) < 0.01
+law, creep = ThresholdWear(coefficient=1e-6, threshold=0.5), ExponentialCreep(compliance=1e-3, time=3600.0)
+assert abs(creep.response(3600.0) / 0.632121e-3 - 1) < 1e-5
 use = InUse(joint=bs.joints["hip-28"], cycle=iso_14242_1(12), wear=law, creep=creep)
 assert 0 < use.first.volume < 40
 hip = read_hip("hip.toml")
@@ -56,13 +56,13 @@ from ballsocket.app.in_use import hip_of, pairs_of, use_of
 from ballsocket.app.screen import Screen
 from ballsocket.app.views.wear import _fields
 from ballsocket.files.joint_file import JointFile
-settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "power", "creep_exponent": "0.1"})
+settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "exponential", "creep_time": "60"})
 assert use_of({name.partition(".")[2]: text for name, text in pairs_of(settings)}) == settings
 screen = Screen(file=JointFile(joint=bs.joints["hip-28"], load={"force": 1000.0}), use=settings)
 worn = hip_of(screen.file, settings)
-assert (worn.wear.threshold, worn.creep.exponent, worn.creep.factor) == (0.25, 0.1, 1e-3)
+assert (worn.wear.threshold, worn.creep.time, worn.creep.compliance) == (0.25, 60.0, 1e-3)
 hidden = {name: field.get("hidden", False) for name, field in _fields(screen).items()}
-assert (hidden["wear.threshold"], hidden["wear.creep_exponent"], hidden["wear.circular"]) == (False, False, True)
+assert (hidden["wear.threshold"], hidden["wear.creep_time"], hidden["wear.circular"]) == (False, False, True)
 """
 
 
@@ -80,10 +80,10 @@ def package(tmp_path_factory):
     shutil.copytree(Path(bs.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
     for heading, module, law, registry, last in (
         ("A new wear law", "threshold_wear", "ThresholdWear", "wear_laws", "    CrossShear,\n)"),
-        ("A new creep law", "power_creep", "PowerCreep", "creep_laws", "    KelvinVoigtChain,\n)"),
+        ("A new creep law", "exponential_creep", "ExponentialCreep", "creep_laws", "    KelvinVoigtChain,\n)"),
     ):
         code = example(heading)
-        assert code.count("\n") <= 30
+        assert code.count("\n") <= 21
         (copy / "hip" / f"{module}.py").write_text(code, "utf-8")
         text = (copy / "hip" / f"{registry}.py").read_text("utf-8")
         assert last in text
@@ -119,6 +119,6 @@ def test_new_laws_work_on_the_command_line_and_in_json(package, tmp_path):
     assert command.returncode == 0, command.stderr
     answer = json.loads(command.stdout)
     assert answer["laws"]["wear"] == {"law": "threshold", "coefficient_mm3_per_Nm": 1e-6, "threshold_MPa": 0.5}
-    assert answer["laws"]["creep"] == {"law": "power", "factor_per_MPa": 1e-3, "exponent": 0.2}
+    assert answer["laws"]["creep"] == {"law": "exponential", "compliance_per_MPa": 1e-3, "time_s": 3600.0}
     assert answer["history"][-1]["creep_depth"] > 0
     assert 0 < answer["initial"]["wear_mm3_per_Mc"] < 40

@@ -17,7 +17,7 @@ from ballsocket.hip import Activity, Archard, Mix, in_vivo, iso_14242_1, iso_142
 
 from ..cli.command import run
 from .test_checkpoint import KilledError
-from .test_file import told
+from .test_file import write_edited_file
 from .test_wear import K, hip
 
 WIDE = {"ring_width": radians(9.0), "cycle": iso_14242_1(16)}
@@ -93,7 +93,9 @@ KILLS = int(os.environ.get("BALLSOCKET_KILLS", "20"))
 
 @pytest.mark.long
 def test_a_process_killed_at_random_times_gives_the_same_json(tmp_path):
-    file = told(tmp_path, ("[1e6, 2e6, 5e6]", "[1e6, 2e6, 3e6, 4e6, 5e6]"), ("instants = 100", "instants = 60"))
+    file = write_edited_file(
+        tmp_path, ("[1e6, 2e6, 5e6]", "[1e6, 2e6, 3e6, 4e6, 5e6]"), ("instants = 100", "instants = 60")
+    )
     expected, draw = numbers(run("hip", str(file), "--json")), random.Random(20)
     words = [sys.executable, "-m", "ballsocket", "hip", str(file), "--json", "--store"]
     begun = monotonic()

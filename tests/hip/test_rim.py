@@ -220,7 +220,7 @@ def test_microseparation_of_a_left_hip_mirrors_that_of_a_right_one():
     assert left.first.volume == pytest.approx(right.first.volume, rel=1e-9)
 
 
-def test_a_ball_that_nothing_holds_is_dislocated():
+def test_an_unsupported_ball_is_dislocated():
     steep = bs.Cup(inclination=radians(80.0), arc_of_cover=radians(150.0))
     with pytest.raises(ValueError, match=r"dislocated at .* % of the cycle"):
         hip(cycle=iso_14242_4(50, mismatch=8.0), cup=steep)

@@ -15,7 +15,7 @@ from ballsocket.output.hip_plots import penetration_curve
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from ..cli.command import run
-from .test_file import TEXT, told
+from .test_file import TEXT, write_edited_file
 from .test_variability import COEFFICIENT, FEW_CYCLES, TIGHT, WEIGHT, variability
 from .test_wear import K, hip
 
@@ -29,7 +29,7 @@ LIGHT = Normal(mean=800.0, deviation=80.0)
 def short_file(path, *changes, extra=UNCERTAINTY):
     """Write the example of a hip in use with few cycles and more text."""
     few = (("cycles = 5e6", "cycles = 1e4"), ("report_at = [1e6, 2e6, 5e6]", "report_at = [5e3]"))
-    return told(path, *few, *changes, text=TEXT + extra)
+    return write_edited_file(path, *few, *changes, text=TEXT + extra)
 
 
 def four_patients(**distributions):
@@ -302,7 +302,7 @@ def test_the_nominal_patient_has_the_weight_and_the_years_of_the_file(tmp_path):
         'years = 2\nreport_years = [1]\nbody_weight = "900 N"',
     )
     text = f"{start}{walks}\n[uncertainty]\nbody_weight = {{ mean = 800, deviation = 100 }}\n"
-    one = read_hip(told(tmp_path, years, text=text)).uncertain.variability
+    one = read_hip(write_edited_file(tmp_path, years, text=text)).uncertain.variability
     assert one.cycles_per_year == 1e6
     assert one.body_weight == 900.0
     assert one.patient({"body_weight": 990.0}).use.cycle.largest_force == pytest.approx(
@@ -310,4 +310,4 @@ def test_the_nominal_patient_has_the_weight_and_the_years_of_the_file(tmp_path):
     )
     two = text.replace("per_year = 1e6", 'per_year = 1e6\nbody_weight = "800 N"')
     with pytest.raises(ValueError, match="body_weight has several values, but patients need one"):
-        read_hip(told(tmp_path, years, text=two))
+        read_hip(write_edited_file(tmp_path, years, text=two))

@@ -23,7 +23,7 @@ from ballsocket.hip.contact_checks import half_angles
 from ballsocket.studies import LogNormal
 
 from ..cli.command import run
-from .test_file import told
+from .test_file import write_edited_file
 
 UPRIGHT = bs.Cup(inclination=0.0)
 QUICK = {"ring_width": radians(5.0), "wear": Archard(coefficient=1e-6), "cup": UPRIGHT}
@@ -156,7 +156,7 @@ def test_the_command_reports_validity(tmp_path):
         'name = "iso-14242-1"': 'name = "constant-load"\nforce = "80 kN"',
         '"30 deg"': '"0 deg"',
     }
-    file = told(tmp_path, *changes.items())
+    file = write_edited_file(tmp_path, *changes.items())
     process = run("hip", str(file), "--json")
     answer = json.loads(process.stdout)
     assert process.returncode == 0

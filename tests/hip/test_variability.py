@@ -37,7 +37,7 @@ def variability(use=None, **distributions):
     return PatientVariability(use=use or hip(), distributions=distributions)
 
 
-def test_a_patient_has_the_given_quantities():
+def test_a_patient_has_the_values_of_its_sample():
     every = PatientVariability(
         use=hip(seconds_per_cycle=20.0),
         distributions={

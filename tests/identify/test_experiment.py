@@ -27,15 +27,15 @@ def measured(quantity="indentation", uncertainty=2e-4, **settings):
     )
 
 
-def of(quantity, result):
+def candidates_of(quantity, result):
     return [candidate for candidate in standard_candidates(result) if candidate.quantity == quantity]
 
 
 def test_standard_candidates_are_six_loads_up_to_one_and_a_half_times_the_largest():
     result = identified(measured())
-    candidates = of("indentation", result)
+    candidates = candidates_of("indentation", result)
     np.testing.assert_allclose([candidate.force for candidate in candidates], 4500.0 * np.arange(1, 7) / 6)
-    (clearance,) = of("diametral_clearance", result)
+    (clearance,) = candidates_of("diametral_clearance", result)
     assert clearance.force is None
     assert clearance.uncertainty == pytest.approx(0.02 * 0.2, rel=1e-3)
     assert [candidate.order for candidate in candidates] == [0.0] * 6
@@ -43,22 +43,26 @@ def test_standard_candidates_are_six_loads_up_to_one_and_a_half_times_the_larges
 
 def test_forces_that_were_measured_at_indentations_set_the_loads():
     data = Measured(quantity="force", values=FORCE, uncertainty=5.0, indentation=CONTACT.indentation)
-    assert of("indentation", identified(data))[-1].force == pytest.approx(4500.0, rel=1e-3)
+    assert candidates_of("indentation", identified(data))[-1].force == pytest.approx(4500.0, rel=1e-3)
 
 
 def test_data_without_forces_have_candidates_up_to_three_kilonewton():
     data = Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.01)
-    assert of("indentation", identified(data))[-1].force == pytest.approx(3000.0)
+    assert candidates_of("indentation", identified(data))[-1].force == pytest.approx(3000.0)
 
 
 def test_the_uncertainty_of_a_candidate_is_absolute_or_relative_as_in_the_data():
-    constant = of("indentation", identified(measured()))
+    constant = candidates_of("indentation", identified(measured()))
     assert [candidate.uncertainty for candidate in constant] == pytest.approx([2e-4] * 6)
     result = identified(measured(uncertainty=0.03 * CONTACT.indentation))
-    values = MODEL.press(result.joint, force=np.array([candidate.force for candidate in of("indentation", result)]))
+    values = MODEL.press(
+        result.joint, force=np.array([candidate.force for candidate in candidates_of("indentation", result)])
+    )
     expected = (0.03 * values.indentation).tolist()
-    assert [candidate.uncertainty for candidate in of("indentation", result)] == pytest.approx(expected, rel=1e-6)
-    (pressure, *_) = of("max_pressure", result)
+    assert [candidate.uncertainty for candidate in candidates_of("indentation", result)] == pytest.approx(
+        expected, rel=1e-6
+    )
+    (pressure, *_) = candidates_of("max_pressure", result)
     expected = 0.02 * MODEL.press(result.joint, force=pressure.force).max_pressure
     assert pressure.uncertainty == pytest.approx(expected, rel=1e-6)
 
@@ -74,10 +78,10 @@ def test_a_candidate_is_the_next_reading_of_the_machine():
         order=[3.0, 7.0, 5.0, 1.0],
     )
     result = identified(read, measured("area", 4.0))
-    assert {candidate.machine for candidate in of("indentation", result)} == {machine}
-    assert {candidate.order for candidate in of("indentation", result)} == {8.0}
-    assert of("half_angle", result)[0].order == 0.0
-    assert not of("half_angle", result)[0].machine.name
+    assert {candidate.machine for candidate in candidates_of("indentation", result)} == {machine}
+    assert {candidate.order for candidate in candidates_of("indentation", result)} == {8.0}
+    assert candidates_of("half_angle", result)[0].order == 0.0
+    assert not candidates_of("half_angle", result)[0].machine.name
 
 
 @pytest.mark.parametrize(("scatter", "weight"), [(None, 1.0), (HeavyTailed(), 5 / 7)])

@@ -184,7 +184,7 @@ def test_the_frequency_of_a_mass_measures_the_stiffness(question):
         (
             'uncertainty = "1 %"',
             'uncertainty = "1 %"\nmass = "2 kg"',
-            "of a frequency needs its mass",
+            "mass belongs to [[data]] of a frequency, not of area",
         ),
         ('file = "press.csv"', "", "data.toml: [[data]] needs either a file, or a quantity with its values"),
         (

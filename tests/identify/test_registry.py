@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import MACHINE_ERRORS, MODEL_NUMBERS, Machine, Measured
+from ballsocket.identify import MACHINE_ERRORS, MODEL_NUMBERS, OBSERVABLE_NUMBERS, Machine, Measured
 from ballsocket.identify.file import read_identify
 from ballsocket.problem.cup import Cup
 from ballsocket.studies import Normal
@@ -112,7 +112,7 @@ def test_a_machine_has_every_registered_error():
     machine = Machine(**dict.fromkeys(MACHINE_ERRORS, 1e-06), name="press")
     assert machine.known_errors() == {f"press.{name}": 1e-6 for name in MACHINE_ERRORS}
     assert Machine().known_errors() == {f"machine.{name}": 0.0 for name in MACHINE_ERRORS}
-    assert Machine(offset=(-1.0, 2.0)).unknowns == {"machine.offset": (-1.0, 2.0)}
+    assert Machine(offset=(-1.0, 2.0)).unknown_errors == {"machine.offset": (-1.0, 2.0)}
     assert Machine(offset=0.1) == Machine(offset=0.1)
     assert Machine(offset=0.1) != Machine(drift=0.1)
     assert repr(Machine(offset=0.1)) == "Machine(compliance=0.0, offset=0.1, drift=0.0, name='machine')"
@@ -126,7 +126,7 @@ def test_a_machine_has_every_registered_error():
 
 def test_the_how_to_names_every_registered_unknown():
     text = (ROOT / "docs" / "how-to" / "identify.md").read_text("utf-8")
-    assert all(f"`{name}`" in text for name in (*MODEL_NUMBERS, *MACHINE_ERRORS))
+    assert all(f"`{name}`" in text for name in (*MODEL_NUMBERS, *OBSERVABLE_NUMBERS, *MACHINE_ERRORS))
 
 
 SECTION = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("## A new unknown")[2].partition("\n## ")[0]

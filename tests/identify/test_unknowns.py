@@ -13,15 +13,15 @@ from ballsocket.studies import LogNormal, Normal, Rectangular
 MODEL = bs.HessForsbach()
 
 
-def one(name, prior, machines=()):
+def unknown_of(name, prior, machines=()):
     return collect_unknowns({name: prior}, machines, MODEL)[0]
 
 
-RANGE = one("clearance", (0.02, 0.3))
-LINEAR = one("clearance", (0.0, 0.3))
-POISSON = one("liner_poisson", (0.3, 0.48))
-NORMAL = one("liner.young", Normal(mean=900.0, deviation=50.0))
-FACTOR = one("clearance", LogNormal(median=0.1, factor=1.2))
+RANGE = unknown_of("clearance", (0.02, 0.3))
+LINEAR = unknown_of("clearance", (0.0, 0.3))
+POISSON = unknown_of("liner_poisson", (0.3, 0.48))
+NORMAL = unknown_of("liner.young", Normal(mean=900.0, deviation=50.0))
+FACTOR = unknown_of("clearance", LogNormal(median=0.1, factor=1.2))
 ALL = ParameterTransform((RANGE, POISSON, NORMAL, FACTOR))
 VALUES = np.array([[0.05, 0.4, 860.0, 0.09], [0.2, 0.31, 1000.0, 0.13]])
 
@@ -99,14 +99,14 @@ def test_the_log_prior_of_a_distribution_is_minus_half_the_squared_distance():
 def test_distributions_are_searched_within_eight_standard_deviations():
     assert (NORMAL.low, NORMAL.high) == (500.0, 1300.0)
     assert (FACTOR.low, FACTOR.high) == pytest.approx((0.1 / 1.2**8, 0.1 * 1.2**8))
-    cut = one("liner_young", Normal(mean=900.0, deviation=50.0, low=850.0, high=1000.0))
+    cut = unknown_of("liner_young", Normal(mean=900.0, deviation=50.0, low=850.0, high=1000.0))
     assert (cut.low, cut.high) == (850.0, 1000.0)
 
 
 def test_the_search_ends_at_allowed_values():
     """A mean less eight deviations may be negative, and Poisson's ratio is at most 0.5."""
-    assert one("liner_young", Normal(mean=900.0, deviation=300.0)).low == pytest.approx(0.9)
-    assert one("liner_poisson", Normal(mean=0.45, deviation=0.02)).high == 0.5
+    assert unknown_of("liner_young", Normal(mean=900.0, deviation=300.0)).low == pytest.approx(0.9)
+    assert unknown_of("liner_poisson", Normal(mean=0.45, deviation=0.02)).high == 0.5
 
 
 def test_a_physical_limit_is_an_end_beyond_which_no_value_is_allowed():
@@ -116,7 +116,7 @@ def test_a_physical_limit_is_an_end_beyond_which_no_value_is_allowed():
     assert not compliance[0].is_physical(-1, low + 1e-3)
     assert not compliance[0].is_physical(1, compliance[0].high / compliance[0].prior_deviation)
     assert not compliance[1].is_physical(-1, 0.0)  # an offset may be negative
-    poisson = one("liner_poisson", (0.3, 0.5))
+    poisson = unknown_of("liner_poisson", (0.3, 0.5))
     assert poisson.is_physical(1, 0.5 / poisson.prior_deviation)
     assert not POISSON.is_physical(1, 0.48 / POISSON.prior_deviation)
 

@@ -32,7 +32,7 @@ def joint_of(clearance: float) -> bs.Joint:
     return bs.Joint(ball_radius=18.0 - clearance, clearance=clearance, liner_thickness=6.75, liner=liner)
 
 
-def test_the_table_covers_what_it_says():
+def test_reference_table_covers_the_stated_ratios_and_models():
     ratios = [float(row["indentation"]) / float(row["clearance"]) for row in ROWS if float(row["clearance"])]
     assert min(ratios) == pytest.approx(1e-12)
     assert max(ratios) == pytest.approx(1e6)
@@ -41,7 +41,7 @@ def test_the_table_covers_what_it_says():
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['model']}-{row['clearance']}-{row['indentation']}")
-def test_forward_and_inverse_laws(row):
+def test_forward_and_inverse_laws_have_thirteen_digits(row):
     clearance, indentation = float(row["clearance"]), float(row["indentation"])
     model, joint = model_of(row["model"], clearance), joint_of(clearance)
     forward = model.press(joint, indentation=indentation)
@@ -57,7 +57,7 @@ def test_forward_and_inverse_laws(row):
             assert by_angle.indentation == pytest.approx(indentation, rel=1e-12, abs=0)
 
 
-def test_energy_of_the_adhesive_socket():
+def test_energy_of_the_adhesive_socket_has_twelve_digits():
     rows = [row for row in ROWS if row["model"] == "adhesive"]
     for row in rows:
         contact = model_of("adhesive", float(row["clearance"])).press(

@@ -90,7 +90,7 @@ def test_plain_numbers_give_the_results_of_arrays(model):
 
 
 @EVERY
-def test_no_load_is_no_contact(model):
+def test_zero_load_gives_zero_contact(model):
     contact = model.press(HIP, force=0.0)
     if model.name == "adhesive":
         assert contact.indentation > 0

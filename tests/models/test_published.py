@@ -22,7 +22,7 @@ STEEP = bs.Joint(
         (0.49, (0.96, 1.79, 0.33)),
     ],
 )
-def test_table_3(poisson, constants):
+def test_modulus_follows_table_3(poisson, constants):
     joint = bs.Joint(
         ball_radius=19.9, clearance=0.1, liner_thickness=5.0, liner=bs.Material(young=800.0, poisson=poisson)
     )
@@ -30,7 +30,7 @@ def test_table_3(poisson, constants):
     assert bs.hess_forsbach(joint) == pytest.approx(expected, rel=1e-13)
 
 
-def test_outside_table_3_the_last_column_is_kept_and_flagged():
+def test_outside_table_3_the_last_column_is_used_and_noted():
     for poisson, inside in ((0.25, 0.30), (0.5, 0.49)):
         outer, inner = (
             bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1e3, poisson=nu))
@@ -43,15 +43,15 @@ def test_outside_table_3_the_last_column_is_kept_and_flagged():
         assert not any("outside ν 0.3" in note for note in bs.HessForsbach().press(inner, force=3000.0).notes)
 
 
-def test_bartel_at_3000_newton():
+def test_bartel_has_the_reference_values_at_3000_newton():
     contact = bs.Bartel().press(HIP, force=3000.0)
     assert contact.indentation == pytest.approx(0.03872, abs=5e-6)
     assert contact.max_pressure == pytest.approx(11.7168, abs=5e-5)
     assert np.degrees(contact.half_angle) == pytest.approx(43.718, abs=5e-4)
 
 
-def test_vessel_modulus_is_the_thick_sphere():
-    """K_B = 1/c_0 of a sphere whose outer surface is held: c_0 = 0.00330432 mm/MPa here."""
+def test_vessel_modulus_is_that_of_a_thick_sphere():
+    """K_B = 1/c_0 of a sphere with a fixed outer surface: c_0 = 0.00330432 mm/MPa here."""
     assert 1 / bs.spherical_vessel(HIP) == pytest.approx(0.00330432, abs=5e-9)
 
 
@@ -63,7 +63,7 @@ def test_published_overestimates_at_high_poisson_ratio_have_their_sign():
 
 
 @pytest.mark.parametrize(("poisson", "indentation", "pressure"), [(0.40, 0.0333, 8.49), (0.45, 0.0293, 9.23)])
-def test_plane_layer(poisson, indentation, pressure):
+def test_plane_layer_has_the_reference_values(poisson, indentation, pressure):
     joint = bs.Joint(
         ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=poisson)
     )
@@ -73,14 +73,14 @@ def test_plane_layer(poisson, indentation, pressure):
 
 
 @pytest.mark.parametrize(("eta", "share"), [(0.05, 0.00242253), (0.2, 0.0359431), (0.5, 0.2062995), (0.9, 0.6963411)])
-def test_pull_off_of_the_adhesive_socket(eta, share):
+def test_pull_off_force_has_the_reference_values(eta, share):
     K = bs.hess_forsbach(HIP)
     socket = bs.AdhesiveSocket(work_of_adhesion=K * (eta * HIP.clearance) ** 2 / 2)
     assert socket.adhesion_number(HIP) == pytest.approx(eta)
     assert socket.pull_off(HIP) == pytest.approx(np.pi * 18.0**2 * K * HIP.clearance * share, rel=2.5e-6)
 
 
-def test_pull_off_is_the_lowest_force_there_is():
+def test_pull_off_force_is_the_minimum_of_the_force():
     """-F over the half angle, from its definition, has its highest point at the closed form."""
     K, c, eta = bs.hess_forsbach(HIP), HIP.clearance, 0.3
     socket = bs.AdhesiveSocket(work_of_adhesion=K * (eta * c) ** 2 / 2)
@@ -89,13 +89,13 @@ def test_pull_off_is_the_lowest_force_there_is():
     assert socket.pull_off(HIP) == pytest.approx(-force.min(), rel=1e-8)
 
 
-def test_weak_adhesion_pulls_off_like_a_sphere():
+def test_weak_adhesion_has_the_pull_off_force_of_a_sphere():
     w = 1e-9
     expected = 2 * np.pi * w * 18.0**2 / 0.1
     assert bs.AdhesiveSocket(work_of_adhesion=w).pull_off(HIP) == pytest.approx(expected, rel=1e-3)
 
 
-def test_from_adhesion_number_one_on_the_hemisphere_sticks():
+def test_hemisphere_sticks_above_adhesion_number_one():
     K = bs.hess_forsbach(HIP)
     socket = bs.AdhesiveSocket(work_of_adhesion=K * (1.2 * HIP.clearance) ** 2 / 2)
     contact = socket.press(HIP, force=10.0)
@@ -112,7 +112,7 @@ PLATE = bs.Joint(ball_radius=10.0, clearance=0.1, liner_thickness=np.inf, liner=
     ("degrees", "flexibility", "pressure"),
     [(10, 82.2206, 3.6616), (40, 3.90504, 0.97388), (60, 1.06720, 0.71172), (80, 0.12615, 0.61161)],
 )
-def test_persson(degrees, flexibility, pressure):
+def test_pin_in_hole_has_the_values_of_persson(degrees, flexibility, pressure):
     contact = bs.PinInHole().press(PLATE, half_angle=np.radians(degrees))
     stiffness = 70_000.0 / (1 - 0.09)
     assert stiffness * 0.1 / contact.line_load == pytest.approx(flexibility, rel=5e-5)
@@ -122,7 +122,7 @@ def test_persson(degrees, flexibility, pressure):
     assert np.degrees(back.half_angle) == pytest.approx(degrees, rel=1e-12)
 
 
-def test_persson_perfect_fit_and_equilibrium():
+def test_pin_in_hole_has_the_perfect_fit_angle_and_balances_its_load():
     fit = bs.Joint(ball_radius=10.0, clearance=0.0, liner_thickness=np.inf, liner=ALUMINIUM, ball=ALUMINIUM)
     contact = bs.PinInHole().press(fit, line_load=np.array([1.0, 1000.0]))
     np.testing.assert_allclose(np.degrees(contact.half_angle), 84.83, atol=5e-3)
@@ -132,15 +132,15 @@ def test_persson_perfect_fit_and_equilibrium():
     assert total == pytest.approx(2000.0, rel=1e-6)
 
 
-def test_persson_of_a_light_load_is_hertz_of_a_cylinder():
+def test_pin_in_hole_under_a_light_load_is_a_hertz_cylinder():
     """b² = 4 Q R*/(π E*) with E* = E1/2 for equal materials, p0 = 2Q/(π b)."""
     contact = bs.PinInHole().press(PLATE, line_load=1e-3)
     half_width = np.sqrt(8 * 1e-3 * (10.1**2 / 0.1) / (np.pi * 70_000.0 / (1 - 0.09)))
     assert contact.max_pressure == pytest.approx(2e-3 / (np.pi * half_width), rel=1e-4)
 
 
-def test_a_pin_is_told_as_a_ball_is():
-    """Its clearance is none at the first point, where no load gives a half angle of its own."""
+def test_pin_in_hole_has_statuses_and_notes_like_a_ball():
+    """The first point has no clearance: all loads have one half angle."""
     joint = bs.Joint(ball_radius=10.0, clearance=np.array([0.0, 0.1]), liner_thickness=np.inf, liner=ALUMINIUM)
     contact = bs.PinInHole().press(joint, half_angle=0.5)
     assert [bs.Status(code).name for code in contact.status] == ["NOT_REACHED", "OK"]
@@ -158,6 +158,6 @@ def test_a_pin_is_told_as_a_ball_is():
         ({}, "exactly one of line_load, half_angle is needed"),
     ],
 )
-def test_persson_refuses(load, message):
+def test_invalid_loads_of_a_pin_are_refused(load, message):
     with pytest.raises(ValueError, match=message):
         bs.PinInHole().press(PLATE, **load)

@@ -17,7 +17,7 @@ IN_ONE_STEP = {name: model for name, model in CLOSED_FORMS.items() if name != "r
 
 
 @pytest.mark.parametrize("model", IN_ONE_STEP.values(), ids=IN_ONE_STEP)
-def test_every_point_answers_or_says_why_not(model):
+def test_every_random_point_has_numbers_or_a_status(model):
     contact = model.press(JOINT, force=FORCE)
     answered = (contact.status == bs.Status.OK) | (contact.status == bs.Status.BEYOND_EQUATOR)
     for name in ("indentation", "half_angle", "max_pressure", "area", "stiffness", "energy", "foundation_modulus"):
@@ -36,7 +36,7 @@ def test_every_point_answers_or_says_why_not(model):
     assert np.mean(harder.indentation[both] > contact.indentation[both]) > 0.999999
 
 
-def test_plane_layer_on_a_thousand():
+def test_force_and_indentation_of_random_plane_layers_are_inverse():
     """The one numerical model of the catalogue, on fewer."""
     size = either(quick=200, long=1_000)
     joint = random_joint(size, seed=3, clearance=(-5.0, -2.0), thickness=(-0.7, 1.0))

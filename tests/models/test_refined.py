@@ -1,4 +1,4 @@
-"""The closed form against the exact answer it was fitted to, and where it must be right without a fit."""
+"""Refined closed form: the exact solution that it was fitted to, and limits that need no fit."""
 
 import csv
 import json
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.models.liner_compliance import liner_of, log_compliance, log_compliance_anywhere
+from ballsocket.models.liner_compliance import liner_coefficients, log_compliance, log_compliance_any_wave
 from ballsocket.models.refined_state import NUMBERS
 
 from ..joints import HIP, random_joint
@@ -33,13 +33,13 @@ ANGLE = np.radians(EXACT["half_angle_deg"])
 QUANTITIES = ("indentation", "max_pressure", "force")
 
 
-def test_within_one_percent_at_a_half_angle():
+def test_quantities_at_a_half_angle_are_within_one_percent():
     contact = MODEL.press(JOINT, half_angle=ANGLE)
     for name in QUANTITIES:
         np.testing.assert_allclose(getattr(contact, name), EXACT[name], rtol=WITHIN, err_msg=name)
 
 
-def test_within_one_percent_at_a_force():
+def test_quantities_at_a_force_are_within_one_percent():
     contact = MODEL.press(JOINT, force=EXACT["force"])
     for name, value in (*((name, EXACT[name]) for name in QUANTITIES), ("half_angle", ANGLE)):
         np.testing.assert_allclose(getattr(contact, name), value, rtol=WITHIN, err_msg=name)
@@ -54,7 +54,7 @@ def test_the_profile_is_within_2_5_percent_of_the_peak():
         assert np.max(np.abs(wrong)) < 0.025, share
 
 
-def test_against_the_exact_model_on_fresh_points():
+def test_new_random_points_agree_with_the_exact_model():
     rng = np.random.default_rng()  # another set every time: the bound is a promise, not a record
     poisson, ratio = rng.uniform(0.3, 0.46, 20), rng.uniform(1.0, 6.5, 20)
     angle = np.radians(rng.uniform(15.0, 60.0, 20))
@@ -69,7 +69,7 @@ def test_against_the_exact_model_on_fresh_points():
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case['poisson']}-{case['liner_thickness']}")
-def test_the_published_cases(case):
+def test_published_cases_agree_within_one_and_a_half_percent(case):
     lengths = {name: case[name] for name in ("ball_radius", "clearance", "liner_thickness")}
     joint = bs.Joint(**lengths, liner=bs.Material(young=case["young"], poisson=case["poisson"]))
     for step in case["steps"]:
@@ -80,7 +80,7 @@ def test_the_published_cases(case):
         assert np.degrees(contact.half_angle) == pytest.approx(step["half_angle_deg"], rel=within)
 
 
-def test_everything_grows_with_the_half_angle_far_outside_the_fit():
+def test_quantities_increase_with_half_angle_far_outside_the_fit():
     angle = np.radians(np.arange(0.2, 85.0, 0.2))[:, None, None]
     poisson = np.array([-0.9, -0.3, 0.0, 0.2, 0.3, 0.4, 0.45, 0.48, 0.49, 0.499, 0.5])[:, None]
     contact = MODEL.press(joint_of(poisson, np.geomspace(0.05, 30.0, 14)), half_angle=angle)
@@ -101,14 +101,14 @@ def test_a_small_contact_is_hertzian():
 
 
 @pytest.mark.parametrize(("low", "high", "within"), [(-2, -2, 2.3e-3), (1, 1, 2.4e-4), (0, 1, 0.01), (-2, 0, 0.032)])
-def test_the_plane_bed_is_a_cubic_that_is_as_near_as_it_says(low, high, within):
+def test_cubic_of_the_plane_bed_has_the_stated_error(low, high, within):
     scale, square, cube = NUMBERS["plane"]
     for s in np.linspace(low, high, 51):
         true = mpmath.log(mpmath.gamma(1 - s / 2) * mpmath.gamma(2 - s / 2) / mpmath.mpf(2) ** s)
         assert abs(-s * np.log(scale) + square * s**2 + cube * s**3 - true) < within
 
 
-def test_the_plane_bed_begins_as_it_should():
+def test_cubic_of_the_plane_bed_has_the_exact_first_coefficient():
     assert -np.log(NUMBERS["plane"][0]) == pytest.approx(float(mpmath.euler - mpmath.log(2) - 0.5), abs=7e-5)
 
 
@@ -137,13 +137,13 @@ def shell_compliance(k: mpmath.mpf, nu: float, b: float) -> mpmath.mpf:
 
 @pytest.mark.parametrize("poisson", [-0.3, 0.3, 0.45, 0.499])
 @pytest.mark.parametrize("thickness", [0.1, 0.4, 2.0])
-def test_the_compliance_is_that_of_the_shell(poisson, thickness):
+def test_compliance_equals_that_of_an_elastic_shell(poisson, thickness):
     """At q = 1 too, where the closed expression is 0/0 and its two forms meet."""
     numbers = np.sqrt([0.05, 0.3, 0.6999, 0.7001, 0.74, 0.75, 0.75 + 1e-13, 0.76, 0.7999, 0.8001, 2.0, 12.0, 400.0])
-    liner = liner_of(poisson, 1 + thickness)
+    liner = liner_coefficients(poisson, 1 + thickness)
     with mpmath.workdps(40):
         for number in numbers:
-            log_c, rate = log_compliance_anywhere(float(number), liner)
+            log_c, rate = log_compliance_any_wave(float(number), liner)
             exact = mpmath.mpf(float(number)) + mpmath.mpf("1e-18")  # not on the 0/0
             value = shell_compliance(exact, poisson, 1 + thickness)
             step = mpmath.mpf("1e-7")
@@ -157,7 +157,7 @@ def test_integer_modes_are_those_of_the_exact_model():
 
     n = np.arange(1, 40)
     k = np.sqrt(n * (n + 1.0))
-    found = np.exp(log_compliance(k, liner_of(0.4, 1 + 6.75 / 18.0))[0]) * 18.0 / 1000.0
+    found = np.exp(log_compliance(k, liner_coefficients(0.4, 1 + 6.75 / 18.0))[0]) * 18.0 / 1000.0
     np.testing.assert_allclose(found, socket_of(HIP).compliance(n), rtol=1e-12)
 
 
@@ -169,8 +169,8 @@ def test_stiffness_and_energy_are_smooth_across_the_removable_singularity():
         assert np.max(np.abs(third)) < 1e-8, name
 
 
-def test_wild_joints_press_back_and_forth():
-    """As through the other closed forms; for a tenth of the loads the fit would be more than perfect."""
+def test_force_and_indentation_of_extreme_joints_are_inverse():
+    """About a tenth of the loads lie beyond the perfect fit."""
     size = 20_000
     joint = random_joint(size, seed=11)
     force = joint.liner.young * joint.ball_radius**2 * 10 ** np.random.default_rng(4).uniform(-12, 0, size)
@@ -187,7 +187,7 @@ def test_wild_joints_press_back_and_forth():
     assert np.all(harder.indentation[both] > contact.indentation[both])
 
 
-def test_what_it_does_not_answer():
+def test_joints_and_loads_outside_the_domain_have_no_result():
     with pytest.raises(ValueError, match="refined has no answer for c = 0: .* use cosine-limit"):
         MODEL.press(bs.Joint(ball_radius=18.0, clearance=0.0, liner_thickness=6.0, liner=bs.UHMWPE), force=1.0)
     with pytest.raises(ValueError, match="refined has no answer for L = inf"):

@@ -9,7 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.problem.dimensions import check_unique_lengths, derive_lengths
-from ballsocket.problem.values import larger, short_text
+from ballsocket.problem.values import elementwise_maximum, short_text
 
 SHELL = bs.Layer(thickness=4.0, material=bs.TITANIUM)
 BONE = bs.Layer(thickness=inf, material=bs.CANCELLOUS_BONE)
@@ -158,10 +158,10 @@ def test_short_text_has_six_digits():
 
 
 def test_larger_selects_elementwise():
-    assert larger(2.0, 3) == 3
-    assert larger(3.0, 2.0) == 3.0
-    np.testing.assert_array_equal(larger(np.array([1.0, 4.0]), np.array([2.0, 3.0])), [2.0, 4.0])
-    np.testing.assert_array_equal(larger(np.array([1.0, 4.0]), 2.0), [2.0, 4.0])
+    assert elementwise_maximum(2.0, 3) == 3
+    assert elementwise_maximum(3.0, 2.0) == 3.0
+    np.testing.assert_array_equal(elementwise_maximum(np.array([1.0, 4.0]), np.array([2.0, 3.0])), [2.0, 4.0])
+    np.testing.assert_array_equal(elementwise_maximum(np.array([1.0, 4.0]), 2.0), [2.0, 4.0])
 
 
 def test_texts_of_joints():

@@ -13,7 +13,7 @@ from ..core.kinds import Kind
 from ..files.joint_file import JointFile
 from ..files.units import parse
 from ..hip import Cycle, HipSimulation, named_cycle
-from ..hip.config import parse_creep, parse_surface
+from ..hip.config import parse_creep, socket_surface
 from ..hip.creep_laws import CREEP_LAWS
 from ..hip.cycle_file import read_cycle
 from ..hip.cycle_registry import CYCLES
@@ -235,6 +235,6 @@ def hip_of(file: JointFile, use: Use, own: Own | None = None) -> HipSimulation:
         cup=file.cup,
         cycle=own.cycle(use.body_weight) if own is not None else named_cycle(use.cycle, body_weight=weight),
         wear=read_wear_law(use.wear_table),
-        surface=parse_surface({"contact": use.contact}),
+        surface=socket_surface(use.contact),
         creep=parse_creep(use.creep_tables, float(file.joint.liner.poisson)),
     )

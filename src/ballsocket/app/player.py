@@ -41,7 +41,7 @@ class Course:
 
     def label(self, reading: Reading) -> str:
         """The label of an axis."""
-        return f"{self.name}{self.unit(reading).bracketed}"
+        return f"{self.name}{self.unit(reading).text_in_brackets}"
 
     def of(self, found: Gaited, reading: Reading) -> numpy.ndarray:
         """Values over the instants of a cycle."""

@@ -57,7 +57,9 @@ def _told(worn: Worn, reading: Reading) -> dict[str, float]:
         "nearest to the rim, worn": (DERIVED["edge_distance"], edge),
     }
     units = {name: reading.unit(quantity) for name, (quantity, _) in found.items()}
-    numbers = {f"{name}{units[name].bracketed}": value * units[name].factor for name, (_, value) in found.items()}
+    numbers = {
+        f"{name}{units[name].text_in_brackets}": value * units[name].factor for name, (_, value) in found.items()
+    }
     new_and_worn = worn.summary["contact"]["unworn"], last["contact"]
     used = [[check["utilisation"] for check in checks if check["utilisation"] is not None] for checks in new_and_worn]
     shares = {
@@ -87,7 +89,7 @@ def penetration_chart(found: Mapping[str, Worn], reading: Reading = SHOWN) -> st
         f"{reading.said(_DEPTH, float(each.low[-1]))} to {reading.said(_DEPTH, float(each.high[-1]))}"
         for name, each in found.items()
     )
-    up = f"penetration{unit.bracketed}"
+    up = f"penetration{unit.text_in_brackets}"
     drawn = chart(f"penetration: {said}", "million cycles", up, curves, (end, highest))
     return f"{drawn}<p class='legend'>{legend(lines)}</p>"
 
@@ -108,7 +110,7 @@ def _map(place: str, name: str, worn: Worn, highest: float, reading: Reading) ->
         name=place,
         at=cells_of(worn.grid, unit.factor * worn.depth),
         highest=unit.factor * highest,
-        label=f"worn depth{unit.bracketed}",
+        label=f"worn depth{unit.text_in_brackets}",
         reach=worn.grid.reach,
         cup=worn.cup,
     )

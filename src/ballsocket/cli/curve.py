@@ -10,7 +10,7 @@ import typer
 import ballsocket as bs
 
 from ..output.terminal import print_curve
-from ..studies.file import named_model
+from ..studies.usual import named_model
 from .elements import CupWords
 from .groups import grouped
 from .root import FAILURE, app, complain

@@ -8,7 +8,8 @@ from typing import Annotated
 import typer
 
 from ..core.checks import known_name
-from ..export.targets import TARGETS, ExportJob
+from ..export.target import ExportJob
+from ..export.targets import TARGETS
 from .force_elements import ElementWords, identifier
 from .groups import grouped
 from .root import app, complain, echo_path

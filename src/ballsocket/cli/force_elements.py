@@ -15,8 +15,7 @@ from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..files.joint_file import JointFile
 from ..problem.cup import Cup
-from ..studies.file import named_model
-from ..studies.usual import usual
+from ..studies.usual import named_model, usual
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -81,7 +81,7 @@ class Watched:
 
 def along(sphere: Sphere, cup: Cup, aim: Mapping[str, Any]) -> Sphere:
     """The model in that cup, under a load of that aim."""
-    return replace(sphere, cup=cup).along(**aim)
+    return replace(sphere, cup=cup).with_direction(**aim)
 
 
 def remark(contact: Any, seconds: float) -> str:

@@ -79,7 +79,9 @@ def orient(
     form.check()
     angles: dict[str, Any] = stands.angles()
     file = words.or_named(joint)
-    model = replace(AimWords(ring_width=stands.ring_width).model(), cup=cup.on(file.cup)).along(**stands.aim(file))
+    model = replace(AimWords(ring_width=stands.ring_width).model(), cup=cup.on(file.cup)).with_direction(
+        **stands.aim(file)
+    )
     status = Console(stderr=True).status("sphere")
     with status, progress_to(lambda text: status.update(f"sphere: {text}")):
         stood: Orientations = stand(file.joint, model=model, **angles, **load.or_of(file))

@@ -21,7 +21,6 @@ from ..problem import Joint
 from ..problem.cup import Cup
 from ..studies.axes import Span
 from ..studies.design import grid
-from ..studies.file import named_model
 from ..studies.limits import Limit
 from ..studies.optimum import optimise as find_optimum
 from ..studies.parameters import LOADS
@@ -29,7 +28,7 @@ from ..studies.pareto import pareto
 from ..studies.phrases import choice_of, limit_of, range_of, spread_of
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
-from ..studies.usual import check_known, usual
+from ..studies.usual import check_known, named_model, usual
 from .groups import grouped
 from .root import app, complain
 from .words import AsJson, JointWords, echo_json, given, load_of

@@ -2,32 +2,44 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
+from importlib import import_module
 from types import MappingProxyType
 from typing import Annotated
 
 import typer
 
 from ..core.checks import known_name
-from ..evidence.question import QuestionTable
-from ..files.joint_file import JointFileTable
-from ..files.schema import Table, json_schema
-from ..hip.schema import HipTable
-from ..identify.file import IdentifyTable
-from ..studies.file import StudyTable
+from ..files.schema import Table
 from .root import app
-from .words import echo_json
 
-KINDS: Mapping[str, type[Table]] = MappingProxyType(
+_TABLES: Mapping[str, str] = MappingProxyType(
     {
-        "joint": JointFileTable,
-        "hip": HipTable,
-        "study": StudyTable,
-        "identify": IdentifyTable,
-        "evidence": QuestionTable,
+        "joint": "files.joint_file.JointFileTable",
+        "hip": "hip.schema.HipTable",
+        "study": "studies.file.StudyTable",
+        "identify": "identify.file.IdentifyTable",
+        "evidence": "evidence.question.QuestionTable",
     }
 )
-"""Kinds of input files by the names of their commands."""
+"""Tables of the kinds of input files, by the names of their commands; only the table of a kind in use is loaded."""
+
+KINDS = tuple(_TABLES)
+"""Kinds of input files."""
+
+
+def file_table(kind: str) -> type[Table]:
+    """Return the table of a kind of input file.
+
+    Raises
+    ------
+    ValueError
+        A kind that is not known; the message suggests the nearest one.
+    """
+    module, _, name = _TABLES[known_name("kind of file", kind, KINDS)].rpartition(".")
+    table: type[Table] = getattr(import_module(f"ballsocket.{module}"), name)
+    return table
 
 
 @app.command()
@@ -35,4 +47,6 @@ def schema(
     kind: Annotated[str, typer.Argument(help=f"Kind of file: {', '.join(KINDS)}.")],
 ) -> None:
     """Print the JSON schema of a kind of input file, for editors that complete and check TOML."""
-    echo_json(json_schema(KINDS[known_name("kind of file", kind, KINDS)], f"ballsocket {kind} file"))
+    from ..files.schema_keys import json_schema
+
+    typer.echo(json.dumps(json_schema(file_table(kind)), indent=2))

@@ -1,4 +1,4 @@
-"""Compiled passes over arrays for radial foundations, `Refined` and `Tabulated`."""
+"""Compiled loops over arrays of contacts for radial foundations, `Refined` and `Tabulated`."""
 
 from __future__ import annotations
 
@@ -26,17 +26,20 @@ from ..elasticity.exact.tabulated.model import Tabulated
 from ..models import kinematics, liner_compliance, refined_state
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import Kinematics
-from ..models.liner_compliance import liner_of
+from ..models.liner_compliance import liner_coefficients
 from ..models.modulus import Formula
 from ..models.refined import RefinedSolution, make_solver_result, scaled_load
-from ..models.refined_state import ScaledContact, edge_of_force, edge_of_indentation, scaled_contact
+from ..models.refined_state import ScaledContact, half_angle_of_force, half_angle_of_indentation, scaled_contact
 from ..models.table_3 import eq_18
 from ..problem import Joint
 from .overloads import as_row, compile_loop, inline_formula, jit_formula, pick
 
 
 def solve_forces(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-    """Compute d, K d, ε and the status of every point, in the common shape of a joint of arrays and its loads."""
+    """Solve a radial foundation for forces: return indentation, pole pressure, half angle and status of each contact.
+
+    The arrays have the common shape of the joint and its loads.
+    """
     shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*joint.numbers(), force)))
     inputs = [as_row(part, shape) for part in (*joint.numbers()[:5], force)]
     outputs = [numpy.empty(math.prod(shape)) for _ in range(3)]
@@ -49,7 +52,10 @@ def solve_forces(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple
 
 @cache
 def foundation_kernel(formula: Formula, motion: Kinematics) -> Any:
-    """Return the compiled pass of one modulus and one kinematics, for any mix of numbers and arrays."""
+    """Return the compiled loop over contacts for one modulus and one kinematics.
+
+    Each input is a number or an array.
+    """
     modulus = inline_formula(formula)
     indentation = inline_formula(motion.indentation)
     force_law = inline_formula(motion.force)
@@ -57,6 +63,7 @@ def foundation_kernel(formula: Formula, motion: Kinematics) -> Any:
     ok, failed = numpy.int8(Status.OK), numpy.int8(Status.NOT_REACHED)
 
     def run(R1, c, L, E, nu, F, d_out, p0_out, angle_out, status, *constants):  # type: ignore[no-untyped-def]
+        """Solve each contact for its force; write indentation, pole pressure, half angle and status."""
         for i in range(d_out.size):
             clearance, load = pick(c, i), pick(F, i)
             R2 = pick(R1, i) + clearance
@@ -78,7 +85,9 @@ def _overload_angle_of(versine: Any) -> Callable[..., Any]:
 
 
 def _angle_polynomial(versine: float) -> float:
-    """Compute `kinematics.angle_of` up to π/2 without a call into the C library, so that the loop can be vectorised.
+    """Compute the angle in rad, 0 to π/2, from its versine by a polynomial that compilers can vectorise.
+
+    It replaces `kinematics.angle_of`, which calls the C library.
 
     ε = sqrt(2v) P(v); P is asin(x)/x of x = sqrt(v/2) fitted in Chebyshev polynomials over v from 0 to 1, to 1.4e-16:
     `mpmath.chebyfit` of 18 terms in 50 digits.
@@ -105,7 +114,7 @@ def _angle_polynomial(versine: float) -> float:
 
 
 def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
-    """Solve `Refined` for loads of one kind on a joint of arrays."""
+    """Solve the model `Refined` in one compiled loop, for arrays of forces or indentations."""
     shape = numpy.broadcast_shapes(*(number.shape for number in (*joint.numbers(), load)))
     widening = 1 + joint.liner_thickness / joint.socket_radius
     inputs = (load, scaled_load(joint, kind, load), joint.liner.poisson, widening)
@@ -119,12 +128,13 @@ def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
 
 @cache
 def _refined_kernel(kind: str) -> Any:
-    """Return the compiled pass of `Refined` for loads of one kind."""
-    solve = edge_of_force if kind == "force" else edge_of_indentation
+    """Return the compiled loop over contacts of `Refined` for given forces or indentations."""
+    solve = half_angle_of_force if kind == "force" else half_angle_of_indentation
 
     def run(load, scaled, poisson, widening, outputs):  # type: ignore[no-untyped-def]
+        """Solve each contact; write its half angle and the fields of `ScaledContact`."""
         for i in range(outputs.shape[1]):
-            liner = liner_of(pick(poisson, i), pick(widening, i))
+            liner = liner_coefficients(pick(poisson, i), pick(widening, i))
             edge = solve(pick(scaled, i), liner) if pick(load, i) > 0 else 0.0
             state = scaled_contact(edge if edge > 0 else 1.0, liner)
             outputs[0, i] = edge
@@ -136,28 +146,29 @@ def _refined_kernel(kind: str) -> Any:
 
 @overload(refined_state.log_compliances, strict=False)
 def _overload_log_compliances(half_angle: Any, liner: Any, waves: Any) -> Callable[..., Any]:
-    return refined_state.log_compliances_of_number
+    return refined_state.scalar_log_compliances
 
 
 def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> SolverResult:
-    """Solve `Tabulated` for loads of one kind on a joint of arrays."""
+    """Solve the model `Tabulated` in one compiled loop, for arrays of forces or indentations."""
 
     def read(curves: JointCurves, load: Numbers) -> tuple[Numbers, ...]:
-        """Compute ε, d, F, p0 and dF/dd of contacts (contacts,)."""
+        """Compute half angle, indentation, force, pole pressure and stiffness of contacts: five arrays (contacts,)."""
         inputs = (curves.scaled_load(kind, load), curves.ratio, *curves.scale)
         outputs = numpy.empty((5, len(load)))
         _tabulated_kernel(kind)(*(as_row(number, load.shape) for number in inputs), curves.functions, outputs)
         return tuple(outputs)
 
-    return model.answer(joint, kind, load, read)
+    return model.solve_with(joint, kind, load, read)
 
 
 @cache
 def _tabulated_kernel(kind: str) -> Any:
-    """Return the compiled loop of `Tabulated` for loads of one kind."""
+    """Return the compiled loop over contacts of `Tabulated` for given forces or indentations."""
     solve = angle_of_force if kind == "force" else angle_of_indentation
 
     def run(load, ratio, clearance, area, compliance, series, outputs):  # type: ignore[no-untyped-def]
+        """Solve each contact; write half angle, indentation, force, pole pressure and stiffness."""
         step = 0 if series.shape[2] == 1 else 1
         functions = series[:, :, 0].copy()
         for i in range(outputs.shape[1]):
@@ -182,7 +193,10 @@ def _overload_evaluate(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
 
 @inline_formula
 def _evaluate_functions(angle, curve):  # type: ignore[no-untyped-def]
-    """Compute the three functions and their slopes by ln ε, from T_k+1 = 2x T_k - T_k-1 and T_k' = k U_k-1."""
+    """Compute the three tabulated functions of a half angle and their slopes by ln ε, as Chebyshev series.
+
+    The recurrences are T_k+1 = 2x T_k - T_k-1 and T_k' = k U_k-1.
+    """
     root = chebyshev.angle_root(angle, curve.ratio)
     x = 2 * root - 1
     c, twice = curve.functions, 2 * x
@@ -214,26 +228,26 @@ for _formula in (
     inline_formula(_formula)
 
 for _long_formula in (
-    liner_compliance.liner_of,
+    liner_compliance.liner_coefficients,
     liner_compliance.log_compliance,
     liner_compliance._scaled_polynomial,
-    liner_compliance.log_compliance_anywhere,
+    liner_compliance.log_compliance_any_wave,
     liner_compliance._log_compliance_near,
     liner_compliance._reduced_polynomial,
     liner_compliance._decay_mean,
     liner_compliance._polynomial,
-    refined_state.log_compliances_of_number,
+    refined_state.scalar_log_compliances,
     refined_state.log_slopes,
     refined_state._log_compliance,
-    refined_state._edge,
-    refined_state._exponent,
+    refined_state._edge_displacement,
+    refined_state._pressure_exponent,
     refined_state.angle_derivative,
     refined_state.scaled_contact,
-    refined_state._solve_edge,
+    refined_state._solve_half_angle,
     refined_state._indentation_residual,
     refined_state._force_residual,
-    refined_state.edge_of_indentation,
-    refined_state.edge_of_force,
+    refined_state.half_angle_of_indentation,
+    refined_state.half_angle_of_force,
     chebyshev.angle_root,
     formulas.angle_derivative,
     formulas.opening,

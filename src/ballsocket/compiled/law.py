@@ -1,4 +1,4 @@
-"""Law of a joint for compiled programs: `law(indentation)` in Python and in functions compiled by numba."""
+"""Force law of a joint for compiled programs: `law(indentation)` in Python and in functions compiled by numba."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .overloads import jit_formula
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CompiledLaw:
-    """Law of a joint for Python and for functions compiled by numba, which take it as an argument.
+    """Force law of a joint that Python and functions compiled by numba can call and take as an argument.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class CompiledLaw:
 
 
 def compiled_law(law: ForceLaw) -> CompiledLaw:
-    """Compile the law of any model: the formulas of a radial foundation, else a curve.
+    """Compile the force law of a model: the formulas of a radial foundation, else a curve.
 
     Parameters
     ----------
@@ -90,8 +90,8 @@ def compiled_law(law: ForceLaw) -> CompiledLaw:
 
 @cache
 def _foundation_function(motion: Kinematics) -> Any:
-    """Return the compiled law of one kinematics."""
-    force, stiffness, answered = (
+    """Return the compiled force law of a radial foundation with one kinematics."""
+    force, stiffness, finite_or_nan = (
         jit_formula(motion.force),
         jit_formula(motion.stiffness),
         jit_formula(formulas.finite_or_nan),
@@ -99,21 +99,22 @@ def _foundation_function(motion: Kinematics) -> Any:
 
     @njit(error_model="numpy")
     def force_and_tangent(indentation, R2, c, K):  # type: ignore[no-untyped-def]
+        """Compute the force in N and the stiffness in N/mm at an indentation in mm; 0 without contact."""
         if indentation < 0:
             return 0.0, 0.0
-        return answered(force(R2, c, K, indentation), stiffness(R2, c, K, indentation))
+        return finite_or_nan(force(R2, c, K, indentation), stiffness(R2, c, K, indentation))
 
     return force_and_tangent
 
 
 @cache
 def _curve_function() -> Any:
-    """Return the compiled law of a curve."""
+    """Return the compiled force law of a curve."""
     return njit(error_model="numpy")(formulas.force_and_tangent)
 
 
 class _LawType(types.Type):
-    """Type of a `CompiledLaw` in numba: one for each function."""
+    """Numba type of a `CompiledLaw`, one for each function."""
 
     def __init__(self, function: Any, numbers: Any) -> None:
         self.function, self.numbers = function, numbers
@@ -121,7 +122,7 @@ class _LawType(types.Type):
 
 
 @typeof_impl.register(CompiledLaw)
-def _type_of(law: CompiledLaw, _: Any) -> _LawType:
+def _law_type(law: CompiledLaw, _: Any) -> _LawType:
     return _LawType(law.function, typeof(law.numbers))
 
 
@@ -135,7 +136,7 @@ make_attribute_wrapper(_LawType, "numbers", "numbers")
 
 
 @unbox(_LawType)
-def _unboxed(kind: _LawType, value: Any, context: Any) -> NativeValue:
+def _unbox_law(kind: _LawType, value: Any, context: Any) -> NativeValue:
     numbers = context.pyapi.object_getattr_string(value, "numbers")
     native = context.unbox(kind.numbers, numbers)
     context.pyapi.decref(numbers)
@@ -145,12 +146,12 @@ def _unboxed(kind: _LawType, value: Any, context: Any) -> NativeValue:
 
 
 @overload_method(_LawType, "__call__")
-def _called(law, indentation):  # type: ignore[no-untyped-def]
+def _overload_call(law, indentation):  # type: ignore[no-untyped-def]
     function = law.function
     return lambda law, indentation: function(indentation, *law.numbers)
 
 
 @lower_builtin(_LawType, _LawType, types.Any)
-def _lowered(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """Generate the code of a call, which numba requests separately from its type."""
-    return context.compile_internal(builder, _called(*signature.args), signature, arguments)
+def _lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+    """Generate the machine code of a call of a law; numba requests this separately from the type."""
+    return context.compile_internal(builder, _overload_call(*signature.args), signature, arguments)

@@ -1,4 +1,4 @@
-"""Model with compiled presses of large arrays, and a law for compiled programs."""
+"""Model with compiled solutions of large arrays, and a force law for compiled programs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,9 @@ from .law import CompiledLaw, compiled_law
 
 @dataclass(frozen=True, kw_only=True)
 class Compiled(ModelWrapper):
-    """Model with compiled presses of NumPy float64 arrays by force, and by indentation if that needs a solution.
+    """Wrapped model that solves NumPy float64 arrays of loads in compiled loops.
+
+    Compiled loops apply to forces, and to indentations of models that need an iteration.
 
     The wrapped model solves everything else (half angles, other array libraries, dtypes, plain numbers). Compiled
     programs can call `law(joint)`.
@@ -59,6 +61,7 @@ class Compiled(ModelWrapper):
         indentation: Array | None = None,
         half_angle: Array | None = None,
     ) -> Contact:
+        """Solve the contact for one load, by compiled loops where possible; see `Model.press`."""
         reject_unnamed_loads(unnamed)
         check_joint(joint)
         kind, load = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
@@ -68,12 +71,12 @@ class Compiled(ModelWrapper):
         return super().press(joint, force=force, indentation=indentation, half_angle=half_angle)
 
     def _is_compilable(self, joint: Joint, load: Array) -> bool:
-        """Return True for float64 arrays and a model of plain numbers."""
+        """Return True if all arrays are float64 and the model's constants are plain numbers."""
         large = [number for number in (*joint.numbers(), load) if not arrays.is_plain_number(number)]
         return bool(large) and all(map(_is_float64, large)) and all(map(arrays.is_plain_number, self.parameters))
 
     def _solve_forces(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:
-        """Press a radial foundation in one compiled pass."""
+        """Solve the contacts of a radial foundation for forces in one compiled loop."""
         _, array_joint, load = as_arrays(joint, force)
         in_domain = check_domain((*self.fits, *self.domain), array_joint, self.name)
         d, p0, angle, status = kernels.solve_forces(model, array_joint, load)

@@ -1,4 +1,4 @@
-"""Overloads of the functions of `ballsocket.core.arrays` for one number in numba, and registration of formulas."""
+"""Numba overloads of the scalar functions of `ballsocket.core.arrays`, and registration of formulas."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ jit_formula = register_jitable
 
 
 def compile_loop(function: Callable[..., Any]) -> Any:
-    """Compile a pass over arrays for any mix of numbers and arrays."""
+    """Compile a loop over arrays with numba; each input is a number or an array."""
     # contract: a product and a sum may be rounded once; the order of operations does not change
     return numba.njit(function, error_model="numpy", fastmath={"contract"})
 
 
 def as_row(number: Any, shape: tuple[int, ...]) -> Any:
-    """Return a number unchanged, an array as one row of the common shape."""
+    """Convert an array to one row of the common shape, and a number to a float."""
     if numpy.ndim(number) == 0:
         return float(number)
     expanded = number if number.shape == shape else numpy.broadcast_to(number, shape)
@@ -36,7 +36,7 @@ def as_row(number: Any, shape: tuple[int, ...]) -> Any:
 
 
 def pick(values: Any, i: int) -> Any:
-    """Return element i of an array; a number is the same for all i."""
+    """Return element i of an array, or a number itself, which holds for every i."""
     return values[i] if isinstance(values, numpy.ndarray) else values
 
 

@@ -24,7 +24,7 @@ Leaves = tuple[Any, ...]
 
 
 def _register(cls: Any, leaves: tuple[str, ...], fixed: tuple[str, ...]) -> None:
-    """Register a class: `leaves` are its children, `fixed` its static data."""
+    """Register a class as a JAX pytree: `leaves` are its children, `fixed` its static data."""
 
     def flatten(instance: Any) -> tuple[Leaves, Leaves]:
         return tuple(getattr(instance, name) for name in leaves), tuple(getattr(instance, name) for name in fixed)

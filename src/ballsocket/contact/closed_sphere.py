@@ -66,29 +66,32 @@ def _evaluate_fit(name: str, degree: int, contact: Any) -> Array:
     )
 
 
-def indentation_change(contact: Any) -> Array:
-    """Estimate the relative increase of the indentation on a hemisphere at the same force."""
+def hemisphere_indentation_change(contact: Any) -> Array:
+    """Estimate the relative increase of indentation if a hemisphere replaces the closed sphere.
+
+    The force is the same.
+    """
     return _evaluate_fit("indentation", 5, contact) + contact.joint.modulus_ratio * _evaluate_fit("ball", 4, contact)
 
 
-def largest_change(contact: Any) -> Array:
-    """Estimate the largest relative change of contact quantities on a hemisphere at the same force.
+def max_hemisphere_change(contact: Any) -> Array:
+    """Estimate the largest relative change of a contact if a hemisphere replaces the closed sphere.
 
-    The quantities are indentation, half angle, largest pressure and stiffness.
+    It is the largest of the changes of indentation, half angle, largest pressure and stiffness at the same force.
     """
     ball = BALL_FACTOR * contact.joint.modulus_ratio * _evaluate_fit("ball", 4, contact)
     return _evaluate_fit("largest", 5, contact) + ball
 
 
 LIKE_HEMISPHERE = Range(
-    quantity=indentation_change,
+    quantity=hemisphere_indentation_change,
     symbol="change of d on a hemisphere",
     high=MAX_CHANGE,
     why="the model is a closed sphere, and a socket with a free rim is softer: use fem or sphere",
 )
 
 HEMISPHERE_NOTE = Remark(
-    quantity=largest_change,
+    quantity=max_hemisphere_change,
     symbol="change on a hemisphere",
     high=NOTED_CHANGE,
     why="closed sphere: a hemisphere with a free rim and half a ball differs by more than 1 % in d, ε, pmax or dF/dd "

@@ -55,6 +55,7 @@ def _law_property(name: str) -> Any:
     """Make a cached property of `Contact` that evaluates one quantity of its laws."""
 
     def compute(self: Contact) -> Array:
+        """Compute the quantity of the contact."""
         return self._evaluate(law)
 
     law = attrgetter(name)
@@ -103,6 +104,7 @@ class Contact(Outcome):
 
     @property
     def _load(self) -> Array:
+        """Load of the contact: its indentation in mm."""
         return self.indentation
 
     @cached_property
@@ -177,7 +179,9 @@ class Contact(Outcome):
         unchecked = (
             [self.utilisation_note] if self.utilisation_note and arrays.all_true(self._failed) is not True else []
         )
-        compared = (note for good, text in strength.remarks(self) for note in self._note(good | self._failed, text))
+        compared = (
+            note for good, text in strength.strength_remarks(self) for note in self._note(good | self._failed, text)
+        )
         return (*super().notes, *unchecked, *compared)
 
     @property
@@ -301,6 +305,7 @@ class Contact(Outcome):
         require("axis_angle", axis_angle, abs(axis_angle) <= 2 * pi, f"it is in radians; {degrees_hint(axis_angle)}")
 
         def ring(x: float) -> Array:
+            """Compute the integrand of the torque on the ring at a fraction x of the half angle."""
             angle = self.half_angle * sin(pi / 2 * x)  # removes the square root singularity at the edge
             width = self.half_angle * (pi / 2 * cos(pi / 2 * x))
             arc = angle if self.model.planar else arrays.sin(angle)
@@ -317,6 +322,7 @@ class Contact(Outcome):
         """
 
         def value() -> Array:
+            """Evaluate the quantity, with NumPy numbers if Python floats raise."""
             try:
                 return law(self.laws)
             except ArithmeticError:

@@ -260,9 +260,11 @@ class ModelWrapper(_Delegation, Model):
     model: Model
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve the contact with the wrapped model."""
         return self.model._solve(joint, kind, load)
 
     def _law(self, joint: Joint) -> ForceLaw:
+        """Return the force law of the wrapped model."""
         return self.model._law(joint)
 
 

@@ -136,6 +136,7 @@ def _combined_property(name: str) -> Any:
     """Make a cached property that combines one quantity of all joints."""
 
     def combine(self: CombinedSolution) -> Array:
+        """Combine the quantity of all joints."""
         return self.combine(lambda piece: getattr(piece.state, name))
 
     combine.__name__ = name
@@ -226,6 +227,7 @@ class CombinedSolution:
         rows = numpy.broadcast_to(angles, (*front, *self.shape)).reshape(prod(front), prod(self.shape))
 
         def pressure(indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+            """Compute the contact pressure in MPa of one joint at its angles."""
             values: numpy.ndarray = piece.state.pressure(rows[:, indices[piece.touching]])
             return values
 
@@ -261,6 +263,7 @@ class SolvedContact(Contact):
         flat_mask = numpy.broadcast_to(arrays.to_numpy(mask), self.laws.shape).ravel()
 
         def masked_von_mises(indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+            """Compute the largest von Mises stress in MPa of one joint; NaN outside the mask."""
             masked = replace(piece, reached=piece.reached & flat_mask[indices][piece.touching])
             return self._joint_von_mises(indices, masked)
 
@@ -282,12 +285,12 @@ class SolvedContact(Contact):
         if prod(self.laws.shape) != 1:
             raise ValueError(f"{self._inside} are for one contact, got the shape {self.laws.shape}: press one load")
         pieces = self.laws.pieces
-        if self._failed_everywhere or not pieces or not pieces[0][1].touching.all():
+        if self._all_points_failed or not pieces or not pieces[0][1].touching.all():
             raise ValueError(f"{self._inside} need a contact under load, or preloaded")
         return pieces[0][1].state
 
     @property
-    def _failed_everywhere(self) -> bool:
+    def _all_points_failed(self) -> bool:
         """True if no point has a result."""
         return bool(arrays.to_numpy(self._failed).all())
 

@@ -56,6 +56,7 @@ def increasing_root(
         return scalar_increasing_root(law, target, low, high, start, arguments, steps, tolerance)
 
     def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
+        """Compute one bracketed Newton step of all elements."""
         return bracketed_newton_step(law, target, arguments, tolerance, *state[:-1])
 
     x = _iterate(step, (start, low, high, start < high, start == start), steps)

@@ -16,7 +16,7 @@ from ..core.arrays import Array, all_true, clip, isfinite, logical_not, sin, to_
 from ..core.deprecation import renamed_names
 from ..core.quantities import LINEARITY, STRENGTH
 from ..core.validity import RIGID_BACKING, Range, is_missing
-from ..problem import Joint, Material, larger
+from ..problem import Joint, Material, elementwise_maximum
 
 MAX_ELASTIC_UTILISATION = 1.38
 """Largest utilisation for which a linear result is valid.
@@ -120,7 +120,7 @@ def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
         for material, stress, factor in parts
         if material is not None and material.yield_stress is not None
     ]
-    return reduce(larger, ratios) if ratios else nan * von_mises  # von_mises may be infinite
+    return reduce(elementwise_maximum, ratios) if ratios else nan * von_mises  # von_mises may be infinite
 
 
 def joint_ball_stress_ratio(joint: Joint) -> Array:
@@ -161,7 +161,7 @@ def unchecked_strength_reason(joint: Joint) -> str:
     return f"{checked} not checked: the liner has no yield stress{ball_note}"
 
 
-def remarks(contact: Any) -> Iterator[tuple[Array, str]]:
+def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
     """Yield a mask of points and a note for each material limit; the note is for points where the mask is false."""
     joint, pressure = contact.joint, contact.max_pressure
     if joint.liner.proportional_limit is not None:

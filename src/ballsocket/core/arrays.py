@@ -59,6 +59,7 @@ def _make_elementwise(name: str, scalar_function: Callable[[float], float]) -> C
     """Make an elementwise function, such as `exp`, for Python numbers and arrays of any library."""
 
     def function(x: Array) -> Array:
+        """Evaluate the function of x; infinite or NaN where `math` raises an error."""
         if type(x) is not float:
             return getattr(namespace(x), name)(x)
         try:
@@ -195,6 +196,7 @@ def to_common_arrays(*values: Array) -> tuple[Array, ...]:
     device = array_api_compat.device(arrays[0]) if arrays else None
 
     def convert(value: Array) -> Array:
+        """Convert one value to the common library, dtype and device."""
         if is_plain_number(value):
             return xp.asarray(float(value), dtype=dtype, device=device)
         return value if value.dtype == dtype else xp.astype(value, dtype)

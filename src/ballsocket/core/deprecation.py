@@ -125,11 +125,13 @@ MOVED = {
     "ballsocket.export.slopes": "ballsocket.export.recorder",
     "ballsocket.export.tables": "ballsocket.export.targets",
     "ballsocket.export.trusted": "ballsocket.export.validity_depth",
+    "ballsocket.export.fmu.cross_check": "ballsocket.export.fmu.variables",
+    "ballsocket.export.fmu.description": "ballsocket.export.fmu.fmu",
 }
 """New path of each package or module that moved; the modules of a package move with it."""
 
 
-def new_path(name: str) -> str | None:
+def present_module_path(name: str) -> str | None:
     """Return the present path of a module from its path in version 1.0; None if it has not moved."""
     parent = name
     while "." in parent:
@@ -146,11 +148,13 @@ class _MovedModule(Loader):
         self._path = path
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """Import and return the module at its present path."""
         module = import_module(self._path)
         self._spec = module.__spec__
         return module
 
     def exec_module(self, module: ModuleType) -> None:
+        """Restore the specification of the module, which is already executed."""
         module.__spec__ = self._spec  # the import system has just replaced it by that of the old path
 
 
@@ -160,7 +164,8 @@ class _MovedModules(MetaPathFinder):
     def find_spec(
         self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        moved = new_path(name)
+        """Find a module by its old path; None if it has not moved."""
+        moved = present_module_path(name)
         if moved is None:
             return None
         return ModuleSpec(name, _MovedModule(moved), is_package=True)
@@ -184,6 +189,7 @@ def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
     """
 
     def find(name: str) -> Any:
+        """Return a function or class by its old name, with a warning."""
         if name not in names:
             raise AttributeError(f"module {module!r} has no attribute {name!r}")
         _warn(f"{module}.{name}", names[name])
@@ -221,6 +227,7 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
 
         @functools.wraps(function)
         def wrapper(*args: P.args, **kwargs: P.kwargs) -> T:
+            """Call the function with the new names of its arguments."""
             for old in names.keys() & kwargs.keys():
                 new = names[old]
                 if new in kwargs:
@@ -247,6 +254,7 @@ def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
 
         @functools.wraps(initialise)
         def wrapper(self: T, *args: Any, **kwargs: Any) -> None:
+            """Initialise the dataclass with the new names of its fields."""
             for old in arguments.keys() & kwargs.keys():
                 _warn(f"argument {old!r} of {owner.__name__}()", repr(arguments[old]))
                 kwargs[arguments[old]] = kwargs.pop(old)

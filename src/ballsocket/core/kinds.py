@@ -26,7 +26,7 @@ class Unit:
     factor: float = 1.0
 
     @property
-    def bracketed(self) -> str:
+    def text_in_brackets(self) -> str:
         """Unit in brackets, such as " [mm]", for column heads and axis labels; empty for a plain number."""
         return f" [{self.text}]" if self.text else ""
 
@@ -64,12 +64,12 @@ class Kind(StrEnum):
         return _WRITTEN.get(self, Unit(self.unit))
 
     @property
-    def suffix(self) -> str:
+    def column_suffix(self) -> str:
         """Unit at the end of a CSV column name, such as "N_per_mm"; empty for a plain number."""
         return _SUFFIXES.get(self, self.unit)
 
     @property
-    def typed(self) -> str:
+    def assumed_unit(self) -> str:
         """Assumed unit of an input without a unit, in a file or on the command line; empty for a plain number."""
         return _TYPED.get(self, self.unit)
 

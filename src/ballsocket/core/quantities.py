@@ -115,7 +115,7 @@ class Quantity:
     @property
     def column(self) -> str:
         """Column name in CSV and data frames, with the unit at its end, such as "max_pressure_MPa"."""
-        return f"{self.name}_{self.kind.suffix}" if self.kind.suffix else self.name
+        return f"{self.name}_{self.kind.column_suffix}" if self.kind.column_suffix else self.name
 
     @property
     def written(self) -> Unit:
@@ -137,7 +137,7 @@ class Quantity:
 
         The unit is `shown` by default.
         """
-        return f"{self.symbol}{(unit or self.shown).bracketed}".strip()
+        return f"{self.symbol}{(unit or self.shown).text_in_brackets}".strip()
 
     def label(self, unit: Unit | None = None) -> str:
         """Format an axis label of title, symbol and unit, such as "largest pressure pmax [MPa]".

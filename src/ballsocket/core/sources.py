@@ -31,7 +31,7 @@ class Source:
         return _read_field(bibliography()[self.key], "doi")
 
     @property
-    def short(self) -> str:
+    def authors_and_year(self) -> str:
         """Authors and year, such as "Plank et al. 2007"."""
         entry = bibliography()[self.key]
         people = _read_field(entry, "author") or _read_field(entry, "editor")
@@ -40,7 +40,7 @@ class Source:
         return f"{authors} {_read_field(entry, 'year')}"
 
     def __str__(self) -> str:
-        return f"{self.short}, {self.place}" if self.place else self.short
+        return f"{self.authors_and_year}, {self.place}" if self.place else self.authors_and_year
 
 
 @cache
@@ -107,7 +107,7 @@ def find_cited_keys(text: str) -> Iterator[str]:
     """Find the BibTeX keys of the publications that a text cites, such as "Plank et al. 2007"."""
     for key in bibliography() if text else ():
         source = Source(key)
-        if (source.doi and source.doi in text) or re.search(rf"(?<!& )\b{re.escape(source.short)}\b", text):
+        if (source.doi and source.doi in text) or re.search(rf"(?<!& )\b{re.escape(source.authors_and_year)}\b", text):
             yield key
 
 

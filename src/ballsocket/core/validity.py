@@ -40,7 +40,7 @@ class Status(IntEnum):
 
     @property
     def failed(self) -> bool:
-        """True if results of this status are NaN."""
+        """True if the press failed: its results are NaN."""
         return self in _FAILED
 
 

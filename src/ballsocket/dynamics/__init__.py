@@ -1,8 +1,9 @@
 """Force elements of a joint, damping, friction, viscoelastic liners, and simulated motion."""
 
+from ..core.deprecation import renamed_names
 from . import restitution as relations
 from .bristles import Bristles
-from .damping import Damping, Flores, Gonthier, HuntCrossley, LankaraniNikravesh, Restitution, of_restitution
+from .damping import Damping, Flores, Gonthier, HuntCrossley, LankaraniNikravesh, Restitution, damping_from_restitution
 from .element import ForceElement
 from .friction import Friction
 from .load import ContactState, Load
@@ -13,6 +14,8 @@ from .viscoelastic import Prony, Viscoelastic
 
 Identified = DampingEstimate
 Touch = ContactState
+
+__getattr__ = renamed_names(__name__, {"of_restitution": "damping_from_restitution"})
 
 __all__ = [
     "Bristles",
@@ -30,9 +33,9 @@ __all__ = [
     "Restitution",
     "Touch",
     "Viscoelastic",
+    "damping_from_restitution",
     "from_bounces",
     "from_restitution",
-    "of_restitution",
     "relations",
     "simulate",
 ]

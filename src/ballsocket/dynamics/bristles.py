@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from ..core.arrays import Array, safe_divisor, sqrt, where
 from ..core.sources import Source
-from .friction import Coulomb, coefficient_at, effective_slip, set_checked_number, tilt_share
+from .friction import CoulombCoefficients, effective_slip, friction_coefficient, rolling_slip_ratio, set_checked_number
 from .reaction import BallCentre, Sliding, versine
 
 Deflections = tuple[Array, Array, Array, Array]
@@ -15,8 +15,10 @@ Deflections = tuple[Array, Array, Array, Array]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Bristles(Coulomb):
-    """LuGre model of friction, for a deflection z, a slip v and a normal force N::
+class Bristles(CoulombCoefficients):
+    """LuGre friction with the deflection of bristles as an internal state.
+
+    For a deflection z, a slip v and a normal force N::
 
         z' = v - σ0 q(v) z/(h μ(q)),    f = -N (σ0 z + σ1 z' + σ2 v),
 
@@ -79,7 +81,9 @@ class Bristles(Coulomb):
 def bristle_forces(
     centre: BallCentre, slip: Sliding, deflection: Deflections, bristles: Bristles
 ) -> tuple[Deflections, Deflections, Array]:
-    """Compute friction per normal force, the rate of the deflections, and the dissipated power per normal force.
+    """Compute the friction of bristles, the rate of their deflections, and the dissipated power.
+
+    Friction and power are divided by the normal force.
 
     The friction has three components across the load and one about it, a moment divided by the lever ρ.
     """
@@ -87,8 +91,10 @@ def bristle_forces(
     zx, zy, zz, zr = deflection
     normal_part = zx * centre.x + zy * centre.y + zz * centre.z
     z = zx - normal_part * centre.x, zy - normal_part * centre.y, zz - normal_part * centre.z, zr
-    speed, slopes, least_slope = _patch(g, centre)
-    mu = safe_divisor(coefficient_at(speed, bristles.coefficient, bristles.static, bristles.stribeck_speed))
+    speed, slopes, least_slope = _effective_slip_speed(g, centre)
+    mu = safe_divisor(
+        friction_coefficient(speed, bristles.coefficient, bristles.breakaway_coefficient, bristles.stribeck_speed)
+    )
     decay = bristles.stiffness * speed / mu
     damping = bristles.damping / (1.0 + bristles.damping * speed / (4.0 * mu * least_slope))
     losses = tuple(decay * bend / share for bend, share in zip(z, slopes, strict=True))
@@ -110,11 +116,14 @@ _TRANSITION_SPEED_SQUARED = 1e-30
 """Square of the transition speed in (mm/s)²; too small to change the slip."""
 
 
-def _patch(slip: Deflections, centre: BallCentre) -> tuple[Array, Deflections, Array]:
-    """Compute the effective slip speed, its slopes over half the squares of the slip, and the smallest slope."""
+def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array, Deflections, Array]:
+    """Compute the effective slip speed of the patch, its slopes, and the smallest slope.
+
+    The slopes are derivatives by half the squares of the slip components.
+    """
     gx, gy, gz, gr = slip
     m = versine(centre)
-    across, kappa = gx * gx + gy * gy + gz * gz, tilt_share(m)
+    across, kappa = gx * gx + gy * gy + gz * gz, rolling_slip_ratio(m)
     share = kappa * kappa
     square, by_slip, by_tilt, by_spin, _ = effective_slip(
         across, share * across, gr * gr, 0.0, _TRANSITION_SPEED_SQUARED, share, m

@@ -1,4 +1,4 @@
-"""Force element for compiled programs: the same formulas in tens of nanoseconds, for a state or for arrays.
+"""Force element for compiled programs, with the formulas of `ForceElement` for one state or for arrays.
 
 Needs numba (`pip install 'ballsocket[fast]'`).
 """
@@ -64,32 +64,34 @@ class CompiledElement:
     element: ForceElement
 
     def __post_init__(self) -> None:
-        if self.element.remembers:
+        if self.element.internal_state:
             raise ValueError(
-                f"{self.element.remembers}; compiled elements support no internal state, use the ForceElement"
+                f"{self.element.internal_state}; compiled elements support no internal state, use the ForceElement"
             )
 
     def __call__(self, position: Any, velocity: Any = (0.0, 0.0, 0.0), spin: Any = (0.0, 0.0, 0.0)) -> Load:
-        """Compute the load at a state by the element itself, see `ForceElement`."""
+        """Compute the load at a state by the Python element, see `ForceElement`."""
         return self.element(position, velocity, spin)
 
     @property
     def constants(self) -> Constants:
-        """Numbers of the element."""
+        """Constants of the element: lengths in mm, speeds in mm/s, times in s."""
         return self.element.constants
 
     @cached_property
     def potential(self) -> CompiledLaw:
-        """Energy, force and stiffness of an indentation, for compiled functions."""
+        """Compiled function of the indentation that returns energy, force and stiffness."""
         return compiled_potential(self.element)
 
     @property
     def march(self) -> Any:
-        """Compiled loop over the steps of `simulate`."""
+        """Compiled loop over the time steps of `simulate`."""
         return _march()
 
     def loads(self, position: Numbers, velocity: Numbers, spin: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-        """Compute force and moment on the ball, energy, and tangent (xx, yy, zz, xy, yz, zx) of an array of states.
+        """Compute force and moment on the ball, energy, and tangent stiffness of an array of states.
+
+        The components of the tangent stiffness are xx, yy, zz, xy, yz, zx.
 
         Parameters
         ----------
@@ -108,7 +110,7 @@ class CompiledElement:
 
 
 def compiled_potential(element: ForceElement) -> CompiledLaw:
-    """Return energy, force and stiffness over the indentation for compiled functions."""
+    """Return the compiled energy, force and stiffness of an element over the indentation."""
     energy_law = element.potential
     if isinstance(energy_law, SpringPotential):
         springs = energy_law.springs
@@ -117,18 +119,19 @@ def compiled_potential(element: ForceElement) -> CompiledLaw:
     curve = (
         energy_law.curve
         if isinstance(energy_law, CurvePotential)
-        else _curve_of(element.joint, element.model.law(element.joint))
+        else _energy_curve(element.joint, element.model.law(element.joint))
     )
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
     return CompiledLaw(function=_compiled_slopes(), numbers=(*ends, curve.pieces))
 
 
-def _curve_of(joint: Joint, law: ForceLaw) -> Any:
+def _energy_curve(joint: Joint, law: ForceLaw) -> Any:
     return energy_curve(law, 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius)
 
 
 @cache
 def _springs(motion: Kinematics) -> Any:
+    """Return the compiled energy, force and stiffness of radial springs with one kinematics."""
     energy, force, stiffness = jit_formula(motion.energy), jit_formula(motion.force), jit_formula(motion.stiffness)
 
     @njit(error_model="numpy")
@@ -140,18 +143,21 @@ def _springs(motion: Kinematics) -> Any:
 
 @cache
 def _compiled_slopes() -> Any:
-    return njit(error_model="numpy", fastmath={"contract"})(potential.slopes_of_number)
+    return njit(error_model="numpy", fastmath={"contract"})(potential.energy_derivatives_of_number)
 
 
 def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
-    """Compute force, moment, energy and tangent (xx, yy, zz, xy, yz, zx) of one state in a compiled function."""
+    """Compute force, moment, energy and tangent stiffness of one state, in compiled functions.
+
+    The components of the tangent stiffness are xx, yy, zz, xy, yz, zx.
+    """
     centre = reaction.centre_of(position[0], position[1], position[2], constants.clearance)
-    return load_from_contact(centre, reaction.elastic(potential, centre, constants), velocity, spin, constants)
+    return load_from_contact(centre, reaction.elastic_contact(potential, centre, constants), velocity, spin, constants)
 
 
 def load_from_contact(centre, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
-    """Compute the results of `loads_at` from the elastic contact of the state."""
-    fx, fy, fz, mx, my, mz = reaction.reaction(centre, contact, velocity, spin, constants)
+    """Compute force, moment, energy and tangent stiffness from the elastic contact of a state."""
+    fx, fy, fz, mx, my, mz = reaction.force_and_moment(centre, contact, velocity, spin, constants)
     return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(centre, contact, constants)
 
 
@@ -161,8 +167,11 @@ _BLOCK_SIZE = 256
 
 @cache
 def _batch() -> Any:
+    """Return the compiled loop over an array of states."""
+
     @njit(error_model="numpy", fastmath={"contract"})
     def run(potential, constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
+        """Compute force, moment, energy and tangent stiffness of each state, in blocks."""
         block = numpy.empty((_BLOCK_SIZE, 3))
         for first in range(0, len(energy), _BLOCK_SIZE):
             last = min(first + _BLOCK_SIZE, len(energy))
@@ -194,28 +203,28 @@ for _formula in (
     kinematics.linear_energy,
     kinematics.circular_energy,
     reaction.ramp,
-    reaction.positive,
+    reaction.ramp_value,
     reaction._rounded,
     reaction.rim_share,
     friction.widening_factor,
     friction.drill_lever,
-    friction.coefficient_at,
-    friction.tilt_share,
+    friction.friction_coefficient,
+    friction.rolling_slip_ratio,
     friction.effective_slip,
     reaction.centre_of,
-    reaction.elastic,
+    reaction.elastic_contact,
     reaction.elastic_at_rim,
     reaction.dome_angle,
-    reaction.pressed,
-    reaction.sliding,
+    reaction.normal_force,
+    reaction.sliding_state,
     reaction.versine,
-    reaction.reaction,
+    reaction.force_and_moment,
     reaction.dissipation,
     reaction.tangent,
     stepping.end_state,
     stepping.surface_speed,
     stepping.mean_contact,
-    stepping.residual_of,
+    stepping.step_residual,
     stepping.newton_correction,
     stepping.advance,
     loads_at,

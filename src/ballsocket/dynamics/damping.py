@@ -14,7 +14,7 @@ from .restitution import Relation, restitution_of
 
 @dataclass(frozen=True, kw_only=True)
 class Damping:
-    """Damping of a contact with the normal force F + (χ F + τ k) ḋ, which is never negative.
+    """Contact damping with the normal force F + (χ F + τ k) ḋ, which is never negative.
 
     F and k are the elastic force and stiffness at the indentation d. The term with χ is that of Hunt & Crossley. The
     term with τ is a liner of Kelvin-Voigt springs with the pressure K (u + τ u̇). It also dissipates the power
@@ -49,24 +49,27 @@ class Damping:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
-        _set_checked(
+        _store_checked(
             self, "hysteresis", "damping must be at least 0 and finite; negative damping would generate energy"
         )
-        _set_checked(self, "time", "a retardation time (s) must be at least 0 and finite")
+        _store_checked(self, "time", "a retardation time (s) must be at least 0 and finite")
 
     def restitution(self, speed: float) -> float:
-        """Compute the coefficient of restitution at an impact speed in mm/s from χ alone, for any law F(d)."""
+        """Compute the coefficient of restitution at an impact speed in mm/s from the hysteresis χ alone.
+
+        It does not depend on the force law F(d).
+        """
         return restitution_of(self.hysteresis * speed)
 
 
-def _set_checked(damping: Damping, name: str, allowed: str) -> None:
+def _store_checked(damping: Damping, name: str, allowed: str) -> None:
     value = check_number(name, getattr(damping, name))
     require(name, value, 0.0 <= value < math.inf, allowed)
     object.__setattr__(damping, name, value)
 
 
-def of_restitution(relation: Relation, restitution: float, impact_speed: float) -> Damping:
-    """Compute the damping for a coefficient of restitution at an impact speed by a published relation.
+def damping_from_restitution(relation: Relation, restitution: float, impact_speed: float) -> Damping:
+    """Compute the damping that gives a coefficient of restitution at an impact speed, by a published relation.
 
     Parameters
     ----------
@@ -88,9 +91,11 @@ def of_restitution(relation: Relation, restitution: float, impact_speed: float) 
     return Damping(hysteresis=chi, sources=relation.sources)
 
 
-def _constructor(relation: Relation) -> Callable[..., Damping]:
+def _damping_constructor(relation: Relation) -> Callable[..., Damping]:
+    """Make the function that computes damping from a coefficient of restitution by one relation."""
+
     def damping(*, restitution: float, impact_speed: float) -> Damping:
-        return of_restitution(relation, restitution, impact_speed)
+        return damping_from_restitution(relation, restitution, impact_speed)
 
     damping.__doc__ = f"""Compute the damping for a coefficient of restitution by the relation of {relation.name}.
 
@@ -109,8 +114,8 @@ def _constructor(relation: Relation) -> Callable[..., Damping]:
     return damping
 
 
-HuntCrossley = _constructor(relations.hunt_crossley)
-LankaraniNikravesh = _constructor(relations.lankarani_nikravesh)
-Flores = _constructor(relations.flores)
-Gonthier = _constructor(relations.gonthier)
-Restitution = _constructor(relations.exact)
+HuntCrossley = _damping_constructor(relations.hunt_crossley)
+LankaraniNikravesh = _damping_constructor(relations.lankarani_nikravesh)
+Flores = _damping_constructor(relations.flores)
+Gonthier = _damping_constructor(relations.gonthier)
+Restitution = _damping_constructor(relations.exact)

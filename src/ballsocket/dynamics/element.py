@@ -1,4 +1,4 @@
-"""Force element: model, joint, damping and friction, evaluated at states of the ball."""
+"""Force element: contact model, joint, damping and friction, evaluated at states of the ball."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from ..contact.law import CurveLaw, fit_curve_law
 from ..core import arrays
 from ..core.arrays import Array, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
+from ..core.deprecation import RenamedAttribute
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
@@ -22,8 +23,17 @@ from .damping import Damping
 from .friction import Friction
 from .load import Load, apply_bristles
 from .matrices import vector
-from .potential import Potential, adhesion_potential, potential_of, slopes_of_array
-from .reaction import APART, BallCentre, Constants, Vector, centre_of, elastic, reaction, undamped_pull
+from .potential import Potential, adhesion_potential, energy_derivatives_of_array, potential_of
+from .reaction import (
+    NO_CONTACT,
+    BallCentre,
+    Constants,
+    Vector,
+    centre_of,
+    elastic_contact,
+    force_and_moment,
+    remove_tension_damping,
+)
 from .validity_monitor import ValidityMonitor
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
@@ -34,7 +44,7 @@ _NUMPY_FLOAT = numpy.float64
 
 @dataclass(frozen=True, eq=False)
 class ForceElement:
-    """Ball joint as a force element for time-stepping programs.
+    """Force element of a ball joint for time-stepping programs.
 
     Parameters
     ----------
@@ -81,6 +91,7 @@ class ForceElement:
     constants: Constants = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
+        """Check the parts of the element, and set its potential and constants."""
         check_joint(self.joint)
         for name, kind in (("model", Model), ("damping", Damping), ("friction", Friction | Bristles), ("cup", Cup)):
             value = getattr(self, name)
@@ -107,13 +118,16 @@ class ForceElement:
         return getattr(self.potential, "stretch", 0.0)
 
     @property
-    def remembers(self) -> str:
-        """Sentence that names the internal state of the contact; empty without one."""
+    def internal_state(self) -> str:
+        """Note on the internal state of the contact (bristles or adhesion); empty without one."""
         if isinstance(self.friction, Bristles):
             return "bristles have a state"
         return "an adhesive ball has a state" if self.stretch > 0.0 else ""
 
+    remembers = RenamedAttribute("internal_state")
+
     def _constants(self, smoothing: float) -> Constants:
+        """Collect the constants of joint, damping, friction and cup."""
         joint, cup = self.joint.with_floats(), self.cup
         damping = self.damping or Damping()
         friction = self.friction if isinstance(self.friction, Friction) else Friction(coefficient=0.0)
@@ -126,7 +140,7 @@ class ForceElement:
             hysteresis=damping.hysteresis,
             time=damping.time,
             sliding=friction.coefficient,
-            static=friction.static,
+            static=friction.breakaway_coefficient,
             transition_speed=friction.transition_speed,
             stribeck_speed=friction.stribeck_speed,
             viscous=friction.viscous,
@@ -142,7 +156,7 @@ class ForceElement:
         deflection: Any = _ZERO_DEFLECTION,
         attached: Any = False,
     ) -> Load:
-        """Compute the load at a state, in axes fixed to the socket.
+        """Compute force, moment and energy at a state of the ball, in axes fixed to the socket.
 
         Parameters
         ----------
@@ -164,47 +178,52 @@ class ForceElement:
             A vector without three components.
         """
         if type(position) in _SEQUENCES:
-            load = self._of_numbers(components(position), components(velocity), components(spin), attached)
+            load = self._load_of_numbers(components(position), components(velocity), components(spin), attached)
         else:
-            load = self._of_arrays(position, velocity, spin, attached)
+            load = self._load_of_arrays(position, velocity, spin, attached)
         if not isinstance(self.friction, Bristles):
             return load
         with numpy.errstate(all="ignore"):
             return apply_bristles(load, self.friction, deflection)
 
-    def _of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
+    def _load_of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
+        """Compute the load at a single state of plain numbers."""
         constants = self.constants
         centre = centre_of(*position, constants.clearance)
         sticks = self.stretch > 0.0
         if sticks:
             centre = self._attached_centre(centre, attached)
         if centre.indentation <= -constants.smoothing and centre.distance > 0.0:
-            return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, APART, position, velocity, spin)
+            return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, NO_CONTACT, position, velocity, spin)
         if centre.indentation > self._monitor.limit:
             self._monitor.check(centre.indentation)
-        contact = elastic(self.potential, centre, constants)
+        contact = elastic_contact(self.potential, centre, constants)
         if sticks:
-            contact = undamped_pull(contact)
-        fx, fy, fz, mx, my, mz = reaction(centre, contact, velocity, spin, constants)
+            contact = remove_tension_damping(contact)
+        fx, fy, fz, mx, my, mz = force_and_moment(centre, contact, velocity, spin, constants)
         return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, centre, contact, position, velocity, spin)
 
-    def _of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
+    def _load_of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
+        """Compute the loads at an array of states."""
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
         position = check_vectors("position", position, axes[0])
         states = [_as_array_like(position, value) for value in (position, velocity, spin)]
-        r, v, w = (_split(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
+        r, v, w = (_split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
         with numpy.errstate(all="ignore"):  # states without a result have a status
             centre = self._attached_centre(centre_of(*r, self.constants.clearance), attached)
             self._monitor.check_array(centre.indentation)
-            contact = elastic(self.potential, centre, self.constants)
-            contact = undamped_pull(contact) if self.stretch > 0.0 else contact
-            loads = reaction(centre, contact, v, w, self.constants)
+            contact = elastic_contact(self.potential, centre, self.constants)
+            contact = remove_tension_damping(contact) if self.stretch > 0.0 else contact
+            loads = force_and_moment(centre, contact, v, w, self.constants)
         force, moment = vector(object, *loads[:3]), vector(object, *loads[3:])
         return Load(force, moment, contact.energy, self, centre, contact, r, v, w)
 
     def _attached_centre(self, centre: BallCentre, attached: Any) -> BallCentre:
-        """Return the centre of an adhesive ball: without contact before first touch, unless it is attached."""
+        """Return the ball centre, moved out of contact where an adhesive ball is not attached.
+
+        Before first touch an adhesive ball has no contact unless it is attached.
+        """
         if self.stretch == 0.0:
             return centre
         in_contact = attached | (centre.indentation >= self.stretch)
@@ -212,7 +231,7 @@ class ForceElement:
 
     @property
     def wall(self) -> float:
-        """Largest indentation in mm that wall thickness and model allow."""
+        """Largest indentation in mm that the wall thickness and the model allow."""
         return self.constants.wall - self.stretch
 
     @cached_property
@@ -221,20 +240,20 @@ class ForceElement:
 
     @cached_property
     def curves(self) -> tuple[CurveLaw, CurveLaw]:
-        """Half angle (rad) and largest pressure (MPa) over the indentation, as curves in logarithms."""
+        """Curves of the half angle (rad) and the largest pressure (MPa) over the indentation, in logarithms."""
         return _curve_of(self.model, self.joint, "half_angle"), _curve_of(self.model, self.joint, "max_pressure")
 
     def half_angle(self, indentation: Array) -> Array:
         """Compute the half angle in rad at an indentation in mm; 0 without contact."""
-        return _read(self.curves[0], indentation)
+        return _evaluate_curve(self.curves[0], indentation)
 
     def max_pressure(self, indentation: Array) -> Array:
         """Compute the largest pressure in MPa at an indentation in mm; 0 without contact."""
-        return _read(self.curves[1], indentation)
+        return _evaluate_curve(self.curves[1], indentation)
 
 
 def components(value: Any, name: str = "a state") -> Vector:
-    """Return the components of a vector as floats; raise ValueError without three real numbers."""
+    """Convert a vector to three floats; raise ValueError for anything but three real numbers."""
     try:
         x, y, z = value
         if isinstance(x + y + z, complex):
@@ -249,19 +268,19 @@ def components(value: Any, name: str = "a state") -> Vector:
 
 
 def _as_array_like(position: Any, value: Any) -> Any:
-    """Convert a list to an array like the position."""
+    """Convert a tuple or list to an array of the same library as the position."""
     if type(value) not in _SEQUENCES:
         return value
     like = to_common_arrays(position)[0]
     return arrays.namespace(like).asarray(value, dtype=like.dtype, device=arrays.device(like))
 
 
-def _split(value: Any) -> Vector:
+def _split_components(value: Any) -> Vector:
     return value[..., 0], value[..., 1], value[..., 2]
 
 
 def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
-    """Fit a curve of a contact quantity over the indentation, up to the socket radius."""
+    """Fit a curve to a contact quantity over the indentation, up to the socket radius."""
     joint = joint.with_floats()
     shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
     return fit_curve_law(
@@ -269,9 +288,9 @@ def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
     )
 
 
-def _read(curve: CurveLaw, indentation: Array) -> Array:
-    """Evaluate a curve at indentations of any sign: 0 without contact, NaN beyond its end."""
+def _evaluate_curve(curve: CurveLaw, indentation: Array) -> Array:
+    """Evaluate a curve at indentations in mm: 0 without contact, NaN beyond its end."""
     if type(indentation) is float:
         return curve(indentation)[0]
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return where(indentation > 0.0, slopes_of_array(indentation, *ends, curve.pieces)[0], 0.0)
+    return where(indentation > 0.0, energy_derivatives_of_array(indentation, *ends, curve.pieces)[0], 0.0)

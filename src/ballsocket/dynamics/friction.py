@@ -1,4 +1,4 @@
-"""Friction of the ball in its socket: resultants of Coulomb stresses over the patch, as slopes of a potential.
+"""Friction of the ball in its socket: Coulomb stresses integrated over the patch, as slopes of a potential.
 
 On the patch the ball slides with the speed |w|. Here w is v + R1 ω x m without its component along the normal m. The
 resultants are the slopes of μ ∫ p |w| dA = μ N q over v and ω, with N = ∫ p |a x m| dA for an axis a across the load.
@@ -12,29 +12,32 @@ from dataclasses import dataclass
 
 from ..core.arrays import Array, exp
 from ..core.checks import check_number, require
+from ..core.deprecation import RenamedAttribute
 
 
-class Coulomb:
-    """Coefficients of sliding and static friction."""
+class CoulombCoefficients:
+    """Coulomb coefficients of sliding and static friction."""
 
     coefficient: float
     static_coefficient: float | None
 
     @property
-    def static(self) -> float:
-        """Coefficient of friction at vanishing slip."""
+    def breakaway_coefficient(self) -> float:
+        """Coefficient of friction at the onset of sliding, by default that of sliding."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
+    static = RenamedAttribute("breakaway_coefficient")
+
     def check_static(self) -> None:
-        """Raise ValueError for a static coefficient below the coefficient of sliding friction."""
+        """Raise ValueError if the static coefficient is below the sliding coefficient."""
         if self.static_coefficient is not None:
             allowed = "static friction must be at least the sliding friction"
             set_checked_number(self, "static_coefficient", self.coefficient, allowed)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Friction(Coulomb):
-    """Regularised Coulomb friction: the force is smooth in the speed, and nearly μ N above the transition speed.
+class Friction(CoulombCoefficients):
+    """Regularised Coulomb friction: smooth in the slip speed, and nearly μ N above the transition speed.
 
     Sliding, turning and drilling share one limit. q is the effective slip speed of the patch, rounded off by the
     transition speed, and N the normal force times the widening factor of the contact::
@@ -87,14 +90,16 @@ class Friction(Coulomb):
 
 
 def set_checked_number(friction: object, name: str, least: float, allowed: str) -> None:
-    """Check a number of a frozen object, and store it as a float."""
+    """Check a number of a frozen dataclass, and store it as a float."""
     value = check_number(name, getattr(friction, name))
     require(name, value, least <= value < math.inf, allowed)
     object.__setattr__(friction, name, value)
 
 
 def widening_factor(versine: Array) -> Array:
-    """Compute the ratio of ∫ p |a x n| dA to the force: friction of an extended patch over that of a point contact.
+    """Compute the friction of an extended patch relative to that of a point contact.
+
+    The factor is the ratio of ∫ p |a x n| dA to the force.
 
     a is an axis across the load, and 1 - cos ε the versine. The polynomial fits radial springs within 2e-6; other
     pressure distributions differ by about 1 %.
@@ -104,7 +109,7 @@ def widening_factor(versine: Array) -> Array:
 
 
 def drill_lever(versine: Array) -> Array:
-    """Compute the lever ρ of the pressure about the axis of the load, relative to the patch radius R2 sin ε.
+    """Compute the lever of the drilling moment relative to the patch radius R2 sin ε.
 
     ρ is ∫ p R2 sin φ dA over the force and the widening factor, 8/15 of R2 sin ε for a small contact. The polynomial
     fits radial springs within 1e-5.
@@ -113,14 +118,16 @@ def drill_lever(versine: Array) -> Array:
     return 8 / 15 + m * (0.165042 + m * (0.054402 + m * (0.015167 + m * (0.019374 + m * (0.009834 * m - 0.011755)))))
 
 
-def coefficient_at(speed: Array, sliding: Array, static: Array, stribeck_speed: Array) -> Array:
-    """Compute the coefficient of friction μ at a slip speed."""
+def friction_coefficient(speed: Array, sliding: Array, static: Array, stribeck_speed: Array) -> Array:
+    """Compute the coefficient of friction μ at a slip speed in mm/s, with the Stribeck effect."""
     share = speed / stribeck_speed
     return sliding + (static - sliding) * exp(-share * share)
 
 
-def tilt_share(versine: Array) -> Array:
-    """Compute κ = ∫ p sin²(φ/2) dA/N: the share of its speed with which a rolling ball slides around a pole at rest.
+def rolling_slip_ratio(versine: Array) -> Array:
+    """Compute the ratio κ of mean slip to surface speed for a ball that rolls without slip at the pole.
+
+    κ = ∫ p sin²(φ/2) dA/N.
 
     The polynomial fits radial springs within 2e-5 of κ.
     """
@@ -144,7 +151,9 @@ ROLL_FIT = (0.40882, 0.62470)
 def effective_slip(
     slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, tilt_squared: Array, versine: Array
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute q² and its slopes over X = |S|², Y = κ²|D|², Z = (ρ ω_n)² and P = κ S·D, all in (mm/s)².
+    """Compute the squared effective slip speed q² of the patch in (mm/s)², with its slopes by X, Y, Z and P.
+
+    X = |S|², Y = κ²|D|², Z = (ρ ω_n)² and P = κ S·D are in (mm/s)².
 
     S = v + b is the slip at the pole and D = v - b, where b = R1 ω x n. `transition_squared` is the
     square of the transition speed v0. With G = X + θ Y + v0²::
@@ -178,7 +187,10 @@ def effective_slip(
 def effective_slip_bends(
     slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, versine: Array
 ) -> dict[tuple[int, int], Array]:
-    """Compute the second derivatives of the q² of `effective_slip` over X, Y, Z and P, numbered 0 to 3."""
+    """Compute the second derivatives of the squared effective slip speed q² by X, Y, Z and P.
+
+    The keys number X, Y, Z and P from 0 to 3; see `effective_slip`.
+    """
     (a0, a1, a2, b, theta), (t0, t1, t2, n), (e0, e1, l0, l1), (g, zeta) = SLIP_FIT, TURN_FIT, DRILL_FIT, ROLL_FIT
     m, scale = versine, 1.0 / (slip + tilt + spin + transition_squared)
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed

@@ -1,4 +1,4 @@
-"""Load of a force element at a state: force and moment on both bodies, energy, derivatives, and the contact state."""
+"""Load of a force element at a state: force and moment on both bodies, energy, derivatives, contact state."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from ..core.deprecation import RenamedAttribute
 from . import reaction as formulas
 from .bristles import Bristles, Deflections, bristle_forces
 from .matrices import damping_matrix, matrix, vector
-from .reaction import BallCentre, Constants, Elastic, Vector, pressed, sliding
+from .reaction import BallCentre, Constants, Elastic, Vector, normal_force, sliding_state
 
 
 class ContactState(IntEnum):
-    """State of the contact of a force element. Arrays hold its codes."""
+    """State of the contact of a force element, as an integer code in arrays."""
 
     FREE = 0
     CONTACT = 1
@@ -32,12 +32,12 @@ class ContactState(IntEnum):
 
     @property
     def sentence(self) -> str:
-        """Description of the state."""
+        """Description of the state as a sentence."""
         return _SENTENCES[self]
 
     @property
     def failed(self) -> bool:
-        """True for a state without a result: the program must repeat the last step with a smaller size."""
+        """True for a state without a load: the program must repeat the last step with a smaller size."""
         return self >= ContactState.THROUGH_WALL
 
 
@@ -56,7 +56,7 @@ OVERFLOW_GUARD = 1e8
 
 
 class LoadedElement(Protocol):
-    """Force element as its loads use it."""
+    """Interface of a force element that its loads depend on."""
 
     @property
     def constants(self) -> Constants: ...
@@ -69,7 +69,7 @@ class LoadedElement(Protocol):
 
 
 def _without_warnings(formula: Callable[[Load], Any]) -> Callable[[Load], Any]:
-    """Suppress NumPy's warnings in a property: states without a result have a status."""
+    """Suppress NumPy's floating-point warnings in a property; its status reports missing results."""
 
     @wraps(formula)
     def evaluate(load: Load) -> Any:
@@ -130,7 +130,7 @@ class Load(NamedTuple):
 
     @property
     def attached(self) -> Array:
-        """True for a ball in contact; the argument `attached` of the next state of an adhesive socket."""
+        """True for a ball in contact; pass it as `attached` for the next state of an adhesive socket."""
         return self.centre.indentation > 0.0
 
     @property
@@ -142,12 +142,12 @@ class Load(NamedTuple):
     @property
     @_without_warnings
     def max_pressure(self) -> Array:
-        """Largest pressure in MPa of the elastic contact, without the effect of a rim."""
+        """Largest contact pressure in MPa, without the effect of a rim."""
         return self.element.max_pressure(self.indentation)
 
     @property
     def tangent(self) -> Any:
-        """Tangent stiffness ∂²U/∂r² in N/mm: (3, 3), symmetric."""
+        """Tangent stiffness ∂²U/∂r² in N/mm, a symmetric matrix (3, 3)."""
         if type(self.force) is tuple:
             return self._rows
         with numpy.errstate(all="ignore"):
@@ -160,38 +160,38 @@ class Load(NamedTuple):
 
     @property
     def damping_matrix(self) -> Any:
-        """Damping matrix -∂(F, M)/∂(v, ω) at this normal force: (6, 6), symmetric."""
+        """Damping matrix -∂(F, M)/∂(v, ω) at a constant normal force, a symmetric matrix (6, 6)."""
         with numpy.errstate(all="ignore"):
             return damping_matrix(self.centre, self.contact, self.velocity, self.spin, self.element.constants)
 
     @property
     @_without_warnings
     def dissipation(self) -> Array:
-        """Dissipated power in N mm/s, never negative."""
+        """Dissipated power in N mm/s, 0 or more."""
         state = self.centre, self.contact, self.velocity, self.spin
         return formulas.dissipation(*state, self.element.constants) + self.bristle_dissipation
 
     @property
     @_without_warnings
     def status(self) -> ContactState | Array:
-        """`ContactState`, or an array of its codes."""
+        """State of the contact: a `ContactState`, or an array of its codes."""
         return status_of(self.centre, self.contact, self._is_finite, self.element.constants)
 
     def summary(self) -> dict[str, Any]:
-        """Return the load as a dictionary for JSON, in N, mm, N mm, MPa and degrees; a missing number is None."""
+        """Return the load as a dictionary for JSON, in N, mm, N mm, MPa and degrees; missing numbers are None."""
         status = self.status
         names = ("force", "moment", "socket_force", "socket_moment", "energy", "dissipation", "indentation")
         return {
             "status": status.name.lower() if isinstance(status, ContactState) else to_list(status),
-            **{name: _plain(getattr(self, name)) for name in names},
-            "half_angle_deg": _plain(self.half_angle * degrees(1.0)),
-            "max_pressure": _plain(self.max_pressure),
+            **{name: _plain_value(getattr(self, name)) for name in names},
+            "half_angle_deg": _plain_value(self.half_angle * degrees(1.0)),
+            "max_pressure": _plain_value(self.max_pressure),
             "notes": list(self.notes),
         }
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences on states at the rim and on failed states, with their positions."""
+        """Sentences on contacts at the rim and on failed states, with their positions."""
         return describe_states(self)
 
     @property
@@ -218,14 +218,17 @@ _OLD_DISSIPATION.__set_name__(Load, "rubbed")
 setattr(Load, "rubbed", _OLD_DISSIPATION)  # noqa: B010 (mypy refuses to assign to a class)
 
 
-def _plain(value: Any) -> Any:
+def _plain_value(value: Any) -> Any:
     return [to_list(part) for part in value] if type(value) is tuple else to_list(value)
 
 
-def status_of(centre: BallCentre, contact: Elastic, known: Array, constants: Constants) -> ContactState | Array:
-    """Return the `ContactState`, or an array of its codes."""
-    d, s = centre.indentation, contact.covered
-    none = 0.0 * where(known, d, 0.0)
+def status_of(centre: BallCentre, contact: Elastic, is_finite: Array, constants: Constants) -> ContactState | Array:
+    """Determine the state of the contact: a `ContactState`, or an array of its codes.
+
+    `is_finite` is False for states that are not finite.
+    """
+    d, s = centre.indentation, contact.rim_margin
+    none = 0.0 * where(is_finite, d, 0.0)
     touching = d > -constants.smoothing
     code = where(touching, none + 1.0, none)
     code = where(touching & (s < 1.0), none + float(ContactState.AT_RIM), code)
@@ -235,7 +238,7 @@ def status_of(centre: BallCentre, contact: Elastic, known: Array, constants: Con
         code,
     )
     code = where(touching & (s <= -1.0), none + float(ContactState.OVER_RIM), code)
-    code = where(known, code, none + float(ContactState.NO_NUMBER))
+    code = where(is_finite, code, none + float(ContactState.NO_NUMBER))
     if type(code) is float:
         return ContactState(int(code))
     xp = arrays.namespace(code)
@@ -243,7 +246,7 @@ def status_of(centre: BallCentre, contact: Elastic, known: Array, constants: Con
 
 
 def describe_states(load: Load) -> tuple[str, ...]:
-    """Describe each kind of reported state with the position of its first state."""
+    """Describe the reported states of the contact, each with the position of its first occurrence."""
     codes = numpy.atleast_1d(arrays.to_numpy(load.status)).ravel()
     return tuple(_describe_state(load, codes, state) for state in list(ContactState)[2:] if (codes == state).any())
 
@@ -261,10 +264,10 @@ def _number_at(part: Array, codes: Numbers, number: int) -> float:
 
 
 def apply_bristles(load: Load, bristles: Bristles, deflection: Any) -> Load:
-    """Add force, moment and dissipation of bristles to a load without friction."""
+    """Add force, moment and dissipated power of the bristles to a load without friction."""
     centre, constants = load.centre, load.element.constants
     speed = sum(rate * component for rate, component in zip(load.velocity, centre[1:4], strict=True))
-    slip = sliding(centre, pressed(load.contact, speed, constants), load.velocity, load.spin, constants)
+    slip = sliding_state(centre, normal_force(load.contact, speed, constants), load.velocity, load.spin, constants)
     force, rate, dissipated = bristle_forces(centre, slip, _four_deflections(load, deflection), bristles)
     N, R1, n = slip.normal, constants.ball_radius, centre[1:4]
     rubbing = [-N * part for part in force[:3]]
@@ -280,6 +283,7 @@ def apply_bristles(load: Load, bristles: Bristles, deflection: Any) -> Load:
 
 
 def _four_deflections(load: Load, deflection: Any) -> Deflections:
+    """Split bristle deflections into four components; raise ValueError for another number."""
     if type(load.force) is not tuple and type(deflection) in (tuple, list):
         deflection = numpy.asarray(deflection, dtype=float)
         deflection = arrays.namespace(load.force).asarray(deflection, dtype=load.force.dtype)

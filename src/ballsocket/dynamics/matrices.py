@@ -1,4 +1,4 @@
-"""Vectors and matrices of components, and the damping matrix of a load."""
+"""Damping matrix of a load, and vectors and matrices built of components."""
 
 from __future__ import annotations
 
@@ -9,18 +9,32 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array, where
 from . import friction
-from .reaction import SMOOTHING_SHARE, BallCentre, Constants, Elastic, Sliding, Vector, pressed, ramp, sliding, versine
+from .reaction import (
+    SMOOTHING_SHARE,
+    BallCentre,
+    Constants,
+    Elastic,
+    Sliding,
+    Vector,
+    normal_force,
+    ramp,
+    sliding_state,
+    versine,
+)
 
 
 def vector(kind: type, *components: Array) -> Any:
-    """Return components as a tuple, or as the last axis of an array."""
+    """Join components to a tuple, or along the last axis of an array."""
     if kind is tuple:
         return components
     return arrays.namespace(*components).stack(components, axis=-1)
 
 
 def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Any:
-    """Compute -∂(F, M)/∂(v, ω) of damping and friction at a constant normal force: (..., 6, 6)."""
+    """Compute the damping matrix -∂(F, M)/∂(v, ω) at a constant normal force: (..., 6, 6).
+
+    The units are N s/mm, N s and N mm s.
+    """
     centre, contact = BallCentre(*_arrays(centre)), Elastic(*_arrays(contact))
     velocity, spin = _arrays(velocity), _arrays(spin)
     n, unit, zero = _vector(centre.x, centre.y, centre.z), *_one_and_zero(centre.distance)
@@ -28,7 +42,9 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     level = matrix(((unit, zero, zero), (zero, unit, zero), (zero, zero, unit))) - normal
     along, drag = _normal_rates(centre, contact, velocity, constants)
     push = along[..., None, None] * normal + drag[..., None, None] * level
-    slip = sliding(centre, pressed(contact, _normal_speed(centre, velocity), constants), velocity, spin, constants)
+    slip = sliding_state(
+        centre, normal_force(contact, _normal_speed(centre, velocity), constants), velocity, spin, constants
+    )
     slip = Sliding(*_arrays(slip))
     x, y, z = centre.x, centre.y, centre.z
     rotation = constants.ball_radius * matrix(((zero, z, -y), (-z, zero, x), (y, -x, zero)))
@@ -44,14 +60,17 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     projection = _project(translation, slip.push[..., None] * v + slip.mixed[..., None] * b)
     projection = projection + _project(turning, slip.mixed[..., None] * v + slip.rotation[..., None] * b)
     projection = projection + _project(drilling, (slip.drill * lever * slip.spin)[..., None])
-    fall = _friction_fall(slip, constants) / slip.speed
+    fall = _friction_rate_slope(slip, constants) / slip.speed
     rate = rate + fall[..., None, None] * (projection[..., :, None] * projection[..., None, :])
     rows = xp.concat([push, 0.0 * push], axis=-1)
     return rate + xp.concat([rows, 0.0 * rows], axis=-2)
 
 
 def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Vector, constants: Constants) -> tuple[Array, Array]:
-    """Compute the derivative of the normal force over ḋ, and the drag of a contact that moves along the socket."""
+    """Compute the damping coefficients of the contact, along the load and across it, in N s/mm.
+
+    The first is the derivative of the normal force by ḋ, the second the drag of a contact that moves along the socket.
+    """
     lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
     force = contact.normal + lossy * _normal_speed(centre, velocity)
     if constants.smoothing > 0.0:
@@ -59,15 +78,15 @@ def _normal_rates(centre: BallCentre, contact: Elastic, velocity: Vector, consta
         slope = ramp(force / arrays.safe_divisor(width), 1.0)[1]
     else:
         slope = where(force > 0.0, 0.0 * force + 1.0, 0.0 * force)
-    return lossy * slope, constants.time * contact.damped_force * centre.over
+    return lossy * slope, constants.time * contact.damped_force * centre.inverse_distance
 
 
 def _potential_curvature(
     centre: BallCentre, slip: Sliding, directions: Vector, rates: tuple[Array, Array], constants: Constants
 ) -> Array:
-    """Compute half of the second derivatives of q² over velocity and spin: (..., 6, 6)."""
+    """Compute half of the second derivatives of the squared slip speed q² by velocity and spin: (..., 6, 6)."""
     xp = arrays.namespace(rates[0])
-    (translation, turning, drilling), (v, b), kappa = directions, rates, friction.tilt_share(versine(centre))
+    (translation, turning, drilling), (v, b), kappa = directions, rates, friction.rolling_slip_ratio(versine(centre))
     share, drill = kappa * kappa, slip.lever_squared * slip.spin * slip.spin
     pole, tilt = v + b, v - b
     squares = xp.sum(pole * pole, axis=-1), xp.sum(tilt * tilt, axis=-1), xp.sum(pole * tilt, axis=-1)
@@ -102,10 +121,10 @@ def _project(directions: Array, rates: Array) -> Array:
     return arrays.namespace(directions).sum(rates[..., :, None] * directions, axis=-2)
 
 
-def _friction_fall(slip: Sliding, constants: Constants) -> Array:
-    """Compute the derivative of the friction rate over q."""
+def _friction_rate_slope(slip: Sliding, constants: Constants) -> Array:
+    """Compute the derivative of the friction rate by the effective slip speed q."""
     q = slip.speed
-    mu = friction.coefficient_at(q, constants.sliding, constants.static, constants.stribeck_speed)
+    mu = friction.friction_coefficient(q, constants.sliding, constants.static, constants.stribeck_speed)
     mu_slope = -2.0 * (mu - constants.sliding) * q / (constants.stribeck_speed * constants.stribeck_speed)
     return slip.normal * (mu_slope - mu / q) / q
 
@@ -123,7 +142,7 @@ def _vector(*components: Array) -> Any:
 
 
 def matrix(rows: Any) -> Any:
-    """Stack rows of components along the last two axes of an array."""
+    """Join rows of components to matrices along the last two axes of an array."""
     stacked = [_vector(*row) for row in rows]
     return arrays.namespace(*stacked).stack(stacked, axis=-2)
 

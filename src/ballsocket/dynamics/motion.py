@@ -1,4 +1,4 @@
-"""Motion of a ball in its socket over time, with the balances of energy and angular momentum."""
+"""Motion of a ball in its socket over time, with its balances of energy and angular momentum."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.deprecation import renamed_fields, renamed_names
 from ..core.sources import Source
 from .element import ForceElement
 from .load import Load
@@ -17,9 +18,12 @@ TONNE = 1e-3
 """Tonnes in a kilogram: N, mm, s and t form a consistent system."""
 
 
+@renamed_fields(
+    lost="dissipated_energy", ended="end_reason", kinetic="kinetic_energy", total="total_energy", depth="indentation"
+)
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Motion:
-    """Motion of a ball over time.
+    """Simulated motion of a ball over time.
 
     Without bristles and adhesion it is computed by a method of order 2: errors of positions and phases fall with the
     square of the step. Energy and angular momentum are conserved to rounding at any step, see `drift` and
@@ -36,7 +40,7 @@ class Motion:
         Position in mm, velocity in mm/s and angular velocity in rad/s.
     energy : array (steps,)
         Elastic energy of the contact in N mm.
-    lost : array (steps,)
+    dissipated_energy : array (steps,)
         Energy dissipated by damping and friction since the beginning in N mm, with that stored in bristles.
     work : array (steps,)
         Work of the pull on the ball since the beginning in N mm.
@@ -46,7 +50,7 @@ class Motion:
         Deflections of bristles in mm.
     attached : array (steps,) or bool
         True for an attached adhesive ball.
-    ended : str
+    end_reason : str
         Reason for an early end, with the state; empty for a complete motion.
     """
 
@@ -60,44 +64,52 @@ class Motion:
     velocity: Numbers
     spin: Numbers
     energy: Numbers
-    lost: Numbers
+    dissipated_energy: Numbers
     work: Numbers
     pull_moment: Numbers | None = None
     deflection: Any = (0.0, 0.0, 0.0, 0.0)
     attached: Any = False
-    ended: str = ""
+    end_reason: str = ""
 
     @cached_property
     def load(self) -> Load:
-        """Load at each step."""
+        """Contact load at each time."""
         return self.element(self.position, self.velocity, self.spin, self.deflection, self.attached)
 
     @cached_property
-    def kinetic(self) -> Numbers:
-        """Kinetic energy in N mm: (steps,)."""
+    def kinetic_energy(self) -> Numbers:
+        """Kinetic energy of translation and rotation in N mm: (steps,)."""
         with numpy.errstate(over="ignore"):
             rotation = self.inertia * numpy.sum(self.spin**2, axis=1)
             return TONNE / 2 * (self.mass * numpy.sum(self.velocity**2, axis=1) + rotation)
 
     @cached_property
-    def total(self) -> Numbers:
-        """Elastic, kinetic and dissipated energy minus the work of the pull in N mm: (steps,), constant to rounding."""
-        return self.energy + self.kinetic + self.lost - self.work
+    def total_energy(self) -> Numbers:
+        """Balance of energies in N mm: (steps,), constant to rounding.
+
+        It is the elastic, kinetic and dissipated energy minus the work of the pull.
+        """
+        return self.energy + self.kinetic_energy + self.dissipated_energy - self.work
 
     @property
     def drift(self) -> float:
-        """Largest change of the total energy relative to the largest kinetic or elastic energy."""
+        """Largest change of the total energy, relative to the largest kinetic or elastic energy."""
         with numpy.errstate(all="ignore"):
-            return float(numpy.max(abs(self.total - self.total[0])) / max(self.kinetic.max(), self.energy.max()))
+            return float(
+                numpy.max(abs(self.total_energy - self.total_energy[0]))
+                / max(self.kinetic_energy.max(), self.energy.max())
+            )
 
     @cached_property
     def angular_momentum(self) -> Numbers:
-        """Angular momentum of the ball's centre about the socket's centre, in N mm s: (steps, 3)."""
+        """Angular momentum m r x v of the ball about the socket's centre in N mm s: (steps, 3)."""
         return TONNE * self.mass * numpy.cross(self.position, self.velocity)
 
     @property
     def angular_drift(self) -> float | None:
-        """Largest change of the angular momentum less `pull_moment` over the largest product m r v; 0 but for rounding.
+        """Largest relative error of the angular momentum; 0 but for rounding.
+
+        It is the largest change of the angular momentum less `pull_moment`, over the largest product m r v.
 
         In a cup it is the component about the dome axis. None where the angular momentum is not conserved: friction,
         bristles and a retarded liner have a moment about the socket's centre.
@@ -112,24 +124,29 @@ class Motion:
         return float(abs(change).max()) / largest if largest > 0.0 else 0.0
 
     @cached_property
-    def depth(self) -> Numbers:
+    def indentation(self) -> Numbers:
         """Indentation in mm: (steps,); negative values are the distance to first touch."""
         return numpy.linalg.norm(self.position, axis=1) - float(self.element.joint.clearance)
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary for JSON, in s, mm, N and N mm."""
+        """Return the results of the motion as a dictionary for JSON, in s, mm, N and N mm."""
         force = numpy.linalg.norm(self.load.force, axis=1)
-        ends = {"stored": self.energy, "kinetic": self.kinetic, "lost": self.lost, "work": self.work}
+        ends = {
+            "stored": self.energy,
+            "kinetic": self.kinetic_energy,
+            "lost": self.dissipated_energy,
+            "work": self.work,
+        }
         return {
             "duration": float(self.time[-1]),
             "steps": len(self.time) - 1,
             "bounces": self.bounces,
-            "deepest": float(self.depth.max()),
+            "deepest": float(self.indentation.max()),
             "largest_force": float(force.max()),
             **{name: float(values[-1]) for name, values in ends.items()},
             "drift": self.drift,
             "angular_drift": self.angular_drift,
-            "ended": self.ended,
+            "ended": self.end_reason,
         }
 
     @property
@@ -137,3 +154,6 @@ class Motion:
         """Number of times that the ball left the socket."""
         touching = numpy.asarray(self.load.attached)
         return int(numpy.sum(touching[:-1] & ~touching[1:]))
+
+
+__getattr__ = renamed_names(__name__, {"simulate": "ballsocket.dynamics.simulation.simulate"})

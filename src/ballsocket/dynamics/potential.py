@@ -1,4 +1,4 @@
-"""Elastic energy of a joint over the indentation, with its first and second derivative."""
+"""Elastic energy of a joint over the indentation, with its first and second derivatives."""
 
 from __future__ import annotations
 
@@ -24,7 +24,9 @@ Slopes = tuple[Array, Array, Array]
 
 
 class Potential(Protocol):
-    """Energy of a joint and its derivatives at indentations in mm, 0 or more, in a number or an array.
+    """Elastic energy of a joint and its two derivatives as functions of the indentation in mm, 0 or more.
+
+    The indentation is a number or an array.
 
     `deepest` is the largest indentation in mm with a result.
     """
@@ -37,7 +39,7 @@ class Potential(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class SpringPotential:
-    """Energy of radial springs, by their formulas."""
+    """Elastic energy of a radial foundation by its formulas."""
 
     springs: FoundationLaw
     deepest: float = math.inf
@@ -50,7 +52,7 @@ class SpringPotential:
 
 @dataclass(frozen=True, kw_only=True)
 class FormulaPotential:
-    """Energy of a closed form, by its formulas."""
+    """Elastic energy of a closed-form model by its formulas."""
 
     model: ClosedForm
     joint: Joint
@@ -63,7 +65,7 @@ class FormulaPotential:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurvePotential:
-    """Energy by piecewise polynomials of ln U over ln d, whose exact derivatives give F and k.
+    """Elastic energy as a curve: piecewise polynomials of ln U over ln d, whose derivatives give F and k.
 
     Below the curve's `shallowest` indentation U is a power of d. Beyond its `deepest` indentation U is NaN.
     """
@@ -82,14 +84,14 @@ class CurvePotential:
         curve = self.curve
         ends = curve.shallowest, curve.deepest, curve.first, curve.density
         if type(indentation) is float:
-            return slopes_of_number(indentation, *ends, self._pieces)
-        return slopes_of_array(indentation, *ends, curve.pieces)
+            return energy_derivatives_of_number(indentation, *ends, self._pieces)
+        return energy_derivatives_of_array(indentation, *ends, curve.pieces)
 
 
-def slopes_of_number(
+def energy_derivatives_of_number(
     indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float, float]:
-    """Compute U, F and k at a single indentation from the numbers of a `CurvePotential`."""
+    """Evaluate the curve of a `CurvePotential` at one indentation in mm: energy, force and stiffness."""
     if indentation <= 0.0:
         return 0.0, 0.0, 0.0
     if not indentation <= deepest:
@@ -115,10 +117,10 @@ _MIN_INDENTATION = 1e-150
 """Smallest indentation in mm whose energy does not underflow in an intermediate result."""
 
 
-def slopes_of_array(
+def energy_derivatives_of_array(
     indentation: Array, shallowest: float, deepest: float, first: float, density: float, pieces: Numbers
 ) -> Slopes:
-    """Compute U, F and k at an array of indentations of any library, as `slopes_of_number`."""
+    """Evaluate the curve of a `CurvePotential` at an array of indentations: energy, force and stiffness."""
     xp = arrays.namespace(indentation)
     rows = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
     d = where(indentation == indentation, clip(indentation, _MIN_INDENTATION, deepest), deepest)
@@ -141,7 +143,7 @@ def slopes_of_array(
 
 
 def potential_of(model: Model, joint: Joint) -> Potential:
-    """Return the energy of a joint by a model with a force law.
+    """Return the elastic energy of a joint for a model with a force law.
 
     Raises
     ------
@@ -163,12 +165,15 @@ def _ends(law: ForceLaw, joint: Joint) -> tuple[float, float]:
 
 
 def energy_curve(law: ForceLaw, shallowest: float, deepest: float) -> CurveLaw:
-    """Integrate a force law, and fit ln U over ln d by a curve."""
+    """Integrate a force law over the indentation, and fit the energy by a curve of ln U over ln d."""
     return fit_curve_law(lambda depths: _integrate_force(law, depths, shallowest), shallowest, deepest)
 
 
 def _integrate_force(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbers:
-    """Integrate the force up to increasing indentations: a power law up to the first, then Gauss points over ln d."""
+    """Integrate the force law up to increasing indentations, to the elastic energies in N mm.
+
+    Up to the first indentation it is a power law; beyond, Gauss points over ln d.
+    """
     force, stiffness = law(shallowest)
     initial_work = force * shallowest / (1.0 + stiffness * shallowest / force)
     logs = numpy.log(numpy.concatenate([[shallowest], depths]))
@@ -184,7 +189,9 @@ _GAUSS_NODES = 16
 
 @dataclass(frozen=True, kw_only=True)
 class AdhesionPotential:
-    """Energy of an adhesive socket over d + u_c, where the last spring detaches at the distance u_c before first touch.
+    """Elastic energy of an adhesive socket over d + u_c, 0 where the last spring detaches.
+
+    That is at the distance u_c before first touch.
 
     The energy is zero at separation, and negative at first touch.
     """
@@ -212,7 +219,7 @@ class AdhesionPotential:
 
 
 def adhesion_potential(model: AdhesiveSocket, joint: Joint) -> AdhesionPotential:
-    """Return the energy of an adhesive joint whose ball can separate.
+    """Return the elastic energy of an adhesive joint, from the separation of the ball on.
 
     Raises
     ------

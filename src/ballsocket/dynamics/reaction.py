@@ -1,4 +1,4 @@
-"""Formulas of the force element on components, for numbers and arrays, compiled functions and exported programs.
+"""Formulas of the force element by components, for numbers, arrays, compiled functions and exported programs.
 
 r = (x, y, z) is the position of the ball centre relative to the socket centre, in axes fixed to the socket. From it
 follow e = |r|, n = r/e and d = e - c. All forces act on the ball, and all moments about its centre. `Load` gives force
@@ -18,7 +18,7 @@ Vector = tuple[Array, Array, Array]
 
 
 class Constants(NamedTuple):
-    """Numbers of a force element except those of its potential: lengths in mm, speeds in mm/s, times in s.
+    """Constants of a force element except its potential: lengths in mm, speeds in mm/s, times in s.
 
     `rim` is the polar angle of the cup rim in rad, 0 without a rim. `dome` is the unit vector to the pole of the bore.
     """
@@ -53,14 +53,14 @@ class BallCentre(NamedTuple):
     y: Array
     z: Array
     indentation: Array
-    over: Array
+    inverse_distance: Array
 
 
 class Elastic(NamedTuple):
-    """Elastic contact at a position of the ball.
+    """Elastic contact forces and stiffnesses at a position of the ball.
 
     `energy` is U, `normal` the force dU/de to the socket centre, and `stiffness` is d²U/de². Damping is proportional to
-    `damped_force` and `damped_stiffness`, which lack the gradient of the rim. `covered` is the angle to the rim over
+    `damped_force` and `damped_stiffness`, which lack the gradient of the rim. `rim_margin` is the angle to the rim over
     the half angle, 1 or more away from the rim. (`px`, `py`, `pz`) is the direction to the nearest rim. `polar` is the
     force along it, and `mixed`, `along` and `around` are components of the tangent.
     """
@@ -70,7 +70,7 @@ class Elastic(NamedTuple):
     stiffness: Array
     damped_force: Array
     damped_stiffness: Array
-    covered: Array
+    rim_margin: Array
     polar: Array
     mixed: Array
     along: Array
@@ -80,7 +80,7 @@ class Elastic(NamedTuple):
     pz: Array
 
 
-APART = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NO_CONTACT = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Elastic contact of a ball that does not touch the socket."""
 
 
@@ -91,14 +91,14 @@ def centre_of(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
     return BallCentre(distance, x * over, y * over, z * over, distance - clearance, over)
 
 
-def elastic(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
-    """Compute the elastic contact at a position, with first touch rounded off over ± `smoothing`."""
+def elastic_contact(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
+    """Compute the elastic contact at a position, with a first touch smoothed over ± `smoothing`."""
     rounded = ramp(centre.indentation, constants.smoothing)
     return elastic_from_slopes(centre, rounded, potential(rounded[0]), constants)
 
 
 def elastic_from_slopes(centre: BallCentre, rounded: Vector, slopes: Vector, constants: Constants) -> Elastic:
-    """Compute the elastic contact from energy, force and stiffness at the rounded indentation."""
+    """Compute the elastic contact from energy, force and stiffness at the smoothed indentation."""
     d = centre.indentation
     depth, slope, bend = rounded
     energy, force, stiffness = slopes
@@ -114,7 +114,10 @@ def elastic_from_slopes(centre: BallCentre, rounded: Vector, slopes: Vector, con
 def elastic_at_rim(
     centre: BallCentre, depth: Array, slope: Array, bend: Array, U: Array, F: Array, k: Array, constants: Constants
 ) -> Elastic:
-    """Compute the elastic contact in a cup, with the energy U W(s) for s = (rim - γ)/ε and cos ε = c/(c + d)."""
+    """Compute the elastic contact in a cup, whose rim cuts part of the contact.
+
+    The energy is U W(s) with s = (rim - γ)/ε and cos ε = c/(c + d).
+    """
     lean, across, ax, ay, az = dome_angle(centre, constants)
     gamma = atan2(across, lean)
     touching = depth > 0.0
@@ -131,14 +134,14 @@ def elastic_at_rim(
     by_depth = F * W + U * W1 * s1
     by_both = (U * W1 * first / epsilon - F * W1 - U * W2 * s1) / epsilon
     by_angle = -U * W1 / epsilon
-    over, nearer = 1.0 / safe_divisor(across), centre.over
+    over, nearer = 1.0 / safe_divisor(across), centre.inverse_distance
     return Elastic(
         energy=U * W,
         normal=by_depth * slope,
         stiffness=(k * W + 2.0 * F * W1 * s1 + U * (W2 * s1 * s1 + W1 * s2)) * slope * slope + by_depth * bend,
         damped_force=F * W * slope,
         damped_stiffness=W * (k * slope * slope + F * bend),
-        covered=s,
+        rim_margin=s,
         polar=-by_angle * nearer,
         mixed=(by_both * slope - by_angle * nearer) * nearer,
         along=U * W2 * (nearer * nearer / (epsilon * epsilon)),
@@ -150,7 +153,10 @@ def elastic_at_rim(
 
 
 def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute cos γ, sin γ and sin γ times the direction of increasing γ, the angle from the dome axis to the ball."""
+    """Compute cosine, sine and direction of the angle γ from the dome axis to the ball.
+
+    The last three results are sin γ times the direction of increasing γ.
+    """
     lean = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
     ax, ay, az = (
         lean * centre.x - constants.dome_x,
@@ -160,18 +166,18 @@ def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, 
     return lean, sqrt(ax * ax + ay * ay + az * az), ax, ay, az
 
 
-def pressed(elastic: Elastic, speed: Array, constants: Constants) -> Array:
-    """Compute the normal force towards the socket centre, F + (χ F + τ k) ḋ, which damping never makes negative."""
+def normal_force(elastic: Elastic, speed: Array, constants: Constants) -> Array:
+    """Compute the damped normal force F + (χ F + τ k) ḋ towards the socket centre in N; damping causes no tension."""
     lossy = constants.hysteresis * elastic.damped_force + constants.time * elastic.damped_stiffness
     force = elastic.normal + lossy * speed
     if constants.smoothing > 0.0:
-        return positive(force, SMOOTHING_SHARE * elastic.damped_force)
+        return ramp_value(force, SMOOTHING_SHARE * elastic.damped_force)
     least = where(elastic.normal < 0.0, elastic.normal, 0.0)  # negative for an adhesive ball
     return where(force < least, least, force)  # keeps NaN
 
 
-def undamped_pull(contact: Elastic) -> Elastic:
-    """Remove damping from a contact in tension, where it would generate energy."""
+def remove_tension_damping(contact: Elastic) -> Elastic:
+    """Remove the damping of a contact in tension, where it would generate energy."""
     pressing = clip(contact.damped_force, 0.0, float("inf"))
     return contact._replace(damped_force=pressing, damped_stiffness=clip(contact.damped_stiffness, 0.0, float("inf")))
 
@@ -181,7 +187,7 @@ SMOOTHING_SHARE = 0.1
 
 
 class Sliding(NamedTuple):
-    """Slip of a ball and its friction.
+    """Slip of the ball on the contact patch, with the rate of its friction.
 
     (`x`, `y`, `z`) is the velocity v across the load and (`bx`, `by`, `bz`) is b = R1 ω x n, both in mm/s. `spin` is
     the angular velocity about the load in rad/s, and `lever_squared` is in mm². `normal` is N, and `speed` the
@@ -206,15 +212,15 @@ class Sliding(NamedTuple):
     drill: Array
 
 
-def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, constants: Constants) -> Sliding:
-    """Compute the slip of the ball on the patch and the rate of friction, from velocity and spin."""
+def sliding_state(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, constants: Constants) -> Sliding:
+    """Compute the slip of the ball on the contact patch and the rate of friction."""
     (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
     speed, turning = vx * nx + vy * ny + vz * nz, wx * nx + wy * ny + wz * nz
     ax, ay, az = vx - speed * nx, vy - speed * ny, vz - speed * nz
     bx, by, bz = R1 * (wy * nz - wz * ny), R1 * (wz * nx - wx * nz), R1 * (wx * ny - wy * nx)
     m = versine(centre)
-    lever, kappa = constants.socket_radius * friction.drill_lever(m), friction.tilt_share(m)
+    lever, kappa = constants.socket_radius * friction.drill_lever(m), friction.rolling_slip_ratio(m)
     squared, share = lever * lever * m * (2.0 - m), kappa * kappa
     aa, bb, cross = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, 2.0 * (ax * bx + ay * by + az * bz)
     both, transition_squared = aa + bb, constants.transition_speed * constants.transition_speed
@@ -223,7 +229,7 @@ def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, co
         both + cross, share * (both - cross), drilled, twisted, transition_squared, share, m
     )
     q, tilt, twist = sqrt(q2), share * tilt, kappa * twist
-    mu = friction.coefficient_at(q, constants.sliding, constants.static, constants.stribeck_speed)
+    mu = friction.friction_coefficient(q, constants.sliding, constants.static, constants.stribeck_speed)
     N = force * friction.widening_factor(m)
     rate, mean = N * (mu / q + constants.viscous), slope + tilt
     push, rotation = mean + twist, mean - twist
@@ -231,28 +237,31 @@ def sliding(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, co
 
 
 def versine(centre: BallCentre) -> Array:
-    """Compute the versine 1 - cos ε = d/e of the overlap of ball and socket."""
-    return where(centre.indentation > 0.0, centre.indentation * centre.over, 0.0)
+    """Compute the versine 1 - cos ε = d/e of the overlap of ball and socket; 0 without contact.
+
+    e is the distance of the centres.
+    """
+    return where(centre.indentation > 0.0, centre.indentation * centre.inverse_distance, 0.0)
 
 
-def reaction(
+def force_and_moment(
     centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants
 ) -> tuple[Array, ...]:
-    """Compute force (N) and moment (N mm) on the ball about its centre: six components."""
+    """Compute force (N) and moment (N mm) on the ball about its centre, as six components."""
     (vx, vy, vz), nx, ny, nz = velocity, centre.x, centre.y, centre.z
     speed = vx * nx + vy * ny + vz * nz
-    normal = pressed(contact, speed, constants)
+    normal = normal_force(contact, speed, constants)
     fx, fy, fz = -normal * nx, -normal * ny, -normal * nz
     if constants.rim > 0.0:
         P = contact.polar
         fx, fy, fz = fx + P * contact.px, fy + P * contact.py, fz + P * contact.pz
     if constants.time > 0.0:
-        drag = constants.time * contact.damped_force * centre.over
+        drag = constants.time * contact.damped_force * centre.inverse_distance
         fx, fy, fz = fx - drag * (vx - speed * nx), fy - drag * (vy - speed * ny), fz - drag * (vz - speed * nz)
     if constants.static + constants.viscous == 0.0:
         zero = 0.0 * normal
         return fx, fy, fz, zero, zero, zero
-    ax, ay, az, bx, by, bz, twirl, lever, _, rate, _, push, mixed, rotation, drill = sliding(
+    ax, ay, az, bx, by, bz, twirl, lever, _, rate, _, push, mixed, rotation, drill = sliding_state(
         centre, normal, velocity, spin, constants
     )
     push, mixed = -rate * push, -rate * mixed
@@ -267,12 +276,12 @@ def reaction(
 
 
 def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Array:
-    """Compute the power dissipated by damping, liner and friction in N mm/s."""
+    """Compute the power in N mm/s dissipated by damping, liner and friction."""
     vx, vy, vz = velocity
     speed = vx * centre.x + vy * centre.y + vz * centre.z
-    normal = pressed(contact, speed, constants)
-    slip = sliding(centre, normal, velocity, spin, constants)
-    drag = constants.time * contact.damped_force * centre.over
+    normal = normal_force(contact, speed, constants)
+    slip = sliding_state(centre, normal, velocity, spin, constants)
+    drag = constants.time * contact.damped_force * centre.inverse_distance
     aa = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z
     cross = slip.x * slip.bx + slip.y * slip.by + slip.z * slip.bz
     bb = slip.bx * slip.bx + slip.by * slip.by + slip.bz * slip.bz
@@ -282,10 +291,10 @@ def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Ve
 
 
 def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple[Array, ...]:
-    """Compute the tangent stiffness ∂²U/∂r² in N/mm: xx, yy, zz, xy, yz, zx."""
+    """Compute the components xx, yy, zz, xy, yz, zx of the tangent stiffness ∂²U/∂r² in N/mm."""
     nx, ny, nz, px, py, pz = centre.x, centre.y, centre.z, contact.px, contact.py, contact.pz
     # where the centres coincide, without clearance, the stiffness is isotropic
-    across = where(centre.distance > 0.0, contact.normal * centre.over, contact.stiffness)
+    across = where(centre.distance > 0.0, contact.normal * centre.inverse_distance, contact.stiffness)
     radial = contact.stiffness - across
     xx, yy, zz = across + radial * nx * nx, across + radial * ny * ny, across + radial * nz * nz
     xy, yz, zx = radial * nx * ny, radial * ny * nz, radial * nz * nx
@@ -302,7 +311,7 @@ def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple
 
 
 def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
-    """Compute max(y, 0) and its two derivatives, rounded off between -width and width by a polynomial."""
+    """Compute a smoothed max(y, 0) and its two derivatives; a polynomial replaces the corner at ± `width`."""
     if width == 0.0:
         zero = 0.0 * y
         return where(y > 0.0, y, zero), where(y >= 0.0, zero + 1.0, zero), zero
@@ -311,8 +320,8 @@ def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
     return where(y >= width, y, 2.0 * width * _rounded(t)), t * t * t * (10.0 - 15.0 * t + 6.0 * t * t), bend
 
 
-def positive(y: Array, width: Array) -> Array:
-    """Compute the value of `ramp` for a width that may be an array, 0 included."""
+def ramp_value(y: Array, width: Array) -> Array:
+    """Compute a smoothed max(y, 0) like `ramp`, for a width that may be an array and 0."""
     span = where(width > 0.0, width, 1.0)
     t = clip((y + width) / (2.0 * span), 0.0, 1.0)
     return where(y >= width, y, 2.0 * width * _rounded(t))
@@ -324,7 +333,7 @@ def _rounded(t: Array) -> Array:
 
 
 def rim_share(centre: Array) -> tuple[Array, Array, Array]:
-    """Compute the energy share W(s) of a contact cut by a straight rim, with its first and second derivative.
+    """Compute the fraction W(s) of the contact energy inside a straight rim, with its two derivatives.
 
     s is the distance of the rim from the patch centre over the half angle. W is 1 for s >= 1, and 0 for s <= -1. It is
     the marginal of (1 - x² - y²)² over a disc, the energy density of radial springs under a small patch.

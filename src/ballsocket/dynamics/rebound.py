@@ -49,7 +49,7 @@ class DampingEstimate:
 
 
 def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None = None) -> DampingEstimate:
-    """Estimate damping from coefficients of restitution, by the exact relation for any contact law.
+    """Fit damping to measured coefficients of restitution, by the exact relation for any contact law.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None 
 
 
 def from_bounces(*, times: Any, gravity: float = GRAVITY, uncertainty: float | None = None) -> DampingEstimate:
-    """Estimate damping from the times at which a ball that bounces under its weight touches down.
+    """Fit damping to the touchdown times of a ball that bounces under its weight.
 
     The duration Δt of a flight gives the speed at both its ends, v = g Δt/2. The ratio of two successive speeds is the
     coefficient of restitution of the bounce between them.
@@ -129,12 +129,15 @@ def from_bounces(*, times: Any, gravity: float = GRAVITY, uncertainty: float | N
 
 
 def _restitutions(chi: float, speeds: Numbers) -> Numbers:
-    """Compute the coefficients of restitution of a hysteresis χ at impact speeds."""
+    """Compute the coefficients of restitution at impact speeds in mm/s for a hysteresis χ in s/mm."""
     return numpy.array([restitution_of(chi * speed) for speed in speeds.tolist()])
 
 
 def _restitution_slopes(chi: float, speeds: Numbers) -> Numbers:
-    """Compute ∂e/∂χ, from h (1 + e) = ln[(1 + h)/(1 - h e)]."""
+    """Compute the derivatives ∂e/∂χ of the coefficients of restitution at impact speeds.
+
+    They follow from h (1 + e) = ln[(1 + h)/(1 - h e)].
+    """
     h, e = chi * speeds, _restitutions(chi, speeds)
     small = h < 1e-4
     safe = numpy.where(small, 1.0, h)
@@ -143,7 +146,7 @@ def _restitution_slopes(chi: float, speeds: Numbers) -> Numbers:
 
 
 def _fit_hysteresis(speeds: Numbers, restitutions: Numbers) -> float:
-    """Fit χ by Gauss-Newton iterations that start from the relation of Hunt & Crossley."""
+    """Fit the hysteresis χ in s/mm by Gauss-Newton iterations, started at the relation of Hunt & Crossley."""
     chi = float(numpy.median(1.5 * (1 - restitutions) / speeds))
     for _ in range(50):
         slope = _restitution_slopes(chi, speeds)

@@ -19,7 +19,7 @@ from ..core.sources import Source
 
 @dataclass(frozen=True, kw_only=True)
 class Relation:
-    """Relation between the coefficient of restitution e, above 0 and up to 1, and the damping h = χ v.
+    """Relation between the coefficient of restitution e, 0 < e ≤ 1, and the dimensionless damping h = χ v.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class Relation:
     sources: tuple[Source, ...] = ()
 
     def damping(self, restitution: float) -> float:
-        """Compute the damping h = χ v for a coefficient of restitution.
+        """Compute the dimensionless damping h = χ v for a coefficient of restitution.
 
         Raises
         ------
@@ -55,7 +55,9 @@ class Relation:
 
 
 def restitution_of(damping: float) -> float:
-    """Compute the exact coefficient of restitution e for a damping h = χ v and any contact law.
+    """Compute the exact coefficient of restitution e for a dimensionless damping h = χ v.
+
+    It holds for any contact law.
 
     Parameters
     ----------
@@ -80,11 +82,15 @@ def restitution_of(damping: float) -> float:
 
 
 def _exit_balance(h: float, e: float) -> float:
-    """Compute ∫ x/(1 + x) dx from -h e to h, which is positive for an e below the exact coefficient."""
+    """Compute the energy balance ∫ x/(1 + x) dx from -h e to h of an impact.
+
+    It is positive for an e below the exact coefficient.
+    """
     return h + math.log1p(-h * e) + h * e - math.log1p(h) if h * e < 1.0 else -math.inf
 
 
-def _exact(e: float) -> float:
+def _exact_damping(e: float) -> float:
+    """Solve for the dimensionless damping h of a coefficient of restitution e by bisection."""
     if e == 1.0:
         return 0.0
     low, high = 0.0, 1.0 / e
@@ -99,7 +105,7 @@ def _exact(e: float) -> float:
 exact = Relation(
     name="the exact solution",
     law="h (1 + e) = ln[(1 + h)/(1 - h e)]",
-    formula=_exact,
+    formula=_exact_damping,
     sources=(Source("gonthier2004"),),
 )
 """h (1 + e) = ln[(1 + h)/(1 - h e)]."""

@@ -1,4 +1,4 @@
-"""Simulation of a ball in its socket, by energy-momentum steps or with the internal state of the contact."""
+"""Simulation of a ball in its socket, by energy-momentum steps or by integration of the contact's internal state."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from . import stepping
 from .element import ForceElement, components
 from .load import ContactState, Load
 from .motion import TONNE, Motion
-from .stateful_motion import StatefulIntegrator, pull_of
+from .stateful_motion import StatefulIntegrator, pull_function
 from .stepping import BallState
 
 
@@ -30,7 +30,7 @@ def simulate(
     duration: float,
     step: float,
 ) -> Motion:
-    """Simulate a ball in a socket at rest, by steps that conserve energy and angular momentum to rounding.
+    """Simulate a ball in a fixed socket, by time steps that conserve energy and angular momentum.
 
     The method is of order 2: halving the step divides the errors of positions and phases by four. Conserved energy
     does not bound these errors. Bristles and adhesion have a state; with them the motion is integrated by
@@ -53,7 +53,7 @@ def simulate(
     Returns
     -------
     Motion
-        It ends early at a state without force or a step that does not converge; `ended` gives the reason.
+        It ends early at a state without force or a step that does not converge; `end_reason` gives the reason.
 
     Raises
     ------
@@ -73,10 +73,12 @@ def simulate(
     require("the number of steps", steps, steps <= _MAX_STEPS, f"at most {_MAX_STEPS:g}")
     count = max(int(numpy.ceil(steps - 1e-9)), 1)
     initial = BallState(*components(position), *components(velocity), *components(spin))
-    ball = _InitialValueProblem(element, plain, checked_mass, checked_inertia, initial, pull, duration / count, count)
+    problem = _InitialValueProblem(
+        element, plain, checked_mass, checked_inertia, initial, pull, duration / count, count
+    )
     if ContactState(plain(initial[:3], initial[3:6], initial[6:]).status).failed:
-        return ball.failure()
-    return ball.with_contact_state() if plain.remembers else ball.advance()
+        return problem.failed_motion()
+    return problem.advance_with_contact_state() if plain.internal_state else problem.advance()
 
 
 _MAX_STEPS = 1e8
@@ -85,7 +87,7 @@ _MAX_STEPS = 1e8
 
 @dataclass(frozen=True)
 class _InitialValueProblem:
-    """Initial state of a ball, and `count` steps of `step` seconds."""
+    """Initial value problem of a ball: initial state, pull, and `count` time steps of `step` seconds."""
 
     element: Any
     plain: ForceElement
@@ -96,44 +98,53 @@ class _InitialValueProblem:
     step: float
     count: int
 
-    def failure(self) -> Motion:
-        """Return the motion of a ball whose initial state has no load."""
+    def failed_motion(self) -> Motion:
+        """Return the motion without a step, for an initial state that has no load."""
         states, none = numpy.array([self.initial]), numpy.zeros(1)
         return self._motion(
-            states, self.plain(states[:, :3]), lost=none, work=none, ended=_failure_note(self.plain, states[0])
+            states,
+            self.plain(states[:, :3]),
+            dissipated_energy=none,
+            work=none,
+            end_reason=_failure_note(self.plain, states[0]),
         )
 
     def advance(self) -> Motion:
         """Simulate by energy-momentum steps."""
         h, count, constants = self.step, self.count, (self.element.potential, self.element.constants)
-        states, lost = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
+        states, dissipated = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
         pulls = _pulls(self.pull, h * (numpy.arange(count) + 0.5))
         plain = isinstance(self.element, ForceElement)
         march, rows = (stepping.march, pulls.tolist()) if plain else (self.element.march, pulls)
-        converged = march(*constants, self.initial, TONNE * self.mass, TONNE * self.inertia, rows, h, states, lost)
-        ended = "" if converged == count else _failure_note(self.plain, states[converged + 1], converged * h, h)
-        states, lost, pulls = states[: converged + 1], lost[: converged + 1], pulls[:converged]
+        converged = march(
+            *constants, self.initial, TONNE * self.mass, TONNE * self.inertia, rows, h, states, dissipated
+        )
+        end_reason = "" if converged == count else _failure_note(self.plain, states[converged + 1], converged * h, h)
+        states, dissipated, pulls = states[: converged + 1], dissipated[: converged + 1], pulls[:converged]
         position = states[:, :3]
         work = numpy.cumsum(numpy.sum(pulls * numpy.diff(position, axis=0), axis=1))
         moment = numpy.cumsum(h / 2 * numpy.cross(position[:-1] + position[1:], pulls), axis=0)
         sums = {"work": numpy.append(0.0, work), "pull_moment": numpy.vstack([numpy.zeros(3), moment])}
-        return self._motion(states, self.plain(position), lost=lost, ended=ended, **sums)
+        return self._motion(states, self.plain(position), dissipated_energy=dissipated, end_reason=end_reason, **sums)
 
-    def with_contact_state(self) -> Motion:
-        """Simulate by LSODA a contact with bristles or adhesion."""
+    def advance_with_contact_state(self) -> Motion:
+        """Simulate a contact with bristles or adhesion by LSODA."""
         ball = StatefulIntegrator(
-            element=self.plain, mass=TONNE * self.mass, inertia=TONNE * self.inertia, pull=pull_of(self.pull)
+            element=self.plain, mass=TONNE * self.mass, inertia=TONNE * self.inertia, pull=pull_function(self.pull)
         )
         results = ball.integrate(self.initial, self.step * numpy.arange(self.count + 1), self.step)
         load = self.plain(results.states[:, :3], attached=results.attached)
-        ended = ""
+        end_reason = ""
         if results.failure is not None:
             notes = "; ".join(results.failure.notes) or "the integration failed"
-            ended = f"after {self.step * (len(results.states) - 1):g} s: {notes}"
-        contact_state = {"deflection": results.deflection, "attached": results.attached, "ended": ended}
-        return self._motion(results.states, load, lost=results.dissipated, work=results.work, **contact_state)
+            end_reason = f"after {self.step * (len(results.states) - 1):g} s: {notes}"
+        contact_state = {"deflection": results.deflection, "attached": results.attached, "end_reason": end_reason}
+        return self._motion(
+            results.states, load, dissipated_energy=results.dissipated, work=results.work, **contact_state
+        )
 
     def _motion(self, states: Numbers, load: Load, **results: Any) -> Motion:
+        """Make the motion from states (steps, 9), the contact load, and further results."""
         return Motion(
             element=self.plain,
             mass=self.mass,
@@ -148,14 +159,14 @@ class _InitialValueProblem:
 
 
 def _pulls(pull: Any, time: Numbers) -> Numbers:
-    """Return the pull at times: (times, 3)."""
+    """Evaluate the pull in N at the given times: (times, 3)."""
     if callable(pull):
         return numpy.array([components(pull(instant), "a pull") for instant in time.tolist()])
     return numpy.tile(numpy.array(components(pull, "a pull")), (len(time), 1))
 
 
 def _failure_note(element: ForceElement, state: Numbers, time: float = 0.0, step: float = 0.0) -> str:
-    """Describe the reason for the end of a motion, with the state after the last step."""
+    """Describe the reason for the early end of a motion, with its time and state."""
     x, y, z, *rates = state.tolist()
     notes = element((x, y, z), rates[:3], rates[3:]).notes
     return f"after {time:g} s: {'; '.join(notes) or f'a step of {step:g} s did not converge'}"

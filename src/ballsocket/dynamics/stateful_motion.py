@@ -22,7 +22,7 @@ _STATE_SIZE = 15
 
 
 class StatefulTrajectory(NamedTuple):
-    """States of a ball at the computed times. `failure` is the load without a result that ended the motion, or None."""
+    """Computed states of a ball. `failure` is the load that ended the motion early, or None."""
 
     states: Numbers
     deflection: Numbers
@@ -33,7 +33,7 @@ class StatefulTrajectory(NamedTuple):
 
 
 class _NoLoad(ArithmeticError):  # noqa: N818 - it ends the integration, and no caller sees it
-    """State without a result."""
+    """Error at a state of the ball that has no load."""
 
     def __init__(self, load: Load) -> None:
         super().__init__("; ".join(load.notes))
@@ -42,7 +42,10 @@ class _NoLoad(ArithmeticError):  # noqa: N818 - it ends the integration, and no 
 
 @dataclass(frozen=True, kw_only=True)
 class StatefulIntegrator:
-    """Integrator of a ball under a pull: `mass` in t, `inertia` in t mm², `pull` in N as a function of time in s."""
+    """Time integrator for a ball with an internal contact state, under a pull.
+
+    `mass` is in t, `inertia` in t mm², `pull` in N as a function of time in s.
+    """
 
     element: ForceElement
     mass: float
@@ -50,7 +53,10 @@ class StatefulIntegrator:
     pull: Callable[[float], Vector]
 
     def integrate(self, initial: Any, times: Numbers, step: float) -> StatefulTrajectory:
-        """Integrate from the initial state at the first of the increasing times, with steps no longer than `step`."""
+        """Integrate the motion from an initial state, with steps of at most `step` seconds.
+
+        `times` increase; the initial state is that at the first time.
+        """
         state = numpy.zeros(_STATE_SIZE)
         state[:9] = initial
         states, attachments, failure = [state], [self._is_touching(state)], None
@@ -66,7 +72,7 @@ class StatefulIntegrator:
         )
 
     def _segments(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
-        """Yield the state at each time after the first, and restart the solver where the ball attaches or separates."""
+        """Yield the state at each time after the first; the solver restarts at each attachment or separation."""
         from scipy.integrate import LSODA
 
         time, attached, change = float(times[0]), self._is_touching(state), 0.0
@@ -89,9 +95,12 @@ class StatefulIntegrator:
                 state[13] -= self._load(state, attached).energy
 
     def _rates(self, attached: bool) -> Callable[[float, Numbers], list[float]]:
+        """Make the right-hand side of the equations of motion."""
+
         def rates(time: float, state: Numbers) -> list[float]:
+            """Compute the time derivatives of the unknowns; raise `_NoLoad` at a state without a load."""
             load, pull = self._load(state, attached), self.pull(time)
-            if load.force[0] != load.force[0] or load.contact.covered <= -1.0:
+            if load.force[0] != load.force[0] or load.contact.rim_margin <= -1.0:
                 raise _NoLoad(load)
             acceleration = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
             angular_acceleration = [a / self.inertia for a in load.moment]
@@ -118,7 +127,7 @@ class StatefulIntegrator:
         return float(numpy.linalg.norm(state[:3])) - float(self.element.joint.clearance)
 
     def _switch_time(self, path: Any, attached: bool) -> float:
-        """Return the time in a step at which an adhesive ball attaches or separates; infinity without such a time."""
+        """Return the time in a step at which an adhesive ball attaches or separates; infinity if it does not."""
         from scipy.optimize import brentq
 
         stretch = self.element.stretch
@@ -133,8 +142,8 @@ class StatefulIntegrator:
         return float(brentq(distance, path.t_old, path.t, xtol=1e-15)) if changes else inf
 
 
-def pull_of(pull: Any) -> Callable[[float], Vector]:
-    """Return the pull as a function of the time."""
+def pull_function(pull: Any) -> Callable[[float], Vector]:
+    """Return the pull in N as a function of the time in s."""
     if callable(pull):
         return lambda time: components(pull(time), "a pull")
     constant = components(pull, "a pull")
@@ -142,7 +151,7 @@ def pull_of(pull: Any) -> Callable[[float], Vector]:
 
 
 def _dissipated_power(load: Load) -> float:
-    """Compute the power in N mm/s of all loads that are not elastic, with that stored in bristles."""
+    """Compute the power in N mm/s of all loads that are not elastic; it includes the rate of energy in bristles."""
     contact, centre = load.contact, load.centre
     speed = _dot(load.velocity, (centre.x, centre.y, centre.z))
     polar_speed = _dot(load.velocity, (contact.px, contact.py, contact.pz))

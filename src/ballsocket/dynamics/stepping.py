@@ -1,4 +1,4 @@
-"""Time steps of a ball in its socket: of second order, with energy and angular momentum conserved to rounding.
+"""Time steps of a ball in its socket: second order, conserving energy and angular momentum to rounding.
 
 The elastic force is the discrete gradient of Gonzalez in the invariants of the contact: the distance e = |r| of the
 centres and, in a cup, r·dome. Without a rim it is -ΔU/Δ(e²) (r0 + r1). Its work is exactly the decrease of the energy.
@@ -20,10 +20,10 @@ from .reaction import (
     centre_of,
     dissipation,
     dome_angle,
-    elastic,
-    pressed,
-    reaction,
-    sliding,
+    elastic_contact,
+    force_and_moment,
+    normal_force,
+    sliding_state,
 )
 
 MAX_ITERATIONS = 60
@@ -45,7 +45,10 @@ class BallState(NamedTuple):
 
 
 class StepResult(NamedTuple):
-    """Result of a step: the ball, the dissipated energy (N mm), and True for a converged step that ends in the cup."""
+    """Result of a time step: the ball, the dissipated energy in N mm, and convergence.
+
+    `converged` is True for a converged step that ends in the cup.
+    """
 
     ball: BallState
     dissipated: float
@@ -55,7 +58,7 @@ class StepResult(NamedTuple):
 def advance(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pull: Vector, h: float
 ) -> StepResult:
-    """Advance a ball by a step of h seconds.
+    """Advance the state of a ball by a time step of h seconds.
 
     `mass` is in t (N s²/mm), `inertia` in t mm², and `pull` is a constant force in N. The unknowns are velocity and
     spin at the midpoint of the step. Each iteration solves for them with constant stiffness and rate of friction.
@@ -72,13 +75,13 @@ def advance(  # type: ignore[no-untyped-def]
     )
     if initial.indentation + h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z)) < -constants.smoothing:
         return StepResult(end_state(ball, midpoint, h), 0.0, True)
-    start = elastic(potential, initial, constants)
+    start = elastic_contact(potential, initial, constants)
     push = start.normal / mass_rate
     ax, ay, az, bx, by, bz = midpoint
     midpoint = Midpoint(ax - push * initial.x, ay - push * initial.y, az - push * initial.z, bx, by, bz)
     size, best, change = 1e-300, 1e300, 1e300
     for _ in range(MAX_ITERATIONS):
-        residual = residual_of(
+        residual = step_residual(
             potential, constants, ball, midpoint, initial.distance, start.energy, mass_rate, inertia_rate, pull, h
         )
         after, change = newton_correction(residual, midpoint, constants, mass_rate, inertia_rate, h)
@@ -114,7 +117,7 @@ For a shorter path the mean gradient is exact to rounding.
 
 
 class Midpoint(NamedTuple):
-    """Velocity and spin at the midpoint of a step."""
+    """Velocity (mm/s) and spin (rad/s) at the midpoint of a time step."""
 
     x: float
     y: float
@@ -125,7 +128,7 @@ class Midpoint(NamedTuple):
 
 
 class MeanContact(NamedTuple):
-    """Elastic contact at the mean of the invariants of both ends of a step.
+    """Elastic contact at the mean position of a time step, between its start and its end.
 
     `centre` has the direction of the midpoint of the step and the mean distance. `end` is the position after the step.
     `shortening` is the distance at the midpoint over the mean distance. The force of the rim acts along (`qx`, `qy`,
@@ -145,7 +148,7 @@ class MeanContact(NamedTuple):
 
 
 class StepResidual(NamedTuple):
-    """Residuals of force (N) and moment (N mm) in the balance of a step, with the contact at its midpoint."""
+    """Residuals of force (N) and moment (N mm) in the balance of a time step, with its mean contact."""
 
     x: float
     y: float
@@ -160,7 +163,7 @@ class StepResidual(NamedTuple):
 
 
 def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
-    """Compute the ball after a step from velocity and spin at its midpoint."""
+    """Compute the state of the ball after a time step from velocity and spin at the midpoint."""
     ax, ay, az, bx, by, bz = midpoint
     return BallState(
         ball.x + h * ax, ball.y + h * ay, ball.z + h * az,
@@ -170,7 +173,7 @@ def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
 
 
 def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
-    """Compute the speed of the ball plus that of its turning surface, in mm/s."""
+    """Compute a bound of the surface speed of the ball in mm/s, from translation and rotation."""
     turning = abs(midpoint.wx) + abs(midpoint.wy) + abs(midpoint.wz)
     return abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z) + constants.ball_radius * turning
 
@@ -178,7 +181,9 @@ def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
 def mean_contact(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, midpoint: Midpoint, distance: float, h: float
 ) -> MeanContact:
-    """Compute the elastic contact at the mean of both ends of a step, for the distance of the centres at its start.
+    """Compute the elastic contact at the mean position of a time step.
+
+    `distance` is the distance of the centres at the start.
 
     The mean is that of e and of r·dome. To third order the difference of the energy is the gradient at the mean times
     the differences of the invariants, also for a step that hardly changes them.
@@ -191,7 +196,7 @@ def mean_contact(  # type: ignore[no-untyped-def]
     shortening, depth = half.distance * over, mean - constants.clearance
     centre = BallCentre(mean, nx, ny, nz, depth, over)
     if constants.rim == 0.0:
-        contact = elastic(potential, centre, constants)
+        contact = elastic_contact(potential, centre, constants)
         return MeanContact(centre, end, contact, shortening, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     cosine, sine, px, py, pz = dome_angle(half, constants)
     lean, across = shortening * cosine, 1.0 / safe_divisor(sine)
@@ -200,7 +205,7 @@ def mean_contact(  # type: ignore[no-untyped-def]
     gx, gy, gz = constants.dome_x, constants.dome_y, constants.dome_z
     kx, ky, kz = lean * gx, lean * gy, lean * gz
     kx, ky, kz = kx + stretch * (nx - cosine * gx), ky + stretch * (ny - cosine * gy), kz + stretch * (nz - cosine * gz)
-    contact = elastic(potential, BallCentre(mean, kx, ky, kz, depth, over), constants)
+    contact = elastic_contact(potential, BallCentre(mean, kx, ky, kz, depth, over), constants)
     tilt = lean * shortening
     return MeanContact(
         centre, end, contact, shortening,
@@ -209,7 +214,7 @@ def mean_contact(  # type: ignore[no-untyped-def]
     )  # fmt: skip
 
 
-def residual_of(  # type: ignore[no-untyped-def]
+def step_residual(  # type: ignore[no-untyped-def]
     potential,
     constants: Constants,
     ball: BallState,
@@ -221,12 +226,15 @@ def residual_of(  # type: ignore[no-untyped-def]
     pull: Vector,
     h: float,
 ) -> StepResidual:
-    """Compute the residual at a midpoint: inertia minus the discrete gradient, damping, friction and pull."""
+    """Compute the residual of the equations of motion at a trial midpoint of a time step.
+
+    It is the inertia minus the discrete gradient of the energy, damping, friction and pull.
+    """
     ax, ay, az, bx, by, bz = midpoint
     mean = mean_contact(potential, constants, ball, midpoint, distance, h)
     centre, end, contact = mean.centre, mean.end, mean.contact
-    fx, fy, fz, mx, my, mz = reaction(centre, contact, (ax, ay, az), (bx, by, bz), constants)
-    after = elastic(potential, end, constants)
+    fx, fy, fz, mx, my, mz = force_and_moment(centre, contact, (ax, ay, az), (bx, by, bz), constants)
+    after = elastic_contact(potential, end, constants)
     nx, ny, nz = centre.x, centre.y, centre.z
     speed = ax * nx + ay * ny + az * nz
     normal, polar = mean.shortening * contact.normal, contact.polar
@@ -255,7 +263,7 @@ def residual_of(  # type: ignore[no-untyped-def]
         centre,
         contact,
         abs(fx) + abs(fy) + abs(fz),
-        after.covered > -1.0 or end.indentation <= -constants.smoothing,
+        after.rim_margin > -1.0 or end.indentation <= -constants.smoothing,
     )
 
 
@@ -267,18 +275,21 @@ def newton_correction(
     inertia_rate: float,
     h: float,
 ) -> tuple[Midpoint, float]:
-    """Solve for the midpoint with constant stiffness and rate of friction; return it with its change in mm/s."""
+    """Solve the linearised equations of a time step for a new midpoint; also return its change in mm/s.
+
+    The stiffness and the rate of friction are constant in this solution.
+    """
     centre, contact, R1 = residual.centre, residual.contact, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
     push, mixed, rotation, drill = 0.0, 0.0, 0.0, 0.0
     if constants.static + constants.viscous > 0.0:
         speed = midpoint.x * nx + midpoint.y * ny + midpoint.z * nz
         velocity, spin = (midpoint.x, midpoint.y, midpoint.z), (midpoint.wx, midpoint.wy, midpoint.wz)
-        slip = sliding(centre, pressed(contact, speed, constants), velocity, spin, constants)
+        slip = sliding_state(centre, normal_force(contact, speed, constants), velocity, spin, constants)
         push, mixed, rotation = slip.rate * slip.push, slip.rate * slip.mixed, slip.rate * slip.rotation
         drill = slip.rate * slip.drill * slip.lever_squared
     lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
-    across = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.over
+    across = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.inverse_distance
     outward = residual.x * nx + residual.y * ny + residual.z * nz
     turning = residual.wx * nx + residual.wy * ny + residual.wz * nz
     dn = -outward / (mass_rate + lossy + 0.5 * h * abs(contact.stiffness))
@@ -307,7 +318,9 @@ def newton_correction(
 def march(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pulls, h: float, states, dissipated
 ) -> int:
-    """Advance a ball, write `states` (steps + 1, 9) and `dissipated` (steps + 1,), and return the converged steps.
+    """Advance a ball over all time steps, fill `states` and `dissipated`, and return the number of converged steps.
+
+    `states` is (steps + 1, 9) and `dissipated` (steps + 1,), in N mm.
 
     `pulls` (steps, 3) is the pull in each step. In Python it is a list, which is faster than an array.
     """

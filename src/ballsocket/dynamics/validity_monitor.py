@@ -1,4 +1,4 @@
-"""Warning in the log when a force element first leaves the validity range of its model."""
+"""Log warning for the first time that a force element leaves the validity range of its model."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _log = logging.getLogger("ballsocket.dynamics")
 
 @dataclass
 class ValidityMonitor:
-    """Monitor that logs a warning at the first indentation outside the validity range of a model.
+    """Monitor that logs one warning when an indentation first leaves the validity range of a model.
 
     Contacts below the range do not count, because every impact passes through them.
 
@@ -39,13 +39,16 @@ class ValidityMonitor:
     limit: float = 0.0
 
     def check_array(self, indentation: Array) -> None:
-        """Check the largest of an array of indentations in mm."""
+        """Check the largest of an array of indentations in mm, and log a warning if it is invalid."""
         depths = concrete_values(indentation) if self.limit < inf else None
         if depths is not None and depths.size:
             self.check(float(numpy.max(depths, initial=0.0, where=depths <= self.wall)))
 
     def check(self, indentation: float) -> None:
-        """Check an indentation in mm. Beyond the wall the status of the load reports it."""
+        """Check an indentation in mm, and log a warning if it is outside the validity range.
+
+        Indentations beyond the wall are reported by the status of the load instead.
+        """
         if not self.limit < indentation <= self.wall:
             return
         contact = self._contact_at(indentation)
@@ -56,7 +59,7 @@ class ValidityMonitor:
         _log.warning("%s at an indentation of %.3g mm: %s", self.model.name, indentation, "; ".join(contact.notes))
 
     def _valid_limit(self, depth: float) -> float:
-        """Return a depth up to which the model is valid, from a depth at which it is."""
+        """Return an indentation in mm up to which the model is valid, at least the valid `depth`."""
         deeper = min(max(2 * depth, 1e-3 * self.wall), self.wall)
         for _ in range(6):
             if not self._exceeds_range(self._contact_at(deeper)):
@@ -68,11 +71,11 @@ class ValidityMonitor:
         return self.model.press(self.joint, indentation=indentation)
 
     def _exceeds_range(self, contact: Contact) -> bool:
-        """Return True for a contact that is invalid for another reason than its small size."""
+        """Return True for a contact that is invalid for a reason other than being too small."""
         return not contact.valid and not all(map(partial(_holds_when_larger, contact), contact._limits))
 
 
 def _holds_when_larger(contact: Contact, limit: Range) -> bool:
-    """Return True for a limit that holds, or that holds for a larger contact."""
+    """Return True for a limit that is met by the contact, or would be by a larger contact."""
     grows = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
     return bool(limit.holds(contact)) or (grows and bool(limit.quantity_of(contact) < limit.low))

@@ -28,7 +28,9 @@ from .potential import Potential, potential_of
 
 @dataclass(frozen=True, kw_only=True)
 class Prony:
-    """Relaxation modulus relative to the instantaneous modulus: g(t) = g∞ + Σ g_i exp(-t/τ_i), with g(0) = 1.
+    """Relaxation modulus as a Prony series, relative to the instantaneous modulus.
+
+    g(t) = g∞ + Σ g_i exp(-t/τ_i), with g(0) = 1.
 
     Parameters
     ----------
@@ -44,6 +46,7 @@ class Prony:
     terms: tuple[tuple[float, float], ...]
 
     def __post_init__(self) -> None:
+        """Check the terms of the series."""
         terms = tuple((float(share), float(time)) for share, time in self.terms)
         require("the number of terms", len(terms), len(terms) > 0, "a relaxation modulus needs at least one term")
         for share, time in terms:
@@ -59,7 +62,7 @@ class Prony:
 
     @property
     def shares(self) -> Numbers:
-        """Shares g_i of the terms."""
+        """Fractions g_i of the terms in the instantaneous modulus."""
         return numpy.array([share for share, _ in self.terms])
 
     @property
@@ -69,26 +72,29 @@ class Prony:
 
     @property
     def long_term_share(self) -> float:
-        """Share g∞ of the modulus at long times."""
+        """Fraction g∞ of the modulus that remains at long times."""
         return 1.0 - sum(share for share, _ in self.terms)
 
     def relaxation(self, time: Numbers) -> Numbers:
-        """Compute the relative modulus g(t) at times in s, 0 or more."""
+        """Compute the relative relaxation modulus g(t) at times in s, 0 or more."""
         ages = numpy.asarray(time, dtype=float)[..., None]
         return self.long_term_share + numpy.sum(self.shares * numpy.exp(-ages / self.times), axis=-1)
 
     def mean(self, early: Numbers, late: Numbers) -> Numbers:
-        """Compute the mean of g between an early and a late time in s."""
+        """Compute the mean relaxation modulus g between two times in s."""
         first, span = early[..., None] / self.times, (late - early)[..., None] / self.times
         return self.long_term_share + numpy.sum(self.shares * numpy.exp(-first) * -numpy.expm1(-span) / span, axis=-1)
 
     def complex_modulus(self, frequency: Numbers) -> Numbers:
-        """Compute the complex modulus g∞ + Σ g_i iωτ/(1 + iωτ) at frequencies in Hz; its imaginary part is the loss."""
+        """Compute the relative complex modulus at frequencies in Hz; its imaginary part is the loss modulus.
+
+        It is g∞ + Σ g_i iωτ/(1 + iωτ).
+        """
         phase = 2j * numpy.pi * numpy.asarray(frequency, dtype=float)[..., None] * self.times
         return self.long_term_share + numpy.sum(self.shares * phase / (1 + phase), axis=-1)
 
     def creep_compliance(self, time: Numbers) -> Numbers:
-        """Compute the creep compliance J(t), the strain under a unit stress: 1 at first, and 1/g∞ at long times."""
+        """Compute the creep compliance J(t), the strain under a unit stress: 1 at time 0, 1/g∞ at long times."""
         rates, weights = self._retardation
         return 1.0 / self.long_term_share - numpy.sum(
             weights * numpy.exp(-numpy.asarray(time)[..., None] * rates), axis=-1
@@ -105,7 +111,7 @@ class Prony:
 
 @dataclass(frozen=True, eq=False)
 class Viscoelastic:
-    """Joint with a viscoelastic liner: the model gives the instantaneous force, and Poisson's ratio is constant.
+    """Joint with a viscoelastic liner of constant Poisson's ratio; the model gives the instantaneous force.
 
     Parameters
     ----------
@@ -145,39 +151,42 @@ class Viscoelastic:
 
     @cached_property
     def potential(self) -> Potential:
-        """Instantaneous elastic energy over the indentation."""
+        """Instantaneous elastic energy of the joint over the indentation."""
         return potential_of(self.model, self.joint)
 
     def instantaneous_force(self, depth: Numbers) -> Numbers:
-        """Compute the instantaneous force in N at an indentation in mm; 0 without contact."""
+        """Compute the instantaneous contact force in N at an indentation in mm; 0 without contact."""
         return self.potential(numpy.maximum(numpy.asarray(depth, dtype=float), 0.0))[1]
 
     def relaxation_force(self, depth: float, time: Numbers) -> Numbers:
-        """Compute the force in N at times in s after a sudden, then constant indentation in mm."""
+        """Compute the relaxing force in N at times in s after a sudden, then constant indentation in mm."""
         return self.instantaneous_force(numpy.array(depth)) * self.modulus.relaxation(time)
 
     def creep_indentation(self, force: float, time: Numbers) -> Numbers:
-        """Compute the indentation in mm at times in s after a sudden, then constant force in N."""
+        """Compute the creeping indentation in mm at times in s after a sudden, then constant force in N."""
         return self.model.press(self.joint.with_floats(), force=force * self.modulus.creep_compliance(time)).indentation
 
     def dynamic_stiffness(self, depth: float, frequency: Numbers) -> Numbers:
-        """Compute the complex stiffness in N/mm of small vibrations at frequencies in Hz about an indentation in mm."""
+        """Compute the complex stiffness in N/mm for small vibrations (Hz) about an indentation in mm."""
         return self.potential(numpy.array(depth))[2] * self.modulus.complex_modulus(frequency)
 
     def separable_force(self, time: Numbers, depth: Numbers) -> Numbers:
-        """Compute the product g(t) F(d(t)), a common but wrong approximation, for comparison."""
+        """Compute the force in N by the separable approximation g(t) F(d(t)), for comparison.
+
+        The approximation is common but wrong.
+        """
         time, depth = _check_history(time, depth)
         touched = numpy.argmax(depth > 0)
         return self.modulus.relaxation(numpy.maximum(time - time[touched], 0.0)) * self.instantaneous_force(depth)
 
     def hereditary_force(self, time: Numbers, depth: Numbers) -> Numbers:
-        """Compute the hereditary integral ∫ g(t - s) dF of the elastic force, which holds while the contact grows."""
+        """Compute the force in N by the hereditary integral ∫ g(t - s) dF, valid while the contact grows."""
         time, depth = _check_history(time, depth)
         rise = numpy.diff(self.instantaneous_force(depth))
-        return numpy.append(0.0, numpy.sum(self._weights(time) * rise, axis=1))
+        return numpy.append(0.0, numpy.sum(self._mean_relaxation(time) * rise, axis=1))
 
     def cycle_force(self, time: Numbers, depth: Numbers) -> Numbers:
-        """Compute the force in N of a single loading and unloading.
+        """Compute the force in N of a single loading and unloading, after Ting.
 
         Parameters
         ----------
@@ -198,13 +207,16 @@ class Viscoelastic:
             "depth", depth, _mask_until(len(depth), top, again), "it must rise once and then fall; use `spring_force`"
         )
         force = self.hereditary_force(time, depth)
-        weights, bed = self._weights(time), numpy.maximum(depth, 0.0)
+        weights, bed = self._mean_relaxation(time), numpy.maximum(depth, 0.0)
         for number in range(top + 1, len(time)):
             force[number] = self._unloading_force(weights[number - 1], bed, top, number)
         return force
 
     def _unloading_force(self, weights: Numbers, depth: Numbers, top: int, number: int) -> float:
-        """Compute the force on unloading by the last instant t1 of the loading with the same edge, after Ting."""
+        """Compute the force in N at one instant of unloading, after Ting.
+
+        The force depends on the loading up to the last instant t1 at which the contact had the same edge.
+        """
         strain = numpy.cumsum((weights[:number] * numpy.diff(depth)[:number])[::-1])[::-1]
         initial = numpy.flatnonzero(strain[: top + 1] <= 0)
         if len(initial) and initial[0] == 0:
@@ -216,13 +228,13 @@ class Viscoelastic:
         forces = self.instantaneous_force(numpy.append(depth[: last + 1], edge))
         return float(numpy.sum(weights[: last + 1] * numpy.diff(forces)))
 
-    def _weights(self, time: Numbers) -> Numbers:
-        """Compute the mean of g(t - s) over the intervals of s before each t: (instants - 1, intervals), 0 after t."""
+    def _mean_relaxation(self, time: Numbers) -> Numbers:
+        """Compute the mean relaxation modulus over past intervals: (instants - 1, intervals), 0 for future ones."""
         late, early = time[1:, None] - time[None, :-1], time[1:, None] - time[None, 1:]
         return numpy.where(early >= 0, self.modulus.mean(numpy.maximum(early, 0.0), numpy.maximum(late, 1e-300)), 0.0)
 
     def spring_force(self, time: Numbers, depth: Numbers, rings: int = 400) -> Numbers:
-        """Compute the force in N of any history, by radial springs that are Maxwell chains.
+        """Compute the force in N of any indentation history, by radial springs that are Maxwell chains.
 
         A spring whose pressure would become negative detaches and recovers, until the ball touches it again.
 
@@ -247,12 +259,12 @@ class Viscoelastic:
         m = width * (numpy.arange(rings) + 0.5)
         ball = numpy.maximum(depth, -c)[:, None] * (1.0 - m) - c * m  # d cos φ - c (1 - cos φ)
         pressure = _maxwell_pressures(self.modulus, time, ball)
-        factor = 2 * numpy.pi * joint.socket_radius**2 * float(self.model.modulus.of(joint)) * width
+        factor = 2 * numpy.pi * joint.socket_radius**2 * float(self.model.modulus.evaluate(joint)) * width
         return factor * (pressure @ (1.0 - m))
 
 
 def _maxwell_pressures(modulus: Prony, time: Numbers, ball: Numbers) -> Numbers:
-    """Compute the pressure over the instantaneous stiffness of springs: (instants, springs)."""
+    """Compute the pressures of Maxwell springs over their instantaneous stiffness, in mm: (instants, springs)."""
     surface = numpy.zeros(ball.shape[1])
     stresses = numpy.zeros((len(modulus.terms), ball.shape[1]))
     pressure = numpy.zeros(ball.shape)
@@ -271,6 +283,7 @@ def _maxwell_pressures(modulus: Prony, time: Numbers, ball: Numbers) -> Numbers:
 
 
 def _check_history(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
+    """Convert times and indentations to arrays; raise ValueError for an invalid history."""
     time, depth = numpy.asarray(time, dtype=float), numpy.asarray(depth, dtype=float)
     if time.ndim != 1 or time.shape != depth.shape or len(time) < 2:
         raise ValueError(f"time and depth must be rows of equal length, at least 2, got {time.shape} and {depth.shape}")
@@ -282,7 +295,7 @@ def _check_history(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
 
 
 def _mask_until(count: int, top: int, again: Numbers) -> Numbers:
-    """Return the mask of instants before the depth rises again."""
+    """Return a mask of the instants before the indentation rises again."""
     valid = numpy.ones(count, dtype=bool)
     if len(again):
         valid[top + again[0] + 1 :] = False

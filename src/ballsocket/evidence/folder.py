@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.checks import shown
-from ..core.storage.atomic_files import is_draft, write_atomically
+from ..core.storage.atomic_files import is_draft_folder, write_atomically
 from .question import Question
 from .signature import sign
 
@@ -115,7 +115,7 @@ def check_room(folder: Path, question: Question) -> None:
     names = {*names_of(question), SUMS, SIGNATURE}
     expected = {*names, WORK, *(parent.as_posix() for name in names for parent in Path(name).parents)}
     present = [path.name for path in folder.iterdir()] if folder.is_dir() else []
-    unexpected = sorted(name for name in present if name not in _tops(expected) and not is_draft(name))
+    unexpected = sorted(name for name in present if name not in _tops(expected) and not is_draft_folder(name))
     if unexpected:
         raise ValueError(
             f"{folder} holds other files ({shown(unexpected[0])}): a pack needs an empty folder, choose another --out"

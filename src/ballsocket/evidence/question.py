@@ -7,27 +7,31 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import isclose, prod
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Self
 from unicodedata import category
 
 from ..catalogue import off_axis, reference
 from ..contact import Model
-from ..core.checks import check_text, nearest, require, shown
+from ..core.checks import check_names, check_text, require, shown
 from ..core.input_files import open_input, record_inputs, resolve_input
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
 from ..files.joint_file import JointFile, JointTables
 from ..files.named_joint import joint_in
 from ..files.schema import (
+    QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
     Number,
+    Parsed,
     Table,
     Text,
     Value,
+    Word,
     meaning,
+    parsed_values,
+    quantity_keys,
     read_table,
-    table_of_quantities,
-    values_of,
+    with_keys,
 )
 from ..files.toml import read_toml
 from ..files.units import parse
@@ -46,19 +50,13 @@ MOST = 2000
 _PERCENT = re.compile(r"\s*([\d.]+(?:[eE][-+]?\d+)?)\s*%\s*")
 
 
-class MatrixValues(Value):
+class MatrixValues(Parsed):
     """Number, or list of different numbers."""
 
-    kind: ClassVar[Kind]
-    schema: ClassVar[Mapping[str, Any]] = {
-        "anyOf": [QUANTITY_SCHEMA, {"type": "array", "items": QUANTITY_SCHEMA, "minItems": 1}]
-    }
-
-    def __init__(self, values: tuple[float, ...]) -> None:
-        self.values = values
+    schema: ClassVar[Mapping[str, Any]] = QUANTITIES_SCHEMA
 
     @classmethod
-    def read(cls, name: str, value: Any) -> Self:
+    def parse(cls, name: str, value: Any) -> tuple[float, ...]:
         """Convert a number or a list of numbers."""
         numbers = value if isinstance(value, list) else [value]
         if not numbers:
@@ -67,13 +65,18 @@ class MatrixValues(Value):
         twice = [number for i, number in enumerate(numbers) if values[i] in values[:i]]
         if twice:
             raise ValueError(f"[matrix] {name} has {shown(twice[0])} twice")
-        return cls(values)
+        return values
 
 
-class Tolerance(Text):
+class Tolerance(Parsed):
     """Tolerance or range, such as '0.1 +- 0.05 mm' or '0.40 .. 0.45'."""
 
-    kind: ClassVar[Kind]
+    schema: ClassVar[Mapping[str, Any]] = Text.schema
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> str:
+        """Return the text of a tolerance."""
+        return check_text(name, value)
 
 
 class Share(Value, float):
@@ -90,52 +93,65 @@ class Share(Value, float):
         return cls(share)
 
 
-class RiskTable(Table, kw_only=True):
+class Level(Word):
+    """Level of a risk."""
+
+    choices = LEVELS
+
+
+class RiskTable(Table, frozen=True, kw_only=True):
     """Risk of a wrong decision."""
 
-    influence: Annotated[Literal["low", "medium", "high"], meaning("influence of the model on the decision")]
-    consequence: Annotated[Literal["low", "medium", "high"], meaning("consequence of a wrong decision")]
+    influence: Annotated[Level, meaning("influence of the model on the decision")]
+    consequence: Annotated[Level, meaning("consequence of a wrong decision")]
 
 
-class RequiredTable(Table, kw_only=True):
+class RequiredTable(Table, frozen=True, kw_only=True):
     """Requirements on the numbers."""
 
     accuracy: Annotated[Share, meaning('largest relative error of the numbers, such as "10 %"')]
     limits: Annotated[list[Text] | None, meaning("limits, such as 'max_pressure <= 20 MPa'")] = None
 
 
-class FrictionTable(Table, kw_only=True):
+class FrictionTable(Table, frozen=True, kw_only=True):
     """Friction of the joint."""
 
     coefficient: Annotated[Number | None, meaning("coefficient of friction, 0 to 2")] = None
 
 
-class WearTable(Table, kw_only=True):
+class WearFileTable(Table, frozen=True, kw_only=True):
     """Wear of the joint."""
 
     file: Annotated[Text | None, meaning("hip file whose wear belongs to the evidence")] = None
 
 
-MatrixTable = table_of_quantities("MatrixTable", PARAMETERS, MatrixValues)
-"""Values of the matrix of cases, by parameter."""
-
-TolerancesTable = table_of_quantities("TolerancesTable", PARAMETERS, Tolerance)
-"""Tolerances of inputs, by parameter."""
+@with_keys(quantity_keys(PARAMETERS, MatrixValues))
+class MatrixTable(Table, frozen=True, kw_only=True):
+    """Values of the matrix of cases, by parameter."""
 
 
-class QuestionTable(JointTables, kw_only=True):
+@with_keys(quantity_keys(PARAMETERS, Tolerance))
+class TolerancesTable(Table, frozen=True, kw_only=True):
+    """Tolerances of inputs, by parameter."""
+
+
+_QUESTION = "decision that the evidence is for, in a sentence"
+_CONTEXT = "use of the answer, and what it is not used for"
+
+
+class QuestionTable(JointTables, frozen=True, kw_only=True):
     """Question file."""
 
-    question: Annotated[Text, meaning("the decision that the evidence is for, in a sentence")]
-    context_of_use: Annotated[Text, meaning("use of the answer, and its limits")]
-    finite_elements: Annotated[bool, meaning("check the worst cases with finite elements")] = False
-    risk: RiskTable
-    required: RequiredTable
-    matrix: MatrixTable | None = None  # type: ignore[valid-type]
-    tolerances: TolerancesTable | None = None  # type: ignore[valid-type]
-    sources: Annotated[dict[str, Any] | None, meaning("sources of inputs, by name")] = None
-    friction: FrictionTable | None = None
-    wear: WearTable | None = None
+    question: Annotated[Text, meaning(_QUESTION)]
+    context_of_use: Annotated[Text, meaning(_CONTEXT)]
+    finite_elements: Annotated[bool, meaning("check of the worst cases with finite elements")] = False
+    risk: Annotated[RiskTable, meaning("risk of a wrong decision")]
+    required: Annotated[RequiredTable, meaning("requirements on the numbers")]
+    matrix: MatrixTable | None = None
+    tolerances: TolerancesTable | None = None
+    sources: Annotated[dict[str, Text] | None, meaning("sources of inputs, by name")] = None
+    friction: FrictionTable = FrictionTable()
+    wear: WearFileTable = WearFileTable()
 
 
 @dataclass(frozen=True)
@@ -241,42 +257,34 @@ def read_question(path: str | Path) -> Question:
 def _question(content: Mapping[str, Any], path: Path) -> Question:
     """Create the question of a file."""
     tables = read_table(content, QuestionTable)
-    axes = {
-        name: entry.values for name, entry in values_of(tables.matrix, MatrixValues, content.get("matrix", {})).items()
-    }
+    axes = parsed_values(tables.matrix, content.get("matrix", {}))
     _check_axes(axes)
-    tolerances = _tolerances(values_of(tables.tolerances, Tolerance, content.get("tolerances", {})))
+    tolerances = _tolerances(parsed_values(tables.tolerances, content.get("tolerances", {})))
     file, recentred = _recentred(joint_in(tables, path.parent), tolerances, axes)
     return Question(
-        text=_filled("question", tables.question),
-        context=_filled("context_of_use", tables.context_of_use),
-        influence=tables.risk.influence,
-        consequence=tables.risk.consequence,
+        text=_filled("question", tables.question, _QUESTION),
+        context=_filled("context_of_use", tables.context_of_use, _CONTEXT),
+        influence=str(tables.risk.influence),
+        consequence=str(tables.risk.consequence),
         accuracy=float(tables.required.accuracy),
         file=file,
         axes=axes,
-        limits=tuple(map(limit_of, tables.required.limits or [])),
+        limits=tuple(map(limit_of, tables.required.limits or ())),
         tolerances=tolerances,
         recentred=recentred,
         sources=_sources(tables.sources or {}),
-        friction=_friction(tables.friction or FrictionTable()),
-        hip=_hip(tables.wear or WearTable(), path.parent),
+        friction=_friction(tables.friction),
+        hip=_hip(tables.wear, path.parent),
         finite_elements=tables.finite_elements,
         path=path,
         files=(path,),
     )
 
 
-def _filled(name: str, text: str) -> str:
-    """Return a text that is not blank as plain text.
-
-    Raises
-    ------
-    ValueError
-        A blank text.
-    """
+def _filled(name: str, text: str, meaning: str) -> str:
+    """Return a text as plain text; ValueError if it is blank."""
     if not text.strip():
-        raise ValueError(f"{name} is empty: write a sentence")
+        raise ValueError(f"{name} is empty: {meaning}")
     return str(text)
 
 
@@ -341,13 +349,10 @@ ALMOST_ALL = (0.001, 0.999)
 """Shares of what scatters, between which it is."""
 
 
-def _sources(texts: Mapping[str, Any]) -> Mapping[str, str]:
-    """Return the sources of inputs."""
-    known = (*QUANTITIES, *JointTables.__struct_fields__)
-    for name in texts:
-        if name not in known:
-            raise ValueError(f"{shown(name)} in [sources] is not known{nearest(name, known)}")
-    return {name: check_text(name, text) for name, text in texts.items()}
+def _sources(texts: Mapping[str, str]) -> Mapping[str, str]:
+    """Return the sources of inputs as plain texts."""
+    check_names(texts, (*QUANTITIES, *JointTables.__struct_fields__), "in [sources]")
+    return {name: str(text) for name, text in texts.items()}
 
 
 def _friction(table: FrictionTable) -> float | None:
@@ -359,7 +364,7 @@ def _friction(table: FrictionTable) -> float | None:
     return coefficient
 
 
-def _hip(table: WearTable, folder: Path) -> Path | None:
+def _hip(table: WearFileTable, folder: Path) -> Path | None:
     """Return the path of the hip file, which is read once as a check; None if the file names none."""
     if table.file is None:
         return None

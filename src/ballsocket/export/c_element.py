@@ -31,7 +31,7 @@ Outputs = dict[str, Part]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Recording:
-    """Formulas of a force element, recorded for an unknown state and tunable parameters.
+    """Recorded formulas of a force element, for an unknown state and tunable parameters.
 
     Attributes
     ----------
@@ -44,13 +44,13 @@ class Recording:
 
     @cached_property
     def state(self) -> tuple[Vector, Vector, Vector]:
-        """Position, velocity and spin."""
+        """Position, velocity and spin as inputs of the tape."""
         x, v, w = (tuple(self.tape.input(f"{name}[{axis}]") for axis in range(3)) for name in STATE)
         return x, v, w  # type: ignore[return-value]
 
     @cached_property
     def constants(self) -> Constants:
-        """Constants of the element; tunable ones are inputs of the tape."""
+        """Constants of the element; tunable parameters are inputs of the tape."""
         tuned: dict[str, Any] = {
             parameter.constant: self.tape.input(f"p->{parameter.name}", tunable=True) for parameter in TUNABLES
         }
@@ -76,7 +76,7 @@ class Recording:
 
     @cached_property
     def contact(self) -> Elastic:
-        return reaction.elastic(self._potential, self.centre, self.constants)
+        return reaction.elastic_contact(self._potential, self.centre, self.constants)
 
     def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
         if ENERGY in self.curves:
@@ -86,34 +86,36 @@ class Recording:
 
     @cached_property
     def load(self) -> Outputs:
-        """Force, moment and energy."""
-        parts = reaction.reaction(self.centre, self.contact, *self.state[1:], self.constants)
+        """Recorded force, moment and energy."""
+        parts = reaction.force_and_moment(self.centre, self.contact, *self.state[1:], self.constants)
         return {**_numbered("force", parts[:3]), **_numbered("moment", parts[3:]), "*energy": self.contact.energy}
 
     @cached_property
-    def pressed(self) -> Outputs:
-        """Half angle and largest pressure."""
+    def contact_size(self) -> Outputs:
+        """Recorded half angle and largest pressure."""
         depth = self.centre.indentation
         angle, pressure = (self.tape.curve(name, depth, 1)[0] for name in (HALF_ANGLE, MAX_PRESSURE))
         return {"*half_angle": angle, "*max_pressure": pressure}
 
     @cached_property
     def status(self) -> Outputs:
-        """Code of the `ContactState`."""
+        """Recorded code of the `ContactState`."""
         return {"status": status_of(self.centre, self.contact, isfinite(self.centre.distance), self.constants)}
 
     @cached_property
     def tangent(self) -> Outputs:
-        """Nine components of the tangent stiffness ∂²U/∂r²."""
+        """Recorded tangent stiffness ∂²U/∂r², nine components."""
         xx, yy, zz, xy, yz, zx = reaction.tangent(self.centre, self.contact, self.constants)
         return _numbered("tangent", (xx, xy, zx, xy, yy, yz, zx, yz, zz))
 
     @cached_property
     def slope(self) -> Outputs:
-        """Derivatives of load, half angle and pressure in a direction of the state."""
+        """Recorded derivatives of load, half angle and pressure in a direction of the state space."""
         names = (f"way[{number}]" for number in range(9))
         direction = {part: self.tape.input(name) for part, name in zip(chain(*self.state), names, strict=True)}
-        return _numbered("slope", directional_derivatives([*self.load.values(), *self.pressed.values()], direction))
+        return _numbered(
+            "slope", directional_derivatives([*self.load.values(), *self.contact_size.values()], direction)
+        )
 
 
 def _numbered(name: str, parts: Any) -> Outputs:
@@ -130,7 +132,7 @@ def _can_be_recorded(potential: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CElement:
-    """Force element as a C program.
+    """Force element as C99 source and header.
 
     Parameters
     ----------
@@ -160,8 +162,8 @@ class CElement:
             raise ValueError(
                 f"name must start with a letter or _ and hold letters, digits and _, got {self.name!r:.60}"
             )
-        if self.element.remembers:
-            raise ValueError(f"{self.element.remembers}; exported elements have no state")
+        if self.element.internal_state:
+            raise ValueError(f"{self.element.internal_state}; exported elements have no state")
 
     @cached_property
     def recording(self) -> Recording:
@@ -180,7 +182,7 @@ class CElement:
 
     @property
     def source(self) -> str:
-        """Text of the C program."""
+        """Text of the C source file."""
         recording, constants = self.recording, self.element.constants
         return fill_template(
             "element.c",
@@ -192,7 +194,7 @@ class CElement:
             checks="\n".join(_range_check(parameter.name, parameter.above) for parameter in TUNABLES),
             first_touch=c_number(constants.clearance - constants.smoothing),
             load=c_statements({**recording.status, **recording.load}),
-            pressed=c_statements({**recording.status, **recording.pressed}),
+            pressed=c_statements({**recording.status, **recording.contact_size}),
             tangent=c_statements({**recording.status, **recording.tangent}),
             slope=c_statements({**recording.status, **recording.slope}),
             sentences="\n".join(f'    case {touch.value}: return "{touch.sentence}";' for touch in ContactState),
@@ -200,7 +202,7 @@ class CElement:
         )
 
     def write(self, folder: Path) -> tuple[Path, Path]:
-        """Write header and source into a folder.
+        """Write the header and source files into a folder, and return their paths.
 
         Raises
         ------
@@ -219,14 +221,14 @@ class CElement:
 
 
 def _range_check(name: str, above: bool) -> str:
-    """Write the C statement that rejects a parameter outside its range."""
+    """Return the C statement that rejects a parameter outside its range."""
     operator, allowed = (">", "above 0") if above else (">=", "0 or more")
     condition = f"p->{name} {operator} 0.0 && p->{name} < INFINITY"
     return f'    if (!({condition})) return "{name} must be finite and {allowed}";'
 
 
 def _curve_function(name: str, curve: CurveLaw) -> str:
-    """Write a tabulated curve in C: its coefficients and the function that evaluates it."""
+    """Return the C code of a tabulated curve: its coefficients and the function that evaluates it."""
     pieces: Numbers = curve.pieces
     rows = ",\n".join("    " + ", ".join(map(c_number, row)) for row in pieces.tolist())
     ends = ", ".join(map(c_number, (curve.shallowest, curve.deepest, curve.first, curve.density)))
@@ -242,5 +244,5 @@ def _template(name: str) -> str:
 
 
 def fill_template(template: str, **values: str) -> str:
-    """Fill a template of this package with values."""
+    """Fill a template file of this package with values, and return the text."""
     return Template(_template(template)).substitute(values)

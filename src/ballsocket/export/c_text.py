@@ -1,4 +1,4 @@
-"""C statements of a recorded tape."""
+"""Translation of a recorded tape to C statements."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _C_OPERATORS = {"&": "&&", "|": "||"}
 
 
 def c_number(value: float) -> str:
-    """Write a number in C without loss of digits."""
+    """Format a number as a C literal without loss of digits."""
     if math.isnan(value):
         return "NAN"
     if math.isinf(value):
@@ -21,15 +21,15 @@ def c_number(value: float) -> str:
 
 
 def c_statements(targets: Mapping[str, Part]) -> str:
-    """Write the statements that compute each target and assign it to its C expression."""
+    """Translate recorded steps to C statements that assign each target."""
     steps = _required_steps(list(targets.values()))
-    lines = [line for step in steps for line in _statements(step)]
+    lines = [line for step in steps for line in _step_statements(step)]
     lines += [f"{name} = {_c_operand(part)};" for name, part in targets.items()]
     return "\n".join(f"    {line}" for line in lines)
 
 
 def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
-    """Return the steps that some parts depend on, in the order of the tape."""
+    """Return the steps that the parts depend on, in the order of the tape."""
     required: dict[int, Recorded] = {}
     pending = list(parts)
     while pending:
@@ -40,7 +40,8 @@ def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
     return [required[number] for number in sorted(required)]
 
 
-def _statements(step: Recorded) -> Iterator[str]:
+def _step_statements(step: Recorded) -> Iterator[str]:
+    """Yield the C statements of a recorded step."""
     if step.step == "input":
         return
     if step.step == "curve":
@@ -48,10 +49,11 @@ def _statements(step: Recorded) -> Iterator[str]:
         yield f"{step.about}({_c_operand(step.parts[0])}, {_c_operand(step)});"
         return
     kind = "int" if step.step in BOOLEAN else "double"
-    yield f"const {kind} {_c_operand(step)} = {_expression(step, [_c_operand(part) for part in step.parts])};"
+    yield f"const {kind} {_c_operand(step)} = {_step_expression(step, [_c_operand(part) for part in step.parts])};"
 
 
-def _expression(step: Recorded, parts: list[str]) -> str:
+def _step_expression(step: Recorded, parts: list[str]) -> str:
+    """Return the C expression of a recorded step, with its operands as text."""
     if step.step == "where":
         return "{} ? {} : {}".format(*parts)
     if step.step == "slope":

@@ -1,4 +1,4 @@
-"""C compiler, and the platform of the libraries that it builds."""
+"""C compiler, and target platforms of the libraries that it builds."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _BITS = {"x86_64": 64, "aarch64": 64, "x86": 32}
 
 @dataclass(frozen=True, kw_only=True)
 class Platform:
-    """Operating system and processor of a library, named as in FMI 3.
+    """Operating system and processor of a library, with the names of FMI 3.
 
     Attributes
     ----------
@@ -64,18 +64,18 @@ _MACH_O_PROCESSORS: Mapping[int, str] = {0x01000007: "x86_64", 0x0100000C: "aarc
 
 
 class NoCompiler(RuntimeError):  # noqa: N818 - a sentence for people
-    """Missing or failing C compiler."""
+    """Error for a missing or failing C compiler."""
 
 
 def compiler() -> list[str]:
-    """Return the command of the C compiler: the variable CC, or the first of cc, gcc and clang.
+    """Return the command of the C compiler: the variable CC, else the first of cc, gcc and clang.
 
     Raises
     ------
     NoCompiler
         No compiler is installed.
     """
-    chosen = _arguments("CC")
+    chosen = _environment_arguments("CC")
     if chosen and shutil.which(chosen[0]):
         return chosen
     installed = next(filter(None, map(shutil.which, _COMPILER_NAMES)), None)
@@ -90,7 +90,9 @@ def compiler() -> list[str]:
 
 
 def compile_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Platform:
-    """Compile sources of a folder into a shared library; CC and CFLAGS of the environment apply.
+    """Compile C sources of a folder into a shared library, and return its platform.
+
+    The environment variables CC and CFLAGS apply.
 
     Returns
     -------
@@ -102,7 +104,7 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
     NoCompiler
         A missing compiler, a failed one (with its first error message), or an unknown output format.
     """
-    flags = _arguments("CFLAGS")
+    flags = _environment_arguments("CFLAGS")
     command = [
         *compiler(),
         "-std=c99",
@@ -130,7 +132,7 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
 
 
 def shared_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Path:
-    """Compile sources of a folder into a shared library for this machine.
+    """Compile C sources of a folder into a shared library that runs on this machine.
 
     Raises
     ------
@@ -145,7 +147,7 @@ def shared_library(sources: Sequence[str], library: Path, folder: Path, options:
 
 
 def library_platform(header: bytes) -> Platform:
-    """Read the platform of a library from its first bytes: ELF, PE or Mach-O.
+    """Determine the platform of a library from its first bytes (ELF, PE or Mach-O).
 
     Raises
     ------
@@ -166,7 +168,7 @@ def library_platform(header: bytes) -> Platform:
     return Platform(system=system, processor=machines[machine])
 
 
-def _arguments(name: str) -> list[str]:
+def _environment_arguments(name: str) -> list[str]:
     """Split an environment variable into the arguments of a command."""
     value = os.environ.get(name, "")
     try:

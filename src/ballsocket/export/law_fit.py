@@ -1,4 +1,4 @@
-"""Force laws fitted by a power of the indentation or by one expression, with their errors."""
+"""Fits of a force law by a power of the indentation or by one expression, with their errors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LOWEST_FITTED_SHARE = 0.05
 
 @dataclass(frozen=True, kw_only=True)
 class PowerFit:
-    """Power law F = k d^n, with its largest error relative to the force at the depth of the fit.
+    """Fitted power law F = k d^n, with its largest error relative to the force at the fitted depth.
 
     Attributes
     ----------
@@ -46,7 +46,7 @@ class PowerFit:
 
 
 def power_fit(element: ForceElement, depth: float) -> PowerFit:
-    """Fit F = k d^n up to a depth in mm; the largest error is minimal."""
+    """Fit the power law F = k d^n up to an indentation in mm, with the smallest largest error."""
     d = depth * numpy.linspace(_LOWEST_FITTED_SHARE, 1.0, _SAMPLES)
     F = element.potential(d)[1]
     exponent = _golden_section_minimum(lambda n: _best_stiffness(d, F, n)[1])
@@ -55,14 +55,14 @@ def power_fit(element: ForceElement, depth: float) -> PowerFit:
 
 
 def _best_stiffness(d: Numbers, F: Numbers, n: float) -> tuple[float, float]:
-    """Find the stiffness k that minimises the largest error of F = k d^n, and return k and this error in N."""
+    """Find the stiffness k with the smallest largest error of F = k d^n; return k and this error in N."""
     shape = (d / d[-1]) ** n
     k = _golden_section_minimum(lambda k: float(numpy.max(abs(k * shape - F))), 0.5 * float(F[-1]), 2.0 * float(F[-1]))
     return k / float(d[-1]) ** n, float(numpy.max(abs(k * shape - F)))
 
 
 def _golden_section_minimum(function: Callable[[float], float], low: float = 0.5, high: float = 4.0) -> float:
-    """Return the position of the minimum of a unimodal function, by golden-section search."""
+    """Return the position of the minimum of a unimodal function by golden-section search."""
     ratio = (5.0**0.5 - 1.0) / 2.0
     for _ in range(60):
         inner_low, inner_high = high - ratio * (high - low), low + ratio * (high - low)
@@ -72,7 +72,7 @@ def _golden_section_minimum(function: Callable[[float], float], low: float = 0.5
 
 @dataclass(frozen=True, kw_only=True)
 class ExpressionFit:
-    """A force law as one expression, in m and N, of the distance between the centres.
+    """Fitted force law as one expression of the distance between the centres, in m and N.
 
     The expression of radial springs is F = G d² (3 c + 2 d)/(c + d)², which holds at every depth. Any other law is
     fitted as F = G d^n exp(a1 t + a2 t² + ...), t² = d/(d + h), up to the indentation `depth`. Beyond it the expression
@@ -109,17 +109,17 @@ class ExpressionFit:
     error_beyond: float = 0.0
 
     def __call__(self, distance: Numbers) -> Numbers:
-        """Compute F in N at distances between the centres in m."""
+        """Compute the force in N at distances between the centres in m."""
         d = numpy.maximum(distance - self.clearance, 0.0)
         if not self.coefficients:
-            return self.scale * _springs(d, self.clearance)
+            return self.scale * _spring_shape(d, self.clearance)
         fitted = numpy.minimum(d, self.depth)
         t = numpy.sqrt(fitted / (fitted + self.length))
         exponential = numpy.exp(numpy.polyval((*self.coefficients[::-1], 0.0), t))
         return self.scale * fitted**self.power * exponential * (d / self.depth).clip(1.0) ** self.power_beyond
 
     def text(self, distance: str, rate: str, hysteresis: float) -> str:
-        """Write the force towards the socket's centre as an expression, with Hunt and Crossley's damping (s/m)."""
+        """Write the force towards the socket's centre as an expression, with Hunt-Crossley damping (s/m)."""
         c = repr(self.clearance)
         u = f"max({distance}-{c},0)"
         if self.coefficients:
@@ -145,17 +145,20 @@ class ExpressionFit:
         )
 
 
-def _springs(d: Numbers, c: float) -> Numbers:
+def _spring_shape(d: Numbers, c: float) -> Numbers:
     return d * d * (3.0 * c + 2.0 * d) / (c + d) ** 2
 
 
 def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
-    """Fit one expression to a law, up to `depth` in mm or the valid depth of its model, whichever is more."""
+    """Fit one expression to the force law of an element, up to an indentation in mm.
+
+    If the model is valid beyond `depth`, the fit covers its valid range.
+    """
     c, R2 = element.constants.clearance, element.constants.socket_radius
     fitted_depth = max(depth, valid_depth(element))
     d = numpy.geomspace(1e-3 * fitted_depth, fitted_depth, 997)
     forces = element.potential(d)[1]
-    ratio = forces / _springs(d, c)
+    ratio = forces / _spring_shape(d, c)
     lengths = {"clearance": 1e-3 * c, "depth": 1e-3 * fitted_depth}
     if c > 0.0 and numpy.ptp(ratio) < 1e-12 * ratio[0]:
         fit = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **lengths)
@@ -166,13 +169,13 @@ def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
 
 
 def _largest_error(fit: ExpressionFit, element: ForceElement, d: Numbers) -> float:
-    """Compute the largest relative error of a fit at indentations in mm where the element has a force."""
+    """Compute the largest relative force error of a fit at indentations in mm."""
     forces = element.potential(d)[1]
     return float(numpy.nanmax(abs(fit(1e-3 * (element.constants.clearance + d)) / forces - 1.0)))
 
 
 def _fit_exponential(element: ForceElement, depth: float, h: float, lengths: dict[str, float]) -> ExpressionFit:
-    """Fit a power of the indentation times the exponential of a polynomial."""
+    """Fit the force by a power of the indentation times the exponential of a polynomial."""
     t = numpy.linspace(0.0, 1.0, _SAMPLES + 1)[1:] * (depth / (depth + h)) ** 0.5
     d = h * t * t / (1.0 - t * t)
     _, force, stiffness = element.potential(d)
@@ -189,7 +192,7 @@ def _fit_exponential(element: ForceElement, depth: float, h: float, lengths: dic
 
 
 def depth_of(element: ForceElement, load: dict[str, float]) -> float:
-    """Return the depth in mm that a fit covers: that of a load, else the largest valid one."""
+    """Return the largest indentation in mm that a fit covers: that of a load, else the largest valid one."""
     if load:
         model: Model = element.model
         return float(model.press(element.joint.with_floats(), **load).indentation)

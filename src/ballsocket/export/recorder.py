@@ -1,4 +1,4 @@
-"""Operator-overloading recorder: formulas evaluated on unknown numbers leave a tape of their steps.
+"""Recorder of formulas by operator overloading: a formula evaluated on unknown numbers leaves a tape.
 
 The formulas of this package run on anything that follows the array API standard. Here they run on `Recorded` numbers,
 and the tape is written as C. `directional_derivatives` applies the chain rule to it.
@@ -31,34 +31,37 @@ CURVE_SLOPES = 4
 
 @dataclass(eq=False)
 class Tape:
-    """Steps of a calculation in their order, each one recorded once."""
+    """Recorded steps of a calculation in their order, without duplicates."""
 
     steps: list[Recorded] = field(default_factory=list)
-    _known: dict[tuple[Any, ...], Recorded] = field(default_factory=dict)
+    _steps_by_key: dict[tuple[Any, ...], Recorded] = field(default_factory=dict)
 
     def input(self, name: str, tunable: bool = False) -> Recorded:
-        """Record an input; formulas may compare a `tunable` one with 0 and get the general case."""
+        """Record an input of the calculation.
+
+        A formula may compare a `tunable` input with 0; the general case is recorded.
+        """
         return self.record("input", (), name, tunable=tunable)
 
     def curve(self, name: str, x: Recorded, slopes: int) -> tuple[Recorded, ...]:
-        """Record the evaluation of a curve: its value and its derivatives."""
-        looked_up = self.record("curve", (x,), name)
-        return tuple(self.record("slope", (looked_up,), order) for order in range(slopes))
+        """Record the evaluation of a tabulated curve, and return its value and derivatives."""
+        evaluation = self.record("curve", (x,), name)
+        return tuple(self.record("slope", (evaluation,), order) for order in range(slopes))
 
     def record(self, step: str, parts: tuple[Part, ...], about: Any = None, *, tunable: bool | None = None) -> Recorded:
-        """Return the step with these parts; record it if it is new."""
+        """Return the step with an operation and its parts; record it if it is new."""
         key = (step, about, *((id(part) if isinstance(part, Recorded) else ("number", part)) for part in parts))
-        if key not in self._known:
+        if key not in self._steps_by_key:
             if tunable is None:
                 tunable = all(part.tunable for part in parts if isinstance(part, Recorded))
-            made = Recorded(self, len(self.steps), step, parts, about, tunable)
-            self.steps.append(made)
-            self._known[key] = made
-        return self._known[key]
+            recorded = Recorded(self, len(self.steps), step, parts, about, tunable)
+            self.steps.append(recorded)
+            self._steps_by_key[key] = recorded
+        return self._steps_by_key[key]
 
 
 class Recorded:
-    """Unknown number: a step of a tape, and the parts that it operates on."""
+    """Unknown number of a recorded formula: an operation with its parts."""
 
     __slots__ = ("about", "number", "parts", "step", "tape", "tunable")
     dtype = "float64"
@@ -142,14 +145,14 @@ class Recorded:
 
 
 def where(condition: Part, if_true: Part, if_false: Part) -> Part:
-    """Select one of two parts by a condition."""
+    """Select one of two parts by a condition, elementwise."""
     if isinstance(condition, bool):
         return if_true if condition else if_false
     return condition.tape.record("where", (condition, if_true, if_false))
 
 
 def _clip(x: Part, low: float, high: float) -> Part:
-    """Limit a part to an interval whose ends may be infinite; NaN stays NaN."""
+    """Limit a part to an interval, whose ends may be infinite; NaN stays NaN."""
     if low > -math.inf:
         x = where(x < low, low, x)
     return where(x > high, high, x) if high < math.inf else x
@@ -164,7 +167,7 @@ def _function(name: str) -> Callable[..., Recorded]:
 
 
 class _Namespace:
-    """Functions of the array API that formulas use."""
+    """Array API namespace of recorded numbers, with the functions that formulas use."""
 
     __name__ = "recorded"
     int8 = "int8"
@@ -189,7 +192,7 @@ _NAMESPACE = _Namespace()
 
 
 def directional_derivatives(parts: Sequence[Part], direction: Mapping[Recorded, Part]) -> list[Part]:
-    """Record the derivatives of parts with respect to the inputs in a direction."""
+    """Record the derivatives of parts along a direction of the inputs."""
     slopes: dict[int, Slope] = {variable.number: rate for variable, rate in direction.items()}
     recorded = [part for part in parts if isinstance(part, Recorded)]
     for step in list(recorded[0].tape.steps) if recorded else ():
@@ -205,7 +208,7 @@ def _slope_of(part: Part, slopes: Mapping[int, Slope]) -> Slope:
 
 
 def _chain_rule(step: Recorded, slopes: list[Slope]) -> Slope:
-    """Record the derivative of a step from those of its parts."""
+    """Record the derivative of a step from the derivatives of its parts."""
     if all(slope is None for slope in slopes):
         return None
     if step.step == "where":

@@ -1,4 +1,4 @@
-"""Targets of an export: programs, and the job of writing files for one of them."""
+"""Export targets: a target program, and the job of writing files for it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Texts = Mapping[str, str]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ExportJob:
-    """Force element to export, with the name of its files and the largest indentation (mm) of a fit."""
+    """Export of one force element: the element, the name of its files, and the largest fitted indentation in mm."""
 
     element: ForceElement
     name: str
@@ -42,7 +42,7 @@ class ExportJob:
 
     @property
     def template_context(self) -> dict[str, str]:
-        """Values that every template may use."""
+        """Values that every template may use, by name."""
         return {
             **self.program.about,
             "name": self.name,
@@ -63,7 +63,7 @@ class ExportJob:
 
 @dataclass(frozen=True, kw_only=True)
 class Target:
-    """Program that joints are exported to.
+    """Target program of an export, with the functions that write its files.
 
     Attributes
     ----------
@@ -86,7 +86,7 @@ class Target:
     without: tuple[str, ...] = ()
 
     def write(self, job: ExportJob, folder: Path) -> tuple[list[Path], str]:
-        """Write the files into a folder; return their paths and notes on missing or limited features.
+        """Write the files of a job into a folder; return their paths, and notes on missing or limited features.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Programs that a joint can be exported to, and the files written for each of them."""
+"""Registry of export targets, and the files of each target program."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ _LINE_OF_CENTRES = tuple(name for name in FEATURES if name != "damping")
 """Features that one force along the line of centres cannot represent."""
 
 
-def _module(job: ExportJob) -> dict[str, str]:
+def _python_module(job: ExportJob) -> dict[str, str]:
     return {**job.program_texts(), f"{job.name}.py": fill_template("module.py.txt", **job.template_context)}
 
 
-def _library(job: ExportJob, folder: Path) -> str:
-    """Compile the library that the Python module loads; return a note if that fails."""
+def _compile_library(job: ExportJob, folder: Path) -> str:
+    """Compile the library that the Python module loads; return a note if compilation fails."""
     try:
         shared_library([f"{job.name}.c"], Path(job.template_context["library"]), folder)
     except NoCompiler as error:
@@ -34,6 +34,7 @@ def _library(job: ExportJob, folder: Path) -> str:
 
 
 def _opensim(job: ExportJob) -> Texts:
+    """Write the OpenSim file with an expression force."""
     fit, element = job.expression, job.element
     accuracy = fit.range_note or f"within {100 * fit.error:.1g} % of the law"
     hysteresis = element.damping.hysteresis if element.damping else 0.0
@@ -49,16 +50,16 @@ def _opensim(job: ExportJob) -> Texts:
 def _mujoco(job: ExportJob) -> Texts:
     radius = repr(1e-3 * job.element.constants.ball_radius)
     return {
-        **_module(job),
+        **_python_module(job),
         f"{job.name}_mujoco.c": fill_template("mujoco.c", **job.template_context),
         f"{job.name}_mujoco.py": fill_template("mujoco.py.txt", **job.template_context),
         f"{job.name}.xml": fill_template("mujoco.xml", ball_radius=radius, **job.template_context),
     }
 
 
-def _plugin(job: ExportJob, folder: Path) -> str:
-    """Compile the library, and the plug-in if MuJoCo is installed; return a note if one is missing."""
-    missing, mujoco = _library(job, folder), find_spec("mujoco")
+def _compile_plugin(job: ExportJob, folder: Path) -> str:
+    """Compile the library, and the plug-in if MuJoCo is installed; return a note on a missing one."""
+    missing, mujoco = _compile_library(job, folder), find_spec("mujoco")
     if missing or mujoco is None or not mujoco.submodule_search_locations:
         return missing or "the plug-in is not compiled: mujoco, whose headers it needs, is not installed"
     package = Path(mujoco.submodule_search_locations[0])
@@ -73,10 +74,11 @@ def _plugin(job: ExportJob, folder: Path) -> str:
 
 
 def _drake(job: ExportJob) -> Texts:
-    return {**_module(job), f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context)}
+    return {**_python_module(job), f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context)}
 
 
 def _exudyn(job: ExportJob) -> Texts:
+    """Write the Exudyn module and its fitted power law."""
     power, constants = job.power, job.element.constants
     fit = {
         "stiffness": repr(power.stiffness * 1e3**power.exponent),
@@ -86,10 +88,14 @@ def _exudyn(job: ExportJob) -> Texts:
         "ball_radius": repr(1e-3 * constants.ball_radius),
         "socket_radius": repr(1e-3 * constants.socket_radius),
     }
-    return {**_module(job), f"{job.name}_exudyn.py": fill_template("exudyn.py.txt", **fit, **job.template_context)}
+    return {
+        **_python_module(job),
+        f"{job.name}_exudyn.py": fill_template("exudyn.py.txt", **fit, **job.template_context),
+    }
 
 
 def _modelica(job: ExportJob) -> Texts:
+    """Write the Modelica package around the C program."""
     constants = job.element.constants
     declarations = "\n".join(
         f'    parameter Real {number.name}(unit="{number.si_unit}", min=0) = {start * number.si!r} "{number.meaning}";'
@@ -122,7 +128,7 @@ _COLUMNS = ("indentation_mm", "force_N", "stiffness_N/mm", "energy_N_mm", "half_
 
 
 def _law_table(element: ForceElement, depth: float) -> str:
-    """Write the law up to a depth in mm as CSV."""
+    """Write the force law up to an indentation in mm as CSV."""
     d = numpy.linspace(0.0, depth, _TABLE_ROWS)
     energy, force, stiffness = element.potential(d)
     angle = numpy.degrees(element.half_angle(d))
@@ -132,7 +138,7 @@ def _law_table(element: ForceElement, depth: float) -> str:
 
 
 def _power_law(element: ForceElement, fit: PowerFit, version: str) -> str:
-    """Write k and n, their error, and the expressions for Adams, MotionSolve and Simpack; in mm, N, s."""
+    """Write the fitted power law, its error, and expressions for Adams, MotionSolve and Simpack, in mm, N and s."""
     c, k, n = element.constants.clearance, fit.stiffness, fit.exponent
     return f"""# F = k d^n of a ball in a socket, in mm, N and s; written by ballsocket {version}
 # {element.model.name}: error up to {fit.depth:.4g} mm at most {100 * fit.error:.2g} % of the force at that depth
@@ -159,9 +165,9 @@ TARGETS: Mapping[str, Target] = {
             note=lambda job: job.expression.range_note,
             without=_LINE_OF_CENTRES,
         ),
-        Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco, compiled=_plugin),
-        Target(name="drake", title="a LeafSystem", texts=_drake, compiled=_library),
-        Target(name="exudyn", title="a user function and its hollow sphere", texts=_exudyn, compiled=_library),
+        Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco, compiled=_compile_plugin),
+        Target(name="drake", title="a LeafSystem", texts=_drake, compiled=_compile_library),
+        Target(name="exudyn", title="a user function and its hollow sphere", texts=_exudyn, compiled=_compile_library),
         Target(name="modelica", title="a package around the law in C", texts=_modelica),
         Target(
             name="table",

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
 from ..contact.assembly import select_and_check_load
-from ..core.checks import check_text, known_name, require, shown
+from ..core.checks import require, shown
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup, Interface, Side
-from ..problem.presets import materials
+from ..problem.presets import materials, named_material
 from .schema import (
     Angle,
     Force,
@@ -35,7 +35,7 @@ _MAX_LAYERS = 20
 """Largest number of layers behind the liner."""
 
 
-class LengthsTable(Table, kw_only=True):
+class LengthsTable(Table, frozen=True, kw_only=True):
     """Lengths of a joint: two of radii and clearance, and the thickness of the liner or an outer dimension."""
 
     ball_radius: Length | None = None
@@ -50,12 +50,18 @@ class LengthsTable(Table, kw_only=True):
     support: Annotated[Support, meaning("outermost surface behind the liner: fixed or free")] = Support.FIXED
 
 
-class MaterialTable(Table, kw_only=True):
+class MaterialName(Text):
+    """Name of a preset material."""
+
+    choices = tuple(materials)
+
+
+class MaterialTable(Table, frozen=True, kw_only=True):
     """Material: a preset by name, numbers, or both; numbers win over those of the preset."""
 
     qualified: ClassVar[bool] = True
 
-    material: Annotated[Text | None, meaning("name of a preset material")] = None
+    material: Annotated[MaterialName | None, meaning("name of a preset material")] = None
     young: Modulus | None = None
     poisson: Number | None = None
     proportional_limit: Modulus | None = None
@@ -64,13 +70,13 @@ class MaterialTable(Table, kw_only=True):
     allowable_pressure: Modulus | None = None
 
 
-class LayerTable(MaterialTable, kw_only=True):
+class LayerTable(MaterialTable, frozen=True, kw_only=True):
     """Layer behind the liner, from the liner outwards."""
 
     thickness: Annotated[Length, meaning("thickness of the layer; inf is a massive body")]
 
 
-class CupTable(Table, kw_only=True):
+class CupTable(Table, frozen=True, kw_only=True):
     """Cup: its rim, its interface with the liner, and its orientation in the body."""
 
     arc_of_cover: Angle | None = None
@@ -98,7 +104,7 @@ class Direction(Value, tuple[float, ...]):
         return numbers
 
 
-class LoadTable(Table, kw_only=True):
+class LoadTable(Table, frozen=True, kw_only=True):
     """Load: one of force, indentation and half angle; a tilt from the cup's axis, or a direction in the body."""
 
     force: Force | None = None
@@ -108,17 +114,17 @@ class LoadTable(Table, kw_only=True):
     direction: Annotated[Direction | None, meaning("direction to the right, to the front and upwards")] = None
 
 
-class JointTables(Table, kw_only=True):
+class JointTables(Table, frozen=True, kw_only=True):
     """Tables that describe a joint in every kind of file."""
 
-    joint: LengthsTable | str | None = None
+    joint: Annotated[LengthsTable | str | None, meaning("name of a preset, or path of a joint file")] = None
     liner: MaterialTable | None = None
     ball: MaterialTable | None = None
     backing: list[LayerTable] | None = None
     cup: CupTable | None = None
 
 
-class JointFileTable(JointTables, kw_only=True):
+class JointFileTable(JointTables, frozen=True, kw_only=True):
     """Joint file."""
 
     name: Annotated[Text | None, meaning("name of the joint")] = None
@@ -265,8 +271,9 @@ def cup_of(table: CupTable) -> Cup:
     """Create a cup from its table."""
     choices = {"interface": table.interface, "side": table.side}
     arguments: dict[str, Any] = {name: choice for name, choice in choices.items() if choice is not None}
+    arguments |= quantities_of(table, "arc_of_cover", "chamfer", "inclination", "anteversion")
     with as_given(written_in(table)):
-        return Cup(**arguments, **quantities_of(table, "arc_of_cover", "chamfer", "inclination", "anteversion"))
+        return Cup(**arguments)
 
 
 def _layer(name: str, table: LayerTable) -> Layer:
@@ -288,16 +295,3 @@ def _material(name: str, table: MaterialTable, present: Material | None = None) 
         raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
     with as_given(written_in(table), f"{name}."):
         return replace(preset, **numbers) if preset else Material(**numbers)
-
-
-def named_material(name: str, chosen: Any) -> Material:
-    """Return a preset material by its name, regardless of capitals.
-
-    Raises
-    ------
-    ValueError
-        A name that is not known, or several names.
-    """
-    if isinstance(chosen, str) and "," in chosen:
-        raise ValueError(f"{name} material {shown(chosen)} are several, and one is needed: optimise and studies choose")
-    return materials[known_name(f"{name} material", check_text(f"{name}.material", chosen), materials)]

@@ -1,85 +1,43 @@
-"""A joint as the tables of a joint file, and as its text: what `files` reads, written."""
+"""Joints as the tables of a joint file, and as its text."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import degrees, inf, isinf, nextafter, radians
 from typing import Any
 
 from ..core.arrays import is_plain_number
 from ..core.checks import needs
-from ..core.kinds import Kind
-from ..core.quantities import CUP, QUANTITIES
-from ..problem import Layer, Material, Support
+from ..problem import Layer, Material
 from ..problem.cup import Cup, Side
 from ..problem.presets import materials
-from .joint_file import JointFile
+from .joint_file import (
+    CupTable,
+    Direction,
+    JointFile,
+    JointFileTable,
+    LayerTable,
+    LengthsTable,
+    LoadTable,
+    MaterialName,
+    MaterialTable,
+)
+from .schema import Angle, Force, Length, Modulus, Number, Text, write_table
 
 Tables = dict[str, Any]
 
 
 def tables_of(file: JointFile) -> Tables:
-    """The tables of a joint file, with bare numbers in mm, N, MPa, degrees; `files.joint_of` takes them back.
+    """Return the tables of a joint file, with bare numbers in mm, N, MPa, degrees; `joint_of` reads them.
 
     Raises
     ------
     ValueError
         A joint of arrays.
     """
-    joint = file.joint
-    if not all(map(is_plain_number, joint.numbers())):
-        raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
-    tables: Tables = {
-        "joint": {name: float(getattr(joint, name)) for name in ("ball_radius", "clearance", "liner_thickness")},
-        "liner": _material(joint.liner),
-    }
-    tables |= {name: getattr(joint, name) for name in ("name", "source") if getattr(joint, name)}
-    if joint.support is not Support.FIXED:
-        tables["joint"]["support"] = joint.support.value
-    if joint.ball is not None:
-        tables["ball"] = _material(joint.ball)
-    if joint.backing:
-        tables["backing"] = [_layer(layer) for layer in joint.backing]
-    if file.cup != Cup() or file.cup.oriented:
-        tables["cup"] = cup_table(file.cup)
-    if file.load:
-        tables["load"] = {name: _bare(name, value) for name, value in file.load.items()}
-    if file.aim:
-        tables.setdefault("load", {}).update(_aim(file.aim))
-    return tables
-
-
-def cup_table(cup: Cup) -> Tables:
-    """Return the table `cup` of a joint file, without default angles."""
-    numbers = {name: _bare(name, getattr(cup, name)) for name in CUP if cup.oriented or name not in _ORIENTATION}
-    side = {"side": cup.side.value} if cup.oriented or cup.side is not Side.RIGHT else {}
-    return {**numbers, "interface": cup.interface.value, **side}
-
-
-_ORIENTATION = ("inclination", "anteversion")
-
-
-def _aim(aim: Mapping[str, Any]) -> Tables:
-    """Where a load points, as the table `load` has it: three numbers with commas between, or an angle."""
-    words = {"direction": lambda way: ", ".join(map(repr, way)), "tilt": lambda angle: _bare("tilt", angle)}
-    return {name: words[name](each) for name, each in aim.items()}
-
-
-def _bare(name: str, value: float) -> float:
-    """A quantity as a bare number of the file."""
-    return _degrees(value) if QUANTITIES[name].kind is Kind.ANGLE else value
-
-
-def _degrees(value: float) -> float:
-    """Degrees that are read as that angle to the last digit, where there are such; round ones before others."""
-    near = degrees(value)
-    above, below = nextafter(near, inf), nextafter(near, -inf)
-    those = (round(near, 9), near, above, below, nextafter(above, inf), nextafter(below, -inf))
-    return next((each for each in those if radians(each) == value), near)
+    return write_table(_file_table(file))
 
 
 def toml_of(file: JointFile) -> str:
-    """The text of a joint file, with units.
+    """Return the text of a joint file, with units.
 
     Raises
     ------
@@ -91,34 +49,71 @@ def toml_of(file: JointFile) -> str:
     needs("app", "tomli_w")
     import tomli_w
 
-    return tomli_w.dumps(_with_units(tables_of(file)))
+    return tomli_w.dumps(write_table(_file_table(file), with_units=True))
 
 
-def _with_units(part: Any) -> Any:
-    if isinstance(part, list):
-        return [_with_units(each) for each in part]
-    return {
-        name: _with_units(value) if isinstance(value, dict | list) else _text(name, value)
-        for name, value in part.items()
+def cup_table(cup: Cup) -> Tables:
+    """Return the table `cup` of a joint file, without default angles."""
+    return write_table(_cup(cup))
+
+
+def _file_table(file: JointFile) -> JointFileTable:
+    """Return the tables of a joint file; ValueError for a joint of arrays."""
+    joint = file.joint
+    if not all(map(is_plain_number, joint.numbers())):
+        raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
+    return JointFileTable(
+        name=Text(joint.name) if joint.name else None,
+        source=Text(joint.source) if joint.source else None,
+        joint=LengthsTable(
+            ball_radius=Length(joint.ball_radius),
+            clearance=Length(joint.clearance),
+            liner_thickness=Length(joint.liner_thickness),
+            support=joint.support,
+        ),
+        liner=MaterialTable(**_material(joint.liner)),
+        ball=None if joint.ball is None else MaterialTable(**_material(joint.ball)),
+        backing=list(map(_layer, joint.backing)) or None,
+        cup=_cup(file.cup) if file.cup != Cup() or file.cup.oriented else None,
+        load=_load(file) if file.load or file.aim else None,
+    )
+
+
+def _cup(cup: Cup) -> CupTable:
+    """Return the table of a cup, without the default orientation."""
+    return CupTable(
+        arc_of_cover=Angle(cup.arc_of_cover),
+        chamfer=Length(cup.chamfer),
+        inclination=Angle(cup.inclination) if cup.oriented else None,
+        anteversion=Angle(cup.anteversion) if cup.oriented else None,
+        interface=cup.interface,
+        side=cup.side if cup.oriented or cup.side is not Side.RIGHT else None,
+    )
+
+
+def _load(file: JointFile) -> LoadTable:
+    """Return the table of a load and its direction."""
+    keys: dict[str, Any] = {
+        "force": Force,
+        "indentation": Length,
+        "half_angle": Angle,
+        "tilt": Angle,
+        "direction": Direction,
     }
+    return LoadTable(**{key: keys[key](value) for key, value in (file.load | file.aim).items()})
 
 
-def _text(name: str, value: Any) -> Any:
-    """A number with its unit, if it has any; the names of joints and materials have none."""
-    unit = QUANTITIES[name].kind.typed if name in QUANTITIES else ""
-    return f"{value!r} {unit}" if unit and not isinf(value) else value
+def _layer(layer: Layer) -> LayerTable:
+    """Return the table of a layer behind the liner."""
+    return LayerTable(thickness=Length(layer.thickness), **_material(layer.material))
 
 
-def _layer(layer: Layer) -> Tables:
-    return {"thickness": float(layer.thickness), **_material(layer.material)}
-
-
-def _material(material: Material) -> Tables:
-    """By its name where it is a preset; with the numbers that differ where it has a preset's name."""
+def _material(material: Material) -> dict[str, Any]:
+    """Return the keys of a material: the name of its preset with the numbers that differ, or all numbers."""
     numbers = {"young": material.young, "poisson": material.poisson, **material.stress_limits}
-    numbers = {name: float(value) for name, value in numbers.items()}
+    values = {name: (Number if name == "poisson" else Modulus)(value) for name, value in numbers.items()}
     for key, preset in materials.items():
-        if preset.name == material.name and set(preset.stress_limits) <= set(numbers):
-            changed = {name: value for name, value in numbers.items() if getattr(preset, name) != value}
-            return {"material": key, **changed}
-    return numbers
+        if preset.name == material.name and set(preset.stress_limits) <= set(values):
+            changed = {name: value for name, value in values.items() if getattr(preset, name) != value}
+            return {"material": MaterialName(key), **changed}
+    return values

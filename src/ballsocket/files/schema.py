@@ -2,36 +2,40 @@
 
 A table of a file is a subclass of `Table`, a key of the table is a field of the class:
 
-    class FilmTable(Table):
+    class FilmTable(Table, frozen=True, kw_only=True):
         ball_roughness: Annotated[Length | None, meaning("Roughness Ra of the ball")] = None
 
-The same declaration reads a file (`read_table`), refuses what it does not allow, describes the file as JSON schema
-(`json_schema`) and lists its keys for the documentation (`key_rows`). A key whose name is a quantity of
-`ballsocket.core.quantities` has the meaning of that quantity.
+The same declaration reads a file (`read_table`), refuses what it does not allow (`refusals`), writes a file
+(`write_table`), describes the file as JSON schema and lists its keys for the documentation (`schema_keys`). A key whose
+name is a quantity of `ballsocket.core.quantities` has the meaning of that quantity.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
 from enum import Enum
-from typing import Any, ClassVar, Self, TypeVar
+from math import degrees, inf, isinf, nextafter, radians
+from typing import Annotated, Any, ClassVar, Self, TypeVar, cast
 
 import msgspec
-from msgspec import inspect
 
-from ..core.checks import check_text, nearest, shown
+from ..core.checks import check_text, known_name, shown
 from ..core.kinds import Kind
-from ..core.quantities import QUANTITIES
 from ..core.quantities import Quantity as CoreQuantity
-from .units import parse
+from .units import LONGEST, parse
 
-_NAME = "\0"
+KEY = "\0"
 """Placeholder for the name of a key while its value is read; `shown` never lets it through from a file."""
 
-_PATH = re.compile(r" - at `\$(?P<path>[^`]*)`$")
-_STEP = re.compile(r"\.(?P<key>\w+)|\[(?P<index>\d+|\.\.\.)\]")
+QUANTITY_SCHEMA: Mapping[str, Any] = {
+    "type": ["number", "string"],
+    "pattern": r"^\s*[-+]?(\.?[0-9]|[iI]nf)",
+    "maxLength": LONGEST,
+}
+"""JSON schema of a number, or of a text with a unit."""
+
+QUANTITIES_SCHEMA: Mapping[str, Any] = {"anyOf": [QUANTITY_SCHEMA, {"type": "array", "items": QUANTITY_SCHEMA}]}
+"""JSON schema of a quantity, or of a list of quantities."""
 
 
 def meaning(text: str) -> msgspec.Meta:
@@ -39,18 +43,17 @@ def meaning(text: str) -> msgspec.Meta:
     return msgspec.Meta(description=text)
 
 
-QUANTITY_SCHEMA = {"type": ["number", "string"], "maxLength": 100}
-"""JSON schema of a number, or of a text with a unit."""
-
-
 class Value:
-    """Base class of types of values that msgspec does not read itself."""
+    """Base class of the types of values that msgspec does not read itself."""
+
+    kind: ClassVar[Kind] = Kind.NUMBER
+    """Physical kind of its numbers."""
 
     schema: ClassVar[Mapping[str, Any]] = {}
     """JSON schema of the accepted values."""
 
     @classmethod
-    def read(cls, name: str, value: Any) -> Any:
+    def read(cls, name: str, value: Any) -> Self:
         """Convert a value of a file; `name` is its key for messages.
 
         Raises
@@ -60,16 +63,71 @@ class Value:
         """
         raise NotImplementedError
 
+    @classmethod
+    def of(cls, kind: Kind) -> type[Self]:
+        """Return the type of such values with numbers of a physical kind."""
+        name = f"{cls.__name__}{kind.name}"
+        return type(name, (cls,), {"kind": kind, "__doc__": cls.__doc__})
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of the accepted values."""
+        return dict(cls.schema)
+
+
+ValueType = TypeVar("ValueType", bound=Value)
+
+
+class Parsed(Value):
+    """Base class of values that are read to an object of another class, the attribute `value`."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a value of a file."""
+        return cls(cls.parse(name, value))
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> Any:
+        """Convert a value of a file to the attribute `value`; unchanged where another key determines its meaning."""
+        return value
+
 
 class Text(Value, str):
     """Text without control characters."""
 
     schema: ClassVar[Mapping[str, Any]] = {"type": "string", "maxLength": 1000}
+    choices: ClassVar[Sequence[str]] = ()
+    """Known texts, which editors complete."""
 
     @classmethod
     def read(cls, name: str, value: Any) -> Self:
         """Convert a text of a file."""
         return cls(check_text(name, value))
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of the accepted texts."""
+        return choices_schema(cls.choices) if cls.choices else dict(cls.schema)
+
+
+class Word(Text):
+    """One of several words, in any spelling with capitals, blanks and hyphens."""
+
+    noun: ClassVar[str] = ""
+    """Kind of the named item in messages; by default the name of the key."""
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a word of a file to its usual spelling."""
+        return cls(known_name(cls.noun or f"{name} =", value, cls.choices))
+
+
+def choices_schema(choices: Sequence[str]) -> dict[str, Any]:
+    """Return the JSON schema of words: their usual spelling, or one with capitals, blanks or underscores."""
+    return {"type": "string", "anyOf": [{"enum": list(choices)}, {"pattern": "[A-Z_ ]"}]}
 
 
 class Texts(Value, list[str]):
@@ -107,7 +165,6 @@ class Whole(Value, int):
 class Quantity(Value, float):
     """Number in mm, N, MPa or rad, with the number or text of the file in `written`."""
 
-    kind: ClassVar[Kind] = Kind.NUMBER
     schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
     written: Any
 
@@ -117,6 +174,23 @@ class Quantity(Value, float):
         number = cls(parse(name, value, cls.kind))
         number.written = value
         return number
+
+    def write(self, with_unit: bool) -> float | str:
+        """Return the number as a file has it: bare in mm, N, MPa and degrees, or as a text with its unit."""
+        number = _in_degrees(float(self)) if self.kind is Kind.ANGLE else float(self)
+        return (
+            f"{number!r} {self.kind.assumed_unit}"
+            if with_unit and self.kind.assumed_unit and not isinf(number)
+            else number
+        )
+
+
+def _in_degrees(angle: float) -> float:
+    """Return the degrees that a file reads as exactly this angle (rad), a round number if there is one."""
+    near = degrees(angle)
+    above, below = nextafter(near, inf), nextafter(near, -inf)
+    candidates = (round(near, 9), near, above, below, nextafter(above, inf), nextafter(below, -inf))
+    return next((number for number in candidates if radians(number) == angle), near)
 
 
 class Number(Quantity):
@@ -147,56 +221,71 @@ class Angle(Quantity):
     kind = Kind.ANGLE
 
 
-class Mass(Quantity):
-    """Mass in kg."""
-
-    kind = Kind.MASS
-
-
 class Table(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
     """Base class of the tables of a file: keys that are not fields are refused."""
 
     qualified: ClassVar[bool] = False
     """True if several tables have these keys, so that messages name the table with the key: "liner.young"."""
 
+    def stated(self) -> dict[str, Any]:
+        """Return the values that are not defaults, by the keys of the file."""
+        names = zip(self.__struct_encode_fields__, self.__struct_fields__, self.__struct_defaults__, strict=True)
+        values = ((key, getattr(self, name), default) for key, name, default in names)
+        return {key: value for key, value, default in values if value is not default}
+
 
 TableType = TypeVar("TableType", bound=Table)
 
 
-def table_of_quantities(
-    name: str, quantities: Mapping[str, CoreQuantity], value: type[Value], bases: tuple[type[Table], ...] = (Table,)
-) -> type[Any]:
-    """Create a table with a key for each quantity, whose values are of the given type.
+def with_keys(keys: Mapping[str, Any]) -> Callable[[type[TableType]], type[TableType]]:
+    """Return a class decorator that adds optional keys to a table; `keys` has the type of their values, with a meaning.
 
-    Parameters
-    ----------
-    name : str
-        Name of the class.
-    quantities : mapping
-        Quantities by key.
-    value : class
-        Type of the values. For each kind of quantity it gets a subclass with the attribute `kind`.
-    bases : tuple of class
-        Tables with further keys.
+    Examples
+    --------
+    >>> @with_keys({"gap": Annotated[Length, meaning("gap of the test")]})
+    ... class TestTable(Table, frozen=True, kw_only=True):
+    ...     name: Text | None = None
+    >>> read_table({"gap": "1 cm"}, TestTable).gap
+    10.0
     """
-    kinds = {
-        kind: type(f"{value.__name__}{kind.name}", (value,), {"kind": kind, "__doc__": value.__doc__})
-        for kind in dict.fromkeys(quantity.kind for quantity in quantities.values())
-    }
-    keys = [(key, kinds[quantity.kind] | None, None) for key, quantity in quantities.items()]
-    return msgspec.defstruct(name, keys, bases=bases, kw_only=True, frozen=True, module=value.__module__)
+    fields = [(key, _or_none(kind), None) for key, kind in keys.items()]
+
+    def decorate(table: type[TableType]) -> type[TableType]:
+        """Create a subclass of the same name with the keys."""
+        extended: Any = msgspec.defstruct(
+            table.__name__,
+            fields,
+            bases=(table,),
+            module=table.__module__,
+            namespace={"__doc__": table.__doc__},
+            frozen=True,
+            kw_only=True,
+        )
+        return cast(type[TableType], extended)
+
+    return decorate
 
 
-def values_of(table: Table | None, kind: type[Any], content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of one type in a table, by key in the order of the file's `content`; empty without a table."""
-    values = {} if table is None else {name: getattr(table, name) for name in content}
-    return {name: value for name, value in values.items() if isinstance(value, kind)}
+def _or_none(kind: Any) -> Any:
+    """Return the type of a key that may be absent, with the meaning of the type."""
+    metadata = getattr(kind, "__metadata__", ())
+    return Annotated[kind.__origin__ | None, *metadata] if metadata else kind | None
+
+
+def quantity_keys(quantities: Mapping[str, CoreQuantity], value: type[Value] = Quantity) -> dict[str, type[Value]]:
+    """Return the types of keys for `with_keys`: one for each quantity, with numbers of its physical kind."""
+    return {key: value.of(quantity.kind) for key, quantity in quantities.items()}
+
+
+def parsed_values(table: Table | None, content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the objects of the `Parsed` values of a table, in the order of the file's `content`; empty without one."""
+    values = {} if table is None else {name: getattr(table, name, None) for name in content}
+    return {name: value.value for name, value in values.items() if isinstance(value, Parsed)}
 
 
 def quantities_of(table: Table, *names: str) -> dict[str, float]:
     """Return the numbers of a table that the file states, by key; all quantities without names."""
-    fields = names or table.__struct_fields__
-    values = {name: getattr(table, name) for name in fields}
+    values = {name: getattr(table, name) for name in names or table.__struct_fields__}
     return {name: float(value) for name, value in values.items() if isinstance(value, Quantity)}
 
 
@@ -222,293 +311,38 @@ def read_table(content: Mapping[str, Any], table: type[TableType], name: str = "
         One sentence: the table, the key, the value and what is allowed.
     """
     try:
-        return msgspec.convert(dict(content), table, dec_hook=_read_value)
+        return msgspec.convert(dict(content), table, dec_hook=read_value)
     except msgspec.ValidationError as error:
-        raise ValueError(_refusal(error, content, table, name)) from error
+        from .refusals import format_refusal  # most files need no message
+
+        raise ValueError(format_refusal(error, content, table, name)) from error
 
 
-def _read_value(kind: type[Any], value: Any) -> Any:
+def read_value(kind: type[ValueType], value: Any) -> ValueType:
     """Read a value of a type of this package for msgspec."""
-    return kind.read(_NAME, value)
+    return kind.read(KEY, value)
 
 
-@dataclass(frozen=True)
-class _Place:
-    """Place in a file: the value there, its declared type, the name of the table around it and of its key."""
+def write_table(table: Table, with_units: bool = False) -> dict[str, Any]:
+    """Return a table as the content of a file, without defaults.
 
-    value: Any
-    type: inspect.Type
-    table: str = ""
-    key: str = ""
-    qualified: bool = False
-
-    @property
-    def label(self) -> str:
-        """Name of the place in messages."""
-        return f"{self.table}.{self.key}" if self.qualified and self.table else self.key
-
-
-def _refusal(error: msgspec.ValidationError, content: Mapping[str, Any], table: type[Table], name: str) -> str:
-    """Format the sentence for what a file has and its schema does not allow."""
-    root = _Place(content, inspect.type_info(table), table=name)
-    place = root
-    found = _PATH.search(str(error))
-    for step in _STEP.finditer(found["path"] if found else ""):
-        place = _step_into(place, step)
-    if error.__cause__ is not None:
-        return str(error.__cause__).replace(_NAME, place.label)
-    struct = _struct_in(place.type)
-    if struct is not None and isinstance(place.value, Mapping):
-        return _unknown_or_missing_key(place, struct, root)
-    choices = _choices_in(place.type)
-    allowed = f"is not allowed: {choices}" if choices else f"must be {_expected(place)}"
-    return f"{place.label} = {shown(place.value)} {allowed}"
-
-
-def _step_into(place: _Place, step: re.Match[str]) -> _Place:
-    """Return the place of a key or of an element of a list."""
-    if step["key"] is not None:
-        key, struct = step["key"], _struct_in(place.type)
-        assert struct is not None
-        kind = next(field.type for field in struct.fields if field.encode_name == key)
-        return _Place(place.value[key], kind, place.key or place.table, key, struct.cls.qualified)
-    if step["index"] == "...":
-        return _step_into_named_table(place)
-    listed = _list_in(place.type)
-    assert listed is not None
-    key = f"{place.key}[{step['index']}]"
-    return replace(place, value=place.value[int(step["index"])], type=listed.item_type, key=key)
-
-
-def _step_into_named_table(place: _Place) -> _Place:
-    """Return the place of the first table that is refused among tables with names that the file chooses."""
-    named = next(part for part in _parts(place.type) if isinstance(part, inspect.DictType))
-    struct = _struct_in(named.value_type)
-    assert struct is not None
-    for name, table in place.value.items():
-        try:
-            msgspec.convert(table, struct.cls, dec_hook=_read_value)
-        except msgspec.ValidationError:
-            return replace(place, value=table, type=struct, key=f"{place.key}.{name}")
-    raise AssertionError("one of the tables is refused")
-
-
-def _parts(kind: inspect.Type) -> Iterator[inspect.Type]:
-    """List the members of a union without their annotations, or the type itself."""
-    if isinstance(kind, inspect.Metadata):
-        yield from _parts(kind.type)
-    elif isinstance(kind, inspect.UnionType):
-        for member in kind.types:
-            yield from _parts(member)
-    else:
-        yield kind
-
-
-def _struct_in(kind: inspect.Type) -> inspect.StructType | None:
-    """Return the table among the types of a value; None without one."""
-    return next((part for part in _parts(kind) if isinstance(part, inspect.StructType)), None)
-
-
-def _list_in(kind: inspect.Type) -> inspect.ListType | None:
-    """Return the list among the types of a value; None without one."""
-    return next((part for part in _parts(kind) if isinstance(part, inspect.ListType)), None)
-
-
-def _unknown_or_missing_key(place: _Place, struct: inspect.StructType, root: _Place) -> str:
-    """Format the sentence for a key that a table does not know, or lacks."""
-    keys = {field.encode_name: field for field in struct.fields}
-    table = place.key or root.table
-    where = f"in {_bracketed(table)}" if table else "at the top"
-    for key in place.value:
-        if key not in keys:
-            return f"{shown(key)} {where} is not known{_hint(key, keys, root)}"
-    missing = next(field for name, field in keys.items() if field.required and name not in place.value)
-    label = f"{table}.{missing.encode_name}" if table else missing.encode_name
-    return f"{label} is missing{_described(missing)}"
-
-
-def _bracketed(table: str) -> str:
-    """Return the name of a table in brackets; an element of an array of tables has its number in place of them."""
-    return table if "[" in table else f"[{table}]"
-
-
-def _head(table: str) -> str:
-    """Return the head of a table in a file."""
-    return f"[[{table.partition('[')[0]}]]" if "[" in table else f"[{table}]"
-
-
-def _described(field: inspect.Field) -> str:
-    """Return the meaning of a key as the end of a sentence."""
-    text = _meaning_of(field.encode_name, field.type)
-    return f": {text}" if text else ""
-
-
-def _hint(key: str, keys: Mapping[str, Any], root: _Place) -> str:
-    """Format a hint for an unknown key: the tables that know it, or the nearest key of its own table."""
-    heads = dict(_tables_of(root.type))
-    if others := [head for head, struct in heads.items() if key in {field.encode_name for field in struct.fields}]:
-        return f"; it belongs in {' or '.join(others)}"
-    if own := [head for head in heads if head.strip("[]") == key]:
-        return f"; it is a table of its own, {own[0]}"
-    return nearest(key, keys)
-
-
-def _tables_of(kind: inspect.Type) -> Iterator[tuple[str, inspect.StructType]]:
-    """List the tables of a file with their heads: "[liner]", "[[backing]]"."""
-    struct = _struct_in(kind)
-    for field in struct.fields if struct else ():
-        if inner := _struct_in(field.type):
-            yield f"[{field.encode_name}]", inner
-        for part in _parts(field.type):
-            if isinstance(part, inspect.DictType) and (inner := _struct_in(part.value_type)):
-                yield f"[{field.encode_name}.NAME]", inner
-        if (listed := _list_in(field.type)) and (inner := _struct_in(listed.item_type)):
-            yield f"[[{field.encode_name}]]", inner
-
-
-def _expected(place: _Place) -> str:
-    """Describe what a value must be."""
-    parts = list(_parts(place.type))
-    texts = [text(place, part) for kind, text in _EXPECTED for part in parts if isinstance(part, kind)]
-    return " or ".join(texts) or "another kind of value"
-
-
-def _array_of(place: _Place, kind: inspect.ListType) -> str:
-    """Describe an array of tables, or a list."""
-    if _struct_in(kind.item_type):
-        return f"an array of tables: [[{place.key}]] before each of them"
-    return f"a list of {_plural(kind.item_type)}"
-
-
-def _plural(kind: inspect.Type) -> str:
-    """Name the items of a list."""
-    customs = [part.cls for part in _parts(kind) if isinstance(part, inspect.CustomType)]
-    return "texts" if any(issubclass(custom, str) for custom in customs) else "numbers"
-
-
-def _choices_in(kind: inspect.Type) -> str:
-    """List the words that a key allows; empty for other keys."""
-    for part in _parts(kind):
-        if isinstance(part, inspect.EnumType | inspect.LiteralType):
-            values = [item.value for item in part.cls] if isinstance(part, inspect.EnumType) else part.values
-            return " or ".join(map(repr, values))
-    return ""
-
-
-_EXPECTED: Sequence[tuple[type[inspect.Type], Callable[[_Place, Any], str]]] = (
-    (inspect.ListType, _array_of),
-    (inspect.StructType, lambda place, kind: f"a table: {_head(place.key)}"),
-    (inspect.BoolType, lambda place, kind: "true or false"),
-    (inspect.StrType, lambda place, kind: "text"),
-)
-
-
-def _meaning_of(key: str, kind: inspect.Type) -> str:
-    """Return the meaning of a key: its own, or that of the quantity of this name."""
-    own = (kind.extra_json_schema or {}).get("description") if isinstance(kind, inspect.Metadata) else None
-    return str(own or (QUANTITIES[key].title if key in QUANTITIES else ""))
-
-
-@dataclass(frozen=True)
-class Key:
-    """Key of a table of files, for the documentation.
-
-    Attributes
+    Parameters
     ----------
-    table : str
-        Head of its table, such as "[joint]" or "[[backing]]"; empty at the top of the file.
-    name : str
-    unit : str
-        Unit of a bare number; empty for other values.
-    values : str
-        Accepted values in words.
-    default : str
-        Default as the file writes it; "required", or empty without a default.
-    meaning : str
+    table : Table
+    with_units : bool
+        True for texts with units, such as "16.0 mm"; otherwise numbers are bare in mm, N, MPa and degrees.
     """
-
-    table: str
-    name: str
-    unit: str
-    values: str
-    default: str
-    meaning: str
+    return {key: _write(value, with_units) for key, value in table.stated().items()}
 
 
-def keys_of(table: type[Table]) -> list[Key]:
-    """List the keys of a file, table by table, those at the top first."""
-    root = inspect.type_info(table)
-    tables = list(_tables_of(root))
-    structs: list[tuple[str, Any]] = [("", root), *tables]
-    heads = {head.strip("[]") for head, _ in tables}
-    return [
-        _key(head, field)
-        for head, struct in structs
-        for field in struct.fields
-        if head or field.encode_name not in heads or _takes_text(field.type)
-    ]
-
-
-def _takes_text(kind: inspect.Type) -> bool:
-    """Return True if a key takes a text in place of a table."""
-    return any(isinstance(part, inspect.StrType) for part in _parts(kind))
-
-
-def _key(head: str, field: inspect.Field) -> Key:
-    """Describe a key for the documentation."""
-    parts = [part for part in _parts(field.type) if not isinstance(part, inspect.NoneType | inspect.StructType)]
-    customs = [part.cls for part in parts if isinstance(part, inspect.CustomType)]
-    kinds = [kind.kind for kind in customs if issubclass(kind, Quantity)]
-    place = _Place(None, field.type, key=field.encode_name)
-    values = kinds[0].example if kinds else customs[0].__doc__.split(".")[0] if customs else ""
-    return Key(
-        table=head,
-        name=field.encode_name,
-        unit=kinds[0].typed if kinds else "",
-        values=values or _choices_in(field.type) or _expected(place),
-        default="required" if field.required else _default(field),
-        meaning=_meaning_of(field.encode_name, field.type),
-    )
-
-
-def _default(field: inspect.Field) -> str:
-    """Return the default of a key as a file writes it; empty without a default."""
-    value = field.default
-    if value is inspect.NODEFAULT or value is None or value == "":
-        return ""
+def _write(value: Any, with_units: bool) -> Any:
+    """Return a value of a table as a file has it."""
+    if isinstance(value, Table):
+        return write_table(value, with_units)
+    if isinstance(value, Quantity):
+        return value.write(with_units)
     if isinstance(value, Enum):
-        return repr(value.value)
-    return str(value).lower() if isinstance(value, bool) else repr(value)
-
-
-def json_schema(table: type[Table], title: str) -> dict[str, Any]:
-    """Return the JSON schema (draft 2020-12) of a kind of file, for editors and other programs."""
-    schema = msgspec.json.schema(table, schema_hook=lambda kind: dict(kind.schema))
-    definitions = schema.pop("$defs")
-    root = definitions.pop(table.__name__)
-    described = {name: _with_meanings(part) for name, part in definitions.items()}
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        "title": title,
-        **{key: part for key, part in _with_meanings(root).items() if key != "title"},
-        "$defs": described,
-    }
-
-
-def _with_meanings(definition: dict[str, Any]) -> dict[str, Any]:
-    """Add the meanings of quantities to the keys of a table, and leave out null, which TOML does not have."""
-    properties = {key: _without_null(part) for key, part in definition.get("properties", {}).items()}
-    for key, part in properties.items():
-        quantity = QUANTITIES.get(key)
-        if "description" not in part and quantity is not None:
-            part["description"] = f"{quantity.title}{quantity.written.bracketed}. {quantity.meaning}"
-    return {**definition, "properties": properties} if properties else definition
-
-
-def _without_null(part: dict[str, Any]) -> dict[str, Any]:
-    """Remove null from the accepted values and defaults of a key."""
-    others = [choice for choice in part.get("anyOf", ()) if choice != {"type": "null"}]
-    kept = {key: value for key, value in part.items() if key != "anyOf" and not (key == "default" and value is None)}
-    if len(others) == 1:
-        return {**others[0], **kept}
-    return {**kept, "anyOf": others} if others else kept
+        return value.value
+    if isinstance(value, list):
+        return [_write(item, with_units) for item in value]
+    return ", ".join(map(repr, value)) if isinstance(value, tuple) else value

@@ -102,7 +102,7 @@ def _number(name: str, value: float | str, kind: str) -> float:
 def _quantity(name: str, text: str, kind: str) -> float:
     try:
         number, unit = split_quantity(text)
-        return convert(number, parse_units(unit), parse_units(Kind(kind).typed))
+        return convert(number, parse_units(unit), parse_units(Kind(kind).assumed_unit))
     except ValueError as error:
         raise ValueError(_refusal(name, text, kind)) from error
 

@@ -16,7 +16,7 @@ from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.array_files import read_arrays, write_arrays
 from ..core.storage.atomic_files import write_text
-from ..core.storage.fingerprint import check_worker_code, digest_of, fingerprint
+from ..core.storage.fingerprint import check_worker_code, fingerprint, hash_inputs
 from ..core.storage.pieces import PieceRun, PieceStore
 from ..studies.axes import SampleAxis
 from .report_points import make_checkpoint
@@ -243,7 +243,7 @@ def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence
     """
     nominal = make_checkpoint(variability.coarse_simulation, folder).identity
     distributions = dict(variability.distributions)
-    identity = digest_of(fingerprint(), nominal, distributions, variability.body_weight, tuple(counts), seed)
+    identity = hash_inputs(fingerprint(), nominal, distributions, variability.body_weight, tuple(counts), seed)
     store = CohortStore(folder=folder.absolute(), identity=identity)
     store.check()
     return store

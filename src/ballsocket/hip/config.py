@@ -12,14 +12,14 @@ from typing import Any
 import msgspec
 
 from ..catalogue import catalogue
-from ..core.checks import known_name, require, shown
+from ..core.checks import require
 from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..files.joint_file import CupTable, JointFile, cup_of
 from ..files.named_joint import joint_in
 from ..files.schema import quantities_of, read_table
-from ..files.toml import read_toml, table_of
+from ..files.toml import read_toml
 from ..files.units import parse
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
@@ -27,9 +27,9 @@ from ..studies.distributions import check_nominal
 from ..studies.scatter import Read, distribution_of
 from .creep_law import CreepLaw
 from .creep_laws import read_creep_law
-from .cycle_file import parse_cycle
+from .cycle_file import cycle_of
 from .film import Lubricant
-from .schema import FilmTable, HipCupTable, HipTable
+from .schema import HipCupTable, HipTable, PatientNumber, UncertaintyTable
 from .simulation import HipSimulation, check_cycles
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
 from .wear_law import coefficient_field, wear_factor
@@ -96,17 +96,18 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     """Build a `HipFile` from the content of a hip file; paths in the file are relative to a folder."""
     tables = read_table(content, HipTable)
     joint_file = _parse_joint(tables, folder)
-    cycle, wear = parse_cycle(content, folder), table_of(content, "wear")
+    cycle, law_numbers = cycle_of(tables, folder), content.get("wear", {})
+    seconds = None if tables.creep is None else tables.creep.seconds_per_cycle
     use = HipSimulation(
         joint=joint_file.joint,
         cup=joint_file.cup,
         cycle=cycle,
-        wear=read_wear_law(wear),
-        ball_wear=read_ball_law(wear),
-        surface=parse_surface(wear),
+        wear=read_wear_law(law_numbers),
+        ball_wear=read_ball_law(law_numbers),
+        surface=socket_surface(tables.wear.contact, tables.wear.model),
         creep=parse_creep(content, float(joint_file.joint.liner.poisson)),
-        seconds_per_cycle=_seconds_per_cycle(tables),
-        **({} if tables.wear is None else quantities_of(tables.wear, "ring_width")),
+        seconds_per_cycle=None if seconds is None else float(seconds),
+        **quantities_of(tables.wear, "ring_width"),
     )
     cycles, report_at = _length(tables, cycle.per_year)
     check_cycles(cycles, report_at)
@@ -114,20 +115,14 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         use=use,
         cycles=cycles,
         report_at=report_at,
-        lubricant=Lubricant(**quantities_of(tables.film or FilmTable())),
-        uncertain=read_uncertainty(content, use) if "uncertainty" in content else None,
+        lubricant=Lubricant(**quantities_of(tables.film)),
+        uncertain=None if tables.uncertainty is None else _read_uncertainty(tables, tables.uncertainty, use),
     )
 
 
 def parse_creep(content: Mapping[str, Any], poisson: float) -> CreepLaw | None:
     """Read the creep law of the table [creep], for a liner with a Poisson's ratio; None without the table."""
-    return read_creep_law(table_of(content, "creep"), poisson) if "creep" in content else None
-
-
-def _seconds_per_cycle(tables: HipTable) -> float | None:
-    """Return the time in s that a cycle stands for in the creep of the liner; None without the key."""
-    creep: Any = tables.creep
-    return None if creep is None or creep.seconds_per_cycle is None else float(creep.seconds_per_cycle)
+    return read_creep_law(content["creep"], poisson) if "creep" in content else None
 
 
 _ELASTIC_SURFACES: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType(
@@ -135,19 +130,26 @@ _ELASTIC_SURFACES: Mapping[str, ClosedShell | RealCup | None] = MappingProxyType
 )
 
 
-def parse_surface(table: Mapping[str, Any]) -> Springs | ClosedShell | RealCup:
-    """Read the foundation of the socket from the key `contact` of the table [wear]."""
-    contact = known_name("contact", table.get("contact", "springs"), _ELASTIC_SURFACES)
+def socket_surface(contact: str = "springs", model: str | None = None) -> Springs | ClosedShell | RealCup:
+    """Return the foundation of the socket by its name in files, with the model of its springs.
+
+    Raises
+    ------
+    ValueError
+        A model without springs, or next to another foundation.
+    """
     elastic = _ELASTIC_SURFACES[contact]
     if elastic is not None:
-        if "model" in table:
-            raise ValueError(f"model needs contact = 'springs', and contact is {contact!r}: remove model or contact")
+        if model is not None:
+            raise ValueError(
+                f"model needs contact = 'springs', and contact is {str(contact)!r}: remove model or contact"
+            )
         return elastic
-    model = catalogue[known_name("model", table.get("model", "hess-forsbach"), catalogue)]
-    if not isinstance(model, RadialFoundation):
+    springs = catalogue[model or "hess-forsbach"]
+    if not isinstance(springs, RadialFoundation):
         names = ", ".join(name for name, model in catalogue.items() if isinstance(model, RadialFoundation))
-        raise ValueError(f"the model {model.name!r} has no radial springs; models with springs: {names}")
-    return Springs(modulus=model.modulus)
+        raise ValueError(f"the model {springs.name!r} has no radial springs; models with springs: {names}")
+    return Springs(modulus=springs.modulus)
 
 
 def _length(tables: HipTable, per_year: float | None) -> tuple[float, tuple[float, ...]]:
@@ -204,9 +206,6 @@ _SAMPLED_KINDS: Mapping[str, Kind] = MappingProxyType(
 )
 """Physical kinds of the sampled quantities except the wear coefficient, whose unit depends on the law."""
 
-_MAX_INTEGER = 1 << 20
-"""Largest count and seed."""
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class UncertaintySettings:
@@ -229,35 +228,23 @@ class UncertaintySettings:
     scatter = RenamedAttribute("variability")
 
 
-def read_uncertainty(content: Mapping[str, Any], use: HipSimulation) -> UncertaintySettings:
-    """Read distributions and sample settings from the table [uncertainty] of a hip file.
-
-    Parameters
-    ----------
-    content : mapping
-        Content of the file. The table has distributions by name of `SAMPLED_QUANTITIES`, as in study files.
-        It may have `count`, a power of two, and `seed`.
-    use : HipSimulation
-        Hip of the nominal patient.
-
-    Raises
-    ------
-    ValueError
-        A value or a name that is not allowed.
-    """
-    table = table_of(content, "uncertainty")
-    names = [name for name in SAMPLED_QUANTITIES if name in table]
-    distributions = {name: distribution_of(name, table[name], _quantity_reader(name, use)) for name in names}
-    count = _read_integer("count", table.get("count", DEFAULT_COUNT))
-    seed = _read_integer("seed", table.get("seed", 0))
+def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulation) -> UncertaintySettings:
+    """Read distributions and sample settings from the table [uncertainty] of a hip file, for the nominal patient."""
+    stated = {name: value for name, value in table.stated().items() if isinstance(value, PatientNumber)}
+    distributions = {
+        name: distribution_of(name, stated[name].value, _quantity_reader(name, use))
+        for name in SAMPLED_QUANTITIES
+        if name in stated
+    }
+    count = int(table.count)
     if count < 2 or count & (count - 1):
         raise ValueError(f"count = {count} is not allowed: it must be a power of two, such as {DEFAULT_COUNT}")
-    weight = _read_body_weight(content) if "body_weight" in distributions else None
+    weight = _body_weight(tables) if "body_weight" in distributions else None
     variability = PatientVariability(use=use, distributions=distributions, body_weight=weight)
     for name, value in _nominal_values(use).items():
         if name in distributions:
             check_nominal(name, value, distributions[name], _SAMPLED_KINDS.get(name, Kind.NUMBER).written)
-    return UncertaintySettings(variability=variability, count=count, seed=seed)
+    return UncertaintySettings(variability=variability, count=count, seed=int(table.seed))
 
 
 def _nominal_values(use: HipSimulation) -> dict[str, float]:
@@ -268,13 +255,13 @@ def _nominal_values(use: HipSimulation) -> dict[str, float]:
     return {name: float(value) for name, value in known.items()}
 
 
-def _read_body_weight(content: Mapping[str, Any]) -> float | None:
-    """Read the body weight in N that the forces refer to; None if the file states no body weight."""
-    tables = (content, table_of(content, "cycle"), *content.get("activity", []))
-    weights = {parse("body_weight", table["body_weight"], Kind.FORCE) for table in tables if "body_weight" in table}
-    if len(weights) > 1:
+def _body_weight(tables: HipTable) -> float | None:
+    """Return the body weight in N that the forces refer to; None if the file states no body weight."""
+    cycles = [tables.cycle] if tables.cycle is not None else tables.activity or []
+    stated = {table.body_weight for table in (tables, *cycles) if table.body_weight is not None}
+    if len(stated) > 1:
         raise ValueError("body_weight has several values, but patients need one: give it once, at the top of the file")
-    return weights.pop() if weights else None
+    return float(stated.pop()) if stated else None
 
 
 def _quantity_reader(name: str, use: HipSimulation) -> Read:
@@ -283,10 +270,3 @@ def _quantity_reader(name: str, use: HipSimulation) -> Read:
         return lambda key, value: parse(key, value, _SAMPLED_KINDS[name])
     coefficient = coefficient_field(use.wear)
     return wear_factor if coefficient is None else coefficient.unit.read
-
-
-def _read_integer(name: str, value: Any) -> int:
-    """Read an integer from 0 to the largest allowed one."""
-    if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _MAX_INTEGER:
-        raise ValueError(f"{name} = {shown(value)} is not allowed: it must be an integer from 0 to {_MAX_INTEGER}")
-    return value

@@ -12,7 +12,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.storage.array_files import read_arrays, write_arrays
-from ..core.storage.fingerprint import digest_of
+from ..core.storage.fingerprint import hash_inputs
 from .ball_wear import map_counterface
 from .hip_setup import HipSetup
 from .history import Report
@@ -128,7 +128,7 @@ def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
         use.creep,
         use.seconds,
     )
-    return Checkpoint(folder=folder, identity=digest_of(_VERSION, loads, inputs))
+    return Checkpoint(folder=folder, identity=hash_inputs(_VERSION, loads, inputs))
 
 
 def check_total_wear(setup: HipSetup, cycles: float) -> None:

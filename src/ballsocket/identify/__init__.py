@@ -14,8 +14,8 @@ from .machine_errors import MachineError
 from .measured import MEASURED, Measured
 from .model_numbers import ModelNumber
 from .modulus import Calibration, as_constant, as_corrected_vessel, as_polynomial, calibrate
-from .observables import CustomObservable, oscillation
-from .registry import MACHINE_ERRORS, MODEL_NUMBERS
+from .observables import CustomObservable, oscillation, sliding_torque
+from .registry import MACHINE_ERRORS, MODEL_NUMBERS, OBSERVABLE_NUMBERS
 from .result import IdentificationResult
 from .scatter import HeavyTailed, NormalScatter
 
@@ -29,6 +29,7 @@ __all__ = [
     "MACHINE_ERRORS",
     "MEASURED",
     "MODEL_NUMBERS",
+    "OBSERVABLE_NUMBERS",
     "Calibration",
     "CustomObservable",
     "Estimate",
@@ -49,4 +50,5 @@ __all__ = [
     "calibrate",
     "identify",
     "oscillation",
+    "sliding_torque",
 ]

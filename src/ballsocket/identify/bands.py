@@ -93,6 +93,7 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
     z = numpy.where(misfit.saturated, numpy.minimum(z, 0.0), z)
 
     def excess(factor: float) -> float:
+        """Compute the excess of the sum of squares over the degrees of freedom; 0 at the most likely factor."""
         u = z / factor
         return float(numpy.sum(u * misfit.scatter.misfit(u) * misfit.scatter.slope(u))) - misfit.freedom
 

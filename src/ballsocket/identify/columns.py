@@ -64,7 +64,7 @@ def parse_head(text: str) -> Head:
     if kind is Kind.NUMBER:
         return Head(name, parse(text, f"1 {unit}".strip(), kind))
     if not unit:
-        raise ValueError(f"column {shown(text)} has no unit: use {name}_{kind.suffix}, or another unit")
+        raise ValueError(f"column {shown(text)} has no unit: use {name}_{kind.column_suffix}, or another unit")
     return Head(name, parse(f"the unit of {text}", f"1 {unit}", kind))
 
 

@@ -5,164 +5,172 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar
 
 import numpy
 
 from ..contact import Model
 from ..core.checks import check_names, known_name, shown
-from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, MATERIAL
 from ..files.joint_file import JointTables
 from ..files.named_joint import joint_in
 from ..files.schema import (
+    QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
-    Mass,
     Modulus,
+    Parsed,
+    Quantity,
     Table,
     Text,
     Texts,
-    Value,
+    Word,
     meaning,
+    parsed_values,
+    quantities_of,
+    quantity_keys,
     read_table,
-    table_of_quantities,
-    values_of,
+    with_keys,
 )
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..problem import Joint
-from ..studies.file import named_model
+from ..studies.file import ModelName
 from ..studies.phrases import ends_of
-from ..studies.scatter import distribution_of
+from ..studies.scatter import DISTRIBUTION_SCHEMA, distribution_of
+from ..studies.usual import models
 from .columns import Gaps, parse_uncertainty, read_measured
 from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
 from .measured import MEASURED, Measured
-from .observables import FREQUENCY, CustomObservable, oscillation
+from .observables import FILE_OBSERVABLES, CustomObservable
 from .registry import FREE_NUMBERS, MACHINE_ERRORS
 from .result import IdentificationResult
 from .scatter import HeavyTailed, NormalScatter, ScatterModel
 from .unknowns import Prior
 
-_QUANTITIES = {**MEASURED, FREQUENCY.name: FREQUENCY}
+_QUANTITIES = {**MEASURED, **{name: observable.described for name, observable in FILE_OBSERVABLES.items()}}
 _SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
-_NUMBERS_SCHEMA = {"anyOf": [QUANTITY_SCHEMA, {"type": "array", "items": QUANTITY_SCHEMA}]}
+_FILE_KEYS = ("quantities", "load", "gaps")
+"""Keys of data in a file only; other data list their values."""
 
 
-class Readings(Value, list[Any]):
-    """Number or list of numbers, with units."""
+class Numbers(Parsed):
+    """Number, or list of numbers."""
 
-    kind: ClassVar[Kind]
-    schema: ClassVar[Mapping[str, Any]] = _NUMBERS_SCHEMA
+    schema: ClassVar[Mapping[str, Any]] = QUANTITIES_SCHEMA
 
     @classmethod
-    def read(cls, name: str, value: Any) -> Self:
-        """Convert one number or a list of numbers, as floats if the class has a kind of quantity."""
-        values = value if isinstance(value, list) else [value]
-        return cls(parse(name, number, cls.kind) for number in values) if hasattr(cls, "kind") else cls(values)
+    def parse(cls, name: str, value: Any) -> numpy.ndarray:
+        """Convert a number or a list of numbers to an array."""
+        return numpy.array(
+            [parse(name, number, cls.kind) for number in (value if isinstance(value, list) else [value])]
+        )
 
 
-class OrderReadings(Readings):
-    """Numbers of the readings."""
+class Readings(Parsed):
+    """Number, or list of numbers, in the unit of the quantity."""
 
-    kind = Kind.NUMBER
+    schema: ClassVar[Mapping[str, Any]] = QUANTITIES_SCHEMA
 
 
-class Uncertainty(Value):
-    """Number, text with a unit, or percentage of each value."""
+class Uncertainty(Parsed):
+    """Number in the unit of the quantity, or percentage of each value."""
 
     schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
 
-    def __init__(self, stated: float | str) -> None:
-        self.stated = stated
+
+class PriorValue(Parsed):
+    """Two ends, such as '0.02..0.3 mm', or distribution `{mean, deviation}`, `{median, factor}`."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"anyOf": [{"type": "string"}, DISTRIBUTION_SCHEMA]}
 
     @classmethod
-    def read(cls, name: str, value: Any) -> Self:
-        """Accept the value of a file; the quantity of the data determines its unit."""
-        return cls(value)
-
-
-class PriorValue(Value):
-    """Two ends, such as '0.02..0.3 mm', or a distribution `{mean, deviation}`, `{median, factor}`, `{low, high}`."""
-
-    kind: ClassVar[Kind]
-    schema: ClassVar[Mapping[str, Any]] = {"type": ["string", "object"], "additionalProperties": QUANTITY_SCHEMA}
-
-    def __init__(self, prior: Prior) -> None:
-        self.prior = prior
-
-    @classmethod
-    def read(cls, name: str, value: Any) -> Self:
+    def parse(cls, name: str, value: Any) -> Prior:
         """Convert the prior of an unknown."""
         if isinstance(value, str):
-            return cls(ends_of(name, value, cls.kind))
+            return ends_of(name, value, cls.kind)
         if not isinstance(value, Mapping):
             raise ValueError(
                 f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}"
             )
-        return cls(distribution_of(name, value, lambda key, number: parse(key, number, cls.kind)))
+        return distribution_of(name, value, lambda key, number: parse(key, number, cls.kind))
 
 
-class ErrorSize(Value):
-    """Size of an error of a machine: a number, or two ends such as '0..20 um'."""
+class ErrorSize(Parsed):
+    """Number, or two ends such as '0..20 um'."""
 
-    kind: ClassVar[Kind]
     schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
 
-    def __init__(self, size: NumberOrRange) -> None:
-        self.size = size
-
     @classmethod
-    def read(cls, name: str, value: Any) -> Self:
-        """Convert the size of an error."""
+    def parse(cls, name: str, value: Any) -> NumberOrRange:
+        """Convert the size of an error of a machine."""
         is_range = isinstance(value, str) and ".." in value
-        return cls(ends_of(name, value, cls.kind) if is_range else parse(name, value, cls.kind))
+        return ends_of(name, value, cls.kind) if is_range else parse(name, value, cls.kind)
+
+
+class ScatterName(Word):
+    """Scatter of data."""
+
+    choices = tuple(_SCATTER_MODELS)
+
+
+class GapsName(Word):
+    """Treatment of rows with a missing number."""
+
+    choices = tuple(gaps.value for gaps in Gaps)
+
+
+class QuantityName(Word):
+    """Name of a measured quantity."""
+
+    noun, choices = "quantity", tuple(_QUANTITIES)
 
 
 _LINER_NUMBERS, _BALL_NUMBERS = (
     {key: FREE_NUMBERS[f"{body}_{key}"] for key in MATERIAL if f"{body}_{key}" in FREE_NUMBERS}
     for body in ("liner", "ball")
 )
-FreeLiner = table_of_quantities("FreeLiner", _LINER_NUMBERS, PriorValue)
-"""Unknowns of the liner."""
-
-FreeBall = table_of_quantities("FreeBall", _BALL_NUMBERS, PriorValue)
-"""Unknowns of the ball."""
 
 
-class FreeMaterials(Table, kw_only=True):
-    """Unknowns of materials."""
-
-    liner: FreeLiner | None = None  # type: ignore[valid-type]
-    ball: FreeBall | None = None  # type: ignore[valid-type]
+@with_keys(quantity_keys(_LINER_NUMBERS, PriorValue))
+class FreeLinerTable(Table, frozen=True, kw_only=True):
+    """Unknowns of the liner with their priors."""
 
 
-FreeTable = table_of_quantities("FreeTable", FREE_NUMBERS, PriorValue, (FreeMaterials,))
-"""Unknowns with their priors."""
+@with_keys(quantity_keys(_BALL_NUMBERS, PriorValue))
+class FreeBallTable(Table, frozen=True, kw_only=True):
+    """Unknowns of the ball with their priors."""
 
-class MachineKeys(Table, kw_only=True):
-    """Machine."""
+
+@with_keys(quantity_keys(FREE_NUMBERS, PriorValue))
+class FreeTable(Table, frozen=True, kw_only=True):
+    """Unknowns with their priors."""
+
+    liner: FreeLinerTable | None = None
+    ball: FreeBallTable | None = None
+
+
+@with_keys(quantity_keys({name: error.quantity for name, error in MACHINE_ERRORS.items()}, ErrorSize))
+class MachineTable(Table, frozen=True, kw_only=True):
+    """Errors of a machine."""
 
     qualified: ClassVar[bool] = True
 
 
-MachineTable = table_of_quantities(
-    "MachineTable", {name: error.quantity for name, error in MACHINE_ERRORS.items()}, ErrorSize, (MachineKeys,)
+@with_keys(
+    quantity_keys({**LOADS, "angle": FIELD["angle"]}, Numbers)
+    | {observable.argument: Quantity.of(observable.kind) for observable in FILE_OBSERVABLES.values()}
 )
-"""Errors of a machine."""
-
-
-class DataKeys(Table, kw_only=True):
-    """Set of data: columns of a file, or a quantity with its values."""
+class DataTable(Table, frozen=True, kw_only=True):
+    """Set of data with its loads: columns of a file, or a quantity with its values."""
 
     file: Annotated[Text | None, meaning("CSV or Parquet file, whose heads have units")] = None
     quantities: Annotated[Texts | None, meaning("measured columns; all by default")] = None
     load: Annotated[Text | None, meaning("column of the load; force by default")] = None
-    gaps: Annotated[Literal["refuse", "leave-out"], meaning("rows with a missing number")] = "refuse"
-    quantity: Annotated[Text | None, meaning("measured quantity of the values")] = None
+    gaps: Annotated[GapsName | None, meaning("rows with a missing number; refuse by default")] = None
+    quantity: Annotated[QuantityName | None, meaning("measured quantity of the values")] = None
     values: Annotated[Readings | None, meaning("measured values")] = None
-    mass: Annotated[Mass | None, meaning("mass of the ball, for a frequency")] = None
-    order: Annotated[OrderReadings | None, meaning("numbers of the readings, for a drift")] = None
+    order: Annotated[Numbers | None, meaning("numbers of the readings, for a drift")] = None
     name: Annotated[Text | None, meaning("name of the data in tables and notes")] = None
     uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the values")] = None
     load_uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the loads")] = None
@@ -170,24 +178,14 @@ class DataKeys(Table, kw_only=True):
     machine: Annotated[Text | None, meaning("name of the machine: [machine.NAME]")] = None
 
 
-DataTable = table_of_quantities("DataTable", {**LOADS, "angle": FIELD["angle"]}, Readings, (DataKeys,))
-"""Set of data with its loads and angles."""
-
-_FILE_KEYS = ("file", "quantities", "load", "gaps")
-_VALUE_KEYS = ("quantity", "values", "angle", "mass", "order", *LOADS)
-_COMMON_KEYS = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
-
-
-class IdentifyTable(JointTables, kw_only=True):
+class IdentifyTable(JointTables, frozen=True, kw_only=True):
     """Identification file."""
 
-    model: Annotated[Text | None, meaning("name of the model; tabulated by default")] = None
-    scatter: Annotated[Literal["normal", "heavy-tailed"], meaning("scatter of the data: heavy-tailed for outliers")] = (
-        "normal"
-    )
-    free: FreeTable | None = None  # type: ignore[valid-type]
-    machine: dict[str, MachineTable] | None = None  # type: ignore[valid-type]
-    data: Annotated[list[DataTable] | None, meaning("sets of data")] = None  # type: ignore[valid-type]
+    model: Annotated[ModelName, meaning("name of the model")] = ModelName("tabulated")
+    scatter: Annotated[ScatterName, meaning("scatter of the data; heavy-tailed for outliers")] = ScatterName("normal")
+    free: FreeTable | None = None
+    machine: dict[str, MachineTable] | None = None
+    data: Annotated[list[DataTable] | None, meaning("sets of data")] = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -244,107 +242,96 @@ def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
     """Convert the tables of a file to model, joint, data and unknowns."""
     tables = read_table(content, IdentifyTable)
     joint_file = joint_in(tables, folder)
-    machines = {name: _parse_machine(name, table) for name, table in (tables.machine or {}).items()}
     if not tables.data:
         raise ValueError("the file has no measurements: add [[data]] before each set")
-    sets = [
-        measured
-        for table, keys in zip(tables.data, content["data"], strict=True)
-        for measured in _parse_data_table(table, keys, machines, folder)
-    ]
+    machines = {
+        name: Machine(name=name, **parsed_values(table, content["machine"][name]))
+        for name, table in (tables.machine or {}).items()
+    }
     return IdentifyFile(
-        model=named_model(tables.model or "tabulated").in_cup(joint_file.cup),
+        model=models[tables.model].in_cup(joint_file.cup),
         joint=joint_file.joint,
-        data=tuple(sets),
-        free=_parse_unknowns(tables.free, content.get("free", {})),
+        data=tuple(measured for table in tables.data for measured in _parse_data_table(table, machines, folder)),
+        free=_parse_unknowns(tables.free or FreeTable(), content.get("free", {})),
         scatter=_SCATTER_MODELS[tables.scatter],
     )
 
 
-def _parse_unknowns(table: Any, content: Mapping[str, Any]) -> dict[str, Prior]:
+def _parse_unknowns(table: FreeTable, content: Mapping[str, Any]) -> dict[str, Prior]:
     """Return the priors of the unknowns by name; those of a material may have their own table, `liner.young`."""
-    priors: dict[str, Prior] = {}
-    for name in content:
-        if name in ("liner", "ball"):
-            of_material = values_of(getattr(table, name), PriorValue, content[name])
-            priors |= {f"{name}_{number}": entry.prior for number, entry in of_material.items()}
-        else:
-            priors[name] = getattr(table, name).prior
-    return priors
+    priors, bodies = parsed_values(table, content), {"liner": table.liner, "ball": table.ball}
+    unknowns: dict[str, Prior] = {}
+    for name, numbers in content.items():
+        own = {name: priors[name]} if name in priors else parsed_values(bodies[name], numbers)
+        unknowns |= own if name in priors else {f"{name}_{number}": prior for number, prior in own.items()}
+    return unknowns
 
 
-def _parse_machine(name: str, table: Any) -> Machine:
-    """Create a machine with its errors."""
-    sizes = {error: entry.size for error in MACHINE_ERRORS if (entry := getattr(table, error)) is not None}
-    return Machine(name=name, **sizes)
-
-
-def _parse_data_table(
-    table: Any, keys: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path
-) -> tuple[Measured, ...]:
-    """Create the sets of data of one table; `keys` are those that the file states."""
-    if ("file" in keys) == ("values" in keys):
+def _parse_data_table(table: DataTable, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
+    """Create the sets of data of one table."""
+    if (table.file is None) == (table.values is None):
         raise ValueError("[[data]] needs either a file, or a quantity with its values")
     machine = IDEAL_MACHINE if table.machine is None else machines[known_name("machine", table.machine, machines)]
-    if "file" in keys:
-        check_names(keys, (*_FILE_KEYS, *_COMMON_KEYS), "in [[data]] with a file")
-        return _data_from_file(table, machine, folder)
-    check_names(keys, (*_VALUE_KEYS, *_COMMON_KEYS), "in [[data]] with values")
-    return (_data_from_values(table, machine),)
+    common = {"machine": machine, **quantities_of(table, "saturation")}
+    both = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
+    if table.values is None:
+        check_names(table.stated(), ("file", *_FILE_KEYS, *both), "in [[data]] with a file")
+        return _read_data_file(table, common, folder)
+    own = [key for key in table.__struct_fields__ if key not in ("file", *_FILE_KEYS)]
+    check_names(table.stated(), own, "in [[data]] with values")
+    return (_parse_listed_values(table, table.values, common),)
 
 
-def _data_from_file(table: Any, machine: Machine, folder: Path) -> tuple[Measured, ...]:
+def _read_data_file(table: DataTable, common: Mapping[str, Any], folder: Path) -> tuple[Measured, ...]:
     """Read the sets of data of a table that names a CSV or Parquet file."""
     load = str(table.load or "")
     return read_measured(
-        folder / table.file,
+        folder / (table.file or ""),
         quantities=table.quantities or [],
         load=load,
-        uncertainty=None if table.uncertainty is None else table.uncertainty.stated,
+        uncertainty=None if table.uncertainty is None else table.uncertainty.value,
         load_uncertainty=_parse_load_uncertainty(table, load or "force"),
-        machine=machine,
-        gaps=Gaps(table.gaps),
-        **_saturation_argument(table),
+        gaps=Gaps.REFUSE if table.gaps is None else Gaps(table.gaps),
+        **common,
     )
 
 
-def _data_from_values(table: Any, machine: Machine) -> Measured:
+def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[str, Any]) -> Measured:
     """Create the set of data of a table that lists its values."""
-    for key in ("quantity", "uncertainty"):
-        if getattr(table, key) is None:
-            raise ValueError(f"[[data]] with values needs its {key}")
-    name = known_name("quantity", table.quantity, _QUANTITIES)
-    values = numpy.array([parse(name, number, _QUANTITIES[name].kind) for number in table.values])
-    loads: dict[str, Any] = {
-        key: numpy.array(numbers) for key in (*LOADS, "order", "angle") if (numbers := getattr(table, key)) is not None
-    }
+    if table.quantity is None or table.uncertainty is None:
+        raise ValueError(f"[[data]] with values needs its {'quantity' if table.quantity is None else 'uncertainty'}")
+    quantity = _QUANTITIES[table.quantity]
+    values = Numbers.of(quantity.kind).parse(quantity.name, readings.value)
+    loads = parsed_values(table, dict.fromkeys((*LOADS, "order", "angle")))
     return Measured(
-        quantity=name,
+        quantity=quantity.name,
         values=values,
-        uncertainty=parse_uncertainty(_QUANTITIES[name], table.uncertainty.stated, values),
-        observable=_parse_observable(name, table),
-        load_uncertainty=_parse_load_uncertainty(table, next((kind for kind in LOADS if kind in loads), "force")),
-        machine=machine,
+        uncertainty=parse_uncertainty(quantity, table.uncertainty.value, values),
+        observable=_parse_observable(quantity.name, table),
+        load_uncertainty=_parse_load_uncertainty(table, next((name for name in LOADS if name in loads), "force")),
         name=str(table.name or ""),
         **loads,
-        **_saturation_argument(table),
+        **common,
     )
 
 
-def _parse_observable(name: str, table: Any) -> CustomObservable | None:
-    """Return the custom observable of a frequency; None for a quantity of a contact."""
-    if (name == FREQUENCY.name) != (table.mass is not None):
-        raise ValueError("[[data]] of a frequency needs its mass, and other data take none")
-    return None if table.mass is None else oscillation(float(table.mass))
+def _parse_observable(name: str, table: DataTable) -> CustomObservable | None:
+    """Return the custom observable of a quantity such as a frequency; None for a quantity of a contact."""
+    arguments = quantities_of(table, *(observable.argument for observable in FILE_OBSERVABLES.values()))
+    for quantity, observable in FILE_OBSERVABLES.items():
+        if observable.argument in arguments and quantity != name:
+            raise ValueError(f"{observable.argument} belongs to [[data]] of a {quantity}, not of {name}")
+    if name not in FILE_OBSERVABLES:
+        return None
+    observable = FILE_OBSERVABLES[name]
+    argument = arguments.get(observable.argument, observable.default)
+    if argument is None:
+        raise ValueError(f"[[data]] of a {name} needs its {observable.argument}")
+    return observable.make(argument)
 
 
-def _saturation_argument(table: Any) -> dict[str, float]:
-    """Return the saturation as an argument of `Measured`, if it is stated."""
-    return {} if table.saturation is None else {"saturation": float(table.saturation)}
-
-
-def _parse_load_uncertainty(table: Any, load: str) -> float:
+def _parse_load_uncertainty(table: DataTable, load: str) -> float:
     """Return the uncertainty of the loads; 0 by default."""
     if table.load_uncertainty is None:
         return 0.0
-    return parse("load_uncertainty", table.load_uncertainty.stated, LOADS[load].kind)
+    return parse("load_uncertainty", table.load_uncertainty.value, LOADS[load].kind)

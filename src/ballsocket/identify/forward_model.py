@@ -118,11 +118,11 @@ class ForwardModel:
 
 @dataclass(frozen=True, eq=False)
 class _PressedPoints:
-    """Joints, model and machine errors at many values of the unknowns."""
+    """Joints, model, errors of machines and numbers of observables at many values of the unknowns."""
 
     model: Model
     joint: Joint
-    errors: Columns
+    numbers: Columns
 
     def press(self, kind: str, load: Array) -> Contact | None:
         """Compute the contacts under one kind of load; None if no point has a result."""
@@ -136,7 +136,7 @@ class _PressedPoints:
         """Compute the readings of one data set: its slice of `count` contacts plus machine errors."""
         if contact is None:
             return numpy.full((1, len(measured)), numpy.nan)
-        return _read_quantity(contact, count, measured, span) + self._added_error(measured, contact, span)
+        return self._read_quantity(contact, count, measured, span) + self._added_error(measured, contact, span)
 
     def compute_at_read_indentation(self, measured: Measured, factor: float) -> Array:
         """Compute the results at measured indentations, corrected for machine errors."""
@@ -151,6 +151,17 @@ class _PressedPoints:
                 force = force - (force - contact.force) / (1 + self._sum_error_slopes(measured, force) * stiffness)
         return self.compute_readings(contact, len(measured), measured, slice(None))
 
+    def _read_quantity(self, contact: Contact, count: int, measured: Measured, span: slice) -> Array:
+        """Read the measured quantity of a data set from its slice of `count` contacts."""
+        if measured.observable is not None:
+            numbers = {name: self.numbers[name] for name in measured.observable.numbers}
+            return _add_point_axis(measured.observable.read(contact, **numbers))[:, span]
+        if measured.quantity != "pressure":
+            return _add_point_axis(getattr(contact, measured.quantity))[:, span]
+        angle = numpy.zeros(count)
+        angle[span] = measured.angle
+        return _add_point_axis(contact.pressure(arrays.namespace(contact.force).asarray(angle)))[:, span]
+
     def _added_error(self, measured: Measured, contact: Contact, span: slice) -> Array:
         """Compute the machine error in mm that adds to the indentations of a data set; 0 for other quantities."""
         if measured.quantity != "indentation" or not measured.machine.name:
@@ -163,7 +174,7 @@ class _PressedPoints:
     def _sum_errors(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
         """Sum the machine errors in mm that depend on the force, or those that do not."""
         return sum(
-            self.errors[measured.machine.key(name)] * error.effect(force, measured.order)
+            self.numbers[measured.machine.key(name)] * error.effect(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
             if (error.slope is not None) == depends_on_force
         )
@@ -171,7 +182,7 @@ class _PressedPoints:
     def _sum_error_slopes(self, measured: Measured, force: Array) -> Array:
         """Sum the derivatives of the machine errors with respect to the force, in mm/N."""
         return sum(
-            self.errors[measured.machine.key(name)] * error.slope(force, measured.order)
+            self.numbers[measured.machine.key(name)] * error.slope(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
             if error.slope is not None
         )
@@ -185,17 +196,6 @@ def _is_load_read_by_machine(measured: Measured) -> bool:
 def _clip_negative(indentation: Array) -> Array:
     """Replace negative indentations by 0."""
     return arrays.clip(indentation, 0.0, inf)
-
-
-def _read_quantity(contact: Contact, count: int, measured: Measured, span: slice) -> Array:
-    """Read the measured quantity of a data set from its slice of `count` contacts."""
-    if measured.observable is not None:
-        return _add_point_axis(measured.observable.read(contact))[:, span]
-    if measured.quantity != "pressure":
-        return _add_point_axis(getattr(contact, measured.quantity))[:, span]
-    angle = numpy.zeros(count)
-    angle[span] = measured.angle
-    return _add_point_axis(contact.pressure(arrays.namespace(contact.force).asarray(angle)))[:, span]
 
 
 def _add_point_axis(values: Array) -> Array:

@@ -18,6 +18,7 @@ from .bands import compute_bands
 from .forward_model import ForwardModel
 from .measured import Measured
 from .misfit import FitResult, Misfit, Slopes, by_differences
+from .registry import OBSERVABLE_NUMBERS
 from .result import IdentificationResult
 from .scatter import NormalScatter, ScatterModel
 from .search import find_best_fit
@@ -53,8 +54,8 @@ def identify(
         Sets of measurements with at least as many values as there are unknowns.
     free : mapping of str to (low, high), or Normal, LogNormal, Rectangular
         Unknowns by name, with two ends in mm, N, MPa, or with a prior distribution. A name is that of a number of the
-        joint ("clearance", "liner_young" or "liner.young") or of the model ("work_of_adhesion"). Unknown errors of a
-        machine are stated by the `Machine` of the data.
+        joint ("clearance", "liner_young" or "liner.young"), of the model ("work_of_adhesion") or of an observable
+        ("friction_coefficient"). Unknown errors of a machine are stated by the `Machine` of the data.
     scatter : ScatterModel
         `NormalScatter()`, or `HeavyTailed()` for data with outliers.
     slopes : callable
@@ -69,7 +70,7 @@ def identify(
     Raises
     ------
     ValueError
-        An unknown name, a number that the model does not have, an empty range, fewer values than unknowns, data that
+        An unknown name, a number that model or data do not have, an empty range, fewer values than unknowns, data that
         no contact can give, or ranges without any result of the model for all data.
     TypeError
         A wrong type of model, joint or data.
@@ -92,6 +93,7 @@ def identify(
     sets = _check_data_sets(data)
     unknowns = collect_unknowns(free, [measured.machine for measured in sets], model)
     _check_counts_and_areas(sets, joint, unknowns)
+    _check_observables(sets, {unknown.name for unknown in unknowns})
     forward = ForwardModel(model, joint, sets, tuple(unknown.name for unknown in unknowns))
     uncertainty = _concatenate(measured.uncertainty for measured in sets)
     misfit = Misfit(forward, ParameterTransform(unknowns), scatter, slopes, uncertainty)
@@ -153,6 +155,17 @@ def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Se
             f"{count} values do not suffice for {len(ranges)} unknowns ({', '.join(ranges)}): measure more values, or "
             "free fewer unknowns"
         )
+
+
+def _check_observables(data: Sequence[Measured], names: set[str]) -> None:
+    """Raise ValueError if a number of an observable is not an unknown, or is an unknown that no data depend on."""
+    needed = {name: measured for measured in data if measured.observable for name in measured.observable.numbers}
+    for name, measured in needed.items():
+        if name not in names:
+            raise ValueError(f"data of {measured.quantity} depend on {name}: free it, with two ends or a distribution")
+    for name in OBSERVABLE_NUMBERS:
+        if name in names and name not in needed:
+            raise ValueError(f"no data depend on {name}: do not free it, or add data that depend on it")
 
 
 __getattr__ = renamed_names(

@@ -66,7 +66,7 @@ class Interval:
     closed: bool
 
     @property
-    def limits(self) -> frozenset[int]:
+    def limiting_indices(self) -> frozenset[int]:
         """Indices of the unknowns whose ranges limit the 95 % band."""
         return frozenset((*self.low.limited_by, *self.high.limited_by))
 
@@ -151,7 +151,7 @@ class Information:
 
     def _is_shifted(self, index: int, cause: int) -> bool:
         """Check if the range of another unknown limits a band and shifts it by 10 % or more."""
-        limited = cause in self.intervals[index].limits
+        limited = cause in self.intervals[index].limiting_indices
         return limited and abs(self._band_vector(cause)[index]) >= MAX_SHIFT * sqrt(12)
 
     def _band_vector(self, index: int) -> Numbers:
@@ -164,7 +164,7 @@ class Information:
 
         The name of the unknown itself may be one of them.
         """
-        limits = self.intervals[self.transform.names.index(name)].limits
+        limits = self.intervals[self.transform.names.index(name)].limiting_indices
         unknowns = enumerate(self.transform.unknowns)
         return tuple(unknown.name for index, unknown in unknowns if index in limits and not unknown.has_distribution)
 

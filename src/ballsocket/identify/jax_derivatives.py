@@ -59,6 +59,7 @@ def _compile(forward: ForwardModel) -> Callable[[Numbers], tuple[Any, Any]]:
     import jax
 
     def results(values: Any) -> Any:
+        """Compute the model results for one set of values: (data,)."""
         return forward.results_at(values[None, :])[0]
 
     compiled: Callable[[Numbers], tuple[Any, Any]] = jax.jit(

@@ -52,6 +52,7 @@ class Machine:
         errors: Iterable[tuple[str, NumberOrRange]] = (),
         **sizes: NumberOrRange,
     ) -> None:
+        """Store the sizes of all registered errors; raise an error for unknown or invalid ones."""
         sizes = {**dict(errors), **sizes}
         for key in sizes:
             if key not in MACHINE_ERRORS:

@@ -1,7 +1,7 @@
-"""Registry of the unknowns of an identification: numbers of the joint, of the model and of the machine.
+"""Registry of the unknowns of an identification: numbers of the joint, model, machine and observable.
 
-A new number of a model or error of a machine is one file that defines it, and one line in a tuple below. It is then
-available in Python, in files and on the command line, in tables, notes, figures and JSON.
+A new number of a model or an observable, or error of a machine, is one definition and one line of a tuple below. It is
+then available in Python, in files and on the command line, in tables, notes, figures and JSON.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from ..core.quantities import Quantity
 from ..studies.parameters import AIMS, LOADS, PARAMETERS
 from .machine_errors import COMPLIANCE, DRIFT, OFFSET, MachineError
 from .model_numbers import WORK_OF_ADHESION, ModelNumber
+from .observables import FRICTION_COEFFICIENT
 
 _MODEL_NUMBERS = (
     WORK_OF_ADHESION,
@@ -24,11 +25,18 @@ _MACHINE_ERRORS = (
     DRIFT,
 )
 
+_OBSERVABLE_NUMBERS = (
+    FRICTION_COEFFICIENT,
+)  # fmt: skip
+
 MODEL_NUMBERS: Mapping[str, ModelNumber] = MappingProxyType({number.name: number for number in _MODEL_NUMBERS})
 """Numbers of models by name."""
 
 MACHINE_ERRORS: Mapping[str, MachineError] = MappingProxyType({error.name: error for error in _MACHINE_ERRORS})
 """Errors of machines by name."""
+
+OBSERVABLE_NUMBERS: Mapping[str, Quantity] = MappingProxyType({number.name: number for number in _OBSERVABLE_NUMBERS})
+"""Numbers of custom observables by name."""
 
 JOINT_NUMBERS: Mapping[str, Quantity] = MappingProxyType(
     {name: quantity for name, quantity in PARAMETERS.items() if name not in LOADS and name not in AIMS}
@@ -36,6 +44,6 @@ JOINT_NUMBERS: Mapping[str, Quantity] = MappingProxyType(
 """Numbers of the joint by their names in studies."""
 
 FREE_NUMBERS: Mapping[str, Quantity] = MappingProxyType(
-    {**JOINT_NUMBERS, **{name: number.quantity for name, number in MODEL_NUMBERS.items()}}
+    {**JOINT_NUMBERS, **{name: number.quantity for name, number in MODEL_NUMBERS.items()}, **OBSERVABLE_NUMBERS}
 )
 """Unknowns that a caller or a file names as free; those of a machine are stated by the machine."""

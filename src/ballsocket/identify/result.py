@@ -136,11 +136,11 @@ def _identifiability_notes(result: IdentificationResult) -> Iterator[str]:
     else:
         note = f"{_join_with_and(separate)} {'is' if len(separate) == 1 else 'are'} not identifiable from these data"
     measured = {row.quantity for row in result.data}
-    sufficient = [_title_in_notes(name) for name in result.next.sufficient_quantities if name not in measured]
+    sufficient = [_quantity_title(name) for name in result.next.sufficient_quantities if name not in measured]
     if sufficient:
         yield f"{note}: measure {_join_with_or(sufficient)}"
     elif result.next.gains:
-        best = _title_in_notes(result.next.best.candidate.quantity)
+        best = _quantity_title(result.next.best.candidate.quantity)
         yield f"{note}; of the usual measurements {best} would add most, though not enough"
     else:
         yield note
@@ -163,7 +163,7 @@ def _band_notes(result: IdentificationResult) -> Iterator[str]:
             yield f"the band of {name} ends where the range of {_join_with_and(estimate.limited_by)} ends"
 
 
-def _title_in_notes(quantity: str) -> str:
+def _quantity_title(quantity: str) -> str:
     """Return the title of a measured quantity for notes."""
     return "free play" if quantity == "diametral_clearance" else MEASURED[quantity].title
 

@@ -19,7 +19,7 @@ from .modulus import Modulus, hess_forsbach
 
 
 def _adhesion_number(model: AdhesiveSocket, contact: Any) -> Array:
-    """Return the adhesion number of a contact."""
+    """Return the adhesion number η = u_c/c of a contact."""
     return model.adhesion_number(contact.joint)
 
 
@@ -63,7 +63,7 @@ class AdhesiveSocket(ClosedForm):
 
     @property
     def parameters(self) -> tuple[Array, ...]:
-        """Work of adhesion and constants of the modulus."""
+        """Work of adhesion in N/mm, followed by the constants of the modulus."""
         return (self.work_of_adhesion, *self.modulus.constants)
 
     name: ClassVar[str] = "adhesive"
@@ -91,15 +91,15 @@ class AdhesiveSocket(ClosedForm):
 
     def critical_stretch(self, joint: Joint) -> Array:
         """Compute the critical stretch u_c = sqrt(2w/K) in mm."""
-        return sqrt(2 * self.work_of_adhesion / self.modulus.of(joint))
+        return sqrt(2 * self.work_of_adhesion / self.modulus.evaluate(joint))
 
     def adhesion_number(self, joint: Joint) -> Array:
-        """Compute the adhesion number η = u_c/c."""
+        """Compute the adhesion number η = u_c/c, the critical stretch over the clearance."""
         c = joint.clearance
         return where(c > 0, self.critical_stretch(joint) / safe_divisor(c), inf)
 
     def pull_off(self, joint: Joint) -> Array:
-        """Compute the pull-off force in N, positive; NaN where η is 1 or more.
+        """Compute the pull-off force, the largest tensile contact force, in N (positive); NaN for η of 1 or more.
 
         -F = π R2² K c [1 - (1 - η)^(2/3) (1 + 2η)^(1/3)], about 2π w R2²/c for small η.
         """
@@ -107,38 +107,39 @@ class AdhesiveSocket(ClosedForm):
         eta = where(eta < 1, eta, float("nan"))
         remainder = 1 - eta * eta * (3 - 2 * eta)
         fraction = eta * eta * (3 - 2 * eta) / (1 + remainder ** (1 / 3) + remainder ** (2 / 3))
-        pull = pi * joint.socket_radius**2 * self.modulus.of(joint) * joint.clearance * fraction
+        pull = pi * joint.socket_radius**2 * self.modulus.evaluate(joint) * joint.clearance * fraction
         return float(pull) if isinstance(pull, float) else pull
 
-    def _factor(self, joint: Joint) -> Array:
-        """Compute 2π R2² K in N/mm²."""
-        return 2 * pi * joint.socket_radius**2 * self.modulus.of(joint)
+    def _force_factor(self, joint: Joint) -> Array:
+        """Compute the factor 2π R2² K in N/mm² between the scaled force in mm and the force in N."""
+        return 2 * pi * joint.socket_radius**2 * self.modulus.evaluate(joint)
 
     def force(self, joint: Joint, indentation: Array) -> Array:
-        return self._factor(joint) * _force(indentation, joint.clearance, self.critical_stretch(joint))
+        return self._force_factor(joint) * _scaled_force(indentation, joint.clearance, self.critical_stretch(joint))
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        return self._factor(joint) * _stiffness(indentation, joint.clearance, self.critical_stretch(joint))
+        return self._force_factor(joint) * _scaled_stiffness(indentation, joint.clearance, self.critical_stretch(joint))
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
         # springs less surfaces, from d = 0 on
         c, d, u = joint.clearance, indentation, self.critical_stretch(joint)
         e = safe_divisor(c + d)
         partial = d * d * (d / e) / 3 - u * u * (d / e) * (1 - 2 * u / (3 * safe_divisor(c)))
-        return self._factor(joint) / 2 * where(u < c, partial, d * (d - c) / 3)
+        return self._force_factor(joint) / 2 * where(u < c, partial, d * (d - c) / 3)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
+        """Compute the indentation d in mm of a force in N, by a bracketed Newton iteration."""
         # between the springs without adhesion (too stiff) and with the full hemisphere in contact (too compliant);
         # a contact that is small against the clearance has F = π R2² K (d² - u_c²)/c, from which it starts
-        R2, c, K = joint.socket_radius, joint.clearance, self.modulus.of(joint)
+        R2, c, K = joint.socket_radius, joint.clearance, self.modulus.evaluate(joint)
         low, stretch = linear_indentation(R2, c, K, force), self.critical_stretch(joint)
-        share = force / self._factor(joint)
-        high = 3 * share + c / 2
+        scaled = force / self._force_factor(joint)
+        high = 3 * scaled + c / 2
         high = where(high > low, high, low)
         start = sqrt(low * low + stretch * stretch)
         ends = low, high, where(start < high, start, high)
         low, high, start = (broadcast(end, *ends) for end in ends)
-        return increasing_root(_force_and_stiffness, share, low, high, start, arguments=(c, stretch))
+        return increasing_root(_scaled_force_and_stiffness, scaled, low, high, start, arguments=(c, stretch))
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         return angle_of(_edge_cosine(indentation, joint.clearance, self.critical_stretch(joint))[1])
@@ -149,39 +150,42 @@ class AdhesiveSocket(ClosedForm):
         return where((d >= 0) & (joint.clearance > 0), d, float("nan"))
 
     def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
-        return self.modulus.of(joint) * indentation
+        return self.modulus.evaluate(joint) * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        return self.modulus.of(joint) + 0.0 * indentation
+        return self.modulus.evaluate(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        """Compute the pressure in MPa, which is negative (tension) towards the edge."""
+        """Compute the pressure p(φ) in MPa, negative (tension) near the edge and 0 outside the contact."""
         versine = versine_of(angle)
         u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
         _, edge = _edge_cosine(indentation, joint.clearance, self.critical_stretch(joint))
-        return where(versine <= edge, self.modulus.of(joint) * u, 0.0)
+        return where(versine <= edge, self.modulus.evaluate(joint) * u, 0.0)
 
 
 def _edge_cosine(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
-    """Compute k = cos ε, which is 0 if the full hemisphere adheres, and m = 1 - k."""
+    """Compute cos ε and 1 - cos ε at the edge of the adhering region; cos ε is 0 if the full hemisphere adheres.
+
+    ε is the half angle of the contact, with the springs under tension included.
+    """
     e = safe_divisor(c + d)
     return clip((c - stretch) / e, 0.0, 1.0), clip((d + stretch) / e, 0.0, 1.0)
 
 
-def _force(d: Array, c: Array, stretch: Array) -> Array:
-    """Compute F/(2π R2² K)."""
+def _scaled_force(d: Array, c: Array, stretch: Array) -> Array:
+    """Compute the scaled force F/(2π R2² K) in mm of an adhesive contact."""
     # F/(2π R2² K) = e (1 - k³)/3 - c (1 - k²)/2, with m = 1 - k taken out
     k, m = _edge_cosine(d, c, stretch)
     return m * (d * (1 + k) / 2 - (c + d) * m * (1 + 2 * k) / 6)
 
 
-def _stiffness(d: Array, c: Array, stretch: Array) -> Array:
-    """Compute the derivative of `_force` by d."""
+def _scaled_stiffness(d: Array, c: Array, stretch: Array) -> Array:
+    """Compute the scaled stiffness, the derivative of the scaled force by the indentation."""
     # the edge moves: dF/de + dF/dk dk/de
     k, m = _edge_cosine(d, c, stretch)
     return m * (1 + k + k * k) / 3 - k * k * stretch / safe_divisor(c + d)
 
 
-def _force_and_stiffness(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
-    """Compute F/(2π R2² K) and its derivative by d."""
-    return _force(d, c, stretch), _stiffness(d, c, stretch)
+def _scaled_force_and_stiffness(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
+    """Compute the scaled force F/(2π R2² K) in mm and its derivative by the indentation."""
+    return _scaled_force(d, c, stretch), _scaled_stiffness(d, c, stretch)

@@ -20,7 +20,7 @@ from ..problem import Joint
 
 
 class ClosedForm(Model):
-    """Model given by its laws at an indentation, element by element.
+    """Contact model with closed-form laws of the indentation, evaluated elementwise.
 
     A new model states `force`, `stiffness`, `energy`, `half_angle`, `pole_pressure`, `pressure` and the indentation of
     a half angle. The base class solves for the indentation of a force; a model with a closed inverse overrides that. A
@@ -32,47 +32,52 @@ class ClosedForm(Model):
 
     @abstractmethod
     def force(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the force F in N."""
+        """Compute the contact force F in N at an indentation in mm."""
 
     @abstractmethod
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the stiffness dF/dd in N/mm."""
+        """Compute the contact stiffness dF/dd in N/mm at an indentation in mm."""
 
     @abstractmethod
     def energy(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the integral of F over d from first touch, in N mm."""
+        """Compute the elastic energy in N mm, the integral of the force over the indentation."""
 
     @abstractmethod
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the half angle ε in rad."""
+        """Compute the half angle ε of the contact in rad at an indentation in mm."""
 
     @abstractmethod
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
-        """Compute d in mm; NaN where no indentation gives this half angle."""
+        """Compute the indentation d in mm of a half angle in rad; NaN where no indentation gives this half angle."""
 
     @abstractmethod
     def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the pressure p0 at the pole in MPa."""
+        """Compute the pressure p0 at the pole in MPa at an indentation in mm."""
 
     @abstractmethod
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        """Compute p(φ) in MPa, 0 outside the contact."""
+        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
 
     def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the largest pressure in MPa; the default is that at the pole."""
+        """Compute the largest contact pressure in MPa; by default the pressure at the pole."""
         return self.pole_pressure(joint, indentation)
 
     def max_pressure_angle(self, joint: Joint, indentation: Array) -> Array:
-        """Compute the polar angle of the largest pressure in rad; the default is 0."""
+        """Compute the polar angle in rad at which the pressure is largest; by default 0, the pole."""
         return 0.0 * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        """Compute K = p0/d in MPa/mm, Eq. (16) of the paper."""
+        """Compute the foundation modulus K = p0/d in MPa/mm, Eq. (16) of the paper."""
         quotient = self.pole_pressure(joint, indentation) / arrays.safe_divisor(indentation)
         return where(indentation == 0, numpy.inf, quotient)  # a point contact: p0 ~ d^(1/2n), n >= 1
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        """Integrate p dA over the spherical contact, in N, by quadrature."""
+        """Compute the integral of the pressure over the contact area in N.
+
+        On a sphere by quadrature; models of planar contact return their force.
+        """
+        if self.planar:
+            return self.force(joint, indentation)
         edge = self.half_angle(joint, indentation)
 
         def ring(x: float) -> Array:
@@ -82,7 +87,7 @@ class ClosedForm(Model):
         return 2 * pi * joint.socket_radius**2 * edge * arrays.integral(ring, 40)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        """Compute the indentation d in mm of a force.
+        """Compute the indentation d in mm of a contact force in N, by Newton's method.
 
         Force laws of contact are close to power laws: the slope of ln F over ln d lies between 1 and 2 (0.4 and 2.5
         with a margin). One point of the curve therefore brackets every other one, and Newton's method in the logarithms
@@ -94,6 +99,7 @@ class ClosedForm(Model):
         steep, flat = goal / 2.5, goal / 0.4
 
         def law(log_ratio: Array) -> tuple[Array, Array]:
+            """Compute ln of the force relative to that at `scale`, and its slope, at d = `scale` exp(log_ratio)."""
             d = scale * arrays.exp(log_ratio)
             F = self.force(joint, d)
             return arrays.log(F) - known, d * self.stiffness(joint, d) / F
@@ -105,6 +111,7 @@ class ClosedForm(Model):
         return where(force > 0, scale * arrays.exp(root), 0.0 * root)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve contacts for given forces, indentations or half angles, and mark those without a solution."""
         if kind == "force":
             d = self.indentation(joint, load)
             F = load
@@ -133,12 +140,13 @@ class ClosedForm(Model):
 
 @dataclass(frozen=True, kw_only=True)
 class ClosedLaw:
-    """Force and stiffness of a closed form as functions of the indentation, for a joint of floats."""
+    """Force law of a closed-form model for one joint: force in N and stiffness in N/mm over the indentation in mm."""
 
     model: ClosedForm
     joint: Joint
 
     def __call__(self, indentation: float) -> tuple[float, float]:
+        """Compute the force in N and the stiffness in N/mm at an indentation in mm; 0 without contact."""
         if indentation < 0:
             return 0.0, 0.0
         try:
@@ -150,7 +158,7 @@ class ClosedLaw:
 
 
 def _law_property(law: str) -> Any:
-    """Make a property that evaluates one law of the model at the stored joint and indentation."""
+    """Make a property that evaluates one law of the model for the solved joint and indentation."""
 
     def value(self: ClosedFormSolution) -> Array:
         return getattr(self.model, law)(self.joint, self.indentation)
@@ -161,7 +169,7 @@ def _law_property(law: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ClosedFormSolution:
-    """Contacts of a closed form: its laws at a joint of arrays and an indentation (mm)."""
+    """Solution of a closed-form model: contact quantities for a joint of arrays and its indentations in mm."""
 
     model: ClosedForm
     joint: Joint
@@ -177,5 +185,5 @@ class ClosedFormSolution:
     pressure_integral = _law_property("pressure_integral")
 
     def pressure(self, angle: Array) -> Array:
-        """Compute p(φ) in MPa, 0 outside the contact."""
+        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         return self.model.pressure(self.joint, self.indentation, angle)

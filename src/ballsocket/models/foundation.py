@@ -1,4 +1,4 @@
-"""Radial foundation: a rigid ball on radial springs of the socket. The paper's model and related ones."""
+"""Radial foundation: a rigid ball on radial springs of the socket, as in the paper and in related models."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class RadialFoundation(ClosedForm):
 
     @property
     def name(self) -> str:
-        """Name of a published model, else of modulus and kinematics."""
+        """Name of the model: that of a published model, else the names of modulus and kinematics."""
         return _NAMES.get((self.modulus.name, self.kinematics.name), f"{self.modulus.name}-{self.kinematics.name}")
 
     @property
@@ -65,25 +65,27 @@ class RadialFoundation(ClosedForm):
 
     @property
     def parameters(self) -> tuple[Array, ...]:
-        """Constants of the modulus."""
+        """Constants of the foundation modulus."""
         return self.modulus.constants
 
     def force(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation)
+        return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.stiffness(joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation)
+        return self.kinematics.stiffness(
+            joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
+        )
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
-        return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation)
+        return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
         return self.kinematics.pressure_integral(
-            joint.socket_radius, joint.clearance, self.modulus.of(joint), indentation
+            joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
         )
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        return self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus.of(joint), force)
+        return self.kinematics.indentation(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), force)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
         versine = self.kinematics.versine(joint.socket_radius, joint.clearance, indentation)
@@ -93,24 +95,24 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
     def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
-        return self.modulus.of(joint) * indentation
+        return self.modulus.evaluate(joint) * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
-        return self.modulus.of(joint) + 0.0 * indentation
+        return self.modulus.evaluate(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
         u = self.kinematics.displacement(joint.socket_radius, joint.clearance, indentation, versine_of(angle))
         inside = (u > 0) & (cos(angle) > 0)
-        return where(inside, self.modulus.of(joint) * u, 0.0)
+        return where(inside, self.modulus.evaluate(joint) * u, 0.0)
 
     def _law(self, joint: Joint) -> ForceLaw:
-        R2, c, K = joint.socket_radius, joint.clearance, float(self.modulus.of(joint))
+        R2, c, K = joint.socket_radius, joint.clearance, float(self.modulus.evaluate(joint))
         return FoundationLaw(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=K)
 
 
 @dataclass(frozen=True, kw_only=True)
 class FoundationLaw:
-    """Force and stiffness of a radial foundation in one joint: lengths in mm, the modulus K in MPa/mm."""
+    """Force law of a radial foundation in one joint: lengths in mm, the modulus K in MPa/mm."""
 
     kinematics: Kinematics
     socket_radius: float
@@ -145,7 +147,7 @@ _RELATED_SOURCES = {
 
 
 def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as the other models
-    """Make the paper's model: linear kinematics and the modulus fitted to finite elements (Table 3).
+    """Make the model of Heß & Forsbach 2021: linear kinematics and a modulus fitted to finite elements (Table 3).
 
     References
     ----------
@@ -155,7 +157,7 @@ def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as t
 
 
 def Vessel() -> RadialFoundation:  # noqa: N802
-    """Make the model of vessel modulus and linear kinematics, the paper's closed form for Bartel's integral.
+    """Make the model of a vessel modulus with linear kinematics, the paper's closed form for Bartel's integral.
 
     It equals the constrained radial columns with K_B of Jin, Dowson & Fisher 1994.
 
@@ -167,7 +169,7 @@ def Vessel() -> RadialFoundation:  # noqa: N802
 
 
 def Bartel() -> RadialFoundation:  # noqa: N802
-    """Make the model of Bartel et al. 1985 in closed form: vessel modulus and exact kinematics.
+    """Make the closed-form model of Bartel et al. 1985: vessel modulus and exact kinematics.
 
     References
     ----------
@@ -177,7 +179,7 @@ def Bartel() -> RadialFoundation:  # noqa: N802
 
 
 def BondedLayer() -> RadialFoundation:  # noqa: N802
-    """Make the model of bonded-layer (constrained column) modulus and linear kinematics, as in the paper.
+    """Make the model of a bonded layer (constrained column) with linear kinematics, as in the paper.
 
     References
     ----------
@@ -187,7 +189,7 @@ def BondedLayer() -> RadialFoundation:  # noqa: N802
 
 
 def BondedLayerExact() -> RadialFoundation:  # noqa: N802
-    """Make the model of bonded-layer modulus and exact kinematics.
+    """Make the model of a bonded layer (constrained column) with exact kinematics.
 
     It is the physics of Askari & Andersen 2018, whose text was not available.
 
@@ -199,7 +201,9 @@ def BondedLayerExact() -> RadialFoundation:  # noqa: N802
 
 
 def CosineLimit() -> RadialFoundation:  # noqa: N802
-    """Make the paper's model without clearance: p = p0 cos φ up to 90 degrees, F = (2π/3) K R2² d.
+    """Make the paper's model without clearance, with the pressure p = p0 cos φ over the full hemisphere.
+
+    The force is F = (2π/3) K R2² d.
 
     References
     ----------

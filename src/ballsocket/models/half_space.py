@@ -19,7 +19,9 @@ from .closed_form import ClosedForm
 
 
 class HalfSpace(ClosedForm):
-    """Contact of two elastic half-spaces with the gap A r^(2n); r is the arc from the pole, a = R2 ε at the edge.
+    """Contact of two elastic half-spaces whose gap is the power law A r^(2n).
+
+    The radius r is the arc from the pole, and a = R2 ε is its value at the edge.
 
     d = κ A a^(2n) with κ = (2n)!!/(2n - 1)!!. The gap is the parabola of the two spheres at r = R2, so n = 1 is Hertz:
     A = R2^(2 - 2n)/(2 R*), R* = R1 R2/c.
@@ -37,31 +39,31 @@ class HalfSpace(ClosedForm):
     @property
     @abstractmethod
     def order(self) -> int:
-        """Exponent n of the gap."""
+        """Half of the gap's exponent: n for the gap A r^(2n)."""
 
     @property
     def validity(self) -> tuple[Range, ...]:
         return _FIRST_TOUCH
 
-    def _profile(self, joint: Joint) -> Array:
-        """Compute κ A in mm^(1 - 2n)."""
+    def _gap_coefficient(self, joint: Joint) -> Array:
+        """Compute the coefficient κ A in mm^(1 - 2n) that relates indentation and contact radius, d = κ A a^(2n)."""
         n = self.order
         kappa = 4**n * factorial(n) ** 2 / factorial(2 * n)
         R2 = joint.socket_radius
         return kappa * joint.clearance / (2 * joint.ball_radius * R2) * R2 ** (2 - 2 * n)
 
-    def _radius(self, joint: Joint, indentation: Array) -> Array:
+    def _contact_radius(self, joint: Joint, indentation: Array) -> Array:
         """Compute the contact radius a in mm."""
-        return power(indentation / self._profile(joint), 1 / (2 * self.order))
+        return power(indentation / self._gap_coefficient(joint), 1 / (2 * self.order))
 
     def force(self, joint: Joint, indentation: Array) -> Array:
         # F = 2 E* d a 2n/(2n + 1)
         n = self.order
-        return 4 * n / (2 * n + 1) * joint.effective_modulus * indentation * self._radius(joint, indentation)
+        return 4 * n / (2 * n + 1) * joint.effective_modulus * indentation * self._contact_radius(joint, indentation)
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
         # a flat punch of the contact radius: dF/dd = 2 E* a
-        return 2 * joint.effective_modulus * self._radius(joint, indentation)
+        return 2 * joint.effective_modulus * self._contact_radius(joint, indentation)
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
         # F ~ d^(1 + 1/2n)
@@ -70,47 +72,47 @@ class HalfSpace(ClosedForm):
 
     def indentation(self, joint: Joint, force: Array) -> Array:
         n = self.order
-        profile = self._profile(joint)
+        profile = self._gap_coefficient(joint)
         radius = power(force * ((2 * n + 1) / (4 * n)) / (joint.effective_modulus * profile), 1 / (2 * n + 1))
         return profile * radius ** (2 * n)
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        return self._radius(joint, indentation) / joint.socket_radius
+        return self._contact_radius(joint, indentation) / joint.socket_radius
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
-        return self._profile(joint) * (half_angle * joint.socket_radius) ** (2 * self.order)
+        return self._gap_coefficient(joint) * (half_angle * joint.socket_radius) ** (2 * self.order)
 
     def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
         # p0 = (E*/π) 2n/(2n - 1) d/a, with d/a = κ A a^(2n - 1)
         n = self.order
-        slope = self._profile(joint) * self._radius(joint, indentation) ** (2 * n - 1)
+        slope = self._gap_coefficient(joint) * self._contact_radius(joint, indentation) ** (2 * n - 1)
         return joint.effective_modulus / pi * (2 * n / (2 * n - 1)) * slope
 
     def max_pressure(self, joint: Joint, indentation: Array) -> Array:
-        return _peak(self.order)[1] * self.pole_pressure(joint, indentation)
+        return _peak_position_and_ratio(self.order)[1] * self.pole_pressure(joint, indentation)
 
     def max_pressure_angle(self, joint: Joint, indentation: Array) -> Array:
-        return _peak(self.order)[0] * self.half_angle(joint, indentation)
+        return _peak_position_and_ratio(self.order)[0] * self.half_angle(joint, indentation)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         # p = (E*/π) κ A 2n ∫ t^(2n - 1)/sqrt(t² - r²) dt over r..a, a polynomial in y = sqrt(a² - r²)
         n = self.order
         r = angle * joint.socket_radius
-        a = self._radius(joint, indentation)
+        a = self._contact_radius(joint, indentation)
         y = sqrt(clip(a**2 - r**2, 0.0, inf))
         series = 0.0 * y
         for j in range(n):
             series = series + comb(n - 1, j) / (2 * j + 1) * r ** (2 * (n - 1 - j)) * y ** (2 * j + 1)
-        return where(r < a, joint.effective_modulus / pi * self._profile(joint) * 2 * n * series, 0.0)
-
-    def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
-        # on a plane the pressure has one direction
-        return self.force(joint, indentation)
+        return where(r < a, joint.effective_modulus / pi * self._gap_coefficient(joint) * 2 * n * series, 0.0)
 
 
 @cache
-def _peak(order: int) -> tuple[float, float]:
-    """Compute the position r/a of the largest pressure and its ratio to p0; for n = 2 they are 1/√2 and √2."""
+def _peak_position_and_ratio(order: int) -> tuple[float, float]:
+    """Compute the relative radius r/a of the largest pressure, and the ratio of that pressure to p0.
+
+    For n = 2 they are 1/√2 and √2.
+    """
     if order == 1:
         return 0.0, 1.0
     # the pressure as a polynomial in y = sqrt(1 - r²/a²), its only maximum inside
@@ -139,7 +141,7 @@ _PROMISE = Promise(within=0.15)
 
 @dataclass(frozen=True, kw_only=True)
 class Hertz(HalfSpace):
-    """Contact of Hertz 1882 with R* = R1 R2/c, valid at first touch only in a close socket.
+    """Hertz contact (1882) with R* = R1 R2/c; in a close-fitting socket valid at small loads only.
 
     References
     ----------
@@ -158,7 +160,7 @@ class Hertz(HalfSpace):
 
 @dataclass(frozen=True, kw_only=True)
 class Steuermann(HalfSpace):
-    """Contact of Steuermann 1939: two half-spaces with a gap r^(2n), flatter at the pole than Hertz's parabola.
+    """Contact after Steuermann 1939: two half-spaces with a gap r^(2n), flatter at the pole than a parabola.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Kinematics of a rigid ball in a radial foundation: displacement, force, energy and half angle.
+"""Kinematics of a rigid ball on radial springs: displacement, force, energy and half angle as formulas.
 
 Closed forms of one problem: a rigid ball of radius R1, whose centre lies e = c + d below the centre of a
 socket of radius R2 = R1 + c, on springs that act along the radius. With u(φ) the radial displacement of the socket's
@@ -22,42 +22,42 @@ from ..core.validity import Range
 
 
 def versine_of(angle: Array) -> Array:
-    """Compute 1 - cos of an angle without cancellation."""
+    """Compute the versine 1 - cos φ of an angle in rad without cancellation."""
     return 2 * sin(angle / 2) ** 2
 
 
 def angle_of(versine: Array) -> Array:
-    """Compute the angle up to π from its 1 - cos."""
+    """Compute the angle in rad, 0 to π, from its versine 1 - cos φ."""
     return 2 * asin(sqrt(versine / 2))
 
 
 def linear_versine(R2: Array, c: Array, d: Array) -> Array:
-    """Compute 1 - cos ε for linear kinematics."""
+    """Compute the versine 1 - cos ε of the half angle for linear kinematics."""
     # Eq. (8): cos ε = c/(c + d)
     return d / safe_divisor(c + d)
 
 
 def linear_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
-    """Compute d from 1 - cos ε for linear kinematics."""
+    """Compute the indentation d from the versine 1 - cos ε of the half angle for linear kinematics."""
     # Eq. (8) solved for d; without clearance every load has the same half angle
     return where(c > 0, c * versine / safe_divisor(1 - versine), nan)
 
 
 def linear_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
-    """Compute the radial displacement at m = 1 - cos φ for linear kinematics."""
+    """Compute the radial displacement of the springs at the versine m = 1 - cos φ for linear kinematics."""
     # Eq. (6): u = d cos φ - c (1 - cos φ), with m = 1 - cos φ
     return d - (c + d) * m
 
 
 def linear_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the force for linear kinematics."""
+    """Compute the contact force from the indentation for linear kinematics."""
     # Eq. (13): F = π R2² K/3 [2d - c + c (c/(c + d))²]
     e = safe_divisor(c + d)
     return (pi / 3) * K * R2**2 * (d * d * (3 * c + 2 * d) / (e * e))
 
 
 def linear_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the stiffness for linear kinematics."""
+    """Compute the contact stiffness dF/dd for linear kinematics."""
     # slope of Eq. (13)
     e = safe_divisor(c + d)
     x = c / e
@@ -65,19 +65,19 @@ def linear_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
 
 
 def linear_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the energy for linear kinematics."""
+    """Compute the elastic energy of the springs for linear kinematics."""
     # integral of Eq. (13), which is also the energy of the springs
     return (pi / 3) * K * R2**2 * d * d * (d / safe_divisor(c + d))
 
 
 def linear_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute ∫ p dA for linear kinematics."""
+    """Compute the integral of the pressure over the contact area for linear kinematics."""
     # ∫ p dA = 2π R2² K ∫ u sin φ dφ
     return pi * K * R2**2 * d * (d / safe_divisor(c + d))
 
 
 def linear_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
-    """Compute the indentation of a force for linear kinematics."""
+    """Compute the indentation d from the contact force for linear kinematics."""
     # Eq. (13) solved for d: a cubic. The first guess is exact at both ends (d << c and d >> c) and within
     # 3.1 % elsewhere; two Halley steps (on 2z - 3 + 1/z² = q, z = 1 + d/c) reduce that to 1e-18.
     s = 1.5 * F / (pi * R2**2 * K)
@@ -91,54 +91,57 @@ def linear_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
 
 
 def cosine_versine(R2: Array, c: Array, d: Array) -> Array:
-    """Compute 1 - cos ε without clearance: 1 under load."""
+    """Compute the versine 1 - cos ε of the half angle without clearance: 1 (a full hemisphere) under load."""
     return where(d > 0, 1.0, 0.0 * d)
 
 
 def cosine_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
-    """Return NaN: without clearance every indentation has the half angle 90 degrees."""
+    """Return NaN for the indentation of a half angle: without clearance the half angle is always 90 degrees."""
     return versine * nan
 
 
 def cosine_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
-    """Compute the radial displacement at m = 1 - cos φ without clearance."""
+    """Compute the radial displacement of the springs at the versine m = 1 - cos φ without clearance."""
     return linear_displacement(R2, 0.0 * c, d, m)
 
 
 def cosine_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the force without clearance."""
+    """Compute the contact force from the indentation without clearance."""
     return linear_force(R2, 0.0 * c, K, d)
 
 
 def cosine_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the stiffness without clearance."""
+    """Compute the contact stiffness dF/dd without clearance."""
     return linear_stiffness(R2, 0.0 * c, K, d)
 
 
 def cosine_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the energy without clearance."""
+    """Compute the elastic energy of the springs without clearance."""
     return linear_energy(R2, 0.0 * c, K, d)
 
 
 def cosine_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute ∫ p dA without clearance."""
+    """Compute the integral of the pressure over the contact area without clearance."""
     return linear_pressure_integral(R2, 0.0 * c, K, d)
 
 
 def cosine_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
-    """Compute the indentation of a force without clearance."""
+    """Compute the indentation d from the contact force without clearance."""
     # F = (2π/3) K R2² d
     return 1.5 * F / (pi * R2**2 * K)
 
 
 def circular_versine(R2: Array, c: Array, d: Array) -> Array:
-    """Compute 1 - cos ε for exact kinematics."""
+    """Compute the versine 1 - cos ε of the half angle for exact kinematics."""
     # Eq. (5) with u = 0: cos ε = (e² + R2² - R1²)/(2 e R2)
     return d * (2 * (R2 - c) - d) / safe_divisor(2 * R2 * (c + d))
 
 
 def circular_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
-    """Compute d from 1 - cos ε for exact kinematics; NaN beyond the largest half angle."""
+    """Compute the indentation d from the versine 1 - cos ε for exact kinematics.
+
+    Beyond the largest half angle the result is NaN.
+    """
     # smaller root of e² - 2 e R2 cos ε + R2² - R1² = 0, written for d = e - c; NaN beyond the largest half angle
     b = R2 - c - R2 * versine
     d = 2 * R2 * c * versine / safe_divisor(b + sqrt(b * b - 2 * R2 * c * versine))
@@ -146,7 +149,7 @@ def circular_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Arra
 
 
 def circular_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
-    """Compute the radial displacement at m = 1 - cos φ for exact kinematics."""
+    """Compute the radial displacement of the springs at the versine m = 1 - cos φ for exact kinematics."""
     # Eq. (5): u = e cos φ + sqrt(R1² - e² sin² φ) - R2, with m = 1 - cos φ
     e = c + d
     R1 = R2 - c
@@ -155,7 +158,7 @@ def circular_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
 
 
 def circular_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the force for exact kinematics; NaN if the ball's centre leaves the socket."""
+    """Compute the contact force for exact kinematics; NaN if the ball's centre leaves the socket."""
     # Eq. (11) with Eq. (5): F = 2π R2² K {e (1 - k³)/3 + [R1³ - (R2 - e k)³]/(3 e²) - R2 (1 - k²)/2}, k = cos ε,
     # which is a Laurent polynomial in e with a double root at first touch. The ball's centre stays inside the socket.
     e = safe_divisor(c + d)
@@ -164,7 +167,7 @@ def circular_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
 
 
 def circular_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the stiffness for exact kinematics."""
+    """Compute the contact stiffness dF/dd for exact kinematics."""
     # slope of the force
     e = safe_divisor(c + d)
     x = c / e
@@ -172,20 +175,20 @@ def circular_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
 
 
 def circular_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the energy for exact kinematics."""
+    """Compute the elastic energy of the springs for exact kinematics."""
     # integral of the force
     return (pi / 12) * K * R2 * d * d * (d / safe_divisor(c + d)) * (4 * (R2 - c) - d)
 
 
 def circular_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute ∫ p dA for exact kinematics."""
+    """Compute the integral of the pressure over the contact area for exact kinematics."""
     # ∫ p dA = 2π R2² K ∫ u dm over 0..versine by Gauss-Legendre with 8 points: u is nearly linear in m
     versine = circular_versine(R2, c, d)
     return 2 * pi * K * R2**2 * versine * integral(lambda x: circular_displacement(R2, c, d, x * versine), 8)
 
 
 def circular_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
-    """Compute the indentation of a force for exact kinematics, by Newton's method."""
+    """Compute the indentation d from the contact force for exact kinematics, by Newton's method."""
     # The force is less than that of Eq. (13), so the linear result is a lower bound; the force is nearly linear in d
     # there and Newton's method converges from that side. NaN where the ball's centre would leave the socket.
     d = linear_indentation(R2, c, K, F)
@@ -200,7 +203,7 @@ Formula = Callable[..., Array]
 
 @dataclass(frozen=True, kw_only=True)
 class Kinematics:
-    """Formulas of a radial foundation as plain functions; see `linear_kinematics` and `exact_kinematics`.
+    """Kinematics of a radial foundation as a set of plain functions, such as `linear_kinematics`.
 
     force, stiffness, energy and pressure_integral take (R2, c, K, d); indentation takes (R2, c, K, F); versine takes
     (R2, c, d), its inverse indentation_of_versine (R2, c, versine), displacement (R2, c, d, 1 - cos φ).

@@ -21,7 +21,7 @@ Pair = tuple[Array, Array]
 
 
 class Liner(NamedTuple):
-    """Coefficients of a liner that do not depend on the wave: polynomials in Q = q².
+    """Coefficients of the modal compliance of a liner, independent of the wave number: polynomials in Q = q².
 
     N b^-2q and D b^-2q are f(q) + y [middle + y b^-4 f(-q)] with y = b^(2 - 2q) and f(±q) = even ± q odd. `numerator`
     and `denominator` are their coefficients, highest power first: of even (3), odd (2) and middle (4).
@@ -36,8 +36,8 @@ class Liner(NamedTuple):
     denominator: tuple[Array, ...]
 
 
-def liner_of(nu: Array, b: Array) -> Liner:
-    """Compute the coefficients of a liner of Poisson's ratio ν and b = 1 + L/R2."""
+def liner_coefficients(nu: Array, b: Array) -> Liner:
+    """Compute the compliance coefficients of a liner from its Poisson's ratio ν and radius ratio b = 1 + L/R2."""
     k0, g, t, z = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 2 * nu, 1 / (b * b)
     bent, none = 4 - 6 * nu, 0.0 * nu
     numerator = (
@@ -66,7 +66,7 @@ def liner_of(nu: Array, b: Array) -> Liner:
 
 
 def log_compliance(k: Array, liner: Liner) -> Pair:
-    """Compute ln(c E/R2) and its slope by ln k, away from q = 1."""
+    """Compute the log modal compliance ln(c E/R2) and its slope by ln k, for wave numbers away from q = 1."""
     poisson, growth, shrink, upper, lower = liner
     Q = k * k + 0.25
     q = sqrt(Q)
@@ -80,7 +80,10 @@ def log_compliance(k: Array, liner: Liner) -> Pair:
 def _scaled_polynomial(
     q: Array, Q: Array, y: Array, shrunk: Array, decay: Array, coefficients: tuple[Array, ...]
 ) -> Pair:
-    """Compute N or D over b^2q and its slope by Q; `shrunk` is y² b^-4, `decay` the slope of -ln y."""
+    """Evaluate a polynomial of the modal compliance, N or D, divided by b^2q, and its slope by Q.
+
+    `shrunk` is y² b^-4, and `decay` is the slope of -ln y.
+    """
     e2, e1, e0, o1, o0, r3, r2, r1, r0 = coefficients
     steep, high = e2 * Q, o1 * Q
     even, even_slope = (steep + e1) * Q + e0, 2 * steep + e1
@@ -92,8 +95,11 @@ def _scaled_polynomial(
     return even + odd + middle + back, slope
 
 
-def log_compliance_anywhere(k: Array, liner: Liner) -> Pair:
-    """Compute ln(c E/R2) and its slope by ln k, also near q = 1 (k² = 3/4)."""
+def log_compliance_any_wave(k: Array, liner: Liner) -> Pair:
+    """Compute the log modal compliance ln(c E/R2) and its slope by ln k, for all wave numbers.
+
+    Near q = 1 (k² = 3/4), where N and D vanish, it uses the reduced polynomials.
+    """
     offset = k * k - 0.75
     is_near = (offset > -0.05) & (offset < 0.05)
     if arrays.all_true(arrays.logical_not(is_near)):
@@ -104,7 +110,7 @@ def log_compliance_anywhere(k: Array, liner: Liner) -> Pair:
 
 
 def _log_compliance_near(k: Array, liner: Liner) -> Pair:
-    """Compute ln(c E/R2) near q = 1, with q - 1 divided out of N and D."""
+    """Compute the log modal compliance and its slope near q = 1, with the factor q - 1 divided out of N and D."""
     nu = liner.poisson
     k0, g, t = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 4 * nu
     q = sqrt(k * k + 0.25)
@@ -138,7 +144,7 @@ def _reduced_polynomial(
     grown_first: tuple[Array, ...],
     decayed_last: tuple[Array, ...],
 ) -> Pair:
-    """Compute N or D over b^2q (q - 1), and its slope by q.
+    """Evaluate a polynomial of the modal compliance, N or D, divided by b^2q (q - 1), and its slope by q.
 
     f(q) b^2q with the first of the middle terms, and f(-q) b^-2q with the last, are q - 1 times polynomials of q - ½.
     With those and z = (1 - y)/(q - 1) the result is
@@ -166,7 +172,10 @@ _DECAY = (-1 / 40320, 1 / 5040, -1 / 720, 1 / 120, -1 / 24, 1 / 6, -1 / 2, 1.0)
 
 
 def _decay_mean(x: Array) -> Pair:
-    """Compute (1 - exp(-x))/x and its slope, by series near 0."""
+    """Compute the mean (1 - exp(-x))/x of an exponential decay over 0 to x, and its slope by x.
+
+    Near 0 it uses a series.
+    """
     small = (x > -0.05) & (x < 0.05)
     safe = where(small, 1.0, x)
     series, series_slope = _polynomial(x, _DECAY)
@@ -176,7 +185,7 @@ def _decay_mean(x: Array) -> Pair:
 
 
 def _polynomial(x: Array, coefficients: tuple[Array, ...]) -> Pair:
-    """Evaluate a polynomial of x and its slope from coefficients, highest power first."""
+    """Evaluate a polynomial of x and its slope; coefficients start with the highest power."""
     value, slope = coefficients[0] + 0.0 * x, 0.0 * x
     for coefficient in coefficients[1:]:
         slope = slope * x + value

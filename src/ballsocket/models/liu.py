@@ -17,7 +17,7 @@ from .kinematics import angle_of, linear_indentation_of_versine, linear_versine,
 
 @dataclass(frozen=True, kw_only=True)
 class LiuReconstruction(ClosedForm):
-    """Contact with F = (4π λ/3) E* R2 d²/(c + d): a reconstruction, not the published formula.
+    """Reconstruction of Liu's contact model, F = (4π λ/3) E* R2 d²/(c + d); not the published formula.
 
     The model is a rigid cone on a plane Winkler layer as thick as the socket's radius, with an ellipsoidal pressure
     over the contact circle a = R2 sin ε, cos ε = c/(c + d). The text of Liu et al. 2006 and its coefficients were not
@@ -49,36 +49,37 @@ class LiuReconstruction(ClosedForm):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        same = "made for ball and socket of one material"
-        massive = "made for a massive socket: the liner's thickness does not enter"
+        """Validity ranges of the model; none of its results is validated."""
+        one_material = "made for ball and socket of one material"
+        massive_socket = "made for a massive socket: the liner's thickness does not enter"
         return (
             NeverValid(why="unvalidated reconstruction: one coefficient is not fitted to data"),
-            Range(quantity="joint.modulus_ratio", low=0.5, high=2.0, why=same),
-            Range(quantity="joint.thickness_ratio", high=1.0, why=massive),
+            Range(quantity="joint.modulus_ratio", low=0.5, high=2.0, why=one_material),
+            Range(quantity="joint.thickness_ratio", high=1.0, why=massive_socket),
             SMALL_STRAIN,
         )
 
-    def _factor(self, joint: Joint) -> Array:
-        """Compute (4π λ/3) E* R2."""
+    def _force_factor(self, joint: Joint) -> Array:
+        """Compute the force factor (4π λ/3) E* R2 in N/mm."""
         return 4 * pi * self.coefficient / 3 * joint.effective_modulus * joint.socket_radius
 
     def force(self, joint: Joint, indentation: Array) -> Array:
-        return self._factor(joint) * indentation * (indentation / safe_divisor(joint.clearance + indentation))
+        return self._force_factor(joint) * indentation * (indentation / safe_divisor(joint.clearance + indentation))
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
         e = safe_divisor(joint.clearance + indentation)
-        return self._factor(joint) * (indentation / e) * (1 + joint.clearance / e)
+        return self._force_factor(joint) * (indentation / e) * (1 + joint.clearance / e)
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
         # ∫ s²/(c + s) ds: by quadrature where the closed form cancels
         c, d = joint.clearance, indentation
         closed = d * d / 2 - c * d + c * c * log(1 + d / safe_divisor(c))
         series = integral(lambda x: x * x / safe_divisor(c + d * x), 24)
-        return self._factor(joint) * where(d < c, d * d * d * series, closed)
+        return self._force_factor(joint) * where(d < c, d * d * d * series, closed)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
         # d² - s d - s c = 0
-        s = force / self._factor(joint)
+        s = force / self._force_factor(joint)
         return (s + sqrt(s * (s + 4 * joint.clearance))) / 2
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
@@ -87,8 +88,8 @@ class LiuReconstruction(ClosedForm):
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
         return linear_indentation_of_versine(joint.socket_radius, joint.clearance, versine_of(half_angle))
 
-    def _square_sine(self, joint: Joint, indentation: Array) -> Array:
-        """Compute sin² ε."""
+    def _squared_sine(self, joint: Joint, indentation: Array) -> Array:
+        """Compute sin² ε of the contact's half angle."""
         # sin² ε = d (2c + d)/(c + d)²
         e = safe_divisor(joint.clearance + indentation)
         return indentation / e * (1 + joint.clearance / e)
@@ -100,9 +101,9 @@ class LiuReconstruction(ClosedForm):
         # F = (2/3) π a² p0; F and a² share the factor d/(c + d)
         c, d = joint.clearance, indentation
         ratio = where(c + d > 0, (c + d) / safe_divisor(2 * c + d), 1.0)
-        return 1.5 * self._factor(joint) * ratio / (pi * joint.socket_radius**2)
+        return 1.5 * self._force_factor(joint) * ratio / (pi * joint.socket_radius**2)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
-        square = sin(angle) ** 2 / safe_divisor(self._square_sine(joint, indentation))
+        square = sin(angle) ** 2 / safe_divisor(self._squared_sine(joint, indentation))
         inside = (square < 1) & (angle < pi / 2) & (indentation > 0)
         return where(inside, self.pole_pressure(joint, indentation) * sqrt(clip(1 - square, 0.0, 1.0)), 0.0)

@@ -12,6 +12,7 @@ import numpy
 
 from ..core.arrays import Array, clip
 from ..core.checks import check_numeric, require
+from ..core.deprecation import RenamedAttribute
 from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, RIGID_BALL, Promise, Range, check_domain
 from ..problem import Joint
@@ -23,7 +24,7 @@ Formula = Callable[..., Array]
 
 @dataclass(frozen=True, kw_only=True)
 class Modulus:
-    """Foundation modulus, a function from Joint to MPa/mm, with its source, its domain and its validity.
+    """Foundation modulus K in MPa/mm as a function of the joint, with its source, domain and validity.
 
     Attributes
     ----------
@@ -56,7 +57,7 @@ class Modulus:
     promise: Promise | None = None
 
     def __call__(self, joint: Joint) -> Array:
-        """Compute K in MPa/mm.
+        """Compute the foundation modulus K of a joint in MPa/mm.
 
         Raises
         ------
@@ -65,27 +66,29 @@ class Modulus:
         """
         check_domain(self.domain, joint, self.name)
         with numpy.errstate(all="ignore"):
-            return self.of(joint)
+            return self.evaluate(joint)
 
-    def of(self, joint: Joint) -> Array:
-        """Compute K in MPa/mm without checks."""
+    def evaluate(self, joint: Joint) -> Array:
+        """Compute the foundation modulus K of a joint in MPa/mm without checking the domain."""
         R2, L, E, nu = joint.socket_radius, joint.liner_thickness, joint.liner.young, joint.liner.poisson
         if type(R2) is float and type(L) is float and type(E) is float and type(nu) is float and not self.constants:
-            return _of_numbers(self.formula, R2, L, E, nu)
+            return _scalar_modulus(self.formula, R2, L, E, nu)
         return self.formula(R2, L, E, nu, *self.constants)
+
+    of = RenamedAttribute("evaluate")
 
     def __repr__(self) -> str:
         return self.name.replace("-", "_")
 
 
 @lru_cache(maxsize=256)
-def _of_numbers(formula: Formula, R2: float, L: float, E: float, nu: float) -> float:
-    """Compute K of plain numbers, cached because all laws of a joint use it."""
+def _scalar_modulus(formula: Formula, R2: float, L: float, E: float, nu: float) -> float:
+    """Compute the foundation modulus K in MPa/mm from plain numbers, cached because all laws of a joint use it."""
     return float(formula(R2, L, E, nu))
 
 
 def vessel_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
-    """Compute K_B of a spherical vessel."""
+    """Compute the foundation modulus K_B of a thick spherical vessel in MPa/mm."""
     # Eq. (14), K_B, with 1 - κ³ = (1 - κ)(1 + κ + κ²) and 1 - κ = L/(R2 + L)
     ratio = R2 / L
     kappa = ratio / (1 + ratio)
@@ -94,45 +97,45 @@ def vessel_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
 
 
 def layer_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
-    """Compute K_BL of a bonded layer."""
+    """Compute the foundation modulus K_BL of a bonded layer (constrained column) in MPa/mm."""
     # Eq. (15), K_BL
     return (1 - nu) / ((1 + nu) * (1 - 2 * nu)) * E / L
 
 
 def polynomial_formula(R2: Array, L: Array, E: Array, nu: Array, c1: Array, c2: Array, c3: Array) -> Array:
-    """Compute K by Eq. (18) with constants."""
+    """Compute the foundation modulus K in MPa/mm from the polynomial of Eq. (18) in R2/L."""
     return E / R2 * eq_18((c1, c2, c3), R2 / L)
 
 
 def corrected_vessel_formula(R2: Array, L: Array, E: Array, nu: Array, a0: Array, a1: Array, a2: Array) -> Array:
-    """Compute the vessel modulus K_B times a quadratic polynomial of κ = R2/(R2 + L)."""
+    """Compute the foundation modulus of a vessel, corrected by a quadratic polynomial of κ = R2/(R2 + L), in MPa/mm."""
     ratio = R2 / L
     kappa = ratio / (1 + ratio)
     return vessel_formula(R2, L, E, nu) * (a0 + kappa * (a1 + kappa * a2))
 
 
 def constant_formula(R2: Array, L: Array, E: Array, nu: Array, K: Array) -> Array:
-    """Return the constant K in the shape of the joint."""
+    """Return a constant foundation modulus in MPa/mm, broadcast to the shape of the joint."""
     return K + 0.0 * R2
 
 
-def _poisson(low: float, high: float, why: str) -> Range:
-    """Make a range of the liner's Poisson's ratio."""
+def _poisson_range(low: float, high: float, why: str) -> Range:
+    """Make a validity range of the liner's Poisson's ratio."""
     return Range(quantity="joint.liner.poisson", low=low, high=high, why=why)
 
 
-def _thickness_ratio(low: float, high: float, why: str) -> Range:
-    """Make a range of R2/L."""
+def _thickness_ratio_range(low: float, high: float, why: str) -> Range:
+    """Make a validity range of the thickness ratio R2/L."""
     return Range(quantity="joint.thickness_ratio", low=low, high=high, why=why)
 
 
-def _contact_width(low: float, why: str) -> Range:
-    """Make a lower limit of the contact width over the liner thickness."""
+def _contact_width_range(low: float, why: str) -> Range:
+    """Make a validity range with a smallest ratio of contact width to liner thickness."""
     return Range(quantity="width_ratio", low=low, why=why)
 
 
 _SPRINGS = Promise(within=0.15)
-_COMPRESSIBLE = _poisson(-1.0, 0.5, "the modulus is unbounded for an incompressible liner (ν = 0.5)")
+_COMPRESSIBLE = _poisson_range(-1.0, 0.5, "the modulus is unbounded for an incompressible liner (ν = 0.5)")
 _FINITE_LAYER = Range(
     quantity="joint.liner_thickness",
     low=0.0,
@@ -147,8 +150,8 @@ spherical_vessel = Modulus(
     sources=(Source("bartel1985"), Source("hess2021", "(14)")),
     domain=(_COMPRESSIBLE,),
     validity=(
-        _poisson(0.0, 0.4, "its pressure is 7 % high at 0.4, 20 % at 0.45 and without bound towards 0.5"),
-        _contact_width(0.9, "a contact narrower than the liner is thick feels a half-space, not a vessel"),
+        _poisson_range(0.0, 0.4, "its pressure is 7 % high at 0.4, 20 % at 0.45 and without bound towards 0.5"),
+        _contact_width_range(0.9, "a contact narrower than the liner is thick feels a half-space, not a vessel"),
         RIGID_BALL,
         RIGID_BACKING,
     ),
@@ -163,13 +166,13 @@ bonded_layer = Modulus(
     sources=(Source("johnson1985"), Source("hess2021", "(15)")),
     domain=(_COMPRESSIBLE, _FINITE_LAYER),
     validity=(
-        _poisson(0.0, 0.4, "its pressure is 10 % high at 0.4, 30 % at 0.45 and without bound towards 0.5"),
+        _poisson_range(0.0, 0.4, "its pressure is 10 % high at 0.4, 30 % at 0.45 and without bound towards 0.5"),
         Range(
             quantity="joint.thickness_ratio",
             low=5.5,
             why="a flat layer has one area inside and outside: a thicker shell is stiffer",
         ),
-        _contact_width(1.5, "the layer must be thin against the contact radius"),
+        _contact_width_range(1.5, "the layer must be thin against the contact radius"),
         RIGID_BALL,
         RIGID_BACKING,
     ),
@@ -179,7 +182,9 @@ bonded_layer = Modulus(
 
 
 def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
-    """Make a modulus K R2/E = c1 + c2 (R2/L) + c3 (R2/L)², Eq. (18) of Heß & Forsbach 2021 with custom constants.
+    """Make a foundation modulus from Eq. (18) of Heß & Forsbach 2021 with custom constants.
+
+    The modulus is K R2/E = c1 + c2 (R2/L) + c3 (R2/L)².
 
     Parameters
     ----------
@@ -204,7 +209,9 @@ def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
 
 
 def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Modulus:
-    """Make a modulus K_B (a0 + a1 κ + a2 κ²), κ = R2/(R2 + L): the vessel corrected for non-uniform pressure.
+    """Make the foundation modulus of a vessel, corrected for non-uniform pressure by custom constants.
+
+    The modulus is K_B (a0 + a1 κ + a2 κ²) with κ = R2/(R2 + L).
 
     The idea is Imado's (2005); the factor is custom, for instance fitted with `calibrate`.
 
@@ -257,8 +264,11 @@ def constant(modulus: Array) -> Modulus:
     return Modulus(name="constant", title=f"{modulus} MPa/mm", formula=constant_formula, constants=(value,))
 
 
-def _bulge(contact: Any) -> Array:
-    """Compute (ν - 0.43) a/L, a measure of volume constraint; 0 for compressible liners."""
+def _volume_constraint(contact: Any) -> Array:
+    """Compute (ν - 0.43) a/L, a measure of the volume constraint in a nearly incompressible liner.
+
+    It is 0 for a compressible liner.
+    """
     excess = contact.joint.liner.poisson - 0.43
     return clip(excess, 0.0, inf) * contact.width_ratio
 
@@ -269,17 +279,17 @@ hess_forsbach = Modulus(
     formula=table_formula,
     sources=(Source("hess2021", "(18), Table 3"),),
     validity=(
-        _poisson(0.30, 0.49, "Table 3 ends there; its last column is used beyond"),
-        _thickness_ratio(0.73, 7.7, "Table 1: R1 11 to 23 mm, L 3 to 15 mm"),
+        _poisson_range(0.30, 0.49, "Table 3 ends there; its last column is used beyond"),
+        _thickness_ratio_range(0.73, 7.7, "Table 1: R1 11 to 23 mm, L 3 to 15 mm"),
         Range(quantity="joint.clearance_ratio", high=0.018, why="Table 1: clearance up to 0.2 mm"),
         Range(
             quantity="half_angle",
             low=radians(20.0),
             why="fitted at 1 to 3 kN; near first touch the liner answers like a half-space, not like springs",
         ),
-        _contact_width(0.6, "a contact narrower than that feels a half-space, not springs"),
+        _contact_width_range(0.6, "a contact narrower than that feels a half-space, not springs"),
         Range(
-            quantity=_bulge,
+            quantity=_volume_constraint,
             symbol="(ν - 0.43) a/L",
             high=0.04,
             why="the volume of a nearly incompressible liner stiffens a wide contact, which springs do not model",

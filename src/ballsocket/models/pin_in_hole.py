@@ -1,4 +1,4 @@
-"""Pin in a hole: the plane counterpart of the ball in a socket, per unit of length."""
+"""Contact of a pin in a hole, the plane counterpart of a ball in a socket, per unit of length."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ..problem import Joint
 
 @dataclass(frozen=True, kw_only=True)
 class PinInHole(ModelInfo):
-    """Persson's (1964) pin in a hole of nearly its radius in an infinite plate of the same material, plane strain.
+    """Persson's (1964) pin in a hole of nearly its radius: infinite plate, same material, plane strain.
 
     With β = tan(ε/2) and E1 = E/(1 - ν²), the line load Q obeys E1 c/Q = [2 - ln(1 + β²) - 2β⁴]/[π (1 + β²) β²]; the
     perfect fit (c = 0) has ε = 84.83° at any load. A `Joint` describes the pin: `ball_radius` is its radius,
@@ -52,7 +52,7 @@ class PinInHole(ModelInfo):
     def press(
         self, joint: Joint, *unnamed: Any, line_load: Array | None = None, half_angle: Array | None = None
     ) -> LineContact:
-        """Press by exactly one of a line load and a half angle.
+        """Solve the contact of the pin for exactly one given quantity: a line load or a half angle.
 
         Parameters
         ----------
@@ -100,7 +100,9 @@ class PinInHole(ModelInfo):
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class LineContact(Outcome):
-    """Contact of a pin and its hole, per length: `line_load` in N/mm, `half_angle` in rad, `max_pressure` in MPa.
+    """Contact of a pin in its hole per unit of length, with its line load, half angle and pressure.
+
+    `line_load` is in N/mm, `half_angle` in rad and `max_pressure` in MPa.
 
     As for a `Contact`, `status`, `valid` and `notes` describe its validity.
     """
@@ -118,11 +120,14 @@ class LineContact(Outcome):
         return self.pressure(0.0)
 
     def pressure(self, angle: Array) -> Array:
-        """Compute p(φ) in MPa, 0 outside the contact; `angle` in rad broadcasts against the contact's shape."""
-        return self._mask_failed(lambda: self.line_load / self._numbers.socket_radius * self._profile(angle))
+        """Compute the contact pressure p(φ) in MPa at a polar angle; 0 outside the contact.
 
-    def _profile(self, angle: Array) -> Array:
-        """Compute p R2/Q."""
+        `angle` in rad broadcasts against the contact's shape.
+        """
+        return self._mask_failed(lambda: self.line_load / self._numbers.socket_radius * self._scaled_pressure(angle))
+
+    def _scaled_pressure(self, angle: Array) -> Array:
+        """Compute the scaled pressure p R2/Q at a polar angle, with the line load Q."""
         square = tan(self.half_angle / 2) ** 2
         y = tan(angle / 2) ** 2
         remainder = clip(square - y, 0.0, inf)
@@ -139,12 +144,12 @@ class LineContact(Outcome):
 
 
 def _flexibility(s: Array) -> Array:
-    """Compute E1 c/Q at s = β²."""
+    """Compute the scaled flexibility E1 c/Q at the squared half-angle tangent s = tan²(ε/2)."""
     return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * safe_divisor(s))
 
 
 def _squared_tangent(stiffness: Array, load: Array) -> Array:
-    """Solve for β² of a line load, with E1 c = stiffness."""
+    """Solve for the squared half-angle tangent β² = tan²(ε/2) of a line load; `stiffness` is E1 c."""
     ratio = stiffness / safe_divisor(load)
 
     def law(s: Array) -> tuple[Array, Array]:

@@ -1,4 +1,4 @@
-"""Rigid ball on a plane elastic layer bonded to a rigid base: numerical, and exact for that plane problem."""
+"""Rigid ball on a plane elastic layer bonded to a rigid base: a numerical solution, exact for the plane problem."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ MAX_THICKNESS_RATIO = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class PlaneLayer(Model):
-    """Jin's (2000) ball in a socket: a paraboloid of R* = R1 R2/c on a plane layer of the liner's thickness.
+    """Jin's (2000) model of a ball in a socket: a paraboloid of R* = R1 R2/c on a plane layer of liner thickness.
 
     In Abel space the layer's Hankel kernel 2(1 - ν²)/E Φ(kL)/k gives an integral equation of the second kind for H(t)
     on [0, a]. It is solved with Gauss-Legendre points (see the docs, theory):
@@ -93,8 +93,9 @@ class PlaneLayer(Model):
     promise: ClassVar[Promise] = Promise(within=0.15)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        solution = _solution(joint, kind, load)
-        force, indentation = solution.values
+        """Solve contacts for given forces, indentations or half angles, and mark those that did not converge."""
+        solution = _solve_width(joint, kind, load)
+        force, indentation = solution.force_and_indentation
         reached = indentation if kind == "indentation" else force
         residual = 0.0 * reached if kind == "half_angle" else arrays.namespace(reached).abs(reached - load)
         return SolverResult(
@@ -106,7 +107,10 @@ class PlaneLayer(Model):
 
 
 def layer_ratio(x: Array, poisson: Array) -> Array:
-    """Compute Φ(x) - 1 of the bonded layer: Φ = [2 k0 sinh 2x - 4x]/[2 k0 cosh 2x + 1 + k0² + 4x²], k0 = 3 - 4ν."""
+    """Compute the kernel Φ(x) - 1 of a bonded layer, the deviation of its response from that of a half-space.
+
+    Φ = [2 k0 sinh 2x - 4x]/[2 k0 cosh 2x + 1 + k0² + 4x²], k0 = 3 - 4ν, and x is the wave number times L.
+    """
     k0 = 3 - 4 * poisson
     decay = exp(-2 * x)
     denominator = k0 * (1 + decay * decay) + (1 + k0 * k0 + 4 * x * x) * decay
@@ -115,7 +119,9 @@ def layer_ratio(x: Array, poisson: Array) -> Array:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LayerSolution:
-    """Scaled solution at the contact width α = a/L: H = (a²/(R* C)) (δ h1 - h2), δ = d R*/a², C = 2(1 - ν²)/E.
+    """Solution of the plane layer at the contact width α = a/L, with the quantities of a `Contact`.
+
+    The scaled solution is H = (a²/(R* C)) (δ h1 - h2), with δ = d R*/a² and C = 2(1 - ν²)/E.
 
     h1 and h2 solve for the right-hand sides 1 and x², x = t/a. The quadrature is accurate for widths up to `widest`. A
     `Contact` delegates its quantities to this class.
@@ -126,38 +132,43 @@ class LayerSolution:
     widest: float
 
     @cached_property
-    def _points(self) -> tuple[Array, Array, Array, Array]:
-        """Quadrature in the caller's array library: x, its weights, k L, its weights."""
+    def _quadrature_points(self) -> tuple[Array, Array, Array, Array]:
+        """Quadrature points x in the radius and k L in the wave number, each with its weights.
+
+        They are arrays of the caller's library: x, weights of x, k L, weights of k L.
+        """
         like = {"dtype": self.width.dtype, "device": arrays.device(self.width)}
         return tuple(arrays.namespace(self.width).asarray(part, **like) for part in _quadrature(self.widest))
 
     @cached_property
-    def _kernel(self) -> Array:
-        """Weighted Φ - 1 at the points in k L."""
-        _, _, k, wk = self._points
+    def _weighted_kernel(self) -> Array:
+        """Kernel Φ - 1 at the quadrature points of the wave number, times their weights."""
+        _, _, k, wk = self._quadrature_points
         return layer_ratio(k, self.joint.liner.poisson[..., None]) * wk
 
     @cached_property
     def _transforms(self) -> tuple[Array, Array, Array, Array]:
-        """Integrals of h1 and h2 (last axis): the transform ∫ h cos(k x α) dx, the edge value h(1), ∫ h dx, ∫ h x² dx.
+        """Integrals of h1 and h2 (last axis): cosine transform, edge value h(1), ∫ h dx and ∫ h x² dx.
+
+        The transform is ∫ h cos(k x α) dx.
 
         They are computed in blocks, since the waves of all contacts together may exceed the memory.
         """
         xp = arrays.namespace(self.width)
-        x, _, k, _ = self._points
-        kernel = arrays.broadcast_to(self._kernel, (*self.width.shape, k.shape[0]))
+        x, _, k, _ = self._quadrature_points
+        kernel = arrays.broadcast_to(self._weighted_kernel, (*self.width.shape, k.shape[0]))
         flat_width, flat_kernel = xp.reshape(self.width, (-1,)), xp.reshape(kernel, (-1, k.shape[0]))
         count, size = flat_width.shape[0], max(1, _BLOCK // (k.shape[0] * x.shape[0]))
         spans = [slice(first, min(first + size, count)) for first in range(0, max(count, 1), size)]
-        blocks = [self._block(flat_width[span], flat_kernel[span, :]) for span in spans]
+        blocks = [self._solve_block(flat_width[span], flat_kernel[span, :]) for span in spans]
         joined = (xp.concat(part, axis=0) if len(blocks) > 1 else part[0] for part in zip(*blocks, strict=True))
         transform, edge, mean, second = (xp.reshape(part, (*self.width.shape, *part.shape[1:])) for part in joined)
         return transform, edge, mean, second
 
-    def _block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
-        """Solve a block of contacts."""
+    def _solve_block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
+        """Solve the integral equations of a block of contacts; return the four parts of `_transforms`."""
         xp = arrays.namespace(width)
-        x, wx, k, _ = self._points
+        x, wx, k, _ = self._quadrature_points
         alpha = width[:, None, None]
         waves = cos(k[:, None] * x * alpha)
         matrix = alpha * (xp.matrix_transpose(waves) @ (kernel[..., None] * waves)) * wx
@@ -172,7 +183,7 @@ class LayerSolution:
 
     @cached_property
     def _scaled_indentation(self) -> Array:
-        """Scaled indentation δ."""
+        """Scaled indentation δ = d R*/a²."""
         edge = self._transforms[1]
         return edge[..., 1] / edge[..., 0]
 
@@ -182,19 +193,19 @@ class LayerSolution:
         return self.joint.ball_radius * self.joint.socket_radius / self.joint.clearance
 
     @property
-    def _radius(self) -> Array:
+    def _contact_radius(self) -> Array:
         """Contact radius a in mm."""
         return self.width * self.joint.liner_thickness
 
     @property
     def _compliance(self) -> Array:
-        """Plane compliance C in 1/MPa."""
+        """Plane compliance C = 2(1 - ν²)/E in 1/MPa."""
         return 2 * (1 - self.joint.liner.poisson**2) / self.joint.liner.young
 
-    def _steepness(self, x: Array) -> Array:
-        """Compute -H'(x)/x in units of a²/(R* C): 4/π on a half-space."""
+    def _scaled_slope(self, x: Array) -> Array:
+        """Compute the scaled slope -H'(x)/x in units of a²/(R* C): 4/π on a half-space."""
         xp = arrays.namespace(self.width)
-        kernel, k, transform = self._kernel, self._points[2], self._transforms[0]
+        kernel, k, transform = self._weighted_kernel, self._quadrature_points[2], self._transforms[0]
         wave = k * self.width[..., None]
         phase = wave * x[..., None]
         sinc = where(phase > 1e-4, sin(phase) / safe_divisor(phase), 1 - phase * phase / 6)
@@ -203,33 +214,33 @@ class LayerSolution:
         return (2 / pi) * (2 + self.width * total)
 
     @cached_property
-    def values(self) -> tuple[Array, Array]:
-        """Force F and indentation d."""
+    def force_and_indentation(self) -> tuple[Array, Array]:
+        """Force F in N and indentation d in mm."""
         mean = self._transforms[2]
-        delta, a = self._scaled_indentation, self._radius
+        delta, a = self._scaled_indentation, self._contact_radius
         force = 2 * pi * a**3 / (self._compliance * self._effective_radius) * (delta * mean[..., 0] - mean[..., 1])
         return force, delta * a * a / self._effective_radius
 
     @cached_property
-    def slopes(self) -> tuple[Array, Array]:
-        """Derivatives dF/da and dd/da: a wider contact adds a flat punch of its radius."""
-        steep = self._steepness(self.width**0)
-        deepening = self._radius / self._effective_radius * steep / self._transforms[1][..., 0]
+    def radius_derivatives(self) -> tuple[Array, Array]:
+        """Derivatives dF/da in N/mm and dd/da by the contact radius: a wider contact adds a flat punch."""
+        steep = self._scaled_slope(self.width**0)
+        deepening = self._contact_radius / self._effective_radius * steep / self._transforms[1][..., 0]
         return self.stiffness * deepening, deepening
 
     @property
     def half_angle(self) -> Array:
-        return self._radius / self.joint.socket_radius
+        return self._contact_radius / self.joint.socket_radius
 
     @property
     def stiffness(self) -> Array:
-        return 2 * pi * self._radius * self._transforms[2][..., 0] / self._compliance
+        return 2 * pi * self._contact_radius * self._transforms[2][..., 0] / self._compliance
 
     @property
     def energy(self) -> Array:
         # half of ∫ p (d - r²/2R*) dA
-        second, delta, a = self._transforms[3], self._scaled_indentation, self._radius
-        force, d = self.values
+        second, delta, a = self._transforms[3], self._scaled_indentation, self._contact_radius
+        force, d = self.force_and_indentation
         moment = 4 * pi * a**5 / (self._compliance * self._effective_radius) * (delta * second[..., 0] - second[..., 1])
         return (d * force - moment / (2 * self._effective_radius)) / 2
 
@@ -247,19 +258,19 @@ class LayerSolution:
 
     @property
     def foundation_modulus(self) -> Array:
-        d = self.values[1]
+        d = self.force_and_indentation[1]
         return where(self.width == 0, inf, self.pole_pressure / safe_divisor(d))
 
     @property
     def pressure_integral(self) -> Array:
-        return self.values[0]
+        return self.force_and_indentation[0]
 
     def pressure(self, angle: Array) -> Array:
         # ∫ -H'(s)/sqrt(s² - r²) ds over r..a, with s² = r² + (a² - r²) y²
-        position = angle * self.joint.socket_radius / safe_divisor(self._radius)
+        position = angle * self.joint.socket_radius / safe_divisor(self._contact_radius)
         remainder = clip(1 - position * position, 0.0, 1.0)
-        total = integral(lambda y: self._steepness(sqrt(position * position + remainder * y * y)), 32)
-        scale = self._radius / (self._effective_radius * self._compliance)
+        total = integral(lambda y: self._scaled_slope(sqrt(position * position + remainder * y * y)), 32)
+        scale = self._contact_radius / (self._effective_radius * self._compliance)
         return where(position < 1, scale * sqrt(remainder) * total, 0.0)
 
 
@@ -272,7 +283,7 @@ TRACED_WIDTH = 8.0
 
 @cache
 def _quadrature(widest: float) -> tuple[numpy.ndarray, numpy.ndarray, numpy.ndarray, numpy.ndarray]:
-    """Compute points and weights along the radius (0 to 1) and in k L, to 1e-10 for a width a/L of `widest`."""
+    """Compute points and weights along the radius (0 to 1) and in k L, accurate to 1e-10 up to a width a/L."""
     x, wx = map(numpy.array, gauss_legendre(20 + 4 * ceil(widest)))
     k, wk = map(numpy.array, gauss_legendre(60 + 14 * ceil(widest)))
     return x, wx, 22 * k, 22 * wk  # Φ - 1 is below 1e-16 beyond k L = 22
@@ -282,13 +293,13 @@ _POWERS = {"force": (8.0, 3.4, 2.0), "indentation": (4.0, 1.6, 0.8)}
 """Bounds and estimate of the power of the width in the loads: first and last, and second."""
 
 
-def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
-    """Solve for the width of the load; NaN where the half angle would exceed π/2."""
+def _solve_width(joint: Joint, kind: str, load: Array) -> LayerSolution:
+    """Solve for the contact width of a load; NaN where the half angle would exceed π/2."""
     shape = (load, *joint.numbers())
     widest = broadcast(pi / 2 * clip(joint.thickness_ratio, 0.0, MAX_THICKNESS_RATIO), *shape)
     if arrays.concrete_values(widest) is None:
         widest = clip(widest, 0.0, TRACED_WIDTH)
-    reach = _reach(widest)
+    reach = _quadrature_width(widest)
     if kind == "half_angle":
         width = broadcast(load * joint.thickness_ratio, *shape)
         width = where(width <= widest, width, float("nan"))
@@ -300,18 +311,18 @@ def _solution(joint: Joint, kind: str, load: Array) -> LayerSolution:
         """Compute -ln(load) and its slope at a width `widest` exp(-narrowing)."""
         width = widest * exp(-narrowing)
         solution = LayerSolution(joint=joint, width=width, widest=reach)
-        value, slope = solution.values[index], solution.slopes[index]
+        value, slope = solution.force_and_indentation[index], solution.radius_derivatives[index]
         return -log(value), slope * width * joint.liner_thickness / value
 
     missing = -goal - law(0.0 * goal, reach)[0]  # negative if even the widest contact has less than the load
     steep, guess, flat = (clip(missing, 0.0, inf) / power for power in _POWERS[kind])
-    reach = _reach(widest * exp(-steep))
+    reach = _quadrature_width(widest * exp(-steep))
     root = increasing_root(lambda narrowing: law(narrowing, reach), -goal, steep, flat, guess, steps=24)
     width = where(missing >= 0, widest * exp(-root), float("nan"))
     return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=reach)
 
 
-def _reach(width: Array) -> float:
-    """Return the width for a quadrature that is accurate for all widths; a constant one inside a traced call."""
+def _quadrature_width(width: Array) -> float:
+    """Return the largest width a/L as the accuracy range of a quadrature; a constant inside a traced call."""
     widths = arrays.concrete_values(width)
     return TRACED_WIDTH if widths is None else float(ceil(numpy.max(widths, initial=0.0, where=numpy.isfinite(widths))))

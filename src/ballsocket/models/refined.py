@@ -1,4 +1,4 @@
-"""Rigid ball in a bonded liner in closed form, from the liner's compliance at four wavelengths of the contact."""
+"""Refined model: a rigid ball in a bonded liner in closed form, from the liner's compliance at four wavelengths."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from ..core.arrays import Array, broadcast, clip, integral, safe_divisor, sin, w
 from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
 from ..problem import Joint
-from .liner_compliance import Liner, liner_of
-from .refined_state import MAX_HALF_ANGLE, ScaledContact, edge_of_force, edge_of_indentation, scaled_contact
+from .liner_compliance import Liner, liner_coefficients
+from .refined_state import MAX_HALF_ANGLE, ScaledContact, half_angle_of_force, half_angle_of_indentation, scaled_contact
 
 _FITTED = "fitted in this range with a rigid ball"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Refined(Model):
-    """The paper's model with the liner's modes in place of a fitted modulus, and with a compliant edge.
+    """Refined foundation model, with a modulus from the liner's modal compliance and a compliant edge.
 
     cos ε = (c + λ d)/(c + d), p0 = K d, p = p0 sqrt(1 - y)(1 + β y), y = sin²(φ/2)/sin²(ε/2). K, λ and the force
     come from the compliance of the bonded liner at four wavelengths; 23 numbers are fitted to the exact solution (see
@@ -74,46 +74,53 @@ class Refined(Model):
     promise: ClassVar[Promise] = Promise(within=0.02)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        edge = _limit_half_angle(joint, load) if kind == "half_angle" else _solve_edge(joint, kind, load)
+        """Solve contacts for given forces, indentations or half angles."""
+        edge = _mask_half_angle(joint, load) if kind == "half_angle" else _solve_half_angle(joint, kind, load)
         return make_solver_result(RefinedSolution(joint=joint, edge=edge), kind, load)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RefinedSolution:
-    """Solution at the half angle `edge` (0: no load, NaN: no solution), with the quantities of a `Contact`."""
+    """Solution of the refined model at a half angle, with the quantities of a `Contact`.
+
+    `edge` is the half angle in rad: 0 without load, NaN without a solution.
+    """
 
     joint: Joint
     edge: Array
 
     @cached_property
     def _liner(self) -> Liner:
-        """Coefficients of the liner."""
+        """Compliance coefficients of the liner."""
         return _liner(self.joint)
 
     @cached_property
     def _scaled_contact(self) -> ScaledContact:
-        """Scaled contact at the half angle."""
+        """Dimensionless contact quantities at the half angle."""
         return scaled_contact(safe_divisor(self.edge), self._liner)
 
-    def _or_zero(self, value: Array) -> Array:
-        """Replace values without load by 0."""
+    def _zero_without_load(self, value: Array) -> Array:
+        """Replace values of contacts without load by 0."""
         return where(self.edge > 0, value, 0.0 * self.edge)
 
     @property
-    def _secant(self) -> Array:
+    def _secant_stiffness(self) -> Array:
         """Secant stiffness F/d in N/mm."""
         return self.joint.liner.young * self.joint.socket_radius * self._scaled_contact.secant
 
     def loads(self, kind: str, load: Array) -> tuple[Array, Array]:
-        """Compute F and d; the applied one is returned unchanged."""
+        """Compute the force F in N and the indentation d in mm from the applied load.
+
+        The applied load is returned unchanged.
+        """
         if kind == "force":
-            d = load / self._secant
-            return self._or_zero(load), self._or_zero(d)
+            d = load / self._secant_stiffness
+            return self._zero_without_load(load), self._zero_without_load(d)
         d = load if kind == "indentation" else self.joint.clearance * self._scaled_contact.indentation
-        return self._or_zero(d * self._secant), self._or_zero(d)
+        return self._zero_without_load(d * self._secant_stiffness), self._zero_without_load(d)
 
     def relative_residual(self, indentation: Array) -> Array:
-        """Compute the relative error of the half angle for an indentation."""
+        """Compute the relative error of the half angle that solves for an indentation in mm."""
         d = self._scaled_contact.indentation
         error = abs(1 - indentation / (self.joint.clearance * d)) / self._scaled_contact.indentation_rate
         return where(self.edge > 0, error, 0.0)
@@ -125,16 +132,17 @@ class RefinedSolution:
     @property
     def indentation(self) -> Array:
         """Indentation d in mm."""
-        return self._or_zero(self.joint.clearance * self._scaled_contact.indentation)
+        return self._zero_without_load(self.joint.clearance * self._scaled_contact.indentation)
 
     @cached_property
     def stiffness(self) -> Array:
-        return self._or_zero(
-            self._secant * (1 + self._scaled_contact.secant_rate / self._scaled_contact.indentation_rate)
+        return self._zero_without_load(
+            self._secant_stiffness * (1 + self._scaled_contact.secant_rate / self._scaled_contact.indentation_rate)
         )
 
     @cached_property
     def energy(self) -> Array:
+        """Elastic energy in N mm, integrated over the half angle."""
         # ∫ F (dd/dε) dε; the points are dense near the edge, where d increases fast
         edge = safe_divisor(self.edge)
         rate = self._scaled_contact.indentation_rate / edge
@@ -147,7 +155,7 @@ class RefinedSolution:
             return contact.secant * contact.indentation**2 * contact.indentation_rate / angle * (growth * width / rate)
 
         scale = self.joint.liner.young * self.joint.socket_radius * self.joint.clearance**2
-        return self._or_zero(scale * integral(work, 24))
+        return self._zero_without_load(scale * integral(work, 24))
 
     @property
     def _modulus(self) -> Array:
@@ -160,13 +168,13 @@ class RefinedSolution:
 
     @cached_property
     def pole_pressure(self) -> Array:
-        return self._or_zero(self._modulus * self.indentation)
+        return self._zero_without_load(self._modulus * self.indentation)
 
     @property
     def _peak_position(self) -> Array:
-        """Position y of the largest pressure: 0, the pole, for β up to 1/2."""
-        fullness = self._fullness
-        return where(fullness > 0.5, (2 * fullness - 1) / where(fullness > 0.5, 3 * fullness, 1.0), 0.0)
+        """Position y = sin²(φ/2)/sin²(ε/2) of the largest pressure: 0, the pole, for β up to 1/2."""
+        beta = self._shape_coefficient
+        return where(beta > 0.5, (2 * beta - 1) / where(beta > 0.5, 3 * beta, 1.0), 0.0)
 
     @property
     def max_pressure(self) -> Array:
@@ -174,55 +182,58 @@ class RefinedSolution:
 
     @property
     def max_pressure_angle(self) -> Array:
-        return self._or_zero(2 * arrays.asin(arrays.sqrt(self._peak_position * self._edge_share)))
+        return self._zero_without_load(2 * arrays.asin(arrays.sqrt(self._peak_position * self._squared_sine)))
 
     @property
-    def _edge_share(self) -> Array:
-        """Value sin²(ε/2)."""
+    def _squared_sine(self) -> Array:
+        """Squared sine sin²(ε/2) of half the half angle."""
         return sin(safe_divisor(self.edge) / 2) ** 2
 
     @cached_property
-    def _fullness(self) -> Array:
-        """Coefficient β of the profile, from 2π R2² ∫ p cos φ sin φ dφ = F."""
-        S = self._edge_share
+    def _shape_coefficient(self) -> Array:
+        """Shape coefficient β of the pressure profile, from the balance of pressure and force.
+
+        The balance is 2π R2² ∫ p cos φ sin φ dφ = F.
+        """
+        S = self._squared_sine
         mean = self._scaled_contact.secant * self._scaled_contact.compliance / (4 * pi * S)
         return (mean - 2 / 3 + 8 * S / 15) / (4 / 15 - 32 * S / 105)
 
     @cached_property
     def pressure_integral(self) -> Array:
-        ring = 4 * pi * self.joint.socket_radius**2 * self._edge_share
-        return ring * self.pole_pressure * (2 / 3 + 4 * self._fullness / 15)
+        ring = 4 * pi * self.joint.socket_radius**2 * self._squared_sine
+        return ring * self.pole_pressure * (2 / 3 + 4 * self._shape_coefficient / 15)
 
     def _profile(self, y: Array) -> Array:
-        """Compute p/p0 at y up to 1."""
-        return arrays.sqrt(clip(1 - y, 0.0, 1.0)) * (1 + self._fullness * y)
+        """Compute the pressure ratio p/p0 at the position y = sin²(φ/2)/sin²(ε/2), 0 to 1."""
+        return arrays.sqrt(clip(1 - y, 0.0, 1.0)) * (1 + self._shape_coefficient * y)
 
     def pressure(self, angle: Array) -> Array:
-        y = sin(clip(angle, -pi, pi) / 2) ** 2 / self._edge_share
-        return where(y < 1, self.pole_pressure * self._profile(y), self._or_zero(0.0 * y))
+        y = sin(clip(angle, -pi, pi) / 2) ** 2 / self._squared_sine
+        return where(y < 1, self.pole_pressure * self._profile(y), self._zero_without_load(0.0 * y))
 
 
-def _limit_half_angle(joint: Joint, half_angle: Array) -> Array:
-    """Return the half angle, NaN beyond the largest one."""
+def _mask_half_angle(joint: Joint, half_angle: Array) -> Array:
+    """Return the half angle in rad, replaced by NaN beyond the largest one that the model solves."""
     edge = broadcast(half_angle, half_angle, *joint.numbers())
     d = RefinedSolution(joint=joint, edge=edge)._scaled_contact.indentation
     return where((edge == 0) | ((edge <= MAX_HALF_ANGLE) & (d > 0)), edge, nan)
 
 
-def _solve_edge(joint: Joint, kind: str, load: Array) -> Array:
-    """Solve for the half angle of F or d, NaN beyond the largest one."""
-    find = edge_of_force if kind == "force" else edge_of_indentation
-    return where(load > 0, find(scaled_load(joint, kind, load), _liner(joint)), 0.0 * load)
+def _solve_half_angle(joint: Joint, kind: str, load: Array) -> Array:
+    """Solve for the half angle in rad of a force or an indentation; NaN beyond the largest half angle."""
+    half_angle_of = half_angle_of_force if kind == "force" else half_angle_of_indentation
+    return where(load > 0, half_angle_of(scaled_load(joint, kind, load), _liner(joint)), 0.0 * load)
 
 
 def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
-    """Compute F/(E R2 c) or d/c, with a positive value in place of no load."""
+    """Compute the dimensionless load F/(E R2 c) or d/c; a zero load is replaced by a positive number."""
     scale = joint.clearance * (joint.liner.young * joint.socket_radius if kind == "force" else 1.0)
     return broadcast(safe_divisor(load) / scale, load, *joint.numbers())
 
 
 def make_solver_result(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
-    """Make the `SolverResult` of a refined solution for loads of one kind; mark points that have not converged."""
+    """Make the solver result of a solution, with its convergence check."""
     force, indentation = solution.loads(kind, load)
     return SolverResult(
         laws=solution,
@@ -237,12 +248,12 @@ def make_solver_result(solution: RefinedSolution, kind: str, load: Array) -> Sol
 
 
 def _liner(joint: Joint) -> Liner:
-    """Return the liner coefficients of a joint."""
+    """Return the compliance coefficients of a joint's liner."""
     nu, b = joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius
-    return _liner_of_numbers(nu, b) if type(nu) is float and type(b) is float else liner_of(nu, b)
+    return _liner_of_numbers(nu, b) if type(nu) is float and type(b) is float else liner_coefficients(nu, b)
 
 
 @lru_cache(maxsize=256)
 def _liner_of_numbers(nu: float, b: float) -> Liner:
-    """Compute liner coefficients of plain numbers, cached for further loads."""
-    return liner_of(nu, b)
+    """Compute the compliance coefficients of a liner from plain numbers, cached for further loads."""
+    return liner_coefficients(nu, b)

@@ -1,4 +1,4 @@
-"""Formulas of `Refined` at a half angle, with their slopes: d, p0 and F of a contact in scaled numbers."""
+"""Dimensionless formulas of the refined model at a half angle: indentation, pressure and force, with slopes."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from typing import NamedTuple
 from ..contact.roots import Increasing, increasing_root
 from ..core import arrays
 from ..core.arrays import Array, cos, exp, log, sin, where
-from .liner_compliance import Liner, Pair, log_compliance, log_compliance_anywhere
+from .liner_compliance import Liner, Pair, log_compliance, log_compliance_any_wave
 
 
 class Fit(NamedTuple):
-    """Fitted numbers of the model."""
+    """Fitted coefficients of the refined model."""
 
     waves: tuple[float, ...]
     """Wave numbers times ε."""
@@ -36,7 +36,7 @@ def make_fit(
     exponent: Sequence[float],
     plane: Sequence[float],
 ) -> Fit:
-    """Make a fit from the numbers of `data/refined.toml`, by their names there."""
+    """Make the fitted coefficients from the rows of `data/refined.toml`, by their names in that file."""
     k1, k2, k3, k4 = waves
     scale, square, cube = plane
     return Fit(
@@ -57,7 +57,10 @@ FIT = make_fit(**NUMBERS)
 
 
 class ScaledContact(NamedTuple):
-    """Contact of half angle ε in scaled numbers; slopes are derivatives by ln ε, rates those of a logarithm by ln ε."""
+    """Dimensionless contact of half angle ε, with derivatives by ln ε.
+
+    A slope is the derivative of a quantity, a rate that of its logarithm.
+    """
 
     share: Array
     """Value S = sin²(ε/2)."""
@@ -73,17 +76,17 @@ class ScaledContact(NamedTuple):
 
     @property
     def indentation(self) -> Array:
-        """Ratio d/c, from cos ε = (c + λ d)/(c + d)."""
+        """Dimensionless indentation d/c, from cos ε = (c + λ d)/(c + d)."""
         return 2 * self.share / self.gap
 
     @property
     def indentation_rate(self) -> Array:
-        """Derivative of ln d by ln ε."""
+        """Derivative of the log indentation ln d by ln ε."""
         return self.share_rate - self.gap_slope / self.gap
 
 
 def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledContact:
-    """Compute the scaled contact at a half angle ε > 0.
+    """Compute the dimensionless contact at a half angle ε > 0 in rad.
 
     χ, λ = u(ε)/d and the pressure's exponent m come from ln c at four waves. Where c ~ k^-s they equal those of a plane
     layer exactly: d/p0 = c(k) k^s 2^-s Γ(1 - s/2) Γ(2 - s/2), λ = s/2, m = 1 - s/2. The fitted terms vanish without the
@@ -97,7 +100,7 @@ def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledCon
     s_, v_, w_ = log_slopes(-rise1, -rise2, -rise3, -rise4, fit.spans)
     slopes = s_, v_, w_, S * S_rate
     level = _log_compliance(c2, s, v, w, S, fit)
-    edge, exponent = _edge(s, v, w, S, fit.edge), _exponent(s, v, w, S, fit.exponent)
+    edge, exponent = _edge_displacement(s, v, w, S, fit.edge), _pressure_exponent(s, v, w, S, fit.exponent)
     m, m_slope = exponent[0], angle_derivative(exponent, slopes)
     deficit = 2 * S / (m + 2)
     secant_rate = (
@@ -119,22 +122,23 @@ def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledCon
 
 
 def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
-    """Compute ln c and its slope by ln k at four wave numbers; only the smallest may come near q = 1."""
+    """Compute the log compliance ln c and its slope by ln k at the four wave numbers of a half angle.
+
+    Only the smallest wave number may come near q = 1.
+    """
     if arrays.is_plain_number(half_angle):
-        return log_compliances_of_number(half_angle, liner, waves)
+        return scalar_log_compliances(half_angle, liner, waves)
     xp = arrays.namespace(half_angle)
     short = xp.asarray(waves[1:], dtype=half_angle.dtype, device=arrays.device(half_angle))
     values, slopes = log_compliance(xp.reshape(short, (-1, *(1 for _ in half_angle.shape))) / half_angle, liner)
     second, third, fourth = ((values[i, ...], slopes[i, ...]) for i in range(3))
-    return log_compliance_anywhere(waves[0] / half_angle, liner), second, third, fourth
+    return log_compliance_any_wave(waves[0] / half_angle, liner), second, third, fourth
 
 
-def log_compliances_of_number(
-    half_angle: Array, liner: Liner, waves: tuple[float, ...]
-) -> tuple[Pair, Pair, Pair, Pair]:
-    """Compute ln c and its slope by ln k at the four wave numbers of a scalar half angle."""
+def scalar_log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
+    """Compute the log compliance ln c and its slope by ln k at the four wave numbers of a scalar half angle."""
     return (
-        log_compliance_anywhere(waves[0] / half_angle, liner),
+        log_compliance_any_wave(waves[0] / half_angle, liner),
         log_compliance(waves[1] / half_angle, liner),
         log_compliance(waves[2] / half_angle, liner),
         log_compliance(waves[3] / half_angle, liner),
@@ -144,7 +148,10 @@ def log_compliances_of_number(
 def log_slopes(
     c1: Array, c2: Array, c3: Array, c4: Array, spans: tuple[float, float, float]
 ) -> tuple[Array, Array, Array]:
-    """Compute s, v and w of ln c: its negative slope over ln k, and the first and second difference of that."""
+    """Compute the log-log slope s of the compliance and its differences v and w from four samples of ln c.
+
+    s is the negative slope over ln k; v and w are its first and second change between successive intervals.
+    """
     s, s2, s3 = (c1 - c2) / spans[0], (c2 - c3) / spans[1], (c3 - c4) / spans[2]
     return s, s2 - s, s3 - s2
 
@@ -154,7 +161,7 @@ ValueAndSlopes = tuple[Array, Array, Array, Array, Array]
 
 
 def _log_compliance(c2: Array, s: Array, v: Array, w: Array, S: Array, fit: Fit) -> ValueAndSlopes:
-    """Compute ln χ; its slope by ln c is 1."""
+    """Compute the log compliance ln χ of the contact, and its slopes by s, v, w and S; by ln c the slope is 1."""
     A1, A2, A3 = fit.gamma
     G1, G2, G3, G4 = fit.level
     return (
@@ -166,8 +173,8 @@ def _log_compliance(c2: Array, s: Array, v: Array, w: Array, S: Array, fit: Fit)
     )
 
 
-def _edge(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
-    """Compute the edge displacement λ."""
+def _edge_displacement(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
+    """Compute the relative edge displacement λ = u(ε)/d and its slopes by s, v, w and S."""
     L1, L2, L3, L4, L5, L6, L7, L8, L9, L10 = fit
     by_s = 0.5 + L3 * v + L4 * w + S * (L9 + L10 * v)
     by_w = L1 + L5 * S + L8 * v * v
@@ -180,8 +187,8 @@ def _edge(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> Val
     )
 
 
-def _exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
-    """Compute the pressure's exponent m."""
+def _pressure_exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
+    """Compute the exponent m of the pressure profile and its slopes by s, v, w and S."""
     M1, M2, M3, M4, M5 = fit
     by_s = -0.5 + S * (M4 + M5 * v)
     return (
@@ -194,7 +201,7 @@ def _exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) ->
 
 
 def angle_derivative(value_and_slopes: ValueAndSlopes, slopes: tuple[Array, Array, Array, Array]) -> Array:
-    """Compute the slope of a formula by ln ε from those of s, v, w and S."""
+    """Compute the derivative of a formula by ln ε, by the chain rule over s, v, w and S."""
     return (
         value_and_slopes[1] * slopes[0]
         + value_and_slopes[2] * slopes[1]
@@ -210,18 +217,18 @@ _LOG_OFFSET = -1.0
 """Value of the unknown, a shifted ln ε, at the widest contact; the shift keeps it away from zero."""
 
 
-def edge_of_indentation(load: Array, liner: Liner) -> Array:
-    """Solve for ε of the indentation d/c, NaN beyond the largest half angle."""
-    return _solve_edge(_indentation_residual, load, log(1.5 * load / (1 + load)) / 2, liner)
+def half_angle_of_indentation(load: Array, liner: Liner) -> Array:
+    """Solve for the half angle ε in rad of a dimensionless indentation d/c; NaN beyond the largest half angle."""
+    return _solve_half_angle(_indentation_residual, load, log(1.5 * load / (1 + load)) / 2, liner)
 
 
-def edge_of_force(load: Array, liner: Liner) -> Array:
-    """Solve for ε of the force F/(E R2 c), NaN beyond the largest half angle."""
-    return _solve_edge(_force_residual, load, log(load / (2.5 + load / 3)) / 3, liner)
+def half_angle_of_force(load: Array, liner: Liner) -> Array:
+    """Solve for the half angle ε in rad of a dimensionless force F/(E R2 c); NaN beyond the largest half angle."""
+    return _solve_half_angle(_force_residual, load, log(load / (2.5 + load / 3)) / 3, liner)
 
 
-def _solve_edge(residual: Increasing, load: Array, start: Array, liner: Liner) -> Array:
-    """Solve for ε by Newton's method from the close estimate ln ε = `start`."""
+def _solve_half_angle(residual: Increasing, load: Array, start: Array, liner: Liner) -> Array:
+    """Solve for the half angle ε in rad by Newton's method from the estimate ln ε = `start`."""
     start = start + (_LOG_OFFSET - ln(MAX_HALF_ANGLE))
     end = 0.0 * start + (_LOG_OFFSET + 1e-12)  # includes the widest contact itself
     root = increasing_root(residual, 0.0 * start, start - 6.0, end, start, arguments=(load, liner))
@@ -229,7 +236,10 @@ def _solve_edge(residual: Increasing, load: Array, start: Array, liner: Liner) -
 
 
 def _indentation_residual(unknown: Array, load: Array, liner: Liner) -> Pair:
-    """Compute ln x/(1 + x), x = d/c, at a half angle less that of the load, and its slope."""
+    """Compute the residual of an indentation at a trial half angle, and its slope.
+
+    The residual is ln x/(1 + x), x = d/c, less its value at the load.
+    """
     contact = scaled_contact(exp(unknown - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
     total = 2 * contact.share + contact.gap
     residual = log(2 * contact.share / total * (1 + 1 / load))
@@ -237,7 +247,10 @@ def _indentation_residual(unknown: Array, load: Array, liner: Liner) -> Pair:
 
 
 def _force_residual(unknown: Array, load: Array, liner: Liner) -> Pair:
-    """Compute ln x/(1 + x) at a half angle less that of the load's secant indentation, and its slope."""
+    """Compute the residual of a force at a trial half angle, and its slope.
+
+    The residual is ln x/(1 + x), x = d/c, less its value at the load over the secant stiffness.
+    """
     contact = scaled_contact(exp(unknown - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
     total = 2 * contact.share + contact.gap
     residual = log(2 * contact.share / total * (1 + contact.secant / load))

@@ -1,4 +1,4 @@
-"""Table 3 of Heß & Forsbach 2021: the constants of Eq. (18), by monotone cubics between its Poisson's ratios."""
+"""Table 3 of Heß & Forsbach 2021: constants of Eq. (18), interpolated by monotone cubics in Poisson's ratio."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ..core.arrays import Array, Numbers, clip
 
 
 def table_3() -> dict[str, Any]:
-    """Read Table 3 of the paper: Poisson's ratios and the constants C1, C2, C3."""
+    """Read Table 3 of the paper: Poisson's ratios and the constants C1, C2, C3 of Eq. (18)."""
     return tomllib.loads((files("ballsocket") / "data" / "hess_forsbach_2021.toml").read_text(encoding="utf-8"))
 
 
 def _monotone_slopes(x: Numbers, y: Numbers) -> Numbers:
-    """Compute slopes at the knots of the monotone cubic of Fritsch & Butland 1984, in rows of y.
+    """Compute the knot slopes of the monotone cubic interpolation of Fritsch & Butland 1984, for rows of y.
 
     They equal those of `scipy.interpolate.PchipInterpolator`, whose import would double the import time of the package
     (doi 10.1137/0905021).
@@ -41,7 +41,7 @@ Row = tuple[float, ...]
 
 
 def _cubics() -> tuple[Row, Row, Row, Any]:
-    """Compute Table 3 as monotone cubics in ν.
+    """Compute the monotone cubics in ν that interpolate Table 3.
 
     Returns knots, widths, (C1, C2, C3) at the first knot, and for each interval and constant the coefficients of the
     distance to its first knot, of its square and of its cube.
@@ -67,12 +67,12 @@ def _row(values: Numbers) -> Row:
 
 
 def eq_18(constants: tuple[Array, ...], ratio: Array) -> Array:
-    """Compute K R2/E from R2/L."""
+    """Compute the scaled foundation modulus K R2/E from the thickness ratio R2/L, Eq. (18) of the paper."""
     return constants[0] + ratio * (constants[1] + ratio * constants[2])
 
 
 def table_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
-    """Compute K by Eq. (18) with the constants of Table 3."""
+    """Compute the foundation modulus K in MPa/mm by Eq. (18) with the constants of Table 3."""
     # Eq. (18) with the constants of Table 3, constant outside its columns. The increment over each interval is a
     # cubic in the distance to its first knot, clipped to the interval: no branch, any array library
     x = R2 / L

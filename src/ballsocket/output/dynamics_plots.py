@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from ..core.arrays import Numbers
 
 _PARTS = {
-    "kinetic": ("moving", "#0072B2"),
+    "kinetic_energy": ("moving", "#0072B2"),
     "energy": ("stored", "#009E73"),
-    "lost": ("lost", "#D55E00"),
+    "dissipated_energy": ("lost", "#D55E00"),
 }
 _DASHES = ("-", "--", "-.", ":")
 
@@ -38,7 +38,7 @@ def energy_balance(motion: Motion) -> Figure:
     parts = [getattr(motion, name) for name in _PARTS]
     labels, colours = zip(*_PARTS.values(), strict=True)
     axes.stackplot(1e3 * motion.time, parts, labels=labels, colors=colours, alpha=0.7, linewidth=0)
-    put_in = motion.kinetic[0] + motion.energy[0] + motion.lost[0] + motion.work
+    put_in = motion.kinetic_energy[0] + motion.energy[0] + motion.dissipated_energy[0] + motion.work
     axes.plot(1e3 * motion.time, put_in, color="black", linewidth=1.0, label="put in")
     axes.set_xlabel("time [ms]")
     axes.set_ylabel("energy [N mm]")

@@ -244,4 +244,4 @@ def _one(width: float, height: float) -> tuple[Figure, Axes]:
 
 def _head(key: str) -> str:
     each = _KEYS[key]
-    return f"{each.title}{each.written.bracketed}"
+    return f"{each.title}{each.written.text_in_brackets}"

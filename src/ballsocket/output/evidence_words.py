@@ -36,7 +36,7 @@ def value_text(name: str, row: Record) -> str:
 def head(key: str) -> str:
     """The head of a column."""
     each = KEYS[key]
-    return f"{each.symbol or each.title}{each.written.bracketed}"
+    return f"{each.symbol or each.title}{each.written.text_in_brackets}"
 
 
 def recentred_text(change: Record) -> str:

@@ -118,7 +118,7 @@ def corner_figure(found: IdentificationResult, drawn: Posterior | None = None) -
 
 def _label(name: str, quantity: Quantity) -> str:
     """By the name of the unknown: of two machines each has an offset."""
-    return f"{name}\n{quantity.shown.bracketed}".strip()
+    return f"{name}\n{quantity.shown.text_in_brackets}".strip()
 
 
 def _about(found: IdentificationResult) -> Numbers:

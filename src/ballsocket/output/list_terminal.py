@@ -81,7 +81,7 @@ def _sources(model: ModelInfo) -> str:
     """A line for each publication, with all its places."""
     places: dict[str, list[str]] = {}
     for source in model.sources:
-        places.setdefault(source.short, []).extend([source.place] if source.place else [])
+        places.setdefault(source.authors_and_year, []).extend([source.place] if source.place else [])
     return "\n".join(", ".join([short, *place]) for short, place in places.items())
 
 

@@ -7,8 +7,9 @@ materials and joints with sources; `values`, frozen values without checks.
 
 from .joint import Joint, Support
 from .material import Layer, Material
-from .values import larger, make_unchecked
+from .values import elementwise_maximum, make_unchecked
 
+larger = elementwise_maximum  # name of version 1.0
 unchecked = make_unchecked  # name of version 1.0
 
-__all__ = ["Joint", "Layer", "Material", "Support", "larger", "make_unchecked", "unchecked"]
+__all__ = ["Joint", "Layer", "Material", "Support", "elementwise_maximum", "larger", "make_unchecked", "unchecked"]

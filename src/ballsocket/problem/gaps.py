@@ -90,15 +90,15 @@ class CircularGap:
 
     def transform(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute the Abel transform A[u](t) of the displacement in mm."""
-        return _transform(t, lambda w: self._gap_derivatives(w, d)[:2])
+        return _abel_transform(t, lambda w: self._gap_derivatives(w, d)[:2])
 
     def slope(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute the derivative dA[u]/dt of the Abel transform in mm/rad."""
-        return _transform_slope(t, lambda w: self._gap_derivatives(w, d))
+        return _abel_transform_slope(t, lambda w: self._gap_derivatives(w, d))
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute the Abel transform of ∂u/∂d, the change of displacement with indentation."""
-        return _transform(t, lambda w: self._indentation_derivatives(w, d))
+        return _abel_transform(t, lambda w: self._indentation_derivatives(w, d))
 
     deepening = RenamedAttribute("indentation_derivative")
 
@@ -154,7 +154,7 @@ def _sine_weighted_mean(values: Numbers) -> Numbers:
     return numpy.tensordot(_ANGLE_WEIGHTS * _SINES, values, axes=1)
 
 
-def _transform(t: Numbers, derivatives: Derivatives) -> Numbers:
+def _abel_transform(t: Numbers, derivatives: Derivatives) -> Numbers:
     """Compute the Abel transform of a displacement by quadrature over θ in [0, π/2].
 
     A[u] = cos(t/2) ∫ u sin θ dθ + 2 sin(t/2) sin t ∫ u' sin³ θ dθ.
@@ -165,7 +165,7 @@ def _transform(t: Numbers, derivatives: Derivatives) -> Numbers:
     )
 
 
-def _transform_slope(t: Numbers, derivatives: Derivatives) -> Numbers:
+def _abel_transform_slope(t: Numbers, derivatives: Derivatives) -> Numbers:
     """Compute the derivative of the Abel transform of a displacement with respect to t."""
     sine, (u, u1, u2) = _evaluate_at_nodes(t, derivatives)
     half = numpy.sin(t / 2)

@@ -14,7 +14,7 @@ from ..core.checks import check_names, require, shown
 from ..core.kinds import Choice
 from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
 from .material import Layer, Material
-from .values import larger, make_unchecked, set_fields, short_text
+from .values import elementwise_maximum, make_unchecked, set_fields, short_text
 
 
 class Support(Choice):
@@ -99,6 +99,7 @@ class Joint(Dimensions):
         source: str = "",
         **lengths: Unpack[Lengths],
     ) -> None:
+        """Check the parts, and derive radius, clearance and thickness from the lengths."""
         if not isinstance(liner, Material):
             raise TypeError(f"liner must be a Material, got {shown(liner)}")
         if not (ball is None or isinstance(ball, Material)):
@@ -143,7 +144,9 @@ class Joint(Dimensions):
         It is 0 for a fixed support without backing, and `inf` for a free outermost surface.
         """
         rigid = 0.0 * self.liner.young
-        softest = reduce(larger, (self.liner.young / layer.material.young for layer in self.backing), rigid)
+        softest = reduce(
+            elementwise_maximum, (self.liner.young / layer.material.young for layer in self.backing), rigid
+        )
         if self.support is Support.FIXED:
             return softest
         _, outermost = self._thicknesses()[-1]
@@ -281,7 +284,7 @@ _VARIED = ", varied"
 
 
 def _shell_thickness(backing: Sequence[Layer]) -> Array:
-    """Return the thickness in mm of the first layer; 0 without layers, or if it is infinite."""
+    """Return the thickness in mm of the layer next to the liner; 0 without layers, or if it is infinite."""
     if not backing:
         return 0.0
     thickness = backing[0].thickness

@@ -32,6 +32,6 @@ def short_text(value: Array) -> str:
         return "<traced>"
 
 
-def larger(x: Array, y: Array) -> Array:
+def elementwise_maximum(x: Array, y: Array) -> Array:
     """Return the elementwise maximum of two values."""
     return max(x, y) if is_plain_number(x) and is_plain_number(y) else where(x > y, x, y)

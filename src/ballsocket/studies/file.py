@@ -5,157 +5,150 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar
 
-from ..catalogue import catalogue, judge, off_axis
 from ..contact import Model
-from ..core.checks import check_names, check_text, known_name
+from ..core.checks import check_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
-from ..core.kinds import Kind
-from ..elasticity.exact.exact_curve import ExactCurve
-from ..files.joint_file import JointTables, named_material
+from ..files.joint_file import JointTables
 from ..files.named_joint import joint_in
 from ..files.schema import (
+    QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
+    Parsed,
     Table,
     Text,
-    Value,
     Whole,
+    Word,
     meaning,
+    parsed_values,
+    quantity_keys,
     read_table,
-    table_of_quantities,
-    values_of,
+    with_keys,
 )
 from ..files.toml import read_toml
 from ..files.units import parse
-from ..problem import Joint, Material
+from ..problem import Joint
+from ..problem.presets import materials, named_material
 from .axes import Method, Span
 from .design import Design, grid, sample
-from .distributions import Distribution
 from .parameters import PARAMETERS
 from .rows import table
-from .scatter import distribution_of
-
-models: dict[str, Model] = {**catalogue, "exact-curve": ExactCurve(), judge.name: judge, off_axis.name: off_axis}
-"""By the names that files and the command line use."""
+from .scatter import ScatteredNumber
+from .usual import models
 
 
-class AxisValues(Value):
-    """Values of an axis: a number, a list of numbers, or equal steps `{from, to, count}`."""
+class ModelName(Word):
+    """Name of a model."""
 
-    kind: ClassVar[Kind]
+    noun, choices = "model", tuple(models)
+
+
+class AxisValues(Parsed):
+    """Number, list of numbers, or equal steps `{from, to, count}`."""
+
     schema: ClassVar[Mapping[str, Any]] = {
         "anyOf": [
-            QUANTITY_SCHEMA,
-            {"type": "array", "items": QUANTITY_SCHEMA},
+            *QUANTITIES_SCHEMA["anyOf"],
             {
                 "type": "object",
-                "properties": {"from": QUANTITY_SCHEMA, "to": QUANTITY_SCHEMA, "count": {"type": "integer"}},
+                "properties": {"from": QUANTITY_SCHEMA, "to": QUANTITY_SCHEMA, "count": Whole.schema},
                 "required": ["from", "to", "count"],
                 "additionalProperties": False,
             },
         ]
     }
 
-    def __init__(self, values: float | list[float] | Span) -> None:
-        self.values = values
-
     @classmethod
-    def read(cls, name: str, value: Any) -> Self:
+    def parse(cls, name: str, value: Any) -> float | list[float] | Span:
         """Convert the values of an axis."""
         if isinstance(value, list):
-            return cls([parse(f"{name}[{i}]", number, cls.kind) for i, number in enumerate(value)])
+            return [parse(f"{name}[{i}]", number, cls.kind) for i, number in enumerate(value)]
         if not isinstance(value, Mapping):
-            return cls(parse(name, value, cls.kind))
+            return parse(name, value, cls.kind)
         check_names(value, ("from", "to", "count"), f"in {name}")
         missing = [key for key in ("from", "to", "count") if key not in value]
         if missing:
             raise ValueError(f"{name} needs from, to and count; missing: {', '.join(missing)}")
         low, high = (parse(f"{name}.{key}", value[key], cls.kind) for key in ("from", "to"))
-        return cls(Span(low, high, Whole.read(f"{name}.count", value["count"])))
+        return Span(low, high, Whole.read(f"{name}.count", value["count"]))
 
 
-class AxisMaterials(Value):
-    """Materials of an axis: the name of a preset, or a list of names."""
+class AxisMaterials(Parsed):
+    """Name of a material, or list of names."""
 
-    schema: ClassVar[Mapping[str, Any]] = {"type": ["string", "array"], "items": {"type": "string"}}
-
-    def __init__(self, materials: list[Material]) -> None:
-        self.values = materials
+    schema: ClassVar[Mapping[str, Any]] = {
+        "type": ["string", "array"],
+        "items": {"type": "string", "examples": list(materials)},
+    }
 
     @classmethod
-    def read(cls, name: str, value: Any) -> Self:
+    def parse(cls, name: str, value: Any) -> list[Any]:
         """Convert the names of materials."""
-        return cls([named_material(name, each) for each in (value if isinstance(value, list) else [value])])
+        return [named_material(name, material) for material in (value if isinstance(value, list) else [value])]
 
 
-class SampledNumber(Value):
-    """Distribution of a number: `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`."""
+class MethodName(Word):
+    """Method of sampling."""
 
-    kind: ClassVar[Kind]
-    schema: ClassVar[Mapping[str, Any]] = {"type": "object", "additionalProperties": QUANTITY_SCHEMA}
-
-    def __init__(self, distribution: Distribution) -> None:
-        self.distribution = distribution
-
-    @classmethod
-    def read(cls, name: str, value: Any) -> Self:
-        """Convert a distribution."""
-        return cls(distribution_of(name, value, lambda key, number: parse(key, number, cls.kind)))
+    choices = tuple(method.value for method in Method)
 
 
-class MaterialAxes(Table, kw_only=True):
-    """Axes of materials."""
+class EngineKind(Word):
+    """Kind of executor."""
+
+    choices = ("serial", "processes", "dask")
+
+
+@with_keys(quantity_keys(PARAMETERS, AxisValues))
+class AxesTable(Table, frozen=True, kw_only=True):
+    """Axes of a grid: values of parameters, and materials."""
 
     liner: Annotated[AxisMaterials | None, meaning("materials of the liner")] = None
     ball: Annotated[AxisMaterials | None, meaning("materials of the ball")] = None
 
 
-class SamplesTable(Table, kw_only=True):
-    """Samples of distributions."""
+@with_keys(quantity_keys(PARAMETERS, ScatteredNumber))
+class SamplesTable(Table, frozen=True, kw_only=True):
+    """Samples: their number, and a distribution for each parameter that varies."""
 
     count: Annotated[Whole, meaning("number of samples")]
-    seed: Annotated[Whole | None, meaning("seed of the samples; 0 by default")] = None
-    method: Annotated[Method, meaning("how samples fill the space: sobol or latin-hypercube")] = Method.SOBOL
+    seed: Annotated[Whole, meaning("seed of the samples")] = Whole(0)
+    method: Annotated[MethodName, meaning("method of sampling")] = MethodName(Method.SOBOL.value)
 
 
-class RowsTable(Table, kw_only=True):
+class RowsTable(Table, frozen=True, kw_only=True):
     """Table of cases."""
 
     path: Annotated[Text, meaning("CSV or Parquet file with a column for each parameter")]
 
 
-class EngineTable(Table, kw_only=True):
+class EngineTable(Table, frozen=True, kw_only=True):
     """Executor of a study."""
 
-    kind: Annotated[Literal["serial", "processes", "dask"], meaning("executor: serial, processes or dask")]
+    qualified: ClassVar[bool] = True
+
+    kind: Annotated[EngineKind, meaning("kind of executor")]
     workers: Annotated[Whole | None, meaning("number of worker processes")] = None
     address: Annotated[Text | None, meaning("address of a Dask scheduler")] = None
 
 
-AxesTable = table_of_quantities("AxesTable", PARAMETERS, AxisValues, (MaterialAxes,))
-"""Axes of a grid, by parameter."""
-
-SampledTable = table_of_quantities("SampledTable", PARAMETERS, SampledNumber, (SamplesTable,))
-"""Samples with a distribution for each parameter that varies."""
-
-
-class StudyTable(JointTables, kw_only=True):
+class StudyTable(JointTables, frozen=True, kw_only=True):
     """Study file."""
 
-    model: Annotated[Text | None, meaning("name of the model; hess-forsbach by default")] = None
-    axes: AxesTable | None = None  # type: ignore[valid-type]
-    samples: SampledTable | None = None  # type: ignore[valid-type]
+    model: Annotated[ModelName, meaning("name of the model")] = ModelName("hess-forsbach")
+    axes: AxesTable | None = None
+    samples: SamplesTable | None = None
     table: RowsTable | None = None
     quantities: Annotated[list[Text] | None, meaning("quantities of the contact; all by default")] = None
     store: Annotated[Text | None, meaning("folder of the results")] = None
-    engine: EngineTable | None = None
+    engine: EngineTable = EngineTable(kind=EngineKind("serial"))
 
 
 @dataclass(frozen=True, eq=False)
 class StudyFile:
-    """What a study file says."""
+    """Contents of a study file."""
 
     model: Model
     joint: Joint
@@ -181,7 +174,7 @@ def read_study(path: str | Path) -> StudyFile:
     Raises
     ------
     ValueError
-        One sentence: what is wrong, and the nearest thing that is right.
+        One sentence: the error, and the nearest allowed name.
     OSError
         A file cannot be read.
     """
@@ -194,24 +187,13 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
     return StudyFile(
-        model=named_model(tables.model or "hess-forsbach").in_cup(file.cup),
+        model=models[tables.model].in_cup(file.cup),
         joint=file.joint,
         design=_design(tables, content, folder),
-        quantities=tuple(map(str, tables.quantities or [])),
+        quantities=tuple(map(str, tables.quantities or ())),
         store=None if tables.store is None else folder / _filled("store", tables.store),
-        engine=Serial() if tables.engine is None else _engine(tables.engine),
+        engine=_engine(tables.engine),
     )
-
-
-def named_model(name: Any) -> Model:
-    """Return a model by its name in the catalogue, or the finite elements.
-
-    Raises
-    ------
-    ValueError
-        A name that is not known, with the nearest one.
-    """
-    return models[known_name("model", name, models)]
 
 
 def _engine(table: EngineTable) -> Engine:
@@ -219,21 +201,21 @@ def _engine(table: EngineTable) -> Engine:
     if table.kind == "serial" and table.workers is not None:
         raise ValueError("engine kind 'serial' has no workers: 'processes' and 'dask' have")
     if table.kind != "dask" and table.address is not None:
-        raise ValueError(f"engine kind {table.kind!r} has no address: 'dask' has")
+        raise ValueError(f"engine kind {str(table.kind)!r} has no address: 'dask' has")
     workers = None if table.workers is None else int(table.workers)
     if table.kind == "dask":
-        return Distributed(
-            address=None if table.address is None else _filled("address", table.address), workers=workers
-        )
+        address = None if table.address is None else _filled("address", table.address)
+        return Distributed(address=address, workers=workers)
     return Processes(workers=workers) if table.kind == "processes" else Serial()
 
 
 def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Design:
     """Create the design of a study: the product of samples, rows of a table and a grid."""
-    axes = values_of(tables.axes, AxisValues | AxisMaterials, content.get("axes", {}))
-    design = grid(**{name: axis.values for name, axis in axes.items()})
+    design = grid(**parsed_values(tables.axes, content.get("axes", {})))
     if tables.samples is not None:
-        design = _samples(tables.samples, content["samples"]) * design
+        samples = tables.samples
+        spreads = parsed_values(samples, content["samples"])
+        design = sample(int(samples.count), seed=int(samples.seed), method=Method(samples.method), **spreads) * design
     if tables.table is not None:
         design = table(folder / _filled("path", tables.table.path)) * design
     if not design.names:
@@ -241,20 +223,8 @@ def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Des
     return design
 
 
-def _samples(samples: Any, content: Mapping[str, Any]) -> Design:
-    """Create samples of distributions."""
-    sampled = {name: entry.distribution for name, entry in values_of(samples, SampledNumber, content).items()}
-    return sample(int(samples.count), seed=int(samples.seed or 0), method=samples.method, **sampled)
-
-
 def _filled(name: str, text: str) -> str:
-    """Return a text that is not empty as plain text.
-
-    Raises
-    ------
-    ValueError
-        An empty text.
-    """
-    if not check_text(name, text):
+    """Return a text as plain text; ValueError if it is empty."""
+    if not text:
         raise ValueError(f"{name} is empty")
     return str(text)

@@ -1,4 +1,4 @@
-"""The exact answer: published tables, limits, an independent finite-element code, and its own error estimate."""
+"""Exact solution: published tables, limits, an independent finite-element code, and its error estimate."""
 
 import json
 
@@ -24,7 +24,7 @@ def joint(case: dict, **more: object) -> bs.Joint:
 
 
 @pytest.mark.parametrize("case", EXACT, ids=lambda case: f"nu{case['poisson']}L{case['liner_thickness']}")
-def test_an_independent_solution(case):
+def test_indentation_pressure_and_half_angle_equal_an_independent_solution(case):
     """Two other methods agree with these to 1e-7."""
     force, d, p0, angle = (
         np.array([step[name] for step in case["steps"]], dtype=float)
@@ -36,7 +36,7 @@ def test_an_independent_solution(case):
     np.testing.assert_allclose(np.degrees(contact.half_angle), angle, rtol=1e-6)
 
 
-def test_goodman_and_keers_problem():
+def test_sphere_in_a_cavity_of_its_material_has_the_values_of_goodman_and_keers():
     """Identical materials: an elastic sphere in an infinite cavity of nearly its size, ν 0.3."""
     angle = np.radians([10.0, 20.0, 40.0, 60.0])
     R, c, E = 100.0, 1e-4, 1000.0
@@ -51,7 +51,7 @@ def test_goodman_and_keers_problem():
     np.testing.assert_allclose(pressure, [0.1141703, 0.2466258, 0.6678850, 1.778788], rtol=5e-6)
 
 
-def test_rigid_ball_in_an_infinite_cavity():
+def test_rigid_ball_in_an_infinite_cavity_has_the_reference_values():
     angle = np.radians([20.0, 40.0, 60.0])
     R, c, E = 100.0, 1e-4, 1000.0
     cavity = bs.Joint(ball_radius=R, clearance=c, liner_thickness=np.inf, liner=bs.Material(young=E, poisson=0.3))
@@ -64,7 +64,7 @@ def test_rigid_ball_in_an_infinite_cavity():
 
 
 @pytest.mark.parametrize("case", CALCULIX, ids=lambda case: case["name"])
-def test_an_independent_finite_element_code(case):
+def test_pressure_and_half_angle_agree_with_calculix(case):
     """CalculiX with a steel ball: at equal force p0 within 0.2 % and ε within 0.15° for ν up to 0.46.
 
     Its liner has a free rim, which thick incompressible liners feel: at ν 0.49 they come apart as the contact widens.
@@ -90,7 +90,7 @@ def test_small_contacts_are_hertz():
         np.testing.assert_allclose(getattr(contact, name), getattr(hertz, name), rtol=rel, err_msg=name)
 
 
-def test_a_thin_compressible_liner_is_a_row_of_columns():
+def test_a_thin_compressible_liner_is_a_bonded_layer():
     thin = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=0.3, liner=bs.Material(young=1000.0, poisson=0.2))
     contact = bs.Exact().press(thin, half_angle=np.radians(50.0))
     columns = bs.BondedLayer().press(thin, half_angle=np.radians(50.0))
@@ -115,7 +115,7 @@ def test_a_thin_incompressible_liner_is_squeezed_like_a_film():
         assert (4 * fine - coarse) / 3 == pytest.approx(1.0, abs=0.08)
 
 
-def test_uniform_pressure_finds_the_vessel():
+def test_uniform_pressure_has_the_modulus_of_the_vessel():
     socket = Socket(radius=18.0, shells=(Shell(thickness=6.75, young=1000.0, poisson=0.4),))
     assert 1 / socket.compliance(0) == pytest.approx(bs.spherical_vessel(RIGID), rel=1e-12)
 
@@ -133,13 +133,13 @@ def test_inside_the_contact_the_surface_follows_the_ball(gap):
     assert np.all(room > 0)  # the surfaces do not touch outside
 
 
-def test_the_circular_gap_matters_little():
+def test_the_circular_gap_raises_the_pressure_by_less_than_one_percent():
     """Exact kinematics (5) against (6): p0 +0.4 %."""
     linear, circular = (bs.Exact(gap=gap).press(RIGID, force=3000.0) for gap in (bs.LinearGap, bs.CircularGap))
     assert circular.max_pressure / linear.max_pressure == pytest.approx(1.004, abs=1e-3)
 
 
-def test_pressure_ends_like_a_square_root():
+def test_pressure_vanishes_at_the_edge_as_a_square_root():
     contact = bs.Exact().press(RIGID, force=3000.0)
     near = np.array([1e-6, 1e-4])
     p = contact.pressure(contact.half_angle * (1 - near))
@@ -148,7 +148,7 @@ def test_pressure_ends_like_a_square_root():
     assert contact.pressure(np.pi) == 0.0
 
 
-def test_an_elastic_ball_softens():
+def test_a_steel_ball_softens_the_contact_by_one_percent():
     """Steel instead of rigid at ν 0.4: F at given d -1 %, p0 at given F -0.5 %, half angle +0.1°."""
     steel, rigid = bs.Exact().press(HIP, force=3000.0), bs.Exact().press(RIGID, force=3000.0)
     assert rigid.max_pressure / steel.max_pressure == pytest.approx(1.005, abs=2e-3)
@@ -211,7 +211,7 @@ def test_half_angles_beyond_85_degrees_are_not_reached():
     assert np.isnan(bs.Exact().press(RIGID, force=1e9).max_pressure)
 
 
-def test_what_cannot_be_solved_is_refused():
+def test_joints_without_a_solution_are_refused():
     with pytest.raises(ValueError, match=r"exact has no answer for ν = 0\.5: a liner of ν = 0\.5 between fixed walls"):
         bs.Exact().press(
             bs.Joint(
@@ -254,7 +254,7 @@ def test_stress_at_the_surface_is_the_pressure():
     np.testing.assert_allclose(inside.von_mises, np.sqrt(spread), rtol=1e-12)
 
 
-def test_stress_at_one_place_is_plain_numbers():
+def test_stress_at_one_point_is_made_of_floats():
     stress = bs.Exact().press(HIP, force=3000.0).stress(angle=0.1, depth=1.0)
     assert {type(part) for part in vars(stress).values()} == {float}
 
@@ -294,14 +294,15 @@ def test_kernel_is_the_sum_of_its_modes():
     for x in (0.3, 1.0, 2.9):
         plain = np.sum(k.excess(n) * smooth * np.cos((n + 0.5) * x))
         a = k.expansion[: closed_forms.ORDER]
-        g, h, s = closed_forms.logarithmic(a), closed_forms.modular(a), closed_forms.smooth(a, reach=x)
+        g, h = closed_forms.logarithm_coefficients(a), closed_forms.distance_coefficients(a)
+        s = closed_forms.smooth_coefficients(a, reach=x)
         split = polynomial.polyval(x * x, g) * np.log(x) + polynomial.polyval(x * x, h) * x
         split += polynomial.polyval(x * x, s) + np.sum(k.remainder * np.cos((np.arange(len(k.remainder)) + 0.5) * x))
         assert split == pytest.approx(plain, rel=1e-7, abs=1e-9)
 
 
-def test_a_first_look_that_is_kept_is_that_of_fresh_half_angles():
-    """What is kept for all joints gives the operators that are made anew, for few modes and for more than are kept."""
+def test_cached_intervals_give_the_operators_of_new_ones():
+    """Cached operators equal new ones, for few modes and for more modes than are cached."""
     from ballsocket.elasticity.exact.grid import cached_grid
     from ballsocket.elasticity.exact.intervals import CachedIntervals, Intervals
 
@@ -309,12 +310,12 @@ def test_a_first_look_that_is_kept_is_that_of_fresh_half_angles():
     kept, fresh = (kind(half_angle=angle, grid=cached_grid(10)) for kind in (CachedIntervals, Intervals))
     for thickness in (20.0, 6.75, 0.5):
         k = Kernel(socket=Socket(radius=18.0, shells=(Shell(thickness=thickness, young=1000.0, poisson=0.4),)))
-        for _ in range(2):  # made, and kept
+        for _ in range(2):  # computed, then read from the cache
             for one, other in zip(k.operators(kept), k.operators(fresh), strict=True):
                 np.testing.assert_allclose(one, other, rtol=1e-11, atol=1e-13)
 
 
-def test_the_perfect_fit_ends_it():
+def test_the_perfect_fit_limits_the_half_angle():
     """In a massive socket the ball fills its socket at 83.55°: larger loads approach it, larger angles are none."""
     massive = bs.Joint(
         ball_radius=18.0, clearance=0.1, liner_thickness=np.inf, liner=bs.Material(young=1000.0, poisson=0.3)
@@ -328,7 +329,7 @@ def test_the_perfect_fit_ends_it():
         np.testing.assert_allclose(back.half_angle, contact.half_angle[:2], rtol=1e-9)
 
 
-def test_an_incompressible_liner_that_can_go_elsewhere_has_an_answer():
+def test_an_incompressible_liner_has_a_solution_on_a_soft_backing():
     soft = bs.Material(young=1000.0, poisson=0.5)
     backed = bs.Joint(
         ball_radius=17.9,
@@ -344,7 +345,7 @@ def test_an_incompressible_liner_that_can_go_elsewhere_has_an_answer():
         assert contact.error["max_pressure"] < 1e-6
 
 
-def test_a_loose_ball_is_told_to_ask_for_the_circle():
+def test_a_large_clearance_is_valid_only_with_the_circular_gap():
     loose = bs.Joint(ball_radius=17.0, clearance=1.0, liner_thickness=6.75, liner=bs.UHMWPE)
     assert not bs.Exact().press(loose, force=3000.0).valid
     assert bs.Exact(gap=bs.CircularGap).press(loose, force=3000.0).valid

@@ -35,7 +35,7 @@ def joint(request):
     return JOINTS[request.param]
 
 
-def test_every_quantity_is_as_exact_as_it_says(joint):
+def test_every_quantity_is_within_its_stated_error(joint):
     angles = np.radians([1e-3, 0.3, 2.0, 11.0, 29.0, 47.0, 63.0, 77.0])
     exact, curve = bs.Exact(tolerance=1e-9).press(joint, half_angle=angles), bs.ExactCurve()
     assert (exact.status == bs.Status.OK).all()
@@ -48,7 +48,7 @@ def test_every_quantity_is_as_exact_as_it_says(joint):
             assert (off <= found.error.get(name, 1e-6) + 1e-10).all(), (kind, name)
 
 
-def test_the_profile_too(joint):
+def test_the_pressure_profile_is_within_a_millionth_of_the_peak(joint):
     angles = np.radians([0.3, 11.0, 47.0, 77.0])
     exact, found = (model.press(joint, half_angle=angles) for model in (bs.Exact(tolerance=1e-9), bs.ExactCurve()))
     places = np.linspace(0.0, 1.1, 12)[:, None] * angles
@@ -57,7 +57,7 @@ def test_the_profile_too(joint):
     np.testing.assert_allclose(found.max_pressure_angle, exact.max_pressure_angle, atol=2e-2)
 
 
-def test_an_answer_is_the_same_alone_and_in_company():
+def test_results_do_not_depend_on_the_other_loads():
     joint, forces = JOINTS["shell"], np.geomspace(0.1, 9000.0, 5000)
     company = bs.ExactCurve().press(joint, force=forces)
     for place in (0, 17, 2500, 4999):
@@ -66,7 +66,7 @@ def test_an_answer_is_the_same_alone_and_in_company():
             assert getattr(alone, name) == pytest.approx(getattr(company, name)[place], rel=1e-13), name
 
 
-def test_what_has_no_answer_is_told_as_by_the_solutions():
+def test_statuses_equal_those_of_the_exact_solutions():
     joint, loads = JOINTS["cement and bone, full before 85°"], np.radians([0.0, 30.0, 83.0, 84.5, 86.0])
     exact, found = (model.press(joint, half_angle=loads) for model in (bs.Exact(), bs.ExactCurve()))
     assert found.status.tolist() == exact.status.tolist()
@@ -78,15 +78,15 @@ def test_what_has_no_answer_is_told_as_by_the_solutions():
     assert max(far.error.values()) <= 1e-10 or far.status == bs.Status.NOT_CONVERGED
 
 
-def test_the_inside_is_that_of_the_solution():
+def test_stresses_equal_those_of_the_exact_solution():
     exact, found = (model.press(JOINTS["shell"], force=3000.0) for model in (bs.Exact(), bs.ExactCurve()))
     assert found.peak_stress.von_mises == pytest.approx(exact.peak_stress.von_mises, rel=1e-6)
     assert found.von_mises == pytest.approx(exact.von_mises, rel=2e-3)
     assert found.stress(0.2, 1.0).hoop == pytest.approx(exact.stress(0.2, 1.0).hoop, rel=1e-6)
 
 
-def test_the_validity_of_very_many_loads_takes_few_looks_inside(monkeypatch):
-    """Whether a liner yields is asked of each load; where the stress lies is asked of a few contacts alone."""
+def test_validity_of_many_loads_needs_few_stress_solutions(monkeypatch):
+    """Yield is checked at each load; the largest stress is located for a few contacts only."""
     looks, forces = [], np.geomspace(1.0, 40_000.0, 20_000)
     peak = subsurface.largest_von_mises
     monkeypatch.setattr(subsurface, "largest_von_mises", lambda *all: looks.append(1) or peak(*all))

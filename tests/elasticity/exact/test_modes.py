@@ -97,7 +97,7 @@ def test_uniform_pressure_is_the_spherical_vessel(ratio, poisson):
     assert single(ratio, poisson).compliance([0])[0] == pytest.approx(1 / bs.spherical_vessel(joint), rel=1e-13)
 
 
-def test_check_values():
+def test_compliances_have_the_reference_values():
     expected = [0.00330432, 0.0034047, 0.00351705, 0.0035872, 0.00359966, 0.00355158, 0.003447, 0.00329688]
     np.testing.assert_allclose(LINED.compliance(range(8)), expected, rtol=2e-6)
 
@@ -105,7 +105,7 @@ def test_check_values():
 @pytest.mark.parametrize("support", Support)
 @pytest.mark.parametrize("poisson", POISSON)
 @pytest.mark.parametrize("ratio", [0.0, *RATIOS])
-def test_single_layer_against_50_digits(ratio, poisson, support):
+def test_compliances_of_a_single_layer_have_twelve_digits(ratio, poisson, support):
     socket = single(ratio, poisson, support)
     expected = np.array([reference(socket, n) for n in DEGREES[::2]])
     c = socket.compliance(DEGREES[::2])
@@ -125,7 +125,7 @@ def test_single_layer_against_50_digits(ratio, poisson, support):
     ],
 )
 @pytest.mark.parametrize("support", Support)
-def test_layers_against_50_digits(shells, support):
+def test_compliances_of_several_layers_have_twelve_digits(shells, support):
     socket = Socket(radius=18.0, shells=shells, support=support)
     expected = [reference(socket, n) for n in DEGREES]
     np.testing.assert_allclose(socket.compliance(DEGREES), expected, rtol=1e-12)
@@ -142,7 +142,7 @@ def test_every_degree_has_a_positive_compliance_that_tends_to_the_asymptote(rati
     assert socket.asymptote == pytest.approx(2 * (1 - poisson**2) * 18.0 / 1000.0)
 
 
-def test_excess_is_what_it_says():
+def test_excess_is_the_relative_deviation_from_the_asymptote():
     n = np.arange(300)
     np.testing.assert_allclose(CUP.excess(n), CUP.compliance(n) * (n + 0.5) / CUP.asymptote - 1, atol=3e-15)
 
@@ -159,8 +159,8 @@ def test_a_shell_departs_from_the_infinite_socket_like_the_square_of_its_ratio_o
 
 @pytest.mark.parametrize("back", [Support.FIXED, Support.FREE, BONE, Shell(thickness=inf, young=1.0, poisson=0.2)])
 @pytest.mark.parametrize("ratio", [0.05, 1.0, 10.0])
-def test_reach(ratio, back):
-    """Beyond it nothing is left of the layers, whatever they are."""
+def test_a_socket_is_massive_beyond_its_reach(ratio, back):
+    """Degrees beyond the reach have the compliance of a massive socket for any layers."""
     shell = liner(ratio, 0.4)
     if isinstance(back, Shell):
         socket = Socket(radius=18.0, shells=(shell, back))
@@ -183,7 +183,7 @@ def test_a_layer_cut_in_two_is_the_same_layer(support):
         np.testing.assert_allclose(Socket(radius=18.0, shells=parts, support=support).compliance(n), whole, rtol=1e-12)
 
 
-def test_an_infinite_layer_of_the_same_material_behind():
+def test_a_layer_on_an_infinite_layer_of_its_material_is_massive():
     n = np.arange(200)
     for thickness in (0.1, 6.75, 100.0):
         first = Shell(thickness=thickness, young=1000.0, poisson=0.4)
@@ -201,7 +201,7 @@ def test_stiff_and_soft_backings_are_the_fixed_and_the_free_surface():
         np.testing.assert_allclose(backed.compliance(n), alone.compliance(n), rtol=1e-7)
 
 
-def test_a_softer_backing_gives_way_more():
+def test_compliance_increases_with_a_softer_backing():
     n = np.arange(2, 30)
     stiff_to_soft = [Socket(radius=18.0, shells=(LINER,)), CUP, massive(LINER)]
     stiff_to_soft.append(Socket(radius=18.0, shells=(LINER, Shell(thickness=5.0, young=10.0, poisson=0.3))))
@@ -210,7 +210,7 @@ def test_a_softer_backing_gives_way_more():
         assert (one < other).all()
 
 
-def test_thin_layers():
+def test_thin_layers_are_columns_or_squeezed_films():
     """Columns that cannot widen if compressible, c_n = L³ n (n + 1)/(3 G R2²) from viscous-like flow if not."""
     n = np.array([1, 2, 5])
     columns = Socket(radius=18.0, shells=(Shell(thickness=1e-3, young=1000.0, poisson=0.3),))
@@ -219,7 +219,7 @@ def test_thin_layers():
     np.testing.assert_allclose(flow.compliance(n), 0.018**3 * n * (n + 1) / (3 * 18.0**2), rtol=5e-3)
 
 
-def test_incompressible_layers():
+def test_incompressible_layers_are_the_limit_of_nearly_incompressible_ones():
     nearly = [single(2.0, nu, support) for nu in (0.5, 0.5 - 1e-10) for support in Support]
     for exact, close in ((nearly[0], nearly[2]), (nearly[1], nearly[3])):
         np.testing.assert_allclose(exact.compliance(range(50)), close.compliance(range(50)), rtol=1e-8, atol=1e-11)
@@ -227,8 +227,8 @@ def test_incompressible_layers():
 
 
 @pytest.mark.parametrize("body", [massive(LINER), LINED, ElasticBall(radius=18.0, young=1000.0, poisson=0.4)], ids=repr)
-def test_expansion(body):
-    """What is left of a series of order m falls like q^-(m + 1)."""
+def test_the_remainder_of_an_expansion_has_the_next_order(body):
+    """The remainder of a series of order m decreases as q^-(m + 1)."""
     n = np.array([100, 200]) if body is LINED else np.array([40, 80])
     for order in (1, 2, 3, 4):
         series = ((n[:, None] + 0.5) ** -np.arange(1.0, order + 1)) @ body.expansion(order)
@@ -250,7 +250,7 @@ SOME = np.array([0, 2, 5, 40, 300, 1])
 
 
 @pytest.mark.parametrize("socket", LAYERED, ids=["fixed", "free", "infinite"])
-def test_fields_meet_the_load_in_the_bore(socket):
+def test_fields_balance_the_load_in_the_bore(socket):
     bore = socket.fields(SOME, 18.0)
     np.testing.assert_allclose(bore.u_r[:, 0], socket.compliance(SOME), rtol=1e-11)
     np.testing.assert_allclose(bore.sigma_rr, -1.0, rtol=1e-12)
@@ -267,7 +267,7 @@ def test_fields_pass_through_the_interfaces(socket):
     assert (abs(before.sigma_phiphi / behind.sigma_phiphi - 1) > 0.1).all()
 
 
-def test_fields_meet_the_support():
+def test_fields_satisfy_the_conditions_of_the_support():
     fixed, free, infinite = (socket.fields(SOME, r) for socket, r in zip(LAYERED, (29.75, 26.75, 1e9), strict=True))
     for displacement in (fixed.u_r, fixed.u_phi, infinite.u_r, infinite.u_phi):
         np.testing.assert_allclose(displacement, 0.0, atol=1e-10)
@@ -322,7 +322,7 @@ def test_a_free_socket_is_held_by_a_uniform_traction_at_degree_one():
     assert end.u_r + 2 * end.u_phi == pytest.approx(0.0, abs=1e-15)
 
 
-def test_fields_of_high_degrees_stay_at_the_bore():
+def test_fields_of_high_degrees_decay_from_the_bore():
     f = CUP.fields(np.array([1000, 20_000]), np.array([18.0, 18.1, 20.0, 30.0, 1000.0]))
     for name in f.__dataclass_fields__:
         values = getattr(f, name)
@@ -334,7 +334,7 @@ def test_fields_of_high_degrees_stay_at_the_bore():
 
 
 @pytest.mark.parametrize("poisson", [*POISSON, 0.5])
-def test_ball(poisson):
+def test_compliances_of_a_ball_have_the_reference_values(poisson):
     ball = ElasticBall(radius=17.9, young=1000.0, poisson=poisson)
     c = ball.compliance(np.arange(20_001))
     assert c[0] == pytest.approx((1 - 2 * poisson) * 17.9 / 1000.0, rel=1e-14)
@@ -352,14 +352,14 @@ def test_ball(poisson):
         assert c[n] == pytest.approx(float(expected), rel=1e-12)
 
 
-def test_a_ball_is_a_cavity_turned_inside_out():
+def test_coefficients_of_ball_and_cavity_have_equal_size_and_alternating_sign():
     """n -> -(n + 1) swaps the powers that grow for those that decay."""
     a, b = ElasticBall(radius=1.0, young=1.0, poisson=0.3), massive(Shell(thickness=1.0, young=1.0, poisson=0.3))
     np.testing.assert_allclose(a.expansion(8)[::2], -b.expansion(8)[::2])
     np.testing.assert_allclose(a.expansion(8)[1::2], b.expansion(8)[1::2])
 
 
-def test_first_coefficient():
+def test_the_first_coefficient_has_its_formula_and_opposite_sign_for_a_ball():
     """a_1 = ±(1 - 2ν)²/(2(1 - ν)): two bodies of the same material have none together."""
     expected = 0.2**2 / 1.2
     assert LINED.expansion(1) == pytest.approx(-expected)
@@ -373,7 +373,7 @@ LINED_HIP = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, line
 
 
 @pytest.mark.parametrize("support", Support)
-def test_the_socket_of_a_joint(support):
+def test_the_socket_of_a_joint_has_its_layers_and_support(support):
     backing = [
         bs.Layer(thickness=shell.thickness, material=bs.Material(young=shell.young, poisson=shell.poisson))
         for shell in CUP.shells[1:]
@@ -384,7 +384,7 @@ def test_the_socket_of_a_joint(support):
 
 
 @pytest.mark.parametrize("support", Support)
-def test_a_backing_of_the_liners_own_material_is_a_thicker_liner(support):
+def test_a_backing_of_the_liner_material_is_a_thicker_liner(support):
     more = bs.Layer(thickness=3.25, material=bs.UHMWPE)
     backed = replace(LINED_HIP, backing=(more,), support=support)
     thicker = replace(LINED_HIP, liner_thickness=10.0, support=support)
@@ -394,7 +394,7 @@ def test_a_backing_of_the_liners_own_material_is_a_thicker_liner(support):
     np.testing.assert_allclose(socket_of(endless).compliance(n), massive(LINER).compliance(n), rtol=1e-12)
 
 
-def test_the_ball_of_a_joint():
+def test_the_ball_of_a_joint_has_its_radius_and_material():
     assert ball_of(LINED_HIP) == ElasticBall(radius=17.9, young=230000.0, poisson=0.3)
     assert ball_of(replace(LINED_HIP, ball=None)) is None
 
@@ -423,7 +423,7 @@ def test_bodies_are_made_of_plain_floats():
         (lambda: LINED.reach(0.0), "tolerance = 0 is not allowed"),
     ],
 )
-def test_misuse_says_what_is_allowed(call, message):
+def test_messages_state_the_allowed_values(call, message):
     with pytest.raises(ValueError, match=message):
         call()
 

@@ -27,7 +27,7 @@ def random(count, seed, **more):
 
 
 @pytest.mark.parametrize(("elastic", "rtol"), [(False, 1e-5), (True, 2e-4)])
-def test_random_joints_agree_with_the_exact_answer(elastic, rtol):
+def test_random_joints_agree_with_the_exact_solution(elastic, rtol):
     angle, numbers = random(either(quick=60, long=300), 1, elastic=elastic)
     joint = build_tables.joint_of(*numbers, clearance=0.02)
     exact = bs.Exact(tolerance=1e-8).press(joint, half_angle=angle)
@@ -40,7 +40,7 @@ def test_random_joints_agree_with_the_exact_answer(elastic, rtol):
 
 
 @pytest.mark.parametrize("joint", [RIGID, HIP])
-def test_small_contacts_agree_too(joint):
+def test_small_contacts_agree_with_the_exact_solution(joint):
     angle = np.radians([0.01, 0.1, 0.5, 1.0, 2.0])
     exact = bs.Exact(tolerance=1e-8).press(joint, half_angle=angle)
     close(bs.Tabulated().press(joint, half_angle=angle), exact, 1e-5)
@@ -57,7 +57,7 @@ def test_a_point_contact_is_that_of_hertz():
 
 @pytest.mark.parametrize("joint", [RIGID, HIP])
 @pytest.mark.parametrize("half_angle", [5.0, 40.0, 75.0])
-def test_the_profile_agrees(joint, half_angle):
+def test_the_pressure_profile_agrees_with_the_exact_solution(joint, half_angle):
     half_angle = np.radians(half_angle)
     share = np.linspace(0.0, 1.0, 101)
     found, exact = (model.press(joint, half_angle=half_angle) for model in (bs.Tabulated(), bs.Exact(tolerance=1e-8)))
@@ -66,7 +66,7 @@ def test_the_profile_agrees(joint, half_angle):
 
 
 @pytest.mark.parametrize("elastic", [False, True])
-def test_forces_and_indentations_find_each_other(elastic):
+def test_forces_and_indentations_are_inverse(elastic):
     angle, numbers = random(2000, 3, elastic=elastic)
     joint, model = build_tables.joint_of(*numbers), bs.Tabulated()
     contact = model.press(joint, half_angle=angle)
@@ -77,13 +77,13 @@ def test_forces_and_indentations_find_each_other(elastic):
     np.testing.assert_allclose(back.force, contact.force, rtol=1e-12)
 
 
-def test_one_joint_and_many_joints_are_one_formula():
+def test_one_joint_and_many_joints_have_equal_results():
     force = np.geomspace(0.1, 4000.0, 1500)
     many = replace(HIP, clearance=np.full(1500, HIP.clearance))
     close(bs.Tabulated().press(many, force=force), bs.Tabulated().press(HIP, force=force), 1e-12)
 
 
-def test_a_joint_that_is_not_in_the_tables_is_refused():
+def test_joints_outside_the_tables_are_refused():
     shell = bs.Layer(thickness=3.0, material=bs.TITANIUM)
     model = bs.Tabulated()
     for other, message in (
@@ -102,7 +102,7 @@ def test_a_joint_that_is_not_in_the_tables_is_refused():
     assert np.isnan(contact.indentation[1])
 
 
-def test_beyond_the_tables_is_a_status():
+def test_loads_beyond_the_tables_have_a_status():
     contact = bs.Tabulated().press(HIP, half_angle=np.radians([84.9, 86.0]))
     assert contact.status.tolist() == [bs.Status.OK, bs.Status.NOT_REACHED]
     assert bs.Tabulated().press(HIP, force=1e9).status is bs.Status.NOT_REACHED
@@ -129,7 +129,7 @@ def test_every_field_has_derivatives_in_jax():
         )
 
 
-def test_the_tables_are_small():
+def test_the_tables_are_smaller_than_two_megabytes():
     assert build_tables.SHIPPED.stat().st_size < 2_000_000
 
 
@@ -140,14 +140,14 @@ def test_the_builder_reproduces_the_shipped_profile():
         np.testing.assert_allclose(built, stored["profile"], atol=1e-6)
 
 
-def test_the_report_names_where_it_is_worst():
+def test_the_report_names_the_joint_of_the_largest_error():
     report = build_tables.check(points=either(quick=20, long=50), workers=1)
     assert max(worst.error for worst in report.rigid) < 1e-5
     assert "pressure_integral" in str(report)
     assert "R2/L" in str(report)
 
 
-def test_places_and_angles_are_inverse():
+def test_coordinates_and_angles_are_inverse():
     place, ratio = np.linspace(-0.9, 1.0, 9), np.array([[0.2], [20.0]])
     np.testing.assert_allclose(
         chebyshev.angle_coordinate(chebyshev.angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
@@ -155,7 +155,7 @@ def test_places_and_angles_are_inverse():
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04", b"\x93NUMPY", b"tables"])
-def test_a_file_without_tables_is_told_before_anything_is_computed(content, tmp_path):
+def test_a_file_without_tables_is_refused_before_any_computation(content, tmp_path):
     (tmp_path / "tables.npz").write_bytes(content)
     with pytest.raises(ValueError, match="tables.npz holds no tables"):
         build_tables.check(tmp_path / "tables.npz", workers=0)
@@ -164,7 +164,7 @@ def test_a_file_without_tables_is_told_before_anything_is_computed(content, tmp_
         bs.Tabulated(file=str(tmp_path / "tables.npz")).press(bs.joints["hip-28"], force=1.0)
 
 
-def test_where_tables_cannot_be_written_is_told_before_anything_is_computed(tmp_path):
+def test_an_unwritable_file_of_tables_is_refused_before_any_computation(tmp_path):
     for place in (tmp_path, tmp_path / "none" / "tables.npz"):
         with pytest.raises(OSError, match="this is a folder|No such file"):
             build_tables.build(place, workers=0)
@@ -190,7 +190,7 @@ def test_sampled_functions_are_those_of_the_exact_solution():
     exact = bs.Exact(tolerance=1e-9).press(joint, half_angle=angle)
     np.testing.assert_allclose(state.indentation * 0.005, exact.indentation, rtol=1e-7)
     np.testing.assert_allclose(state.force * 0.005, exact.force, rtol=1e-7)
-    opening, force, pole = np.exp(build_tables._rigid_functions(state))
+    opening, force, pole = np.exp(build_tables._tabulated_functions(state))
     total, C = 0.005 + exact.indentation, 2 * (1 - 0.4**2)
     np.testing.assert_allclose(opening * (1 - np.cos(angle)), exact.indentation / total, rtol=1e-7)
     np.testing.assert_allclose(force * total * angle**3 / C, exact.force, rtol=1e-7)

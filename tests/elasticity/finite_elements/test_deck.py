@@ -1,4 +1,4 @@
-"""Input decks for other programs: what is in them, and what CalculiX makes of them."""
+"""Input decks for other programs: their contents, and the results of CalculiX."""
 
 import json
 import os
@@ -37,7 +37,7 @@ def pressed(
 
 
 class Read:
-    """What a deck says: data lines by keyword line, in order."""
+    """Parsed deck: data lines by keyword line, in order."""
 
     def __init__(self, text: str) -> None:
         assert text.isascii()
@@ -80,7 +80,7 @@ class Read:
 
 
 @pytest.mark.parametrize("element", list(bs.Element))
-def test_the_mesh_is_the_one_that_answered(element):
+def test_the_deck_has_the_mesh_of_the_solution(element):
     contact = pressed(joint(STEEL, backing=(TITANIUM,)), element=element)
     deck = Read(deck_of(contact, steps=3).text())
     middles = contact.mesh.elements if element is bs.Element.BIQUADRATIC else 0
@@ -108,7 +108,7 @@ def test_middle_nodes_lie_between_their_corners():
     assert np.all(apart < 0.2 * np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=-1))
 
 
-def test_materials():
+def test_each_part_has_a_section_and_its_elastic_constants():
     made = deck_of(pressed(joint(STEEL, backing=(TITANIUM, SOFT))))
     deck = Read(made.text())
     names = ["LINER", "BACKING1", "BACKING2", "BALL"]
@@ -137,7 +137,7 @@ def test_the_bodies_first_touch_at_the_pole(like, scale):
     assert half_angle < np.arctan2(lined[..., 0], -lined[..., 1]).max() < angle.max()
 
 
-def test_steps_and_what_is_expected():
+def test_steps_have_their_displacements_and_expected_results():
     contact = pressed(STEEL)
     made = deck_of(contact, steps=5, scale=0.01)
     deck = Read(made.text())
@@ -154,7 +154,7 @@ def test_steps_and_what_is_expected():
                                [made.expected[name][-1] for name in made.expected], rtol=1e-6)  # fmt: skip
 
 
-def test_the_title_says_what_it_is():
+def test_the_title_states_joint_units_and_scale():
     named = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LINER, name="ø 36\n*STEP")
     made = deck_of(pressed(named), steps=2, scale=0.002)
     title = " ".join(Read(made.text()).title)
@@ -163,7 +163,7 @@ def test_the_title_says_what_it_is():
     assert len(Read(made.text()).heads("*STEP")) == 2
 
 
-def test_the_ball_is_pushed_by_its_equator_and_a_rigid_one_as_a_whole():
+def test_an_elastic_ball_is_pushed_at_its_equator_and_a_rigid_one_at_all_nodes():
     elastic, rigid = (Read(deck_of(pressed(like)).text()) for like in (STEEL, RIGID))
     radius, angle = elastic.polar("PUSHED")
     np.testing.assert_allclose(angle, np.pi / 2, atol=1e-2)  # its centre lies a little below
@@ -175,7 +175,7 @@ def test_the_ball_is_pushed_by_its_equator_and_a_rigid_one_as_a_whole():
     assert set(rigid.set("PUSHED")) == ball <= set(rigid.set("UPRIGHT"))
 
 
-def test_a_fixed_liner_is_held_outside():
+def test_a_fixed_liner_has_a_fixed_outer_surface():
     deck = Read(deck_of(pressed(joint(RIGID, backing=(TITANIUM,)))).text())
     radius, angle = deck.polar("FIXED")
     np.testing.assert_allclose(radius, 18.0 + 6.75 + 3.0)
@@ -188,7 +188,7 @@ def test_a_fixed_liner_is_held_outside():
 
 
 @pytest.mark.parametrize("arc", [140.0, 180.0])
-def test_a_free_liner_sits_on_its_rim(arc):
+def test_a_free_liner_is_supported_at_its_rim(arc):
     deck = Read(deck_of(pressed(joint(RIGID, backing=(TITANIUM,), support=bs.Support.FREE), arc=arc)).text())
     radius, angle = deck.polar("SEATED")
     np.testing.assert_allclose(angle, np.radians(arc / 2), rtol=1e-9)
@@ -200,7 +200,7 @@ def test_a_free_liner_sits_on_its_rim(arc):
     assert not deck.heads("*NSET, NSET=FIXED")
 
 
-def test_a_liner_that_slides_in_a_rigid_socket_rolls_on_it():
+def test_a_sliding_liner_in_a_rigid_socket_has_a_radial_support():
     deck = Read(deck_of(pressed(RIGID, interface=SLIDING)).text())
     radius, angle = deck.polar("ROLLING")
     np.testing.assert_allclose(radius, 18.0 + 6.75)
@@ -211,7 +211,7 @@ def test_a_liner_that_slides_in_a_rigid_socket_rolls_on_it():
     assert not deck.heads("*EQUATION")
 
 
-def test_a_liner_that_slides_on_its_backing_shares_what_is_radial():
+def test_a_sliding_liner_shares_the_radial_displacement_of_its_backing():
     bonded, sliding = (
         Read(deck_of(pressed(joint(RIGID, backing=(SOFT, TITANIUM)), interface=interface)).text())
         for interface in (bs.Interface.BONDED, SLIDING)
@@ -227,7 +227,7 @@ def test_a_liner_that_slides_on_its_backing_shares_what_is_radial():
     assert not bonded.heads("*EQUATION")
 
 
-def test_a_chamfer_is_no_part_of_the_surface():
+def test_a_chamfer_is_excluded_from_the_contact_surface():
     deck = Read(deck_of(pressed(RIGID, half_angle=60.0, arc=150.0, chamfer=2.0)).text())
     _, angle = deck.polar("BORE")
     lined = deck.side("LINED")
@@ -249,7 +249,7 @@ def test_a_chamfer_is_no_part_of_the_surface():
         (lambda: pressed(STEEL, ball_spacing=bs.Adapted(elements=36), element=bs.Element.BILINEAR), "do not match"),
     ],
 )
-def test_what_no_deck_can_be_made_of(contact, words):
+def test_contacts_that_no_deck_can_represent_are_refused(contact, words):
     with pytest.raises(ValueError, match=words):
         deck_of(contact())
 
@@ -257,19 +257,19 @@ def test_what_no_deck_can_be_made_of(contact, words):
 @pytest.mark.parametrize(
     "wrong", [{"steps": 0}, {"steps": 10**6}, {"steps": 2.5}, {"scale": 0.0}, {"scale": 2.0}, {"scale": np.nan}]
 )
-def test_numbers_that_are_not_allowed(wrong):
+def test_invalid_steps_and_scales_are_refused(wrong):
     with pytest.raises(ValueError, match=f"{next(iter(wrong))} = .* is not allowed"):
         deck_of(pressed(RIGID), **wrong)
 
 
-def test_meshes_that_do_not_match_are_taken_where_parabolas_follow_the_sphere():
+def test_meshes_that_do_not_match_need_a_large_scale():
     contact = pressed(STEEL, ball_spacing=bs.Adapted(elements=36))
     assert Read(deck_of(contact).text()).heads("*STEP")
     with pytest.raises(ValueError, match="larger scale"):
         deck_of(contact, scale=1e-4)
 
 
-def test_files_appear_whole_or_not_at_all(tmp_path, monkeypatch):
+def test_files_appear_complete_or_not_at_all(tmp_path, monkeypatch):
     made = deck_of(pressed(RIGID), steps=2)
     path = made.write(tmp_path / "new")
     assert sorted(os.listdir(path.parent)) == ["ballsocket.inp", "expected.json"]
@@ -327,7 +327,7 @@ def test_the_end_of_each_step_is_read(tmp_path):
     assert ccx.read_printed(tmp_path / "none.dat", "PUSHED") == {}
 
 
-def test_contact_pressures_are_told_from_other_results(tmp_path):
+def test_contact_pressures_are_separated_from_other_results(tmp_path):
     numbers = "".join(f"{value:12.5E}" for value in (1.0, 2.0, 3.0, 4.5, 0.0, 0.0))
     blocks = [
         f"  100CL  101 {time:.9f}           9                     0    1           1\n -4  {name}       6    1\n"
@@ -346,7 +346,7 @@ def test_the_edge_is_where_the_gap_closes():
     assert ccx.edge_angle(angle, np.full_like(angle, -1e-4)) == angle[-1]
 
 
-def test_the_pole_is_read_past_its_neighbours():
+def test_the_pole_pressure_excludes_the_neighbouring_nodes():
     angle = np.linspace(0.0, 1.0, 60)
     pressures = 10.0 - 4.0 * angle**2 + angle**4
     pressures[:6] = (0.0, 0.0, 24.0, 15.0, 9.0, 11.0)
@@ -354,7 +354,7 @@ def test_the_pole_is_read_past_its_neighbours():
     assert ccx.pressure_at_pole(angle, pressures, 1.0) == pytest.approx(10.0, rel=1e-6)
 
 
-def test_without_calculix(tmp_path, monkeypatch):
+def test_a_missing_calculix_is_reported(tmp_path, monkeypatch):
     deck_of(pressed(RIGID)).write(tmp_path)
     monkeypatch.setattr(shutil, "which", lambda _: None)
     with pytest.raises(FileNotFoundError, match="CalculiX is not installed"):
@@ -365,7 +365,7 @@ def test_without_calculix(tmp_path, monkeypatch):
 
 
 @needs_ccx
-def test_no_deck_and_a_deck_that_is_none(tmp_path):
+def test_a_missing_and_an_invalid_deck_are_reported(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"no ballsocket\.inp"):
         ccx.run(tmp_path)
     path = deck_of(pressed(RIGID), steps=1).write(tmp_path)
@@ -375,7 +375,7 @@ def test_no_deck_and_a_deck_that_is_none(tmp_path):
 
 
 @needs_ccx
-def test_an_older_answer_is_not_taken_for_a_new_one(tmp_path, monkeypatch):
+def test_results_of_an_earlier_run_are_not_read(tmp_path, monkeypatch):
     deck_of(pressed(RIGID), steps=1).write(tmp_path)
     assert ccx.run(tmp_path).force[0] > 0
     nothing = shutil.which("false")
@@ -411,7 +411,7 @@ VARIANTS = {
 
 @needs_ccx
 @pytest.mark.parametrize("name", some(VARIANTS, 4))
-def test_calculix_finds_the_same(name, tmp_path):
+def test_calculix_has_the_expected_results(name, tmp_path):
     """Both are on the same coarse mesh; measured: force 0.05 to 0.13 %, half angle 0.07 degrees."""
     like, settings, tolerance = VARIANTS[name]
     made = deck_of(pressed(like, **settings), steps=1)
@@ -424,7 +424,7 @@ def test_calculix_finds_the_same(name, tmp_path):
 
 
 @needs_ccx
-def test_the_penalty_takes_less_than_a_thousandth_from_the_force(tmp_path):
+def test_the_penalty_reduces_the_force_by_less_than_a_thousandth(tmp_path):
     made = deck_of(pressed(RIGID), steps=1)
     forces = []
     for name, factor in (("own", 1.0), ("stiff", 20.0)):

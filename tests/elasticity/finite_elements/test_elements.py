@@ -1,4 +1,4 @@
-"""The elements under the finite-element contact: what they reproduce exactly, and how fast they converge."""
+"""Elements of the finite-element contact: states reproduced exactly, and orders of convergence."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ ORDERS = pytest.mark.parametrize("order", [1, 2], ids=["bilinear", "biquadratic"
 
 
 @ORDERS
-def test_a_translation_along_the_axis_costs_nothing(order):
+def test_a_translation_along_the_axis_has_no_energy(order):
     elastic = a_block(order, end=1.1)
     K = elastic.matrix()
     moved = polar(elastic, np.zeros(elastic.block.number.size), np.ones(elastic.block.number.size))
@@ -40,7 +40,7 @@ def test_a_thick_sphere_under_pressure_converges_and_does_not_lock(order, elemen
 
 @pytest.mark.parametrize("interface", Interface)
 @ORDERS
-def test_the_condensed_compliance_is_that_of_the_whole_body(order, interface):
+def test_condensed_compliance_equals_that_of_the_complete_system(order, interface):
     """Against the plain solution of all equations, for a liner on a stiffer layer."""
     shape = SocketShape(
         layers=((1.3, 1.0, 0.4), (1.5, 20.0, 0.3)),
@@ -65,7 +65,7 @@ def test_the_condensed_compliance_is_that_of_the_whole_body(order, interface):
     np.testing.assert_allclose(moved[body.contact, 1], whole[body.normals], atol=1e-9 * abs(whole).max())
 
 
-def test_layers_that_slide_move_together_across_and_freely_along():
+def test_sliding_layers_move_together_across_and_freely_along_the_interface():
     shape = SocketShape(
         layers=((1.3, 1.0, 0.4), (1.5, 20.0, 0.3)),
         rim=1.5,
@@ -83,7 +83,7 @@ def test_layers_that_slide_move_together_across_and_freely_along():
     assert abs(one[1:, 0] - other[1:, 0]).max() > 1e-3 * abs(one[:, 1]).max()
 
 
-def test_a_liner_that_slides_in_a_free_shell_moves_along_at_its_rim():
+def test_a_sliding_liner_in_a_free_shell_is_free_at_its_rim():
     """The shell sits on its rim; the liner in it does not."""
     shape = SocketShape(
         layers=((1.3, 1.0, 0.4), (1.5, 20.0, 0.3)),
@@ -101,7 +101,7 @@ def test_a_liner_that_slides_in_a_free_shell_moves_along_at_its_rim():
     np.testing.assert_array_equal(along[inner + 1 :], 0.0)
 
 
-def test_a_liner_of_the_shells_own_material_is_one_with_it():
+def test_bonded_layers_of_one_material_are_one_layer():
     """Two bonded layers of one material are one layer."""
     resolution = Resolution(size=0.1, reach=0.8, growth=1.2, widest=0.3, deepest=0.25, order=2)
     ends = {"rim": 1.5, "chamfer": 0.0, "interface": Interface.BONDED, "support": Support.FIXED}
@@ -113,7 +113,7 @@ def test_a_liner_of_the_shells_own_material_is_one_with_it():
     np.testing.assert_allclose(one.compliance() @ forces, two.compliance() @ forces, rtol=1e-3, atol=1e-4)
 
 
-def test_a_chamfer_takes_away_the_edge_and_nothing_else():
+def test_a_chamfer_removes_only_the_edge_of_the_bore():
     shape = SocketShape(
         layers=((1.3, 1.0, 0.4),), rim=1.5, chamfer=0.1, interface=Interface.BONDED, support=Support.FIXED
     )
@@ -126,7 +126,7 @@ def test_a_chamfer_takes_away_the_edge_and_nothing_else():
     np.testing.assert_allclose(mesh.radius[:, -1], 1.3)
 
 
-def test_the_ball_is_held_by_its_equator_and_free_along_it():
+def test_the_equator_of_the_ball_is_fixed_axially_and_free_radially():
     body = ball_body(0.3, Resolution(size=0.1, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2))
     mesh = body.elastic.block
     moved = body.displacements(np.ones(len(body.contact)))
@@ -135,7 +135,7 @@ def test_the_ball_is_held_by_its_equator_and_free_along_it():
 
 
 @pytest.mark.parametrize("end", [3.0, -1.0])
-def test_graded_places_end_where_they_should_and_grow(end):
+def test_graded_points_have_the_stated_ends_and_growing_steps(end):
     places = graded_points(1.0, end, 0.1, 1.3, 0.5)
     assert places[0] == 1.0
     assert places[-1] == pytest.approx(end, rel=1e-14)

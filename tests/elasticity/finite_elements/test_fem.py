@@ -1,4 +1,4 @@
-"""The finite-element contact against the exact answer, an independent program, and itself."""
+"""Finite-element contact against the exact solution, an independent program, and finer meshes."""
 
 import json
 from dataclasses import replace
@@ -38,7 +38,7 @@ EACH_LINER_ONCE = [(liner, FORCES[number % 3]) for number, liner in enumerate(LI
 
 
 @pytest.mark.parametrize(("liner", "force"), either(quick=EACH_LINER_ONCE, long=list(product(LINERS, FORCES))))
-def test_a_full_shell_is_the_exact_answer(liner, force):
+def test_a_full_shell_has_the_exact_solution(liner, force):
     joint = lined(*liner)
     ours, exact = bs.FiniteElement(cup=FULL).press(joint, force=force), bs.Exact().press(joint, force=force)
     for name in QUANTITIES:
@@ -47,7 +47,7 @@ def test_a_full_shell_is_the_exact_answer(liner, force):
     np.testing.assert_allclose(ours.pressure(angle), exact.pressure(angle), atol=2e-3 * exact.max_pressure)
 
 
-def test_the_rim_at_137_degrees_is_far_enough():
+def test_a_rim_at_137_degrees_does_not_change_the_contact():
     cup = bs.Cup(arc_of_cover=np.radians(274.0))
     ours, exact = bs.FiniteElement(cup=cup).press(RIGID, force=3000.0), bs.Exact().press(RIGID, force=3000.0)
     for name in QUANTITIES:
@@ -55,7 +55,7 @@ def test_the_rim_at_137_degrees_is_far_enough():
 
 
 @pytest.mark.parametrize("clearance", some([0.02, 1.0, 0.1], 2))
-def test_the_circular_gap_too(clearance):
+def test_a_full_shell_with_a_circular_gap_has_the_exact_solution(clearance):
     joint = replace(RIGID, clearance=clearance)
     load = {"force": np.array([200.0, 2000.0])}
     ours, exact = (
@@ -74,14 +74,14 @@ def test_the_circular_gap_too(clearance):
     ],
     ids=["metal", "soft"],
 )
-def test_shells_behind_the_liner(backing):
+def test_a_backed_liner_has_the_exact_solution(backing):
     joint = lined(backing=backing)
     ours, exact = bs.FiniteElement(cup=FULL).press(joint, force=2000.0), bs.Exact().press(joint, force=2000.0)
     for name in QUANTITIES:
         assert getattr(ours, name) == pytest.approx(getattr(exact, name), rel=1e-3), name
 
 
-def test_a_massive_socket_is_held_far_away():
+def test_a_massive_socket_has_the_exact_solution():
     joint = lined(thickness=np.inf)
     ours, exact = bs.FiniteElement(cup=FULL).press(joint, force=30.0), bs.Exact().press(joint, force=30.0)
     assert ours.indentation == pytest.approx(exact.indentation, rel=1e-3)
@@ -122,7 +122,7 @@ def test_displacements_of_the_bore_are_the_exact_ones():
 
 
 @pytest.mark.parametrize("case", some(CALCULIX, 5), ids=lambda case: case["name"])
-def test_calculix_agrees(case):
+def test_calculix_has_the_same_indentation_pressure_and_half_angle(case):
     """Steel half ball pushed by its equator, hemispherical liner, linearised: the same problem by other elements."""
     joint = bs.Joint(
         ball_radius=case["ball_radius"],
@@ -141,8 +141,8 @@ def test_calculix_agrees(case):
 # --- what the exact solution leaves out ---
 
 
-def test_the_rim_matters_more_the_wider_the_contact():
-    """A hemisphere gives way near its rim; a whole sphere does not."""
+def test_the_rim_softens_wide_contacts_most():
+    """A hemisphere is softer near its rim; a complete sphere is not."""
     angle = np.radians([30.0, 50.0, 70.0, 80.0])
     joint = lined(0.49, 15.0)
     open_, closed = (bs.FiniteElement(cup=cup).press(joint, half_angle=angle) for cup in (bs.Cup(), FULL))
@@ -157,7 +157,7 @@ def test_arcs_of_cover_below_a_hemisphere_are_softer():
     assert np.all(np.diff(depths) < 0)
 
 
-def test_a_contact_that_fills_the_socket_says_so_and_still_answers():
+def test_a_contact_that_fills_the_socket_has_a_status_and_numbers():
     cup = bs.Cup(arc_of_cover=np.radians(70.0))
     loads = np.array([100.0, 2500.0, 3500.0, 4500.0])
     contact = bs.FiniteElement(cup=cup).press(HIP, force=loads)
@@ -206,7 +206,7 @@ def test_a_liner_that_slides_on_a_stiff_shell_slides_as_on_a_rigid_one():
         assert getattr(stiff, name) == pytest.approx(getattr(rigid, name), rel=3e-4), name
 
 
-def test_a_free_shell_gives_way_where_a_fixed_one_does_not():
+def test_a_free_shell_is_softer_than_a_fixed_one():
     shell = bs.Layer(thickness=4.0, material=bs.UHMWPE)
     fixed, free = (replace(HIP, backing=(shell,), support=support) for support in bs.Support)
     stiff, soft = (bs.FiniteElement().press(joint, force=2000.0) for joint in (fixed, free))
@@ -277,7 +277,7 @@ def test_error_bars_can_be_switched_off():
     assert json.dumps(one.summary()["error"]["indentation"]) == "null"
 
 
-def test_the_papers_claim_on_its_mesh():
+def test_doubling_the_elements_changes_results_by_less_than_one_percent():
     """Doubling the elements changes force, half angle and peak pressure by less than 1 % (R1 12, L 8 mm)."""
     joint = bs.Joint(ball_radius=12.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE, ball=bs.STEEL)
     depth = bs.Exact().press(joint, force=3000.0).indentation
@@ -312,7 +312,7 @@ def test_the_meshes_of_ball_and_socket_need_not_match(ball):
 
 @pytest.mark.parametrize("element", bs.Element)
 def test_error_bars_hold_for_both_kinds_of_elements(element):
-    """Bilinear elements converge more slowly, and say so."""
+    """Bilinear elements converge more slowly, as their error bars show."""
     loads = np.linspace(300.0, 3500.0, 16)
     ours = bs.FiniteElement(cup=FULL, element=element).press(RIGID, force=loads)
     exact = bs.Exact().press(RIGID, force=loads)
@@ -323,7 +323,7 @@ def test_error_bars_hold_for_both_kinds_of_elements(element):
 
 
 @pytest.mark.parametrize("clearance", some([3.0, 0.1], 1))
-def test_an_elastic_ball_narrow_in_a_massive_socket_is_hertz(clearance):
+def test_a_narrow_contact_in_a_massive_socket_is_hertz(clearance):
     """The patch is that of the socket's radius on both bodies, however much smaller the ball is."""
     soft = bs.Material(young=1000.0, poisson=0.4)
     joint = bs.Joint(ball_radius=17.0, clearance=clearance, liner_thickness=np.inf, liner=soft, ball=soft)
@@ -345,7 +345,7 @@ def test_the_stiffness_near_the_perfect_fit_is_the_slope_of_the_force(clearance)
 # --- the contract of all models, as far as elements keep it ---
 
 
-def test_force_indentation_and_half_angle_find_each_other():
+def test_force_indentation_and_half_angle_are_inverse():
     model = bs.FiniteElement()
     forces = np.array([1.0, 30.0, 500.0, 1000.0, 3000.0, 4500.0])
     by_force = model.press(HIP, force=forces)
@@ -374,7 +374,7 @@ def test_vertical_pressure_integrates_to_the_force():
     assert np.all(contact.pressure(contact.half_angle * 1.000001) == 0)
 
 
-def test_lengths_and_moduli_scale():
+def test_results_scale_with_lengths_and_moduli():
     a, b = 3.0, 0.2
     larger = bs.Joint(
         ball_radius=a * HIP.ball_radius,
@@ -390,7 +390,7 @@ def test_lengths_and_moduli_scale():
     assert other.stiffness == pytest.approx(a * b * one.stiffness, rel=1e-6)
 
 
-def test_arrays_of_joints_and_loads_answer_as_one_by_one():
+def test_arrays_of_joints_and_loads_give_the_results_of_single_ones():
     joint = replace(HIP, clearance=np.array([0.05, 0.1]))
     forces = np.array([0.0, 500.0, 3000.0])[:, None]
     contact = bs.FiniteElement().press(joint, force=forces)
@@ -401,7 +401,7 @@ def test_arrays_of_joints_and_loads_answer_as_one_by_one():
     assert contact.error["max_pressure"][2, 0] == single.error["max_pressure"]
 
 
-def test_one_answer_does_not_depend_on_its_neighbours():
+def test_results_do_not_depend_on_the_other_loads():
     model = bs.FiniteElement()
     alone = model.press(HIP, force=700.0).indentation
     among = model.press(HIP, force=np.array([0.01, 700.0, 4000.0])).indentation[1]
@@ -416,7 +416,7 @@ def test_chamfers_can_be_meshed_at_every_load(chamfer, force):
     assert bs.FiniteElement(cup=bs.Cup(chamfer=chamfer), meshes=1).press(HIP, force=force).status is bs.Status.OK
 
 
-def test_a_ball_that_leaves_the_pole_has_no_answer_and_takes_no_other_along():
+def test_a_contact_that_leaves_the_pole_has_no_result_and_changes_no_other():
     """A soft free shell closes around the ball: beyond some load the contact is no cap."""
     shell = bs.Layer(thickness=3.0, material=bs.Material(young=1000.0, poisson=0.3))
     joint = replace(HIP, liner_thickness=2.0, backing=(shell,), support=bs.Support.FREE)
@@ -425,14 +425,14 @@ def test_a_ball_that_leaves_the_pole_has_no_answer_and_takes_no_other_along():
     assert "leaves the pole" in contact.notes[0]
 
 
-def test_incompressible_bodies_are_refused_wherever_they_are():
+def test_incompressible_balls_and_backings_are_refused():
     rubber = bs.Material(young=1000.0, poisson=0.5)
     for joint in (replace(HIP, ball=rubber), replace(HIP, backing=(bs.Layer(thickness=4.0, material=rubber),))):
         with pytest.raises(ValueError, match="fem has no answer for ν = 0.5"):
             bs.FiniteElement().press(joint, force=1.0)
 
 
-def test_the_largest_stress_is_not_that_of_a_sharp_corner():
+def test_the_largest_stress_excludes_the_sharp_corner():
     cup = bs.Cup(arc_of_cover=np.radians(80.0))
     peaks = [
         bs.FiniteElement(cup=cup, spacing=bs.Adapted(elements=elements), meshes=1).press(HIP, force=2e4).peak_stress
@@ -441,13 +441,13 @@ def test_the_largest_stress_is_not_that_of_a_sharp_corner():
     assert peaks[0].von_mises == pytest.approx(peaks[1].von_mises, rel=1e-2)
 
 
-def test_an_answer_that_is_missing_has_a_summary():
+def test_a_contact_without_a_result_has_a_summary():
     summary = bs.FiniteElement(cup=FULL, meshes=1).press(HIP, indentation=1e6).summary()
     assert summary["force"] is None
     assert "mesh" not in summary
 
 
-def test_progress_is_told_to_those_who_listen_only():
+def test_progress_is_reported_only_within_its_context():
     from ballsocket.elasticity.finite_elements.progress import progress_to
 
     joint, told = replace(HIP, ball_radius=10.0), []
@@ -460,7 +460,7 @@ def test_progress_is_told_to_those_who_listen_only():
     assert len(told) == heard
 
 
-def test_nothing_to_slide_on_is_refused():
+def test_a_sliding_liner_needs_a_backing_or_a_fixed_surface():
     with pytest.raises(ValueError, match="needs a backing or a fixed outer surface behind the liner"):
         bs.FiniteElement(cup=bs.Cup(interface=bs.Interface.SLIDING)).press(
             replace(HIP, support=bs.Support.FREE), force=1.0
@@ -475,12 +475,12 @@ def test_nothing_to_slide_on_is_refused():
         ({"chamfer": np.inf}, "chamfer = inf is not allowed"),
     ],
 )
-def test_a_cup_refuses(words, message):
+def test_invalid_numbers_of_a_cup_are_refused(words, message):
     with pytest.raises(ValueError, match=message):
         bs.Cup(**words)
 
 
-def test_what_cannot_be_meshed_is_refused():
+def test_joints_that_cannot_be_meshed_are_refused():
     with pytest.raises(ValueError, match="liner_thickness = 6.75 is not allowed: a layer must have at least two"):
         bs.FiniteElement(spacing=bs.Uniform(size=5.0)).press(HIP, force=1.0)
     with pytest.raises(ValueError, match="chamfer = 6.5 is not allowed: a chamfer must leave a tenth of the liner"):
@@ -502,20 +502,20 @@ def test_a_mesh_larger_than_the_memory_is_refused_before_it_is_built():
         bs.FiniteElement(spacing=bs.Uniform(size=0.0005)).press(HIP, force=1000.0)
 
 
-def test_without_the_extra_there_is_a_way_out(monkeypatch):
+def test_a_missing_extra_is_reported_with_its_install_command(monkeypatch):
     monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda module: None)
     with pytest.raises(ImportError, match=r"skfem is not installed: pip install 'ballsocket\[fem\]'"):
         bs.FiniteElement().press(HIP, force=1000.0)
 
 
-def test_contacts_wider_than_are_solved_have_no_answer():
+def test_contacts_wider_than_88_degrees_have_no_result():
     contact = bs.FiniteElement(cup=FULL).press(HIP, half_angle=np.radians(89.0))
     assert contact.status is bs.Status.NOT_REACHED
     assert np.isnan(contact.force)
     assert "at most 88" in contact.notes[0]
 
 
-def test_the_inside_is_of_one_contact_under_load():
+def test_displacements_and_stresses_need_one_contact_under_load():
     contact = bs.FiniteElement(meshes=1).press(HIP, force=np.array([10.0, 20.0]))
     with pytest.raises(ValueError, match="displacements and stresses are for one contact"):
         _ = contact.section
@@ -525,7 +525,7 @@ def test_the_inside_is_of_one_contact_under_load():
         _ = bs.FiniteElement().press(HIP, force=100.0).section["cement"]
 
 
-def test_the_size_of_a_mesh_is_known_without_it():
+def test_the_stated_mesh_size_equals_that_of_the_mesh():
     contact = bs.FiniteElement().press(HIP, force=3000.0)
     parts = contact.section.parts
     assert contact.mesh.elements == sum(part.elements.shape[1] for part in parts)
@@ -544,7 +544,7 @@ def test_a_section_names_its_parts_and_has_a_scale_for_each_kind():
     assert section.get_title() == "arc of cover 180°, outside fixed"
 
 
-def test_vtk(tmp_path):
+def test_a_vtk_file_has_the_mesh_and_its_stresses(tmp_path):
     import meshio
 
     from ballsocket.elasticity.finite_elements.decks.vtk import write_vtk
@@ -568,7 +568,7 @@ def numpy_of(blocks):
     return np.concatenate(list(blocks))
 
 
-def test_an_interrupted_write_leaves_nothing(tmp_path, monkeypatch):
+def test_an_interrupted_write_leaves_no_file(tmp_path, monkeypatch):
     import meshio
 
     from ballsocket.elasticity.finite_elements.decks.vtk import write_vtk

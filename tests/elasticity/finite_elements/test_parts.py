@@ -128,7 +128,7 @@ def test_work_of_a_full_contact_is_the_strain_energy(pair):
     assert tangent._partial_work(narrow) == pytest.approx(narrow.strain_energy, rel=2e-3)
 
 
-def test_solving_a_full_contact_for_its_force(pair):
+def test_a_full_contact_is_solved_for_its_force(pair):
     for gap in (LinearGap(clearance=0.1, socket_radius=18.0), CircularGap(clearance=0.1, socket_radius=18.0)):
         contact = load_curve._solve_full_contact("force", 9000.0, pair, gap)
         assert contact.force == pytest.approx(9000.0, rel=1e-10)
@@ -153,7 +153,7 @@ def test_a_bracket_finds_the_contacts_between_its_ends(pair):
             contact = bracket.solve(kind, load)
             assert getattr(contact, kind) == pytest.approx(load, rel=1e-9)
             assert bracket.estimate_angle(kind, load) == pytest.approx(contact.half_angle, rel=0.02)
-            bisected = bracket._solve_by_bisection(kind, load, 0.29, 1.0)
+            bisected = bracket._solve_by_brent(kind, load, 0.29, 1.0)
             assert bisected.half_angle == pytest.approx(contact.half_angle, rel=1e-8)
 
 
@@ -180,7 +180,7 @@ def test_lagrange_polynomials_interpolate():
         np.testing.assert_allclose(surface.nodal_sums(angle, np.arange(5.0)), shapes.T @ np.arange(5.0), atol=1e-14)
 
 
-def test_bisection_and_joining_of_points():
+def test_points_are_bisected_and_joined():
     np.testing.assert_allclose(mesh.bisect_intervals(np.array([0.0, 1.0, 3.0])), [0.0, 0.5, 1.0, 2.0, 3.0])
     np.testing.assert_allclose(mesh.join_points([np.array([0.0, 1.0]), np.array([1.0, 2.0, 4.0])]), [0, 1, 2, 4])
 

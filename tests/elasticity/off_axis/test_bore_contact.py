@@ -87,7 +87,7 @@ def test_blocks_of_balls_do_not_change_the_solution(monkeypatch):
     assert [len(block) for block in BORE.blocks(np.arange(2))] == [1, 1]
 
 
-def test_balls_that_are_not_held_stay_at_their_start():
+def test_balls_excluded_from_the_search_stay_at_their_start():
     held = np.array([True, False, True])
     solution = solve_force(BORE, LOADS, START, held)
     assert solution.converged.tolist() == [True, False, True]

@@ -257,7 +257,9 @@ def _unit(name: str, reading: Reading) -> Unit:
     """The unit in which a number is typed: that of files, or that of an inch page."""
     quantity = QUANTITIES[name]
     unit = quantity.written if reading.units is Units.SI else reading.unit(quantity)
-    return Unit(_TYPED.get(unit.text, unit.text if reading.units is not Units.SI else quantity.kind.typed), unit.factor)
+    return Unit(
+        _TYPED.get(unit.text, unit.text if reading.units is not Units.SI else quantity.kind.assumed_unit), unit.factor
+    )
 
 
 def _typed(reading: Reading, name: str, value: float) -> str:

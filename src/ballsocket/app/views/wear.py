@@ -100,7 +100,7 @@ class Wear:
         if not found:
             raise ValueError("the wear of this has not been run yet: run it first")
         unit = unit_of_files(CONTACT["indentation"], screen.reading)
-        depths = [f"{name}{unit.bracketed}" for name in ("penetration", "low", "high", "deepest")]
+        depths = [f"{name}{unit.text_in_brackets}" for name in ("penetration", "low", "high", "deepest")]
         rows = [
             [name, float(cycles), *(unit.factor * float(depth) for depth in row), float(volume)]
             for name, each in found.items()

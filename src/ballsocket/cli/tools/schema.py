@@ -66,7 +66,7 @@ def _measure(name: str) -> str:
     if known not in QUANTITIES:
         return ""
     each, twice = QUANTITIES[known], "twice " if name in DIAMETERS else ""
-    return f"{twice}{each.title}{each.written.bracketed}. "
+    return f"{twice}{each.title}{each.written.text_in_brackets}. "
 
 
 _TEXT = {"type": ["string", "number"], "maxLength": 300}

@@ -135,6 +135,8 @@ def _send_work(client: Client, work: Work) -> Iterator[str]:
     from distributed import WorkerPlugin
 
     class WorkPlugin(WorkerPlugin):
+        """Dask plugin that stores the work function on a worker."""
+
         def __init__(self) -> None:
             self.work = work
 

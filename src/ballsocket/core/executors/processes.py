@@ -106,7 +106,7 @@ class Processes:
         pending, deaths = deque(numbers), Counter[int]()
         while pending:
             with _start_pool(self._n_workers, work) as pool:
-                for number, future in _run_until_broken(pool, pending, _QUEUED_PER_WORKER * self._n_workers):
+                for number, future in _submit_until_worker_dies(pool, pending, _QUEUED_PER_WORKER * self._n_workers):
                     if future is _WORKER_DIED:
                         deaths[number] += 1
                         pending.append(number)
@@ -129,10 +129,12 @@ def available_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _run_until_broken(pool: ProcessPoolExecutor, pending: deque[int], max_queued: int) -> Iterator[tuple[int, Any]]:
-    """Yield each number with its completed future, until all are completed or a worker process has died.
+def _submit_until_worker_dies(
+    pool: ProcessPoolExecutor, pending: deque[int], max_queued: int
+) -> Iterator[tuple[int, Any]]:
+    """Submit the pending pieces, and yield (number, completed future) of each.
 
-    A piece whose process died has `_WORKER_DIED` in place of a future.
+    It stops when a worker process has died. The affected pieces have `_WORKER_DIED` in place of a future.
     """
     submitted: dict[Future[Any], int] = {}
     broken = False

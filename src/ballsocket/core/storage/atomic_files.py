@@ -24,7 +24,7 @@ _MIN_AGE = 60.0
 """Age in s below which an unlocked draft folder is not removed: its process may be about to lock it."""
 
 
-def is_draft(name: str) -> bool:
+def is_draft_folder(name: str) -> bool:
     """Check if a name has the form of a draft folder."""
     return name.startswith(".") and name.endswith(_DRAFT_SUFFIX)
 
@@ -73,7 +73,7 @@ def make_draft_folder(path: Path) -> Iterator[Path]:
     prefix = f".{path.name[:_PREFIX_LENGTH]}."
     with suppress(OSError):
         for folder in path.parent.iterdir():
-            if folder.name.startswith(prefix) and is_draft(folder.name) and _is_abandoned(folder):
+            if folder.name.startswith(prefix) and is_draft_folder(folder.name) and _is_abandoned(folder):
                 rmtree(folder, ignore_errors=True)
     try:
         temporary_folder = TemporaryDirectory(prefix=prefix, suffix=_DRAFT_SUFFIX, dir=path.parent)

@@ -42,6 +42,6 @@ def check_worker_code(code: str) -> None:
         raise ValueError(f"this worker has ballsocket {fingerprint()}, but the run was started by {code}")
 
 
-def digest_of(*inputs: object) -> str:
+def hash_inputs(*inputs: object) -> str:
     """Compute the SHA-256 digest of the `repr` of inputs, as 64 hexadecimal characters."""
     return sha256(repr(inputs).encode()).hexdigest()

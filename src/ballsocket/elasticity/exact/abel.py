@@ -48,22 +48,22 @@ class AbelState(PeakPressure):
 
     @property
     def grid(self) -> QuadratureGrid:
-        """Quadrature grid of the intervals."""
+        """Quadrature grid on the intervals [0, ε]."""
         return self.intervals.grid
 
     @cached_property
-    def _targets(self) -> Numbers:
-        """Target angles t in rad: the points of the grid, then ε."""
+    def _target_angles(self) -> Numbers:
+        """Angles t in rad at which the contact equation is satisfied: the quadrature points, then the edge ε."""
         return self.half_angle[:, None] * self.grid.position
 
     @property
     def _point_angles(self) -> Numbers:
-        """Angles t in rad at the points of the grid."""
-        return self._targets[:, :-1]
+        """Angles t in rad of the quadrature points."""
+        return self._target_angles[:, :-1]
 
     @cached_property
     def _weights(self) -> Numbers:
-        """Quadrature weights of integrals over [0, ε] at the points."""
+        """Quadrature weights of integrals over [0, ε]."""
         return self.half_angle[:, None] * (self.grid.weights * self.grid.slope)[self.grid.points :]
 
     @cached_property
@@ -77,24 +77,29 @@ class AbelState(PeakPressure):
 
     @cached_property
     def _inverse(self) -> Numbers:
-        """Inverse of the even equation at the points, for its three right-hand sides."""
+        """Inverse matrix of the even contact equation, without the row of the edge."""
         return numpy.linalg.inv(self._operators[0][:, :-1])
 
     @cached_property
     def _edge_weights(self) -> Numbers:
-        """Weights that map a right-hand side at the points to the integral at t = ε."""
+        """Weights of a right-hand side that give the integral term of the contact equation at the edge."""
         return (self._operators[0][:, -1:] @ self._inverse)[:, 0]
 
     def _edge_value(self, side: Numbers) -> Numbers:
-        """Compute H(ε) for a right-hand side at the targets."""
+        """Compute the solution of the even contact equation at the edge, H(ε), from its right-hand side."""
         return 2 / pi * (side[:, -1] - numpy.sum(self._edge_weights * side[:, :-1], axis=-1))
 
     @cached_property
     def indentation(self) -> Numbers:
-        """Indentation d in mm: the root of H(ε) = 0, by Newton's method."""
+        """Indentation d in mm, solved by Newton's method.
+
+        The condition is H(ε) = 0: the pressure is bounded at the edge.
+        """
         d = numpy.zeros_like(self.half_angle)[:, None]
         for _ in range(self.gap.steps):
-            residual, slope = (side(self._targets, d) for side in (self.gap.transform, self.gap.indentation_derivative))
+            residual, slope = (
+                side(self._target_angles, d) for side in (self.gap.transform, self.gap.indentation_derivative)
+            )
             step = (self._edge_value(residual) / self._edge_value(slope))[:, None]
             d = d - step
             if not numpy.any(abs(step) > 1e-13 * abs(d)):
@@ -103,27 +108,27 @@ class AbelState(PeakPressure):
 
     @cached_property
     def _indentation_transform(self) -> Numbers:
-        """Abel transform A[∂u/∂d] at the targets."""
-        return self.gap.indentation_derivative(self._targets, self.indentation[:, None])
+        """Abel transform of the displacement per unit of indentation, A[∂u/∂d], at the target angles."""
+        return self.gap.indentation_derivative(self._target_angles, self.indentation[:, None])
 
     @cached_property
     def _G(self) -> tuple[Numbers, Numbers]:  # noqa: N802
-        """Solution G at the points and at ε."""
-        side = -self.gap.slope(self._targets, self.indentation[:, None])
+        """Solution G = -H' of the odd contact equation in mm, at the quadrature points and at the edge."""
+        side = -self.gap.slope(self._target_angles, self.indentation[:, None])
         odd = self._operators[1]
         inside = numpy.linalg.solve(odd[:, :-1], side[:, :-1, None])[..., 0]
         return inside, 2 / pi * (side[:, -1] - numpy.sum(odd[:, -1] * inside, axis=-1))
 
     @cached_property
     def error(self) -> Numbers:
-        """Relative difference between H at the points and the integral of G, over the largest H."""
+        """Relative error of the solution: difference between H and the integral of G, over the largest H."""
         side = self.gap.transform(self._point_angles, self.indentation[:, None])
         H = (self._inverse @ side[..., None])[..., 0]
         steps = self._G[0] * (self.grid.slope[self.grid.points :] * self.half_angle[:, None])
-        return numpy.max(abs(H - steps @ self.grid.to_edge.T), axis=-1) / numpy.max(abs(H), axis=-1)
+        return numpy.max(abs(H - steps @ self.grid.integral_to_edge.T), axis=-1) / numpy.max(abs(H), axis=-1)
 
-    def _integral(self, factor: Numbers) -> Numbers:
-        """Integrate factor G/C over [0, ε]."""
+    def _integrate(self, factor: Numbers) -> Numbers:
+        """Integrate a factor times the solution G/C over [0, ε]."""
         return numpy.sum(self._weights * factor * self._G[0], axis=-1) / self.kernel.compliance
 
     @property
@@ -134,16 +139,16 @@ class AbelState(PeakPressure):
     @cached_property
     def force(self) -> Numbers:
         """Force F in N."""
-        return 4 * pi / 3 * self._squared_radius * self._integral(numpy.sin(1.5 * self._point_angles))
+        return 4 * pi / 3 * self._squared_radius * self._integrate(numpy.sin(1.5 * self._point_angles))
 
     @cached_property
     def pole_pressure(self) -> Numbers:
         """Pressure p0 at the pole in MPa."""
-        return self._integral(0.5 / numpy.sin(self._point_angles / 2))
+        return self._integrate(0.5 / numpy.sin(self._point_angles / 2))
 
     @property
     def decreases(self) -> Numbers:
-        """Mask of contacts whose pressure certainly decreases from the pole to the edge.
+        """True for each contact whose pressure certainly decreases from the pole to the edge.
 
         Since p = 2 sqrt(Δ)/C ∫ g dz with g = G/sin s (see `pressure`), the pressure decreases where
         g sqrt(sin²(ε/2) - sin²(s/2)) decreases.
@@ -154,19 +159,19 @@ class AbelState(PeakPressure):
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
-        """The largest pressure of each contact in MPa, and its polar angle in rad."""
+        """Largest pressure of each contact in MPa, and its polar angle in rad."""
         if self.decreases.all():
             return self.pole_pressure, 0.0 * self.half_angle
         return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, ROUNDING)
 
     @cached_property
     def pressure_integral(self) -> Numbers:
-        """Integral ∫ p dA in N."""
-        return 4 * pi * self._squared_radius * self._integral(numpy.sin(self._point_angles / 2))
+        """Integral of the pressure over the contact area, ∫ p dA, in N."""
+        return 4 * pi * self._squared_radius * self._integrate(numpy.sin(self._point_angles / 2))
 
     @cached_property
     def stiffness(self) -> Numbers:
-        """Stiffness dF/dd in N/mm.
+        """Tangent stiffness dF/dd in N/mm.
 
         It is that of a punch of constant contact area, because G is continuous at the edge.
         """
@@ -176,19 +181,22 @@ class AbelState(PeakPressure):
 
     @cached_property
     def widening(self) -> Numbers:
-        """Derivative dd/dε in mm/rad, from the balance of a deeper punch and a wider contact at the edge."""
+        """Derivative of the indentation by the half angle, dd/dε, in mm/rad.
+
+        It follows from the balance of a deeper punch and a wider contact at the edge.
+        """
         return self._G[1] / self._edge_value(self._indentation_transform)
 
     @cached_property
     def energy(self) -> Numbers:
-        """Energy ∫ F dd in N mm."""
+        """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
         if not self.gap.conservative:
             return self._integrate_work()
-        gap_work = 16 * pi / 3 * self._squared_radius * self._integral(numpy.sin(self._point_angles / 2) ** 3)
+        gap_work = 16 * pi / 3 * self._squared_radius * self._integrate(numpy.sin(self._point_angles / 2) ** 3)
         return (self.indentation * self.force - self.gap.clearance * gap_work) / 2
 
     def _integrate_work(self) -> Numbers:
-        """Integrate F dd over the half angle, for gaps without a potential."""
+        """Compute the work ∫ F dd in N mm by quadrature over the half angle, for gaps without a potential."""
         nodes, weights = (numpy.array(part) for part in gauss_legendre(16))
         angles = (nodes[:, None] * self.half_angle).ravel()
         narrower = AbelState(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angles, grid=self.grid))
@@ -197,14 +205,14 @@ class AbelState(PeakPressure):
 
     @cached_property
     def expansion(self) -> Numbers:
-        """Coefficients of G/sin s in even Legendre polynomials of y."""
+        """Coefficients of G/sin s in mm, for the even Legendre polynomials of the grid coordinate y."""
         size = self.grid.points
         y, w = (part[size:] for part in self.grid.nodes)
         P = numpy.polynomial.legendre.legvander(y, 2 * size - 1)[:, ::2]
         return (self._G[0] / numpy.sin(self._point_angles)) @ (w[:, None] * P * (4 * numpy.arange(size) + 1))
 
     def pressure(self, angle: Numbers) -> Numbers:
-        """Compute p(φ) in MPa at angles (any, loads); 0 outside the contact."""
+        """Compute the contact pressure p(φ) in MPa at polar angles (any, loads); 0 outside the contact."""
         return pressure_of(self.half_angle, self.expansion.T, angle) / self.kernel.compliance
 
     def single(self, number: int) -> AbelState:
@@ -212,18 +220,24 @@ class AbelState(PeakPressure):
         return replace(self, intervals=Intervals(half_angle=self.half_angle[number : number + 1], grid=self.grid))
 
     def modes(self, count: int) -> Numbers:
-        """Compute p_n in MPa for n below count: p = Σ p_n P_n(cos φ). Shape (loads, count)."""
+        """Compute the pressure modes p_n in MPa for degrees n below `count`.
+
+        They are the coefficients of p = Σ p_n P_n(cos φ), in the shape (loads, count).
+        """
         if len(self._cached_modes) == 0 or self._cached_modes[0].shape[1] < count:
             self._cached_modes[:] = [self._compute_modes(count)]
         return self._cached_modes[0][:, :count]
 
     @cached_property
     def _cached_modes(self) -> list[Numbers]:
-        """Modes computed so far; stresses inside the socket need them many times."""
+        """Pressure modes computed so far, because stresses inside the socket need them many times."""
         return []
 
     def _compute_modes(self, count: int) -> Numbers:
-        """Compute the pressure modes p_n by Gauss-Legendre quadrature on panels shorter than the wavelengths."""
+        """Compute the pressure modes p_n in MPa by Gauss-Legendre quadrature.
+
+        The quadrature panels are shorter than the wavelengths.
+        """
         panels = 4 + ceil(count * float(self.half_angle.max(initial=0.0)) / 4)
         x, w = (numpy.array(part) for part in gauss_legendre(12))
         y = ((numpy.arange(panels)[:, None] + x) / panels).ravel()
@@ -241,7 +255,9 @@ class AbelState(PeakPressure):
 
 
 def pressure_of(half_angle: Numbers, expansion: Numbers, angle: Numbers) -> Numbers:
-    """Compute C p(φ) at angles (any, contacts) from G/sin s as even Legendre series (terms, contacts).
+    """Compute the pressure times the compliance, C p(φ) in mm, from the Legendre coefficients of G/sin s.
+
+    `angle` has the shape (any, contacts), `expansion` (terms, contacts).
 
     With sin²(s/2) = sin²(φ/2) + Δ z², Δ = sin²(ε/2) - sin²(φ/2): C p = 2 sqrt(Δ) ∫ G/sin s dz over [0, 1].
     """
@@ -265,7 +281,7 @@ _MODES_PER_BLOCK = 64
 
 
 def _even_series(coefficients: Numbers, y: Numbers) -> Numbers:
-    """Sum coefficients[k] P_2k(y) by Clenshaw's recurrence in y²."""
+    """Evaluate a series of even Legendre polynomials P_2k at y, by Clenshaw's recurrence in y²."""
     square = y * y
     following, current = 0.0, coefficients[-1]
     for k in range(len(coefficients) - 2, -1, -1):
@@ -279,12 +295,18 @@ def _even_series(coefficients: Numbers, y: Numbers) -> Numbers:
 
 
 def _recurrence_factor(n: int, square: Numbers) -> Numbers:
-    """Compute A y² + B of P_n+2 = (A y² + B) P_n + D P_n-2."""
+    """Compute the factor A y² + B in the recurrence of even Legendre polynomials.
+
+    The recurrence is P_n+2 = (A y² + B) P_n + D P_n-2.
+    """
     lead = (2 * n + 1) * (2 * n + 3) / ((n + 1) * (n + 2))
     shift = (n + 1) ** 2 / ((2 * n + 1) * (2 * n + 3)) + (n**2 / ((2 * n + 1) * (2 * n - 1)))
     return lead * (square - shift)
 
 
 def _recurrence_offset(n: int) -> float:
-    """Compute D of P_n+2 = (A y² + B) P_n + D P_n-2."""
+    """Compute the coefficient D in the recurrence of even Legendre polynomials.
+
+    The recurrence is P_n+2 = (A y² + B) P_n + D P_n-2.
+    """
     return -((2 * n + 1) * (2 * n + 3) / ((n + 1) * (n + 2))) * (n * (n - 1) / ((2 * n - 1) * (2 * n + 1)))

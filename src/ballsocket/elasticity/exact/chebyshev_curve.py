@@ -35,14 +35,17 @@ _BLOCK = 2000  # contacts in one block, which fits into the cache
 _POWERS = {"indentation": 2.0, "force": 3.0}  # of ε in the loads of a point contact
 _STARTS, _MIN_START, _NEWTON_STEPS, _ROUNDING = 800, 1e-9, 3, 1e-12
 
-LOGS = 2
+LOG_FUNCTIONS = 2
 """Number of functions that are logarithms."""
 
 _PRESSURE_RIPPLE = 1e-7  # relative ripple of a pressure from series
 
 
-def _functions(state: AbelState) -> Numbers:
-    """Compute ln of d/X/(1 - cos ε) and of F C/(R2² X ε³), then p0 C/(X ε), dF/dd C/(R2² ε), U/(F d) and ∫ p dA/F."""
+def _dimensionless_quantities(state: AbelState) -> Numbers:
+    """Compute six dimensionless quantities of contacts, which vary little with the half angle.
+
+    They are ln of d/X/(1 - cos ε) and of F C/(R2² X ε³), then p0 C/(X ε), dF/dd C/(R2² ε), U/(F d) and ∫ p dA/F.
+    """
     angle, d, F, C = state.half_angle, state.indentation, state.force, state.kernel.compliance
     reach, area = state.gap.clearance + d, state.gap.socket_radius**2
     logs = numpy.log([d / reach / (2 * numpy.sin(angle / 2) ** 2), F * C / (area * reach * angle**3)])
@@ -84,26 +87,26 @@ class ChebyshevCurve:
         """Estimate the relative error of each quantity at the applied load."""
         # near the perfect fit X depends strongly on the half angle, but the half angle hardly on a load
         sensitivity = 1.0 if kind == "half_angle" else _MAX_LOG_SLOPE / log_slope(kind, state)
-        series_error = sensitivity * state.reach_error + self.curve.kernel.tolerance
+        series_error = sensitivity * state.displacement_error + self.curve.kernel.tolerance
         return {name: series_error * (name != kind) + error for name, error in errors(kind, state).items()}
 
     @cached_property
-    def _widest_root(self) -> float:
-        """Table coordinate of the widest contact, from 0 to 1."""
+    def _widest_coordinate(self) -> float:
+        """Coordinate of the half angle of the widest contact, from 0 to 1."""
         return float(angle_root(self.curve.widest, self.curve.ratio))
 
     @cached_property
     def _series(self) -> Numbers:
-        """Coefficients (rows, terms) of the functions, then of the derivatives of the logarithms."""
-        series = coefficients(_functions(self.knots), 1)
-        slopes = numpy.zeros_like(series[:LOGS])
-        slopes[:, :-1] = numpy.polynomial.chebyshev.chebder(series[:LOGS], axis=1)
+        """Chebyshev coefficients (rows, terms) of the six functions, then of the derivatives of the logarithms."""
+        series = coefficients(_dimensionless_quantities(self.knots), 1)
+        slopes = numpy.zeros_like(series[:LOG_FUNCTIONS])
+        slopes[:, :-1] = numpy.polynomial.chebyshev.chebder(series[:LOG_FUNCTIONS], axis=1)
         return numpy.concatenate([series, slopes])
 
     @cached_property
     def truncation(self) -> Numbers:
-        """Estimated truncation error of each function."""
-        return _TAIL_TERMS * numpy.max(abs(self._series[:-LOGS, -_TAIL_TERMS:]), axis=1)
+        """Estimated truncation error of the Chebyshev series of each function."""
+        return _TAIL_TERMS * numpy.max(abs(self._series[:-LOG_FUNCTIONS, -_TAIL_TERMS:]), axis=1)
 
     @property
     def is_accurate(self) -> bool:
@@ -120,46 +123,49 @@ class ChebyshevCurve:
 
     @cached_property
     def expansion(self) -> Numbers:
-        """Coefficients (Legendre, Chebyshev) of G/sin s/X, see `abel`, without negligible Legendre terms."""
+        """Coefficients of the pressure profile G/sin s/X in Legendre and Chebyshev polynomials.
+
+        The shape is (Legendre, Chebyshev), without negligible Legendre terms. G is explained in `abel`.
+        """
         reach = self.curve.gap.clearance + self.knots.indentation
         scaled = coefficients((self.knots.expansion / reach[:, None]).T, 1)
         return scaled[numpy.cumsum(abs(scaled[::-1]).max(axis=1))[::-1] > ROUNDING * abs(scaled).max()]
 
-    def functions_at(self, angle: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the functions at ε (functions, contacts), and the slopes of the two logarithms by ln ε."""
-        rows = _evaluate_in_blocks(lambda block: self._series @ self.waves(block), angle)
-        slope = angle_derivative(angle, angle_root(angle, self.curve.ratio), self.curve.ratio) / self._widest_root
-        return rows[:-LOGS], rows[-LOGS:] * slope
+    def evaluate_functions(self, angle: Numbers) -> tuple[Numbers, Numbers]:
+        """Evaluate the functions (functions, contacts) at half angles, and the slopes of both logarithms by ln ε."""
+        rows = _evaluate_in_blocks(lambda block: self._series @ self.evaluate_polynomials(block), angle)
+        slope = angle_derivative(angle, angle_root(angle, self.curve.ratio), self.curve.ratio) / self._widest_coordinate
+        return rows[:-LOG_FUNCTIONS], rows[-LOG_FUNCTIONS:] * slope
 
-    def waves(self, angle: Numbers) -> Numbers:
-        """Compute Chebyshev polynomials (terms, contacts) at ε."""
+    def evaluate_polynomials(self, angle: Numbers) -> Numbers:
+        """Evaluate the Chebyshev polynomials (terms, contacts) at half angles."""
         return chebyshev_polynomials(
-            2 * angle_root(angle, self.curve.ratio) / self._widest_root - 1, self._series.shape[1]
+            2 * angle_root(angle, self.curve.ratio) / self._widest_coordinate - 1, self._series.shape[1]
         )
 
     @cached_property
     def stress_curve(self) -> StressCurve:
-        """Von Mises stresses along the curve."""
+        """Largest von Mises stress in the liner as a function of the half angle."""
         return StressCurve(curve=self.curve, points=self.knots.grid.points)
 
     @cached_property
-    def _starts(self) -> Numbers:
-        """Half angles of the first guesses, dense near a point contact and near the perfect fit."""
+    def _start_angles(self) -> Numbers:
+        """Half angles in rad of the initial estimates, dense near a point contact and near the perfect fit."""
         widest = self.curve.widest
         small, last = numpy.geomspace(_MIN_START, 0.98 * widest, _STARTS), numpy.geomspace(0.02, 1e-8, _STARTS // 4)
         return numpy.concatenate([small, widest * (1 - last[1:]), [widest]])
 
     @cached_property
     def _start_loads(self) -> dict[str, Numbers]:
-        """Values ln(load) of the first guesses."""
-        state = ChebyshevState(series=self, half_angle=self._starts)
+        """Logarithms of force and indentation at the initial estimates of the half angle."""
+        state = ChebyshevState(series=self, half_angle=self._start_angles)
         return {kind: numpy.log(getattr(state, kind)) for kind in _POWERS}
 
     def _solve_angle(self, kind: str, load: Numbers) -> Numbers:
-        """Solve for ε by Newton's method in the logarithms; infinite beyond the widest contact."""
+        """Solve for the half angles in rad under loads by Newton's method; infinite beyond the widest contact."""
         start_loads, goal = self._start_loads[kind], numpy.log(load)
         below = numpy.minimum(goal - start_loads[0], 0.0) / _POWERS[kind]
-        angle = numpy.exp(numpy.interp(goal, start_loads, numpy.log(self._starts)) + below)
+        angle = numpy.exp(numpy.interp(goal, start_loads, numpy.log(self._start_angles)) + below)
         for _ in range(_NEWTON_STEPS):
             state = ChebyshevState(series=self, half_angle=angle)
             step = (numpy.log(getattr(state, kind)) - goal) / log_slope(kind, state)
@@ -169,7 +175,7 @@ class ChebyshevCurve:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChebyshevState(PeakPressure):
-    """Contacts at half angles ε (contacts,) above 0, interpolated, with the quantities of an `AbelState`."""
+    """Contacts interpolated at half angles ε (contacts,) above 0, with the quantities of an `AbelState`."""
 
     series: ChebyshevCurve
     half_angle: Numbers
@@ -181,45 +187,48 @@ class ChebyshevState(PeakPressure):
 
     @property
     def gap(self) -> Gap:
-        """Gap of the joint."""
+        """Gap function of the joint."""
         return self.series.curve.gap
 
     @cached_property
     def _functions(self) -> tuple[Numbers, Numbers]:
-        """Values of the functions, and slopes of the logarithms."""
-        return self.series.functions_at(self.half_angle)
+        """Values of the dimensionless functions, and slopes of both logarithms by ln ε."""
+        return self.series.evaluate_functions(self.half_angle)
 
     @cached_property
-    def _closure(self) -> tuple[Numbers, Numbers]:
-        """Ratio d/X, which is 1 at the perfect fit, and its difference from 1."""
-        share = numpy.exp(self._functions[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
-        return share, 1 - share
+    def _relative_indentation(self) -> tuple[Numbers, Numbers]:
+        """Ratio of indentation d to total displacement X = c + d, and its difference from 1.
+
+        The ratio is 1 at the perfect fit.
+        """
+        ratio = numpy.exp(self._functions[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
+        return ratio, 1 - ratio
 
     @property
     def relative_clearance(self) -> Numbers:
-        """Ratio c/X, from 1 down to 0 at the perfect fit."""
-        return self._closure[1]
+        """Ratio c/X of clearance and total displacement, from 1 down to 0 at the perfect fit."""
+        return self._relative_indentation[1]
 
     @cached_property
-    def _reach(self) -> Numbers:
-        """Sum X = c + d in mm."""
-        return self.gap.clearance / self._closure[1]
+    def _total_displacement(self) -> Numbers:
+        """Total displacement X = c + d in mm, the sum of clearance and indentation."""
+        return self.gap.clearance / self._relative_indentation[1]
 
     @cached_property
     def indentation(self) -> Numbers:
         """Indentation d in mm."""
-        return self._reach * self._closure[0]
+        return self._total_displacement * self._relative_indentation[0]
 
     @cached_property
     def widening(self) -> Numbers:
-        """Derivative dd/dε in mm/rad."""
+        """Derivative of the indentation by the half angle, dd/dε, in mm/rad."""
         rate = self._functions[1][0] / self.half_angle + 1 / numpy.tan(self.half_angle / 2)
-        return self._reach * self._closure[0] * rate / self._closure[1]
+        return self._total_displacement * self._relative_indentation[0] * rate / self._relative_indentation[1]
 
     @cached_property
     def _pressure_scale(self) -> Numbers:
         """Pressure scale X ε/C in MPa."""
-        return self._reach * self.half_angle / self.kernel.compliance
+        return self._total_displacement * self.half_angle / self.kernel.compliance
 
     @cached_property
     def force(self) -> Numbers:
@@ -234,33 +243,39 @@ class ChebyshevState(PeakPressure):
 
     @cached_property
     def stiffness(self) -> Numbers:
-        """Stiffness dF/dd in N/mm."""
+        """Tangent stiffness dF/dd in N/mm."""
         return self._functions[0][3] * self.gap.socket_radius**2 * self.half_angle / self.kernel.compliance
 
     @cached_property
     def energy(self) -> Numbers:
-        """Energy ∫ F dd in N mm."""
+        """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
         return self._functions[0][4] * self.force * self.indentation
 
     @cached_property
     def pressure_integral(self) -> Numbers:
-        """Integral ∫ p dA in N."""
+        """Integral of the pressure over the contact area, ∫ p dA, in N."""
         return self._functions[0][5] * self.force
 
     @cached_property
     def error(self) -> Numbers:
-        """Relative error at ε and X, from the exact solutions and from truncation."""
-        truncation, values = self.series.truncation[:, None], abs(self._functions[0][LOGS:])
+        """Relative error of the interpolated quantities, from the exact solutions and from truncation.
+
+        The half angle ε and the total displacement X count as exact.
+        """
+        truncation, values = self.series.truncation[:, None], abs(self._functions[0][LOG_FUNCTIONS:])
         return (
-            numpy.max(truncation[:LOGS])
-            + numpy.max(truncation[LOGS:] / values, axis=0)
+            numpy.max(truncation[:LOG_FUNCTIONS])
+            + numpy.max(truncation[LOG_FUNCTIONS:] / values, axis=0)
             + numpy.max(self.series.knots.error)
         )
 
     @property
-    def reach_error(self) -> Numbers:
-        """Relative error of X at ε, equal to that of the distance to the perfect fit."""
-        return self.series.truncation[0] * self._closure[0] / self._closure[1]
+    def displacement_error(self) -> Numbers:
+        """Relative error of the total displacement X at a half angle.
+
+        It equals that of the distance to the perfect fit.
+        """
+        return self.series.truncation[0] * self._relative_indentation[0] / self._relative_indentation[1]
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
@@ -278,24 +293,26 @@ class ChebyshevState(PeakPressure):
 
     @cached_property
     def _expansion(self) -> Numbers:
-        """Coefficients of G/sin s/X at each contact."""
-        return self.series.expansion @ self.series.waves(self.half_angle)
+        """Legendre coefficients of the pressure profile G/sin s/X of each contact."""
+        return self.series.expansion @ self.series.evaluate_polynomials(self.half_angle)
 
     def pressure(self, angle: Numbers) -> Numbers:
-        """Compute p(φ) in MPa at angles (any, contacts); 0 outside the contact."""
-        return pressure_of(self.half_angle, self._expansion, angle) * (self._reach / self.kernel.compliance)
+        """Compute the contact pressure p(φ) in MPa at polar angles (any, contacts); 0 outside the contact."""
+        return pressure_of(self.half_angle, self._expansion, angle) * (
+            self._total_displacement / self.kernel.compliance
+        )
 
     def single(self, number: int) -> AbelState:
-        """Solve one of the contacts exactly."""
+        """Solve the contact with index `number` exactly."""
         return self.series.curve.state(self.half_angle[number : number + 1], self.series.knots.grid.points)
 
 
 def fit_curve(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
-    """Fit series to a load curve to its tolerance; return the curve itself if that fails."""
+    """Fit Chebyshev series to a load curve to its tolerance; return the load curve itself if the fit fails."""
     terms, points = _TERMS, _POINTS
     with numpy.errstate(all="ignore"):
         for _ in range(_ATTEMPTS if curve.widest > 0 else 0):
-            candidate = ChebyshevCurve(curve=curve, knots=curve.state(_knots(curve, terms), points))
+            candidate = ChebyshevCurve(curve=curve, knots=curve.state(_knot_angles(curve, terms), points))
             if candidate.is_accurate:
                 return candidate
             needs_terms = numpy.max(candidate.truncation) > numpy.max(candidate.knots.error)
@@ -303,8 +320,8 @@ def fit_curve(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
     return curve
 
 
-def _knots(curve: LoadCurve, terms: int) -> Numbers:
-    """Return half angles at `chebyshev_points` up to the widest contact."""
+def _knot_angles(curve: LoadCurve, terms: int) -> Numbers:
+    """Compute half angles in rad at Chebyshev points up to the widest contact."""
     widest_root = float(angle_root(curve.widest, curve.ratio))
     return angle_at(widest_root * (1 + chebyshev_points(terms)) - 1, curve.ratio)
 

@@ -16,8 +16,8 @@ from ...contact.closed_sphere import (
     NOTED_CHANGE,
     POISSON_RANGE,
     THICKNESS_RATIO_RANGE,
-    indentation_change,
-    largest_change,
+    hemisphere_indentation_change,
+    max_hemisphere_change,
 )
 from ...contact.per_joint import JointContacts, SolvedContact
 from ...core import arrays
@@ -34,8 +34,8 @@ from .subsurface import (
     MIN_HALF_ANGLE,
     VON_MISES_TOLERANCE,
     estimate_von_mises,
+    find_peak_stress,
     largest_von_mises,
-    peak,
     stress,
     surface_displacement,
     von_mises_change,
@@ -62,8 +62,8 @@ class NearHemisphere(Range):
     why: str = "the closed sphere of the solution is stiffer than a socket with a free rim: use fem or sphere"
 
     def holds(self, contact: Any) -> Array:
-        """Check the range, first by an upper bound, else by the computed changes."""
-        if contact.hemisphere_at_most("indentation") <= self.high:
+        """Return True for contacts within the range, from an upper bound or else from the computed changes."""
+        if contact.hemisphere_change_bound("indentation") <= self.high:
             return contact.indentation == contact.indentation
         indentation_change, pressure_change = (contact.hemisphere[name] for name in ("indentation", "max_pressure"))
         return (abs(indentation_change) <= self.high) & (abs(pressure_change) <= self.high)
@@ -88,11 +88,11 @@ class ElasticContact(SolvedContact):
             More than one contact, or one that is narrower than 1 degree: there the half-space (`Hertz`) answers.
         """
         angles = numpy.asarray(arrays.to_numpy(QUANTITIES["angle"].check(angle)), dtype=float)
-        values = surface_displacement(self._single, angles)
+        values = surface_displacement(self._interior_state, angles)
         return values if angles.ndim else float(values)
 
     def stress(self, angle: Array, depth: Array) -> Stress:
-        """Compute stresses in the liner and its backing at polar angles (rad) and depths (mm) below the surface.
+        """Compute stresses in MPa in the liner and its backing at polar angles (rad) and depths (mm) below the bore.
 
         Angle and depth broadcast against each other; the results are NumPy arrays. The sum of modes is accurate to
         about 1e-4 of the peak pressure at the surface away from the edge of the contact, and to 1e-8 below it.
@@ -107,12 +107,12 @@ class ElasticContact(SolvedContact):
             numpy.asarray(value, dtype=float)
             for value in (QUANTITIES["angle"].check(angle), check_numeric("depth", depth))
         )
-        thickness = sum(shell.thickness for shell in self._single.kernel.socket.shells)
+        thickness = sum(shell.thickness for shell in self._interior_state.kernel.socket.shells)
         inside = (depths >= 0) & (depths <= thickness * (1 + 1e-9))
         require(
             "depth", depths, inside, f"a depth (mm) must lie between 0 and {thickness:g}, the thickness of the socket"
         )
-        stresses = stress(self._single, angles, depths)
+        stresses = stress(self._interior_state, angles, depths)
         if angles.ndim or depths.ndim:
             return stresses
         numbers: Any = {name: float(component) for name, component in vars(stresses).items()}
@@ -124,9 +124,8 @@ class ElasticContact(SolvedContact):
 
         The solution itself is that of a closed sphere. The keys are the names in `hemisphere.CHANGES`. A change is NaN
         where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
-        where the contact on the hemisphere would reach its rim. The error is below 0.03 for nineteen of twenty joints.
         """
-        changes = self.laws.combine(_hemisphere_of, rows=(len(CHANGES),))
+        changes = self.laws.combine(_hemisphere_changes, rows=(len(CHANGES),))
         return {name: self._match_load(changes[number, ...]) for number, name in enumerate(CHANGES)}
 
     @property
@@ -135,8 +134,8 @@ class ElasticContact(SolvedContact):
         return (*super().notes, *self._hemisphere_note())
 
     def _hemisphere_note(self) -> list[str]:
-        """Describe the changes on a hemisphere, if any exceeds 1 %."""
-        if self.hemisphere_at_most("largest") <= NOTED_CHANGE:
+        """Return a note on the changes on a hemisphere, or no note if none exceeds 1 %."""
+        if self.hemisphere_change_bound("largest") <= NOTED_CHANGE:
             return []
         changes = {QUANTITIES[name].symbol: arrays.to_numpy(values) for name, values in self.hemisphere.items()}
         negligible = numpy.all([~(abs(values) > NOTED_CHANGE) for values in changes.values()], axis=0)
@@ -144,7 +143,7 @@ class ElasticContact(SolvedContact):
         unaffected = (negligible & bounded) | arrays.to_numpy(self._failed)
         if not unaffected.all() and bounded.all() and self.joint.strengths() and self._is_single:
             changes["von Mises"] = numpy.array(self._hemisphere_von_mises)
-        return self._note(unaffected, _difference(changes))
+        return self._note(unaffected, _describe_changes(changes))
 
     @property
     def _is_single(self) -> bool:
@@ -158,24 +157,27 @@ class ElasticContact(SolvedContact):
         factor = 1 + float(arrays.to_numpy(self.hemisphere["half_angle"]).item())
         return von_mises_change(state, float(state.half_angle[0]) * factor)
 
-    def hemisphere_at_most(self, name: str) -> float:
-        """Estimate an upper bound of the "indentation" or "largest" change; infinite without a formula."""
+    def hemisphere_change_bound(self, name: str) -> float:
+        """Estimate an upper bound of the change of indentation or largest pressure on a hemisphere.
+
+        `name` is "indentation" or "largest". The bound is infinite for joints without a formula.
+        """
         has_formula = not self.joint.backing and self.joint.support is Support.FIXED
         if not has_formula or not all(arrays.all_true(limit.holds(self)) for limit in _FITTED_RANGES):
             return inf
-        estimate = indentation_change(self) if name == "indentation" else largest_change(self)
+        estimate = hemisphere_indentation_change(self) if name == "indentation" else max_hemisphere_change(self)
         return _SAFETY * float(numpy.max(arrays.to_numpy(estimate), where=~arrays.to_numpy(self._failed), initial=0.0))
 
     @cached_property
     def peak_stress(self) -> Peak:
-        """Largest von Mises stress in the liner, with its depth and polar angle.
+        """Largest von Mises stress in the liner in MPa, with its depth in mm and polar angle in rad.
 
         Raises
         ------
         ValueError
             More than one contact, or one without load or narrower than 1 degree.
         """
-        return peak(self._single, float(self.joint.liner_thickness))
+        return find_peak_stress(self._interior_state, float(self.joint.liner_thickness))
 
     @cached_property
     def von_mises_bounds(self) -> tuple[Array, Array]:
@@ -189,19 +191,21 @@ class ElasticContact(SolvedContact):
         return (1 - VON_MISES_TOLERANCE) * estimate, (1 + VON_MISES_TOLERANCE) * estimate
 
     def _estimate_von_mises(self, piece: JointContacts) -> numpy.ndarray:
+        """Estimate the largest von Mises stress in the liner in MPa for the contacts of one joint."""
         return estimate_von_mises(piece.state)
 
     def _joint_von_mises(self, position: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+        """Compute the largest von Mises stress in the liner in MPa for the contacts of one joint."""
         return largest_von_mises(piece.state, piece.reached)
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON, with error estimates and the changes on a hemisphere."""
+        """Return the contact as a dictionary for JSON, with error estimates and the changes on a hemisphere."""
         changes = {name: arrays.to_list(value) for name, value in self.hemisphere.items()}
         return {**super().summary(), "hemisphere": changes}
 
     @property
-    def _single(self) -> AbelState:
-        """State of the single contact; ValueError for several contacts or a narrow one."""
+    def _interior_state(self) -> AbelState:
+        """Solved state of a single contact; several contacts or a narrow one raise ValueError."""
         state: AbelState = self.single_state.single(0)
         width = float(state.half_angle[0])
         require(
@@ -215,7 +219,7 @@ class ElasticContact(SolvedContact):
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class CurveContact(ElasticContact):
-    """`ElasticContact` whose largest stress in the liner is interpolated on a curve of its joint, to about 1e-3."""
+    """Contact of the elastic solution with an interpolated largest stress in the liner, to about 1e-3."""
 
     def _estimate_von_mises(self, piece: JointContacts) -> numpy.ndarray:
         return self._joint_von_mises(numpy.empty(0), piece)
@@ -226,14 +230,14 @@ class CurveContact(ElasticContact):
         return super()._joint_von_mises(position, piece)
 
 
-def _hemisphere_of(piece: JointContacts) -> numpy.ndarray:
-    """Compute the changes of the touching contacts of one joint: (quantities, contacts)."""
+def _hemisphere_changes(piece: JointContacts) -> numpy.ndarray:
+    """Compute the relative changes on a hemisphere of the contacts of one joint: (quantities, contacts)."""
     changes = hemisphere_of(piece.state.kernel).changes(piece.state.half_angle)
     return numpy.stack([changes[name] for name in CHANGES])
 
 
-def _difference(changes: dict[str, numpy.ndarray]) -> str:
-    """Describe the changes beyond 1 %, the largest of each quantity."""
+def _describe_changes(changes: dict[str, numpy.ndarray]) -> str:
+    """Describe in words the changes on a hemisphere beyond 1 %, the largest of each quantity."""
     largest = {
         symbol: float(values.ravel()[numpy.nanargmax(abs(values))])
         for symbol, values in changes.items()

@@ -33,90 +33,101 @@ _RADIAL = 5
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FreeFace:
-    """Displacements of a hemispherical socket from which the equator's tractions of the closed sphere are released."""
+    """Additional displacements and stresses of a hemispherical socket whose equator is free of traction.
+
+    They are added to those of the closed sphere, whose tractions at the equator they cancel.
+    """
 
     socket: Socket
 
     @cached_property
-    def _radial(self) -> tuple[Numbers, Numbers, Numbers, Numbers, Numbers]:
-        """Points r, weights, shape functions and their derivatives (points, functions), and the layer of each point.
+    def _radial_functions(self) -> tuple[Numbers, Numbers, Numbers, Numbers, Numbers]:
+        """Radial shape functions of the displacements, at quadrature points.
+
+        The arrays are radii r in mm, weights, functions and derivatives (points, functions), and the layer of a point.
 
         The first functions, one for each layer, are 1 at its inner surface. The others vanish at the layer surfaces.
         """
-        shells, bounds = (
-            self.socket.shells,
-            numpy.cumsum([self.socket.radius, *(s.thickness for s in self.socket.shells)]),
-        )
+        layers = [self._layer_functions(number) for number in range(len(self.socket.shells))]
+        r, w, f, slope = (numpy.concatenate(parts) for parts in zip(*layers, strict=True))
+        return r, w, f, slope, numpy.repeat(numpy.arange(len(layers)), _RADIAL + 4)
+
+    def _layer_functions(self, number: int) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+        """Compute radii (mm), weights, and the radial shape functions with their derivatives in one layer."""
+        shells = self.socket.shells
+        bounds = numpy.cumsum([self.socket.radius, *(shell.thickness for shell in shells)])
         nodes, weights = (numpy.array(values) for values in gauss_legendre(_RADIAL + 4))
         count, bubbles = len(shells), _RADIAL - 1
-        r, w, f, slope, layer = [], [], [], [], []
         shapes, rates = _shifted_legendre(nodes, _RADIAL + 1)
-        for number, shell in enumerate(shells):
-            functions = numpy.zeros((2, len(nodes), count * _RADIAL))
-            span = slice(count + number * bubbles, count + (number + 1) * bubbles)
-            a = bounds[number]
-            if shell.thickness == inf:  # functions of s = a/r that vanish at infinity
-                radii, steps, rate = a / nodes, a / nodes**2, -(nodes**2) / a
-                functions[0, :, number], functions[1, :, number] = nodes, rate
-                hump = nodes * (1 - nodes)
-                functions[0, :, span] = hump[:, None] * shapes[:, :bubbles]
-                functions[1, :, span] = (((1 - 2 * nodes)[:, None] * shapes + hump[:, None] * rates) * rate[:, None])[
-                    :, :bubbles
-                ]
-            else:
-                log_ratio = log(bounds[number + 1] / a)
-                radii = a * numpy.exp(log_ratio * nodes)
-                steps, rate = log_ratio * radii, 1 / (log_ratio * radii)
-                functions[0, :, number], functions[1, :, number] = 1 - nodes, -rate
-                if number + 1 < count:
-                    functions[0, :, number + 1], functions[1, :, number + 1] = nodes, rate
-                scale = numpy.sqrt(2 * numpy.arange(1, _RADIAL) + 1)
-                functions[0, :, span] = (shapes[:, 2:] - shapes[:, :-2]) / (2 * scale)
-                functions[1, :, span] = scale * shapes[:, 1:-1] * rate[:, None]
-            r.append(radii)
-            w.append(weights * steps)
-            f.append(functions[0])
-            slope.append(functions[1])
-            layer.append(numpy.full(len(nodes), number))
-        arrays = (numpy.concatenate(values) for values in (r, w, f, slope, layer))
-        return tuple(arrays)  # type: ignore[return-value]
+        functions = numpy.zeros((2, len(nodes), count * _RADIAL))
+        span = slice(count + number * bubbles, count + (number + 1) * bubbles)
+        a = bounds[number]
+        if shells[number].thickness == inf:  # functions of s = a/r that vanish at infinity
+            radii, steps, rate = a / nodes, a / nodes**2, -(nodes**2) / a
+            functions[0, :, number], functions[1, :, number] = nodes, rate
+            hump = nodes * (1 - nodes)
+            functions[0, :, span] = hump[:, None] * shapes[:, :bubbles]
+            slopes = ((1 - 2 * nodes)[:, None] * shapes + hump[:, None] * rates) * rate[:, None]
+            functions[1, :, span] = slopes[:, :bubbles]
+        else:
+            log_ratio = log(bounds[number + 1] / a)
+            radii = a * numpy.exp(log_ratio * nodes)
+            steps, rate = log_ratio * radii, 1 / (log_ratio * radii)
+            functions[0, :, number], functions[1, :, number] = 1 - nodes, -rate
+            if number + 1 < count:
+                functions[0, :, number + 1], functions[1, :, number + 1] = nodes, rate
+            scale = numpy.sqrt(2 * numpy.arange(1, _RADIAL) + 1)
+            functions[0, :, span] = (shapes[:, 2:] - shapes[:, :-2]) / (2 * scale)
+            functions[1, :, span] = scale * shapes[:, 1:-1] * rate[:, None]
+        return radii, weights * steps, functions[0], functions[1]
 
     @cached_property
     def _stiffness(self) -> Numbers:
-        """Stiffness matrix over 2π: u_r = f(r) P(cos φ), then u_φ = f(r) sin φ P(cos φ)."""
-        r, w, f, slope, layer = self._radial
+        """Stiffness matrix of the hemispherical socket over 2π, for the coefficients of u_r and then of u_φ.
+
+        The displacements are u_r = f(r) P(cos φ) and u_φ = f(r) sin φ P(cos φ).
+        """
+        r, w, f, slope, layer = self._radial_functions
         young, nu = (
             numpy.array([getattr(s, name) for s in self.socket.shells])[layer] for name in ("young", "poisson")
         )
-        lame, shear = _moduli(young, nu)
+        lame, shear = _lame_constants(young, nu)
         x, weight = (numpy.array(part) for part in gauss_legendre(POLAR_TERMS + 3))
         P, P_rate, Q, Q_rate, Q_cot = _polar_functions(x)
         hoop, g = Q_rate + Q_cot, slope * r[:, None]
 
-        def polar(a: Numbers, b: Numbers) -> Numbers:
+        def integrate_polar(a: Numbers, b: Numbers) -> Numbers:
             return a.T @ (weight[:, None] * b)
 
-        def radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:
+        def integrate_radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:
             return a.T @ ((w * factor)[:, None] * b)
 
-        mixed = radial(g, f, lame)
+        mixed = integrate_radial(g, f, lame)
         rr = numpy.kron(
-            radial(g, g, lame + 2 * shear) + 2 * (mixed + mixed.T) + radial(f, f, 4 * (lame + shear)), polar(P, P)
-        ) + numpy.kron(radial(f, f, shear), polar(P_rate, P_rate))
-        rp = numpy.kron(mixed + radial(f, f, 2 * (lame + shear)), polar(P, hoop)) + numpy.kron(
-            radial(f, g - f, shear), polar(P_rate, Q)
+            integrate_radial(g, g, lame + 2 * shear)
+            + 2 * (mixed + mixed.T)
+            + integrate_radial(f, f, 4 * (lame + shear)),
+            integrate_polar(P, P),
+        ) + numpy.kron(integrate_radial(f, f, shear), integrate_polar(P_rate, P_rate))
+        rp = numpy.kron(mixed + integrate_radial(f, f, 2 * (lame + shear)), integrate_polar(P, hoop)) + numpy.kron(
+            integrate_radial(f, g - f, shear), integrate_polar(P_rate, Q)
         )
         pp = (
-            numpy.kron(radial(f, f, lame), polar(hoop, hoop))
-            + numpy.kron(radial(f, f, 2 * shear), polar(Q_rate, Q_rate) + polar(Q_cot, Q_cot))
-            + numpy.kron(radial(g - f, g - f, shear), polar(Q, Q))
+            numpy.kron(integrate_radial(f, f, lame), integrate_polar(hoop, hoop))
+            + numpy.kron(
+                integrate_radial(f, f, 2 * shear), integrate_polar(Q_rate, Q_rate) + integrate_polar(Q_cot, Q_cot)
+            )
+            + numpy.kron(integrate_radial(g - f, g - f, shear), integrate_polar(Q, Q))
         )
         return numpy.block([[rr, rp], [rp.T, pp]])
 
     @cached_property
     def _loads(self) -> Numbers:
-        """Work of -t on each function over 2π, per unit of p_n: (functions, modes)."""
-        r, w, f, _, _ = self._radial
+        """Load vectors over 2π per unit of each pressure mode p_n: (functions, modes).
+
+        They are the work of the reversed tractions -t of the equator on each function.
+        """
+        r, w, f, _, _ = self._radial_functions
         n = numpy.arange(MODES)
         P, slope = _legendre_at_equator(MODES)
         fields = self.socket.fields(n, r)
@@ -128,13 +139,16 @@ class FreeFace:
 
     @cached_property
     def solution(self) -> Numbers:
-        """Coefficients of u_r and u_φ (2, radial functions, polar functions, modes) per unit of p_n."""
+        """Coefficients of the additional displacements u_r and u_φ per unit of each pressure mode p_n.
+
+        The shape is (2, radial functions, polar functions, modes).
+        """
         return numpy.linalg.solve(self._stiffness, self._loads).reshape(2, -1, POLAR_TERMS, MODES)
 
     def liner_stress(self, pressure: Numbers, angle: Numbers) -> Stress:
-        """Compute the additional stresses in the liner for modes of pressure: (angles, `liner_radii`)."""
+        """Compute the additional stresses in the liner in MPa from pressure modes: (angles, `liner_radii`)."""
         shell, count = self.socket.shells[0], len(self.liner_radii)
-        r, _, f, slope, _ = (part[:count] for part in self._radial)
+        r, _, f, slope, _ = (part[:count] for part in self._radial_functions)
         radial, sideways = self.solution @ pressure
         P, P_rate, Q, Q_rate, Q_cot = _polar_functions(numpy.cos(angle))
         radial_displacement = P @ (f @ radial).T
@@ -144,7 +158,7 @@ class FreeFace:
             (radial_displacement + Q_cot @ (f @ sideways).T) / r,
         )
         shear = P_rate @ (f @ radial / r[:, None]).T + Q @ ((slope - f / r[:, None]) @ sideways).T
-        lame, rigidity = _moduli(shell.young, shell.poisson)
+        lame, rigidity = _lame_constants(shell.young, shell.poisson)
         volumetric = lame * (strain_r + strain_phi + strain_theta)
         return Stress(
             radial=volumetric + 2 * rigidity * strain_r,
@@ -155,17 +169,17 @@ class FreeFace:
 
     @property
     def liner_radii(self) -> Numbers:
-        """Radii in the liner at which stresses are computed, in mm."""
-        return self._radial[0][: _RADIAL + 4]
+        """Radii in mm at which the stresses in the liner are computed."""
+        return self._radial_functions[0][: _RADIAL + 4]
 
     @cached_property
-    def bore(self) -> Numbers:
-        """Coefficients of P_0, P_1, ... in the radial displacement of the bore, per unit of p_n: (terms, modes)."""
-        return _full_range_coefficients() @ self.solution[0, 0]
+    def bore_displacement(self) -> Numbers:
+        """Legendre coefficients of the additional radial displacement of the bore, per unit of p_n: (terms, modes)."""
+        return _full_range_matrix() @ self.solution[0, 0]
 
 
 def _shifted_legendre(x: Numbers, count: int) -> tuple[Numbers, Numbers]:
-    """Compute Legendre polynomials of 2x - 1 and their derivatives by x: (points, count)."""
+    """Compute the Legendre polynomials P_k(2x - 1) and their derivatives by x: (points, count)."""
     values = legendre.legvander(2 * x - 1, count - 1)
     rates = numpy.zeros_like(values)
     for k in range(1, count):  # P_k' = P_k-2' + (2k - 1) P_k-1
@@ -174,19 +188,22 @@ def _shifted_legendre(x: Numbers, count: int) -> tuple[Numbers, Numbers]:
 
 
 def _polar_functions(x: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers, Numbers]:
-    """Compute shapes of u_r and their φ-derivatives, then those of u_φ, their φ-derivatives and products with cot φ."""
+    """Compute the shape functions of the displacements along the meridian, and their derivatives by φ.
+
+    They are those of u_r and their derivatives, then those of u_φ, their derivatives and their products with cot φ.
+    """
     P, rates = _shifted_legendre(x, POLAR_TERMS)
     sine, cosine = numpy.sqrt(1 - x * x)[:, None], x[:, None]
     return P, -sine * rates, sine * P, cosine * P - sine**2 * rates, cosine * P
 
 
-def _moduli(young: Any, poisson: Any) -> tuple[Any, Any]:
-    """Compute Lamé's constant and the shear modulus."""
+def _lame_constants(young: Any, poisson: Any) -> tuple[Any, Any]:
+    """Compute Lamé's constants λ and G in MPa; G is the shear modulus."""
     return young * poisson / ((1 + poisson) * (1 - 2 * poisson)), young / (2 * (1 + poisson))
 
 
-def _full_range_coefficients() -> Numbers:
-    """Compute the coefficients of P_n(x) in each polynomial P_k(2x - 1)."""
+def _full_range_matrix() -> Numbers:
+    """Compute the matrix of the coefficients of P_n(x) in each polynomial P_k(2x - 1)."""
     x, weight = legendre.leggauss(POLAR_TERMS)
     waves = legendre.legvander(x, POLAR_TERMS - 1)
     return ((numpy.arange(POLAR_TERMS) + 0.5)[:, None] * waves.T * weight) @ legendre.legvander(
@@ -195,7 +212,7 @@ def _full_range_coefficients() -> Numbers:
 
 
 def _legendre_at_equator(count: int) -> tuple[Numbers, Numbers]:
-    """Compute P_n(0) and P_n'(0)."""
+    """Compute the Legendre polynomials and their derivatives at the equator, P_n(0) and P_n'(0)."""
     P, n = numpy.zeros(count), numpy.arange(count)
     P[0] = 1.0
     for k in range(2, count, 2):
@@ -205,6 +222,6 @@ def _legendre_at_equator(count: int) -> tuple[Numbers, Numbers]:
 
 @lru_cache(maxsize=8)
 def free_face_of(socket: Socket) -> FreeFace | None:
-    """Return the free face of a socket; None for a socket that stands on its rim."""
-    loose = socket.support is Support.FREE and socket.shells[-1].thickness < inf
-    return None if loose else FreeFace(socket=socket)
+    """Return the correction of a socket for a free equator, from a cache; None if it stands on its rim."""
+    stands_on_rim = socket.support is Support.FREE and socket.shells[-1].thickness < inf
+    return None if stands_on_rim else FreeFace(socket=socket)

@@ -17,7 +17,9 @@ from ...core.arrays import Numbers
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class QuadratureGrid:
-    """Points t = ε sin(πy/2), y in (0, 1), where functions on [0, ε] are known; t = ε is one more target.
+    """Quadrature points of functions on [0, ε], and the weights of integrals with singular kernels.
+
+    The points are t = ε sin(πy/2) with y in (0, 1); t = ε is one more target.
 
     Arrays over sources have 2 * points entries from -ε to ε; arrays over targets have points + 1, from 0 to ε.
     """
@@ -26,81 +28,87 @@ class QuadratureGrid:
 
     @cached_property
     def nodes(self) -> tuple[Numbers, Numbers]:
-        """Source points y in (-1, 1) and their weights."""
+        """Gauss-Legendre points y in (-1, 1), the sources of an integral, and their weights."""
         return numpy.polynomial.legendre.leggauss(2 * self.points)
 
     @property
-    def right(self) -> tuple[Numbers, Numbers]:
-        """Positive source points y and their weights."""
+    def positive_nodes(self) -> tuple[Numbers, Numbers]:
+        """Positive Gauss-Legendre points y and their weights."""
         y, w = self.nodes
         return y[self.points :], w[self.points :]
 
     @property
     def weights(self) -> Numbers:
-        """Weights of the source points, in y."""
+        """Gauss-Legendre weights of the sources, for integrals over y."""
         return self.nodes[1]
 
     @cached_property
-    def to_edge(self) -> Numbers:
-        """Matrix from an odd function of y at the points to its integral from there to y = 1."""
-        y, w = self.right
+    def integral_to_edge(self) -> Numbers:
+        """Matrix that integrates an odd function, known at the points, from each point to y = 1."""
+        y, w = self.positive_nodes
         degree = 2 * numpy.arange(self.points) + 1
         P = numpy.polynomial.legendre.legvander(y, 2 * self.points)
         return (P[:, degree - 1] - P[:, degree + 1]) @ (w[:, None] * P[:, degree]).T
 
     @cached_property
     def slope(self) -> Numbers:
-        """Derivative dt/dy/ε at the sources."""
+        """Derivative of the relative position, d(t/ε)/dy, at the sources."""
         return pi / 2 * numpy.cos(pi / 2 * self.nodes[0])
 
     @cached_property
-    def _targets(self) -> Numbers:
-        """Target points y: the positive sources, then 1."""
+    def _target_points(self) -> Numbers:
+        """Coordinates y of the targets: the positive sources, then 1."""
         return numpy.append(self.nodes[0][self.points :], 1.0)
 
     @cached_property
     def position(self) -> Numbers:
-        """Relative position t/ε of the targets."""
-        return numpy.sin(pi / 2 * self._targets)
+        """Relative positions t/ε of the targets."""
+        return numpy.sin(pi / 2 * self._target_points)
 
     @cached_property
-    def _stretch(self) -> Numbers:
-        """Ratio (t - s)/(y - y')/ε for targets and sources."""
-        y, z = self._targets[:, None], self.nodes[0]
+    def _distance_ratio(self) -> Numbers:
+        """Ratio of the distances in t/ε and in y, (t - s)/(y - y')/ε, between targets and sources."""
+        y, z = self._target_points[:, None], self.nodes[0]
         return pi / 2 * numpy.cos(pi / 4 * (y + z)) * numpy.sinc((y - z) / 4)
 
     @cached_property
     def distance(self) -> Numbers:
-        """Distance |t - s|/ε between targets and sources."""
-        return abs(self._targets[:, None] - self.nodes[0]) * self._stretch
+        """Relative distance |t - s|/ε between targets and sources."""
+        return abs(self._target_points[:, None] - self.nodes[0]) * self._distance_ratio
 
     @cached_property
     def log_weights(self) -> Numbers:
-        """Product weights of ln(|t - s|/ε), in y."""
-        return _product_weights(_log_moments, self) + self.weights * numpy.log(self._stretch)
+        """Weights of integrals over y with the kernel ln(|t - s|/ε): (targets, sources)."""
+        return _product_weights(_log_moments, self) + self.weights * numpy.log(self._distance_ratio)
 
     @cached_property
-    def modulus_weights(self) -> Numbers:
-        """Product weights of |t - s|/ε, in y."""
-        return _product_weights(_modulus_moments, self) * self._stretch
+    def distance_weights(self) -> Numbers:
+        """Weights of integrals over y with the kernel |t - s|/ε: (targets, sources)."""
+        return _product_weights(_distance_moments, self) * self._distance_ratio
 
 
 @cache
 def cached_grid(points: int) -> QuadratureGrid:
-    """Return the grid with this number of points, built once."""
+    """Return the quadrature grid with this number of points, from a cache."""
     return QuadratureGrid(points=points)
 
 
 def _product_weights(moments, grid: QuadratureGrid) -> Numbers:  # type: ignore[no-untyped-def]
-    """Compute product weights that are exact for polynomials in y, from ∫ kernel(y, y') P_l(y') dy'."""
+    """Compute the weights of integrals with a kernel, exact for polynomials in y.
+
+    `moments` computes ∫ kernel(y, y') P_l(y') dy' for the Legendre polynomials P_l.
+    """
     size = 2 * grid.points
     z, w = grid.nodes
     projection = (numpy.arange(size)[:, None] + 0.5) * numpy.polynomial.legendre.legvander(z, size - 1).T * w
-    return moments(grid._targets, size) @ projection
+    return moments(grid._target_points, size) @ projection
 
 
 def _log_moments(y: Numbers, size: int) -> Numbers:
-    """Compute ∫ ln|y - z| P_l(z) dz over [-1, 1]: 2 (Q_l+1 - Q_l-1)/(2l + 1)."""
+    """Compute the integrals of ln|y - z| times Legendre polynomials P_l(z) over [-1, 1]: (targets, size).
+
+    They are 2 (Q_l+1 - Q_l-1)/(2l + 1), with Legendre functions Q_l of the second kind.
+    """
     inside = y < 1
     Q = numpy.zeros((size + 1, len(y)))
     Q[0, inside] = numpy.arctanh(y[inside])
@@ -116,8 +124,11 @@ def _log_moments(y: Numbers, size: int) -> Numbers:
     return moments
 
 
-def _modulus_moments(y: Numbers, size: int) -> Numbers:
-    """Compute ∫ |y - z| P_l(z) dz over [-1, 1]: twice the second antiderivative of P_l."""
+def _distance_moments(y: Numbers, size: int) -> Numbers:
+    """Compute the integrals of |y - z| times Legendre polynomials P_l(z) over [-1, 1]: (targets, size).
+
+    They are twice the second antiderivative of P_l.
+    """
     P = numpy.polynomial.legendre.legvander(y, size + 1)
     degree = numpy.arange(2, size)
     moments = numpy.empty((len(y), size))

@@ -21,7 +21,7 @@ from ...problem.gaps import LinearGap
 from .abel import AbelState
 from .free_face import MODES, POLAR_TERMS, free_face_of
 from .kernel import Kernel
-from .load_curve import LoadCurve, window_of
+from .load_curve import LoadCurve, knot_window
 from .modes import ElasticBall, Socket
 
 _ITERATIONS = 3
@@ -33,32 +33,32 @@ _POINTS = 48
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HemisphereGap(LinearGap):
-    """`LinearGap` less an additional displacement of the surfaces, Σ extra_n P_n(cos φ) for each contact."""
+    """Linear gap minus an additional displacement of the surfaces, Σ extra_n P_n(cos φ), for each contact."""
 
     extra: Numbers
     conservative: ClassVar[bool] = False
 
     def transform(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute A[u](t)."""
+        """Compute the Abel transform A[u](t) of the displacement, in mm."""
         return super().transform(t, d) - self._sum_waves(numpy.cos, t, numpy.ones(self.extra.shape[1]))
 
     def slope(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute d A[u]/dt."""
+        """Compute the derivative of the Abel transform of the displacement, dA[u]/dt, in mm/rad."""
         return super().slope(t, d) + self._sum_waves(numpy.sin, t, self._orders)
 
     @property
     def _orders(self) -> Numbers:
-        """Wave numbers n + ½."""
+        """Wave numbers n + ½ of the modes."""
         return numpy.arange(self.extra.shape[1]) + 0.5
 
     def _sum_waves(self, wave: numpy.ufunc, t: Numbers, factor: Numbers) -> Numbers:
-        """Sum the waves of the additional displacement, weighted with a factor."""
+        """Sum the cosines or sines of the additional displacement at t, times a factor for each mode."""
         total: Numbers = numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._orders))
         return total
 
 
-def response(socket: Socket, ball: ElasticBall | None) -> Numbers:
-    """Compute the modes of the additional displacement of both surfaces per mode of pressure: (MODES, MODES).
+def hemisphere_response(socket: Socket, ball: ElasticBall | None) -> Numbers:
+    """Compute the additional displacement of both surfaces on a hemisphere in mm/MPa, by modes: (MODES, MODES).
 
     A socket with a free outer surface stands on its rim, which stays plane. It is half of a sphere that is pressed from
     both sides, as the ball is.
@@ -70,7 +70,7 @@ def response(socket: Socket, ball: ElasticBall | None) -> Numbers:
     if face is None:
         total += numpy.diag(signs * socket.compliance(n))
     else:
-        total[:POLAR_TERMS] += face.bore
+        total[:POLAR_TERMS] += face.bore_displacement
     if ball is not None:
         total += numpy.diag(signs * ball.compliance(n))
     return total
@@ -78,7 +78,7 @@ def response(socket: Socket, ball: ElasticBall | None) -> Numbers:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class HemisphereState(AbelState):
-    """Contacts on the hemisphere with the half angles of the contacts `closed` on the closed sphere."""
+    """Contacts on a hemisphere that have the half angles of contacts on the closed sphere."""
 
     closed: AbelState
 
@@ -95,20 +95,20 @@ class HemisphereState(AbelState):
         return self.closed._edge_weights
 
 
-def on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState:
-    """Solve contacts of the same half angles on the hemisphere, with its `response`.
+def solve_on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState:
+    """Solve contacts on a hemisphere, at the same half angles as contacts on the closed sphere.
 
     The additional displacements and the pressures depend linearly on each other. A few fixed-point iterations with
     reduced-rank extrapolation solve this system.
     """
-    iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_modes(closed) @ extra_response.T]
+    iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_pressure_modes(closed) @ extra_response.T]
     for _ in range(_ITERATIONS):
-        iterates.append(low_modes(_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
+        iterates.append(low_pressure_modes(_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
     return _hemisphere_state(closed, _extrapolate(numpy.stack(iterates, axis=-1)))
 
 
-def low_modes(state: AbelState) -> Numbers:
-    """Compute p_n in MPa for n below MODES: (contacts, modes)."""
+def low_pressure_modes(state: AbelState) -> Numbers:
+    """Compute the pressure modes p_n in MPa of the lowest degrees: (contacts, MODES)."""
     waves, sines = _waves(tuple(state.half_angle.tolist()))
     size = state.grid.points
     series = state.expansion @ _even_legendre(size)
@@ -118,7 +118,10 @@ def low_modes(state: AbelState) -> Numbers:
 
 @lru_cache(maxsize=16)
 def _waves(angles: tuple[float, ...]) -> tuple[Numbers, Numbers]:
-    """Compute sin((n + ½) s) at the points s of each contact, and their weights times sin s."""
+    """Compute the sines and weights of the integral that gives the pressure modes p_n.
+
+    The sines are sin((n + ½) s) at quadrature points s of each contact. The weights include sin s.
+    """
     y, weight = (numpy.array(part) for part in gauss_legendre(_POINTS))
     angle = numpy.array(angles)[:, None]
     s = angle * numpy.sin(pi / 2 * y)
@@ -129,13 +132,13 @@ def _waves(angles: tuple[float, ...]) -> tuple[Numbers, Numbers]:
 
 @cache
 def _even_legendre(count: int) -> Numbers:
-    """Compute P_0, P_2, ... at the points y: (count, points)."""
+    """Compute the even Legendre polynomials P_0, P_2, ... at the quadrature points: (count, points)."""
     even: Numbers = legendre.legvander(numpy.array(gauss_legendre(_POINTS)[0]), 2 * count - 1)[:, ::2].T
     return even
 
 
 def _hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
-    """Make contacts with additional displacements of the surfaces."""
+    """Make the contacts on a hemisphere from the additional displacements of the surfaces."""
     gap = closed.gap
     return HemisphereState(
         kernel=closed.kernel,
@@ -146,7 +149,11 @@ def _hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
 
 
 def _extrapolate(iterates: Numbers) -> Numbers:
-    """Extrapolate iterates (contacts, terms, iterations) of linear maps by least squares of their differences."""
+    """Extrapolate the iterates of linear fixed-point maps to their limit.
+
+    The method is reduced-rank extrapolation, a least-squares fit of differences. `iterates` has the shape
+    (contacts, terms, iterations).
+    """
     steps = numpy.diff(iterates, axis=-1)
     scale = numpy.linalg.norm(steps, axis=(1, 2), keepdims=True) + 1e-300
     steps = steps / scale
@@ -168,8 +175,8 @@ class ContactSeries:
     logs: dict[str, Numbers]
 
     @classmethod
-    def of(cls, clearance: float, angle: Numbers, quantities: dict[str, Numbers]) -> ContactSeries:
-        """Make the series from quantities at half angles."""
+    def from_quantities(cls, clearance: float, angle: Numbers, quantities: dict[str, Numbers]) -> ContactSeries:
+        """Make the series from indentation, force and largest pressure at half angles (rad)."""
         reach = clearance + quantities["indentation"]
         scales = {"indentation": 2 * numpy.sin(angle / 2) ** 2, "force": angle**3, "max_pressure": angle}
         logs = {name: numpy.log(values / reach / scales[name]) for name, values in quantities.items()}
@@ -177,14 +184,18 @@ class ContactSeries:
 
     @cached_property
     def _slopes(self) -> dict[str, Numbers]:
-        """Slopes at the knots, from parabolas through three points."""
+        """Derivatives of the logarithms by ln ε at the given contacts, from parabolas through three points."""
         return {name: numpy.gradient(y, self.x, edge_order=2) for name, y in self.logs.items()}
 
     def values(self, x: Numbers) -> dict[str, Numbers]:
-        """Compute the logarithms of indentation, force, largest pressure and stiffness, and the slope of the force."""
+        """Compute the logarithms of indentation, force, largest pressure and stiffness at x = ln ε.
+
+        The result also has the derivative d ln F/dx as "slope".
+        """
         angle = numpy.exp(x)
         (depth, deepening), (force, rise), (pressure, _) = (
-            _cubic(x, self.x, self.logs[name], self._slopes[name]) for name in ("indentation", "force", "max_pressure")
+            _interpolate_cubic(x, self.x, self.logs[name], self._slopes[name])
+            for name in ("indentation", "force", "max_pressure")
         )
         depth, deepening = depth + numpy.log(2 * numpy.sin(angle / 2) ** 2), deepening + angle / numpy.tan(angle / 2)
         share = numpy.minimum(numpy.exp(depth), _MAX_SHARE)  # d/X
@@ -195,8 +206,8 @@ class ContactSeries:
         return {"indentation": depth, "force": force, "max_pressure": pressure, "stiffness": stiffness, "slope": rise}
 
 
-def _cubic(at: Numbers, x: Numbers, y: Numbers, slope: Numbers) -> tuple[Numbers, Numbers]:
-    """Interpolate by cubic Hermite polynomials with slopes at the points `x`; return also the slope."""
+def _interpolate_cubic(at: Numbers, x: Numbers, y: Numbers, slope: Numbers) -> tuple[Numbers, Numbers]:
+    """Interpolate a function and its slope by cubic Hermite polynomials between the points `x`."""
     i = numpy.clip(numpy.searchsorted(x, at) - 1, 0, len(x) - 2)
     width, t = x[i + 1] - x[i], (at - x[i]) / (x[i + 1] - x[i])
     rise, first, second = y[i + 1] - y[i], width * slope[i], width * slope[i + 1]
@@ -226,25 +237,27 @@ class Hemisphere:
 
     @cached_property
     def _response(self) -> Numbers:
-        """Additional displacement per mode of pressure."""
-        return response(self.kernel.socket, self.kernel.ball)
+        """Additional displacement of both surfaces per mode of pressure, in mm/MPa."""
+        return hemisphere_response(self.kernel.socket, self.kernel.ball)
 
     @cached_property
     def _knot_bodies(self) -> Bodies | None:
-        """Contacts of both bodies at all knots."""
+        """Contacts of both bodies at all tabulated half angles."""
         return self._solve_bodies(self._curve.knots)
 
     @cached_property
     def _windows(self) -> dict[int, Bodies | None]:
-        """Contacts near the half angles solved so far, by the first knot."""
+        """Contacts of both bodies around half angles solved so far, by the index of the first one."""
         return {}
 
-    def _bodies(self, half_angle: Numbers) -> Bodies | None:
-        """Return contacts of the closed sphere and of the hemisphere, only a few if the half angles are close together.
+    def _bodies_around(self, half_angle: Numbers) -> Bodies | None:
+        """Return contacts on the closed sphere and on the hemisphere around half angles, or None.
+
+        Only a few contacts are solved if the half angles are close together.
 
         The result is None if the hemisphere has too few contacts or the numbers of the joint overflow.
         """
-        window = window_of(half_angle)
+        window = knot_window(half_angle)
         try:
             if window is None:
                 return self._knot_bodies
@@ -256,8 +269,8 @@ class Hemisphere:
             return None
 
     def _solve_bodies(self, closed: AbelState) -> Bodies | None:
-        """Solve the contacts of the hemisphere with the half angles of those of the closed sphere."""
-        free = on_hemisphere(closed, self._response)
+        """Solve the hemisphere at the half angles of contacts on the closed sphere; make the series of both."""
+        free = solve_on_hemisphere(closed, self._response)
         clearance, angle = closed.gap.clearance, closed.half_angle
         quantity_sets = [{name: getattr(state, name) for name in ("indentation", "force")} for state in (closed, free)]
         for quantities, state in zip(quantity_sets, (closed, free), strict=True):
@@ -268,17 +281,19 @@ class Hemisphere:
         if count < _MIN_CONTACTS:
             return None
         first, second = (
-            ContactSeries.of(clearance, angle[:count], {name: value[:count] for name, value in quantities.items()})
+            ContactSeries.from_quantities(
+                clearance, angle[:count], {name: value[:count] for name, value in quantities.items()}
+            )
             for quantities in quantity_sets
         )
         return first, second
 
     def changes(self, half_angle: Numbers) -> dict[str, Numbers]:
-        """Compute the relative change of each quantity at the same force; NaN beyond the rim."""
+        """Compute the relative change of each quantity on a hemisphere at the same force; NaN beyond the rim."""
         if half_angle.size == 0:
             return dict.fromkeys(CHANGES, half_angle)
         with numpy.errstate(all="ignore"):
-            bodies = self._bodies(half_angle)
+            bodies = self._bodies_around(half_angle)
             if bodies is None:
                 return dict.fromkeys(CHANGES, numpy.full(half_angle.shape, nan))
             closed, free = bodies
@@ -302,7 +317,7 @@ _MIN_CONTACTS, _MAX_SHARE, _NEWTON_STEPS, _RELATIVE_TOLERANCE, _TOLERANCE = 4, 1
 
 
 def _max_pressure(state: AbelState) -> Numbers:
-    """Estimate the largest pressure: at the pole, or the largest at a few angles."""
+    """Estimate the largest pressure in MPa: that at the pole, or the largest at a few angles."""
     if state.decreases.all():
         return state.pole_pressure
     return state.pressure(state.half_angle * numpy.linspace(0.0, 0.95, 20)[:, None]).max(axis=0)
@@ -310,5 +325,5 @@ def _max_pressure(state: AbelState) -> Numbers:
 
 @lru_cache(maxsize=256)
 def hemisphere_of(kernel: Kernel) -> Hemisphere:
-    """Return the hemisphere of a joint, cached for further loads."""
+    """Return the hemisphere with the kernel of a joint, from a cache."""
     return Hemisphere(kernel=kernel)

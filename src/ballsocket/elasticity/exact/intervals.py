@@ -1,6 +1,8 @@
 """Integrals of the kernel over [-ε, ε] for half angles on a grid, independent of the joint.
 
-½ ∫ k(t - s) f(s) ds for even f and for odd f, as matrices (loads, points + 1, points) from f at the points to the
+The integrals ½ ∫ k(t - s) f(s) ds of even f and of odd f are matrices (loads, points + 1, points): from f at the points
+to the integral at the points and at t = ε. They are linear in the kernel: in a_1 .. a_6 and in the remainder r_n, see
+`kernel`.
 """
 
 from __future__ import annotations
@@ -13,7 +15,7 @@ from threading import local
 import numpy
 
 from ...core.arrays import Numbers
-from .closed_forms import ORDER, logarithmic, modular, smooth
+from .closed_forms import ORDER, distance_coefficients, logarithm_coefficients, smooth_coefficients
 from .grid import QuadratureGrid
 
 Operators = tuple[Numbers, Numbers]
@@ -27,7 +29,7 @@ _MAX_WORKSPACE = 1 << 18  # bytes of one reused array
 
 
 class _Workspace(local):
-    """Reusable arrays of one thread, by name."""
+    """Reusable arrays of one thread, stored by name."""
 
     def __init__(self) -> None:
         self.arrays: dict[str, numpy.ndarray] = {}
@@ -48,23 +50,23 @@ def workspace_array(name: str, shape: tuple[int, ...], dtype: type = float) -> n
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Intervals:
-    """Intervals [-ε, ε] for half angles ε (loads,) on a grid."""
+    """Integration intervals [-ε, ε] of half angles ε (loads,), with the points of a grid."""
 
     half_angle: Numbers
     grid: QuadratureGrid
 
-    def closed_operators(self, a: Numbers) -> Operators:
-        """Compute the operators of the closed forms with the coefficients a_1 .. a_6."""
+    def closed_form_operators(self, a: Numbers) -> Operators:
+        """Compute the integral operators of the part of the kernel in closed form, from its coefficients a_1 .. a_6."""
         grid, edge = self.grid, self.half_angle[:, None, None]
         square = numpy.multiply(edge, grid.distance, out=workspace_array("square", (edge.size, *grid.distance.shape)))
         square *= square
         log_weights = grid.weights * numpy.log(edge)
-        weights = _evaluate_polynomial("logarithmic", logarithmic(a), square)
+        weights = _evaluate_polynomial("logarithm", logarithm_coefficients(a), square)
         weights *= numpy.add(log_weights, grid.log_weights, out=workspace_array("log weights", weights.shape))
-        term = _evaluate_polynomial("term", modular(a), square)
-        term *= numpy.multiply(edge, grid.modulus_weights, out=workspace_array("modulus weights", weights.shape))
+        term = _evaluate_polynomial("term", distance_coefficients(a), square)
+        term *= numpy.multiply(edge, grid.distance_weights, out=workspace_array("modulus weights", weights.shape))
         weights += term
-        term = _evaluate_polynomial("term", smooth(a, 2 * float(self.half_angle.max(initial=0.0))), square)
+        term = _evaluate_polynomial("term", smooth_coefficients(a, 2 * float(self.half_angle.max(initial=0.0))), square)
         term *= grid.weights
         weights += term
         weights *= edge * (grid.slope / 2)
@@ -72,17 +74,17 @@ class Intervals:
         return left + right, right - left
 
     def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
-        """Add the operators of the remainder r_n in place."""
+        """Add the integral operators of the rest of the kernel, a sum of cosines with weights r_n, in place."""
         size = max(1, _BLOCK // (_wave_panels(self.half_angle, self.grid, len(remainder)).count * len(remainder)))
         for first in range(0, len(self.half_angle), size):
             block = slice(first, first + size)
-            waves = _waves_between(self.half_angle[block], self.grid, len(remainder))
+            waves = _waves_and_integrals(self.half_angle[block], self.grid, len(remainder))
             _add_products(waves, remainder, (operators[0][block], operators[1][block]))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CachedIntervals:
-    """`Intervals` shared by many joints: everything that does not depend on the joint is computed once."""
+    """Integration intervals shared by many joints: what does not depend on the joint is computed once."""
 
     half_angle: Numbers
     grid: QuadratureGrid
@@ -94,73 +96,77 @@ class CachedIntervals:
 
     @cached_property
     def _unit_operators(self) -> Operators:
-        """Operators of each of the six closed forms, along a new last axis."""
-        operators = zip(*(self._intervals.closed_operators(unit) for unit in numpy.eye(ORDER)), strict=True)
+        """Integral operators of each of the six closed forms, along a new last axis."""
+        operators = zip(*(self._intervals.closed_form_operators(unit) for unit in numpy.eye(ORDER)), strict=True)
         even, odd = (numpy.stack(stack, axis=-1) for stack in operators)
         return even, odd
 
     @cached_property
     def _cached_waves(self) -> dict[int, tuple[Numbers, Numbers, Numbers, Numbers]]:
-        """Waves computed so far, by their number."""
+        """Cosines and sines with their integrals computed so far, by their number."""
         return {}
 
-    def closed_operators(self, a: Numbers) -> Operators:
+    def closed_form_operators(self, a: Numbers) -> Operators:
+        """Compute the integral operators of the part of the kernel in closed form, from its coefficients a_1 .. a_6."""
         even, odd = self._unit_operators
         return even @ a, odd @ a
 
     def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
+        """Add the integral operators of the rest of the kernel, a sum of cosines with weights r_n, in place."""
         if len(remainder) > _CACHED_COUNTS[-1]:
             self._intervals.add_remainder(remainder, operators)
             return
         count = min(cached for cached in _CACHED_COUNTS if cached >= len(remainder))
         if count not in self._cached_waves:
-            even, odd, even_back, odd_back = _waves_between(self.half_angle, self.grid, count)
-            self._cached_waves[count] = even.copy(), odd.copy(), even_back.copy(), odd_back.copy()
-        even, odd, even_back, odd_back = self._cached_waves[count]
+            even, odd, even_integrals, odd_integrals = _waves_and_integrals(self.half_angle, self.grid, count)
+            self._cached_waves[count] = even.copy(), odd.copy(), even_integrals.copy(), odd_integrals.copy()
+        even, odd, even_integrals, odd_integrals = self._cached_waves[count]
         first = slice(len(remainder))
         _add_products(
-            (even[..., first], odd[..., first], even_back[:, first], odd_back[:, first]), remainder, operators
+            (even[..., first], odd[..., first], even_integrals[:, first], odd_integrals[:, first]), remainder, operators
         )
 
 
 def _add_products(waves: tuple[Numbers, Numbers, Numbers, Numbers], remainder: Numbers, operators: Operators) -> None:
-    """Add the products of waves and their integrals, weighted with the remainder."""
-    even, odd, even_back, odd_back = waves
-    for operator, wave, back in zip(operators, (even, odd), (even_back, odd_back), strict=True):
+    """Add the operators of the remainder in place: cosines and sines times their integrals times r_n."""
+    even, odd, even_integrals, odd_integrals = waves
+    for operator, wave, integrals in zip(operators, (even, odd), (even_integrals, odd_integrals), strict=True):
         weighted = numpy.multiply(wave, remainder, out=workspace_array("weighted waves", wave.shape))
-        operator += numpy.matmul(weighted, back, out=workspace_array("remainder", operator.shape))
+        operator += numpy.matmul(weighted, integrals, out=workspace_array("remainder", operator.shape))
 
 
-def _waves_between(half_angle: Numbers, grid: QuadratureGrid, count: int) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-    """Compute cos and sin of (n + ½) t at the targets, and integrals of functions at the points against them.
-    The shapes are (loads, points + 1, count) and (loads, count, points). The arrays are valid until the next call.
+def _waves_and_integrals(
+    half_angle: Numbers, grid: QuadratureGrid, count: int
+) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+    """Compute the cosines and sines of (n + ½) t, and the matrices that integrate functions times them.
 
-
-    Waves are shorter than the variations of the pressure, so they are integrated at their own points.
+    The cosines and sines at the targets have the shape (loads, points + 1, count), the matrices (loads, count, points).
+    All arrays are valid until the next call. The waves are shorter than the variations of the pressure, so they are
+    integrated at their own points.
     """
     edge = half_angle[:, None]
-    fine = _wave_panels(half_angle, grid, count)
+    panels = _wave_panels(half_angle, grid, count)
     even, odd = _waves("targets", edge * grid.position, count)
     odd *= edge[..., None]
     even *= edge[..., None]
-    fine_even, fine_odd = _waves("sources", edge * fine.position, count)
+    panel_cosines, panel_sines = _waves("sources", edge * panels.position, count)
     shape = (len(half_angle), count, grid.points)
-    back = numpy.matmul(
-        fine_even.swapaxes(-1, -2), _even_interpolation(grid, fine), out=workspace_array("even back", shape)
+    even_integrals = numpy.matmul(
+        panel_cosines.swapaxes(-1, -2), _even_interpolation(grid, panels), out=workspace_array("even integrals", shape)
     )
-    odd_back = numpy.matmul(
-        fine_odd.swapaxes(-1, -2), _odd_interpolation(grid, fine), out=workspace_array("odd back", shape)
+    odd_integrals = numpy.matmul(
+        panel_sines.swapaxes(-1, -2), _odd_interpolation(grid, panels), out=workspace_array("odd integrals", shape)
     )
-    return even, odd, back, odd_back
+    return even, odd, even_integrals, odd_integrals
 
 
 def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Panels:
-    """Return quadrature panels that resolve this number of waves."""
-    return _panels_for(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
+    """Choose quadrature panels that resolve this number of cosines and sines."""
+    return _panels_with_points(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
 
 
 def _waves(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
-    """Compute cos and sin of (n + ½) angle for n below count, valid until the next request of that name."""
+    """Compute cos and sin of (n + ½) angle for n below count, in workspace arrays of this name."""
     waves = workspace_array("waves", (*angle.shape, count), complex)
     waves[..., 0] = numpy.exp(0.5j * angle)
     waves[..., 1:] = numpy.exp(1j * angle)[..., None]
@@ -171,7 +177,7 @@ def _waves(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
 
 
 def _evaluate_polynomial(name: str, coefficients: Numbers, x: Numbers) -> Numbers:
-    """Evaluate a polynomial in x by Horner's rule."""
+    """Evaluate a polynomial in x by Horner's rule, in the workspace array of this name."""
     total = workspace_array(name, x.shape)
     total[...] = coefficients[-1]
     for coefficient in coefficients[-2::-1]:
@@ -182,7 +188,7 @@ def _evaluate_polynomial(name: str, coefficients: Numbers, x: Numbers) -> Number
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Panels:
-    """Gauss-Legendre points in equal panels of y from 0 to 1."""
+    """Composite Gauss-Legendre rule: points in equal panels of y from 0 to 1."""
 
     panels: int
     points: int
@@ -205,14 +211,14 @@ class _Panels:
         return numpy.sin(pi / 2 * self.nodes[0])
 
     @property
-    def width(self) -> Numbers:
+    def weights(self) -> Numbers:
         """Quadrature weights of integrals over t/ε."""
         y, w = self.nodes
         return pi / 2 * numpy.cos(pi / 2 * y) * w
 
 
-def _panels_for(points: float) -> _Panels:
-    """Return panels with at least this number of points, rounded up so that few sets are built."""
+def _panels_with_points(points: float) -> _Panels:
+    """Choose panels with at least this number of points, rounded up so that few rules are built."""
     if points <= _LONGEST_PANEL:
         return _panels_of(1, _PANEL_STEP * ceil(points / _PANEL_STEP))
     return _panels_of(ceil(points / _LONGEST_PANEL), _LONGEST_PANEL)
@@ -220,25 +226,25 @@ def _panels_for(points: float) -> _Panels:
 
 @cache
 def _panels_of(panels: int, points: int) -> _Panels:
-    """Return the panels of this number and of these points each, built once."""
+    """Return this number of panels with this number of points each, from a cache."""
     return _Panels(panels=panels, points=points)
 
 
 @cache
-def _even_interpolation(grid: QuadratureGrid, fine: _Panels) -> Numbers:
-    """Compute the matrix from an even function at the points of a grid to weighted values at the panels' points."""
-    return _interpolation(grid, fine, 0)
+def _even_interpolation(grid: QuadratureGrid, panels: _Panels) -> Numbers:
+    """Compute the matrix that interpolates an even function from a grid to panels, times their weights."""
+    return _interpolation_matrix(grid, panels, 0)
 
 
 @cache
-def _odd_interpolation(grid: QuadratureGrid, fine: _Panels) -> Numbers:
-    """Compute the matrix from an odd function at the points of a grid to weighted values at the panels' points."""
-    return _interpolation(grid, fine, 1)
+def _odd_interpolation(grid: QuadratureGrid, panels: _Panels) -> Numbers:
+    """Compute the matrix that interpolates an odd function from a grid to panels, times their weights."""
+    return _interpolation_matrix(grid, panels, 1)
 
 
-def _interpolation(grid: QuadratureGrid, fine: _Panels, parity: int) -> Numbers:
-    """Interpolate by Legendre polynomials of one parity and apply the panels' weights."""
-    y, w = grid.right
+def _interpolation_matrix(grid: QuadratureGrid, panels: _Panels, parity: int) -> Numbers:
+    """Compute the matrix that interpolates a function of one parity from a grid to panels, times their weights."""
+    y, w = grid.positive_nodes
     degree = 2 * numpy.arange(grid.points) + parity
-    P, Q = (numpy.polynomial.legendre.legvander(points, 2 * grid.points)[:, degree] for points in (y, fine.nodes[0]))
-    return fine.width[:, None] * (Q @ ((2 * degree[:, None] + 1) * (w[:, None] * P).T))
+    P, Q = (numpy.polynomial.legendre.legvander(points, 2 * grid.points)[:, degree] for points in (y, panels.nodes[0]))
+    return panels.weights[:, None] * (Q @ ((2 * degree[:, None] + 1) * (w[:, None] * P).T))

@@ -2,7 +2,6 @@
 
 In Abel space (see `abel`) the ball and the socket act through k(x) = Σ ρ_n cos((n + ½) x). ρ_n measures how far mode
 n departs from a row of independent springs. Since ρ_n ~ Σ a_j (n + ½)^-j, the sum is split into
-n departs from a row of independent springs. Since ρ_n ~ Σ a_j (n + ½)^-j, the sum is split into
 
     k(x) = g(x²) ln|x| + h(x²) |x| + s(x²) + Σ r_n cos((n + ½) x),
 
@@ -34,11 +33,11 @@ class Kernel:
 
     @cached_property
     def compliance(self) -> float:
-        """Compliance C in mm/MPa: the common limit of c_n (n + ½) at high degrees."""
+        """Compliance C of socket and ball together in mm/MPa, the limit of c_n (n + ½) at high degrees."""
         return self.socket.asymptote + (0.0 if self.ball is None else self.ball.asymptote)
 
     def excess(self, degrees: Numbers) -> Numbers:
-        """Compute the excess ρ_n of both bodies."""
+        """Compute the excess ρ_n = c_n (n + ½)/C - 1 of the modal compliance of both bodies together."""
         socket = self.socket.excess(degrees)
         if self.ball is None:
             return socket
@@ -56,14 +55,17 @@ class Kernel:
 
     @cached_property
     def remainder(self) -> Numbers:
-        """Remainders r_n, from n = 0 to the last one above the tolerance."""
+        """Remainders r_n of ρ_n after the closed forms, from n = 0 to the last one above the tolerance."""
         a = self.expansion
         tail = (abs(a[ORDER]) / (ORDER * self.tolerance)) ** (1 / ORDER)
         q = numpy.arange(max(ceil(tail), self.socket.reach(self.tolerance), 24)) + 0.5
         return self.excess((q - 0.5).astype(int)) - sum(a[j] * q ** -(j + 1.0) for j in range(ORDER))
 
     def operators(self, intervals: Intervals | CachedIntervals) -> Operators:
-        """Compute ½ ∫ k(t - s) f(s) ds over [-ε, ε] for even f and for odd f, see `intervals`."""
-        operators = intervals.closed_operators(self.expansion[:ORDER])
+        """Compute the integral operators of the kernel over [-ε, ε] for even and for odd functions f.
+
+        They are ½ ∫ k(t - s) f(s) ds, see `intervals`.
+        """
+        operators = intervals.closed_form_operators(self.expansion[:ORDER])
         intervals.add_remainder(self.remainder, operators)
         return operators

@@ -36,7 +36,7 @@ _LAWS = {"force": lambda state: state.force, "indentation": lambda state: state.
 
 
 class CurvePoints(Protocol):
-    """Quantities of contacts that were solved, or interpolated on a curve."""
+    """Quantities of contacts on a load curve, solved or interpolated."""
 
     @property
     def half_angle(self) -> Numbers: ...
@@ -66,27 +66,27 @@ class LoadCurve:
         positive_load = load[touching]
         angle = (
             positive_load
-            if kind == "half_angle" or self._widest_computed == 0
+            if kind == "half_angle" or self._max_computed_angle == 0
             else self._estimate_angle(kind, positive_load)
         )
         for points in _GRIDS:
             state, residual = self._solve(kind, positive_load, self._clip_angles(angle), points)
-            reached = (state.half_angle <= LIMIT) & (state.half_angle < self._widest_computed) & _is_contact(state)
+            reached = (state.half_angle <= LIMIT) & (state.half_angle < self._max_computed_angle) & _is_contact(state)
             floor = residual + self.kernel.tolerance
             error = {name: error + floor for name, error in errors(kind, state).items()}
             if not any(numpy.any(values[reached] > self.tolerance) for values in error.values()):
                 break
-            angle = numpy.where(angle <= self._widest_computed, state.half_angle, angle)
+            angle = numpy.where(angle <= self._max_computed_angle, state.half_angle, angle)
         return JointContacts(load=load, touching=touching, state=state, reached=reached, error=error)
 
     def state(self, angle: Numbers, points: int) -> AbelState:
-        """Make the contacts of half angles, on a grid with this number of points."""
+        """Make the contacts with these half angles (rad), on a grid with this number of points."""
         return AbelState(
             kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points))
         )
 
     def _solve(self, kind: str, load: Numbers, angle: Numbers, points: int) -> tuple[AbelState, Numbers]:
-        """Solve for half angles by Newton's method in the logarithms; return the state and the residual."""
+        """Solve the contacts under loads by Newton's method; return them and the relative residuals."""
         state = self.state(angle, points)
         if kind == "half_angle":
             return state, numpy.zeros_like(load)
@@ -100,11 +100,11 @@ class LoadCurve:
 
     def _clip_angles(self, angle: Numbers) -> Numbers:
         """Clip angles to the largest computed one, and replace NaN by it."""
-        return numpy.where(angle < self._widest_computed, angle, self._widest_computed)
+        return numpy.where(angle < self._max_computed_angle, angle, self._max_computed_angle)
 
     @cached_property
-    def _widest_computed(self) -> float:
-        """Widest half angle that is computed: slightly beyond the limit, or just before the perfect fit.
+    def _max_computed_angle(self) -> float:
+        """Widest half angle in rad that is computed: slightly beyond the limit, or just before the perfect fit.
 
         At the perfect fit the indentation is infinite; wider contacts do not exist.
         """
@@ -128,39 +128,40 @@ class LoadCurve:
     @property
     def widest(self) -> float:
         """Largest half angle in rad with a solution."""
-        return min(LIMIT, self._widest_computed)
+        return min(LIMIT, self._max_computed_angle)
 
     @cached_property
     def _knot_state(self) -> AbelState:
-        """Contacts at all knots."""
+        """Contacts at all tabulated half angles, valid or not."""
         return AbelState(kernel=self.kernel, gap=self.gap, intervals=_KNOT_INTERVALS)
 
     @cached_property
     def knots(self) -> AbelState:
-        """A few contacts up to the widest one, all of them valid."""
-        if self._widest_computed == _MAX_ANGLE:
+        """Valid contacts at a few half angles up to the widest one, from which others are estimated."""
+        if self._max_computed_angle == _MAX_ANGLE:
             return self._knot_state
-        inside = _ANGLES[self._widest_computed > _ANGLES]
-        margin = self._widest_computed - inside.max(initial=0.0)
+        inside = _ANGLES[self._max_computed_angle > _ANGLES]
+        margin = self._max_computed_angle - inside.max(initial=0.0)
         return self.state(
-            numpy.append(inside, self._widest_computed - margin * numpy.array([0.5, 0.2, 0.07, 0.02])), _COARSE_POINTS
+            numpy.append(inside, self._max_computed_angle - margin * numpy.array([0.5, 0.2, 0.07, 0.02])),
+            _COARSE_POINTS,
         )
 
     def knots_in(self, window: slice) -> AbelState | None:
-        """Return the contacts at some of the knots, or None if one of them is not valid."""
+        """Return the contacts at a slice of the tabulated half angles, or None if one of them is not valid."""
         state = AbelState(kernel=self.kernel, gap=self.gap, intervals=_window_intervals(window.start, window.stop))
         return state if _is_contact(state).all() else None
 
     @cached_property
-    def _knots(self) -> dict[str, tuple[Numbers, Numbers, Numbers]]:
-        """Values ln(load), ln ε and their slope at the knots."""
+    def _knot_logarithms(self) -> dict[str, tuple[Numbers, Numbers, Numbers]]:
+        """Interpolation data ln(load), ln ε and d ln ε/d ln(load) at the knots, by the kind of load."""
         coarse = self.knots
         y = numpy.log(coarse.half_angle)
         return {kind: (numpy.log(law(coarse)), y, 1 / log_slope(kind, coarse)) for kind, law in _LAWS.items()}
 
     def _estimate_angle(self, kind: str, load: Numbers) -> Numbers:
-        """Estimate the half angle by cubics between the knots, or by a power law below the first."""
-        x, y, slope = self._knots[kind]
+        """Estimate the half angle in rad by cubics between the knots, or by a power law below the first."""
+        x, y, slope = self._knot_logarithms[kind]
         goal = numpy.log(load)
         i = numpy.clip(numpy.searchsorted(x, goal) - 1, 0, len(x) - 2)
         width, t = x[i + 1] - x[i], (goal - x[i]) / (x[i + 1] - x[i])
@@ -173,8 +174,8 @@ class LoadCurve:
         return numpy.exp(numpy.where(t < 0, y[0] + slope[0] * (goal - x[0]), bounded))
 
 
-def window_of(angle: Numbers) -> slice | None:
-    """Return the slice of knots around a narrow range of half angles; None if no slice contains the range."""
+def knot_window(angle: Numbers) -> slice | None:
+    """Choose the slice of tabulated half angles around a narrow range; None if no slice contains the range."""
     index = numpy.searchsorted(_ANGLES, angle)
     start = int(max(index.min() - 2, 0) // _WINDOW_STEP * _WINDOW_STEP)
     stop = start + _WINDOW
@@ -183,19 +184,19 @@ def window_of(angle: Numbers) -> slice | None:
 
 @cache
 def _window_intervals(start: int, stop: int) -> CachedIntervals:
-    """Return the intervals of some knots, built once."""
+    """Return the integration intervals of a slice of the tabulated half angles, from a cache."""
     return CachedIntervals(half_angle=_ANGLES[start:stop], grid=cached_grid(_COARSE_POINTS))
 
 
 def _is_contact(state: AbelState) -> Numbers:
-    """Check that contacts exist and are finite: a contact beyond the perfect fit is neither."""
+    """Return True for contacts that exist and are finite; beyond the perfect fit there are none."""
     with numpy.errstate(invalid="ignore", over="ignore", under="ignore"):
         work = state.indentation * state.force  # infinite or zero before any of the other quantities
         return (state.indentation > 0) & (state.pole_pressure > 0) & (work > 0) & (work < inf)
 
 
 def log_slope(kind: str, state: CurvePoints) -> Numbers:
-    """Compute d ln(load)/d ln ε for loads of one kind."""
+    """Compute the logarithmic derivative of the load by the half angle, d ln(load)/d ln ε."""
     deepening = state.half_angle * state.widening
     return deepening / state.indentation if kind == "indentation" else deepening * state.stiffness / state.force
 

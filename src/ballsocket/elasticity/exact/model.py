@@ -24,7 +24,7 @@ from .modes import ball_of, socket_of
 
 
 def _effective_poisson(contact: Any) -> Array:
-    """Return Poisson's ratio, limited to 0.4999 for a liner that can deform freely on one side."""
+    """Return Poisson's ratio of the liner, limited to 0.4999 if the liner can deform freely on one side."""
     joint = contact.joint
     nu = joint.liner.poisson
     if joint.backing or joint.support is Support.FREE:
@@ -34,7 +34,7 @@ def _effective_poisson(contact: Any) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class Exact(Model):
-    """Linear elasticity without friction: liner and backing are closed concentric shells bonded to each other.
+    """Exact linear-elastic contact without friction: liner and backing are bonded, closed concentric shells.
 
     The integral equation of the contact is solved in Abel space (see the docs, theory) to a requested tolerance.
     Half angles reach up to 85 degrees. The ball is solid and elastic, or rigid. All arrays are converted to NumPy.
@@ -120,7 +120,7 @@ _NEAR_HEMISPHERE = NearHemisphere()
 
 
 def make_solver_result(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
-    """Make the `SolverResult` of a solution; points whose error exceeds the tolerance have not converged."""
+    """Make the solver result of a solution; errors beyond the tolerance count as not converged."""
     return SolverResult(
         laws=solution,
         force=solution.force,

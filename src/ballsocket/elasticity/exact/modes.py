@@ -22,7 +22,7 @@ from .waves import UNIT, SupportedLayer, fixed_condition, free_condition
 
 @dataclass(frozen=True, kw_only=True)
 class Shell:
-    """One layer of a socket.
+    """Spherical layer of a socket.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class Fields:
 
 @dataclass(frozen=True, kw_only=True)
 class Socket:
-    """A spherical bore in layers that are bonded to each other.
+    """Spherical socket of elastic layers that are bonded to each other.
 
     Parameters
     ----------
@@ -109,11 +109,11 @@ class Socket:
 
     @property
     def asymptote(self) -> float:
-        """Limit C of c_n (n + ½): 2 (1 - ν²) R2/E of the innermost layer."""
+        """Compliance C in mm/MPa, the limit of c_n (n + ½): 2 (1 - ν²) R2/E of the innermost layer."""
         return asymptote_of(self.radius, self.shells[0].young, self.shells[0].poisson)
 
     def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
-        """Compute c_n in mm/MPa: the pressure p_n P_n widens the bore by c_n p_n P_n."""
+        """Compute the modal compliances c_n in mm/MPa: the pressure p_n P_n widens the bore by c_n p_n P_n."""
         n, nu = _check_degrees(degrees), self.shells[0].poisson
         P = 2 * (1 - nu) * n * n + (4 - 5 * nu) * n + (1 - nu)
         Q = (n + 2) * (n * n + n + 1 - nu * (2 * n + 1))
@@ -124,7 +124,7 @@ class Socket:
         return c
 
     def excess(self, degrees: ArrayLike) -> numpy.ndarray:
-        """Compute the excess ρ_n = c_n (n + ½)/C - 1 of each degree."""
+        """Compute the relative excess of each modal compliance over its limit, ρ_n = c_n (n + ½)/C - 1."""
         n = _check_degrees(degrees)
         rho = homogeneous_excess(n + 0.5, self.shells[0].poisson)
         layered = n < self.reach(_NEGLIGIBLE)
@@ -134,14 +134,16 @@ class Socket:
         return rho
 
     def expansion(self, order: int) -> numpy.ndarray:
-        """Compute a_1, ..., a_order of ρ_n ~ Σ a_j (n + ½)^-j, from the infinite socket of the innermost material.
+        """Compute the coefficients a_1, ..., a_order of the asymptotic series ρ_n ~ Σ a_j (n + ½)^-j.
+
+        They are those of an infinite socket of the innermost material.
 
         That series converges for n >= 2; the contribution of the layers is exponentially small, see `reach`.
         """
         return homogeneous_expansion(self.shells[0].poisson, order)
 
     def reach(self, tolerance: float = 1e-12) -> int:
-        """Return the degree from which the layers change ρ_n by less than `tolerance`."""
+        """Compute the degree from which the backing of the liner changes ρ_n by less than `tolerance`."""
         require("tolerance", tolerance, 0 < tolerance < 1, "a tolerance must lie between 0 and 1")
         shell = self.shells[0]
         if isinf(shell.thickness):
@@ -155,7 +157,7 @@ class Socket:
         return ceil(x / log1p(shell.thickness / self.radius)) + 2
 
     def fields(self, degrees: ArrayLike, radii: ArrayLike) -> Fields:
-        """Compute displacements and stresses of each mode at radii >= R2, per unit of p_n.
+        """Compute displacements and stresses of each mode at radii (mm) of at least R2, per unit of p_n.
 
         Where two layers meet, the hoop stresses are those of the inner one.
 
@@ -180,7 +182,7 @@ class Socket:
 
     @property
     def _bounds(self) -> numpy.ndarray:
-        """Radii of the bore, of the interfaces and of the outermost surface."""
+        """Radii in mm of the bore, of the interfaces and of the outermost surface."""
         return numpy.cumsum([self.radius, *(shell.thickness for shell in self.shells)])
 
     def _layers(self, n: numpy.ndarray) -> list[SupportedLayer]:
@@ -196,7 +198,7 @@ class Socket:
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticBall:
-    """A solid elastic ball.
+    """Solid elastic ball.
 
     The mode n = 1 has a net force. Any balancing load of the mode n = 1, such as a uniform body force, moves the
     surface along the radius by a multiple of cos φ, as a translation does. So c_1 = 0 by definition. The position of
@@ -230,11 +232,14 @@ class ElasticBall:
 
     @property
     def asymptote(self) -> float:
-        """Limit C of c_n (n + ½): 2 (1 - ν²) R1/E."""
+        """Compliance C in mm/MPa, the limit of c_n (n + ½): 2 (1 - ν²) R1/E."""
         return asymptote_of(self.radius, self.young, self.poisson)
 
     def compliance(self, degrees: ArrayLike) -> numpy.ndarray:
-        """Compute c_n in mm/MPa: the pressure p_n P_n makes the surface retreat by c_n p_n P_n."""
+        """Compute the modal compliances c_n in mm/MPa: the pressure p_n P_n moves the surface by c_n p_n P_n.
+
+        The displacement is along the radius, inwards.
+        """
         n, nu = _check_degrees(degrees), self.poisson
         rigid = n == 1
         P = 2 * (1 - nu) * n * n + nu * n - (1 - 2 * nu)
@@ -242,13 +247,16 @@ class ElasticBall:
         return numpy.where(rigid, 0.0, self.asymptote / (2 * (1 - nu)) * P / Q)
 
     def excess(self, degrees: ArrayLike) -> numpy.ndarray:
-        """Compute the excess ρ_n = c_n (n + ½)/C - 1 of each degree."""
+        """Compute the relative excess of each modal compliance over its limit, ρ_n = c_n (n + ½)/C - 1."""
         n = _check_degrees(degrees)
         rigid = n == 1
         return numpy.where(rigid, -1.0, homogeneous_excess(-(n + rigid + 0.5), self.poisson))
 
     def expansion(self, order: int) -> numpy.ndarray:
-        """Compute a_1, ..., a_order of ρ_n = Σ a_j (n + ½)^-j, which converges for n >= 2."""
+        """Compute the coefficients a_1, ..., a_order of the series ρ_n = Σ a_j (n + ½)^-j.
+
+        The series converges for n >= 2.
+        """
         return homogeneous_expansion(self.poisson, order) * (-1.0) ** numpy.arange(1, order + 1)
 
 
@@ -267,7 +275,7 @@ def socket_of(joint: Joint) -> Socket:
 
 
 def ball_of(joint: Joint) -> ElasticBall | None:
-    """Make the ball of a joint of plain numbers; None if it is rigid."""
+    """Make the elastic ball of a joint of plain numbers; None if the ball is rigid."""
     if joint.ball is None:
         return None
     return ElasticBall(
@@ -276,7 +284,7 @@ def ball_of(joint: Joint) -> ElasticBall | None:
 
 
 def _shell(thickness: Array, material: Material) -> Shell:
-    """Make a shell of plain numbers."""
+    """Make the shell of a layer from its thickness in mm and its material."""
     return Shell(thickness=float(thickness), young=float(material.young), poisson=float(material.poisson))
 
 
@@ -290,13 +298,13 @@ def _check_radius(radius: float) -> None:
 
 
 def _check_material(young: float, poisson: float) -> None:
-    """Raise ValueError for moduli outside their ranges."""
+    """Raise ValueError for a Young's modulus or a Poisson's ratio outside its range."""
     MATERIAL["young"].check(young)
     MATERIAL["poisson"].check(poisson)
 
 
 def _check_degrees(degrees: ArrayLike) -> numpy.ndarray:
-    """Return degrees as floats; raise an error unless they are integers from 0 on."""
+    """Convert degrees n to floats; raise an error unless they are integers from 0 on."""
     n = numpy.asarray(degrees)
     if n.dtype.kind not in "iu":
         raise TypeError(f"degrees must be integers, got an array of {n.dtype}")
@@ -305,12 +313,12 @@ def _check_degrees(degrees: ArrayLike) -> numpy.ndarray:
 
 
 def asymptote_of(radius: float, young: float, poisson: float) -> float:
-    """Compute C in mm/MPa, the limit of c_n (n + ½) at high degrees, where a sphere is a half-space."""
+    """Compute the compliance C in mm/MPa, the limit of c_n (n + ½), where a sphere acts as a half-space."""
     return 2 * (1 - poisson**2) * radius / young
 
 
 def _polynomials(nu: float) -> tuple[list[float], list[float]]:
-    """Compute the polynomials of ρ in an infinite socket, in falling powers of q = n + ½.
+    """Compute numerator and denominator of ρ_n in an infinite socket, in falling powers of q = n + ½.
 
     The numerator begins with q², the denominator with q³. A ball has -q in place of q.
     """
@@ -320,13 +328,16 @@ def _polynomials(nu: float) -> tuple[list[float], list[float]]:
 
 
 def homogeneous_excess(q: Numbers, nu: float) -> Numbers:
-    """Compute ρ_n = c_n (n + ½)/C - 1 of an infinite socket at q = n + ½, of a ball at q = -(n + ½)."""
+    """Compute the excess ρ_n of an infinite socket at q = n + ½, or of a ball at q = -(n + ½).
+
+    The excess is ρ_n = c_n (n + ½)/C - 1.
+    """
     numerator, _ = _polynomials(nu)
     return numpy.asarray(numpy.polyval(numerator, q) / ((q + 1.5) * (q * (q - 2 * nu) + 0.75)))
 
 
 def homogeneous_expansion(nu: float, order: int) -> Numbers:
-    """Compute the quotient of the polynomials in powers of 1/q."""
+    """Compute the coefficients a_1, ..., a_order of ρ_n in powers of 1/q, for an infinite socket."""
     numerator, denominator = _polynomials(nu)
     a = [0.0, 0.0, 0.0]
     for j in range(order):

@@ -14,7 +14,7 @@ from ...core.arrays import Numbers
 from ...core.stress import Peak, Stress
 from .abel import AbelState
 from .free_face import free_face_of
-from .hemisphere import low_modes, on_hemisphere, response
+from .hemisphere import hemisphere_response, low_pressure_modes, solve_on_hemisphere
 from .intervals import Intervals
 from .load_curve import LoadCurve
 from .tabulated.chebyshev import angle_at, angle_root
@@ -34,13 +34,13 @@ def surface_displacement(state: AbelState, angle: Numbers) -> Numbers:
 
 
 def stress(state: AbelState, angle: Numbers, depth: Numbers) -> Stress:
-    """Compute the stresses of one contact at polar angles (rad) and depths below the surface of the socket (mm)."""
+    """Compute the stresses of one contact in MPa at polar angles (rad) and depths below the bore (mm)."""
     shallowest = float(numpy.min(depth, initial=inf))
     return _sum_stresses(state, angle, depth, _mode_count(state, shallowest if shallowest < inf else 0.0))
 
 
 def _sum_stresses(state: AbelState, angle: Numbers, depth: Numbers, count: int) -> Stress:
-    """Compute stresses from this number of modes."""
+    """Compute the stresses of one contact in MPa as the sum of this number of modes."""
     angle, depth = numpy.broadcast_arrays(angle, depth)
     angles, column = numpy.unique(angle.ravel(), return_inverse=True)
     depths, row = numpy.unique(depth.ravel(), return_inverse=True)
@@ -48,20 +48,20 @@ def _sum_stresses(state: AbelState, angle: Numbers, depth: Numbers, count: int) 
     P, slope = _legendre(angles, count)
     modes = _taper_modes(state, count)
 
-    def total(field: Numbers, wave: Numbers) -> Numbers:
+    def sum_modes(field: Numbers, wave: Numbers) -> Numbers:
         table = (modes[:, None] * field).T @ wave  # depths by angles
         return table[row.ravel(), column.ravel()].reshape(angle.shape)
 
-    tilt = total(fields.sigma_cot, -numpy.cos(angles) * slope)
+    tilt = sum_modes(fields.sigma_cot, -numpy.cos(angles) * slope)
     return Stress(
-        radial=total(fields.sigma_rr, P),
-        meridional=total(fields.sigma_phiphi, P) - tilt,
-        hoop=total(fields.sigma_thetatheta, P) + tilt,
-        shear=total(fields.sigma_rphi, -numpy.sin(angles) * slope),
+        radial=sum_modes(fields.sigma_rr, P),
+        meridional=sum_modes(fields.sigma_phiphi, P) - tilt,
+        hoop=sum_modes(fields.sigma_thetatheta, P) + tilt,
+        shear=sum_modes(fields.sigma_rphi, -numpy.sin(angles) * slope),
     )
 
 
-def peak(state: AbelState, thickness: float) -> Peak:
+def find_peak_stress(state: AbelState, thickness: float) -> Peak:
     """Find the largest von Mises stress of one contact in a liner of this thickness, at the surface or below."""
     angles, depths = _search_grid(state, thickness)
     for _ in range(_SEARCH_ROUNDS):
@@ -75,14 +75,14 @@ def peak(state: AbelState, thickness: float) -> Peak:
 
 
 def _search_grid(state: AbelState, thickness: float) -> tuple[Numbers, Numbers]:
-    """Make the first search grid: angles to slightly beyond the edge, and depths."""
+    """Make the first search grid: angles (rad) to slightly beyond the edge, and depths (mm)."""
     angles = float(state.half_angle[0]) * numpy.linspace(0.0, 1.3, 27)
     deepest = min(thickness, 3 * state.gap.socket_radius * float(numpy.sin(state.half_angle[0])))
     return angles, deepest * numpy.linspace(0.0, 1.0, 26)
 
 
 def estimate_von_mises(state: AbelState) -> Numbers:
-    """Estimate the largest von Mises stress of each contact from an eighth of the modes.
+    """Estimate the largest von Mises stress of each contact in MPa from an eighth of the modes.
 
     The estimate differs from `largest_von_mises` by at most `VON_MISES_TOLERANCE`.
     """
@@ -109,7 +109,7 @@ def von_mises_change(closed: AbelState, half_angle: float) -> float:
     """
     kernel = closed.kernel
     intervals = Intervals(half_angle=numpy.array([half_angle]), grid=closed.grid)
-    free = on_hemisphere(replace(closed, intervals=intervals), response(kernel.socket, kernel.ball))
+    free = solve_on_hemisphere(replace(closed, intervals=intervals), hemisphere_response(kernel.socket, kernel.ball))
     angles = min(1.2 * float(closed.half_angle[0]), _MAX_SEARCH_ANGLE) * numpy.linspace(0.0, 1.0, 9)
     face = free_face_of(kernel.socket)
     if face is None:
@@ -117,14 +117,14 @@ def von_mises_change(closed: AbelState, half_angle: float) -> float:
     depths = face.liner_radii - kernel.socket.radius
     count = min(_mode_count(closed, float(depths.min())), _mode_count(closed, 0.0) // 4)
     before, after = (_sum_stresses(state, angles[:, None], depths, count) for state in (closed, free))
-    release = face.liner_stress(low_modes(free)[0], angles)
+    release = face.liner_stress(low_pressure_modes(free)[0], angles)
     total = Stress(**{name: values + vars(release)[name] for name, values in vars(after).items()})
     same_force = float(closed.force[0] / free.force[0])  # at one half angle stresses are proportional to the clearance
     return same_force * float(total.von_mises.max() / before.von_mises.max()) - 1
 
 
 def largest_von_mises(state: AbelState, reached: Numbers) -> Numbers:
-    """Compute the largest von Mises stress in the liner for each contact in the mask, NaN for the others.
+    """Compute the largest von Mises stress in the liner in MPa for the contacts in a mask, NaN for others.
 
     A narrow contact has the stress of a half-space under Hertz' pressure.
     """
@@ -134,7 +134,7 @@ def largest_von_mises(state: AbelState, reached: Numbers) -> Numbers:
         if state.half_angle[number] < MIN_HALF_ANGLE:  # a half-space
             values[number] = state.max_pressure[number] * ball_stress_ratio(liner.poisson)
         else:
-            values[number] = peak(state.single(int(number)), liner.thickness).von_mises
+            values[number] = find_peak_stress(state.single(int(number)), liner.thickness).von_mises
     return values
 
 
@@ -149,21 +149,27 @@ def _refined_points(values: Numbers, i: int) -> Numbers:
 
 
 def _mode_count(state: AbelState, depth: float) -> int:
-    """Return the number of modes: enough over the contact, fewer where they decay like (1 + depth/R2)^-n."""
+    """Choose the number of modes for the stresses of one contact at a depth in mm.
+
+    It resolves the contact, and is smaller where modes decay like (1 + depth/R2)^-n.
+    """
     surface = numpy.clip(_SURFACE_WAVES / float(state.half_angle[0]), _MIN_MODES, _MAX_MODES)
     decayed = 35 / log1p(depth / state.gap.socket_radius) if depth > 0 else _MAX_MODES
     return int(min(surface, max(decayed, 200)))
 
 
 def _taper_modes(state: AbelState, count: int) -> Numbers:
-    """Return p_n of one contact with a smooth taper over the last half, which avoids ringing of the sum."""
+    """Compute the pressure modes p_n of one contact in MPa, tapered over the last half.
+
+    The taper avoids oscillations of a truncated sum.
+    """
     n = numpy.arange(count)
     taper = numpy.cos(numpy.pi * numpy.clip(n / count - 0.5, 0.0, 0.5)) ** 2
     return state.modes(count)[0] * taper
 
 
 def _legendre(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
-    """Compute P_n(cos φ) and dP_n/d(cos φ) for n below count, shape (count, angles)."""
+    """Compute the Legendre polynomials P_n(cos φ) and their derivatives by cos φ: (count, angles)."""
     x, n = numpy.cos(angle), numpy.arange(count)[:, None]
     P, slope = numpy.empty((count, len(x))), numpy.zeros((count, len(x)))
     P[0], P[1] = 1.0, x
@@ -192,45 +198,47 @@ class StressCurve:
     points: int
 
     @property
-    def _ratio(self) -> float:
-        """Ratio R2/L."""
+    def _thickness_ratio(self) -> float:
+        """Ratio R2/L of socket radius and liner thickness."""
         return self.curve.ratio
 
     @cached_property
-    def _widest(self) -> float:
-        """Table coordinate of the widest contact."""
-        return float(angle_root(self.curve.widest, self._ratio))
+    def _widest_coordinate(self) -> float:
+        """Coordinate of the half angle of the widest contact, from 0 to 1."""
+        return float(angle_root(self.curve.widest, self._thickness_ratio))
 
     def stress_ratio(self, angle: Numbers) -> Numbers:
         """Interpolate the ratio of the largest von Mises stress to the largest pressure at half angles."""
         position = numpy.clip(
-            (angle_root(angle, self._ratio) - self._roots[0]) / self._roots[1], 0.0, _STRESS_INTERVALS - 1e-9
+            (angle_root(angle, self._thickness_ratio) - self._coordinates[0]) / self._coordinates[1],
+            0.0,
+            _STRESS_INTERVALS - 1e-9,
         )
         first, fraction = position.astype(int), position % 1
         low, high = (self._solved_ratios(number) for number in (first, first + 1))
         return low + fraction * (high - low)
 
     @property
-    def _roots(self) -> tuple[float, float]:
-        """First table coordinate where stresses are solved, and the step."""
-        first = min(float(angle_root(MIN_HALF_ANGLE, self._ratio)), self._widest)
-        return first, (self._widest - first) / _STRESS_INTERVALS
+    def _coordinates(self) -> tuple[float, float]:
+        """First coordinate of the half angles at which stresses are solved, and the step between them."""
+        first = min(float(angle_root(MIN_HALF_ANGLE, self._thickness_ratio)), self._widest_coordinate)
+        return first, (self._widest_coordinate - first) / _STRESS_INTERVALS
 
     def _solved_ratios(self, numbers: Numbers) -> Numbers:
-        """Return the ratios at numbered half angles; each one is solved at its first use."""
+        """Return the stress ratios at half angles by their indices."""
         unique, positions = numpy.unique(numbers, return_inverse=True)
         return numpy.array([self._solve_ratio(int(number)) for number in unique])[positions.ravel()]
 
     def _solve_ratio(self, number: int) -> float:
-        """Return the ratio at one of the half angles."""
+        """Return the stress ratio at the half angle of this index; it is solved at its first use."""
         if number not in self._cached_ratios:
-            root = self._roots[0] + number * self._roots[1]
-            angle = float(angle_at(2 * root - 1, self._ratio))
+            coordinate = self._coordinates[0] + number * self._coordinates[1]
+            angle = float(angle_at(2 * coordinate - 1, self._thickness_ratio))
             state = self.curve.state(numpy.array([min(angle, self.curve.widest)]), self.points)
             self._cached_ratios[number] = float((largest_von_mises(state, numpy.array([True])) / state.max_pressure)[0])
         return self._cached_ratios[number]
 
     @cached_property
     def _cached_ratios(self) -> dict[int, float]:
-        """Ratios solved so far."""
+        """Stress ratios solved so far, by the index of the half angle."""
         return {}

@@ -31,27 +31,27 @@ UNIT: Matrix = numpy.eye(2)[:, :, None]
 
 
 def _matmul(a: Matrix, b: Matrix) -> Matrix:
-    """Multiply matrices degree by degree."""
+    """Multiply the 2×2 matrices of each degree."""
     return a[:, :1] * b[:1] + a[:, 1:] * b[1:]
 
 
 def _inverse(a: Matrix) -> Matrix:
-    """Invert matrices degree by degree."""
+    """Invert the 2×2 matrices of each degree."""
     return numpy.array([[a[1, 1], -a[0, 1]], [-a[1, 0], a[0, 0]]]) / (a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0])
 
 
 def _outer(column: tuple[numpy.ndarray, ...], row: tuple[numpy.ndarray, ...]) -> Matrix:
-    """Multiply a column by a row degree by degree."""
+    """Compute the outer product of a column and a row for each degree."""
     return numpy.array(column)[:, None] * numpy.array(row)
 
 
 def fixed_condition() -> tuple[Matrix, Matrix]:
-    """Return the condition u = 0 as A and B of A u + B r σ = 0."""
+    """Return the boundary condition u = 0 of a fixed surface as matrices A and B of A u + B r σ = 0."""
     return UNIT, 0 * UNIT
 
 
 def free_condition(n: numpy.ndarray) -> tuple[Matrix, Matrix]:
-    """Return the condition σ = 0 as A and B.
+    """Return the boundary condition σ = 0 of a free surface as matrices A and B of A u + B r σ = 0.
 
     At n = 1 the condition is u_r + 2 u_φ = 0 (no mean translation) and σ_rr = σ_rφ (uniform traction).
     """
@@ -64,64 +64,73 @@ def free_condition(n: numpy.ndarray) -> tuple[Matrix, Matrix]:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Wave:
-    """Displacements that grow, or decay, with r: N and K of the module docstring, power n - 1 or n."""
+    """Part of a mode in a layer: the two powers of r that grow outwards, or the two that decay.
+
+    `N` and `K` are the matrices of the module docstring, `power` is n - 1 or n.
+    """
 
     N: Matrix
     K: Matrix
     power: numpy.ndarray
 
     @classmethod
-    def of(cls, n: numpy.ndarray, N: Matrix, K: Matrix, power: numpy.ndarray, single_power: int) -> Wave:
-        """Make a wave; degree n = 0 has the single power ±`single_power`."""
+    def from_matrices(cls, n: numpy.ndarray, N: Matrix, K: Matrix, power: numpy.ndarray, single_power: int) -> Wave:
+        """Make a wave from its matrices; degree n = 0 has the single power ±`single_power`."""
         # n = 0 has one power of r and no u_φ: the unused entries must not mix with u_r, nor be singular
         zero = n == 0
         N[:, :, zero], K[1, 0, zero], K[1, 1, zero] = 0.0, 0.0, K[0, 0, zero]
         return cls(N=N, K=K, power=numpy.where(zero, single_power, power))
 
-    def decayed(self, x: float | numpy.ndarray, u: Matrix) -> Matrix:
-        """Compute u at the distance x = -ln κ down the wave."""
+    def propagate(self, x: float | numpy.ndarray, u: Matrix) -> Matrix:
+        """Compute the displacements at the logarithmic distance x = -ln κ, over which the wave decays from u."""
         return numpy.exp(-self.power * x) * (u + numpy.expm1(-2 * x) / 2 * _matmul(self.N, u))
 
     def decay_deficit(self, x: float) -> Matrix:
-        """Compute the unit matrix less its decayed value, without cancellation."""
+        """Compute the unit matrix minus the decay over the logarithmic distance x, without cancellation."""
         decay = self.power * x
         return -numpy.expm1(-decay) * UNIT - expm1(-2 * x) / 2 * numpy.exp(-decay) * self.N
 
-    def along(self, x: numpy.ndarray, u: Matrix) -> tuple[Matrix, Matrix]:
-        """Compute displacements and r σ at several distances x, on a new last axis."""
+    def evaluate(self, x: numpy.ndarray, u: Matrix) -> tuple[Matrix, Matrix]:
+        """Compute displacements and tractions r σ at several logarithmic distances x, on a new last axis."""
         wave = Wave(N=self.N[..., None], K=self.K[..., None], power=self.power[:, None])
-        displacements = wave.decayed(x, u[..., None])
+        displacements = wave.propagate(x, u[..., None])
         return displacements, _matmul(wave.K, displacements)
 
 
 def growing_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
-    """Make the growing wave of r^(n-1), where u = (n, 1), and r^(n+1)."""
+    """Make the wave of the powers r^(n-1) and r^(n+1), which grow outwards.
+
+    The displacements of r^(n-1) are u = (n, 1).
+    """
     compressibility = 1 - 2 * nu
     denominator = numpy.maximum(n + compressibility * (2 * n + 1), _MIN_DENOMINATOR)
     weight = (2 - nu - compressibility * n) / denominator
     N = _outer(((n + 1) * (n - 2 + 4 * nu), n + 5 - 4 * nu), (-1 / denominator, n / denominator))
     K = (n - 1) * UNIT + _outer((n + 1, -1 + 0 * n), (weight, -n * weight))
-    return Wave.of(n, N, K * _twice_shear(young, nu), power=n - 1, single_power=1)
+    return Wave.from_matrices(n, N, K * _twice_shear(young, nu), power=n - 1, single_power=1)
 
 
 def decaying_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
-    """Make the decaying wave of r^-(n+2), where u = (-n - 1, 1), and r^-n."""
+    """Make the wave of the powers r^-(n+2) and r^-n, which decay outwards.
+
+    The displacements of r^-(n+2) are u = (-n - 1, 1).
+    """
     compressibility = 1 - 2 * nu
     denominator = n + 1 + compressibility * (2 * n + 1)
     weight = (3 * (1 - nu) + compressibility * n) / denominator
     N = _outer((-n - 1, 1 + 0 * n), ((n - 4 + 4 * nu) / denominator, n * (n + 3 - 4 * nu) / denominator))
     K = -(n + 2) * UNIT + _outer((n, 1 + 0 * n), (weight, (n + 1) * weight))
-    return Wave.of(n, N, K * _twice_shear(young, nu), power=n, single_power=2)
+    return Wave.from_matrices(n, N, K * _twice_shear(young, nu), power=n, single_power=2)
 
 
 def _twice_shear(young: float, nu: float) -> float:
-    """Compute twice the shear modulus."""
+    """Compute twice the shear modulus in MPa."""
     return young / (1 + nu)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SupportedLayer:
-    """One layer with the condition A u + B r σ = 0 on its outer surface, for all degrees at once.
+    """Elastic layer with the boundary condition A u + B r σ = 0 on its outer surface, for all degrees.
 
     `inner` is its inner radius in mm; thickness in mm and Young's modulus in MPa.
     """
@@ -134,78 +143,91 @@ class SupportedLayer:
     condition: tuple[Matrix, Matrix]
 
     @cached_property
-    def _growing(self) -> Wave:
-        """Growing wave of the layer."""
+    def _growing_wave(self) -> Wave:
+        """Wave of the powers of r that grow outwards."""
         return growing_wave(self.n, self.young, self.poisson)
 
     @cached_property
-    def _decaying(self) -> Wave:
-        """Decaying wave of the layer."""
+    def _decaying_wave(self) -> Wave:
+        """Wave of the powers of r that decay outwards."""
         return decaying_wave(self.n, self.young, self.poisson)
 
     @cached_property
     def _log_ratio(self) -> float:
-        """Logarithm ln(b/a) of the ratio of the two radii."""
+        """Logarithm ln(b/a) of the ratio of outer and inner radius."""
         return min(log1p(self.thickness / self.inner), _MAX_LOG_RATIO)
 
     @cached_property
-    def _outwards(self) -> Matrix:
-        """Decaying wave at the outer surface, per unit at the inner one."""
-        return self._decaying.decayed(self._log_ratio, UNIT)
+    def _transmission(self) -> Matrix:
+        """Decaying wave at the outer surface, per unit of it at the inner surface."""
+        return self._decaying_wave.propagate(self._log_ratio, UNIT)
 
     @cached_property
     def _condition_inverse(self) -> Matrix:
-        """Inverse of the outer condition for the growing wave."""
+        """Inverse matrix of the outer boundary condition, applied to the growing wave."""
         A, B = self.condition
-        return _inverse(A + _matmul(B, self._growing.K))
+        return _inverse(A + _matmul(B, self._growing_wave.K))
 
     @cached_property
-    def _reflected(self) -> Matrix:
-        """Growing wave at the outer surface, reflected by a unit of the decaying wave there."""
+    def _outer_reflection(self) -> Matrix:
+        """Reflection at the outer surface: growing wave per unit of the decaying wave there."""
         A, B = self.condition
-        return -_matmul(self._condition_inverse, A + _matmul(B, self._decaying.K))
+        return -_matmul(self._condition_inverse, A + _matmul(B, self._decaying_wave.K))
 
     @cached_property
-    def _echo(self) -> Matrix:
-        """Growing wave at the inner surface, reflected by a unit of the decaying wave there."""
-        return self._growing.decayed(self._log_ratio, _matmul(self._reflected, self._outwards))
+    def _inner_reflection(self) -> Matrix:
+        """Reflection at the inner surface: growing wave per unit of the decaying wave there."""
+        return self._growing_wave.propagate(self._log_ratio, _matmul(self._outer_reflection, self._transmission))
 
     @cached_property
-    def _emitted(self) -> Matrix:
-        """Decaying wave at the inner surface, per r σ there."""
-        return _inverse(self._decaying.K + _matmul(self._growing.K, self._echo))
+    def _traction_response(self) -> Matrix:
+        """Decaying wave at the inner surface, per unit of the traction r σ there."""
+        return _inverse(self._decaying_wave.K + _matmul(self._growing_wave.K, self._inner_reflection))
 
     @cached_property
     def compliance(self) -> Matrix:
-        """Compliance S: u per r σ on the inner surface."""
-        # 1 + echo nearly cancels in a thin layer on a stiff backing: first as if the outer surface were fixed
-        x, yielding = self._log_ratio, _matmul(self.condition[1], self._growing.K - self._decaying.K)
-        fixed_term = self._growing.decay_deficit(x) + self._growing.decayed(x, self._decaying.decay_deficit(x))
-        backing_term = self._growing.decayed(x, _matmul(_matmul(self._condition_inverse, yielding), self._outwards))
-        return _matmul(fixed_term + backing_term, self._emitted)
+        """Compliance matrix S of the layer: displacements u per traction r σ on the inner surface."""
+        # 1 + reflection nearly cancels in a thin layer on a stiff backing: first as if the outer surface were fixed
+        x = self._log_ratio
+        backing_difference = _matmul(self.condition[1], self._growing_wave.K - self._decaying_wave.K)
+        fixed_term = self._growing_wave.decay_deficit(x) + self._growing_wave.propagate(
+            x, self._decaying_wave.decay_deficit(x)
+        )
+        backing_term = self._growing_wave.propagate(
+            x, _matmul(_matmul(self._condition_inverse, backing_difference), self._transmission)
+        )
+        return _matmul(fixed_term + backing_term, self._traction_response)
 
     @cached_property
     def layer_correction(self) -> Matrix:
-        """Compliance S less that of an infinite layer, which is 1/K-."""
-        departure = UNIT - _matmul(_inverse(self._decaying.K), self._growing.K)
-        return _matmul(departure, _matmul(self._echo, self._emitted))
+        """Compliance matrix S of the layer minus that of an infinite layer, the inverse of K-."""
+        departure = UNIT - _matmul(_inverse(self._decaying_wave.K), self._growing_wave.K)
+        return _matmul(departure, _matmul(self._inner_reflection, self._traction_response))
 
     def _waves(self, load: Matrix) -> tuple[Matrix, Matrix]:
-        """Compute the growing wave at the outer surface and the decaying one at the inner surface, from r σ there."""
-        decaying = _matmul(self._emitted, load)
-        return _matmul(self._reflected, _matmul(self._outwards, decaying)), decaying
+        """Compute the growing wave at the outer surface and the decaying wave at the inner surface.
+
+        `load` is the traction r σ on the inner surface.
+        """
+        decaying = _matmul(self._traction_response, load)
+        return _matmul(self._outer_reflection, _matmul(self._transmission, decaying)), decaying
 
     def outer_traction(self, load: Matrix) -> Matrix:
-        """Compute r σ on the outer surface from r σ on the inner one."""
+        """Compute the traction r σ on the outer surface from that on the inner surface."""
         growing, decaying = self._waves(load)
-        return _matmul(self._growing.K, growing) + _matmul(self._decaying.K, _matmul(self._outwards, decaying))
+        return _matmul(self._growing_wave.K, growing) + _matmul(
+            self._decaying_wave.K, _matmul(self._transmission, decaying)
+        )
 
     def fields(self, load: Matrix, r: numpy.ndarray) -> numpy.ndarray:
-        """Compute the seven components of `Fields` at the radii r, from r σ on the inner surface."""
+        """Compute displacements and stresses at radii r (mm) from the traction r σ on the inner surface.
+
+        The rows are the seven components of `Fields`.
+        """
         growing, decaying = self._waves(load)
         x = numpy.log(r / self.inner)
-        grown = self._growing.along(numpy.maximum(self._log_ratio - x, 0.0), growing)
-        inward = self._decaying.along(x, decaying)
+        grown = self._growing_wave.evaluate(numpy.maximum(self._log_ratio - x, 0.0), growing)
+        inward = self._decaying_wave.evaluate(x, decaying)
         (u_r, u_phi), (s_rr, s_rphi) = (a[:, 0] + b[:, 0] for a, b in zip(grown, inward, strict=True))
         # Hooke: hoop strains (u_r P + u_φ P'')/r and (u_r P + u_φ cot φ P')/r, P'' = -n (n + 1) P - cot φ P'
         nu, bent = self.poisson, (self.n * (self.n + 1))[:, None] * u_phi

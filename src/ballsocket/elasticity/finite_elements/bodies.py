@@ -21,7 +21,7 @@ from .shapes import Resolution, SocketShape, ball_corners
 
 
 def socket_body(shape: SocketShape, resolution: Resolution) -> CondensedBody:
-    """Make the socket, loaded on its bore."""
+    """Mesh the socket as an elastic body that is loaded on its bore."""
     angle, radii = shape.corners(resolution)
     mesh = socket_block(shape, angle, radii, resolution.order)
     outside = mesh.number[:, -1]
@@ -49,7 +49,7 @@ def socket_elastic(shape: SocketShape, mesh: Block) -> ElasticBlock:
 
 
 def ball_body(poisson: float, resolution: Resolution) -> CondensedBody:
-    """Make a ball of radius 1 and Young's modulus 1, loaded on its surface."""
+    """Mesh the ball with radius and Young's modulus 1 as an elastic body that is loaded on its surface."""
     angle, radii = ball_corners(resolution)
     mesh = block(angle, [radii], resolution.order)
     fixed_unknowns = _axis_mask(mesh)
@@ -59,7 +59,7 @@ def ball_body(poisson: float, resolution: Resolution) -> CondensedBody:
 
 
 def _axis_mask(mesh: Block) -> Numbers:
-    """Return the mask of unknowns that are zero on the axis."""
+    """Return the mask of displacements that are zero because their node lies on the axis."""
     fixed_unknowns = numpy.zeros(2 * mesh.number.size, dtype=bool)
     fixed_unknowns[2 * mesh.number[0]] = True
     return fixed_unknowns
@@ -67,17 +67,23 @@ def _axis_mask(mesh: Block) -> Numbers:
 
 @lru_cache(maxsize=64)
 def socket_compliance(shape: SocketShape, resolution: Resolution) -> tuple[Numbers, Numbers]:
-    """Compute the angles of the bore's nodes, and their normal displacements by unit normal forces."""
-    return _condense(socket_body(shape, resolution))
+    """Compute angles (rad) and compliance matrix of the nodes on the bore, from a cache.
+
+    The matrix has normal displacements by unit normal forces.
+    """
+    return _surface_compliance(socket_body(shape, resolution))
 
 
 @lru_cache(maxsize=64)
 def ball_compliance(poisson: float, resolution: Resolution) -> tuple[Numbers, Numbers]:
-    """Compute the angles of the nodes on the ball's surface, and their normal displacements by unit normal forces."""
-    return _condense(ball_body(poisson, resolution))
+    """Compute angles (rad) and compliance matrix of the nodes on the ball's surface, from a cache.
+
+    The matrix has normal displacements by unit normal forces.
+    """
+    return _surface_compliance(ball_body(poisson, resolution))
 
 
-def _condense(body: CondensedBody) -> tuple[Numbers, Numbers]:
-    """Return angles and compliance of a body's contact nodes."""
+def _surface_compliance(body: CondensedBody) -> tuple[Numbers, Numbers]:
+    """Compute angles (rad) and compliance matrix of a body's contact nodes."""
     block = body.elastic.block
     return block.angle[: len(body.contact)], body.compliance()

@@ -27,7 +27,7 @@ class CondensedBody:
     Parameters
     ----------
     elastic : ElasticBlock
-    held : array of bool (unknowns,)
+    fixed_unknowns : array of bool (unknowns,)
         Mask of the unknowns that the supports fix to zero.
     contact : array (nodes,)
         Nodes of the contact surface, from the pole outwards.
@@ -39,38 +39,38 @@ class CondensedBody:
 
     @property
     def normals(self) -> Numbers:
-        """Normal displacements that the contact loads, as numbers of unknowns."""
+        """Indices of the unknowns that are normal displacements of contact nodes."""
         return 2 * self.contact + 1
 
     @cached_property
-    def _order(self) -> Numbers:
-        """Free unknowns, those of the contact last."""
+    def _elimination_order(self) -> Numbers:
+        """Indices of the free unknowns in the order of elimination, those of the contact last."""
         block = self.elastic.block
         grid = numpy.arange(len(block.angle) * (block.level[-1] + 1)).reshape(len(block.angle), -1)
         rank = numpy.empty(grid.size, dtype=int)
         rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
-        of_node = rank[grid[:, block.level]].ravel()
+        node_rank = rank[grid[:, block.level]].ravel()
         free = numpy.unique(self.elastic.unknowns)
         free = free[~self.fixed_unknowns[free] & ~numpy.isin(free, self.normals)]
-        return numpy.concatenate([free[numpy.argsort(of_node[free // 2], kind="stable")], self.normals])
+        return numpy.concatenate([free[numpy.argsort(node_rank[free // 2], kind="stable")], self.normals])
 
     def _factors(self) -> Any:
-        """Factor the stiffness matrix in the order of `_order`."""
-        ordered = self.elastic.matrix()[self._order][:, self._order].tocsc()
+        """Compute the LU factors of the stiffness matrix in the order of elimination."""
+        ordered = self.elastic.matrix()[self._elimination_order][:, self._elimination_order].tocsc()
         return splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
     def compliance(self) -> Numbers:
-        """Compute the normal displacements of the contact's nodes by unit normal forces on them."""
+        """Compute the compliance matrix of the contact nodes: normal displacements by unit normal forces."""
         factors, count = self._factors(), len(self.contact)
         stiffness = factors.L[-count:, -count:].toarray() @ factors.U[-count:, -count:].toarray()
         return numpy.linalg.inv((stiffness + stiffness.T) / 2)
 
     def displacements(self, forces: Numbers) -> Numbers:
-        """Compute u_φ and u_r of all nodes, shape (nodes, 2), by normal forces on the contact's nodes."""
-        load = numpy.zeros(len(self._order))
+        """Compute the displacements u_φ and u_r of all nodes, (nodes, 2), under normal forces on contact nodes."""
+        load = numpy.zeros(len(self._elimination_order))
         load[-len(self.contact) :] = forces
         solution = numpy.zeros(len(self.fixed_unknowns))
-        solution[self._order] = self._factors().solve(load)
+        solution[self._elimination_order] = self._factors().solve(load)
         for column in self.elastic.block.sliding:
             number = self.elastic.block.number
             solution[2 * number[:, column + 1] + 1] = solution[2 * number[:, column] + 1]
@@ -78,7 +78,7 @@ class CondensedBody:
 
 
 def nested_dissection(nodes: Numbers, order: int, start: tuple[int, int] = (0, 0)) -> Numbers:
-    """Order the nodes of a grid by nested dissection; only lines between elements separate the halves.
+    """Order the nodes of a grid by nested dissection along lines between elements.
 
     `start` is the index of the part's first node in the full grid.
     """

@@ -49,11 +49,12 @@ class MeshedContact(SolvedContact):
 
     @property
     def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Bounds of `von_mises` without a section; near a rim there are none."""
+        """Lower and upper bound of `von_mises` in MPa without a section; 0 and infinity near a rim."""
         lower, upper = super().von_mises_bounds
         return (lower, upper) if self.model.cup == Cup() else (0.0 * lower, upper + inf)
 
     def _joint_von_mises(self, index: Numbers, piece: JointContacts) -> Numbers:
+        """Compute the largest von Mises stress in the liner in MPa for the contacts of one joint."""
         from .section import section
 
         values = [
@@ -68,12 +69,12 @@ class MeshedContact(SolvedContact):
 
     @property
     def peak_stress(self) -> Peak:
-        """Largest von Mises stress in the liner, with its depth and polar angle, at the nodes of the mesh."""
+        """Largest von Mises stress in the liner in MPa at the nodes of the mesh, with its depth and polar angle."""
         return self.section.peak_stress
 
     @property
     def rim_displacement(self) -> tuple[float, float]:
-        """Displacement of the bore's end in mm, away from the load axis and up against the load."""
+        """Displacement of the end of the bore in mm: away from the load axis, and up against the load."""
         return self.section.rim_displacement
 
     @property
@@ -94,6 +95,6 @@ class MeshedContact(SolvedContact):
         return solved
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON, with the error estimates and the mesh size of a single contact."""
+        """Return the contact as a dictionary for JSON, with error estimates and the mesh size of a single contact."""
         single = self.laws.shape == () and not Status(self.status).failed and self.indentation > 0
         return {**super().summary(), **({"mesh": self.mesh.summary()} if single else {})}

@@ -44,20 +44,20 @@ class Gradients:
 
     @property
     def trace(self) -> Numbers:
-        """Change of volume (elements, points, unknowns), not projected."""
+        """Relative change of volume per unknown (elements, points, unknowns), not projected."""
         return self.strain[..., 0, :] + self.strain[..., 1, :] + self.strain[..., _HOOP, :]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Strains(Gradients):
-    """Gradients with the projected change of volume, `swelling`, of the shape of `trace`."""
+    """Strains with the projected change of volume, `swelling`, in the shape of `trace`."""
 
     swelling: Numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ElasticBlock:
-    """Block of elastic layers.
+    """Meshed block of elastic layers.
 
     Parameters
     ----------
@@ -71,9 +71,9 @@ class ElasticBlock:
 
     @cached_property
     def unknowns(self) -> Numbers:
-        """Numbers of each element's unknowns, shape (elements, unknowns): u_φ and u_r of node i are 2i and 2i + 1.
+        """Indices of each element's unknowns, shape (elements, unknowns).
 
-        Where layers slide on each other they share u_r.
+        The unknowns u_φ and u_r of node i are 2i and 2i + 1. Where layers slide on each other they share u_r.
         """
         shared = numpy.arange(2 * self.block.number.size)
         for column in self.block.sliding:
@@ -83,11 +83,11 @@ class ElasticBlock:
 
     @cached_property
     def moduli(self) -> tuple[Numbers, Numbers]:
-        """Shear and bulk modulus of each layer."""
+        """Shear and bulk modulus of each layer, in the unit of `young`."""
         return self.young / (2 * (1 + self.poisson)), self.young / (3 * (1 - 2 * self.poisson))
 
     def matrix(self) -> csc_matrix:
-        """Assemble the stiffness matrix, which maps displacements to forces on full rings."""
+        """Assemble the stiffness matrix, from displacements to forces on full rings."""
         size = 2 * self.block.number.size
         count = self.unknowns.shape[1]
         K = numpy.empty((len(self.unknowns), count, count))
@@ -99,29 +99,39 @@ class ElasticBlock:
         return coo_matrix((K.ravel(), positions), shape=(size, size)).tocsc()
 
     def chunks(self, elements: Numbers) -> Iterator[slice]:
-        """Return slices of a list of elements that are processed at once."""
+        """Yield slices of a list of elements, each small enough for the cache."""
         for first in range(0, len(elements), _CHUNK):
             yield slice(first, first + _CHUNK)
 
-    def _stiffness(self, chosen: Numbers) -> Numbers:
-        """Compute element stiffnesses of 2G (|ε|² - tr²/3) + K tr², the last with the projected change of volume."""
+    def _stiffness(self, element_indices: Numbers) -> Numbers:
+        """Compute the stiffness matrices of elements.
+
+        They integrate the energy density 2G (|ε|² - tr²/3) + K tr². In its last term the change of volume is projected.
+        """
         points, weights = integration(self.block.order)
-        strains = self.strains(chosen, points)
+        strains = self.strains(element_indices, points)
         volume = strains.volume * weights
-        shear, bulk = (modulus[self.block.layers[chosen]][:, None] * volume for modulus in self.moduli)
+        shear, bulk = (modulus[self.block.layers[element_indices]][:, None] * volume for modulus in self.moduli)
         rows = strains.strain * (_SCALE * numpy.sqrt(shear)[..., None, None])
         rows = rows.reshape(len(rows), -1, rows.shape[-1])
         trace = strains.trace * numpy.sqrt(2 / 3 * shear)[..., None]
         swelling = strains.swelling * numpy.sqrt(bulk)[..., None]
         return rows.swapaxes(1, 2) @ rows - trace.swapaxes(1, 2) @ trace + swelling.swapaxes(1, 2) @ swelling
 
-    def strains(self, chosen: Numbers, points: Numbers) -> Strains:
-        """Compute strains of chosen elements at points of the unit square (2, points)."""
+    def strains(self, element_indices: Numbers, points: Numbers) -> Strains:
+        """Compute the strains and projected changes of volume per unknown of some elements.
+
+        They are evaluated at points of the unit square (2, points).
+        """
         quadrature_points, weights = integration(self.block.order)
-        integrated = self.gradients(chosen, quadrature_points)
-        evaluated = integrated if points is quadrature_points else self.gradients(chosen, points)
+        integrated = self.gradients(element_indices, quadrature_points)
+        evaluated = integrated if points is quadrature_points else self.gradients(element_indices, points)
         swelling = self.project(
-            chosen, integrated.coordinates, integrated.volume * weights, integrated.trace, evaluated.coordinates
+            element_indices,
+            integrated.coordinates,
+            integrated.volume * weights,
+            integrated.trace,
+            evaluated.coordinates,
         )
         return Strains(
             coordinates=evaluated.coordinates, strain=evaluated.strain, swelling=swelling, volume=evaluated.volume
@@ -129,42 +139,45 @@ class ElasticBlock:
 
     def project(
         self,
-        chosen: Numbers,
+        element_indices: Numbers,
         coordinates: Numbers,
         volume: Numbers,
         trace: Numbers,
         other_coordinates: Numbers | None = None,
     ) -> Numbers:
-        """Project a change of volume onto polynomials by weighted least squares, and evaluate them.
+        """Project the change of volume of elements onto polynomials, by weighted least squares.
 
         Parameters
         ----------
-        chosen : array of int (elements,)
+        element_indices : array of int (elements,)
         coordinates, other_coordinates : array (2, elements, points)
             Coordinates (ρ, z) of the points with weights, and of the points of evaluation (default: the same).
         volume : array (elements, points)
             Weights of the points.
         trace : array (elements, points, unknowns)
         """
-        Q = self._polynomials(chosen, coordinates)
+        Q = self._polynomials(element_indices, coordinates)
         weighted = (Q * volume[..., None]).swapaxes(1, 2)
-        target = Q if other_coordinates is None else self._polynomials(chosen, other_coordinates)
+        target = Q if other_coordinates is None else self._polynomials(element_indices, other_coordinates)
         return target @ numpy.linalg.solve(weighted @ Q, weighted @ trace)
 
-    def _polynomials(self, chosen: Numbers, coordinates: Numbers) -> Numbers:
-        """Evaluate 1, or 1, ρ and z about the middle of the element: (elements, points, polynomials)."""
+    def _polynomials(self, element_indices: Numbers, coordinates: Numbers) -> Numbers:
+        """Evaluate the polynomials of the change of volume in elements: (elements, points, polynomials).
+
+        They are 1 for order 1; 1, ρ and z about the middle of the element for order 2.
+        """
         constant = numpy.ones((*coordinates.shape[1:], 1))
         if self.block.order == 1:
             return constant
-        corners = self.block.nodes[:, self.block.elements[:4, chosen]]
+        corners = self.block.nodes[:, self.block.elements[:4, element_indices]]
         middle = corners.mean(axis=1)[..., None]
         size = abs(corners[:, 2] - corners[:, 0]).max(axis=0)[:, None]
         return numpy.concatenate([constant, numpy.moveaxis((coordinates - middle) / size, 0, -1)], axis=-1)
 
-    def gradients(self, chosen: Numbers, points: Numbers) -> Gradients:
-        """Compute strains of chosen elements per unknown, at points of the unit square (2, points)."""
-        shapes, slopes, det = self.cartesian(chosen, points)
-        elements = self.block.elements[:, chosen]
+    def gradients(self, element_indices: Numbers, points: Numbers) -> Gradients:
+        """Compute the strains per unknown of some elements, at points of the unit square (2, points)."""
+        shapes, slopes, det = self.cartesian(element_indices, points)
+        elements = self.block.elements[:, element_indices]
         coordinates = numpy.einsum("cne,nq->ceq", self.block.nodes[:, elements], shapes)
         strain = numpy.zeros((*det.shape, 4, 2, len(elements)))  # of (ρ, z)
         strain[..., 0, 0, :] = strain[..., _SHEAR, 1, :] = slopes[..., 0, :]
@@ -181,10 +194,13 @@ class ElasticBlock:
             volume=2 * pi * coordinates[0] * abs(det),
         )
 
-    def cartesian(self, chosen: Numbers, points: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-        """Compute shape functions (nodes, points), slopes by ρ and z (elements, points, 2, nodes), and Jacobians."""
+    def cartesian(self, element_indices: Numbers, points: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+        """Compute shape functions of elements, their derivatives by ρ and z, and Jacobian determinants.
+
+        The shapes are (nodes, points), (elements, points, 2, nodes) and (elements, points).
+        """
         shapes, slopes = shape_functions(self.block.order, points)
-        J = numpy.einsum("cne,ndq->eqcd", self.block.nodes[:, self.block.elements[:, chosen]], slopes)
+        J = numpy.einsum("cne,ndq->eqcd", self.block.nodes[:, self.block.elements[:, element_indices]], slopes)
         det = J[..., 0, 0] * J[..., 1, 1] - J[..., 0, 1] * J[..., 1, 0]
         adjugate = numpy.stack([J[..., 1, 1], -J[..., 1, 0], -J[..., 0, 1], J[..., 0, 0]], -1).reshape(J.shape)
         return shapes, numpy.einsum("ndq,eqcd->eqcn", slopes, adjugate / det[..., None, None]), det
@@ -203,7 +219,7 @@ _RULES: dict[int, tuple[Numbers, Numbers]] = {}
 
 
 def integration(order: int) -> tuple[Numbers, Numbers]:
-    """Return points (2, points) and weights (points,) that integrate an element's energy: 2 by 2, or 3 by 3."""
+    """Return the quadrature points (2, points) and weights (points,) of an element's energy, 2 by 2 or 3 by 3."""
     if order not in _RULES:
         from skfem import ElementQuad1
         from skfem.quadrature import get_quadrature

@@ -15,7 +15,7 @@ from .surfaces import SurfacePair
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FullContact:
-    """Contact at an indentation (mm) beyond that of a `PartialContact` up to the rim, with the same quantities."""
+    """Contact that fills the bore, at an indentation in mm; it has the quantities of a `PartialContact`."""
 
     pair: SurfacePair
     gap: Gap
@@ -32,53 +32,53 @@ class FullContact:
         displacement = self.pair.integrate_with_shapes(self.gap.displacement(self.pair.points[0], self.indentation))
         return self.pair.whitening.T @ (self.pair.whitening @ displacement)
 
-    def _total(self, values: Numbers) -> float:
-        """Integrate the pressure times values at the points."""
+    def _integrate(self, values: Numbers) -> float:
+        """Integrate the pressure times values at the quadrature points over the contact area."""
         return float(self.pressures @ self.pair.integrate_with_shapes(values))
 
     @cached_property
     def force(self) -> float:
         """Force F in N."""
-        return self._total(numpy.cos(self.pair.points[0]))
+        return self._integrate(numpy.cos(self.pair.points[0]))
 
     @property
     def strain_energy(self) -> float:
         """Strain energy ½ ∫ p u dA in N mm."""
-        return self._total(self.gap.displacement(self.pair.points[0], self.indentation)) / 2
+        return self._integrate(self.gap.displacement(self.pair.points[0], self.indentation)) / 2
 
     @property
     def pressure_integral(self) -> float:
-        """Integral ∫ p dA in N."""
-        return self._total(numpy.ones_like(self.pair.points[0]))
+        """Integral of the pressure over the contact area, ∫ p dA, in N."""
+        return self._integrate(numpy.ones_like(self.pair.points[0]))
 
     @property
     def tension(self) -> float:
-        """Largest tension over the pressure at the pole; negative if all pressures are positive."""
+        """Largest tension as a fraction of the pole pressure; negative if all pressures are positive."""
         return float(-self.pressures.min() / self.pole_pressure)
 
     @property
     def overlap(self) -> float:
-        """Minus infinity: the bore has no surface beyond the contact."""
+        """Overlap of the bodies beyond the contact, minus infinity because the bore ends there."""
         return -numpy.inf
 
     @property
     def edge_element(self) -> float:
-        """Zero: the edge is the end of the bore, independent of the elements."""
+        """Length of the elements at the edge in rad, 0 because the edge is the end of the bore."""
         return 0.0
 
     @property
     def stiffness(self) -> float:
-        """Stiffness dF/dd in N/mm."""
+        """Tangent stiffness dF/dd in N/mm."""
         step = 1e-4 * self.indentation  # the force is linear in the indentation, or nearly (circular gap)
         sides = (replace(self, indentation=self.indentation + sign * step).force for sign in (0.5, -0.5))
         return (next(sides) - next(sides)) / step
 
     def forces(self, surface: int) -> Numbers:
-        """Compute normal forces in N on the nodes of one of the surfaces."""
+        """Compute normal forces in N on the nodes of a surface: 0 is the socket, 1 the ball."""
         return self.pair.forces[surface] @ self.pressures
 
     def pressure(self, angle: Numbers) -> Numbers:
-        """Compute p(φ) in MPa, 0 beyond the rim."""
+        """Compute the contact pressure p(φ) in MPa at polar angles (rad); 0 beyond the rim."""
         nodes = self.pair.angle
         inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.pressures[1:]))
         return numpy.where(angle <= nodes[-1], inside, 0.0)

@@ -51,12 +51,12 @@ class Harmonics:
 
     @cached_property
     def bore(self) -> Numbers:
-        """Nodes of the bore, from the pole to its end."""
+        """Indices of the nodes on the bore, from the pole to its end."""
         reach = int(numpy.searchsorted(self._block.angle, self.shape.reach + 1e-9))
         return self._block.number[:reach, 0]
 
     def ring_compliance(self, edges: Numbers, degrees: Iterable[int]) -> Numbers:
-        """Compute the compliance between rings of pressure cos mφ: the displacement by each, integrated over each.
+        """Compute the compliance matrices between rings for pressures that vary as cos mφ.
 
         Parameters
         ----------
@@ -75,7 +75,7 @@ class Harmonics:
         return numpy.stack([self._compliance(m, loads) for m in degrees])
 
     def _ring_loads(self, edges: Numbers) -> Numbers:
-        """Compute forces on the bore's nodes by unit pressure on each ring: (nodes, rings)."""
+        """Compute the nodal forces on the bore by unit pressure on each ring: (nodes, rings)."""
         corners = self._block.angle[: len(self.bore) : self._block.order]
         low, high = edges[:-1], edges[1:]
         width = numpy.diff(corners)[:, None]
@@ -85,8 +85,8 @@ class Harmonics:
         return lagrange(corners, self._block.order, angle).T @ (inside * weights[:, None])
 
     def _compliance(self, m: int, loads: Numbers) -> Numbers:
-        """Compute the compliance between rings for one m."""
-        order, count = self._order(m)
+        """Compute the compliance matrix between rings (rings, rings) for one harmonic m."""
+        order, count = self._elimination_order(m)
         constant, linear, quadratic = self._matrices
         matrix = (constant + m * linear + m * m * quadratic)[order][:, order].tocsc()
         factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -95,21 +95,21 @@ class Harmonics:
         compliance = normal_loads.T @ numpy.linalg.solve(upper, numpy.linalg.solve(lower, normal_loads))
         return (compliance + compliance.T) / 2
 
-    def _order(self, m: int) -> tuple[Numbers, int]:
-        """Order the free unknowns, the normal ones of the bore last, and count these."""
+    def _elimination_order(self, m: int) -> tuple[Numbers, int]:
+        """Return the free unknowns in the order of elimination, and the number of contact unknowns at the end."""
         block = self._block
         grid = numpy.arange(len(block.angle) * (block.level[-1] + 1)).reshape(len(block.angle), -1)
         rank = numpy.empty(grid.size, dtype=int)
         rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
-        of_node = rank[grid[:, block.level]].ravel()
+        node_rank = rank[grid[:, block.level]].ravel()
         normals = 3 * self.bore + 1
         normals = normals[~self._fixed_unknowns(m)[normals]]
         free = numpy.unique(self._unknowns)
         free = free[~self._fixed_unknowns(m)[free] & ~numpy.isin(free, normals)]
-        return numpy.concatenate([free[numpy.argsort(of_node[free // 3], kind="stable")], normals]), len(normals)
+        return numpy.concatenate([free[numpy.argsort(node_rank[free // 3], kind="stable")], normals]), len(normals)
 
     def _fixed_unknowns(self, m: int) -> Numbers:
-        """Return the mask of zero unknowns: non-smooth ones on the axis, and the supports.
+        """Return the mask of unknowns that are zero: on the axis by symmetry, and at the supports.
 
         A sliding liner can rotate about its centre without load, so one more unknown is fixed.
         """
@@ -131,7 +131,7 @@ class Harmonics:
 
     @cached_property
     def _unknowns(self) -> Numbers:
-        """Numbers of each element's unknowns (elements, unknowns); layers that slide on each other share u_r."""
+        """Indices of each element's unknowns (elements, unknowns); layers that slide on each other share u_r."""
         shared = numpy.arange(3 * self._block.number.size)
         for column in self._block.sliding:
             shared[3 * self._block.number[:, column + 1] + 1] = 3 * self._block.number[:, column] + 1
@@ -140,7 +140,7 @@ class Harmonics:
 
     @cached_property
     def _matrices(self) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
-        """Matrices K0, K1 and K2."""
+        """Stiffness matrices K0, K1 and K2 of the powers of m."""
         size = 3 * self._block.number.size
         rows, columns = numpy.broadcast_arrays(self._unknowns[:, :, None], self._unknowns[:, None, :])
         positions = rows.ravel(), columns.ravel()
@@ -150,7 +150,10 @@ class Harmonics:
         return constant, linear, quadratic
 
     def _element_matrices(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Compute the energy 2G (|ε|² - tr²/3) + K tr² in powers of m."""
+        """Compute the element stiffness matrices of the powers 0, 1 and 2 of m.
+
+        They integrate the energy density 2G (|ε|² - tr²/3) + K tr².
+        """
         elements = numpy.arange(self._block.elements.shape[1])
         points, weights = integration(self._block.order)
         gradients = self.elastic.gradients(elements, points)
@@ -165,16 +168,18 @@ class Harmonics:
         drops = [trace * numpy.sqrt(2 / 3 * shear)[..., None] for trace in traces]
         swells = [projection * numpy.sqrt(bulk)[..., None] for projection in swelling]
 
-        def product(i: int, j: int) -> Numbers:
+        def multiply(i: int, j: int) -> Numbers:
             products = (factors[i].swapaxes(1, 2) @ factors[j] for factors in (rows, swells, drops))
             strain, swell, drop = products
             return strain + swell - drop
 
-        mixed = product(0, 1)
-        return product(0, 0), mixed + mixed.swapaxes(1, 2), product(1, 1)
+        mixed = multiply(0, 1)
+        return multiply(0, 0), mixed + mixed.swapaxes(1, 2), multiply(1, 1)
 
     def _strains(self, axisymmetric: Numbers, points: Numbers, rho: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute ε_ρρ, ε_zz, γ_ρz, ε_φφ, γ_ρφ, γ_zφ (elements, points, 6, unknowns): terms without m, and per m.
+        """Compute the strains per unknown (elements, points, 6, unknowns): terms without m, and per m.
+
+        The components are ε_ρρ, ε_zz, γ_ρz, ε_φφ, γ_ρφ and γ_zφ.
 
         `axisymmetric` holds the first four components by the unknowns along angle and radius.
         """

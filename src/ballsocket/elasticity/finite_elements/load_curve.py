@@ -61,7 +61,9 @@ class MeshedLoadCurve:
         loads = load[touching].tolist()
         numbers = [self._mesh_class(kind, value) for value in loads]
         fine, *coarse = (
-            MeshedStates(solved=tuple(self._contact(kind, *pair, mesh) for pair in zip(loads, numbers, strict=True)))
+            MeshedStates(
+                solved=tuple(self._solve_contact(kind, *pair, mesh) for pair in zip(loads, numbers, strict=True))
+            )
             for mesh in (FINE, COARSE)[: self.meshes]
         )
         reached = numpy.isfinite(fine.indentation) & numpy.isfinite(fine.force)
@@ -85,7 +87,7 @@ class MeshedLoadCurve:
         return last
 
     def _bracket(self, number: int, mesh: int) -> ContactBracket:
-        """Return the contacts on the mesh of a class and of some narrower ones."""
+        """Return the contacts on the mesh of a class, from a cache: of this class and a few narrower ones."""
         if (number, mesh) not in self._cached_brackets:
             low = self.classes[min(number + _STRIDE, len(self.classes) - 1)] / _CLASS_MARGIN
             high = min(_CLASS_MARGIN * self.classes[number], self.classes[0])
@@ -96,11 +98,11 @@ class MeshedLoadCurve:
 
     @cached_property
     def _cached_brackets(self) -> dict[tuple[int, int], ContactBracket]:
-        """Brackets of classes and meshes used so far."""
+        """Contacts on the meshes used so far, by class and mesh."""
         return {}
 
-    def _contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
-        """Solve one contact on the mesh of a class; None outside its range."""
+    def _solve_contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
+        """Solve one contact on the mesh of a class; None for a load outside the range of the class."""
         bracket = self._bracket(number, mesh)
         if kind == "half_angle":
             contact = (
@@ -115,7 +117,7 @@ class MeshedLoadCurve:
 
 
 def _solve_full_contact(kind: str, load: float, pair: SurfacePair, gap: Gap) -> FullContact:
-    """Solve for the contact that fills the socket under a load, by the secant method.
+    """Solve the contact that fills the socket under a load, by the secant method.
 
     The force increases with the indentation. For the linear gap one step suffices.
     """
@@ -141,7 +143,7 @@ _LAWS: dict[str, Callable[[Solved], float]] = {"stiffness": stiffness, "energy":
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MeshedStates(PeakPressure):
-    """Solved contacts; each quantity has one number a contact, NaN for missing ones (None)."""
+    """Solved contacts of one joint; each quantity has one number per contact, NaN for a missing contact (None)."""
 
     solved: tuple[Solved | None, ...]
 
@@ -151,22 +153,22 @@ class MeshedStates(PeakPressure):
         return self._values(_LAWS.get(name, attrgetter(name)))
 
     def _values(self, law: Callable[[Solved], float]) -> Numbers:
-        """Apply a function to each contact; NaN for missing ones."""
+        """Compute a quantity of each contact by a function; NaN for missing contacts."""
         return numpy.array([numpy.nan if contact is None else law(contact) for contact in self.solved])
 
     @property
     def at_rim(self) -> Numbers:
-        """Array of 1 for contacts that fill their socket, else 0."""
+        """Flag of each contact: 1 if it fills the socket, else 0."""
         return self._values(lambda contact: float(isinstance(contact, FullContact)))
 
     @property
-    def unsound(self) -> Numbers:
-        """Array of 1 for contacts with tension or overlap, whose area is not round as assumed, else 0."""
+    def not_round(self) -> Numbers:
+        """Flag of each contact: 1 if tension or overlap shows that its area is not round, else 0."""
         return self._values(lambda contact: float(contact.tension > _MAX_TENSION or contact.overlap > _MAX_OVERLAP))
 
     @property
     def edge_element(self) -> Numbers:
-        """Length of the elements at the edge over the half angle."""
+        """Length of the elements at the edge of each contact, as a fraction of its half angle."""
         return self._values(lambda contact: contact.edge_element / contact.half_angle)
 
     @cached_property
@@ -175,7 +177,7 @@ class MeshedStates(PeakPressure):
         return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_NOISE)
 
     def pressure(self, angle: Numbers) -> Numbers:
-        """Compute p(φ) in MPa at angles (any, loads)."""
+        """Compute the contact pressure p(φ) in MPa at polar angles (any, loads)."""
         columns = [
             numpy.full(len(angle), numpy.nan) if contact is None else contact.pressure(angle[:, i])
             for i, contact in enumerate(self.solved)

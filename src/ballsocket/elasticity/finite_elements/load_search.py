@@ -20,7 +20,7 @@ _LOAD_TOLERANCE = 1e-10  # relative
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactBracket:
-    """Contacts of a surface pair between two half angles (rad)."""
+    """Contacts of a surface pair between two half angles (rad), searched by their load."""
 
     pair: SurfacePair
     gap: Gap
@@ -28,8 +28,8 @@ class ContactBracket:
     high: float
 
     @cached_property
-    def _sampled(self) -> tuple[list[PartialContact], bool]:
-        """Contacts of increasing force and indentation, and a flag that is true if the perfect fit comes next.
+    def _samples_and_fit(self) -> tuple[list[PartialContact], bool]:
+        """Sample contacts of increasing load, and True if the perfect fit lies beyond the last one.
 
         The samples may end earlier. If the rim is so compliant that a wider contact has less force, the ball leaves the
         pole and its contact area is not round any more.
@@ -48,12 +48,12 @@ class ContactBracket:
 
     @property
     def _samples(self) -> list[PartialContact]:
-        """Contacts of increasing force and indentation."""
-        return self._sampled[0]
+        """Sample contacts of increasing force and indentation."""
+        return self._samples_and_fit[0]
 
     @cached_property
     def _curves(self) -> dict[str, PchipInterpolator]:
-        """Interpolations of ln ε over ln(load)."""
+        """Interpolating functions from ln(load) to ln ε, by the kind of load."""
         angles = numpy.log([contact.half_angle for contact in self._samples])
         return {
             kind: PchipInterpolator(numpy.log([getattr(contact, kind) for contact in self._samples]), angles)
@@ -61,14 +61,11 @@ class ContactBracket:
         }
 
     def lies_below(self, kind: str, load: float) -> bool:
-        """Check if the load exceeds that of the widest contact of the bracket.
-
-        This is False if a sample is missing.
-        """
+        """Return True if the load exceeds that of the widest contact and no sample is missing."""
         return len(self._samples) == _SAMPLES and bool(getattr(self._samples[-1], kind) < load)
 
     def estimate_angle(self, kind: str, load: float) -> float | None:
-        """Estimate the half angle under a load; None outside the range."""
+        """Estimate the half angle in rad under a load; None for a load outside the range."""
         if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.lies_below(kind, load):
             return None
         if load > getattr(self._samples[-1], kind):  # the perfect fit lies before the next sample
@@ -76,38 +73,41 @@ class ContactBracket:
         return float(numpy.exp(self._curves[kind](numpy.log(load))))
 
     def solve(self, kind: str, load: float) -> PartialContact | None:
-        """Solve the contact under a load, "force" or "indentation"; None outside the range."""
+        """Solve the contact under a "force" or "indentation"; None for a load outside the range."""
         if len(self._samples) < 2 or load < getattr(self._samples[0], kind) or self.lies_below(kind, load):
             return None
         above = sum(getattr(sample, kind) <= load for sample in self._samples)
         if above == len(self._samples):
-            _, fits = self._sampled  # the load is infinite at the perfect fit
-            return self._solve_by_bisection(kind, load, self._samples[-1].half_angle, self.high) if fits else None
-        return self._solve_by_secant(kind, load) or self._solve_by_bisection(
+            _, fits = self._samples_and_fit  # the load is infinite at the perfect fit
+            return self._solve_by_brent(kind, load, self._samples[-1].half_angle, self.high) if fits else None
+        return self._solve_by_secant(kind, load) or self._solve_by_brent(
             kind, load, self._samples[above - 1].half_angle, self._samples[above].half_angle
         )
 
     def _solve_by_secant(self, kind: str, load: float) -> PartialContact | None:
-        """Solve by the secant method in the logarithms; None if it does not converge in a few steps."""
+        """Solve the contact under a load by the secant method; None if it does not converge in a few steps.
+
+        The unknown is the logarithm of the half angle.
+        """
         goal = numpy.log(load)
         angle, rise = float(self._curves[kind](goal)), float(self._curves[kind](goal, 1))
-        contact, residual = self._residual(kind, goal, angle)
+        contact, residual = self._solve_residual(kind, goal, angle)
         for _ in range(_SECANT_STEPS):
             if abs(residual) < _LOAD_TOLERANCE:
                 return contact
             step, previous = residual * rise, residual
             angle += step
-            contact, residual = self._residual(kind, goal, angle)
+            contact, residual = self._solve_residual(kind, goal, angle)
             rise = step / (previous - residual) if residual != previous else 0.0
         return None
 
-    def _residual(self, kind: str, goal: float, log_angle: float) -> tuple[PartialContact, float]:
-        """Solve the contact of a half angle, and return the logarithmic deficit of its load."""
+    def _solve_residual(self, kind: str, goal: float, log_angle: float) -> tuple[PartialContact, float]:
+        """Solve the contact of a half angle; return it and the logarithm of target load over its load."""
         contact = partial_contact(self.pair, self.gap, min(float(numpy.exp(log_angle)), self.high))
         return contact, goal - float(numpy.log(getattr(contact, kind)))
 
-    def _solve_by_bisection(self, kind: str, load: float, low: float, high: float) -> PartialContact:
-        """Solve by Brent's method between two half angles."""
+    def _solve_by_brent(self, kind: str, load: float, low: float, high: float) -> PartialContact:
+        """Solve the contact under a load by Brent's method between two half angles (rad)."""
 
         def residual(angle: float) -> float:
             contact = partial_contact(self.pair, self.gap, angle)
@@ -117,5 +117,5 @@ class ContactBracket:
 
 
 def is_pressed(contact: PartialContact) -> bool:
-    """Return True for a contact with pressure, which is not wider than the perfect fit."""
+    """Return True for a contact with positive indentation and force; beyond the perfect fit there is none."""
     return bool(contact.indentation > 0 and contact.force > 0)

@@ -33,7 +33,7 @@ class MeshSize:
     element_size: float
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
+        """Return the sizes as a dictionary for JSON."""
         return asdict(self)
 
 
@@ -67,6 +67,6 @@ def check_memory(size: MeshSize, order: int) -> None:
 
 
 def bytes_needed(nodes: int, order: int) -> float:
-    """Estimate the peak memory of one body: both factors of nested dissection, and the element matrices."""
+    """Estimate the peak memory in bytes of one body, from both matrix factors and the element matrices."""
     factors = 2 * 12 * 8 * 2 * nodes * log2(max(nodes, 2))
     return factors + 1000 * nodes * order

@@ -41,18 +41,21 @@ class Block:
 
     @cached_property
     def number(self) -> Numbers:
-        """Number of each node, shape (angles, radii)."""
+        """Index of each node, shape (angles, radii)."""
         return numpy.arange(self.radius.size).reshape(self.radius.shape)
 
     @cached_property
     def nodes(self) -> Numbers:
-        """(ρ, z) of each node, shape (2, nodes)."""
+        """Coordinates (ρ, z) of each node, shape (2, nodes)."""
         phi = self.angle[:, None]
         return numpy.stack([(numpy.sin(phi) * self.radius).ravel(), (numpy.cos(phi) * self.radius).ravel()])
 
     @cached_property
     def elements(self) -> Numbers:
-        """Nodes of each element (nodes, elements) in scikit-fem's order: corners, for order 2 also edges and middle."""
+        """Indices of the nodes of each element, shape (nodes, elements), in scikit-fem's order.
+
+        The order is corners, for order 2 also edges and middle.
+        """
         step = self.order
         corners = [(0, 0), (0, step), (step, step), (step, 0)]
         between = [(0, 1), (1, 2), (2, 1), (1, 0), (1, 1)] if step == 2 else []
@@ -62,17 +65,17 @@ class Block:
 
     @cached_property
     def layers(self) -> Numbers:
-        """Layer of each element."""
+        """Index of the layer of each element."""
         return numpy.tile(self.layer, (len(self.angle) - 1) // self.order)
 
     @cached_property
     def sliding(self) -> Numbers:
-        """Indices of the radii that occur twice: the inner one of each two."""
+        """Indices of the radii at which layers slide on each other: the inner one of each two equal radii."""
         return numpy.flatnonzero(numpy.diff(self.level) == 0)
 
     @cached_property
     def level(self) -> Numbers:
-        """Number of each radius (radii,), the same for two that slide on each other."""
+        """Index of each distinct radius (radii,); two equal radii of a sliding interface have the same one."""
         inside = numpy.zeros(self.radius.shape[1], dtype=bool)
         for step in range(1, self.order + 1):
             inside[self.strips + step] = True
@@ -80,7 +83,7 @@ class Block:
 
 
 def block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tuple[int, ...] = ()) -> Block:
-    """Make a block from the corners of its elements.
+    """Mesh a spherical block from the corners of its elements.
 
     Parameters
     ----------
@@ -90,7 +93,7 @@ def block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tup
         Radii of each layer's corners (corners,), from the inside out; each layer begins at the end of the previous one.
         Radii may vary along the angle (corner angles, corners).
     order : int
-    parted : tuple of int
+    sliding_layers : tuple of int
         Layers that slide on the next inner one.
     """
     angle = add_midpoints(angle, order)
@@ -111,18 +114,21 @@ def block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tup
 
 
 def add_midpoints(corners: Numbers, order: int) -> Numbers:
-    """Add the nodes between the corners along the first axis for order 2."""
+    """Add a node midway between adjacent corners along the first axis, for order 2 only."""
     return corners if order == 1 else bisect_intervals(corners)
 
 
 def bisect_intervals(corners: Numbers) -> Numbers:
-    """Insert the midpoint between each two corners."""
+    """Insert the midpoint between each two adjacent corners."""
     between = (corners[1:] + corners[:-1]) / 2
     return numpy.insert(corners, numpy.arange(1, len(corners)), between, axis=0)
 
 
 def graded_points(start: float, end: float, first: float, growth: float, longest: float) -> Numbers:
-    """Make points from start to end: the first interval has about the size `first`, the next ones grow to `longest`."""
+    """Divide the line from start to end into intervals that grow from about `first` up to `longest`.
+
+    `growth` is the ratio of successive intervals.
+    """
     reach = abs(end - start)
     steps = [min(first, reach)]
     total = steps[0]
@@ -135,7 +141,7 @@ def graded_points(start: float, end: float, first: float, growth: float, longest
 
 
 def join_points(rows: list[Numbers]) -> Numbers:
-    """Join rows of points, each of which begins at the end of the previous one."""
+    """Join rows of points, each of which begins at the last point of the previous row."""
     for before, after in pairwise(rows):
         assert before[-1] == after[0]
     return numpy.concatenate([rows[0], *(row[1:] for row in rows[1:])])

@@ -22,7 +22,7 @@ from .spacing import SPACINGS, Adapted, Element, Spacing
 
 
 def largest_poisson(contact: Any) -> Array:
-    """Return Poisson's ratio of the least compressible body."""
+    """Return the largest Poisson's ratio of liner, backing and ball."""
     joint = contact.joint
     ratios = [layer.material.poisson for layer in joint.backing]
     if joint.ball is not None:
@@ -128,13 +128,15 @@ class FiniteElement(Model):
         return (CLOSE_FIT, SMALL_STRAIN) if self.gap is LinearGap else (SMALL_STRAIN,)
 
     def _law(self, joint: Joint) -> ForceLaw:
+        """Raise TypeError: each load has its own mesh, so there is no smooth force law."""
         raise TypeError("finite elements are too noisy for a law, because each load has its own mesh: use exact")
 
     def in_cup(self, cup: Cup) -> FiniteElement:
-        """Return the same model with another cup."""
+        """Return this model with another cup."""
         return replace(self, cup=cup)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve the contacts of all joints and loads, and mark those that failed."""
         needs("fem", "skfem", "psutil")
         from .solver import Settings, load_curve_of  # slow to import
 
@@ -155,6 +157,6 @@ class FiniteElement(Model):
             indentation=solution.indentation,
             failures={
                 Status.AT_RIM: solution.combine(lambda piece: piece.state.at_rim) == 1,
-                Status.NOT_ROUND: solution.combine(lambda piece: piece.state.unsound) == 1,
+                Status.NOT_ROUND: solution.combine(lambda piece: piece.state.not_round) == 1,
             },
         )

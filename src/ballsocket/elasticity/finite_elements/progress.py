@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 
-def _silent(_: str) -> None:
-    """Ignore a message."""
+def _ignore_message(_: str) -> None:
+    """Ignore a progress message."""
 
 
-_CALLBACK: ContextVar[Callable[[str], None]] = ContextVar("progress_callback", default=_silent)
+_CALLBACK: ContextVar[Callable[[str], None]] = ContextVar("progress_callback", default=_ignore_message)
 
 
 def report_progress(text: str) -> None:

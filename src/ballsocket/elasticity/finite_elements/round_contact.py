@@ -38,7 +38,10 @@ class PartialContact:
 
     @cached_property
     def _edge_functions(self) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-        """Angles, weights of ∫ dA, edge functions (2, angles), and the slope of t in ε."""
+        """Pressure functions at the edge of the contact, at quadrature points.
+
+        The arrays are angles in rad, weights of ∫ dA in mm², edge functions (2, angles), and the slope of t in ε.
+        """
         previous, start = self.pair.angle[self.last - 1 : self.last + 1]
         rise = self._corners_between(previous, start)
         widths = numpy.diff(rise)[:, None]
@@ -60,14 +63,17 @@ class PartialContact:
         return angle, weights * self.pair.area(angle), shape, slope
 
     def _corners_between(self, start: float, end: float) -> Numbers:
-        """Return `start`, the corners between the two angles, and `end`."""
+        """Return the angles `start` and `end` and the corners of elements between them."""
         corners = self.pair.corners
         inside = corners[(corners > start + 1e-9) & (corners < end - 1e-9)]
         return numpy.concatenate([[start], inside, [end]])
 
     @cached_property
-    def _moments(self) -> tuple[Numbers, Numbers]:
-        """Mean displacement per pressure function, weighted with the edge functions (2, functions) and the slope."""
+    def _edge_moments(self) -> tuple[Numbers, Numbers]:
+        """Mean displacements per pressure function, weighted with the edge functions and with the slope of t.
+
+        The shapes are (2, functions) and (functions,).
+        """
         angle, weights, shape, slope = self._edge_functions
         tail, edge = numpy.zeros((2, self.last + 2)), numpy.zeros(self.last + 2)
         for surface, displaced in zip(self.pair.surfaces, self.pair.displacements, strict=True):
@@ -81,23 +87,27 @@ class PartialContact:
     # --- pressures by right-hand sides: moments of a gap with all functions ---
 
     @cached_property
-    def _borders(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Leading block of W, the borders in its terms, and the pivots of the edge functions."""
-        tail, _ = self._moments
+    def _bordered_blocks(self) -> tuple[Numbers, Numbers, Numbers]:
+        """Blocks that solve the compliance matrix with the two edge functions appended.
+
+        They are the leading block of W, the border columns multiplied by it, and the Schur complement of the edge
+        functions.
+        """
+        tail, _ = self._edge_moments
         W = self.pair.whitening[: self.last, : self.last]
         border = W @ tail[:, :-2].T
         return W, border, tail[:, -2:] - border.T @ border
 
     def _solve_pressures(self, side: Numbers) -> Numbers:
-        """Solve for the pressures p_0 .. p_k and q of a right-hand side (functions,)."""
-        W, border, pivot = self._borders
+        """Solve for the pressures p_0 .. p_k and q in MPa from a right-hand side (functions,)."""
+        W, border, pivot = self._bordered_blocks
         inner = W @ side[:-2]
         last = numpy.linalg.solve(pivot, side[-2:] - border.T @ inner)
         inner -= border @ last
         return numpy.append(W.T @ inner, last)
 
     def _right_hand_side(self, displacement: Numbers, edge_displacement: Numbers) -> Numbers:
-        """Compute the right-hand side of displacements at the pair's points and at the edge points."""
+        """Compute the right-hand side from displacements at the pair's points and at the edge points."""
         _, weights, shape, _ = self._edge_functions
         return numpy.append(
             self.pair.integrate_with_shapes(displacement)[: self.last], (weights * shape) @ edge_displacement
@@ -105,11 +115,11 @@ class PartialContact:
 
     @cached_property
     def _slope_pressures(self) -> Numbers:
-        """Pressures that compensate the slope function as a pressure."""
-        return self._solve_pressures(self._moments[1])
+        """Pressures in MPa whose displacements equal those of the slope of t as a pressure."""
+        return self._solve_pressures(self._edge_moments[1])
 
     def _edge_residual(self, displacement: Numbers, edge_displacement: Numbers) -> float:
-        """Compute the mean remaining gap, weighted with the slope."""
+        """Compute the remaining gap that determines the indentation: its mean weighted with the slope of t."""
         _, weights, _, slope = self._edge_functions
         return float(
             (weights * slope) @ edge_displacement
@@ -117,12 +127,12 @@ class PartialContact:
         )
 
     def _ball_displacements(self, d: float) -> tuple[Numbers, Numbers]:
-        """Compute the displacements that a rigid ball imposes, at the pair's points and at the edge points."""
+        """Compute the displacements in mm that a rigid ball imposes, at the pair's and at the edge points."""
         return self.gap.displacement(self.pair.points[0], d), self.gap.displacement(self._edge_functions[0], d)
 
     @cached_property
     def _cosines(self) -> tuple[Numbers, Numbers]:
-        """Cosines at the pair's points and at the edge points."""
+        """Cosines of the polar angle at the pair's points and at the edge points."""
         return numpy.cos(self.pair.points[0]), numpy.cos(self._edge_functions[0])
 
     # --- results ---
@@ -147,7 +157,7 @@ class PartialContact:
 
     @cached_property
     def pressures(self) -> Numbers:
-        """Pressures p_0 .. p_k and q in MPa."""
+        """Pressures p_0 .. p_k of the nodes and q of the second edge function, in MPa."""
         return self._solve_pressures(self._right_hand_side(*self._ball_displacements(self.indentation)))
 
     @cached_property
@@ -162,12 +172,12 @@ class PartialContact:
 
     @property
     def pressure_integral(self) -> float:
-        """Integral ∫ p dA in N."""
+        """Integral of the pressure over the contact area, ∫ p dA, in N."""
         return float(self.pressures @ self._right_hand_side(*(numpy.ones_like(part) for part in self._cosines)))
 
     @property
     def tension(self) -> float:
-        """Largest tension over the pressure at the pole; negative if all pressures are positive."""
+        """Largest tension as a fraction of the pole pressure; negative if all pressures are positive."""
         return float(-self.pressures[:-1].min() / self.pole_pressure)
 
     @property
@@ -177,7 +187,7 @@ class PartialContact:
 
     @property
     def overlap(self) -> float:
-        """Largest mean overlap of the bodies beyond the contact over the indentation; negative for a gap."""
+        """Largest overlap of the bodies beyond the contact, as a fraction of the indentation; negative for a gap."""
         beyond = slice(self.last + 3, None)
         imposed = self.pair.integrate_with_shapes(self._ball_displacements(self.indentation)[0])[beyond]
         elastic = sum(
@@ -188,13 +198,13 @@ class PartialContact:
         return float(numpy.max((imposed - elastic) / area, initial=-numpy.inf) / self.indentation)
 
     def forces(self, surface: int) -> Numbers:
-        """Compute normal forces in N on the nodes of one of the surfaces."""
+        """Compute normal forces in N on the nodes of a surface: 0 is the socket, 1 the ball."""
         angle, weights, shape, _ = self._edge_functions
         edge_forces = self.pair.surfaces[surface].nodal_sums(angle, weights * (self.pressures[-2:] @ shape))
         return self.pair.forces[surface][:, : self.last] @ self.pressures[:-2] + edge_forces
 
     def pressure(self, angle: Numbers) -> Numbers:
-        """Compute p(φ) in MPa, 0 outside the contact."""
+        """Compute the contact pressure p(φ) in MPa at polar angles (rad); 0 outside the contact."""
         nodes = self.pair.angle[: self.last + 1]
         inside = numpy.interp(angle, nodes, numpy.append(self.pole_pressure, self.pressures[1:-1]))
         t = numpy.sqrt(numpy.clip((self.half_angle - angle) / (self.half_angle - nodes[-1]), 0.0, 1.0))
@@ -202,18 +212,18 @@ class PartialContact:
 
     @cached_property
     def pole_pressure(self) -> float:
-        """Pressure p0 at the pole in MPa, from nodes around it because the pole's own node has almost no area."""
+        """Pressure p0 at the pole in MPa, extrapolated because the node at the pole has almost no area."""
         return pressure_at_pole(self.pair.angle[: self.last + 1], self.pressures[:-1], self.half_angle)
 
 
 def pressure_at_pole(angle: Numbers, pressures: Numbers, half_angle: float) -> float:
-    """Extrapolate the pressure at the pole by an even polynomial through the nodes around it."""
+    """Extrapolate the pressure at the pole in MPa by an even polynomial through the nodes around it."""
     count = max(int(numpy.searchsorted(angle, _POLE_FRACTION * half_angle)), 4)
     degree = 1 if count < 5 else 2
     return float(numpy.polynomial.polynomial.polyfit(angle[1:count] ** 2, pressures[1:count], degree)[0])
 
 
 def partial_contact(pair: SurfacePair, gap: Gap, half_angle: float) -> PartialContact:
-    """Make the contact of a half angle, with edge functions three to four elements wide."""
+    """Make the contact of a half angle (rad), with edge functions three to four elements wide."""
     last = max(int(numpy.searchsorted(pair.angle, half_angle, side="right")) - 4, 1)
     return PartialContact(pair=pair, gap=gap, half_angle=half_angle, last=last)

@@ -94,7 +94,7 @@ class Section:
 
     @cached_property
     def rim_displacement(self) -> tuple[float, float]:
-        """Displacement of the bore's end in mm, away from the load axis and up against the load."""
+        """Displacement of the end of the bore in mm: away from the load axis, and up against the load."""
         liner = self["liner"]
         end = numpy.flatnonzero(liner.angle > liner.angle.max() - 1e-12)
         across, up = liner.displacement[:, end[numpy.argmin(liner.radius[end])]]
@@ -108,22 +108,22 @@ def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
     socket = _LoadedBody(
         body=socket_body(socket_shape(joint, cup), pair.resolution),
         radius=R2,
-        pressed=R2,
+        loaded_radius=R2,
         young=float(joint.liner.young),
         forces=solved.forces(0),
-        lift=0.0,
-        drop=0.0,
+        height_shift=0.0,
+        descent=0.0,
     )
     parts = list(socket.make_parts(names))
     if joint.ball is not None:
         ball = _LoadedBody(
             body=ball_body(float(joint.ball.poisson), pair.ball_resolution),
             radius=float(joint.ball_radius),
-            pressed=R2,
+            loaded_radius=R2,
             young=float(joint.ball.young),
             forces=-solved.forces(1),
-            lift=-float(joint.clearance),
-            drop=solved.indentation,
+            height_shift=-float(joint.clearance),
+            descent=solved.indentation,
         )
         parts += ball.make_parts(("ball",))
     return Section(parts=tuple(parts), socket_radius=R2)
@@ -131,31 +131,32 @@ def section(joint: Joint, cup: Cup, solved: Solved) -> Section:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _LoadedBody:
-    """Body of unit size with its true stiffness and load, on a patch of the radius `pressed`.
+    """Meshed body of unit size with the Young's modulus and the nodal forces of one contact.
 
-    `radius` scales the positions, which `lift` shifts; `drop` is a displacement of the full body.
+    Its surface is loaded on a sphere of the radius `loaded_radius` in mm. `radius` scales the positions, and
+    `height_shift` shifts them upwards. `descent` is a displacement of the full body downwards.
     """
 
     body: CondensedBody
     radius: float
-    pressed: float
+    loaded_radius: float
     young: float
     forces: Numbers
-    lift: float
-    drop: float
+    height_shift: float
+    descent: float
 
     @cached_property
     def _displacements(self) -> Numbers:
-        """Displacements u_φ and u_r of the nodes over the radius, shape (nodes, 2)."""
-        return self.body.displacements(self.forces / (self.young * self.pressed**2))
+        """Displacements u_φ and u_r of the nodes as fractions of the radius, shape (nodes, 2)."""
+        return self.body.displacements(self.forces / (self.young * self.loaded_radius**2))
 
     def make_parts(self, names: tuple[str, ...]) -> Iterator[Part]:
-        """Make the layers from the inside out."""
+        """Yield the parts of the body, one for each layer from the inside out."""
         block = self.body.elastic.block
         phi = numpy.repeat(block.angle, block.radius.shape[1])
-        u_phi, u_r = self.pressed * self._displacements.T
+        u_phi, u_r = self.loaded_radius * self._displacements.T
         sine, cosine = numpy.sin(phi), numpy.cos(phi)
-        displacement = numpy.stack([u_phi * cosine + u_r * sine, u_phi * sine - u_r * cosine - self.drop])
+        displacement = numpy.stack([u_phi * cosine + u_r * sine, u_phi * sine - u_r * cosine - self.descent])
         across, below = self.radius * block.nodes
         for index, name in enumerate(names):
             elements = block.elements[:, block.layers == index]
@@ -164,14 +165,14 @@ class _LoadedBody:
                 name=name,
                 angle=phi[nodes],
                 radius=self.radius * block.radius.ravel()[nodes],
-                position=numpy.stack([across, self.lift - below])[:, nodes],
+                position=numpy.stack([across, self.height_shift - below])[:, nodes],
                 elements=local_nodes.reshape(elements.shape),
                 displacement=displacement[:, nodes],
                 stress=self._stress(index, local_nodes.reshape(elements.shape), len(nodes)),
             )
 
     def _stress(self, layer: int, elements: Numbers, nodes: int) -> Stress:
-        """Compute nodal stresses of a layer: element stresses are extrapolated to the nodes and averaged."""
+        """Compute the nodal stresses of a layer in MPa, averages of those of the elements around a node."""
         components = self._element_stresses(layer)
         total, count = numpy.zeros((4, nodes)), numpy.zeros(nodes)
         numpy.add.at(count, elements.T, 1.0)
@@ -181,31 +182,33 @@ class _LoadedBody:
         return Stress(radial=radial, meridional=meridional, hoop=hoop, shear=shear)
 
     def _element_stresses(self, layer: int) -> Numbers:
-        """Compute stress components (4, elements, nodes) of a layer over Young's modulus.
+        """Compute stress components (4, elements, nodes) of a layer as fractions of Young's modulus.
 
         They are evaluated at the superconvergent points: the 1 or 2 by 2 Gauss points of the next lower degree.
         """
         elastic = self.body.elastic
         block = elastic.block
         shear, bulk = (float(modulus[layer]) for modulus in elastic.moduli)
-        chosen = numpy.flatnonzero(block.layers == layer)
-        stresses = numpy.empty((4, len(chosen), len(block.elements)))
+        element_indices = numpy.flatnonzero(block.layers == layer)
+        stresses = numpy.empty((4, len(element_indices), len(block.elements)))
         points, extrapolation = _superconvergent_points(block.order)
         flat = self._displacements.ravel()
-        for chunk in elastic.chunks(chosen):
-            strains = elastic.strains(chosen[chunk], points)
-            u = flat[elastic.unknowns[chosen[chunk]]]
+        for chunk in elastic.chunks(element_indices):
+            strains = elastic.strains(element_indices[chunk], points)
+            u = flat[elastic.unknowns[element_indices[chunk]]]
             strain = numpy.einsum("eqsu,eu->seq", strains.strain, u)
             swelling = numpy.einsum("equ,eu->eq", strains.swelling, u)
             mean = bulk * swelling - 2 * shear * (strain[0] + strain[1] + strain[3]) / 3
             rho, z, hoop = (2 * shear * strain[i] + mean for i in (0, 1, 3))
-            polar = _polar(strains.coordinates, rho, z, shear * strain[2])
+            polar = _spherical_stresses(strains.coordinates, rho, z, shear * strain[2])
             stresses[:, chunk] = numpy.stack([*polar[:2], hoop, polar[2]]) @ extrapolation
         return stresses
 
 
-def _polar(position: Numbers, rho: Numbers, z: Numbers, shear: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Compute σ_rr, σ_φφ and σ_rφ from stresses along the axis and across it."""
+def _spherical_stresses(
+    position: Numbers, rho: Numbers, z: Numbers, shear: Numbers
+) -> tuple[Numbers, Numbers, Numbers]:
+    """Compute the spherical stresses σ_rr, σ_φφ and σ_rφ from stresses along the axis and across it."""
     r = numpy.hypot(*position)
     sine, cosine = position / r
     across, along = rho - z, 2 * sine * cosine * shear
@@ -217,7 +220,10 @@ def _polar(position: Numbers, rho: Numbers, z: Numbers, shear: Numbers) -> tuple
 
 
 def _superconvergent_points(order: int) -> tuple[Numbers, Numbers]:
-    """Return points (2, points) of the unit square, and the extrapolation from them to the nodes (points, nodes)."""
+    """Return superconvergent points of the unit square, and the matrix that extrapolates stresses to nodes.
+
+    The shapes are (2, points) and (points, nodes).
+    """
     if order == 1:
         return numpy.full((2, 1), 0.5), numpy.ones((1, 4))
     low, high = 0.5 - numpy.sqrt(1 / 12), 0.5 + numpy.sqrt(1 / 12)

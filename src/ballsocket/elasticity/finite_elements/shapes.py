@@ -47,13 +47,13 @@ class Resolution:
     halvings: int = 0
 
     def refine(self, corners: Numbers) -> Numbers:
-        """Apply all halvings to the corners."""
+        """Halve the intervals between corners as many times as `halvings`."""
         for _ in range(self.halvings):
             corners = bisect_intervals(corners)
         return corners
 
     def angles(self, end: float) -> Numbers:
-        """Compute the corners along the angle, from the pole to the end."""
+        """Compute the angles of element corners in rad, from the pole to the end."""
         fine = min(self.reach, end)
         fine_angles = numpy.linspace(0.0, fine, max(round(fine / self.size), 1) + 1)
         if end - fine < self.size / 2:
@@ -83,7 +83,7 @@ class SocketShape:
 
     @property
     def reach(self) -> float:
-        """Angle at which the bore ends."""
+        """Polar angle in rad at which the bore ends."""
         return self.rim - self.chamfer
 
     @property
@@ -92,18 +92,18 @@ class SocketShape:
         return self.interface is Interface.SLIDING
 
     def corners(self, resolution: Resolution) -> tuple[Numbers, list[Numbers]]:
-        """Compute the corners of the elements: their angles, and the radii of each layer."""
+        """Compute the corners of the elements: angles in rad, and relative radii of each layer."""
         angle = resolution.refine(self.extend_to_rim(resolution.angles(self.reach), resolution.size))
         return angle, self.radii(angle, resolution)
 
     def extend_to_rim(self, angle: Numbers, size: float) -> Numbers:
-        """Extend the corners along the bore by those across the chamfer."""
+        """Extend the angles of corners along the bore by those across the chamfer."""
         if not self.chamfer:
             return angle
         return join_points([angle, graded_points(self.reach, self.rim, min(size, self.chamfer / 2), 1.0, inf)])
 
     def radii(self, angle: Numbers, resolution: Resolution) -> list[Numbers]:
-        """Compute the radii of the corners in each layer, finer towards the bore."""
+        """Compute the relative radii of the corners in each layer, finer towards the bore."""
         first, inner, radii = resolution.size, 1.0, []
         for outer, _, _ in self.layers:
             thickness = min(outer, _MAX_RADIUS) - inner
@@ -114,7 +114,7 @@ class SocketShape:
         return [self._chamfer_liner(angle, radii[0]), *radii[1:]]
 
     def _chamfer_liner(self, angle: Numbers, liner: Numbers) -> Numbers:
-        """Adapt the liner's radii to the chamfer."""
+        """Compute the liner's radii with the chamfer cut off: (angles, radii)."""
         if not self.chamfer:
             return liner
         depth = numpy.clip(angle - self.reach, 0.0, None)[:, None]
@@ -141,6 +141,6 @@ def socket_shape(joint: Joint, cup: Cup) -> SocketShape:
 
 
 def ball_corners(resolution: Resolution) -> tuple[Numbers, Numbers]:
-    """Compute the corners of the ball's elements: angles, and radii from the inside out."""
+    """Compute the corners of the ball's elements: angles in rad, and relative radii from the inside out."""
     radii = graded_points(1.0, _CORE_RADIUS, resolution.size, resolution.growth, resolution.deepest / 2)[::-1]
     return resolution.refine(resolution.angles(pi / 2)), resolution.refine(radii)

@@ -29,7 +29,7 @@ MIN_ELEMENTS, MAX_ELEMENTS = 24, 100_000
 
 @dataclass(frozen=True, kw_only=True)
 class Settings:
-    """Settings of `FiniteElement` by the same names; `order` is that of the elements."""
+    """Settings of a `FiniteElement` model by their names; `order` is that of the elements."""
 
     cup: Cup
     spacing: Spacing
@@ -42,7 +42,7 @@ class Settings:
 @lru_cache(maxsize=32)
 def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
     """Return the load curve of a joint of plain numbers, cached for further loads."""
-    _check(settings, joint)
+    _check_geometry(settings, joint)
     radius, bore = float(joint.socket_radius), socket_shape(joint, settings.cup).reach
     ends_at_rim = bore <= pi / 2 + 1e-12
     widest = bore if ends_at_rim else LIMIT
@@ -50,25 +50,25 @@ def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
 
     thickness, order = float(joint.liner_thickness), settings.order
 
-    def resolution(spacing: Spacing, number: int, mesh: int) -> Resolution:
+    def make_resolution(spacing: Spacing, number: int, mesh: int) -> Resolution:
         coarse = spacing.coarse(classes[number], radius, thickness, order)
         return coarse if mesh == COARSE else replace(coarse, halvings=1)
 
-    def pair(number: int, mesh: int) -> SurfacePair:
-        socket, ball = (resolution(spacing, number, mesh) for spacing in (settings.spacing, settings.ball_spacing))
-        return _pair(settings, joint, socket, ball, min(_REACH_FACTOR * classes[number], widest))
+    def make_pair(number: int, mesh: int) -> SurfacePair:
+        socket, ball = (make_resolution(spacing, number, mesh) for spacing in (settings.spacing, settings.ball_spacing))
+        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * classes[number], widest))
 
     gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
     return MeshedLoadCurve(
-        pairs=pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order
+        pairs=make_pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order
     )
 
 
-def _check(settings: Settings, joint: Joint) -> None:
+def _check_geometry(settings: Settings, joint: Joint) -> None:
     """Raise ValueError for a geometry that cannot be meshed."""
     if isinstance(settings.spacing, Uniform):
         bore = socket_shape(joint, settings.cup).reach
-        _check_size(settings.spacing.size, joint, float(joint.socket_radius) * bore)
+        _check_element_size(settings.spacing.size, joint, float(joint.socket_radius) * bore)
     check_cup(settings.cup, joint)
 
 
@@ -91,8 +91,8 @@ def check_cup(cup: Cup, joint: Joint) -> None:
     require("chamfer", chamfer, bore > cup.rim / 2, "a chamfer must leave half of the bore")
 
 
-def _check_size(size: float, joint: Joint, bore: float) -> None:
-    """Raise ValueError for elements of one size that do not fit the layers, or a bore of that length in mm."""
+def _check_element_size(size: float, joint: Joint, bore: float) -> None:
+    """Raise ValueError for an element size in mm that does not fit the layers or the length of the bore."""
     thicknesses = {"liner_thickness": joint.liner_thickness}
     thicknesses |= {f"backing[{number}].thickness": layer.thickness for number, layer in enumerate(joint.backing)}
     for name, thickness in thicknesses.items():
@@ -101,9 +101,10 @@ def _check_size(size: float, joint: Joint, bore: float) -> None:
     require("size", size, bore / MAX_ELEMENTS <= size <= bore / MIN_ELEMENTS, allowed)
 
 
-def _pair(
+def _make_surface_pair(
     settings: Settings, joint: Joint, resolution: Resolution, ball_resolution: Resolution, reach: float
 ) -> SurfacePair:
+    """Mesh both bodies up to the angle `reach` (rad) and condense them onto their contact surfaces."""
     size = mesh_size(joint, settings.cup, resolution, ball_resolution)
     check_memory(size, resolution.order)
     report_progress(f"condensing {size.elements} elements, {size.nodes} nodes")

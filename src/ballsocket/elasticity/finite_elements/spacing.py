@@ -18,7 +18,7 @@ _REACH_FACTOR = 1.2  # of a class's widest contact: extent of its small elements
 
 
 class Element(Enum):
-    """Quadrilateral elements by the degree of their displacements; neither locks near ν = ½."""
+    """Type of quadrilateral elements, by the degree of their displacements; neither locks near ν = ½."""
 
     BILINEAR = 1
     BIQUADRATIC = 2
@@ -56,11 +56,11 @@ class Adapted:
         _check_growth(self.growth)
 
     def classes(self, reach: float, radius: float) -> tuple[float, ...]:
-        """Compute half angles in rad, descending; a class lies between each and the next."""
+        """Compute the limits of the classes of contacts: half angles in rad, descending."""
         return tuple(reach * _CLASS_RATIO**number for number in range(_CLASS_COUNT + 1))
 
     def coarse(self, widest: float, radius: float, thickness: float, order: int) -> Resolution:
-        """Make the coarse mesh of a class, whose sizes scale with `elements`; the fine one halves it."""
+        """Compute the element sizes of the coarse mesh of a class; the fine mesh halves them."""
         scale = _DEFAULT_ELEMENTS / self.elements
         return Resolution(
             size=min(2 * widest / self.elements, scale * thickness / (2 * radius)),
@@ -99,11 +99,11 @@ class Uniform:
         _check_growth(self.growth)
 
     def classes(self, reach: float, radius: float) -> tuple[float, ...]:
-        """Compute one class, from a few elements to the widest contact."""
+        """Compute the limits of the single class of contacts: half angles in rad, descending."""
         return (reach, min(_MIN_ELEMENTS * self.size / radius, reach / 2))
 
     def coarse(self, widest: float, radius: float, thickness: float, order: int) -> Resolution:
-        """Make the coarse mesh; the fine one halves it."""
+        """Compute the element sizes of the coarse mesh; the fine mesh halves them."""
         size = 2 * self.size / radius
         return Resolution(size=size, reach=inf, growth=self.growth, widest=size, deepest=1 / 3, order=order)
 

@@ -23,7 +23,7 @@ _ANGLE_TOLERANCE = 1e-9  # rad: corners of two meshes closer than this are one
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactSurface:
-    """Contact surface of a body: angles of its nodes in rad, and normal displacements in mm per force in N."""
+    """Contact surface of a body: angles of its nodes in rad, and compliance matrix in mm/N."""
 
     angle: Numbers
     order: int
@@ -31,15 +31,15 @@ class ContactSurface:
 
     @property
     def corners(self) -> Numbers:
-        """Angles of the corners of its elements in rad."""
+        """Angles of the element corners in rad."""
         return self.angle[:: self.order]
 
     def shapes(self, angle: Numbers) -> csr_array:
-        """Compute the shape functions of the nodes at angles: (angles, nodes)."""
+        """Compute the shape functions of the nodes at angles (rad): (angles, nodes)."""
         return lagrange(self.corners, self.order, angle)
 
     def nodal_sums(self, angle: Numbers, values: Numbers) -> Numbers:
-        """Distribute values at angles to the nodes by their shape functions, and sum them: (nodes,)."""
+        """Sum values at angles (rad) onto the nodes, weighted with shape functions: (nodes,)."""
         nodes, shapes = _element_shapes(self.corners, self.order, angle)
         return numpy.bincount(nodes.ravel(), weights=(shapes * values[:, None]).ravel(), minlength=len(self.angle))
 
@@ -61,7 +61,7 @@ def _element_shapes(corners: Numbers, order: int, angle: Numbers) -> tuple[Numbe
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SurfacePair:
-    """Surfaces of the socket and of an elastic ball on a sphere of one radius (mm), up to an angle."""
+    """Contact surfaces of the socket and of an elastic ball, on a sphere of one radius (mm) up to an angle (rad)."""
 
     surfaces: tuple[ContactSurface, ...]
     radius: float
@@ -71,7 +71,7 @@ class SurfacePair:
 
     @cached_property
     def angle(self) -> Numbers:
-        """Angles of the pressure's nodes in rad: corners of the socket's elements up to the reach."""
+        """Angles in rad of the pressure nodes, which are corners of the socket's elements."""
         corners = self.surfaces[0].corners
         return corners[corners <= self.reach + _ANGLE_TOLERANCE]
 
@@ -83,39 +83,42 @@ class SurfacePair:
         return merged[numpy.append(True, numpy.diff(merged) > _ANGLE_TOLERANCE)]
 
     def area(self, angle: Numbers) -> Numbers:
-        """Compute dA/dφ in mm²/rad."""
+        """Compute the area per polar angle, dA/dφ, in mm²/rad."""
         return 2 * pi * self.radius**2 * numpy.sin(angle)
 
     @cached_property
     def points(self) -> tuple[Numbers, Numbers]:
-        """Angles and weights of ∫ dA, by Gauss-Legendre quadrature between the corners."""
+        """Angles (rad) and weights (mm²) of Gauss-Legendre quadrature over the contact area."""
         width = numpy.diff(self.corners)[:, None]
         angle = (self.corners[:-1, None] + width * _NODES).ravel()
         return angle, self.area(angle) * (width * _WEIGHTS).ravel()
 
     @cached_property
     def _weighted_shapes(self) -> csr_array:
-        """Hat functions at the points times the weights: (shapes, points)."""
+        """Shape functions of the pressure at the quadrature points, times the weights: (shapes, points)."""
         angle, weights = self.points
         return csr_array(lagrange(self.angle, 1, angle).T @ dia_array((weights[None], [0]), shape=2 * weights.shape))
 
     def integrate_with_shapes(self, values: Numbers) -> Numbers:
-        """Compute ∫ φ_i values dA for the pressure's shape functions φ_i, from values at the points."""
+        """Integrate values at the quadrature points times each shape function of the pressure, over the area."""
         return self._weighted_shapes @ values
 
     @cached_property
     def displacements(self) -> tuple[Numbers, ...]:
-        """Normal displacements of each surface's nodes per shape function of the pressure: (nodes, shapes)."""
+        """Normal displacements of each surface's nodes in mm per shape function of the pressure: (nodes, shapes)."""
         return tuple(surface.compliance @ forces for surface, forces in zip(self.surfaces, self.forces, strict=True))
 
     @cached_property
     def forces(self) -> tuple[Numbers, ...]:
-        """Forces on each surface's nodes per shape function of the pressure: (nodes, shapes)."""
+        """Normal forces on each surface's nodes in N per shape function of the pressure: (nodes, shapes)."""
         return tuple((self._weighted_shapes @ surface.shapes(self.points[0])).toarray().T for surface in self.surfaces)
 
     @cached_property
     def matrix(self) -> Numbers:
-        """Compliance matrix ∫ φ_i (displacement by φ_j) dA, summed over both bodies, in mm³/MPa."""
+        """Compliance matrix of both bodies between shape functions of the pressure, in mm³/MPa.
+
+        Its entries are ∫ φ_i (displacement by φ_j) dA.
+        """
         return sum(
             forces.T @ displacements for forces, displacements in zip(self.forces, self.displacements, strict=True)
         )

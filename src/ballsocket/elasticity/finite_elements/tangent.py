@@ -20,7 +20,9 @@ _DEPTHS = numpy.geomspace(1 / 30, 1.0, 12)
 
 
 def stiffness(contact: Solved) -> float:
-    """Compute dF/dd in N/mm from contacts on both sides, since the edge moves unevenly through the elements.
+    """Compute the tangent stiffness dF/dd in N/mm from slightly narrower and wider contacts.
+
+    A single step is not enough, because the edge moves unevenly through the elements.
 
     With q = ln(F/d) and v = 1/d, both smooth in ε even where d goes to infinity: F' = (F/d) (1 - v q'/v').
     """
@@ -45,7 +47,7 @@ _DEGREE = 3
 
 
 def work(contact: Solved) -> float:
-    """Compute the work of the load in N mm; it is the strain energy if the gap has a potential."""
+    """Compute the work of the load in N mm, which is the strain energy if the gap has a potential."""
     if contact.gap.conservative:
         return contact.strain_energy
     if isinstance(contact, FullContact):
@@ -54,7 +56,7 @@ def work(contact: Solved) -> float:
 
 
 def _partial_work(contact: PartialContact) -> float:
-    """Integrate F dd of a partial contact: ln F is fitted by a polynomial of ln d."""
+    """Compute the work ∫ F dd in N mm up to a partial contact, from a polynomial fit of ln F over ln d."""
     bracket = ContactBracket(pair=contact.pair, gap=contact.gap, low=0.2 * contact.half_angle, high=contact.half_angle)
     narrower = [bracket.solve("indentation", float(depth * contact.indentation)) for depth in _DEPTHS[:-1]]
     known = [neighbour for neighbour in narrower if neighbour is not None] + [contact]
@@ -67,7 +69,7 @@ def _partial_work(contact: PartialContact) -> float:
 
 
 def _rim_work(contact: FullContact) -> float:
-    """Integrate F dd from the indentation at which the contact reaches the rim."""
+    """Compute the work ∫ F dd in N mm from the indentation at which the contact reaches the rim."""
     start = partial_contact(contact.pair, contact.gap, contact.half_angle).indentation
     depth = contact.indentation - start
     forces = [replace(contact, indentation=start + depth * node).force for node in _NODES]

@@ -37,7 +37,7 @@ class EquilibriumBatch:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BoreContact:
-    """A ball in a bore, by the compliance of both and the gap between them.
+    """Ball in a bore, described by the compliance of both bodies and the gap between them.
 
     Attributes
     ----------
@@ -53,25 +53,25 @@ class BoreContact:
 
     @property
     def area(self) -> float:
-        """Ratio of areas on the bore to areas on a unit sphere, in mm²."""
+        """Area of the bore per area of a unit sphere, R2² in mm²."""
         return self.gap.socket_radius**2
 
     @cached_property
     def _force_weights(self) -> Numbers:
-        """Force in N per pressure of each cell: (cells, 3)."""
+        """Force vectors in N by unit pressure (MPa) in each cell: (cells, 3)."""
         grid = self.compliance.grid
         return numpy.ascontiguousarray((self.area * grid.normals * grid.areas).reshape(3, -1).T)
 
     @cached_property
     def coarser(self) -> BoreContact | None:
-        """Contact in cells twice as wide, or None if the grid has few rings."""
+        """Same ball and bore in cells twice as wide, or None if the grid has few rings."""
         compliance = self.compliance.coarser
         if compliance is None:
             return None
         return replace(self, compliance=compliance, gap=self.gap.on_coarser(compliance.grid))
 
     def refine(self, fields: Numbers) -> Numbers:
-        """Repeat fields of the coarser contact in these cells: (..., rings, meridians)."""
+        """Transfer fields from the cells of the coarser grid to those of this grid: (..., rings, meridians)."""
         return self.compliance.grid.refine(fields)
 
     def force(self, pressure: Numbers) -> Numbers:
@@ -80,7 +80,7 @@ class BoreContact:
         return force
 
     def solve_displacement(self, displacement: Numbers) -> EquilibriumBatch:
-        """Compute the contacts of a ball at prescribed displacements (batch, 3) in mm."""
+        """Solve the contacts of a ball at prescribed displacements (batch, 3) in mm."""
         pressure, converged = self.zero_pressure(len(displacement)), numpy.zeros(len(displacement), dtype=bool)
         for block in self.blocks(numpy.arange(len(displacement))):
             solution = solve_pressure(self.compliance, self.gap.overlap(displacement[block]))
@@ -90,7 +90,7 @@ class BoreContact:
     def pressure_sensitivity(
         self, displacement: Numbers, pressure: Numbers, start: Numbers | None = None, tolerance: float = 0.1
     ) -> Numbers:
-        """Compute the derivative of the pressures by the displacement in MPa/mm: (batch, 3, rings, meridians)."""
+        """Compute the derivative of pressures by the displacement in MPa/mm: (batch, 3, rings, meridians)."""
         shape = (len(pressure), 3, *pressure.shape[1:])
         slope = numpy.broadcast_to(self.gap.slope(displacement), shape).reshape(-1, *shape[2:])
         touching = numpy.broadcast_to((pressure > 0)[:, None], shape).reshape(-1, *shape[2:])
@@ -98,7 +98,10 @@ class BoreContact:
         return solve_pressure_change(self.compliance, touching, slope, initial, tolerance).reshape(shape)
 
     def tangent(self, sensitivity: Numbers) -> Numbers:
-        """Compute the stiffness of bore and tether in N/mm, (batch, 3, 3), from `pressure_sensitivity`."""
+        """Compute the tangent stiffness of contact and tether in N/mm: (batch, 3, 3).
+
+        `sensitivity` is the derivative of the pressures by the displacement.
+        """
         tangent = sensitivity.reshape(len(sensitivity), 3, len(self._force_weights)) @ self._force_weights
         return tangent.swapaxes(1, 2) + self.tether
 
@@ -109,6 +112,6 @@ class BoreContact:
         return [indices[i : i + size] for i in range(0, len(indices), size)]
 
     def zero_pressure(self, count: int) -> Numbers:
-        """Return arrays of zeros (count, rings, meridians)."""
+        """Return pressures of 0 for a number of contacts: (count, rings, meridians)."""
         grid = self.compliance.grid
         return numpy.zeros((count, grid.rings, grid.meridians))

@@ -26,7 +26,10 @@ class BoreShape(Protocol):
     """Depth of a bore below its sphere, as a function of direction."""
 
     def depth(self, directions: Numbers) -> Numbers:
-        """Compute the depth in mm, positive where material is missing, at unit vectors (3, ...) in the cup's frame."""
+        """Compute the depth of the bore below its sphere in mm, at unit vectors (3, ...) in the cup's frame.
+
+        The depth is positive where material is missing.
+        """
         ...
 
 
@@ -59,13 +62,18 @@ class BoreDeviation:
             raise TypeError(f"of must be a function from directions to depths (mm), got {shown(self.of)}")
 
     def depth(self, directions: Numbers) -> Numbers:
-        """Compute the depth in mm, positive where material is missing, at unit vectors (3, ...) in the cup's frame."""
+        """Compute the depth of the bore below its sphere in mm, at unit vectors (3, ...) in the cup's frame.
+
+        The depth is positive where material is missing.
+        """
         return self.of(directions)
 
 
 @dataclass(frozen=True, kw_only=True)
 class OvalBore:
-    """A bore that a press fit has squeezed to an oval. At the equator one diameter shrinks as much as the other grows.
+    """Deviation of an oval bore from a sphere, as after a press fit.
+
+    At the equator one diameter shrinks as much as the other grows.
 
     Parameters
     ----------
@@ -100,7 +108,10 @@ class OvalBore:
         require("direction", direction, abs(direction) <= 2 * pi, f"a direction is in radians, at most 6.283{hint}")
 
     def depth(self, directions: Numbers) -> Numbers:
-        """Compute the depth in mm, positive where material is missing, at unit vectors (3, ...) in the cup's frame."""
+        """Compute the depth of the bore below its sphere in mm, at unit vectors (3, ...) in the cup's frame.
+
+        The depth is positive where material is missing.
+        """
         x, y, _ = directions
         twofold = (x * x - y * y) * numpy.cos(2 * self.direction) + 2 * x * y * numpy.sin(2 * self.direction)
         depth: Numbers = -self.squeeze / 2 * twofold
@@ -108,10 +119,16 @@ class OvalBore:
 
 
 class InterpolatedDeviation:
-    """Base of depths interpolated between measured points, which remembers the depth at the last directions."""
+    """Base class of deviations interpolated between measured points.
+
+    The depth at the last read-only array of directions is cached.
+    """
 
     def depth(self, directions: Numbers) -> Numbers:
-        """Compute the depth in mm, positive where material is missing, at unit vectors (3, ...) in the cup's frame."""
+        """Compute the depth of the bore below its sphere in mm, at unit vectors (3, ...) in the cup's frame.
+
+        The depth is positive where material is missing.
+        """
         if directions.flags.writeable:
             return self.interpolate(directions)
         last, depth = vars(self).get("_last", (None, None))
@@ -123,7 +140,7 @@ class InterpolatedDeviation:
 
     @abstractmethod
     def interpolate(self, directions: Numbers) -> Numbers:
-        """Interpolate the depth in mm at unit vectors (3, ...)."""
+        """Interpolate the depth of the bore in mm at unit vectors (3, ...) in the cup's frame."""
 
     between = RenamedAttribute("interpolate")
 
@@ -152,6 +169,7 @@ class DepthTable(InterpolatedDeviation):
     values: Numbers
 
     def __post_init__(self) -> None:
+        """Convert the fields to arrays and validate them."""
         for name in ("polar", "azimuth", "values"):
             object.__setattr__(self, name, numpy.asarray(getattr(self, name), dtype=float))
         for name, limit in (("polar", pi), ("azimuth", 2 * pi)):
@@ -169,7 +187,7 @@ class DepthTable(InterpolatedDeviation):
 
     @cached_property
     def _interpolator(self) -> RegularGridInterpolator:
-        """Linear interpolator of the table, closed over a full turn."""
+        """Linear interpolator of the table, periodic over a full turn."""
         from scipy.interpolate import RegularGridInterpolator  # slow to import
 
         azimuth = numpy.concatenate([self.azimuth, [self.azimuth[0] + 2 * pi]])
@@ -179,7 +197,7 @@ class DepthTable(InterpolatedDeviation):
         return RegularGridInterpolator((self.polar, azimuth), values)
 
     def interpolate(self, directions: Numbers) -> Numbers:
-        """Interpolate the depth in mm at unit vectors (3, ...)."""
+        """Interpolate the depth of the bore in mm at unit vectors (3, ...) in the cup's frame."""
         x, y, _ = directions
         polar = numpy.clip(polar_angle(directions), self.polar[0], self.polar[-1])
         first = self._interpolator.grid[1][0]

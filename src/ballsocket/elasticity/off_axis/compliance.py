@@ -22,7 +22,7 @@ from .surfaces import Springs, Surface
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class AxisymmetricOperator:
-    """Linear operator on fields that commutes with rotations about the axis: one matrix (rings, rings) for each m.
+    """Linear operator on fields of cells that is axisymmetric: one matrix (rings, rings) for each harmonic m.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class AxisymmetricOperator:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class UniformOperator:
-    """Linear operator that multiplies every cell by one factor."""
+    """Linear operator on fields of cells that multiplies each cell by one factor."""
 
     factor: float
 
@@ -57,13 +57,13 @@ class UniformOperator:
         return fields * self.factor
 
     def in_single_precision(self) -> UniformOperator:
-        """Return the operator itself: its factor has no matrices to shorten."""
+        """Return this operator, which has no matrices to convert."""
         return self
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Compliance:
-    """Joint compliance of the surfaces of bore and ball.
+    """Compliance of bore and ball together, between the cells of a grid.
 
     Attributes
     ----------
@@ -77,20 +77,20 @@ class Compliance:
     stiffness: AxisymmetricOperator | UniformOperator
 
     def displacement(self, pressure: Numbers) -> Numbers:
-        """Compute the displacement (mm) of the surfaces under pressures (MPa): both (batch, rings, meridians)."""
+        """Compute the sum of both surface displacements in mm from pressures in MPa, (batch, rings, meridians)."""
         return self.softness(pressure)
 
     def displacement_in_single_precision(self, pressure: Numbers) -> Numbers:
-        """Compute the displacement in single precision, where the operator has matrices."""
-        return self._single_softness(pressure)
+        """Compute the sum of both surface displacements in mm from pressures in MPa, in single precision."""
+        return self._single_precision_softness(pressure)
 
     @cached_property
-    def _single_softness(self) -> AxisymmetricOperator | UniformOperator:
+    def _single_precision_softness(self) -> AxisymmetricOperator | UniformOperator:
         """Operator from pressures to displacements in single precision."""
         return self.softness.in_single_precision()
 
     def pressure(self, displacement: Numbers) -> Numbers:
-        """Compute the pressures (MPa, of either sign) that displace every cell by these amounts (mm)."""
+        """Compute the pressures in MPa, of either sign, that displace all cells by given amounts in mm."""
         return self.stiffness(displacement)
 
     @cached_property
@@ -105,13 +105,13 @@ class Compliance:
 
     @cached_property
     def uniform_stiffness(self) -> float:
-        """Mean pressure under a uniform displacement of the bore, in MPa/mm."""
+        """Mean pressure per uniform radial displacement of the bore, in MPa/mm."""
         unit = numpy.ones((1, self.grid.rings, self.grid.meridians))
         return float(self.grid.integrate_product(self.pressure(unit), unit)[0] / self.grid.ring_areas.sum())
 
 
 def _from_matrices(grid: Grid, matrices: Numbers) -> Compliance:
-    """Make a compliance whose inverse has single precision.
+    """Make a compliance from its matrices, with an inverse in single precision.
 
     The inverse only guides the iteration; the compliance decides when it ends.
     """
@@ -122,7 +122,7 @@ def _from_matrices(grid: Grid, matrices: Numbers) -> Compliance:
 
 
 def make_compliance(surface: Surface, joint: Joint, cup: Cup, grid: Grid) -> Compliance:
-    """Compute the compliance of one joint on a grid, without the cache.
+    """Compute the compliance of bore and ball of one joint on a grid, without a cache.
 
     Parameters
     ----------
@@ -149,7 +149,10 @@ _CACHE_SIZE, _LOCK = 8, Lock()
 
 
 def cached_compliance(surface: Surface, joint: Joint, cup: Cup, width: float) -> Compliance:
-    """Return the compliance of one joint in rings of this width (rad), from a cache of the last eight."""
+    """Return the compliance of bore and ball of one joint in rings of this width (rad), from a cache.
+
+    The last eight compliances are cached.
+    """
     key = (surface, joint, cup.arc_of_cover, cup.chamfer, cup.interface, width)
     with _LOCK:
         if key not in _CACHE:

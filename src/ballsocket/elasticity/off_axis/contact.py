@@ -38,25 +38,28 @@ class OffAxisContact(SolvedContact):
     _inside: ClassVar[str] = "pressure maps"
 
     def _joint_von_mises(self, indices: Numbers, piece: JointContacts) -> Numbers:
-        """Estimate the stress in MPa from half angle and largest pressure: only the surface is solved."""
+        """Estimate the largest von Mises stress in the liner in MPa from half angle and largest pressure.
+
+        Stresses below the surface are not solved.
+        """
         joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), piece.state
         estimate = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         return numpy.asarray(estimate * state.max_pressure)
 
     @property
     def von_mises_bounds(self) -> tuple[Array, Array]:
-        """Bounds of `von_mises` in MPa: the estimate itself, twice."""
+        """Lower and upper bound of `von_mises` in MPa; both are the estimate itself."""
         return self.von_mises, self.von_mises
 
     @cached_property
     def force_vector(self) -> Array:
         """Force of the ball on the cup in N: components towards the rim, across, towards the dome."""
-        return self._vector("force_vector")
+        return self._collect_vector("force_vector")
 
     @cached_property
     def displacement(self) -> Array:
         """Displacement of the ball's centre from the centre of the bore, in mm."""
-        return self._vector("displacement")
+        return self._collect_vector("displacement")
 
     @cached_property
     def moment(self) -> Array:
@@ -65,15 +68,15 @@ class OffAxisContact(SolvedContact):
 
     @cached_property
     def stiffness_matrix(self) -> Array:
-        """Derivative of the force by the displacement in N/mm, (..., 3, 3), symmetric."""
+        """Tangent stiffness: derivative of the force vector by the displacement in N/mm, (..., 3, 3), symmetric."""
         rows = self.laws.combine(lambda piece: piece.state.tangent.reshape(9, -1), (9,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3))
 
     @cached_property
     def max_pressure_at(self) -> Array:
-        """Unit vector to the largest pressure."""
-        return self._vector("max_pressure_at")
+        """Unit vector from the centre of the bore to the point of the largest pressure."""
+        return self._collect_vector("max_pressure_at")
 
     @cached_property
     def edge_loaded(self) -> Array:
@@ -83,7 +86,10 @@ class OffAxisContact(SolvedContact):
 
     @cached_property
     def edge_margin(self) -> Array:
-        """Angle in rad from the edge of the contact to the end of the bore: `edge_distance` over the bore's radius."""
+        """Angle in rad from the edge of the contact to the end of the bore, negative for edge loading.
+
+        It is `edge_distance` over the bore's radius.
+        """
         from .load_cases import edge_margins  # slow to import
 
         return self._mask_failed(lambda: self.laws.combine(lambda piece: edge_margins(piece.state)))
@@ -109,13 +115,13 @@ class OffAxisContact(SolvedContact):
 
     @property
     def _patch(self) -> ContactPatch:
-        """Patch of a single contact."""
+        """Contact patch of a single contact."""
         state: ContactStates = self.single_state
         return state.patches[0]
 
     @property
     def outline(self) -> Numbers:
-        """Unit vectors (rays, 3) to the edge of a single contact."""
+        """Edge of a single contact, as unit vectors (rays, 3) from the centre of the bore."""
         return self._patch.outline
 
     def pressure_at(self, direction: Array) -> Array:
@@ -146,7 +152,7 @@ class OffAxisContact(SolvedContact):
         notes = list(super().notes)
         if self._is_plain and self.status is Status.DISLOCATED:
             notes.append(self._dislocation_note)
-        if not self._failed_everywhere:
+        if not self._all_points_failed:
             unbounded = self.laws.combine(lambda piece: piece.state.unbounded) == 1
             notes += self._note(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
             notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _RIM_NOTE)
@@ -163,16 +169,17 @@ class OffAxisContact(SolvedContact):
         distance, polar = float(numpy.linalg.norm(centre)), degrees(float(polar_angle(centre)))
         return f"the ball's centre moved {distance:.3g} mm from the bore's, {polar:.1f}° from the dome's pole"
 
-    def _vector(self, name: str) -> Array:
-        """Return a vector of every contact (..., 3), NaN where there is no solution."""
+    def _collect_vector(self, name: str) -> Array:
+        """Collect a vector of all contacts by its name (..., 3), NaN where there is no solution."""
         rows = self.laws.combine(lambda piece: getattr(piece.state, name), (3,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1)
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON: vectors in the cup's frame, `max_pressure_at_deg` as polar angle and azimuth.
+        """Return the contact as a dictionary for JSON, with vectors in the cup's frame.
 
-        `force_vector_in_body` (right, front, up) is there if the cup has an orientation.
+        `max_pressure_at_deg` has the polar angle and the azimuth. A cup with an orientation adds `force_vector_in_body`
+        (right, front, up).
         """
         at = arrays.to_numpy(self.max_pressure_at)
         angles = numpy.stack([polar_angle(numpy.moveaxis(at, -1, 0)), numpy.arctan2(at[..., 1], at[..., 0])], axis=-1)
@@ -194,7 +201,7 @@ class OffAxisContact(SolvedContact):
         }
 
     def _force_in_body(self) -> dict[str, Any]:
-        """Return the force in the body's axes, for a cup whose orientation is given."""
+        """Return the force vector in the body's frame for JSON; an empty dictionary without an orientation."""
         cup = self.model.cup
         if not cup.oriented:
             return {}

@@ -31,7 +31,7 @@ _MIN_MARGIN = 1e-6
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactPatch:
-    """Pressure of one contact.
+    """Pressure of one contact on the grid, with its outline and its largest value.
 
     Attributes
     ----------
@@ -54,18 +54,18 @@ class ContactPatch:
 
     @cached_property
     def _pressure_interpolator(self) -> RegularGridInterpolator:
-        """Interpolator of the pressure, extrapolated linearly to the rim where the last ring is loaded."""
+        """Interpolator of the pressure over polar angle and azimuth, extrapolated linearly to a loaded rim."""
         p, (last, before) = self.pressure, self.grid.polar[[-1, -2]]
         ratio = (self.grid.reach - last) / (last - before)
-        return self._interpolator(p, numpy.maximum(p[-1] + ratio * (p[-1] - p[-2]), 0.0) * (p[-1] > 0))
+        return self._make_interpolator(p, numpy.maximum(p[-1] + ratio * (p[-1] - p[-2]), 0.0) * (p[-1] > 0))
 
     @cached_property
     def _level_interpolator(self) -> RegularGridInterpolator:
-        """Interpolator of the level, constant between the last ring and the rim."""
-        return self._interpolator(self.level, self.level[-1])
+        """Interpolator of the level over polar angle and azimuth, constant between the last ring and the rim."""
+        return self._make_interpolator(self.level, self.level[-1])
 
-    def _interpolator(self, values: Numbers, at_rim: Numbers) -> RegularGridInterpolator:
-        """Interpolate linearly between cell middles, across the pole and to the end of the bore."""
+    def _make_interpolator(self, values: Numbers, at_rim: Numbers) -> RegularGridInterpolator:
+        """Make a linear interpolator between cell middles, across the pole and to the end of the bore."""
         half = self.grid.meridians // 2
         beyond = numpy.roll(values[:2][::-1], half, axis=1)
         rows = numpy.vstack([beyond, values, at_rim])
@@ -82,11 +82,11 @@ class ContactPatch:
 
     def pressure_along(self, angle: Numbers) -> Numbers:
         """Interpolate the pressure in MPa at angles from the load towards the rim, in the plane of load and axis."""
-        return self.pressure_at(_rays(self.axis, angle, 0.0 * angle))
+        return self.pressure_at(_ray_directions(self.axis, angle, 0.0 * angle))
 
     @cached_property
     def largest(self) -> tuple[float, Numbers]:
-        """Largest pressure in MPa and its unit vector, from a quadratic fit around the cell of the largest pressure."""
+        """Largest pressure in MPa and the unit vector to it, from a quadratic fit around the cell with the maximum."""
         row, column = numpy.unravel_index(self.pressure.argmax(), self.pressure.shape)
         if not self.pressure[row, column] > 0:
             return 0.0, self.axis
@@ -109,61 +109,71 @@ class ContactPatch:
 
     @cached_property
     def outline(self) -> Numbers:
-        """Unit vectors (rays, 3) to the edge of the contact, at the ends of rays from its centre."""
-        return _rays(self._centre, self._edge_angles, self._ray_azimuths)
+        """Edge of the contact, as unit vectors (rays, 3) at the ends of rays from its centre."""
+        return _ray_directions(self._contact_centre, self._edge_angles, self._ray_azimuths)
 
     @property
     def _ray_azimuths(self) -> Numbers:
-        """Azimuths of the rays about the centre of the contact in rad."""
+        """Azimuths in rad of the rays about the centre of the contact."""
         return numpy.arange(_RAYS) * (2 * pi / _RAYS)
 
     @cached_property
-    def _centre(self) -> Numbers:
-        """Direction of the load, or of the largest pressure if the load points outside the contact."""
+    def _contact_centre(self) -> Numbers:
+        """Centre of the contact: direction of the load, or of the largest pressure if the load points outside it."""
         if self.pressure_at(self.axis) > 0:
             return self.axis
         return self.grid.middles.reshape(3, -1)[:, self.pressure.argmax()]
 
     @cached_property
     def _edge_angles(self) -> Numbers:
-        """Angles from the centre to the edge along each ray: the first zero of the level, or the end of the bore.
+        """Angles in rad from the centre to the edge along each ray.
 
-        A ray that never leaves a contact all around the bore has the angle 0.
+        The edge is the first zero of the level, or the end of the bore. A ray that never leaves a contact all around
+        the bore has the angle 0.
         """
         step, azimuths = self.grid.width / 2, self._ray_azimuths
         angles = numpy.arange(1, int(pi / step)) * step
-        points = _rays(self._centre, angles[:, None] + 0 * azimuths, azimuths)
+        points = _ray_directions(self._contact_centre, angles[:, None] + 0 * azimuths, azimuths)
         inside = points[..., 2] >= numpy.cos(self.grid.reach)
         outside = ~((self._level_interpolator(_spherical_coordinates(points)) > 0) & inside)
         end = numpy.argmax(outside, axis=0)  # the first step outside
         rim = self._rim_angles(azimuths)
         high = numpy.where(inside[end, numpy.arange(_RAYS)], angles[end], numpy.minimum(angles[end], rim))
         edge = self._bisect_edge(angles[end] - step, high) - self.inset * self.grid.width
-        reached = self._level_interpolator(_spherical_coordinates(_rays(self._centre, high, azimuths))) > 0
+        reached = (
+            self._level_interpolator(_spherical_coordinates(_ray_directions(self._contact_centre, high, azimuths))) > 0
+        )
         ends = numpy.minimum(numpy.where(reached, rim, numpy.maximum(edge, 0.0)), rim)
         return numpy.where(outside.any(axis=0), ends, 0.0)
 
     def _bisect_edge(self, low: Numbers, high: Numbers) -> Numbers:
-        """Bisect each ray between an angle inside the contact and one outside."""
+        """Find the zero of the level on each ray in rad, by bisection between angles inside and outside."""
         for _ in range(_BISECTIONS):
             middle = (low + high) / 2
             loaded = (
-                self._level_interpolator(_spherical_coordinates(_rays(self._centre, middle, self._ray_azimuths))) > 0
+                self._level_interpolator(
+                    _spherical_coordinates(_ray_directions(self._contact_centre, middle, self._ray_azimuths))
+                )
+                > 0
             )
             low, high = numpy.where(loaded, middle, low), numpy.where(loaded, high, middle)
         return (low + high) / 2
 
     def _rim_angles(self, azimuths: Numbers) -> Numbers:
-        """Compute the angles from the centre to the end of the bore along each ray; infinite where it is not met."""
+        """Compute the angles in rad from the centre to the end of the bore along rays; infinite if a ray misses it."""
         # z = cos out z(0) + sin out z(90°) = A cos(out - a)
-        start, side = (_rays(self._centre, numpy.full(_RAYS, angle), azimuths)[:, 2] for angle in (0.0, pi / 2))
+        start, side = (
+            _ray_directions(self._contact_centre, numpy.full(_RAYS, angle), azimuths)[:, 2] for angle in (0.0, pi / 2)
+        )
         cosine = numpy.cos(self.grid.reach) / numpy.hypot(start, side)
         ends = numpy.arctan2(side, start) + numpy.arccos(numpy.clip(cosine, -1, 1))
         return numpy.where(abs(cosine) < 1, ends, numpy.inf)
 
     @cached_property
     def half_angle(self) -> float:
-        """Half angle in rad of a round contact of the same area: 2π (1 - cos ε) is the solid angle in the outline.
+        """Half angle in rad of a round contact of the same area.
+
+        The solid angle in the outline is 2π (1 - cos ε).
 
         A contact that the load does not point into, a ring around a preloaded ball, has the area of its cells.
         """
@@ -179,7 +189,7 @@ class ContactPatch:
 
     @cached_property
     def edge_margin(self) -> float:
-        """Smallest angle (rad) from the contact's edge to the end of the bore; 0 if the contact reaches it.
+        """Smallest angle in rad from the contact's edge to the end of the bore; 0 if the contact reaches it.
 
         On every meridian the edge lies between the last loaded cell and the first open one. A parabola through the
         furthest meridian and its neighbours gives the furthest point.
@@ -195,7 +205,7 @@ class ContactPatch:
 
     @property
     def _polar_edges(self) -> Numbers:
-        """Polar angles of the contact's edge towards the rim, (meridians,); 0 on a meridian without contact."""
+        """Polar angles in rad of the contact's edge towards the rim, (meridians,); 0 on a meridian without contact."""
         loaded, last = self.level > 0, self.grid.rings - 1
         ring, column = last - loaded[::-1].argmax(axis=0), numpy.arange(self.grid.meridians)
         after = numpy.minimum(ring + 1, last)
@@ -207,14 +217,14 @@ class ContactPatch:
 
 
 def _spherical_coordinates(directions: Numbers) -> Numbers:
-    """Compute polar angles and azimuths (..., 2) of directions (..., 3)."""
+    """Compute polar angles and azimuths in rad (..., 2) of directions (..., 3)."""
     components = numpy.moveaxis(directions, -1, 0)
     azimuth = numpy.arctan2(components[1], components[0]) % (2 * pi)
     return numpy.stack([polar_angle(components), azimuth], axis=-1)
 
 
-def _rays(centre: Numbers, angle: Numbers, azimuth: Numbers) -> Numbers:
-    """Compute unit vectors (..., 3) at angles from a centre, on rays at azimuths about it.
+def _ray_directions(centre: Numbers, angle: Numbers, azimuth: Numbers) -> Numbers:
+    """Compute unit vectors (..., 3) at angles (rad) from a centre, on rays at azimuths (rad) about it.
 
     The ray of azimuth 0 lies in the plane of the centre and the cup's axis, away from the pole.
     """
@@ -225,17 +235,17 @@ def _rays(centre: Numbers, angle: Numbers, azimuth: Numbers) -> Numbers:
 
 
 def _tangents_at(axis: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute two unit vectors perpendicular to an axis: along its meridian away from the pole, and along its ring."""
+    """Compute two unit vectors perpendicular to an axis: away from the pole, and along the ring of the axis."""
     polar, azimuth = float(polar_angle(axis)), float(numpy.arctan2(axis[1], axis[0]))
     along_ring = numpy.array([-numpy.sin(azimuth), numpy.cos(azimuth), 0.0])
     return unit_vectors(numpy.asarray(polar + pi / 2), numpy.asarray(azimuth)), along_ring
 
 
 def _quadratic_terms(s: Numbers, t: Numbers) -> Numbers:
-    """Compute the terms 1, s, t, s², s t, t² of a quadratic: (..., 6)."""
+    """Compute the terms 1, s, t, s², s t, t² of a quadratic polynomial: (..., 6)."""
     return numpy.stack([numpy.ones_like(s), s, t, s * s, s * t, t * t], axis=-1)
 
 
 def _fit_quadratic(s: Numbers, t: Numbers, values: Numbers) -> Numbers:
-    """Fit the six coefficients of a quadratic in s and t to values by least squares."""
+    """Fit the six coefficients of a quadratic polynomial in s and t to values, by least squares."""
     return numpy.linalg.lstsq(_quadratic_terms(s, t), values, rcond=None)[0]

@@ -39,7 +39,7 @@ LoadSolver = Callable[[BoreContact, Numbers, Numbers, EdgeRelation], "ContactSta
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ContactStates:
-    """Contacts of one joint.
+    """Solved contacts of one joint, with one number per contact for each quantity.
 
     Attributes
     ----------
@@ -69,7 +69,7 @@ class ContactStates:
 
     @property
     def unconverged(self) -> Numbers:
-        """1 where the iteration of a ball in its bore did not converge, else 0."""
+        """Flag of each contact: 1 if its iteration did not converge, else 0."""
         return (~self.equilibrium.converged & ~self.dislocated).astype(float)
 
     @property
@@ -79,7 +79,7 @@ class ContactStates:
 
     @cached_property
     def patches(self) -> tuple[ContactPatch, ...]:
-        """Patch of each contact."""
+        """Contact patch of each contact."""
         grid, inset = self.bore.compliance.grid, self.edges.inset
         rows = zip(self.equilibrium.pressure, self.levels, self.axes, strict=True)
         return tuple(
@@ -88,7 +88,7 @@ class ContactStates:
 
     @cached_property
     def levels(self) -> Numbers:
-        """Level in mm of every cell, positive in the contact, minus the gap outside: (contacts, rings, meridians)."""
+        """Level in mm of every cell: positive in the contact, minus the gap outside: (contacts, rings, meridians)."""
         p = self.equilibrium.pressure
         gap = self.bore.compliance.displacement(p) - self.bore.gap.overlap(self.equilibrium.displacement)
         return self.edges.levels(p, gap)
@@ -105,16 +105,16 @@ class ContactStates:
 
     @property
     def force(self) -> Numbers:
-        """Magnitude of the force in N; in a preloaded joint its component along the axis, negative in tension."""
+        """Magnitude of the force in N; in a preloaded joint its component along the load, negative in tension."""
         if self._preloaded:
-            return self._along_axes(self.force_vector)
+            return self._project_on_axes(self.force_vector)
         return numpy.linalg.norm(self.force_vector, axis=0)
 
     @property
     def indentation(self) -> Numbers:
-        """Displacement in mm beyond the clearance; in a preloaded joint its component along the axis."""
+        """Displacement of the ball in mm beyond the clearance; in a preloaded joint its component along the load."""
         if self._preloaded:
-            return self._along_axes(self.displacement) - self.bore.gap.clearance
+            return self._project_on_axes(self.displacement) - self.bore.gap.clearance
         return numpy.linalg.norm(self.displacement, axis=0) - self.bore.gap.clearance
 
     @property
@@ -122,23 +122,25 @@ class ContactStates:
         """True for a joint with an interference."""
         return self.bore.gap.clearance < 0
 
-    def _along_axes(self, vectors: Numbers) -> Numbers:
-        """Project vectors (3, contacts) onto the axes of the loads."""
+    def _project_on_axes(self, vectors: Numbers) -> Numbers:
+        """Compute the components of vectors (3, contacts) along the axes of the loads."""
         return numpy.einsum("kn,nk->n", vectors, self.axes)
 
     @cached_property
     def tangent(self) -> Numbers:
-        """Stiffness matrices in N/mm: (3, 3, contacts)."""
+        """Tangent stiffness matrices in N/mm: (3, 3, contacts)."""
         displacement, pressure = self.equilibrium.displacement, self.equilibrium.pressure
         sensitivity = self.bore.pressure_sensitivity(displacement, pressure, tolerance=1e-6)
         return numpy.moveaxis(self.bore.tangent(sensitivity), 0, -1)
 
     @property
     def stiffness(self) -> Numbers:
-        """Derivative of the force by the indentation in N/mm."""
+        """Tangent stiffness in N/mm, the derivative of the force by the indentation."""
         if self._preloaded:
             return numpy.einsum("nk,kln,nl->n", self.axes, self.tangent, self.axes)
-        force_direction, motion_direction = (_normalised(vectors) for vectors in (self.force_vector, self.displacement))
+        force_direction, motion_direction = (
+            _unit_vectors_of(vectors) for vectors in (self.force_vector, self.displacement)
+        )
         return numpy.einsum("kn,kln,ln->n", force_direction, self.tangent, motion_direction)
 
     @property
@@ -150,7 +152,7 @@ class ContactStates:
 
     @property
     def pressure_integral(self) -> Numbers:
-        """∫ p dA in N."""
+        """Integral of the pressure over the contact area, ∫ p dA, in N."""
         p = self.equilibrium.pressure
         return self.bore.area * self.bore.compliance.grid.integrate_product(p, numpy.ones_like(p))
 
@@ -161,17 +163,17 @@ class ContactStates:
 
     @property
     def edge_loaded(self) -> Numbers:
-        """1 where there is pressure at the end of the bore, else 0."""
+        """Flag of each contact: 1 if there is pressure at the end of the bore, else 0."""
         return numpy.array([patch.edge_loaded for patch in self.patches]).astype(float)
 
     @property
     def unbounded(self) -> Numbers:
-        """1 where the pressure is unbounded at an edge that indents the ball, else 0."""
+        """Flag of each contact: 1 if the end of the bore indents the ball with an unbounded pressure, else 0."""
         return self.edge_loaded * (not self.edges.bounded)
 
     @property
     def max_pressure(self) -> Numbers:
-        """Largest pressure in MPa, infinite at an edge that indents the ball."""
+        """Largest pressure in MPa, infinite where the end of the bore indents the ball."""
         largest = numpy.array([patch.largest[0] for patch in self.patches])
         return numpy.where(self.unbounded == 1, numpy.inf, largest)
 
@@ -182,7 +184,7 @@ class ContactStates:
 
     @property
     def max_pressure_angle(self) -> Numbers:
-        """Angle from the load to the largest pressure, in rad."""
+        """Angle in rad from the load to the largest pressure."""
         sine = numpy.linalg.norm(numpy.cross(self.max_pressure_at.T, self.axes), axis=1)
         return numpy.arctan2(sine, (self.max_pressure_at.T * self.axes).sum(axis=1))
 
@@ -192,7 +194,10 @@ class ContactStates:
         return numpy.array([float(patch.pressure_at(patch.axis)) for patch in self.patches])
 
     def pressure(self, angle: Numbers) -> Numbers:
-        """Interpolate p in MPa at angles (..., contacts) from the load towards the rim, in its plane with the axis."""
+        """Interpolate the pressure in MPa at angles (..., contacts) in rad from the load towards the rim.
+
+        The angles lie in the plane of the load and the cup's axis.
+        """
         columns = [patch.pressure_along(angle[:, i]) for i, patch in enumerate(self.patches)]
         return numpy.stack(columns, axis=-1) if columns else numpy.zeros_like(angle)
 
@@ -212,7 +217,10 @@ class ContactStates:
         return {name: errors[name] for name in QUANTITIES}
 
     def _exponents(self) -> dict[str, Numbers]:
-        """Compute d ln(quantity) / d ln(half angle) on springs, where d grows as 1/cos ε - 1."""
+        """Compute the logarithmic derivative of each quantity by the half angle, for a contact on springs.
+
+        On springs the indentation grows as 1/cos ε - 1.
+        """
         angle = numpy.minimum(self.half_angle, 1.5)
         x = numpy.cos(angle)
         growth = angle / numpy.tan(angle / 2) / x
@@ -221,7 +229,7 @@ class ContactStates:
         return exponents | {"pressure_integral": (1 + x) * growth, "half_angle": 0.0 * x}
 
 
-def _normalised(vectors: Numbers) -> Numbers:
-    """Divide vectors (3, contacts) by their lengths; a zero vector stays zero."""
+def _unit_vectors_of(vectors: Numbers) -> Numbers:
+    """Compute unit vectors of vectors (3, contacts); a zero vector stays zero."""
     length = numpy.linalg.norm(vectors, axis=0)
     return vectors / numpy.where(length > 0, length, 1.0)

@@ -61,7 +61,10 @@ class SphericalBlock:
 
     @cached_property
     def number(self) -> Numbers:
-        """Number of the node at each polar angle, azimuth and radius, middles included; 0 without a node."""
+        """Number of the node at each polar angle, azimuth and radius; 0 where there is no node.
+
+        Nodes in the middle of edges are included.
+        """
         shape = tuple(2 * len(corners) - 1 for corners in (self.polar, self.azimuth, self.radius))
         i, j, k = numpy.indices(shape)
         used = (i % 2 + j % 2 + k % 2) <= 1
@@ -72,7 +75,7 @@ class SphericalBlock:
 
     @property
     def last_number(self) -> int:
-        """Number of the last node."""
+        """Largest number of a node."""
         return int(self.number.max())
 
     @cached_property
@@ -83,7 +86,7 @@ class SphericalBlock:
         return directions[..., None] * radius + self.centre[:, None, None, None]
 
     def elements(self) -> Iterator[tuple[int, str, tuple[int, int, int], list[int]]]:
-        """Yield number, type, indices and nodes of each element."""
+        """Yield number, type, indices and node numbers of each element."""
         number = self.offset[1]
         for i, j, k in numpy.ndindex(len(self.polar) - 1, len(self.azimuth) - 1, len(self.radius) - 1):
             number += 1
@@ -102,12 +105,15 @@ class SphericalBlock:
 
 
 def _edge_middles(corners: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Return the middles of the edges between corners, in their order."""
+    """Compute the indices of the middles of edges between successive corners of a face."""
     return [((a + c) // 2, (b + d) // 2) for (a, b), (c, d) in zip(corners, corners[1:] + corners[:1], strict=True)]
 
 
 def _element_nodes(corners: list[tuple[int, int]], middles: list[tuple[int, int]]) -> list[tuple[int, int, int]]:
-    """Return the nodes in CalculiX's order: corners and middles at the inner and outer face, then the uprights."""
+    """Return the indices of an element's nodes in CalculiX's order.
+
+    The order is corners and middles at the inner and outer face, then the middles of the radial edges.
+    """
     rows = [(corners, 0), (corners, 2), (middles, 0), (middles, 2), (corners, 1)]
     return [(a, b, c) for row, c in rows for a, b in row]
 
@@ -149,6 +155,7 @@ class TiltedDeck:
     scale: float = 1e-3
 
     def __post_init__(self) -> None:
+        """Validate the fields."""
         check_cup(self.cup, self.joint)
         if self.joint.ball is not None:
             raise ValueError("a tilted deck has a rigid ball: leave the ball's material out")
@@ -166,7 +173,7 @@ class TiltedDeck:
         return socket_shape(self.joint, self.cup)
 
     @cached_property
-    def _layers(self) -> list[Numbers]:
+    def _layer_radii(self) -> list[Numbers]:
         """Radii of the corners in each layer, in mm."""
         inner, first, radii = 1.0, self.element_size, []
         for outer, _, _ in self._shape.layers:
@@ -184,11 +191,11 @@ class TiltedDeck:
 
     @cached_property
     def socket(self) -> SphericalBlock:
-        """Mesh of the cup. A chamfer is omitted: the bore ends at its beginning, on a cone."""
+        """Mesh of the cup, without a chamfer: the bore ends on a cone where the chamfer begins."""
         return SphericalBlock(
             polar=self._divide_angles(self._shape.reach),
             azimuth=self._divide_angles(pi),
-            radius=join_points(self._layers),
+            radius=join_points(self._layer_radii),
             centre=numpy.zeros(3),
         )
 
@@ -206,7 +213,7 @@ class TiltedDeck:
         )
 
     def _divide_angles(self, end: float) -> Numbers:
-        """Divide the angles from 0 to an end (rad) into elements of equal size."""
+        """Compute the corners of elements of equal size from 0 to an end, in rad."""
         return numpy.linspace(0.0, end, max(round(end / self.element_size), 4) + 1)
 
     @property
@@ -216,11 +223,17 @@ class TiltedDeck:
 
     def text(self) -> str:
         """Return the deck as ASCII text."""
-        lines = [*self._title(), *self._mesh(), *self._materials(), *self._contact(), *self._step()]
+        lines = [
+            *self._title_lines(),
+            *self._mesh_lines(),
+            *self._materials_lines(),
+            *self._contact_lines(),
+            *self._step_lines(),
+        ]
         return "\n".join(lines) + "\n"
 
     def write(self, folder: Path) -> Path:
-        """Write `ballsocket.inp` and `expected.json` into a folder, creating it, and return the path of the deck."""
+        """Write `ballsocket.inp` and `expected.json` into a new or existing folder; return the path of the deck."""
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
         record = {"scale": self.scale, "tilt_deg": degrees(self.tilt), **self.expected}
@@ -229,7 +242,7 @@ class TiltedDeck:
 
     @cached_property
     def expected(self) -> dict[str, Any]:
-        """Indentation in mm, and the force vector (N) and largest pressure (MPa) by `Sphere`, without the scale."""
+        """Expected results without the scale: indentation (mm), force vector (N) and largest pressure (MPa)."""
         contact: Any = Sphere(cup=self.cup).press(self.joint, indentation=self.indentation, tilt=self.tilt)
         return {
             "indentation": self.indentation,
@@ -237,33 +250,33 @@ class TiltedDeck:
             "max_pressure": float(contact.max_pressure),
         }
 
-    def _title(self) -> Iterator[str]:
-        """Yield the comments at the head of the deck."""
+    def _title_lines(self) -> Iterator[str]:
+        """Yield the comment lines at the top of the deck."""
         joint = str(self.joint).encode("ascii", "replace").decode()
         yield f"** {joint}"[:200]
         yield f"** Rigid ball displaced at {degrees(self.tilt):g} degrees from the cup's axis z; half, y > 0."
         yield f"** Clearance and indentation are multiplied by {self.scale:g}: divide forces by it; twice"
         yield "** the forces are those of the whole cup. Units N, mm, MPa."
 
-    def _mesh(self) -> Iterator[str]:
-        """Yield the nodes and elements of cup and ball."""
+    def _mesh_lines(self) -> Iterator[str]:
+        """Yield the lines of nodes and elements of cup and ball."""
         yield "*NODE, NSET=ALL"
         for body in (self.socket, self.ball):
             yield from body.node_lines()
-        ends = numpy.cumsum([len(layer) - 1 for layer in self._layers])
+        ends = numpy.cumsum([len(layer) - 1 for layer in self._layer_radii])
         yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
         yield from _element_lines(self.ball, lambda k: "SKIN")
 
-    def _materials(self) -> Iterator[str]:
-        """Yield the materials and sections of all layers and of the skin."""
+    def _materials_lines(self) -> Iterator[str]:
+        """Yield the lines of materials and sections of all layers and of the ball's skin."""
         liner = float(self.joint.liner.young)
         materials = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._shape.layers)}
         for name, (young, nu) in (materials | {"SKIN": (1e3 * liner, 0.3)}).items():
             yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {nu:.12g}")
             yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
 
-    def _contact(self) -> Iterator[str]:
-        """Yield the contact pair, the symmetry plane and the fixed nodes."""
+    def _contact_lines(self) -> Iterator[str]:
+        """Yield the lines of the contact pair, the symmetry plane and the fixed nodes."""
         slope = _CONTACT_STIFFNESS_FACTOR * self.expected["max_pressure"] / self.indentation
         for name, body, face in (("LINED", self.socket, _INNER_FACE), ("PRESSED", self.ball, _OUTER_FACE)):
             yield f"*SURFACE, NAME={name}, TYPE=ELEMENT"
@@ -281,8 +294,8 @@ class TiltedDeck:
         yield from _node_set("PUSHED", self.ball.number.ravel())
         yield from ("*BOUNDARY", "MIRROR, 2, 2", "OUTSIDE, 1, 3", "PUSHED, 1, 3")
 
-    def _step(self) -> Iterator[str]:
-        """Yield the load step that displaces the ball."""
+    def _step_lines(self) -> Iterator[str]:
+        """Yield the lines of the load step that displaces the ball."""
         x, _, z = self.scale * self.indentation * self._direction
         yield from ("*STEP, INC=100", "*STATIC", "1., 1.", "*BOUNDARY")
         yield from (f"PUSHED, 1, 1, {x:.13g}", f"PUSHED, 3, 3, {z:.13g}")
@@ -290,7 +303,10 @@ class TiltedDeck:
 
 
 def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iterator[str]:
-    """Yield the elements of a body by type and layer; `set_name` maps a layer of elements to its set."""
+    """Yield the lines of a body's elements, sorted by type and layer.
+
+    `set_name` returns the name of the set of a layer of elements.
+    """
     previous = None
     for number, kind, (_, _, k), nodes in sorted(body.elements(), key=lambda element: (element[1], element[2][2])):
         header = f"*ELEMENT, TYPE={kind}, ELSET={set_name(k)}"
@@ -304,7 +320,7 @@ def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iter
 
 
 def _node_set(name: str, nodes: Numbers) -> Iterator[str]:
-    """Yield the lines of a named set of nodes, without 0."""
+    """Yield the lines of a named set of nodes; the number 0 is omitted."""
     yield f"*NSET, NSET={name}"
     numbers = sorted({int(node) for node in nodes if node})
     for start in range(0, len(numbers), _NODES_PER_LINE):

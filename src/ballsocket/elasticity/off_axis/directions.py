@@ -20,7 +20,9 @@ _SMALLEST_COMPONENT = 1e-100  # squares of smaller components underflow
 
 
 def check_direction(direction: Any) -> Numbers:
-    """Validate directions (..., 3) and scale those whose squared length would overflow or underflow.
+    """Validate directions (..., 3) of any length and return them as floats.
+
+    Those whose squared length would overflow or underflow are scaled.
 
     Raises
     ------
@@ -44,7 +46,7 @@ def tilted_directions(tilt: Array, azimuth: Array | None) -> Numbers:
 
 
 def cup_frames(cup: Cup, inclination: Array | None, anteversion: Array | None) -> Numbers:
-    """Compute the frames (..., 3, 3) of a cup at other inclinations and anteversions in rad.
+    """Compute the frames (..., 3, 3) of a cup rotated to other inclinations and anteversions in rad.
 
     An angle that is None keeps the value of the cup.
     """
@@ -75,7 +77,7 @@ def polar_angle(direction: Numbers) -> Numbers:
 
 
 def tangents(directions: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute two unit vectors (3, ...) that form a right-handed frame with each unit vector."""
+    """Compute two tangent unit vectors (3, ...) that form a right-handed frame with each direction."""
     axis = numpy.moveaxis(numpy.eye(3)[abs(directions).argmin(axis=0)], -1, 0)
     first = axis - (axis * directions).sum(axis=0) * directions
     first = first / numpy.linalg.norm(first, axis=0)
@@ -83,6 +85,6 @@ def tangents(directions: Numbers) -> tuple[Numbers, Numbers]:
 
 
 def magnitudes_and_directions(vectors: Numbers) -> tuple[Numbers, Numbers]:
-    """Split vectors (n, 3) into lengths (n,) and unit vectors; a zero vector stays zero."""
+    """Compute lengths (n,) and unit vectors (n, 3) of vectors; a zero vector stays zero."""
     length = numpy.linalg.norm(vectors, axis=1)
     return length, vectors / numpy.where(length > 0, length, 1.0)[:, None]

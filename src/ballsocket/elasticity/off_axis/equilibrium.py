@@ -56,7 +56,7 @@ _STATE_NAMES = (
 def solve_force(
     bore: BoreContact, load: Numbers, start: Numbers, held: Numbers, pressure: Numbers | None = None
 ) -> EquilibriumBatch:
-    """Compute the displacements and pressures of balls in equilibrium with their loads.
+    """Solve the displacements and pressures of balls in equilibrium with their loads.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def solve_force(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _SearchResult:
-    """Balls at the end of a search.
+    """Displacements and pressures of balls at the end of an equilibrium search.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class _SearchResult:
     tangent: Numbers
 
     def store(self, indices: Numbers, search: _NewtonSearch, mask: Numbers) -> None:
-        """Copy the balls of a mask from a running search."""
+        """Copy the results of the balls in a mask from a running search."""
         for name in ("displacement", "pressure", "converged", "sensitivity", "tangent"):
             getattr(self, name)[indices] = getattr(search, name)[mask]
 
@@ -116,7 +116,7 @@ class _SearchResult:
 def _solve_block(
     bore: BoreContact, load: Numbers, size: Numbers, start: Numbers, pressure: Numbers | None
 ) -> _SearchResult:
-    """Search the equilibrium of one block of balls; forces are measured by `size` (batch,) in N."""
+    """Solve the equilibrium of one block of balls; `size` (batch,) in N scales the residual forces."""
     coarse = None
     if pressure is None and bore.coarser is not None:
         coarse = _solve_coarse(bore, bore.coarser, load, size, start)
@@ -126,7 +126,7 @@ def _solve_block(
 def _solve_coarse(
     bore: BoreContact, coarser: BoreContact, load: Numbers, size: Numbers, start: Numbers
 ) -> _SearchResult:
-    """Search the equilibrium in cells twice as wide, and transfer it to the cells of the bore."""
+    """Solve the equilibrium in cells twice as wide, and transfer it to the cells of the bore."""
     search = _NewtonSearch(coarser, load, size, start, None, tolerance=_COARSE_FORCE_TOLERANCE)
     result = _search(search, _MAX_COARSE_ITERATIONS)
     pressure, sensitivity = (bore.refine(field) for field in (result.pressure, result.sensitivity))
@@ -135,7 +135,7 @@ def _solve_coarse(
 
 
 def _search(search: _NewtonSearch, max_iterations: int) -> _SearchResult:
-    """Iterate until all balls have converged, or up to a number of iterations."""
+    """Iterate a search until all balls have converged, or up to a number of iterations."""
     result = _SearchResult(
         displacement=search.displacement.copy(),
         pressure=search.pressure.copy(),
@@ -157,7 +157,7 @@ def _search(search: _NewtonSearch, max_iterations: int) -> _SearchResult:
 
 
 class _NewtonSearch:
-    """State of the search: the best displacements up to now, and the next trial."""
+    """State of an equilibrium search by Newton's method: best displacements so far, and the next trial."""
 
     def __init__(
         self,
@@ -169,6 +169,7 @@ class _NewtonSearch:
         coarse: _SearchResult | None = None,
         tolerance: float = _FORCE_TOLERANCE,
     ) -> None:
+        """Initialise the search at the displacements `start`, or from the search in wide cells."""
         self.bore, self.load, self.size, self.force_tolerance = bore, load, size, tolerance
         count, grid = len(load), bore.compliance.grid
         cells = grid.rings, grid.meridians
@@ -184,13 +185,13 @@ class _NewtonSearch:
             self._start_from(coarse)
 
     def _start_from(self, coarse: _SearchResult) -> None:
-        """Take displacements, pressures and tangents of the search in wide cells as a start."""
+        """Start from the displacements, pressures and tangents of the search in wide cells."""
         self.trial, self.initial_pressure, self.stale = coarse.displacement, coarse.pressure, ~coarse.converged
         self.sensitivity, self.tangent = coarse.sensitivity, coarse.tangent
         self.tolerance = numpy.where(coarse.converged, _COARSE_FORCE_TOLERANCE, _MAX_PRESSURE_TOLERANCE)
 
     def evaluate_trial(self) -> None:
-        """Solve the contacts at the trial, and accept the trials that are better."""
+        """Solve the contacts at the trial displacements, and accept those that are closer to equilibrium."""
         overlap = self.bore.gap.overlap(self.trial)
         solution = solve_pressure(self.bore.compliance, overlap, self.initial_pressure, self.tolerance)
         tether_force = self.trial @ self.bore.tether
@@ -220,12 +221,12 @@ class _NewtonSearch:
         )
 
     def _accept(self, mask: Numbers, **values: Numbers) -> None:
-        """Move the balls of a mask to their trials, with the values computed there."""
+        """Set the balls of a mask to their trial displacements, with the values computed there."""
         for name, value in {**values, "displacement": self.trial, "used_tolerance": self.tolerance}.items():
             getattr(self, name)[mask] = value[mask]
 
     def _update_tangent(self, mask: Numbers, force: Numbers) -> None:
-        """Update the tangents of a mask by the last step (BFGS)."""
+        """Update the tangents of the balls in a mask from the last step, by the BFGS formula."""
         s, y, J = self.trial - self.displacement, force - self.force, self.tangent
         Js = numpy.einsum("bkl,bl->bk", J, s)
         sy, sJs = (numpy.einsum("bk,bk->b", s, vector) for vector in (y, Js))
@@ -235,14 +236,14 @@ class _NewtonSearch:
             J[mask] += sign * outer / scale[mask, None, None]
 
     def select(self, mask: Numbers) -> None:
-        """Continue with the balls of a mask (batch,)."""
+        """Remove the balls outside a mask (batch,) from the search."""
         if mask.all():
             return
         for name in _STATE_NAMES:
             setattr(self, name, getattr(self, name)[mask])
 
     def advance(self) -> None:
-        """Compute the next trial: Newton's step, or back to the bore where the ball has separated from it."""
+        """Compute the next trial displacements: Newton's step, or a step back to the bore after separation."""
         if self.stale.any():
             stale = self.stale
             start = self.sensitivity[stale] if self.sensitivity[stale].any() else None
@@ -260,7 +261,7 @@ class _NewtonSearch:
         self.tolerance = numpy.clip(_PRESSURE_TOLERANCE_FACTOR * self.residual, tightest, _MAX_PRESSURE_TOLERANCE)
 
     def _newton_step(self) -> Numbers:
-        """Solve the damped tangent for the residual force: (batch, 3) in mm."""
+        """Compute Newton's step in mm, (batch, 3), from the damped tangent and the residual force."""
         trace = numpy.trace(self.tangent, axis1=1, axis2=2)
         diagonal = numpy.where(trace > 0, (_REGULARISATION + self.damping) * trace, 1.0)
         matrices = self.tangent + diagonal[:, None, None] * numpy.eye(3)

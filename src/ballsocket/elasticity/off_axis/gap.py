@@ -35,7 +35,7 @@ class GapField:
     kind: type[LinearGap] | type[CircularGap]
 
     def on_coarser(self, grid: Grid) -> GapField:
-        """Return this gap on the coarser grid."""
+        """Return this gap on the next coarser grid."""
         return replace(self, grid=grid, depth=self.grid.coarsen(self.depth))
 
     def overlap(self, displacement: Numbers) -> Numbers:
@@ -56,7 +56,7 @@ class GapField:
         return numpy.where(square > 0, overlap, -self.socket_radius)  # the ray misses the ball
 
     def slope(self, displacement: Numbers) -> Numbers:
-        """Compute the derivative of the overlap by the displacement: (batch or 1, 3, rings, meridians)."""
+        """Compute the derivative of the overlap by the ball's displacement: (batch or 1, 3, rings, meridians)."""
         normals = self.grid.normals[None]
         if self.kind is LinearGap:
             return normals
@@ -66,7 +66,7 @@ class GapField:
         return normals + (along[:, None] * normals - displacement[:, :, None, None]) / root[:, None]
 
     def _half_chord(self, displacement: Numbers, along: Numbers) -> tuple[float, Numbers]:
-        """Compute the ball's radius, and the squared half chord that the ball cuts off the ray of each cell."""
+        """Compute the ball's radius in mm, and the squared half chord of each cell's ray in the ball in mm²."""
         ball = self.socket_radius - self.clearance
         return ball, ball * ball - (displacement * displacement).sum(axis=1)[:, None, None] + along * along
 

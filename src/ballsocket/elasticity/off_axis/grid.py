@@ -28,7 +28,7 @@ _MIN_RINGS_TO_COARSEN = 24  # a coarser start saves no time on fewer rings
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Grid:
-    """Cells of constant pressure.
+    """Cells of constant pressure on the bore, in rings and meridians.
 
     Attributes
     ----------
@@ -48,7 +48,7 @@ class Grid:
 
     @property
     def max_harmonic(self) -> int:
-        """Largest harmonic m about the axis."""
+        """Largest harmonic number m about the axis."""
         return self.meridians // 2
 
     @property
@@ -108,7 +108,7 @@ class Grid:
         return centroids
 
     def average_over_cells(self, ring_matrices: Numbers) -> Numbers:
-        """Convert matrices between rings, ∫ u dA for each m, to matrices between cells, the mean u of a cell.
+        """Convert compliance matrices between rings, ∫ u dA for each m, to those between cells, mean u.
 
         The mean over the width of a cell attenuates cos mφ twice: in the pressure and in the displacement. Waves around
         the pole that are shorter than two rings get the compliance of waves of two rings. The grid does not resolve
@@ -141,11 +141,11 @@ class Grid:
         return means / numpy.add.reduceat(self.ring_areas, starts)[:, None]
 
     def refine(self, fields: Numbers) -> Numbers:
-        """Repeat fields of the coarser grid in the cells of this grid: (..., rings, meridians)."""
+        """Transfer fields from the coarser grid to the cells of this grid: (..., rings, meridians)."""
         return numpy.repeat(numpy.repeat(fields, 2, axis=-2)[..., : self.rings, :], 2, axis=-1)
 
     def coarsen_matrices(self, matrices: Numbers) -> Numbers:
-        """Convert matrices between cells, one per m, to matrices between the cells of the coarser grid."""
+        """Convert compliance matrices between cells, one per m, to those between cells of the coarser grid."""
         starts = numpy.arange(0, self.rings, 2)
         m = numpy.arange(self.meridians // 4 + 1)
         rows = numpy.add.reduceat(matrices[: len(m)] * self.ring_areas[:, None], starts, axis=1)
@@ -160,36 +160,36 @@ class Grid:
 
 
 def graded_grid(reach: float, width: float) -> Grid:
-    """Make a grid up to the polar angle `reach`, in rings of about `width` (rad), the last one in three parts.
+    """Make a grid up to the polar angle `reach`, with the last ring divided in three parts towards the rim.
 
-    Cells are square at a polar angle of 90°.
+    Rings are about `width` (rad) wide, and cells are square at a polar angle of 90°.
     """
-    return _graded(reach, width, _RIM_WIDTHS)
+    return _make_graded_grid(reach, width, _RIM_WIDTHS)
 
 
 def rim_grid(reach: float, width: float) -> Grid:
-    """Make a grid as `graded_grid` does, but with the last ring in five parts."""
-    return _graded(reach, width, _FINE_RIM_WIDTHS)
+    """Make a grid up to the polar angle `reach`, with the last ring divided in five parts towards the rim."""
+    return _make_graded_grid(reach, width, _FINE_RIM_WIDTHS)
 
 
-def _graded(reach: float, width: float, fractions: Numbers) -> Grid:
-    """Make equal rings and divide the last one into fractions."""
+def _make_graded_grid(reach: float, width: float, fractions: Numbers) -> Grid:
+    """Make a grid of equal rings with the last one divided into fractions."""
     rings = max(ceil(reach / width - 1e-9), 2)
     edges = numpy.linspace(0.0, reach, rings + 1)
     last = edges[-2] + numpy.append(0.0, numpy.cumsum(fractions)) * (reach - edges[-2])
     last[-1] = reach
-    return Grid(edges=join_points([edges[:-1], last]), meridians=_meridians(width))
+    return Grid(edges=join_points([edges[:-1], last]), meridians=_meridian_count(width))
 
 
 def even_grid(reach: float, width: float) -> Grid:
-    """Make a grid of equal rings up to the polar angle `reach`; cells of about `width` (rad) are square at 90°.
+    """Make a grid of equal rings up to the polar angle `reach`, of about `width` (rad).
 
-    Without a narrow ring no cell is stiffer than necessary.
+    Cells are square at a polar angle of 90°. Without a narrow ring no cell is stiffer than necessary.
     """
     rings = max(ceil(reach / width - 1e-9), 4)
-    return Grid(edges=numpy.linspace(0.0, reach, rings + 1), meridians=_meridians(width))
+    return Grid(edges=numpy.linspace(0.0, reach, rings + 1), meridians=_meridian_count(width))
 
 
-def _meridians(width: float) -> int:
-    """Return the even number of cells in a ring, at least 8."""
+def _meridian_count(width: float) -> int:
+    """Choose the even number of cells in a ring, at least 8, for cells of about this width (rad)."""
     return 2 * max(round(pi / width), 4)

@@ -39,7 +39,7 @@ beyond its end; one that ends behind it holds any load.
 
 
 def _solve_indentations(bore: BoreContact, indentation: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
-    """Compute the contacts of balls displaced along axes by clearance + indentation (mm)."""
+    """Solve the contacts of balls displaced along axes by clearance plus indentation (mm)."""
     clearance = bore.gap.clearance
     equilibrium = bore.solve_displacement(axes * (clearance + indentation)[:, None])
     separated = ~(equilibrium.pressure > 0).any(axis=(1, 2))
@@ -57,7 +57,7 @@ def _solve_indentations(bore: BoreContact, indentation: Numbers, axes: Numbers, 
 
 
 def _solve_forces(bore: BoreContact, force: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
-    """Compute the contacts of balls in equilibrium with forces (N) along axes."""
+    """Solve the contacts of balls in equilibrium with forces (N) along axes."""
     reach = bore.compliance.grid.reach
     held = (polar_angle(axes.T) < reach) | (reach > pi / 2)
     start = initial_displacement(bore.gap, bore.compliance.uniform_stiffness, bore.gap.depth, force, axes)
@@ -91,7 +91,10 @@ _MAX_ANGLE_JUMP = 1.0
 
 
 def _solve_half_angles(bore: BoreContact, half_angle: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
-    """Compute contacts of prescribed half angles (rad) by Newton's method for the indentation in brackets."""
+    """Solve the contacts of prescribed half angles (rad), by Newton's method for the indentation.
+
+    The indentation stays in a bracket.
+    """
     width, limit = bore.compliance.grid.width, _MAX_FREE_DISPLACEMENT * bore.gap.socket_radius
     indentation = numpy.clip(_spring_indentation(bore, half_angle), 1e-6 * limit, limit)
     low, high = 0.0 * indentation, numpy.full_like(indentation, limit)
@@ -117,13 +120,16 @@ def _solve_half_angles(bore: BoreContact, half_angle: Numbers, axes: Numbers, ed
 
 
 def _spring_indentation(bore: BoreContact, half_angle: Numbers) -> Numbers:
-    """Compute the indentation in mm at which a contact on springs has this half angle; a scale of it at clearance 0."""
+    """Compute the indentation in mm at which a contact on springs has a half angle in rad.
+
+    Without clearance it is only proportional to that indentation.
+    """
     versine = versine_of(half_angle)
     return max(abs(bore.gap.clearance), 1e-9) * versine / numpy.maximum(1 - versine, 0.05)
 
 
 def _limit_to_bracket(guess: Numbers, low: Numbers, high: Numbers, limit: float) -> Numbers:
-    """Return the guess if it lies inside the bracket, else another point inside the bracket.
+    """Limit an estimate to its bracket: return it if it lies inside, else another point inside.
 
     A guess beyond an upper end that was never computed becomes a point just below the limit.
     """
@@ -155,12 +161,15 @@ def edge_margins(states: ContactStates) -> Numbers:
     margins = _patch_margins(states)
     cut = numpy.flatnonzero((states.edge_loaded == 1) & states.equilibrium.converged)
     if len(cut):
-        margins[cut] = numpy.minimum(_touching_tilts(states, cut) - polar_angle(states.axes[cut].T), 0.0)
+        margins[cut] = numpy.minimum(_rim_contact_tilts(states, cut) - polar_angle(states.axes[cut].T), 0.0)
     return margins
 
 
-def _touching_tilts(states: ContactStates, cut: Numbers) -> Numbers:
-    """Compute the tilts in rad of first touch with the end of the bore under these loads: (cut,)."""
+def _rim_contact_tilts(states: ContactStates, cut: Numbers) -> Numbers:
+    """Compute the tilts of the loads in rad at which contacts just touch the end of the bore.
+
+    `cut` has the indices of contacts that the rim cuts off.
+    """
     x, y, _ = states.axes[cut].T
     worn = bool(states.bore.gap.depth.any())  # otherwise all meridians are the same
     azimuth = numpy.arctan2(y, x) if worn else 0.0 * x
@@ -168,13 +177,13 @@ def _touching_tilts(states: ContactStates, cut: Numbers) -> Numbers:
     group, tilt, level = group.ravel(), polar_angle(states.axes[cut].T), _rim_levels(states)[cut]
     smallest = numpy.array([numpy.flatnonzero(group == i)[tilt[group == i].argmin()] for i in range(rows.shape[1])])
     load, azimuth = rows
-    return _solve_touching(states, load, azimuth, tilt[smallest], level[smallest])[group]
+    return _solve_rim_contact(states, load, azimuth, tilt[smallest], level[smallest])[group]
 
 
-def _solve_touching(
+def _solve_rim_contact(
     states: ContactStates, load: Numbers, azimuth: Numbers, high: Numbers, high_level: Numbers
 ) -> Numbers:
-    """Find the tilts at which the level at the rim is 0 by the Illinois method.
+    """Find the tilts in rad at which the level at the rim is 0, by the Illinois method.
 
     Parameters
     ----------
@@ -223,12 +232,12 @@ def _solve_touching(
 
 
 def _patch_margins(states: ContactStates) -> Numbers:
-    """Collect the margins of all patches in rad: (contacts,)."""
+    """Return the angle in rad from each contact's edge to the end of the bore: (contacts,)."""
     return numpy.array([patch.edge_margin for patch in states.patches])
 
 
 def _rim_levels(states: ContactStates) -> Numbers:
-    """Find the largest level of each contact in the last ring, in mm: (contacts,)."""
+    """Find the largest level in mm of each contact in the ring at the rim: (contacts,)."""
     largest: Numbers = states.levels[:, -1].max(axis=1)
     return largest
 

@@ -24,6 +24,7 @@ from ...core.checks import (
     select_load,
     shown,
 )
+from ...core.deprecation import RenamedAttribute
 from ...core.sources import Source
 from ...core.validity import CLOSE_FIT, SMALL_STRAIN, Range, Status
 from ...problem import Joint
@@ -40,7 +41,7 @@ _MIN_RING_WIDTH, _MAX_RING_WIDTH = radians(0.5), radians(6.0)
 
 @dataclass(frozen=True, kw_only=True)
 class Sphere(Model):
-    """Full elasticity for any direction of the load in a real cup.
+    """Contact by full elasticity for any direction of the load in a real cup.
 
     Linear elasticity and small displacements without friction, as in `Exact` and `FiniteElement`, but loads may be
     tilted from the cup's axis. Rings about the cup's axis and meridians divide the bore into cells. The compliance
@@ -100,6 +101,7 @@ class Sphere(Model):
     reach: ClassVar[str] = "forces along directions in which the bore holds the ball, contacts no wider than the bore"
 
     def __post_init__(self) -> None:
+        """Validate the fields."""
         for name, types in {"cup": (Cup,), "surface": (RealCup, ClosedShell, Springs)}.items():
             if not isinstance(getattr(self, name), types):
                 allowed = " or ".join(kind.__name__ for kind in types)
@@ -138,7 +140,7 @@ class Sphere(Model):
 
     @property
     def parameters(self) -> tuple[Array, ...]:
-        """Components of the direction, which broadcast against joint and load."""
+        """Components of the load's direction, which broadcast against joint and load."""
         components = (self.direction[..., axis] for axis in range(3))
         return tuple(float(component) if component.ndim == 0 else component for component in components)
 
@@ -202,16 +204,20 @@ class Sphere(Model):
         reject_unnamed_loads(unnamed)
         load = {"force": force, "indentation": indentation, "half_angle": half_angle}
         if inclination is not None or anteversion is not None:
-            return self.along(direction, tilt, azimuth).facing(inclination, anteversion)._press_along(joint, **load)
+            return (
+                self.with_direction(direction, tilt, azimuth)
+                .with_orientation(inclination, anteversion)
+                ._press_along(joint, **load)
+            )
         if displacement is None:
-            return self.along(direction, tilt, azimuth)._press_along(joint, **load)
+            return self.with_direction(direction, tilt, azimuth)._press_along(joint, **load)
         select_load(**load, displacement=displacement)
         if direction is not None or tilt is not None or azimuth is not None:
             raise ValueError("a displacement includes its direction: leave direction, tilt and azimuth out")
         return self._press_displaced(joint, displacement)
 
     def _press_displaced(self, joint: Joint, displacement: Array) -> Contact:
-        """Press by the length of a displacement along its direction; within the clearance there is no contact."""
+        """Solve the contact of a ball at a displacement vector in mm; within the clearance there is none."""
         vector = arrays.to_numpy(check_vectors("displacement", displacement, "x, y, z (mm)")).astype(float)
         require("displacement", vector, numpy.isfinite(vector), "a displacement (mm) is finite")
         length = numpy.linalg.norm(vector, axis=-1)
@@ -221,10 +227,12 @@ class Sphere(Model):
         return replace(self, direction=direction)._press_along(joint, indentation=indentation)
 
     def _press_along(self, joint: Joint, **load: Array | None) -> Contact:
-        """Press along the direction of this model."""
+        """Solve the contact under a load along the direction of this model."""
         return super().press(joint, **load)
 
-    def along(self, direction: Array | None = None, tilt: Array | None = None, azimuth: Array | None = None) -> Sphere:
+    def with_direction(
+        self, direction: Array | None = None, tilt: Array | None = None, azimuth: Array | None = None
+    ) -> Sphere:
         """Return this model with another direction of the load; see `press` for the arguments."""
         if direction is not None and tilt is not None:
             raise ValueError("give either a direction or a tilt, not both")
@@ -234,13 +242,17 @@ class Sphere(Model):
             return replace(self, direction=tilted_directions(tilt, azimuth) @ numpy.array(self.cup.frame))
         return self if direction is None else replace(self, direction=direction)
 
-    def facing(self, inclination: Array | None = None, anteversion: Array | None = None) -> Sphere:
-        """Return this model with the load rotated as if the cup had other orientations (rad); arrays are many cups.
+    def with_orientation(self, inclination: Array | None = None, anteversion: Array | None = None) -> Sphere:
+        """Return this model with the load's direction of a cup at other orientations (rad).
 
-        The cups are equal in their own frames. Their orientations are thus directions of the load on one cup.
+        Arrays of orientations are many cups. The cups are equal in their own frames, so their orientations are
+        directions of the load on one cup.
         """
         in_cup = numpy.einsum("...ij,...j->...i", cup_frames(self.cup, inclination, anteversion), self.direction)
         return replace(self, direction=in_cup @ numpy.array(self.cup.frame))
+
+    along = RenamedAttribute("with_direction")
+    facing = RenamedAttribute("with_orientation")
 
     def reach_of(self, joint: Joint) -> Array:
         """Compute the polar angle of the end of the bore in rad, from the pole of the dome."""

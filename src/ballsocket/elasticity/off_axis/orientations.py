@@ -54,44 +54,44 @@ class Orientations:
     contacts: tuple[OffAxisContact, ...]
     seconds: float
 
-    def _field(self, quantity: Callable[[OffAxisContact], Array]) -> Numbers:
-        """Stack a quantity of all contacts: (inclinations, anteversions)."""
+    def _collect(self, quantity: Callable[[OffAxisContact], Array]) -> Numbers:
+        """Collect a quantity of all contacts by a function: (inclinations, anteversions)."""
         return numpy.stack([arrays.to_numpy(quantity(contact)) for contact in self.contacts])
 
     @cached_property
     def status(self) -> Numbers:
         """Outcome of each press, as a number of `Status`."""
-        return self._field(lambda contact: contact.status)
+        return self._collect(lambda contact: contact.status)
 
     @cached_property
     def valid(self) -> Numbers:
         """True where the model is valid."""
-        return self._field(lambda contact: contact.valid)
+        return self._collect(lambda contact: contact.valid)
 
     @cached_property
     def tilt(self) -> Numbers:
         """Angle in rad between the load and the cup's axis."""
-        return self._field(lambda contact: contact.tilt)
+        return self._collect(lambda contact: contact.tilt)
 
     @cached_property
     def edge_distance(self) -> Numbers:
         """Arc in mm from the contact to the rim, negative for edge loading; see `OffAxisContact.edge_distance`."""
-        return self._field(lambda contact: contact.edge_distance)
+        return self._collect(lambda contact: contact.edge_distance)
 
     @cached_property
     def edge_loaded(self) -> Numbers:
         """True where the contact reaches the rim."""
-        return self._field(lambda contact: contact.edge_loaded)
+        return self._collect(lambda contact: contact.edge_loaded)
 
     @cached_property
     def max_pressure(self) -> Numbers:
         """Largest pressure in MPa; infinite where the end of the bore indents the ball."""
-        return self._field(lambda contact: contact.max_pressure)
+        return self._collect(lambda contact: contact.max_pressure)
 
     @cached_property
     def half_angle(self) -> Numbers:
         """Half angle in rad of a round contact of the same area."""
-        return self._field(lambda contact: contact.half_angle)
+        return self._collect(lambda contact: contact.half_angle)
 
     @cached_property
     def held(self) -> Numbers:
@@ -100,13 +100,16 @@ class Orientations:
 
     @renamed_arguments(of="field")
     def best(self, field: Numbers) -> tuple[float, float, int]:
-        """Return inclination and anteversion in rad at the largest value of a field, and its flat index."""
+        """Return the inclination and anteversion in rad at which a field is largest, and its flat index."""
         index = int(numpy.where(self.held & numpy.isfinite(field), field, -inf).argmax())
         row, column = divmod(index, len(self.anteversion))
         return float(self.inclination[row]), float(self.anteversion[column]), index
 
     def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON: fields are lists of anteversions per inclination, in mm, MPa and degrees."""
+        """Return the contacts as a dictionary for JSON, with fields in mm, MPa and degrees.
+
+        A field has one list of anteversions for each inclination.
+        """
         cup = self.model.cup
         fields = {
             "tilt_deg": numpy.degrees(self.tilt),
@@ -192,7 +195,7 @@ def orient(
     start, contacts = perf_counter(), []
     for number, angle in enumerate(axes[0]):
         report_progress(f"inclination {number + 1} of {len(axes[0])}")
-        contacts.append(_complete(model.press(joint, inclination=float(angle), anteversion=axes[1], **load)))
+        contacts.append(_compute_quantities(model.press(joint, inclination=float(angle), anteversion=axes[1], **load)))
     return Orientations(
         model=model,
         joint=joint,
@@ -215,7 +218,7 @@ def _check_single(joint: Any, load: Mapping[str, Any]) -> None:
 
 
 def _check_angles(name: str, values: Array) -> Numbers:
-    """Validate a row of angles (n,) in rad of a cup."""
+    """Validate a row of ascending angles (n,) of a cup in rad."""
     angles = numpy.atleast_1d(arrays.to_numpy(CUP[name].check(values)).astype(float))
     if angles.ndim != 1 or angles.size == 0:
         raise ValueError(f"{name} of shape {angles.shape} is not allowed: give a row of angles")
@@ -224,8 +227,8 @@ def _check_angles(name: str, values: Array) -> Numbers:
     return angles
 
 
-def _complete(contact: Any) -> OffAxisContact:
-    """Compute the cached quantities of a contact, so that `seconds` includes them."""
+def _compute_quantities(contact: Any) -> OffAxisContact:
+    """Compute and cache some quantities of a contact, so that `seconds` includes them."""
     _ = contact.max_pressure, contact.edge_margin, contact.half_angle
     completed: OffAxisContact = contact
     return completed

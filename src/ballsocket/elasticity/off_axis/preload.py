@@ -31,7 +31,7 @@ _MAX_INTERFERENCES = 4.0
 
 @dataclass(frozen=True, kw_only=True)
 class Preload:
-    """Contact of a joint with an interference: at equilibrium, under displacement, and with wear.
+    """Preloaded joint: a ball with an interference in its socket, unloaded, displaced or worn.
 
     The joint is assembled. Pressing the ball in through the narrower opening is not modelled, nor is any permanent
     deformation from it.
@@ -73,12 +73,12 @@ class Preload:
 
     @cached_property
     def equilibrium(self) -> OffAxisContact:
-        """Contact without a load."""
+        """Contact of the ball in equilibrium without a load."""
         contact: OffAxisContact = self.model.press(self.joint, force=0.0)  # type: ignore[assignment]
         return contact
 
     def displace(self, displacement: Array) -> OffAxisContact:
-        """Press the ball at displacements from the centre of the bore.
+        """Solve the contacts of the ball at displacements from the centre of the bore.
 
         Parameters
         ----------

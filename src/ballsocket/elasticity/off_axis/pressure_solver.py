@@ -29,7 +29,7 @@ _MIN_SINGLE_TOLERANCE = 1e-3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PressureSolution:
-    """Pressures of a batch of contacts.
+    """Solved pressures of a batch of contacts.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class PressureSolution:
 def solve_pressure(
     compliance: Compliance, overlap: Numbers, start: Numbers | None = None, tolerance: Numbers | float = TOLERANCE
 ) -> PressureSolution:
-    """Compute the pressures that separate ball and bore by their overlap in the contact and leave a gap elsewhere.
+    """Solve the frictionless contact: pressures that close the gap in the contact, with a gap elsewhere.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def _estimate_pressure(compliance: Compliance, overlap: Numbers) -> Numbers:
 
 
 class _ConjugateGradients:
-    """State of the iteration for a batch of contacts."""
+    """State of the conjugate-gradient iteration for a batch of contacts."""
 
     def __init__(self, compliance: Compliance, overlap: Numbers, pressure: Numbers) -> None:
         self.compliance, self.overlap, self.pressure = compliance, overlap, pressure
@@ -102,7 +102,7 @@ class _ConjugateGradients:
         self._update_residual()
 
     def _update_residual(self) -> None:
-        """Compute the overlap that remains in cells that touch or overlap."""
+        """Compute the remaining overlap of cells that are loaded or overlap, and its largest relative value."""
         remaining = self.overlap - self.displacement
         self.touching = self.pressure > 0
         self.residual = numpy.where(self.touching | (remaining > 0), remaining, 0.0).astype(numpy.float32)
@@ -110,11 +110,17 @@ class _ConjugateGradients:
 
     @property
     def energy(self) -> Numbers:
-        """∫ p u - ∫ p S p/2 on a unit sphere, which is largest at the solution."""
+        """Stored energy of each contact on a unit sphere in MPa mm.
+
+        It is ∫ p u - ∫ p S p/2, with the compliance S, which is largest at the solution.
+        """
         return self.compliance.grid.integrate_product(self.pressure, self.overlap + self.residual) / 2
 
     def check_convergence(self, tolerance: Numbers) -> Numbers:
-        """Return True for contacts within their tolerances, (batch,); strict tolerances in double precision."""
+        """Return True for contacts within their tolerances (batch,).
+
+        Strict tolerances are checked in double precision.
+        """
         doubtful = self.is_single & (tolerance < _MIN_SINGLE_RESIDUAL) & (self.relative_residual <= tolerance)
         if doubtful.any():
             self.displacement[doubtful] = self.compliance.displacement(self.pressure[doubtful])
@@ -124,7 +130,7 @@ class _ConjugateGradients:
         return converged
 
     def select(self, mask: Numbers) -> None:
-        """Continue with the contacts of a mask (batch,)."""
+        """Remove the contacts outside a mask (batch,) from the iteration."""
         if mask.all():
             return
         names = ("overlap", "pressure", "max_overlap", "displacement", "is_single", "direction", "previous_residual")
@@ -132,7 +138,7 @@ class _ConjugateGradients:
             setattr(self, name, getattr(self, name)[mask])
 
     def advance(self) -> None:
-        """Step along the preconditioned residual to the least energy, and cut pressures off at 0."""
+        """Make one conjugate-gradient step, and set negative pressures to 0."""
         integrate = self.compliance.grid.integrate_product
         gradient = numpy.where(self.residual != 0, self.compliance.pressure(self.residual), 0)
         gradient = numpy.where(self.touching, gradient, numpy.maximum(gradient, 0))
@@ -142,10 +148,10 @@ class _ConjugateGradients:
         response = self.compliance.displacement_in_single_precision(self.direction)
         length = integrate(self.residual, self.direction) / integrate(self.direction, response)
         self.previous_residual = self.residual
-        self._step(length[:, None, None], response)
+        self._change_pressures(length[:, None, None], response)
 
-    def _step(self, length: Numbers, response: Numbers) -> None:
-        """Move along the direction by a length, and cut negative pressures off."""
+    def _change_pressures(self, length: Numbers, response: Numbers) -> None:
+        """Change the pressures along the search direction by a length, and set negative ones to 0."""
         pressure = self.pressure + length * self.direction
         self.displacement = self.displacement + length * response
         pulling = (pressure < 0).any(axis=(1, 2))
@@ -159,7 +165,7 @@ class _ConjugateGradients:
 def solve_pressure_change(
     compliance: Compliance, touching: Numbers, overlap: Numbers, start: Numbers | None = None, tolerance: float = 1e-3
 ) -> Numbers:
-    """Compute the change of pressure in a fixed set of touching cells under a further overlap.
+    """Solve the change of pressure in a fixed set of touching cells under an additional overlap.
 
     Parameters
     ----------
@@ -167,7 +173,7 @@ def solve_pressure_change(
     touching : array of bool (batch, rings, meridians)
         Cells in contact.
     overlap : array (batch, rings, meridians)
-        Further overlap in mm, or its derivative.
+        Additional overlap in mm, or its derivative.
     start : array (batch, rings, meridians), optional
         Initial change of pressure.
     tolerance : float
@@ -199,6 +205,6 @@ def solve_pressure_change(
 
 
 def _divide_or_zero(numerator: Numbers, denominator: Numbers) -> Numbers:
-    """Divide arrays, with 0 where the denominator is not positive."""
+    """Divide two arrays; the quotient is 0 where the denominator is not positive."""
     quotient: Numbers = numpy.divide(numerator, denominator, out=numpy.zeros_like(numerator), where=denominator > 0)
     return quotient

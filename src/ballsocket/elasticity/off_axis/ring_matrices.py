@@ -35,7 +35,7 @@ ModalCompliance = Callable[[Numbers], Numbers]
 
 
 def interpolate_harmonics(compute: Callable[[Numbers], Numbers], max_harmonic: int) -> Numbers:
-    """Compute matrices for all m from 0 to `max_harmonic`, most of them by a spline in ln m.
+    """Compute the matrices of all harmonics m up to `max_harmonic`, most of them by a spline in ln m.
 
     The error is within 2e-6 of the diagonal.
 
@@ -55,7 +55,7 @@ def interpolate_harmonics(compute: Callable[[Numbers], Numbers], max_harmonic: i
 
 
 def _harmonic_nodes(max_harmonic: int) -> Numbers:
-    """Choose all low harmonics, and high ones at growing steps."""
+    """Choose the harmonics to compute: all low ones, and high ones at growing steps."""
     nodes, step = list(range(min(_MAX_CONSECUTIVE_HARMONIC, max_harmonic) + 1)), 1.0
     while nodes[-1] < max_harmonic:
         step *= _STEP_GROWTH
@@ -64,7 +64,7 @@ def _harmonic_nodes(max_harmonic: int) -> Numbers:
 
 
 def sphere_rings(compliance: ModalCompliance, grid: Grid) -> Numbers:
-    """Compute the ring matrices of a sphere that deforms mode by mode: a solid ball or a closed shell.
+    """Compute the compliance matrices between rings on a solid ball or a closed shell.
 
     Parameters
     ----------
@@ -90,7 +90,10 @@ def sphere_rings(compliance: ModalCompliance, grid: Grid) -> Numbers:
 
 
 def legendre_ring_integrals(grid: Grid, m: Numbers, max_degree: int) -> Numbers:
-    """Integrate normalised associated Legendre functions P_n^m sin θ over each ring: (m, rings, degrees n)."""
+    """Integrate the normalised associated Legendre functions P_n^m over each ring: (m, rings, degrees n).
+
+    The integrand is P_n^m sin θ.
+    """
     nodes, weights = (numpy.array(rule) for rule in gauss_legendre(_POINTS_PER_RING))
     width = numpy.diff(grid.edges)[:, None]
     angle = (grid.edges[:-1, None] + width * nodes).ravel()
@@ -108,7 +111,10 @@ def legendre_ring_integrals(grid: Grid, m: Numbers, max_degree: int) -> Numbers:
 
 
 def _next_legendre(n: int, m: Numbers, before_last: Numbers, last: Numbers, x: Numbers) -> Numbers:
-    """Compute the functions of degree n from degrees n - 2 and n - 1 where m < n, and 0 elsewhere."""
+    """Compute the associated Legendre functions of degree n from those of degrees n - 2 and n - 1.
+
+    They are 0 where m is not below n.
+    """
     low = m < n
     square = numpy.where(low, n * n - m * m, 1)
     rise = numpy.sqrt(numpy.where(low, (4 * n * n - 1) / square, 0.0))
@@ -117,7 +123,9 @@ def _next_legendre(n: int, m: Numbers, before_last: Numbers, last: Numbers, x: N
 
 
 def cup_rings(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-    """Compute the ring matrices of a cup in finite elements: ∫ u dA in mm/MPa on a unit sphere, (m, rings, rings).
+    """Compute the compliance matrices between rings of a cup by finite elements: (m, rings, rings).
+
+    They are ∫ u dA in mm/MPa on a unit sphere.
 
     Raises
     ------
@@ -131,7 +139,7 @@ def cup_rings(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
 
 @lru_cache(maxsize=16)
 def _unit_cup_rings(shape: SocketShape, edges: tuple[float, ...], max_harmonic: int) -> Numbers:
-    """Compute or load the ring matrices of a bore of radius 1 and a liner of modulus 1."""
+    """Compute or load the compliance matrices between rings for a bore of radius 1 and a liner of modulus 1."""
     rings = numpy.array(edges)
 
     def compute() -> Numbers:

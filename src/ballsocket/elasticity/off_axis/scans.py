@@ -40,7 +40,7 @@ _HEADER_BYTES = 2**16
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Scan(InterpolatedDeviation):
-    """Scan of a bore: the sphere that fits it best, and the deviation of the surface from it.
+    """Scan of a bore: the best-fit sphere, and the deviation of the surface from it.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ class Scan(InterpolatedDeviation):
     deviation: Numbers
 
     def interpolate(self, directions: Numbers) -> Numbers:
-        """Interpolate the depth in mm at unit vectors (3, ...) by planes through the nearest points.
+        """Interpolate the depth of the bore in mm at unit vectors (3, ...), by planes through the nearest points.
 
         The depth stays between the smallest and the largest of these points, also beyond the end of the scan.
         """
@@ -86,7 +86,7 @@ class Scan(InterpolatedDeviation):
 
     @cached_property
     def _tree(self) -> Any:
-        """Search tree of the directions."""
+        """Search tree for the nearest measured directions."""
         from scipy.spatial import cKDTree  # slow to import
 
         return cKDTree(self.directions.T)
@@ -122,7 +122,7 @@ def read_scan(path: str | Path, finest: float = _AVERAGING_ANGLE, azimuth: float
 
 
 def _read_points(path: Path) -> Numbers:
-    """Read the points (points, 3) of a mesh."""
+    """Read the points (points, 3) of a mesh file."""
     import meshio
 
     message = f"{path.name} cannot be read as a mesh: the file is incomplete or its suffix is wrong"
@@ -143,7 +143,7 @@ def _read_points(path: Path) -> Numbers:
 def scan_from_points(
     points: Numbers, name: str = "the scan", finest: float = _AVERAGING_ANGLE, azimuth: float = 0.0
 ) -> Scan:
-    """Make a scan from points (points, 3) in mm; see `read_scan`."""
+    """Make a scan of a bore from points (points, 3) in mm; `read_scan` explains the arguments."""
     size = check_number("finest", finest)
     require("finest", size, 0 < size <= _MAX_AVERAGING_ANGLE, "the angle is above 0 and at most 0.35 radians (20°)")
     rotation = check_number("azimuth", AIM["azimuth"].check(azimuth))
@@ -179,7 +179,7 @@ def scan_from_points(
 
 
 def _cup_axes(axis: Numbers, azimuth: float) -> Numbers:
-    """Compute the cup's axes (3, 3) in the scan's frame: z is the axis, and the scan's x lies at the azimuth."""
+    """Compute the cup's axes (3, 3) in the scan's frame, from the cup's axis z and the azimuth of the scan's x."""
     reference = numpy.eye(3)[0 if abs(axis[0]) < numpy.cos(_MIN_REACH) else 1]
     x = reference - (reference @ axis) * axis
     x = x / numpy.linalg.norm(x)
@@ -189,7 +189,7 @@ def _cup_axes(axis: Numbers, azimuth: float) -> Numbers:
 
 
 def _average_in_boxes(directions: Numbers, deviation: Numbers, size: float) -> tuple[Numbers, Numbers]:
-    """Average directions (3, points) and deviations (points,) in boxes of this size on a unit sphere."""
+    """Average directions (3, points) and deviations (points,) in boxes of this size around the unit sphere."""
     boxes = numpy.round(directions.T / size).astype(int)
     _, box, count = numpy.unique(boxes, axis=0, return_inverse=True, return_counts=True)
     sums = numpy.stack([numpy.bincount(box.ravel(), component) for component in directions])
@@ -197,7 +197,10 @@ def _average_in_boxes(directions: Numbers, deviation: Numbers, size: float) -> t
 
 
 def _fit_sphere(points: Numbers) -> tuple[Numbers, float]:
-    """Fit centre and radius of a sphere to points: linear least squares, then least squares of the distances."""
+    """Fit centre and radius of a sphere in mm to points, by least squares of the distances.
+
+    A linear fit gives the start.
+    """
     from scipy.optimize import least_squares  # slow to import
 
     rows = numpy.hstack([2 * points, numpy.ones((len(points), 1))])

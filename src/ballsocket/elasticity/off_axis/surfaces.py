@@ -32,7 +32,7 @@ error of the edge is 0.01 cells.
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeRelation:
-    """Relation of pressure and gap at the edge of a contact, and the kind of the bore's end.
+    """Relation of pressure and gap that locates the edge of a contact between cells.
 
     Attributes
     ----------
@@ -57,7 +57,10 @@ class EdgeRelation:
 
 
 def elastic_edges(joint: Joint, grid: Grid, bounded: bool) -> EdgeRelation:
-    """Return the relation on elastic bodies: at the distance s, p falls as s^(1/2) and the gap opens as s^(3/2)."""
+    """Return the relation of pressure and gap near the edge of a contact of elastic bodies.
+
+    At the distance s from the edge the pressure falls as s^(1/2), and the gap opens as s^(3/2).
+    """
     bodies = [joint.liner] if joint.ball is None else [joint.liner, joint.ball]
     softness = sum((1 - float(body.poisson) ** 2) / float(body.young) for body in bodies)  # 1/E*
     width = numpy.diff(grid.edges)[:, None] * float(joint.socket_radius)
@@ -65,59 +68,62 @@ def elastic_edges(joint: Joint, grid: Grid, bounded: bool) -> EdgeRelation:
 
 
 def spring_edges(modulus: float, grid: Grid) -> EdgeRelation:
-    """Return the relation on springs of a modulus in MPa/mm: one linear function for pressure and gap."""
+    """Return the relation of pressure and gap near the edge of a contact on springs.
+
+    `modulus` is in MPa/mm. Pressure and gap are one linear function.
+    """
     return EdgeRelation(compliance=numpy.full((grid.rings, 1), 1 / modulus), inset=0.0, bounded=True)
 
 
 class Surface(Protocol):
-    """Compliance of the bore."""
+    """Interface of compliance models of the bore."""
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the mean displacement of cells under pressures of cells, in mm/MPa: (m, rings, rings)."""
+        """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
         ...
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation of pressure and gap at the edge of a contact."""
+        """Return the relation of pressure and gap that locates the edge of a contact."""
         ...
 
 
 @dataclass(frozen=True, kw_only=True)
 class RealCup:
-    """The cup with its rim, arc of cover, chamfer and backing layers, in finite elements of its meridian.
+    """Real cup with rim, arc of cover, chamfer and backing layers, by finite elements of its meridian.
 
     Each harmonic about the cup's axis has one stiffness for all directions of the load. Setting it up takes a second.
     It is cached on disk for each R2/L, ν, arc of cover, chamfer and backing, and scales with Young's modulus.
     """
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the mean displacement of cells under pressures of cells, in mm/MPa: (m, rings, rings)."""
+        """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
         from .ring_matrices import cup_rings  # slow to import
 
         return grid.average_over_cells(cup_rings(joint, cup, grid))
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation of pressure and gap at the edge of a contact."""
+        """Return the relation of pressure and gap that locates the edge of a contact."""
         return elastic_edges(joint, grid, bounded=cup.chamfer == 0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class ClosedShell:
-    """A shell without an opening, as in `Exact`: the rim ends the contact but does not soften the liner."""
+    """Closed shell without an opening, as in `Exact`: the rim ends the contact but does not soften the liner."""
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the mean displacement of cells under pressures of cells, in mm/MPa: (m, rings, rings)."""
+        """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
         from .ring_matrices import sphere_rings  # slow to import
 
         return grid.average_over_cells(sphere_rings(socket_of(joint).compliance, grid))
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation of pressure and gap at the edge of a contact."""
+        """Return the relation of pressure and gap that locates the edge of a contact."""
         return elastic_edges(joint, grid, bounded=False)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Springs:
-    """Independent radial springs: the foundation of the paper.
+    """Independent radial springs, the foundation of the paper.
 
     Parameters
     ----------
@@ -128,10 +134,10 @@ class Springs:
     modulus: Modulus = hess_forsbach
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
-        """Compute the mean displacement of cells under pressures of cells, in mm/MPa: (m, rings, rings)."""
+        """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
         diagonal = numpy.eye(grid.rings) / float(self.modulus(joint))
         return numpy.broadcast_to(diagonal, (grid.max_harmonic + 1, *diagonal.shape))
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation of pressure and gap at the edge of a contact."""
+        """Return the relation of pressure and gap that locates the edge of a contact."""
         return spring_edges(float(self.modulus(joint)), grid)

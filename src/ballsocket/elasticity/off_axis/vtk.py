@@ -22,7 +22,7 @@ _BALL_RINGS = 90
 
 
 def write_vtk(contact: OffAxisContact, path: Path) -> None:
-    """Write the bore with its pressures, the displaced ball, and the edge of the contact.
+    """Write bore, displaced ball and edge of the contact to a VTK file, with pressure (MPa) and gap (mm).
 
     Coordinates are in mm, in the cup's own frame, from the centre of the bore. z points to the pole of the dome, and x
     leans towards the rim. Cell data are `part` (0 bore, 1 ball, 2 edge of the contact), `pressure` (MPa) and `gap` (mm,
@@ -48,15 +48,15 @@ def write_vtk(contact: OffAxisContact, path: Path) -> None:
     needs("fem", "meshio")
     import meshio
 
-    bore, cells = _faces(grid.edges, grid.meridians)
-    ball, faces = _faces(numpy.linspace(0.0, pi, _BALL_RINGS + 1), 2 * _BALL_RINGS)
+    bore, cells = _mesh_sphere(grid.edges, grid.meridians)
+    ball, faces = _mesh_sphere(numpy.linspace(0.0, pi, _BALL_RINGS + 1), 2 * _BALL_RINGS)
     edge = contact.outline
     links = numpy.stack([numpy.arange(len(edge)), numpy.roll(numpy.arange(len(edge)), -1)], axis=-1)
     radius, joint = float(contact.joint.socket_radius), contact.joint
     points = [radius * bore, contact.displacement + float(joint.ball_radius) * ball, radius * edge]
     blocks = [("quad", cells), ("quad", faces + len(bore)), ("line", links + len(bore) + len(ball))]
     sizes = [len(block) for _, block in blocks]
-    fields = {"pressure": contact.pressure_map[2], "gap": _gap(contact)}
+    fields = {"pressure": contact.pressure_map[2], "gap": _surface_gap(contact)}
     data = {name: [values.ravel(), *(numpy.zeros(size) for size in sizes[1:])] for name, values in fields.items()}
     bodies = [numpy.full(size, body) for size, body in zip(sizes, (BORE, BALL, EDGE), strict=True)]
     mesh = meshio.Mesh(numpy.concatenate(points), blocks, cell_data={"part": bodies, **data})
@@ -64,8 +64,8 @@ def write_vtk(contact: OffAxisContact, path: Path) -> None:
         mesh.write(draft)
 
 
-def _gap(contact: OffAxisContact) -> Numbers:
-    """Compute the gap in mm between the deformed surfaces, (rings, meridians); 0 in the contact."""
+def _surface_gap(contact: OffAxisContact) -> Numbers:
+    """Compute the gap between the deformed surfaces in mm, (rings, meridians); 0 in the contact."""
     state = contact.single_state
     pressure = state.equilibrium.pressure
     deformation = state.bore.compliance.displacement(pressure)
@@ -73,8 +73,8 @@ def _gap(contact: OffAxisContact) -> Numbers:
     return numpy.where(pressure[0] > 0, 0.0, gap)
 
 
-def _faces(polar: Numbers, meridians: int) -> tuple[Numbers, Numbers]:
-    """Compute the points (n, 3) of a grid on a unit sphere, and the corners (cells, 4) of its cells."""
+def _mesh_sphere(polar: Numbers, meridians: int) -> tuple[Numbers, Numbers]:
+    """Mesh a unit sphere: compute the points (n, 3) of a grid and the corners (cells, 4) of its cells."""
     azimuth = numpy.arange(meridians) * (2 * pi / meridians)
     points = unit_vectors(polar[:, None], azimuth).reshape(3, -1).T
     first = numpy.arange((len(polar) - 1) * meridians).reshape(-1, meridians)

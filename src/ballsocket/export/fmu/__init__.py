@@ -1,7 +1,7 @@
 """Force element as an FMU, a functional mock-up unit of the FMI standard."""
 
-from .cross_check import write_cross_check
 from .fmu import Fmu, FmuFile
+from .variables import write_cross_check
 
 Written = FmuFile
 """Name of `FmuFile` in version 1.0."""

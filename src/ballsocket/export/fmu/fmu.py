@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from uuid import UUID
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ...core.checks import require
 from ...core.storage.atomic_files import write_atomically
@@ -20,16 +21,156 @@ from ..c_text import c_number
 from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library
 from ..tunable import TUNABLES
 from ..validity_depth import valid_depth
-from .description import UnitInformation, build_description, fmi2_description, fmi3_description
-from .variables import Variable, variables
+from .variables import STEP, STOP, UNITS, Variable, variables
 
 _ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)
 """Fixed date of all files, so that equal elements give equal archives."""
 
 
+_CAPABILITIES = {
+    "2.0": ("canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative"),
+    "3.0": (
+        "canGetAndSetFMUState",
+        "canSerializeFMUState",
+        "providesDirectionalDerivatives",
+        "providesAdjointDerivatives",
+    ),
+}
+LOG_CATEGORIES = {
+    "logStatusWarning": "an indentation beyond the validity of the model, reported once",
+    "logStatusDiscard": "an indentation larger than the wall thickness: reduce the step",
+    "logStatusError": "states that are not finite, parameters out of range",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnitInformation:
+    """Name, identifier and texts of an FMU for its description."""
+
+    name: str
+    guid: str
+    text: str
+    tool: str
+    sources: Sequence[str]
+
+
+def fmi2_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
+    """Write `modelDescription.xml` for FMI 2.0, as bytes."""
+    root = _root("2.0", information, {"guid": information.guid, "numberOfEventIndicators": "0"})
+    files = SubElement(root[1], "SourceFiles")
+    for parent in (SubElement(root[0], "SourceFiles"), files):
+        for source in information.sources:
+            SubElement(parent, "File", name=source)
+    _units(root)
+    _categories(SubElement(root, "LogCategories"))
+    SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
+    listed = SubElement(root, "ModelVariables")
+    for variable in variables:
+        kind = SubElement(listed, "ScalarVariable", _attributes(variable))
+        SubElement(kind, "Real", _start(variable))
+    structure = SubElement(root, "ModelStructure")
+    outputs = [variable for variable in variables if variable.causality == "output"]
+    for parent in (SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")):
+        for variable in outputs:
+            SubElement(
+                parent, "Unknown", {"index": str(variable.reference), **_dependencies(variable.needs, parent.tag)}
+            )
+    return _xml(root)
+
+
+def fmi3_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
+    """Write `modelDescription.xml` for FMI 3.0, as bytes."""
+    root = _root("3.0", information, {"instantiationToken": information.guid})
+    _units(root)
+    _categories(SubElement(root, "LogCategories"))
+    SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
+    listed = SubElement(root, "ModelVariables")
+    time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous"}
+    SubElement(listed, "Float64", time, unit="s")
+    for variable in variables:
+        SubElement(listed, "Float64", {**_attributes(variable), **_start(variable)})
+    structure = SubElement(root, "ModelStructure")
+    outputs = [variable for variable in variables if variable.causality == "output"]
+    for tag in ("Output", "InitialUnknown"):
+        for variable in outputs:
+            SubElement(
+                structure, tag, {"valueReference": str(variable.reference), **_dependencies(variable.needs, tag)}
+            )
+    return _xml(root)
+
+
+def build_description(information: UnitInformation) -> bytes:
+    """Write `buildDescription.xml`, the list of source files for FMI 3.0, as bytes."""
+    root = Element("fmiBuildDescription", fmiVersion="3.0")
+    configuration = SubElement(root, "BuildConfiguration", modelIdentifier=information.name)
+    files = SubElement(configuration, "SourceFileSet", language="C99")
+    for source in information.sources:
+        SubElement(files, "SourceFile", name=source)
+    return _xml(root)
+
+
+def _root(version: str, information: UnitInformation, identifiers: dict[str, str]) -> Element:
+    """Make the root element of a description, with the capabilities of the unit."""
+    texts = {
+        "description": information.text,
+        "generationTool": information.tool,
+        "variableNamingConvention": "structured",
+    }
+    named = {"fmiVersion": version, "modelName": information.name, **identifiers, **texts}
+    root = Element("fmiModelDescription", named)
+    capabilities = dict.fromkeys(_CAPABILITIES[version], "true")
+    identified = {"modelIdentifier": information.name, **capabilities}
+    not_needed = (
+        {"completedIntegratorStepNotNeeded": "true"} if version == "2.0" else {"needsCompletedIntegratorStep": "false"}
+    )
+    SubElement(root, "ModelExchange", {**identified, **not_needed})
+    SubElement(root, "CoSimulation", {**identified, "canHandleVariableCommunicationStepSize": "true"})
+    return root
+
+
+def _units(root: Element) -> None:
+    units = SubElement(root, "UnitDefinitions")
+    for name, powers in UNITS.items():
+        SubElement(
+            SubElement(units, "Unit", name=name), "BaseUnit", {base: str(power) for base, power in powers.items()}
+        )
+
+
+def _categories(parent: Element) -> None:
+    for name, meaning in LOG_CATEGORIES.items():
+        SubElement(parent, "Category", name=name, description=meaning)
+
+
+def _attributes(variable: Variable) -> dict[str, str]:
+    """Return the XML attributes of a variable."""
+    parameter = variable.causality == "parameter"
+    attributes = {
+        "name": variable.name,
+        "valueReference": str(variable.reference),
+        "description": variable.description,
+        "causality": variable.causality,
+        "variability": "tunable" if parameter else "continuous",
+    }
+    return attributes | ({"initial": "exact"} if parameter else {})
+
+
+def _start(variable: Variable) -> dict[str, str]:
+    return {"unit": variable.unit} | ({} if variable.start is None else {"start": repr(variable.start)})
+
+
+def _dependencies(inputs: Iterable[int], tag: str) -> dict[str, str]:
+    # initial outputs depend on parameters too; without this attribute they depend on every variable
+    return {} if tag.startswith("Initial") else {"dependencies": " ".join(map(str, inputs))}
+
+
+def _xml(root: Element) -> bytes:
+    indent(root)
+    return tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
+
+
 @dataclass(frozen=True, kw_only=True)
 class Standard:
-    """Version of FMI; `folder` returns the name of the folder with the binaries of a platform."""
+    """Version of the FMI standard; `folder` returns the folder name for the binaries of a platform."""
 
     version: str
     wrapper: str
@@ -49,7 +190,7 @@ STANDARDS: Mapping[int, Standard] = {
 
 @dataclass(frozen=True, kw_only=True)
 class FmuFile:
-    """Path of the archive, and a note on a missing binary; empty if the archive is complete."""
+    """Written FMU archive: its path, and a note on a missing binary; empty if the archive is complete."""
 
     path: Path
     missing: str = ""
@@ -57,7 +198,7 @@ class FmuFile:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Fmu:
-    """Force element as a functional mock-up unit for model exchange and co-simulation, in SI units.
+    """Force element as an FMU (functional mock-up unit) for model exchange and co-simulation, in SI units.
 
     Inputs are position, velocity and spin; outputs are force, moment, energy, half angle and largest pressure. The unit
     has no states. Damping and friction are tunable parameters.
@@ -86,12 +227,12 @@ class Fmu:
 
     @property
     def standard(self) -> Standard:
-        """FMI standard of the version."""
+        """FMI standard of the unit."""
         return STANDARDS[self.version]
 
     @cached_property
     def sources(self) -> Mapping[str, str]:
-        """Contents of the files in the folder `sources`, by name."""
+        """Source files of the unit: contents by name."""
         values = {
             "name": self.name,
             "NAME": self.name.upper(),
@@ -103,7 +244,7 @@ class Fmu:
 
     @cached_property
     def guid(self) -> str:
-        """Identifier that links description and binary; it changes with every number."""
+        """Identifier that links description and binary; it depends on all numbers of the unit."""
         parts = (*self._program.values(), *self._numbers.values(), self.standard.version, self.name)
         return f"{{{UUID(bytes=sha256(''.join(parts).encode()).digest()[:16])}}}"
 
@@ -114,6 +255,7 @@ class Fmu:
 
     @cached_property
     def _numbers(self) -> dict[str, str]:
+        """Numbers and texts of the C wrapper, by the names in its template."""
         element, constants = self.element, self.element.constants
         deepest = valid_depth(element)
         beyond = f"{element.model.name} is not valid beyond an indentation of {deepest:.4g} mm"
@@ -129,7 +271,7 @@ class Fmu:
 
     @property
     def information(self) -> UnitInformation:
-        """Name, identifier and texts for the description."""
+        """Name, identifier and texts of the unit for its description."""
         texts = [name for name in self.sources if name.endswith(".c")]
         text = f"ball in a socket, {self.element.model.title}"
         return UnitInformation(
@@ -137,7 +279,7 @@ class Fmu:
         )
 
     def write(self, path: Path) -> FmuFile:
-        """Write the archive; `missing` states the binary that it lacks.
+        """Write the FMU archive; the result names a binary that is missing.
 
         Raises
         ------

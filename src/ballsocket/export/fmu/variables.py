@@ -1,10 +1,15 @@
-"""Variables of the unit for both versions of the standard: real numbers in SI units."""
+"""Variables of an FMU in SI units, and their values in the FMI cross-check: inputs and reference results."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
+import numpy
+
+from ...core.arrays import Numbers
+from ...core.storage.atomic_files import write_text
 from ...dynamics import ForceElement
 from ..tunable import TUNABLES
 
@@ -23,10 +28,16 @@ UNITS: Mapping[str, Mapping[str, int]] = {
 }
 """Powers of the base units for each unit."""
 
+STOP, STEP = 0.1, 1e-3
+"""Suggested end and step of a simulation in s."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Variable:
-    """Input, output or parameter; `reference` is its number in the standard, `needs` are the inputs it depends on."""
+    """Input, output or parameter of the FMU.
+
+    `reference` is its number in the standard, and `needs` are the inputs that it depends on.
+    """
 
     reference: int
     name: str
@@ -55,7 +66,7 @@ _STATE, _POSITION = tuple(range(1, 10)), (1, 2, 3)
 
 
 def variables(element: ForceElement) -> tuple[Variable, ...]:
-    """List the variables of an element in the order of their references, from 1."""
+    """List the variables of an FMU in the order of their references, from 1."""
     parts = [*_inputs(), *_outputs(), *_parameters(element)]
     return tuple(Variable(reference=number, **part) for number, part in enumerate(parts, 1))
 
@@ -80,3 +91,67 @@ def _parameters(element: ForceElement) -> Iterator[dict]:
         start = getattr(element.constants, parameter.constant) * parameter.si
         properties = {"unit": parameter.si_unit, "description": parameter.meaning, "start": start}
         yield {"name": parameter.name, "causality": "parameter", **properties}
+
+
+_MM, _MPA = 1e-3, 1e6
+
+
+def write_cross_check(element: ForceElement, path: Path) -> tuple[Path, Path, Path]:
+    """Write the files of the FMI cross-check, NAME_in.csv, NAME_ref.csv and NAME_ref.opt, beside NAME.fmu.
+
+    Raises
+    ------
+    OSError
+        A folder that cannot be written to.
+    """
+    time = numpy.arange(round(STOP / STEP) + 1) * STEP
+    state = trajectory(element, time)
+    listed = variables(element)
+    stem = path.with_suffix("")
+    tables = (("in", "input", in_si(state)), ("ref", "output", reference_loads(element, state)))
+    inputs, reference = (
+        write_text(Path(f"{stem}_{ending}.csv"), _csv(_names(listed, causality), time, values))
+        for ending, causality, values in tables
+    )
+    options = f"StartTime, 0\nStopTime, {STOP}\nStepSize, {STEP}\nRelTol, 1e-6\n"
+    return inputs, reference, write_text(Path(f"{stem}_ref.opt"), options)
+
+
+def trajectory(element: ForceElement, time: Numbers) -> Numbers:
+    """Compute a test trajectory of a ball that touches, slides, spins and separates: states (times, 9).
+
+    The units are mm, mm/s and rad/s.
+    """
+    constants = element.constants
+    depth = 0.01 * min(constants.clearance, constants.wall) or 0.001 * constants.socket_radius
+    phase = 2 * numpy.pi * time / STOP
+    distance = constants.clearance + depth * (1.0 - 2.0 * numpy.cos(phase))
+    rate = depth * 2.0 * numpy.sin(phase) * 2 * numpy.pi / STOP
+    angle, angular_speed = 0.3 * numpy.sin(phase), 0.3 * numpy.cos(phase) * 2 * numpy.pi / STOP
+    normal = numpy.stack([numpy.sin(angle), 0.0 * angle, numpy.cos(angle)], axis=-1)
+    tangent = numpy.stack([numpy.cos(angle), 0.0 * angle, -numpy.sin(angle)], axis=-1)
+    velocity = rate[:, None] * normal + (distance * angular_speed)[:, None] * tangent
+    spin = numpy.stack([0.0 * phase, 2.0 * numpy.sin(phase), 1.0 + 0.0 * phase], axis=-1)
+    return numpy.hstack([distance[:, None] * normal, velocity, spin])
+
+
+def in_si(state: Numbers) -> Numbers:
+    """Convert states from mm, mm/s and rad/s to m, m/s and rad/s."""
+    return numpy.hstack([_MM * state[:, :6], state[:, 6:]])
+
+
+def reference_loads(element: ForceElement, state: Numbers) -> Numbers:
+    """Compute the reference outputs of the Python element at states, in the order and units of the FMU."""
+    load = element(state[:, :3], state[:, 3:6], state[:, 6:])
+    scalars = (_MM * load.energy, load.half_angle, _MPA * load.max_pressure)
+    return numpy.hstack([load.force, _MM * load.moment, numpy.stack(scalars, axis=-1)])
+
+
+def _names(listed: tuple[Variable, ...], causality: str) -> list[str]:
+    return [variable.name for variable in listed if variable.causality == causality]
+
+
+def _csv(names: list[str], time: Numbers, values: Numbers) -> str:
+    head = ",".join(f'"{name}"' for name in ("time", *names))
+    rows = numpy.hstack([time[:, None], values]).tolist()
+    return "\n".join([head, *(",".join(map(repr, row)) for row in rows)]) + "\n"

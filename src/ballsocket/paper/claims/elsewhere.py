@@ -99,7 +99,7 @@ def half_angles_of_jin(reference: Model) -> Finding:
     low, high = min(angles.values()), max(angles.values())
     return Finding(
         name="half-angles-of-jin",
-        where=f"{SOURCES[0].short}, abstract",
+        where=f"{SOURCES[0].authors_and_year}, abstract",
         sentence="The half angle lies between 40° and 50° at 2.5 kN for all heads and cups of that time.",
         numbers=angles,
         unit="°",
@@ -131,7 +131,7 @@ def ordering_of_plank(_: Model) -> Finding:
     large = all(stress[name, CROSSLINKED_PE] < small for name, *_ in _PLANK[-2:])
     return Finding(
         name="ordering-of-plank",
-        where=f"{SOURCES[1].short}, abstract",
+        where=f"{SOURCES[1].authors_and_year}, abstract",
         sentence="Von Mises stress at the surface is lower in crosslinked liners at every size, and in those of 3 mm "
         "under heads of 38 and 46 mm lower than in conventional ones of 5 mm under a 22 mm head.",
         numbers={f"{name}, {liner.name}, MPa": value for (name, liner), value in stress.items()},

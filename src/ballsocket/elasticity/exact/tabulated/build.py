@@ -76,7 +76,7 @@ class TableAccuracy:
 
 
 def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
-    """Write the tables to a file and check them.
+    """Compute the tables, write them to a file and check them.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
         raise IsADirectoryError(EISDIR, "a file is needed, but this is a folder", str(path))
     with write_atomically(path) as draft:  # raises an error at once if the file cannot be written
         stored: dict[str, Numbers] = {}
-        with _pool(workers) as pool:
+        with _process_pool(workers) as pool:
             for name, spec in _TABLE_SPECS.items():
                 stored[name] = spec.fit(pool.map)
         with draft.open("wb") as stream:
@@ -106,7 +106,7 @@ def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
 
 
 @contextmanager
-def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
+def _process_pool(workers: int) -> Iterator[ProcessPoolExecutor]:
     """Open a pool of processes with one thread each, so that sums have the same order for any number of them."""
     before = {name: os.environ.get(name) for name in _THREADS}
     os.environ.update(dict.fromkeys(_THREADS, "1"))
@@ -125,19 +125,19 @@ def _pool(workers: int) -> Iterator[ProcessPoolExecutor]:
 
 
 def _poisson_at(coordinate: Numbers) -> Numbers:
-    """Compute ν from its coordinate."""
+    """Compute Poisson's ratio ν from its table coordinate."""
     low, high = (float(numpy.log(1 - 2 * end)) for end in chebyshev.POISSON[::-1])
     return (1 - numpy.exp((high + low - coordinate * (high - low)) / 2)) / 2
 
 
 def _ratio_at(coordinate: Numbers) -> Numbers:
-    """Compute R2/L from its coordinate."""
+    """Compute the ratio R2/L from its table coordinate."""
     low, high = (float(numpy.log(end + chebyshev.RATIO_SHIFT)) for end in chebyshev.THICKNESS_RATIO)
     return numpy.exp((low + high + coordinate * (high - low)) / 2) - chebyshev.RATIO_SHIFT
 
 
 def _share_at(coordinate: float, poisson: float, ratio: float) -> float:
-    """Compute the ball's share of the compliance from its coordinate."""
+    """Compute the ball's share of the compliance from its table coordinate."""
     scale = chebyshev.ball_scale(poisson, ratio)
     return float(scale * numpy.expm1((coordinate + 1) / 2 * numpy.log1p(chebyshev.MAX_BALL_SHARE / scale)))
 
@@ -145,7 +145,10 @@ def _share_at(coordinate: float, poisson: float, ratio: float) -> float:
 def _solve_state(
     liner: _LinerParameters, angle: Numbers, points: int, ball_share: float = 0.0, ball_poisson: float = 0.3
 ) -> AbelState:
-    """Solve contacts with R2 = c = E = 1; `ball_share` is the ball's share of the compliance."""
+    """Solve the contacts of one liner at half angles (rad), with R2 = c = E = 1.
+
+    `ball_share` is the ball's share of the compliance, 0 for a rigid ball.
+    """
     poisson, ratio = liner
     socket = Socket(radius=1.0, shells=(Shell(thickness=1 / ratio, young=1.0, poisson=poisson),))
     young = (1 - ball_poisson**2) / (1 - poisson**2) * (1 - ball_share) / ball_share if ball_share else 1.0
@@ -155,8 +158,8 @@ def _solve_state(
     return AbelState(kernel=kernel, gap=gap, intervals=Intervals(half_angle=angle, grid=cached_grid(points)))
 
 
-def _rigid_functions(state: AbelState) -> Numbers:
-    """Compute the three functions of `formulas` at contacts."""
+def _tabulated_functions(state: AbelState) -> Numbers:
+    """Compute the three tabulated functions of contacts, which `formulas` explains."""
     angle, d, C = state.half_angle, state.indentation, state.kernel.compliance
     opening = d / (1 + d) / (2 * numpy.sin(angle / 2) ** 2)
     load, pole = state.force / angle**3, state.pole_pressure / angle
@@ -164,7 +167,7 @@ def _rigid_functions(state: AbelState) -> Numbers:
 
 
 def _profile_coefficients(state: AbelState) -> Numbers:
-    """Compute the Chebyshev coefficients of p/(p0 sqrt(1 - v)) in 2v - 1."""
+    """Compute the Chebyshev coefficients of the pressure profile p/(p0 sqrt(1 - v)) in 2v - 1."""
     v = (1 + chebyshev.chebyshev_points(_PROFILE_POINTS)[:, None]) / 2
     angle = 2 * numpy.arcsin(numpy.sqrt(v) * numpy.sin(state.half_angle / 2))
     return chebyshev.coefficients(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
@@ -186,7 +189,10 @@ def _sample_ball(
     shares: int,
     balls: Sequence[float],
 ) -> Numbers:
-    """Sample the change by balls of several stiffnesses and ν, over the ball's share of the compliance."""
+    """Sample the change of a function by elastic balls, over the table's share coordinate.
+
+    The balls have several shares of the compliance and several ν.
+    """
     angle = chebyshev.angle_at(chebyshev.chebyshev_points(angles), liner[1])
     rigid = function(_solve_state(liner, angle, points))
 
@@ -210,7 +216,10 @@ class _TableSpec:
     balls: tuple[float, ...] = ()
 
     def fit(self, map_function: Callable[..., Any]) -> Numbers:
-        """Compute coefficients (ν, R2/L, ball share, ball ν, function, angle); `map_function` maps over liners."""
+        """Compute the coefficients of the table: (ν, R2/L, ball share, ball ν, function, angle).
+
+        `map_function` applies a function to all liners.
+        """
         poisson, ratio = (
             _poisson_at(chebyshev.chebyshev_points(self.counts[0])),
             _ratio_at(chebyshev.chebyshev_points(self.counts[1])),
@@ -229,21 +238,21 @@ class _TableSpec:
 
 
 def _in_ball_shrinkage(balls: tuple[float, ...], values: Numbers) -> Numbers:
-    """Compute Chebyshev coefficients in the ball's shrinkage parameter, from values (balls, ...)."""
+    """Compute the Chebyshev coefficients in the ball's shrinkage, from values (balls, ...)."""
     basis = numpy.polynomial.chebyshev.chebvander(chebyshev.ball_shrinkage(numpy.array(balls)), len(balls) - 1)
     return numpy.tensordot(numpy.linalg.inv(basis), values, 1)
 
 
 _TABLE_SPECS = {
     "rigid": _TableSpec(
-        sample=partial(_sample_rigid, function=_rigid_functions, angles=32, points=40),
+        sample=partial(_sample_rigid, function=_tabulated_functions, angles=32, points=40),
         counts=(19, 21),
         order=33,
         single=False,
     ),
     "ball": _TableSpec(
         sample=partial(
-            _sample_ball, function=_rigid_functions, angles=24, points=30, shares=_SHARE_POINTS, balls=_BALLS
+            _sample_ball, function=_tabulated_functions, angles=24, points=30, shares=_SHARE_POINTS, balls=_BALLS
         ),
         counts=(15, 16),
         order=22,
@@ -265,10 +274,13 @@ _TABLE_SPECS = {
 
 
 def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
-    """Compare the tables in a file with the equation: half angles 2 to 80 degrees, ν 0 to 0.499, R2/L 0.2 to 20."""
+    """Compare the tables in a file with solutions of the contact equation for random contacts.
+
+    Half angles are 2 to 80 degrees, ν is 0 to 0.499, and R2/L is 0.2 to 20.
+    """
     chebyshev.tables(str(path))  # raises an error at once for a file without tables
     rigid, elastic = random_contacts(points, seed=2021), random_contacts(max(points // 5, 1), seed=2022, elastic=True)
-    with _pool(workers) as pool:
+    with _process_pool(workers) as pool:
         known = [
             numpy.array(list(pool.map(_solve_exact, zip(*numbers, strict=True), chunksize=50))).T
             for numbers in (rigid, elastic)
@@ -279,7 +291,10 @@ def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2)
 
 
 def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Numbers, ...]:
-    """Draw ε, ν, R2/L, E/E_ball and the ball's ν, uniform (R2/L: in its logarithm); c/R2 is 0.005."""
+    """Draw random contacts: ε, ν, R2/L, E/E_ball and ν of the ball, an array of each.
+
+    The distributions are uniform, for R2/L in its logarithm.
+    """
     random = numpy.random.default_rng(seed)
     angle, poisson = numpy.radians(random.uniform(2, 80, count)), random.uniform(0, 0.499, count)
     ratio = numpy.exp(random.uniform(numpy.log(0.2), numpy.log(20), count))
@@ -290,14 +305,14 @@ def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Nu
 def joint_of(
     poisson: Numbers, ratio: Numbers, softness: Numbers, ball_poisson: Numbers, *, clearance: float = _CLEARANCE
 ) -> Joint:
-    """Make joints of R2 = E = 1; the ball is rigid unless all softnesses are positive."""
+    """Make joints with R2 = E = 1 from arrays of parameters; `softness` is E/E_ball, 0 for rigid balls."""
     ball = Material(young=1 / softness, poisson=ball_poisson) if numpy.all(softness > 0) else None
     liner = Material(young=1.0, poisson=poisson)
     return Joint(ball_radius=1 - clearance, clearance=clearance, liner_thickness=1 / ratio, liner=liner, ball=ball)
 
 
 def _solve_exact(numbers: tuple[float, ...]) -> list[float]:
-    """Solve one contact for QUANTITIES, with R2 = E = 1."""
+    """Compute `QUANTITIES` of one contact from the contact equation, with R2 = E = 1."""
     angle, poisson, ratio, softness, ball_poisson = map(float, numbers)
     plane = (1 - ball_poisson**2) / (1 - poisson**2) * softness * (1 - _CLEARANCE)
     state = _solve_state((poisson, ratio), numpy.array([angle]), 40, plane / (1 + plane), ball_poisson)
@@ -306,7 +321,7 @@ def _solve_exact(numbers: tuple[float, ...]) -> list[float]:
 
 
 def _largest_errors(model: table.Tabulated, numbers: tuple[Numbers, ...], exact: Numbers) -> tuple[LargestError, ...]:
-    """Compare a model with exact values by half angle and by force."""
+    """Find the largest errors of a model against exact values, by half angle and by force."""
     known = dict(zip(QUANTITIES, exact, strict=True))
     known["stiffness"] = known["stiffness"] / _CLEARANCE
     joint = joint_of(*numbers[1:])
@@ -319,7 +334,7 @@ def _largest_errors(model: table.Tabulated, numbers: tuple[Numbers, ...], exact:
 
 
 def _largest_error(name: str, error: Numbers, numbers: tuple[Numbers, ...]) -> LargestError:
-    """Describe the contact with the largest error; NaN counts as infinite."""
+    """Find the largest error and describe its contact; NaN counts as infinite."""
     k = int(numpy.argmax(numpy.nan_to_num(error, nan=numpy.inf)))
     angle, poisson, ratio, softness, ball_poisson = (float(values[k]) for values in numbers)
     ball = f", E/E_ball {softness:.4f}, ν_ball {ball_poisson:.3f}" if softness else ""

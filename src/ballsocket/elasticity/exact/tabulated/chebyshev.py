@@ -40,41 +40,50 @@ WITH_BALL = {"rigid": "ball", "profile": "profile_ball"}
 
 
 def poisson_coordinate(poisson: Array) -> Array:
-    """Compute the coordinate of ν from ln(1 - 2ν): the compliance varies by decades towards ν = 1/2."""
+    """Compute the table coordinate of Poisson's ratio ν, from -1 to 1.
+
+    It is linear in ln(1 - 2ν), because the compliance varies by decades towards ν = 1/2.
+    """
     low, high = log(1 - 2 * POISSON[1]), log(1 - 2 * POISSON[0])
     return (high + low - 2 * ln(1 - 2 * poisson)) / (high - low)
 
 
 def thickness_coordinate(ratio: Array) -> Array:
-    """Compute the coordinate of R2/L, a shifted logarithm."""
+    """Compute the table coordinate of R2/L, a shifted logarithm from -1 to 1."""
     low, high = (log(end + RATIO_SHIFT) for end in THICKNESS_RATIO)
     return (2 * ln(ratio + RATIO_SHIFT) - low - high) / (high - low)
 
 
 def angle_coordinate(angle: Array, ratio: Array) -> Array:
-    """Compute the coordinate of ε: a root removes ε ln ε of a point contact, a logarithm scales with L."""
+    """Compute the table coordinate of the half angle ε, from -1 to 1.
+
+    A square root removes the singularity ε ln ε of a point contact, a logarithm scales with the thickness L.
+    """
     return 2 * angle_root(angle, ratio) - 1
 
 
 def angle_root(angle: Array, ratio: Array) -> Array:
-    """Compute the root in the coordinate of ε, from 0 to 1, accurate for tiny angles too."""
+    """Compute the half angle's coordinate from 0 to 1, the square root of a scaled logarithm.
+
+    It is accurate for tiny angles too.
+    """
     scale = ANGLE_SCALE * (1 + ratio)
     return sqrt(log1p(scale * angle) / log1p(scale * LIMIT))
 
 
 def angle_at(coordinate: Array, ratio: Array) -> Array:
-    """Compute ε from its coordinate."""
+    """Compute the half angle ε in rad from its table coordinate."""
     scale, share = ANGLE_SCALE * (1 + ratio), (1 + coordinate) / 2
     return (exp(share * share * ln(1 + scale * LIMIT)) - 1) / scale
 
 
 def ball_scale(poisson: Array, ratio: Array) -> Array:
-    """Compute the ball's share of the compliance above which it affects a thin liner."""
+    """Compute the share of the compliance above which the ball affects a thin liner."""
     return 1.1 * sqrt(1 - 2 * poisson) / ratio
 
 
 def ball_coordinate(share: Array, poisson: Array, ratio: Array) -> Array:
-    """Compute the coordinate of the ball's share of the compliance, from -1 (rigid) to 1."""
+    """Compute the table coordinate of the ball's share of the compliance, from -1 (rigid) to 1."""
     scale = ball_scale(poisson, ratio)
     return 2 * ln(1 + share / scale) / ln(1 + MAX_BALL_SHARE / scale) - 1
 
@@ -106,10 +115,10 @@ class ChebyshevTable:
         Coordinates have the shape (joints,), or (1,) if all joints have the same.
         """
         first, second, *ball = (chebyshev_polynomials(*pair) for pair in zip(coordinates, self.counts, strict=False))
-        combinations = _apply_factors(as_like(self.liner, first), first, second)
+        combinations = _apply_factors(convert_like(self.liner, first), first, second)
         if ball:
-            combinations = _apply_factors(as_like(self.ball, first), *ball, combinations)
-        return arrays.namespace(first).reshape(as_like(self.curves, first) @ combinations, (*self.shape, -1))
+            combinations = _apply_factors(convert_like(self.ball, first), *ball, combinations)
+        return arrays.namespace(first).reshape(convert_like(self.curves, first) @ combinations, (*self.shape, -1))
 
     def coefficients_of_one(self, coordinates: list[float]) -> numpy.ndarray:
         """Compute the coefficients (functions, angles) of one joint."""
@@ -121,8 +130,9 @@ class ChebyshevTable:
 
 
 def _apply_factors(matrix: Array, *factors: Array) -> Array:
-    """Multiply a matrix (rows, products) by all products of the rows of the factors (rows, joints or 1).
+    """Multiply a matrix by the products of all rows of several factors, for each joint.
 
+    The matrix has the shape (rows, products), each factor (rows, joints or 1).
     Factors that all joints share are multiplied first, which makes a sweep of one material three times as fast.
     """
     xp = arrays.namespace(matrix)
@@ -140,10 +150,10 @@ def _apply_factors(matrix: Array, *factors: Array) -> Array:
 
 
 def chebyshev_polynomials(coordinate: Array, count: int) -> Array:
-    """Compute T_0 ... T_count-1 at coordinates (n,), as rows."""
+    """Compute the Chebyshev polynomials T_0 ... T_count-1 at coordinates (n,), as rows."""
     xp = arrays.namespace(coordinate)
     if xp is not numpy:
-        return cos(as_like(numpy.arange(count, dtype=float), coordinate)[:, None] * xp.acos(coordinate))
+        return cos(convert_like(numpy.arange(count, dtype=float), coordinate)[:, None] * xp.acos(coordinate))
     twice, rows = 2 * coordinate, numpy.empty((count, *coordinate.shape), dtype=coordinate.dtype)
     rows[0], rows[1:2] = 1.0, coordinate
     for k in range(2, count):
@@ -153,7 +163,7 @@ def chebyshev_polynomials(coordinate: Array, count: int) -> Array:
 
 
 def chebyshev_points(count: int) -> Numbers:
-    """Return Chebyshev points from -1 to 1."""
+    """Compute the Chebyshev points of this number between -1 and 1, ascending."""
     return -numpy.cos(pi * (numpy.arange(count) + 0.5) / count)
 
 
@@ -167,7 +177,7 @@ def coefficients(values: Numbers, axis: int) -> Numbers:
 
 
 def chebyshev_values(coordinate: float, count: int) -> numpy.ndarray:
-    """Compute T_0 ... T_count-1 at one coordinate."""
+    """Compute the Chebyshev polynomials T_0 ... T_count-1 at one coordinate."""
     return numpy.cos(_orders(count) * math.acos(min(max(coordinate, -1.0), 1.0)))
 
 
@@ -177,7 +187,7 @@ def _orders(count: int) -> numpy.ndarray:
     return numpy.arange(count, dtype=float)
 
 
-def as_like(values: numpy.ndarray, like: Array) -> Array:
+def convert_like(values: numpy.ndarray, like: Array) -> Array:
     """Convert a table to the library, dtype and device of the caller's array."""
     xp = arrays.namespace(like)
     if xp is numpy and like.dtype == values.dtype:
@@ -187,7 +197,10 @@ def as_like(values: numpy.ndarray, like: Array) -> Array:
 
 @cache
 def tables(file: str = "") -> dict[str, ChebyshevTable]:
-    """Read the tables of a file once: "rigid", its "profile", and the changes by a "ball".
+    """Load the tables of a file by their names, from a cache.
+
+    The names are "rigid" for a rigid ball, "ball" for the change by an elastic one, and "profile" and "profile_ball"
+    for the pressure profile.
 
     Raises
     ------
@@ -227,7 +240,7 @@ def compress(coefficients: numpy.ndarray, angles: int = 0) -> ChebyshevTable:
 
 
 def _truncated_svd(matrix: numpy.ndarray, threshold: float) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """Factor a matrix into two, without singular values up to the threshold."""
+    """Factor a matrix into two by its singular values, without those up to the threshold."""
     left, sizes, right = numpy.linalg.svd(matrix, full_matrices=False)
     significant = sizes > threshold
     return left[:, significant] * sizes[significant], right[significant]

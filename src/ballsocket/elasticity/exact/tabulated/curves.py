@@ -13,9 +13,9 @@ from ....problem import Joint
 from .chebyshev import (
     WITH_BALL,
     ChebyshevTable,
-    as_like,
     ball_coordinate,
     ball_shrinkage,
+    convert_like,
     poisson_coordinate,
     tables,
     thickness_coordinate,
@@ -37,12 +37,12 @@ class JointCurves:
     indices: Array | None = None
 
     def _take_shared(self, values: Array) -> Array:
-        """Select the column of each contact's joint."""
+        """Select the column of each contact's joint from shared values."""
         return arrays.namespace(values).take(values, self.indices, axis=-1)
 
     @cached_property
     def ratio(self) -> Array:
-        """Ratio R2/L."""
+        """Ratio R2/L of socket radius and liner thickness."""
         return self.joint.thickness_ratio
 
     @cached_property
@@ -61,7 +61,7 @@ class JointCurves:
         return 2 * (1 - liner.poisson**2) * self.joint.socket_radius / liner.young * (1 + self._softness)
 
     @property
-    def _is_one(self) -> bool:
+    def _is_plain(self) -> bool:
         """True for one joint of Python numbers, whose coefficients have no axis of joints."""
         return type(self.joint.clearance) is float
 
@@ -71,7 +71,7 @@ class JointCurves:
             return self._take_shared(self.shared.series(name))
         nu, stored = self.joint.liner.poisson, tables(self.file)
         coordinates = [poisson_coordinate(nu), thickness_coordinate(self.ratio)]
-        evaluate = ChebyshevTable.coefficients_of_one if self._is_one else ChebyshevTable.coefficients_at
+        evaluate = ChebyshevTable.coefficients_of_one if self._is_plain else ChebyshevTable.coefficients_at
         total = evaluate(stored[name], coordinates)
         if self.joint.ball is not None:
             share = self._softness / (1 + self._softness)
@@ -82,49 +82,52 @@ class JointCurves:
 
     @cached_property
     def functions(self) -> Array:
-        """Coefficients of the three functions."""
+        """Chebyshev coefficients of the three tabulated functions, which `formulas` explains."""
         return self.series("rigid") if self.shared is None else self._take_shared(self.shared.functions)
 
     @cached_property
     def slopes(self) -> Array:
-        """Coefficients of the derivatives of the three functions."""
+        """Chebyshev coefficients of the derivatives of the three tabulated functions."""
         if self.shared is not None:
             return self._take_shared(self.shared.slopes)
         xp = arrays.namespace(self.functions)
-        flow = as_like(_derivative(self.functions.shape[1]), self.functions)
-        return xp.stack([flow @ self.functions[row, ...] for row in range(3)])
+        derivative = convert_like(_derivative(self.functions.shape[1]), self.functions)
+        return xp.stack([derivative @ self.functions[row, ...] for row in range(3)])
 
     @cached_property
     def curve(self) -> CurveCoefficients:
-        """Coefficients of the functions and their derivatives."""
-        if self._is_one:
+        """Chebyshev coefficients of the tabulated functions and of their derivatives."""
+        if self._is_plain:
             stacked = numpy.concatenate([self.functions, self.functions @ _derivative(self.functions.shape[1]).T])
             return CurveCoefficients(self.ratio, stacked, stacked)
         return CurveCoefficients(self.ratio, self.functions, self.slopes)
 
     @cached_property
     def scale(self) -> Scale:
-        """Scales that give the functions their units."""
+        """Length, area and compliance that turn the tabulated functions into mm, N and MPa."""
         R2 = self.joint.socket_radius
         return Scale(self.joint.clearance, R2 * R2, self.compliance)
 
     def contact(self, angle: Array) -> tuple[Array, ...]:
-        """Compute d, F, p0, dF/dd and dd/d(ln ε) at ε > 0."""
+        """Compute indentation, force, pole pressure, stiffness and dd/d(ln ε) at half angles above 0.
+
+        The units are mm, N, MPa, N/mm and mm.
+        """
         return contact(angle, self.curve, self.scale)
 
     def scaled_load(self, kind: str, load: Array) -> Array:
-        """Compute the dimensionless load F C/(R2² c) or d/c."""
+        """Compute the dimensionless load: F C/(R2² c) of a force, d/c of an indentation."""
         c, area, compliance = self.scale
         return load * compliance / (area * c) if kind == "force" else load / c
 
     def angle(self, kind: str, load: Array) -> Array:
-        """Solve for ε > 0 of a load > 0; NaN beyond the tables."""
+        """Solve for the half angle in rad under a positive load; NaN beyond the tables."""
         return (angle_of_force if kind == "force" else angle_of_indentation)(self.scaled_load(kind, load), self.curve)
 
 
 @lru_cache(maxsize=256)
-def curves_of_one(file: str, joint: Joint) -> JointCurves:
-    """Return the functions of a joint of Python numbers, cached for further loads."""
+def plain_joint_curves(file: str, joint: Joint) -> JointCurves:
+    """Return the tabulated functions of a joint of Python numbers, from a cache."""
     return JointCurves(file, joint)
 
 

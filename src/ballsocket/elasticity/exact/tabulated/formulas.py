@@ -55,7 +55,7 @@ class Scale(NamedTuple):
 
 
 def evaluate(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> tuple[Pair, ...]:
-    """Evaluate the functions in `rows` and their slopes at ε > 0."""
+    """Evaluate the tabulated functions in `rows` and their slopes by ln ε at half angles above 0."""
     root = angle_root(angle, curve.ratio)
     coordinate, widening = 2 * root - 1, angle_derivative(angle, root, curve.ratio)
     if type(angle) is float:
@@ -68,7 +68,10 @@ def evaluate(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> t
 
 
 def sum_series(coefficients: Array, waves: Array) -> Array:
-    """Sum series (angles, joints or 1) with polynomials (angles, contacts)."""
+    """Evaluate Chebyshev series at contacts, from coefficients and polynomials.
+
+    `coefficients` has the shape (angles, joints or 1), `waves` (angles, contacts).
+    """
     xp = arrays.namespace(waves)
     if coefficients.shape[-1] == 1:
         return coefficients[:, 0] @ waves
@@ -82,13 +85,16 @@ def angle_derivative(angle: Array, root: Array, ratio: Array) -> Array:
 
 
 def opening(angle: Array, share: Pair) -> Pair:
-    """Compute σ = d/(c + d) and the slope of its logarithm by ln ε, from the first function."""
+    """Compute the relative indentation σ = d/(c + d) and d ln σ/d ln ε from the first tabulated function."""
     half = sin(angle / 2)
     return exp(share[0]) * 2 * half * half, share[1] + angle * cos(angle / 2) / half
 
 
 def contact(angle: Array, curve: CurveCoefficients, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute d, F, p0, dF/dd and dd/d(ln ε) at ε > 0."""
+    """Compute indentation, force, pole pressure, stiffness and dd/d(ln ε) at half angles above 0.
+
+    The units are mm, N, MPa, N/mm and mm.
+    """
     share, load, pole = evaluate(angle, curve, ALL)
     sigma, rate = opening(angle, share)
     reach = scale.clearance / (1 - sigma)
@@ -99,17 +105,17 @@ def contact(angle: Array, curve: CurveCoefficients, scale: Scale) -> tuple[Array
 
 
 def angle_of_indentation(load: Array, curve: CurveCoefficients) -> Array:
-    """Solve for ε > 0 of the indentation d/c; NaN beyond the tables."""
+    """Solve for the half angle in rad at a relative indentation d/c; NaN beyond the tables."""
     return _solve_angle(_indentation_residual, load, log(1.5 * load / (1 + load)) / 2, curve)
 
 
 def angle_of_force(load: Array, curve: CurveCoefficients) -> Array:
-    """Solve for ε > 0 of the force F C/(R2² c); NaN beyond the tables."""
+    """Solve for the half angle in rad under a dimensionless force F C/(R2² c); NaN beyond the tables."""
     return _solve_angle(_force_residual, load, log(load / (3 + load)) / 3, curve)
 
 
 def _solve_angle(residual: Increasing, load: Array, start: Array, curve: CurveCoefficients) -> Array:
-    """Solve for ε by Newton's method from the close estimate ln ε = `start`."""
+    """Solve for the half angle in rad by Newton's method from the close estimate ln ε = `start`."""
     start = start + (_LOG_OFFSET - math.log(LIMIT))
     end = 0.0 * start + (_LOG_OFFSET + 1e-12)  # includes the widest contact itself
     root = increasing_root(residual, 0.0 * start, start - 6.0, end, start, arguments=(load, curve), steps=16)
@@ -117,14 +123,20 @@ def _solve_angle(residual: Increasing, load: Array, start: Array, curve: CurveCo
 
 
 def _indentation_residual(unknown: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute ln d/(c + d) at a half angle less that of the load d/c, and its slope."""
+    """Compute the residual of a relative indentation d/c at a half angle, and its slope.
+
+    The residual is ln d/(c + d) minus that of the load.
+    """
     angle = exp(unknown - _LOG_OFFSET) * LIMIT
     sigma, rate = opening(angle, evaluate(angle, curve, ONE)[0])
     return log(sigma * (1 + 1 / load)), rate
 
 
 def _force_residual(unknown: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute ln d/(c + d) at a half angle less that of the indentation F/secant, and its slope."""
+    """Compute the residual of a dimensionless force at a half angle, and its slope.
+
+    The residual is ln d/(c + d) minus that of the indentation F/secant, where secant is the ratio F/d.
+    """
     angle = exp(unknown - _LOG_OFFSET) * LIMIT
     share, force = evaluate(angle, curve, TWO)
     sigma, rate = opening(angle, share)

@@ -18,13 +18,13 @@ from .solution import CurveReader, curve_reader, solution_of
 
 
 def _ball_poisson(contact: Any) -> Array:
-    """Return ν of the ball, or 0.3 for a rigid ball, whose ν has no effect."""
+    """Return Poisson's ratio of the ball, or 0.3 for a rigid ball, whose ν has no effect."""
     joint = contact.joint
     return 0.3 + 0.0 * joint.liner.young if joint.ball is None else joint.ball.poisson + 0.0 * joint.liner.young
 
 
-def _layers(contact: Any) -> Array:
-    """Count the layers behind the liner."""
+def _backing_count(contact: Any) -> Array:
+    """Return the number of backing layers behind the liner."""
     return len(contact.joint.backing) + 0.0 * contact.joint.liner.young
 
 
@@ -33,10 +33,11 @@ _NOT_TABULATED = "outside the tables: use exact"
 
 @dataclass(frozen=True, kw_only=True)
 class Tabulated(Model):
-    """`Exact` interpolated from tables, in any array library, differentiable and vectorised: about 1 µs a press.
+    """Exact solution interpolated from tables: vectorised, differentiable, about 1 µs for each contact.
 
-    The tables hold the linear gap (Eq. 6 of Heß & Forsbach 2021) and one liner bonded to a rigid backing. Half angles
-    reach up to 85 degrees. Results are within 1e-5 of `Exact` for a rigid ball, within 2e-4 for an elastic one.
+    Arrays may come from any array library. The tables contain the linear gap (Eq. 6 of Heß & Forsbach 2021) and one
+    liner bonded to a rigid backing. Half angles reach up to 85 degrees. Results are within 1e-5 of `Exact` for a rigid
+    ball, within 2e-4 for an elastic one.
 
     Parameters
     ----------
@@ -61,7 +62,7 @@ class Tabulated(Model):
         Range(quantity="joint.thickness_ratio", low=THICKNESS_RATIO[0], high=THICKNESS_RATIO[1], why=_NOT_TABULATED),
         Range(quantity="joint.modulus_ratio", high=0.0201, why=_NOT_TABULATED),
         Range(quantity=_ball_poisson, symbol="ν_ball", low=-0.01, high=0.501, why=_NOT_TABULATED),
-        Range(quantity=_layers, symbol="layers behind the liner", high=1.0, why=_NOT_TABULATED),
+        Range(quantity=_backing_count, symbol="layers behind the liner", high=1.0, why=_NOT_TABULATED),
         Range(quantity="joint.backing_ratio", high=1.0, why="a free outer surface is not in the tables: use exact"),
     )
     validity: ClassVar[tuple[Range, ...]] = (
@@ -80,10 +81,13 @@ class Tabulated(Model):
     promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        return self.answer(joint, kind, load, curve_reader(kind))
+        return self.solve_with(joint, kind, load, curve_reader(kind))
 
-    def answer(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
-        """Solve the contacts for loads of one kind; `read` finds them on the curves of their joints."""
+    def solve_with(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
+        """Solve the contacts for loads of one kind with a function that reads the curves of joints.
+
+        `read` is such a function, see `curve_reader`.
+        """
         solution = solution_of(self.file, joint, load, read)
         d, F, _, _ = solution.values
         return SolverResult(

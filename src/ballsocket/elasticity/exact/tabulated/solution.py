@@ -14,7 +14,7 @@ from ....core import arrays
 from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
 from ....problem import Joint
 from .chebyshev import LIMIT, angle_coordinate, chebyshev_polynomials, chebyshev_values
-from .curves import SMALL_LOAD, JointCurves, curves_of_one
+from .curves import SMALL_LOAD, JointCurves, plain_joint_curves
 from .formulas import sum_series
 
 _BLOCK = 2000  # contacts in one block, which fits into the cache; powers of two collide in the cache
@@ -22,7 +22,7 @@ _BLOCK = 2000  # contacts in one block, which fits into the cache; powers of two
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TableSolution:
-    """Contacts at half angles, with the quantities that a `Contact` delegates to.
+    """Contacts interpolated from the tables, with the quantities that a `Contact` delegates to.
 
     `values` are d, F, p0 and dF/dd.
     """
@@ -54,7 +54,7 @@ class TableSolution:
 
     @property
     def stiffness(self) -> Array:
-        """Stiffness dF/dd in N/mm."""
+        """Tangent stiffness dF/dd in N/mm."""
         return self.values[3]
 
     @property
@@ -64,49 +64,59 @@ class TableSolution:
 
     @cached_property
     def energy(self) -> Array:
-        """Energy ∫ F dd in N mm."""
-        (energy,) = _read_in_blocks(self.file, self.joint, self.angle, _work)
+        """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
+        (energy,) = _read_in_blocks(self.file, self.joint, self.angle, _integrate_work)
         return where(self.angle > 0, energy, 0.0 * self.angle)
 
     @property
     def pressure_integral(self) -> Array:
-        """Integral ∫ p dA in N, from U = (d F - c ∫ p (1 - cos φ) dA)/2 and F = ∫ p cos φ dA."""
+        """Integral of the pressure over the contact area, ∫ p dA, in N.
+
+        It follows from U = (d F - c ∫ p (1 - cos φ) dA)/2 and F = ∫ p cos φ dA.
+        """
         d, F, _, _ = self.values
         return F + (d * F - 2 * self.energy) / self.joint.clearance
 
     @cached_property
     def _profile_coefficients(self) -> Array:
-        """Chebyshev coefficients (first axis) of p/(p0 sqrt(1 - v)) over 2v - 1, with v = sin²(φ/2)/sin²(ε/2)."""
+        """Chebyshev coefficients of the pressure profile p/(p0 sqrt(1 - v)), along the first axis.
+
+        The argument is 2v - 1 with v = sin²(φ/2)/sin²(ε/2).
+        """
         (series,) = _read_in_blocks(self.file, self.joint, self.angle, _profile_coefficients)
         return series
 
     @cached_property
     def _profile_correction(self) -> tuple[Array, Array]:
-        """Corrections a, b of the profile, for 1 at the pole and force F: p = p0 sqrt(1 - v) [q(v) + a + b v]."""
+        """Corrections a and b of the pressure profile, so that it is 1 at the pole and has the force F.
+
+        The corrected pressure is p = p0 sqrt(1 - v) [q(v) + a + b v].
+        """
         q = [self._profile_coefficients[k, ...] for k in range(self._profile_coefficients.shape[0])]
         _, F, p0, _ = self.values
         height = sin(safe_divisor(self.angle) / 2) ** 2
         plain, tilted = _moments(len(q))
         carries = [even - 2 * height * odd for even, odd in zip(plain, tilted, strict=True)]
-        lift = 1 - arrays.weighted_sum(q, [(-1.0) ** k for k in range(len(q))])
+        pole_correction = 1 - arrays.weighted_sum(q, [(-1.0) ** k for k in range(len(q))])
         target = F / safe_divisor(4 * pi * self.joint.socket_radius**2 * p0 * height)
         carried = sum(
-            (coefficient * moment for coefficient, moment in zip(q, carries, strict=False)), lift * carries[0]
+            (coefficient * moment for coefficient, moment in zip(q, carries, strict=False)),
+            pole_correction * carries[0],
         )
-        return lift, (target - carried) / carries[-1]
+        return pole_correction, (target - carried) / carries[-1]
 
     def pressure(self, angle: Array) -> Array:
-        """Compute p(φ) in MPa at angles (rad); 0 outside the contact."""
-        lift, tilt = self._profile_correction
+        """Compute the contact pressure p(φ) in MPa at polar angles (rad); 0 outside the contact."""
+        pole_correction, tilt = self._profile_correction
         half, height = sin(angle / 2), sin(safe_divisor(self.angle) / 2) ** 2
         v = half * half / height
-        total = _clenshaw(self._profile_coefficients, clip(2 * v - 1, -1.0, 1.0)) + lift + tilt * v
+        total = _clenshaw(self._profile_coefficients, clip(2 * v - 1, -1.0, 1.0)) + pole_correction + tilt * v
         inside = (v < 1) & (abs(angle) < pi) & (self.angle > 0)
         return where(inside, self.values[2] * sqrt(clip(1 - v, 0.0, 1.0)) * clip(total, 0.0, inf), 0.0)
 
 
 def _clenshaw(series: Array, x: Array) -> Array:
-    """Sum series[k] T_k(x)."""
+    """Evaluate the Chebyshev series Σ series[k] T_k(x) by Clenshaw's recurrence."""
     following = current = 0.0 * x
     for k in range(series.shape[0] - 1, 0, -1):
         current, following = series[k, ...] + 2 * x * current - following, current
@@ -122,8 +132,11 @@ def _profile_coefficients(curves: JointCurves, angle: Array) -> tuple[Array]:
     return (arrays.namespace(angle).stack([sum_series(series[k, ...], waves) for k in range(series.shape[0])]),)
 
 
-def _work(curves: JointCurves, angle: Array) -> tuple[Array]:
-    """Integrate F dd with ε' = ε sin²(πy/2), which removes the singularities at both ends."""
+def _integrate_work(curves: JointCurves, angle: Array) -> tuple[Array]:
+    """Compute the work ∫ F dd in N mm by quadrature over the half angle.
+
+    The substitution ε' = ε sin²(πy/2) removes the singularities at both ends.
+    """
     total = 0.0 * angle
     for node, weight in zip(*gauss_legendre(32), strict=True):
         _, F, _, _, deepening = curves.contact(angle * math.sin(pi / 2 * node) ** 2)
@@ -133,7 +146,10 @@ def _work(curves: JointCurves, angle: Array) -> tuple[Array]:
 
 @cache
 def _moments(size: int) -> tuple[list[float], list[float]]:
-    """Compute ∫ sqrt(1 - v) f dv and ∫ sqrt(1 - v) f v dv over [0, 1] for f = T_0(2v - 1) ... T_size-1 and f = v."""
+    """Compute the moments ∫ sqrt(1 - v) f dv and ∫ sqrt(1 - v) f v dv over [0, 1] of profile functions f.
+
+    The functions are f = T_0(2v - 1) ... T_size-1 and f = v.
+    """
     y, w = (numpy.array(function) for function in gauss_legendre(2 * size + 4))
     v, w = 1 - y * y, 2 * y * y * w
     functions = [*numpy.polynomial.chebyshev.chebvander(2 * v - 1, size - 1).T, v]
@@ -145,7 +161,10 @@ CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
 
 
 def solution_of(file: str, joint: Joint, load: Array, read: CurveReader) -> TableSolution:
-    """Solve the contacts for loads, NaN beyond the tables; `read` returns ε, d, F, p0 and dF/dd."""
+    """Solve the contacts for loads; NaN beyond the tables.
+
+    `read` returns ε, d, F, p0 and dF/dd from the curves of joints and the loads.
+    """
     values = _read_in_blocks(file, joint, load, read)
     fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
     angle, d, F, p0, stiffness = (
@@ -155,7 +174,7 @@ def solution_of(file: str, joint: Joint, load: Array, read: CurveReader) -> Tabl
 
 
 def curve_reader(kind: str) -> CurveReader:
-    """Return the reader of ε, d, F, p0 and dF/dd for loads of one kind."""
+    """Return the function that computes ε, d, F, p0 and dF/dd from curves and loads of one kind."""
 
     def read(curves: JointCurves, load: Array) -> tuple[Array, ...]:
         angle = where(load <= LIMIT, load, float("nan")) if kind == "half_angle" else curves.angle(kind, load)
@@ -165,9 +184,12 @@ def curve_reader(kind: str) -> CurveReader:
 
 
 def _read_in_blocks(file: str, joint: Joint, load: Array, read: CurveReader) -> tuple[Array, ...]:
-    """Apply `read` block by block, in the shape of the contacts; loads that are not positive become a small one."""
+    """Apply `read` to contacts block by block; the results have the shape of the contacts.
+
+    A load that is not positive is replaced by a small one.
+    """
     if type(load) is float:
-        return read(curves_of_one(file, joint), load if load > 0 else SMALL_LOAD)
+        return read(plain_joint_curves(file, joint), load if load > 0 else SMALL_LOAD)
     xp, numbers = arrays.namespace(load), joint.numbers()
     shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
     if not prod(shape):  # read one contact for the shape, and remove it

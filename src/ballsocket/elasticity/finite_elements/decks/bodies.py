@@ -30,7 +30,7 @@ _NUMBERS_PER_LINE = 16
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DeckBody:
-    """Body in the deck.
+    """Meshed body in the deck.
 
     `names` are its layers; `fixed_directions` (2, nodes) is along the angle and along the radius. `contact` are the
     nodes of its surface. `radius` (mm) is that of the block's unit, and `drop` the distance of its centre below the
@@ -48,7 +48,7 @@ class DeckBody:
 
     @cached_property
     def _outer_nodes(self) -> Numbers:
-        """Nodes of each element (4 or 8, elements), without the middle one."""
+        """Indices of the nodes of each element (4 or 8, elements), without the middle one."""
         return self.block.elements[: 4 * self.block.order]
 
     @cached_property
@@ -60,12 +60,12 @@ class DeckBody:
 
     @property
     def nodes(self) -> int:
-        """Number of nodes."""
+        """Number of nodes of the body in the deck."""
         return int(numpy.count_nonzero(self.number))
 
-    def numbers(self, chosen: Numbers) -> list[int]:
-        """Return the numbers in the deck of the nodes in a mask (nodes,), without those in the middle of elements."""
-        return self.number[chosen & (self.number > 0)].tolist()
+    def numbers(self, mask: Numbers) -> list[int]:
+        """Return the deck's numbers of the nodes in a mask (nodes,), without those in the middle of elements."""
+        return self.number[mask & (self.number > 0)].tolist()
 
     @cached_property
     def on_axis(self) -> Numbers:
@@ -81,28 +81,31 @@ class DeckBody:
 
     @property
     def sliding(self) -> tuple[Numbers, Numbers]:
-        """Nodes on the inner and on the outer side of sliding interfaces."""
+        """Indices of the nodes on the inner and on the outer side of sliding interfaces."""
         columns = self.block.sliding
         return self.block.number[:, columns].ravel(), self.block.number[:, columns + 1].ravel()
 
     def surface(self) -> dict[str, list[Any]]:
-        """Return numbers and angles of the contact nodes, from the pole outwards."""
+        """Return the deck's numbers and angles (rad) of the contact nodes, from the pole outwards."""
         return {"node": self.number[self.contact].tolist(), "angle": self.block.angle[: len(self.contact)].tolist()}
 
     def contact_elements(self, reach: float, *, strip: int, extra: int = 0) -> Numbers:
-        """Return the numbers of the elements of a strip that begin before an angle, and of a few extra ones."""
+        """Return the deck's numbers of the elements of a strip up to an angle (rad), and of a few extra ones."""
         corners, strips = self.block.angle[:: self.block.order], len(self.block.strips)
         count = min(int(numpy.searchsorted(corners, reach - _ANGLE_TOLERANCE)) + extra, len(corners) - 1)
         return self.elements_before + 1 + numpy.arange(count) * strips + strip % strips
 
     def node_lines(self) -> Iterator[str]:
-        """Write the nodes; CalculiX reads at most twenty characters a number."""
+        """Yield a line of number and coordinates for each node.
+
+        CalculiX reads at most twenty characters of a number.
+        """
         across, below = self.radius * self.block.nodes
         for node in numpy.flatnonzero(self.number):
             yield f"{self.number[node]}, {across[node]:.14g}, {-below[node] - self.drop:.14g}"
 
     def element_lines(self) -> Iterator[str]:
-        """Write a header for each layer, and a line for each of its elements."""
+        """Yield a header for each layer, and a line for each of its elements."""
         for layer, name in enumerate(self.names):
             yield f"*ELEMENT, TYPE={TYPES[self.block.order]}, ELSET={name}"
             for element in numpy.flatnonzero(self.block.layers == layer):
@@ -119,7 +122,7 @@ class DeckBodies:
 
     @property
     def solved(self) -> Solved:
-        """Solved contact on its mesh."""
+        """Solved contact on its meshes."""
         return self.contact._solved
 
     @cached_property
@@ -129,7 +132,7 @@ class DeckBodies:
 
     @cached_property
     def socket(self) -> DeckBody:
-        """Liner and backing."""
+        """Body of the socket: liner and backing."""
         body = socket_body(socket_shape(self.joint, self.contact.model.cup), self.solved.pair.resolution)
         return DeckBody(
             names=("LINER", *(f"BACKING{number}" for number in range(1, len(self.joint.backing) + 1))),
@@ -141,7 +144,7 @@ class DeckBodies:
 
     @cached_property
     def ball(self) -> DeckBody:
-        """Ball at first contact, with the radius that the scaled clearance leaves."""
+        """Body of the ball at first contact; its radius is R2 minus the scaled clearance."""
         mesh, fixed_directions, contact = (
             self._rigid_ball_mesh() if self.joint.ball is None else self._elastic_ball_mesh(self.joint.ball)
         )
@@ -188,7 +191,7 @@ class DeckBodies:
 
 
 def node_set(name: str, nodes: list[int]) -> Iterator[str]:
-    """Write a named set of nodes."""
+    """Yield the lines of a named set of nodes."""
     yield f"*NSET, NSET={name}"
     for start in range(0, len(nodes), _NUMBERS_PER_LINE):
         yield ", ".join(map(str, nodes[start : start + _NUMBERS_PER_LINE]))

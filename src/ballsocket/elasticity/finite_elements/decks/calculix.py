@@ -29,15 +29,13 @@ _SKIPPED_POLE_NODES = 10
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CcxAnswer:
-    """Results of CalculiX, scaled back to the real joint: one number a step (steps,), NaN for missing steps.
+    """Results of CalculiX, scaled back to the real joint: one number per step (steps,), NaN for missing steps.
 
     Attributes
     ----------
     indentation, force, pole_pressure, half_angle : array
         Values in mm, N, MPa and rad. Pressure and half angle are NaN on CAX4, whose facets CalculiX does not treat as
         one surface.
-        surface.
-        surface.
     """
 
     indentation: Numbers
@@ -47,7 +45,9 @@ class CcxAnswer:
 
 
 def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
-    """Run CalculiX on the deck in a folder (see `Deck.write`), which keeps its files, and read the results.
+    """Run CalculiX on the deck in a folder (see `Deck.write`), and read the results.
+
+    CalculiX's files stay in the folder.
 
     Parameters
     ----------
@@ -99,12 +99,12 @@ def run_calculix(folder: Path, threads: int) -> subprocess.CompletedProcess[str]
 
 
 def last_output(process: subprocess.CompletedProcess[str]) -> str:
-    """Return the last output of CalculiX in one line."""
+    """Return the last lines of CalculiX's output, joined to one line."""
     return "; ".join([line.strip() for line in process.stdout.splitlines() if line.strip()][-_OUTPUT_LINES:])
 
 
 def read(folder: Path) -> CcxAnswer:
-    """Read the results of the last run in a folder."""
+    """Read the results of CalculiX's last run in a folder."""
     deck = json.loads((folder / EXPECTED).read_text(encoding="ascii"))
     dat = folder / f"{NAME}.dat"
     forces, bore, ball = read_printed(dat, "PUSHED"), read_printed(dat, "BORE"), read_printed(dat, "ROUND")
@@ -122,7 +122,7 @@ def read(folder: Path) -> CcxAnswer:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _Surfaces:
-    """Both surfaces in one step: rows of a node and its displacements, and pressures by node."""
+    """Surfaces of socket and ball in one step: displacements by node, and pressures by node."""
 
     deck: dict[str, Any]
     bore: Numbers
@@ -131,7 +131,7 @@ class _Surfaces:
 
     @property
     def _angle(self) -> Numbers:
-        """Polar angles of the bore's nodes in rad, from the pole on."""
+        """Polar angles of the bore's nodes in rad, from the pole outwards."""
         return numpy.array(self.deck["bore"]["angle"])
 
     def _displacements(self, name: str, rows: Numbers) -> Numbers:
@@ -157,7 +157,7 @@ class _Surfaces:
 
     @property
     def half_angle(self) -> float:
-        """Half angle in rad."""
+        """Half angle of the contact in rad."""
         return edge_angle(self._angle, self.gap / self.indentation)
 
     @property
@@ -168,7 +168,9 @@ class _Surfaces:
 
 
 def edge_angle(angle: Numbers, gap: Numbers) -> float:
-    """Compute the half angle from the gap over the indentation at angles (rad); without a gap it is the last angle.
+    """Compute the half angle in rad from gaps at angles (rad), as fractions of the indentation.
+
+    Without any gap it is the last angle.
 
     Beyond the edge a gap opens like (φ - ε)^(3/2): its power 2/3 is extrapolated to zero, by a parabola through a few
     nodes. Nodal pressures are smeared over two elements there: p² extrapolated was off by 1.5 degrees in the mean on
@@ -184,9 +186,9 @@ def edge_angle(angle: Numbers, gap: Numbers) -> float:
 
 
 def pressure_at_pole(angle: Numbers, pressures: Numbers, half_angle: float) -> float:
-    """Extrapolate the pressure at the pole by a + b φ² + c φ⁴ through the inner two thirds of the nodes.
+    """Extrapolate the pressure at the pole in MPa from the inner two thirds of the nodes.
 
-    The nodes next to the pole are omitted, because their pressures are wrong by a factor.
+    The polynomial is a + b φ² + c φ⁴. The nodes next to the pole are omitted: their pressures are wrong by a factor.
     """
     inside = int(numpy.count_nonzero(angle < _INNER_FRACTION * half_angle))
     nodes = slice(min(_SKIPPED_POLE_NODES, inside // 2), inside)
@@ -198,7 +200,7 @@ def read_printed(dat: Path, name: str) -> dict[int, Numbers]:
     """Read the rows of a set of nodes at the end of each step (from 0) from a .dat file."""
     return {
         step: numpy.array([row.split() for row in table.splitlines() if row.strip()], dtype=float)
-        for step, table in _blocks(dat, rf"^ .* for set (?:{name} and time +(\S+)|.*)$").items()
+        for step, table in _split_by_step(dat, rf"^ .* for set (?:{name} and time +(\S+)|.*)$").items()
     }
 
 
@@ -206,14 +208,15 @@ def read_contact_pressures(frd: Path) -> dict[int, dict[int, float]]:
     """Read the contact pressures by node at the end of each step (from 0) from a .frd file."""
     return {
         step: {int(row[3:13]): float(row[49:61]) for row in table.splitlines() if row.startswith(" -1")}
-        for step, table in _blocks(frd, r"^ +100CL +\d+ +(\S+).*\n -4  CONTACT.*$").items()
+        for step, table in _split_by_step(frd, r"^ +100CL +\d+ +(\S+).*\n -4  CONTACT.*$").items()
     }
 
 
-def _blocks(path: Path, head: str) -> dict[int, str]:
-    """Return the text after each header by the step of its time; headers without a time end the previous text.
+def _split_by_step(path: Path, head: str) -> dict[int, str]:
+    """Split a file at its headers; return the text after each by the index of its step.
 
-    A step may end in a second increment of zero length at nearly the same time: the later one counts.
+    A header without a time ends the previous text. A step may end in a second increment of zero length at nearly the
+    same time: the later one counts.
     """
     pieces = re.split(head, path.read_text(encoding="ascii"), flags=re.MULTILINE) if path.is_file() else []
     blocks = {}

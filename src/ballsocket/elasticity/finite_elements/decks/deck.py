@@ -164,7 +164,7 @@ class Deck:
         return float(self._bodies.solved.indentation) * numpy.arange(1, self.steps + 1) / self.steps
 
     def _rows(self) -> list[list[float]]:
-        """Return one row of expected results for each step."""
+        """Return the expected results as one row for each step."""
         return numpy.stack(list(self.expected.values()), axis=-1).tolist()
 
     def _record(self) -> dict[str, Any]:
@@ -185,14 +185,14 @@ class Deck:
     # --- comments at the top ---
 
     def _title(self) -> Iterator[str]:
-        """Write the comment lines at the top of the deck."""
+        """Yield the comment lines at the top of the deck."""
         for sentence in self._sentences():
             yield from (f"** {line}" for line in wrap(sentence, _LINE_WIDTH))
         for number, row in enumerate(self._rows(), 1):
             yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
 
     def _sentences(self) -> Iterator[str]:
-        """Describe the deck in sentences."""
+        """Yield sentences that describe the deck."""
         cup = self.contact.model.cup
         joint = str(self._bodies.joint).encode("ascii", "replace").decode()
         yield f"ballsocket {__version__}: {joint}"
@@ -215,7 +215,7 @@ _INSIDE, _OUTSIDE = "S4", "S2"  # faces of elements
 
 
 def mesh_lines(bodies: DeckBodies) -> Iterator[str]:
-    """Write nodes and elements of both bodies, and the sets of contact nodes."""
+    """Yield the lines of nodes and elements of both bodies, and of the sets of contact nodes."""
     yield "*NODE, NSET=ALL"
     for body in (bodies.socket, bodies.ball):
         yield from body.node_lines()
@@ -226,14 +226,17 @@ def mesh_lines(bodies: DeckBodies) -> Iterator[str]:
 
 
 def material_lines(bodies: DeckBodies) -> Iterator[str]:
-    """Write a material for each set of elements."""
+    """Yield the lines of a material for each set of elements."""
     for name, (young, poisson) in bodies.materials.items():
         yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {poisson:.12g}")
         yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
 
 
 def contact_lines(bodies: DeckBodies, slope: float) -> Iterator[str]:
-    """Write the contact surfaces up to the last pressure node; the ball's is one element longer."""
+    """Yield the lines of the contact surfaces and of the contact, whose penalty `slope` is in MPa/mm.
+
+    The surfaces extend to the last pressure node; the ball's is one element longer.
+    """
     yield "*SURFACE, NAME=LINED, TYPE=ELEMENT"
     yield from (f"{element}, {_INSIDE}" for element in bodies.socket.contact_elements(bodies.reach, strip=0))
     yield "*SURFACE, NAME=PRESSED, TYPE=ELEMENT"
@@ -243,7 +246,10 @@ def contact_lines(bodies: DeckBodies, slope: float) -> Iterator[str]:
 
 
 def support_lines(bodies: DeckBodies) -> Iterator[str]:
-    """Write the supports: directions x and y on the axis and for fixed nodes of the ball, else radius and angle."""
+    """Yield the lines of the supports of both bodies.
+
+    They act along x and y on the axis and for fixed nodes of the ball, elsewhere along radius and angle.
+    """
     socket, ball = bodies.socket, bodies.ball
     upright = [*socket.numbers(socket.on_axis & ~socket.fixed), *ball.numbers(ball.on_axis | ball.fixed)]
     seated, rolling = socket.fixed_directions & ~socket.fixed & ~socket.on_axis
@@ -259,7 +265,10 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
 
 
 def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
-    """Write the polar directions (radius first) of supported and sliding nodes, and the sliding constraints."""
+    """Yield the lines of polar directions of supported and sliding nodes, and of the sliding constraints.
+
+    The radius is the first direction.
+    """
     inner, outer = socket.sliding
     polar = fixed_directions.copy()
     polar[inner] = polar[outer] = True
@@ -275,14 +284,17 @@ def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
 
 
 def _boundary_lines(name: str, directions: str, nodes: list[int]) -> Iterator[str]:
-    """Write a named set of nodes and its boundary condition."""
+    """Yield the lines of a named set of nodes and of its boundary condition."""
     if nodes:
         yield from node_set(name, nodes)
         yield from ("*BOUNDARY", f"{name}, {directions}")
 
 
 def step_lines(height: float) -> Iterator[str]:
-    """Write one step, which pushes the ball to a height (mm, negative is down), and its output requests."""
+    """Yield the lines of one load step, which moves the ball to a height in mm, and of its output requests.
+
+    A negative height is downwards.
+    """
     yield from ("*STEP, INC=100", "*STATIC", "1., 1.", "*BOUNDARY", f"PUSHED, 2, 2, {height:.13g}")
     yield from ("*NODE PRINT, NSET=PUSHED, TOTALS=ONLY", "RF")
     for surface in ("BORE", "ROUND"):

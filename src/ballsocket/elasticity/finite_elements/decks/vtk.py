@@ -22,7 +22,7 @@ def check_suffix(path: Path) -> None:
 
 
 def write_vtk(section: Section, path: Path) -> None:
-    """Write meshes, displacements (mm) and stresses (MPa) of a section.
+    """Write meshes, displacements (mm) and stresses (MPa) of a section to a VTK file.
 
     x is the distance from the load axis, y the height above the centre of the socket, in mm. Point data are
     `displacement`, `von_mises`, and `radial`, `meridional`, `hoop` and `shear`, stresses in spherical directions. Cell
@@ -58,15 +58,15 @@ def write_vtk(section: Section, path: Path) -> None:
         for part, start in zip(section.parts, first[:-1], strict=True)
     ]
     mesh = meshio.Mesh(
-        _in_space(positions),
+        _add_third_coordinate(positions),
         cells,
-        point_data={"displacement": _in_space(moved), **stresses},
+        point_data={"displacement": _add_third_coordinate(moved), **stresses},
         cell_data={"part": [numpy.full(part.elements.shape[1], i) for i, part in enumerate(section.parts)]},
     )
     with write_atomically(path) as draft:
         mesh.write(draft)
 
 
-def _in_space(plane: numpy.ndarray) -> numpy.ndarray:
-    """Add a zero third coordinate."""
+def _add_third_coordinate(plane: numpy.ndarray) -> numpy.ndarray:
+    """Add a third coordinate of 0 to vectors in the plane: (points, 3)."""
     return numpy.column_stack([*plane, numpy.zeros(plane.shape[1])])

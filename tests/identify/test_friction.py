@@ -1,0 +1,143 @@
+"""Coefficient of friction as an unknown, from friction torques of a sliding ball."""
+
+import json
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.identify import Measured, sliding_torque
+from ballsocket.identify.file import read_identify
+from ballsocket.identify.misfit import by_differences
+from ballsocket.identify.synthetic import trials
+from ballsocket.studies import Normal
+
+from ..cli.command import run
+from ..extent import either
+
+JOINT = bs.joints["hess-forsbach"]
+MODEL = bs.HessForsbach()
+FORCE = np.linspace(300.0, 3000.0, 10)
+CONTACT = MODEL.press(JOINT, force=FORCE)
+RANGE = {"friction_coefficient": (0.0, 0.3)}
+SIGMA = 20.0
+
+
+def torques(values=None, *, axis_angle=pi / 2, uncertainty=SIGMA, **settings):
+    """Make friction torques of μ = 0.06, or of stated values."""
+    values = CONTACT.friction_torque(0.06, axis_angle) if values is None else values
+    observable = sliding_torque(axis_angle)
+    data = {"quantity": "friction_torque", "values": values, "uncertainty": uncertainty, "force": FORCE}
+    return Measured(**data, observable=observable, **settings)
+
+
+@pytest.mark.parametrize("axis_angle", [0.0, 0.7, pi / 2])
+def test_the_coefficient_of_friction_is_recovered_from_torques_about_any_axis(axis_angle):
+    result = bs.identify(MODEL, JOINT, torques(axis_angle=axis_angle), RANGE)
+    assert result.point["friction_coefficient"] == pytest.approx(0.06, rel=1e-6)
+    assert result.identifiable
+    assert result["friction_coefficient"].unit == "1"
+    assert result.joint == JOINT
+    assert result.model == MODEL
+
+
+def test_estimate_and_band_are_those_of_weighted_linear_regression():
+    """The torque is μ f(F), so that μ = Σ f T/Σ f² with the standard uncertainty σ/sqrt(Σ f²)."""
+    noise = SIGMA * np.array([0.5, -1.0, 1.2, 0.3, -0.8, 0.1, 0.9, -0.4, -0.6, 0.7])
+    lever = np.asarray(CONTACT.friction_torque(1.0))
+    values = 0.06 * lever + noise
+    estimate = bs.identify(MODEL, JOINT, torques(values), RANGE)["friction_coefficient"]
+    assert estimate.value == pytest.approx(lever @ values / (lever @ lever), rel=1e-6)
+    half = 1.959964 * SIGMA / sqrt(lever @ lever)
+    assert (estimate.high - estimate.low) / 2 == pytest.approx(half, rel=1e-3)
+
+
+def test_bands_of_95_percent_contain_the_coefficient_in_most_trials():
+    tried = trials(bs.identify(MODEL, JOINT, torques(), RANGE), either(quick=10, long=100), seed=3)
+    assert tried.coverage["friction_coefficient"] >= either(quick=0.8, long=0.9)
+    assert abs(tried.bias["friction_coefficient"]) < either(quick=0.3, long=0.1)
+
+
+def test_friction_and_clearance_are_identified_from_torques_and_indentations():
+    press = Measured(quantity="indentation", values=CONTACT.indentation, uncertainty=1e-4, force=FORCE)
+    result = bs.identify(MODEL, JOINT, [press, torques()], {"clearance": (0.02, 0.3), **RANGE})
+    assert result.point == pytest.approx({"clearance": JOINT.clearance, "friction_coefficient": 0.06}, rel=1e-4)
+    assert result.identifiable
+
+
+def test_a_prior_distribution_of_the_coefficient_counts_as_knowledge():
+    prior = Normal(mean=0.08, deviation=1e-6)
+    result = bs.identify(MODEL, JOINT, torques(), {"friction_coefficient": prior})
+    assert result.point["friction_coefficient"] == pytest.approx(0.08, rel=1e-3)
+
+
+def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
+    pytest.importorskip("jax")
+    from ballsocket.identify.jax_derivatives import by_tracing
+
+    misfit = bs.identify(MODEL, JOINT, torques(), RANGE).misfit
+    theta = misfit.transform.theta([0.06])
+    for traced, differences in zip(
+        by_tracing(misfit.forward, misfit.transform, theta),
+        by_differences(misfit.forward, misfit.transform, theta),
+        strict=True,
+    ):
+        np.testing.assert_allclose(traced, differences, rtol=1e-8)
+
+
+def test_torques_need_the_coefficient_as_an_unknown_and_the_reverse():
+    with pytest.raises(ValueError, match="data of friction_torque depend on friction_coefficient: free it, with two"):
+        bs.identify(MODEL, JOINT, torques(), {"clearance": (0.02, 0.3)})
+    press = Measured(quantity="indentation", values=CONTACT.indentation, uncertainty=1e-4, force=FORCE)
+    with pytest.raises(ValueError, match="no data depend on friction_coefficient: do not free it, or add data"):
+        bs.identify(MODEL, JOINT, press, {"clearance": (0.02, 0.3), **RANGE})
+    with pytest.raises(
+        ValueError, match=r"friction_coefficient = -0\.1 is not allowed: a coefficient of friction is 0"
+    ):
+        bs.identify(MODEL, JOINT, torques(), {"friction_coefficient": (-0.1, 0.3)})
+
+
+@pytest.mark.parametrize("axis_angle", [-0.1, 1.6, 90.0, np.nan])
+def test_axes_beyond_a_right_angle_are_refused(axis_angle):
+    with pytest.raises(ValueError, match=r"axis_angle = .* is not allowed: the angle between axis and load"):
+        sliding_torque(axis_angle)
+
+
+FILE = """
+model = "hess-forsbach"
+joint = "hess-forsbach"
+[free]
+friction_coefficient = "0..0.3"
+[[data]]
+quantity = "friction_torque"
+values = [{values}]
+force = ["1 kN", "2 kN", "3 kN"]
+uncertainty = "2 %"
+{axis}
+"""
+
+
+@pytest.mark.parametrize(("axis", "angle"), [("", pi / 2), ('axis_angle = "0 deg"', 0.0)])
+def test_file_and_command_identify_the_coefficient(tmp_path, axis, angle):
+    values = MODEL.press(JOINT, force=np.array([1e3, 2e3, 3e3])).friction_torque(0.06, angle)
+    text = ", ".join(f'"{value / 1e3:.9f} N m"' for value in values)
+    (tmp_path / "friction.toml").write_text(FILE.format(values=text, axis=axis), "utf-8")
+    result = read_identify(tmp_path / "friction.toml").identified()
+    assert result.point["friction_coefficient"] == pytest.approx(0.06, rel=1e-6)
+    done = run("identify", "friction.toml", "--json", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    (estimate,) = json.loads(done.stdout)["estimates"]
+    assert estimate["name"] == "friction_coefficient"
+    assert estimate["value"] == pytest.approx(0.06, rel=1e-6)
+    assert estimate["low"] < 0.06 < estimate["high"]
+    shown = run("identify", "friction.toml", folder=tmp_path).stdout
+    assert "hess-forsbach through 3 values (3 x friction_torque)" in shown
+
+
+def test_an_axis_of_other_data_is_refused(tmp_path):
+    text = FILE.format(values='"1 N m", "2 N m", "3 N m"', axis='axis_angle = "0 deg"')
+    text = text.replace('"friction_torque"', '"indentation"').replace(" N m", " um")
+    (tmp_path / "friction.toml").write_text(text, "utf-8")
+    with pytest.raises(ValueError, match="axis_angle belongs to .* of a friction_torque, not of indentation"):
+        read_identify(tmp_path / "friction.toml")
