@@ -1,27 +1,5 @@
-"""The words of the shell become the calls of the package."""
+"""Commands of the shell; the module of a command is imported when the command is used."""
 
-# in the order in which `--help` lists what they do
-from . import press, curve, orient, questions, study, hip, lists, identify, fit, evidence  # noqa: I001
-from . import deck, fmu, export, schema, app, serve_mcp, reproduce
 from .root import main
 
-__all__ = [
-    "app",
-    "curve",
-    "deck",
-    "evidence",
-    "export",
-    "fit",
-    "fmu",
-    "hip",
-    "identify",
-    "lists",
-    "main",
-    "orient",
-    "press",
-    "questions",
-    "reproduce",
-    "schema",
-    "serve_mcp",
-    "study",
-]
+__all__ = ["main"]

@@ -8,18 +8,60 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from importlib import import_module
 from io import TextIOWrapper
 from pathlib import Path
+from types import MappingProxyType
 from typing import Annotated, Any, TextIO
 
 import numpy
 import typer
+from typer.models import CommandInfo
 
 import ballsocket as bs
 
-app = typer.Typer(
+_MODULES: Mapping[str, tuple[str, ...]] = MappingProxyType(
+    {
+        **{name: (name,) for name in ("press", "curve", "orient")},
+        "questions": ("map", "optimise", "sensitivity"),
+        **{name: (name,) for name in ("study", "hip")},
+        "lists": ("models", "presets", "cite"),
+        "identify": ("identify",),
+        "fit": ("calibrate", "build-tables"),
+        **{name: (name,) for name in ("evidence", "deck", "fmu", "export", "schema", "app")},
+        "serve_mcp": ("serve-mcp",),
+        "reproduce": ("reproduce",),
+    }
+)
+"""Modules of this package with their commands, in the order of `--help`."""
+
+
+class _Commands(typer.Typer):
+    """Application that imports the modules of its commands on first use."""
+
+    _needed: tuple[str, ...] = tuple(_MODULES)
+
+    def need(self, word: str) -> None:
+        """Import the module of one command only; all modules for any other word."""
+        modules = tuple(module for module, commands in _MODULES.items() if word in commands)
+        self._needed = modules or tuple(_MODULES)
+
+    @property
+    def registered_commands(self) -> list[CommandInfo]:
+        """Commands of the needed modules."""
+        needed, self._needed = self._needed, ()
+        for module in needed:
+            import_module(f"ballsocket.cli.{module}")
+        return self._commands
+
+    @registered_commands.setter
+    def registered_commands(self, commands: list[CommandInfo]) -> None:
+        self._commands = commands
+
+
+app = _Commands(
     name="ballsocket",
     help="Contact of a ball in a socket of nearly its own radius. Units are mm, N, MPa, degrees unless text says so.",
     no_args_is_help=False,
@@ -99,6 +141,7 @@ def _status() -> int:
     """Do what is asked; the exit status."""
     status = MISUSE
     try:
+        app.need(sys.argv[1] if len(sys.argv) > 1 else "")
         done = app(standalone_mode=False) or DONE
         _flush()
         return int(done)

@@ -66,8 +66,7 @@ class Value:
     @classmethod
     def of(cls, kind: Kind) -> type[Self]:
         """Return the type of such values with numbers of a physical kind."""
-        name = f"{cls.__name__}{kind.name}"
-        return type(name, (cls,), {"kind": kind, "__doc__": cls.__doc__})
+        return type(cls.__name__, (cls,), {"kind": kind, "__doc__": cls.__doc__})
 
     @classmethod
     def json_schema(cls) -> dict[str, Any]:
@@ -272,9 +271,9 @@ def _or_none(kind: Any) -> Any:
     return Annotated[kind.__origin__ | None, *metadata] if metadata else kind | None
 
 
-def quantity_keys(quantities: Mapping[str, CoreQuantity], value: type[Value] = Quantity) -> dict[str, type[Value]]:
-    """Return the types of keys for `with_keys`: one for each quantity, with numbers of its physical kind."""
-    return {key: value.of(quantity.kind) for key, quantity in quantities.items()}
+def quantity_keys(quantities: Mapping[str, CoreQuantity], value: type[Value] = Quantity) -> dict[str, Any]:
+    """Return the types of keys for `with_keys`: one for each quantity, with its title and numbers of its kind."""
+    return {key: Annotated[value.of(quantity.kind), meaning(quantity.title)] for key, quantity in quantities.items()}
 
 
 def parsed_values(table: Table | None, content: Mapping[str, Any]) -> dict[str, Any]:

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
-import msgspec
 from msgspec import inspect
 
 from ..core.quantities import QUANTITIES
 from .refusals import choices_in, customs_in, expected, meaning_of, parts_of, tables_of
-from .schema import Quantity, Table, choices_schema
+from .schema import Quantity, Table, Value, choices_schema
 
 
 @dataclass(frozen=True)
@@ -81,51 +80,72 @@ def _values(field: inspect.Field) -> str:
 
 def _default(field: inspect.Field) -> str:
     """Return the default of a key as a file writes it; empty without a default."""
+    default = _plain_default(field)
+    return "" if default is None else str(default).lower() if isinstance(default, bool) else repr(default)
+
+
+def _plain_default(field: inspect.Field) -> Any:
+    """Return the default of a key as JSON has it; None without a default, or for a table."""
     value = field.default.value if isinstance(field.default, Enum) else field.default
-    if value is inspect.NODEFAULT or value is None:
-        return ""
-    return str(value).lower() if isinstance(value, bool) else repr(value)
+    plain = next((kind for kind in (bool, int, float, str) if isinstance(value, kind)), None)
+    return None if plain is None else plain(value)
 
 
-def json_schema(table: type[Table], title: str = "") -> dict[str, Any]:
-    """Return the JSON schema (draft 2020-12) of a kind of file, for editors and other programs.
+def json_schema(table: type[Table]) -> dict[str, Any]:
+    """Return the JSON schema (draft 2020-12) of a kind of file, for editors and other programs."""
+    definitions: dict[str, Any] = {}
+    root = inspect.type_info(table)
+    assert isinstance(root, inspect.StructType)
+    schema = _object_schema(root, definitions)
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "$defs": definitions}
 
-    Parameters
-    ----------
-    table : class
-    title : str, optional
-        Title of the schema, by default the first line of the class.
-    """
-    schema = msgspec.json.schema(table, schema_hook=_value_schema)
-    definitions = {name: _readable(part) for name, part in schema["$defs"].items()}
-    root = definitions.pop(table.__name__)
+
+def _object_schema(struct: inspect.StructType, definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a table; `definitions` gets those of its own tables."""
     return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **root,
-        "title": title or root["description"],
-        "$defs": definitions,
+        "title": (struct.cls.__doc__ or "").split("\n")[0].rstrip("."),
+        "type": "object",
+        "properties": {field.encode_name: _key_schema(field, definitions) for field in struct.fields},
+        "required": [field.encode_name for field in struct.fields if field.required],
+        "additionalProperties": False,
     }
 
 
-def _value_schema(kind: Any) -> dict[str, Any]:
-    """Return the JSON schema of a type of values for msgspec."""
-    return dict(kind.json_schema())
+def _key_schema(field: inspect.Field, definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a key, with its meaning and default."""
+    described, default = meaning_of(field.encode_name, field.type), _plain_default(field)
+    quantity = QUANTITIES.get(field.encode_name)
+    if quantity is not None and described == quantity.title:
+        described = f"{quantity.title}{quantity.written.text_in_brackets}. {quantity.meaning}"
+    return {
+        **_type_schema(field.type, definitions),
+        **({"description": described} if described else {}),
+        **({} if default is None else {"default": default}),
+    }
 
 
-def _readable(definition: dict[str, Any]) -> dict[str, Any]:
-    """Add meanings to the keys of a table, and other spellings to words; leave out null, which TOML does not have."""
-    if "enum" in definition:
-        return {**choices_schema(definition["enum"]), "title": definition["title"]}
-    properties = {key: _without_null(part) for key, part in definition["properties"].items()}
-    for key, part in properties.items():
-        if "description" not in part and key in QUANTITIES:
-            quantity = QUANTITIES[key]
-            part["description"] = f"{quantity.title}{quantity.written.text_in_brackets}. {quantity.meaning}"
-    return {**definition, "properties": properties}
+def _type_schema(kind: inspect.Type, definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a type of values; None is left out, because TOML does not have it."""
+    parts = [part for part in parts_of(kind) if not isinstance(part, inspect.NoneType)]
+    schemas = [_part_schema(part, definitions) for part in parts]
+    return schemas[0] if len(schemas) == 1 else {"anyOf": schemas}
 
 
-def _without_null(part: dict[str, Any]) -> dict[str, Any]:
-    """Remove null from the accepted values and defaults of a key."""
-    choices = [choice for choice in part.get("anyOf", ()) if choice != {"type": "null"}]
-    other = {key: value for key, value in part.items() if key != "anyOf" and (key, value) != ("default", None)}
-    return {**choices[0], **other} if len(choices) == 1 else {**other, "anyOf": choices} if choices else other
+def _part_schema(part: inspect.Type, definitions: dict[str, Any]) -> dict[str, Any]:
+    """Return the schema of a type of values that is no union."""
+    if isinstance(part, inspect.CustomType):
+        value: type[Value] = part.cls
+        definitions[value.__name__] = value.json_schema()
+        return {"$ref": f"#/$defs/{value.__name__}"}
+    if isinstance(part, inspect.EnumType):
+        return choices_schema(choices_in(part))
+    if isinstance(part, inspect.ListType):
+        return {"type": "array", "items": _type_schema(part.item_type, definitions)}
+    if isinstance(part, inspect.DictType):
+        return {"type": "object", "additionalProperties": _type_schema(part.value_type, definitions)}
+    if isinstance(part, inspect.StructType):
+        name = part.cls.__name__
+        if name not in definitions:
+            definitions[name] = _object_schema(part, definitions)
+        return {"$ref": f"#/$defs/{name}"}
+    return {"type": {inspect.BoolType: "boolean", inspect.StrType: "string"}[type(part)]}

@@ -188,10 +188,15 @@ class HipCupTable(CupTable, frozen=True, kw_only=True):
     tilt: Annotated[Angle | None, meaning("tilt from the load, in place of inclination and anteversion")] = None
 
 
-_PARAMETERS = {parameter.key: parameter.kind for cycle in CYCLES.values() for parameter in cycle.parameters}
+_PARAMETERS = {parameter.key: parameter for cycle in CYCLES.values() for parameter in cycle.parameters}
 
 
-@with_keys({key: Quantity.of(kind) for key, kind in _PARAMETERS.items()})
+@with_keys(
+    {
+        key: Annotated[Quantity.of(parameter.kind), meaning(parameter.meaning or key.replace("_", " "))]
+        for key, parameter in _PARAMETERS.items()
+    }
+)
 class CycleTable(Table, frozen=True, kw_only=True):
     """Cycle of loads and rotations: by name with its parameters, or from tables of measurements."""
 
@@ -261,7 +266,12 @@ class FilmTable(Table, frozen=True, kw_only=True):
     friction: Annotated[Number | None, meaning("coefficient of friction")] = None
 
 
-@with_keys(dict.fromkeys(SAMPLED_QUANTITIES, PatientNumber))
+@with_keys(
+    {
+        name: Annotated[PatientNumber, meaning(f"{name.replace('_', ' ')} among the patients")]
+        for name in SAMPLED_QUANTITIES
+    }
+)
 class UncertaintyTable(Table, frozen=True, kw_only=True):
     """Quantities that differ between patients, with their distributions."""
 

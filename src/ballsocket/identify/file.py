@@ -159,7 +159,12 @@ class MachineTable(Table, frozen=True, kw_only=True):
 
 @with_keys(
     quantity_keys({**LOADS, "angle": FIELD["angle"]}, Numbers)
-    | {observable.argument: Quantity.of(observable.kind) for observable in FILE_OBSERVABLES.values()}
+    | {
+        observable.argument: Annotated[
+            Quantity.of(observable.kind), meaning(f"{observable.argument.replace('_', ' ')}, for data of a {name}")
+        ]
+        for name, observable in FILE_OBSERVABLES.items()
+    }
 )
 class DataTable(Table, frozen=True, kw_only=True):
     """Set of data with its loads: columns of a file, or a quantity with its values."""
