@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -50,6 +51,10 @@ def test_numbers_of_a_tool_have_their_units():
         ("press", {**PRESS, "joint": "/etc/passwd"}, "'/etc/passwd' lies outside the folder of this server"),
         ("optimise", PRESS, "vary is missing"),
         ("study", {}, "either a file is needed, or content: TOML about a study"),
+        ("study", {"file": 3}, "file = 3 must be text"),
+        ("study", {"content": 3}, "content = 3 must be text in TOML, or an object"),
+        ("study", {"content": {"joint": None}}, "content has null or a key that is no text"),
+        ("study", {"content": {"joint": "hip-28", "store": "x"}}, "store is not for this server"),
         ("study", {"file": "no.toml"}, "'no.toml' is no file in the folder"),
         ("study", {"content": "joint = 'hip-28'\nstore = 'x'"}, "store is not for this server"),
         ("study", {"content": "joint = 'hip-28'\n[engine]\nkind = 'dask'"}, "engine is not for this server"),
@@ -71,6 +76,21 @@ def test_a_link_does_not_lead_out_of_the_folder(tmp_path):
         pytest.skip("no links here")
     with pytest.raises(ValueError, match="lies outside the folder"):
         words_of("press", {"joint": "joint.toml", "force": 1}, tmp_path / "room")
+
+
+def test_content_may_be_an_object_that_follows_the_schema_of_the_file(tmp_path):
+    validator = pytest.importorskip("jsonschema").Draft202012Validator
+    for tool in TOOLS.values():
+        validator.check_schema(schema(tool))
+    content = {"joint": "hip-28", "axes": {"force": ["1 kN", 2000], "liner": "uhmwpe"}}
+    study = validator(schema(TOOLS["study"]))
+    assert study.is_valid({"content": content})
+    assert study.is_valid({"content": 'joint = "hip-28"'})
+    assert not study.is_valid({"content": {**content, "axis": {"force": 1}}})
+    assert not study.is_valid({"content": {**content, "store": "x"}})
+    words = words_of("study", {"content": content}, tmp_path)
+    assert tomllib.loads((tmp_path / words[1]).read_text("utf-8")) == content
+    assert words[1:] == words_of("study", {"content": (tmp_path / words[1]).read_text("utf-8")}, tmp_path)[1:]
 
 
 def test_words_are_those_of_the_shell(tmp_path):

@@ -10,7 +10,7 @@ from typing import Any
 
 from typer.models import ArgumentInfo
 
-from ...core.checks import check_names, known_name, shown
+from ...core.checks import check_names, known_name, needs, shown
 from ...core.input_files import AllowedFolders, resolve_path
 from ...core.storage.atomic_files import write_text
 from ...files.toml import MOST, read_toml
@@ -89,28 +89,54 @@ def _operand(name: str) -> str:
 
 def _file(tool: Tool, arguments: Mapping[str, Any], folder: Path) -> Path:
     """Return the file of a call, by name or from its content. The called process checks further file names."""
-    given = [arguments.get("file"), arguments.get("content")]
-    if sum(each is not None for each in given) != 1:
-        raise ValueError(f"either a file is needed, or content: TOML about {tool.file}")
-    if not all(isinstance(each, str) for each in given if each is not None):
-        raise ValueError("file and content must be text")
-    path = _kept(arguments["content"], folder) if given[0] is None else _there(given[0], folder)
+    name, content = arguments.get("file"), arguments.get("content")
+    if (name is None) == (content is None):
+        raise ValueError(f"either a file is needed, or content: TOML about {tool.file}, or an object with its tables")
+    if content is None:
+        path = _named_file(name, folder)
+    else:
+        path = _write_content(_toml(content) if isinstance(content, Mapping) else content, folder)
     for key in tool.forbidden:
         if key in read_toml(path, tool.file, dict):
             raise ValueError(f"{key} is not for this server: leave it out of the file")
     return path
 
 
-def _there(name: Any, folder: Path) -> Path:
-    """A file of the folder by its name."""
+def _named_file(name: Any, folder: Path) -> Path:
+    """Return a file of the folder by its name."""
+    if not isinstance(name, str):
+        raise ValueError(f"file = {shown(name)} must be text")
     path = folder / _inside(next(_texts("file", name)), folder)
     if not path.is_file():
         raise ValueError(f"{shown(name)} is no file in the folder of this server")
     return path
 
 
-def _kept(content: str, folder: Path) -> Path:
-    """Content as a file of the folder, named by what it holds."""
+def _toml(content: Mapping[str, Any]) -> str:
+    """Write an object as TOML.
+
+    Raises
+    ------
+    ValueError
+        A value that TOML does not have.
+    ImportError
+        The writer of TOML is not installed.
+    """
+    needs("mcp", "tomli_w")
+    import tomli_w
+
+    try:
+        return tomli_w.dumps(content)
+    except (TypeError, AttributeError) as error:
+        raise ValueError("content has null or a key that is no text: leave out keys without a value") from error
+    except RecursionError as error:
+        raise ValueError("content is nested too deeply: a file has tables of keys") from error
+
+
+def _write_content(content: Any, folder: Path) -> Path:
+    """Write content to a file of the folder, named by its fingerprint."""
+    if not isinstance(content, str):
+        raise ValueError(f"content = {shown(content)} must be text in TOML, or an object")
     raw = content.encode("utf-8", errors="replace")
     if len(raw) > MOST:
         raise ValueError(f"the content is larger than {MOST} bytes")

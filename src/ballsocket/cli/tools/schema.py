@@ -10,17 +10,17 @@ from types import NoneType, UnionType
 from typing import Any, get_args, get_origin
 
 from ...core.quantities import QUANTITIES
+from ...files.schema_keys import json_schema
 from ...problem.dimensions import DIAMETERS
 from ..root import app
+from ..schema import file_table
 from .table import Tool
 
 NEVER = ("as_json", "workers", "scheduler", "units")
 """What is for terminals, and for whoever owns the machine."""
 
-_FILE = {
-    "file": "A TOML file about {}, in the folder that the server was given.",
-    "content": "That file's content, in place of its name.",
-}
+_FILE = "A TOML file about {}, in the folder that the server was given."
+_CONTENT = "Content of that file, in place of its name: text in TOML, or an object with the same tables and keys."
 
 
 def parameters(tool: Tool) -> Mapping[str, Parameter]:
@@ -40,15 +40,26 @@ def _offered(tool: Tool, name: str, parameter: Parameter) -> bool:
 def schema(tool: Tool) -> dict[str, Any]:
     """The JSON Schema of a tool's arguments."""
     properties = {name: _property(name, each) for name, each in parameters(tool).items()}
+    definitions: dict[str, Any] = {}
     if tool.file:
-        files = {name: {"type": "string", "description": text.format(tool.file)} for name, text in _FILE.items()}
-        properties = files | properties
+        content, definitions = _content_schema(tool)
+        named = {"type": "string", "description": _FILE.format(tool.file)}
+        properties = {"file": named, "content": content, **properties}
     return {
         "type": "object",
         "properties": properties,
         "required": list(tool.required),
         "additionalProperties": False,
+        **({"$defs": definitions} if definitions else {}),
     }
+
+
+def _content_schema(tool: Tool) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the schema of the content of a tool's file, and the definitions that it refers to."""
+    file = json_schema(file_table(tool.command))
+    keys = {key: part for key, part in file["properties"].items() if key not in tool.forbidden}
+    table = {"type": "object", "properties": keys, "required": file["required"], "additionalProperties": False}
+    return {"description": _CONTENT, "anyOf": [{"type": "string"}, table]}, file["$defs"]
 
 
 def _property(name: str, parameter: Parameter) -> dict[str, Any]:
