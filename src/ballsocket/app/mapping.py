@@ -16,7 +16,7 @@ from ..contact import Model
 from ..core.kinds import Kind
 from ..core.quantities import PARTS, QUANTITIES, Quantity
 from ..core.validity import OutsideDomainError, check_domain
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..problem import Joint
 from ..studies.design import Span, grid
 from ..studies.limits import Limit, allowed, margin_over

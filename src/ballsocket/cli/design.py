@@ -11,13 +11,12 @@ import typer
 from ..catalogue import reference
 from ..contact import Model
 from ..core.checks import require
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output import study_plots, study_summary, study_terminal
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..studies.axes import Span
 from ..studies.design import grid
-from ..studies.file import named_model
 from ..studies.limits import Limit
 from ..studies.optimum import optimise as find_optimum
 from ..studies.parameters import LOADS
@@ -26,7 +25,7 @@ from ..studies.phrases import choice_of, limit_of, range_of, spread_of
 from ..studies.run import study
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
-from ..studies.usual import check_known, usual
+from ..studies.usual import check_known, named_model, usual
 from ..version import __version__
 from .options import (
     JointName,

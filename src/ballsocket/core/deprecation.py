@@ -67,6 +67,7 @@ MOVED = {
     "ballsocket.hip.springs": "ballsocket.hip.socket_foundation",
     "ballsocket.hip.use": "ballsocket.hip.simulation",
     "ballsocket.hip.laws": "ballsocket.hip.wear_laws",
+    "ballsocket.io": "ballsocket.files",
     "ballsocket.joint": "ballsocket.problem",
     "ballsocket.cup": "ballsocket.problem.cup",
     "ballsocket.gaps": "ballsocket.problem.gaps",

@@ -16,7 +16,7 @@ from ..core.arrays import Numbers
 from ..core.checks import shown
 from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, Quantity
-from ..io.units import parse
+from ..files.units import parse
 from ..studies.columns import read_columns
 from .machine import IDEAL_MACHINE, Machine
 from .measured import MEASURED, Measured

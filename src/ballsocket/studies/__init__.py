@@ -7,6 +7,7 @@ for what matters; `design_map` and its kin draw.
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from ..core.checks import nearest
@@ -15,7 +16,6 @@ from .axes import Method, Span
 from .design import Design, grid, sample
 from .distributions import LogNormal, Normal, Rectangular, tolerance
 from .export import export
-from .file import read_study
 from .limits import Limit, allowed
 from .optimum import Optimum, optimise
 from .parameters import PARAMETERS
@@ -67,11 +67,15 @@ design_map: Callable[..., Any]
 front_figure: Callable[..., Any]
 sensitivity_figure: Callable[..., Any]
 
-if not TYPE_CHECKING:  # a checker of types would take any name for an offered one
+if TYPE_CHECKING:
+    from .file import read_study
+else:  # a checker of types would take any name for an offered one
 
     def __getattr__(name: str) -> Any:
         if name in _PLOTS:
             return load_plot(name)
+        if name == "read_study":  # the schema of study files takes time to load
+            return import_module(f"{__name__}.file").read_study
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}{nearest(name, __all__)}")
 
 
