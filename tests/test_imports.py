@@ -30,7 +30,7 @@ ABOVE_MECHANICS = ("app", "cli", "evidence", "files", "output", "paper", "studie
 PACKAGE_FLOORS = 13
 """Floors of the layers contract today; it may only fall, to `MAX_FLOORS`."""
 
-LOADED_BY_NAME = ("", "__init__", "core.deprecation")
+LOADED_BY_NAME = ("", "__init__", "core.deprecation", "cli.root", "cli.schema")
 """Modules that load what a folder holds, so that `import_module` takes a name that the source does not state."""
 
 

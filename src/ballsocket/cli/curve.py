@@ -9,8 +9,8 @@ import typer
 
 import ballsocket as bs
 
+from ..catalogue import named_model
 from ..output.terminal import print_curve
-from ..studies.usual import named_model
 from .elements import CupWords
 from .groups import grouped
 from .root import FAILURE, app, complain

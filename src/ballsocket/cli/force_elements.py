@@ -11,11 +11,12 @@ from typing import Annotated
 
 import typer
 
+from ..catalogue import named_model
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..files.joint_file import JointFile
 from ..problem.cup import Cup
-from ..studies.usual import named_model, usual
+from ..studies.usual import usual
 
 
 @dataclass(frozen=True, kw_only=True)

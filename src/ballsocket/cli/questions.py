@@ -11,7 +11,7 @@ import typer
 
 import ballsocket as bs
 
-from ..catalogue import reference
+from ..catalogue import named_model, reference
 from ..contact import Model
 from ..core.checks import require
 from ..files.joint_file import JointFile
@@ -28,7 +28,7 @@ from ..studies.pareto import pareto
 from ..studies.phrases import choice_of, limit_of, range_of, spread_of
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
-from ..studies.usual import check_known, named_model, usual
+from ..studies.usual import check_known, usual
 from .groups import grouped
 from .root import app, complain
 from .words import AsJson, JointWords, echo_json, given, load_of

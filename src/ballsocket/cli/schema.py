@@ -14,16 +14,16 @@ from ..core.checks import known_name
 from ..files.schema import Table
 from .root import app
 
-_TABLES: Mapping[str, str] = MappingProxyType(
+_TABLES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        "joint": "files.joint_file.JointFileTable",
-        "hip": "hip.schema.HipTable",
-        "study": "studies.file.StudyTable",
-        "identify": "identify.file.IdentifyTable",
-        "evidence": "evidence.question.QuestionTable",
+        "joint": ("ballsocket.files.joint_file", "JointFileTable"),
+        "hip": ("ballsocket.hip.schema", "HipTable"),
+        "study": ("ballsocket.studies.file", "StudyTable"),
+        "identify": ("ballsocket.identify.file", "IdentifyTable"),
+        "evidence": ("ballsocket.evidence.question", "QuestionTable"),
     }
 )
-"""Tables of the kinds of input files, by the names of their commands; only the table of a kind in use is loaded."""
+"""Module and table of each kind of input file, by the name of its command; only one in use is loaded."""
 
 KINDS = tuple(_TABLES)
 """Kinds of input files."""
@@ -37,8 +37,8 @@ def file_table(kind: str) -> type[Table]:
     ValueError
         A kind that is not known; the message suggests the nearest one.
     """
-    module, _, name = _TABLES[known_name("kind of file", kind, KINDS)].rpartition(".")
-    table: type[Table] = getattr(import_module(f"ballsocket.{module}"), name)
+    module, name = _TABLES[known_name("kind of file", kind, KINDS)]
+    table: type[Table] = getattr(import_module(module), name)
     return table
 
 
