@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.catalogue import named_model
 from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
-from ballsocket.studies.file import named_model, read_study
+from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, allowed, dimension
 from ballsocket.studies.optimum import optimise
 from ballsocket.studies.pareto import pareto

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..catalogue import reference
+from ..catalogue import named_model, reference
 from ..contact import Model
 from ..core.checks import require
 from ..files.joint_file import JointFile
@@ -25,7 +25,7 @@ from ..studies.phrases import choice_of, limit_of, range_of, spread_of
 from ..studies.run import study
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import QUANTITIES, USUAL
-from ..studies.usual import check_known, named_model, usual
+from ..studies.usual import check_known, usual
 from ..version import __version__
 from .options import (
     JointName,

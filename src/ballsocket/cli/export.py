@@ -11,6 +11,7 @@ from typing import Annotated
 
 import typer
 
+from ..catalogue import named_model, usual
 from ..core.checks import known_name
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
@@ -18,7 +19,6 @@ from ..export.target import ExportJob
 from ..export.targets import TARGETS
 from ..files.joint_file import JointFile
 from ..problem.cup import Cup
-from ..studies.usual import named_model, usual
 from .options import JointName, JointOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 

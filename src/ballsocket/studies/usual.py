@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..catalogue import catalogue, judge, off_axis, reference
+from ..catalogue import reference
 from ..contact import Model
-from ..core.checks import known_name
 from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
 from ..elasticity.exact.tabulated.model import Tabulated
@@ -16,20 +15,6 @@ from .design import check_values, grid
 from .parameters import LOADS, pressable
 
 _QUICK, _CURVE = Tabulated(), ExactCurve()
-
-models: dict[str, Model] = {**catalogue, "exact-curve": _CURVE, judge.name: judge, off_axis.name: off_axis}
-"""Models by the names that files and the command line use."""
-
-
-def named_model(name: Any) -> Model:
-    """Return a model by its name.
-
-    Raises
-    ------
-    ValueError
-        A name that is not known; the message suggests the nearest one.
-    """
-    return models[known_name("model", name, models)]
 
 
 def usual(joint: Joint, ends: Mapping[str, Any]) -> Model:
