@@ -23,13 +23,13 @@ class CoulombCoefficients:
 
     @property
     def breakaway_coefficient(self) -> float:
-        """Coefficient of friction at the onset of sliding, by default that of sliding."""
+        """Coefficient of friction at the onset of sliding; equals the sliding one by default."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
     static = RenamedAttribute("breakaway_coefficient")
 
     def check_static(self) -> None:
-        """Raise ValueError if the static coefficient is below the sliding coefficient."""
+        """Check that the static coefficient of friction is not below the sliding one; ValueError otherwise."""
         if self.static_coefficient is not None:
             allowed = "static friction must be at least the sliding friction"
             set_checked_number(self, "static_coefficient", self.coefficient, allowed)
@@ -89,15 +89,15 @@ class Friction(CoulombCoefficients):
         self.check_static()
 
 
-def set_checked_number(friction: object, name: str, least: float, allowed: str) -> None:
-    """Check a number of a frozen dataclass, and store it as a float."""
-    value = check_number(name, getattr(friction, name))
-    require(name, value, least <= value < math.inf, allowed)
-    object.__setattr__(friction, name, value)
+def set_checked_number(instance: object, name: str, low: float, allowed: str) -> None:
+    """Check a number of a frozen dataclass against its limits, and store it as a float."""
+    value = check_number(name, getattr(instance, name))
+    require(name, value, low <= value < math.inf, allowed)
+    object.__setattr__(instance, name, value)
 
 
 def widening_factor(versine: Array) -> Array:
-    """Compute the friction of an extended patch relative to that of a point contact.
+    """Compute the ratio of the friction of an extended contact patch to that of a point contact.
 
     The factor is the ratio of ∫ p |a x n| dA to the force.
 
@@ -109,7 +109,7 @@ def widening_factor(versine: Array) -> Array:
 
 
 def drill_lever(versine: Array) -> Array:
-    """Compute the lever of the drilling moment relative to the patch radius R2 sin ε.
+    """Compute the lever arm of the drilling moment (about the load axis), divided by the patch radius R2 sin ε.
 
     ρ is ∫ p R2 sin φ dA over the force and the widening factor, 8/15 of R2 sin ε for a small contact. The polynomial
     fits radial springs within 1e-5.
@@ -119,9 +119,9 @@ def drill_lever(versine: Array) -> Array:
 
 
 def friction_coefficient(speed: Array, sliding: Array, static: Array, stribeck_speed: Array) -> Array:
-    """Compute the coefficient of friction μ at a slip speed in mm/s, with the Stribeck effect."""
-    share = speed / stribeck_speed
-    return sliding + (static - sliding) * exp(-share * share)
+    """Compute the coefficient of friction μ at a slip speed in mm/s, including the Stribeck effect."""
+    speed_ratio = speed / stribeck_speed
+    return sliding + (static - sliding) * exp(-speed_ratio * speed_ratio)
 
 
 def rolling_slip_ratio(versine: Array) -> Array:
@@ -151,7 +151,7 @@ ROLL_FIT = (0.40882, 0.62470)
 def effective_slip(
     slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, tilt_squared: Array, versine: Array
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute the squared effective slip speed q² of the patch in (mm/s)², with its slopes by X, Y, Z and P.
+    """Compute the squared effective slip speed q² of the patch in (mm/s)², and its partial derivatives.
 
     X = |S|², Y = κ²|D|², Z = (ρ ω_n)² and P = κ S·D are in (mm/s)².
 
@@ -187,7 +187,7 @@ def effective_slip(
 def effective_slip_bends(
     slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, versine: Array
 ) -> dict[tuple[int, int], Array]:
-    """Compute the second derivatives of the squared effective slip speed q² by X, Y, Z and P.
+    """Compute the second partial derivatives of the squared effective slip speed q² by X, Y, Z and P.
 
     The keys number X, Y, Z and P from 0 to 3; see `effective_slip`.
     """

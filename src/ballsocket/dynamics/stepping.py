@@ -58,7 +58,7 @@ class StepResult(NamedTuple):
 def advance(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pull: Vector, h: float
 ) -> StepResult:
-    """Advance the state of a ball by a time step of h seconds.
+    """Advance the state of a ball by one time step of h seconds.
 
     `mass` is in t (N s²/mm), `inertia` in t mm², and `pull` is a constant force in N. The unknowns are velocity and
     spin at the midpoint of the step. Each iteration solves for them with constant stiffness and rate of friction.
@@ -163,7 +163,7 @@ class StepResidual(NamedTuple):
 
 
 def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
-    """Compute the state of the ball after a time step from velocity and spin at the midpoint."""
+    """Compute the state of the ball after a time step from its velocity and spin at the midpoint."""
     ax, ay, az, bx, by, bz = midpoint
     return BallState(
         ball.x + h * ax, ball.y + h * ay, ball.z + h * az,
@@ -173,7 +173,7 @@ def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
 
 
 def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
-    """Compute a bound of the surface speed of the ball in mm/s, from translation and rotation."""
+    """Compute an upper bound of the surface speed of the ball in mm/s, from velocity and spin."""
     turning = abs(midpoint.wx) + abs(midpoint.wy) + abs(midpoint.wz)
     return abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z) + constants.ball_radius * turning
 
@@ -181,7 +181,7 @@ def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
 def mean_contact(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, midpoint: Midpoint, distance: float, h: float
 ) -> MeanContact:
-    """Compute the elastic contact at the mean position of a time step.
+    """Compute the elastic contact at the mean position of the ball in a time step.
 
     `distance` is the distance of the centres at the start.
 
@@ -220,13 +220,13 @@ def step_residual(  # type: ignore[no-untyped-def]
     ball: BallState,
     midpoint: Midpoint,
     distance: float,
-    before: float,
+    start_energy: float,
     mass_rate: float,
     inertia_rate: float,
     pull: Vector,
     h: float,
 ) -> StepResidual:
-    """Compute the residual of the equations of motion at a trial midpoint of a time step.
+    """Compute the residual force and moment of the equations of motion at a trial midpoint of a time step.
 
     It is the inertia minus the discrete gradient of the energy, damping, friction and pull.
     """
@@ -234,25 +234,34 @@ def step_residual(  # type: ignore[no-untyped-def]
     mean = mean_contact(potential, constants, ball, midpoint, distance, h)
     centre, end, contact = mean.centre, mean.end, mean.contact
     fx, fy, fz, mx, my, mz = force_and_moment(centre, contact, (ax, ay, az), (bx, by, bz), constants)
-    after = elastic_contact(potential, end, constants)
+    end_contact = elastic_contact(potential, end, constants)
     nx, ny, nz = centre.x, centre.y, centre.z
     speed = ax * nx + ay * ny + az * nz
     normal, polar = mean.shortening * contact.normal, contact.polar
-    fall, square, drift = normal * speed, speed * speed, 0.0
+    mean_power, square, tangential_speed = normal * speed, speed * speed, 0.0
     if constants.rim > 0.0:
-        fall = fall - polar * (ax * mean.qx + ay * mean.qy + az * mean.qz)
-        drift = ax * mean.ux + ay * mean.uy + az * mean.uz
-        square = square + drift * drift
-    path, depth = h * sqrt(square), abs(centre.indentation)
-    certainty = path * path * path / safe_divisor(path * path * path + _MIN_PATH_RATIO * depth * depth * depth)
-    along = certainty * ((after.energy - before) / h - fall) / safe_divisor(square)
-    inward = normal - contact.normal + along * speed  # in addition to the normal force of the reaction
-    fx, fy, fz = fx - inward * nx, fy - inward * ny, fz - inward * nz
+        mean_power = mean_power - polar * (ax * mean.qx + ay * mean.qy + az * mean.qz)
+        tangential_speed = ax * mean.ux + ay * mean.uy + az * mean.uz
+        square = square + tangential_speed * tangential_speed
+    path_length, depth = h * sqrt(square), abs(centre.indentation)
+    quotient_weight = (
+        path_length
+        * path_length
+        * path_length
+        / safe_divisor(path_length * path_length * path_length + _MIN_PATH_RATIO * depth * depth * depth)
+    )
+    gradient_correction = (
+        quotient_weight * ((end_contact.energy - start_energy) / h - mean_power) / safe_divisor(square)
+    )
+    force_correction = (
+        normal - contact.normal + gradient_correction * speed
+    )  # in addition to the normal force of the reaction
+    fx, fy, fz = fx - force_correction * nx, fy - force_correction * ny, fz - force_correction * nz
     if constants.rim > 0.0:
-        aside = along * drift
-        fx = fx + polar * (mean.qx - contact.px) - aside * mean.ux
-        fy = fy + polar * (mean.qy - contact.py) - aside * mean.uy
-        fz = fz + polar * (mean.qz - contact.pz) - aside * mean.uz
+        tangential_correction = gradient_correction * tangential_speed
+        fx = fx + polar * (mean.qx - contact.px) - tangential_correction * mean.ux
+        fy = fy + polar * (mean.qy - contact.py) - tangential_correction * mean.uy
+        fz = fz + polar * (mean.qz - contact.pz) - tangential_correction * mean.uz
     return StepResidual(
         mass_rate * (ax - ball.vx) - fx - pull[0],
         mass_rate * (ay - ball.vy) - fy - pull[1],
@@ -263,7 +272,7 @@ def step_residual(  # type: ignore[no-untyped-def]
         centre,
         contact,
         abs(fx) + abs(fy) + abs(fz),
-        after.rim_margin > -1.0 or end.indentation <= -constants.smoothing,
+        end_contact.rim_margin > -1.0 or end.indentation <= -constants.smoothing,
     )
 
 
@@ -275,7 +284,7 @@ def newton_correction(
     inertia_rate: float,
     h: float,
 ) -> tuple[Midpoint, float]:
-    """Solve the linearised equations of a time step for a new midpoint; also return its change in mm/s.
+    """Solve the linearised equations of a time step for a new midpoint; return it and its change in mm/s.
 
     The stiffness and the rate of friction are constant in this solution.
     """
@@ -288,14 +297,14 @@ def newton_correction(
         slip = sliding_state(centre, normal_force(contact, speed, constants), velocity, spin, constants)
         push, mixed, rotation = slip.rate * slip.push, slip.rate * slip.mixed, slip.rate * slip.rotation
         drill = slip.rate * slip.drill * slip.lever_squared
-    lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
-    across = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.inverse_distance
+    damping_rate = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
+    tangential_stiffness = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.inverse_distance
     outward = residual.x * nx + residual.y * ny + residual.z * nz
     turning = residual.wx * nx + residual.wy * ny + residual.wz * nz
-    dn = -outward / (mass_rate + lossy + 0.5 * h * abs(contact.stiffness))
+    dn = -outward / (mass_rate + damping_rate + 0.5 * h * abs(contact.stiffness))
     dw = -turning / (inertia_rate + drill)
     # friction couples the velocity across the load with u = ω x n
-    A, B, C = mass_rate + push + across, inertia_rate + rotation * R1 * R1, mixed * R1
+    A, B, C = mass_rate + push + tangential_stiffness, inertia_rate + rotation * R1 * R1, mixed * R1
     over = 1.0 / (A * B - C * C)
     tx, ty, tz = residual.x - outward * nx, residual.y - outward * ny, residual.z - outward * nz
     ux = residual.wy * nz - residual.wz * ny
@@ -318,7 +327,7 @@ def newton_correction(
 def march(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pulls, h: float, states, dissipated
 ) -> int:
-    """Advance a ball over all time steps, fill `states` and `dissipated`, and return the number of converged steps.
+    """Advance a ball over all time steps, fill `states` and `dissipated`; return the number of converged steps.
 
     `states` is (steps + 1, 9) and `dissipated` (steps + 1,), in N mm.
 
