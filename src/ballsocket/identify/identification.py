@@ -106,7 +106,7 @@ def identify(
 
 
 def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
-    """Combine the uncertainties of values and loads.
+    """Combine the uncertainties of values and loads to one uncertainty for each value.
 
     The slope of the results over the load converts those of the loads.
     """
@@ -119,7 +119,7 @@ def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
 
 
 def _relative_load_uncertainty(measured: Measured) -> Numbers:
-    """Compute the relative uncertainty of the loads; 0 for a quantity of the joint."""
+    """Compute the relative uncertainty of each load of a data set; 0 for a number of the joint."""
     if not measured.load:
         return numpy.zeros(len(measured))
     loads = measured.loads
@@ -127,12 +127,12 @@ def _relative_load_uncertainty(measured: Measured) -> Numbers:
 
 
 def _concatenate(rows: Iterable[Numbers]) -> Numbers:
-    """Concatenate the arrays of all data sets to one array (data,)."""
+    """Join the arrays of all data sets to one array (data,)."""
     return numpy.concatenate(list(rows))
 
 
 def _check_data_sets(data: Any) -> tuple[Measured, ...]:
-    """Check that the data are sets of `Measured`, and return them as a tuple."""
+    """Check that all data sets are of type `Measured`, and return them as a tuple."""
     sets = tuple(data) if isinstance(data, list | tuple) else (data,)
     if not sets:
         raise ValueError("data must have at least one set of measurements, got none")
@@ -143,7 +143,7 @@ def _check_data_sets(data: Any) -> tuple[Measured, ...]:
 
 
 def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
-    """Check that there are unknowns, enough values and possible areas; raise ValueError otherwise."""
+    """Check the numbers of unknowns and values, and the measured areas; ValueError if invalid."""
     if not unknowns:
         raise ValueError("free has no unknowns: name at least one with two ends, such as clearance")
     for measured in data:
@@ -158,7 +158,7 @@ def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Se
 
 
 def _check_observables(data: Sequence[Measured], names: set[str]) -> None:
-    """Raise ValueError if a number of an observable is not an unknown, or is an unknown that no data depend on."""
+    """Check that the numbers of all custom observables are unknowns; ValueError otherwise."""
     needed = {name: measured for measured in data if measured.observable for name in measured.observable.numbers}
     for name, measured in needed.items():
         if name not in names:

@@ -16,7 +16,7 @@ _EQUAL_COST = 1e-6  # difference of cost that counts as equal
 
 
 def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
-    """Find the best fit by least squares, from the best points of a global search.
+    """Find the best fit of the unknowns: a global search, then least squares from its best points.
 
     Raises
     ------
@@ -31,17 +31,17 @@ def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
 
 
 def _choose_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
-    """Choose the fit of lowest cost.
+    """Choose the fit with the smallest misfit; among equal ones, that nearest to the middle of the ranges.
 
     Among fits of equal cost it is the one nearest to the middle of the ranges.
     """
-    least, middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
-    lowest = [end for end in ends if end.cost <= least + _EQUAL_COST]
-    return min(lowest, key=lambda end: float(numpy.max(abs(end.theta - middle))))
+    least_cost, range_middle = min(end.cost for end in ends), (misfit.transform.low + misfit.transform.high) / 2
+    lowest_ends = [end for end in ends if end.cost <= least_cost + _EQUAL_COST]
+    return min(lowest_ends, key=lambda end: float(numpy.max(abs(end.theta - range_middle))))
 
 
 def _choose_starts(misfit: Misfit, seed: int) -> list[Numbers]:
-    """Choose one or two starting points from a Sobol sequence.
+    """Choose one or two starting points of the fit from a Sobol sequence over the search ranges.
 
     They are the point of lowest cost, and the best point far from it.
     """
@@ -49,9 +49,9 @@ def _choose_starts(misfit: Misfit, seed: int) -> list[Numbers]:
 
     low, high = misfit.transform.low, misfit.transform.high
     model = misfit.forward.model
-    seconds = model.seconds_a_press * len(misfit.value)
-    count = 1 << (int(numpy.clip(_SEARCH_SECONDS / seconds, _MIN_POINTS, _MAX_POINTS)).bit_length() - 1)
-    fractions = qmc.Sobol(len(low), rng=numpy.random.default_rng(seed)).random(count)
+    seconds_per_point = model.seconds_a_press * len(misfit.value)
+    point_count = 1 << (int(numpy.clip(_SEARCH_SECONDS / seconds_per_point, _MIN_POINTS, _MAX_POINTS)).bit_length() - 1)
+    fractions = qmc.Sobol(len(low), rng=numpy.random.default_rng(seed)).random(point_count)
     points = low + fractions * (high - low)
     costs = misfit.costs(points)
     if not numpy.isfinite(costs).any():
@@ -66,12 +66,12 @@ def _choose_starts(misfit: Misfit, seed: int) -> list[Numbers]:
 
 
 def minimise(misfit: Misfit, start: Numbers) -> FitResult:
-    """Minimise the misfit from a starting point by least squares with derivatives."""
+    """Minimise the misfit from a starting point theta by least squares."""
     from scipy.optimize import least_squares
 
     cache: dict[bytes, tuple[Numbers, Numbers]] = {}
 
-    def evaluate(theta: Numbers) -> tuple[Numbers, Numbers]:
+    def residuals_and_slopes(theta: Numbers) -> tuple[Numbers, Numbers]:
         """Compute residuals and derivatives, and cache those of the last point."""
         key = theta.tobytes()
         if key not in cache:
@@ -80,9 +80,9 @@ def minimise(misfit: Misfit, start: Numbers) -> FitResult:
         return cache[key]
 
     solution = least_squares(
-        lambda theta: evaluate(theta)[0],
+        lambda theta: residuals_and_slopes(theta)[0],
         start,
-        jac=lambda theta: evaluate(theta)[1],
+        jac=lambda theta: residuals_and_slopes(theta)[1],
         bounds=(misfit.transform.low, misfit.transform.high),
         x_scale=1.0,
         ftol=1e-10,
