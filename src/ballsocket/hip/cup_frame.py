@@ -47,7 +47,7 @@ class CupFrame:
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
 
     def __post_init__(self) -> None:
-        """Check that no load pushes the ball over the rim, unless a spring balances the load there."""
+        """Check that no load pushes the ball over the rim, unless a spring balances it; ValueError otherwise."""
         outside = self._instants_beyond_rim
         if self.separation is not None:
             outside = outside[numpy.isnan(self.separation.displacement[:, 0])]
@@ -62,18 +62,18 @@ class CupFrame:
 
     @cached_property
     def side_cycle(self) -> Cycle | Mix:
-        """Cycle for the side of the body that the cup belongs to: mirrored for a left cup."""
+        """Cycle for the cup's side of the body: the given cycle, mirrored for a left cup."""
         return self.cycle.mirrored() if self.cup.side is Side.LEFT else self.cycle
 
     @cached_property
     def forces(self) -> Numbers:
-        """Forces of the ball on the socket in N, in the cup's frame: (instants, 3)."""
+        """Forces of the ball on the socket in N at all instants, in the cup's frame: (instants, 3)."""
         forces = self.side_cycle.forces
         return forces if self.cycle.frame is Frame.CUP else _convert_to_cup_frame(self.placed, forces)
 
     @property
     def _force_angles(self) -> Numbers:
-        """Angles of the forces from the dome's pole, in rad: (instants,)."""
+        """Angles in rad between the forces and the dome's pole: (instants,)."""
         return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
 
     @cached_property
@@ -84,7 +84,7 @@ class CupFrame:
 
     @cached_property
     def _spring_loaded_ball(self) -> SpringLoadedBall | None:
-        """Ball on the lateral spring of the cycle; None without a spring."""
+        """Model of the ball on the lateral spring of the cycle; None without a spring."""
         spring = self.side_cycle.spring
         if spring is None:
             return None
@@ -98,12 +98,12 @@ class CupFrame:
 
     @property
     def _spring_axis(self) -> Numbers:
-        """First axis of the cycle's frame, along which the spring acts, in the cup's frame: (3,)."""
+        """Direction of the spring force in the cup's frame, the first axis of the cycle's frame: (3,)."""
         return numpy.array([1.0, 0.0, 0.0] if self.cycle.frame is Frame.CUP else numpy.array(self.placed.frame)[:, 0])
 
     @cached_property
     def lateral_stiffness(self) -> Numbers:
-        """Stiffness matrix in N/mm of the cycle's lateral spring: (3, 3).
+        """Stiffness matrix of the cycle's lateral spring in N/mm: (3, 3), zero without a spring.
 
         A displacement of the ball times this matrix is the decrease of the force on the socket.
         """
@@ -111,12 +111,12 @@ class CupFrame:
         return numpy.outer(self._spring_axis, self._spring_axis) * (0.0 if spring is None else spring.stiffness)
 
     def socket_forces(self, displacement: Numbers) -> Numbers:
-        """Compute the forces on the socket in N for displacements of the ball in mm: (loaded, 3)."""
+        """Compute the forces on the socket in N for displacements (loaded, 3) of the ball in mm."""
         return self.loads - displacement @ self.lateral_stiffness
 
     @cached_property
     def _instants_beyond_rim(self) -> Numbers:
-        """Indices of the instants in which the load pushes the ball over the rim."""
+        """Indices of the instants in which the load points beyond the rim."""
         beyond = numpy.flatnonzero(self._load_mask & (self._force_angles >= self.reach))
         return (
             beyond
@@ -126,7 +126,7 @@ class CupFrame:
 
     @cached_property
     def separation(self) -> Microseparation | None:
-        """Instants in which a spring has pushed the ball onto the rim; None without such instants."""
+        """Microseparation: instants in which a spring has pushed the ball onto the rim; None without any."""
         beyond = self._instants_beyond_rim
         return (
             None
@@ -136,13 +136,13 @@ class CupFrame:
 
     @cached_property
     def placed(self) -> Cup:
-        """Cup in its orientation: that of `cup` if set, else the tilt of the cycle's standard."""
+        """Cup with its orientation: the stated one, else the tilt by the cycle's standard."""
         tilt = self.cycle.cup_tilt
         return self.cup if self.cup.oriented or tilt is None else self.cup.tilted(tilt)
 
     @property
     def reach(self) -> float:
-        """Polar angle in rad of the end of the bore, from the dome's pole."""
+        """Polar angle in rad from the dome's pole to the end of the bore."""
         return float(self.cup.rim - self.cup.chamfer / self.joint.socket_radius)
 
     @cached_property
@@ -154,7 +154,7 @@ class CupFrame:
 
     @cached_property
     def activities(self) -> tuple[tuple[str, Numbers], ...]:
-        """Name of each activity with contact, and its loads as indices into the loaded instants."""
+        """Name of each activity with contact, and indices of its loads among the loaded instants."""
         indices = {
             number: numpy.flatnonzero((self.loaded >= part.start) & (self.loaded < part.stop))
             for number, (_, part) in enumerate(self.cycle.activity_slices)
@@ -163,7 +163,7 @@ class CupFrame:
 
     @cached_property
     def loads(self) -> Numbers:
-        """Forces in N of the loaded instants, in the cup's frame: (loaded, 3)."""
+        """Forces in N at the loaded instants, in the cup's frame: (loaded, 3)."""
         return numpy.ascontiguousarray(self.forces[self.loaded])
 
     @property
@@ -179,22 +179,24 @@ class CupFrame:
 
     @property
     def slide(self) -> float:
-        """Sliding distance in mm of the ball in a cycle, at the point of the socket where the load points."""
+        """Sliding distance in mm in a cycle, at the point of the socket to which the load points."""
         sizes = self.cycle.force_magnitudes[:, None]
         directions = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
         rotations = _convert_to_cup_frame(self.placed, self.side_cycle.rotation_increments)
-        return sliding_distance(float(self.joint.ball_radius), rotations, _fill_unloaded(directions, self.loaded))
+        return sliding_distance(
+            float(self.joint.ball_radius), rotations, _fill_unloaded_directions(directions, self.loaded)
+        )
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the orientation of the cup, unloaded instants and microseparation."""
+        """Sentences on the orientation of the cup, unloaded instants and microseparation."""
         tilted = () if self.placed == self.cup else (_TILTED.format(degrees(self.cycle.cup_tilt or 0.0)),)
         separated = () if self.separation is None else (self.separation.describe(self.cycle),)
         return (*tilted, *self._unloaded_notes, *separated)
 
     @property
     def _unloaded_notes(self) -> tuple[str, ...]:
-        """Note on the instants without a load."""
+        """Sentence on the instants without a load; empty if all are loaded."""
         unloaded = numpy.flatnonzero(~self._load_mask)
         if len(unloaded) == self.cycle.n_steps:
             return (_NEVER_LOADED,)
@@ -213,7 +215,7 @@ def _convert_to_cup_frame(cup: Cup, vectors: Numbers) -> Numbers:
     return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
 
 
-def _fill_unloaded(directions: Numbers, loaded: Numbers) -> Numbers:
+def _fill_unloaded_directions(directions: Numbers, loaded: Numbers) -> Numbers:
     """Replace the direction of each unloaded instant by that of the last loaded instant before."""
     if not len(loaded):
         return directions

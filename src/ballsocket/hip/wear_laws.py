@@ -165,7 +165,7 @@ class CustomWearLaw(Law):
     of = RenamedAttribute("function")
 
     def depth(self, cycle: CycleExposure) -> Numbers:
-        """Compute the worn depth of each point in a cycle by the function, in mm: (points,)."""
+        """Compute the worn depth in mm of each point in a cycle by the given function: (points,)."""
         depth, shape = numpy.asarray(self.function(cycle), dtype=float), cycle.pressure.shape[1:]
         if depth.shape != shape:
             raise ValueError(f"a CustomWearLaw returned depths of shape {depth.shape}; the points need {shape}")
@@ -194,7 +194,7 @@ BALL_COEFFICIENT = "ball_coefficient"
 
 
 def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
-    """Read the wear law of the table [wear] of a file.
+    """Read the wear law of the socket from the table [wear] of a file.
 
     Raises
     ------
@@ -205,7 +205,7 @@ def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
 
 
 def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
-    """Read the wear law of the ball from the table [wear] of a file; None without `ball_coefficient`.
+    """Read the wear law of the ball from the table [wear] of a file; None for a ball without wear.
 
     Raises
     ------
