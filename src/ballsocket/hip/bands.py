@@ -206,7 +206,10 @@ class Bands:
         """Sentence on the number of patients with contacts outside the validity of the contact model."""
         invalid_count = int((self.cohort.valid[:, -1] == 0).sum())
         model = self.variability.coarse_simulation.contact_model.name
-        sentence = f"{invalid_count} of {self.n_patients} patients have contacts outside the validity of the contact model ({model})"
+        sentence = (
+            f"{invalid_count} of {self.n_patients} patients have contacts outside the validity of the contact model "
+            f"({model})"
+        )
         return (sentence,) if invalid_count else ()
 
     @property

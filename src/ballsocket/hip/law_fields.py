@@ -267,7 +267,8 @@ def read_law(
     for key, law_number in fields_by_key.items():
         if law_number.required and key not in table:
             raise ValueError(
-                f"the law {law.name!r} needs {key} ({law_number.meaning}), such as {key} = {law_number.unit.example(law_number.example)}"
+                f"the law {law.name!r} needs {key} ({law_number.meaning}), such as "
+                f"{key} = {law_number.unit.example(law_number.example)}"
             )
     numbers = {
         law_number.name: law_number.unit.read(key, table[key])

@@ -37,7 +37,6 @@ _SERIAL = Serial()
 
 def _ignore_progress(finished: int) -> None:
     """Ignore the number of finished patients."""
-    pass
 
 
 @renamed_arguments(scatter="variability", listen="progress")

@@ -47,7 +47,7 @@ def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numb
     values = transform.to_values(theta)
     with jax.enable_x64(True):
         results_and_slopes = [
-            _compile_forward_model(forward)(point_result) for point_result in values.reshape(-1, values.shape[-1])
+            _compile_forward_model(forward)(point_values) for point_values in values.reshape(-1, values.shape[-1])
         ]
     results, slopes = (
         numpy.stack([numpy.asarray(point_result[index]) for point_result in results_and_slopes]) for index in (0, 1)
