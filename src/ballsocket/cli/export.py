@@ -29,7 +29,7 @@ def export(
     ],
 ) -> None:
     """Write a joint as a force element for another program, with what that needs around it."""
-    from ..export.law_fit import depth_of
+    from ..export.law_fit import fit_depth
 
     chosen = TARGETS[known_name("target", target, TARGETS)]
     nearest = next(path for path in (out, *out.parents, Path()) if path.exists())
@@ -37,7 +37,7 @@ def export(
         raise ValueError(f"{str(nearest)!r} is a file; a folder is needed")
     file = words.or_named(joint)
     made = element.element(file)
-    job = ExportJob(element=made, name=identifier(out), depth=depth_of(made, file.load))
+    job = ExportJob(element=made, name=identifier(out), depth=fit_depth(made, file.load))
     paths, missing = chosen.write(job, out)
     echo_path(out, f": {', '.join(path.relative_to(out).as_posix() for path in paths)}")
     if missing:

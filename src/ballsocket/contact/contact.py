@@ -51,7 +51,7 @@ class Laws(Protocol):
     def pressure(self, angle: Array) -> Array: ...
 
 
-def _law_property(name: str) -> Any:
+def _quantity_property(name: str) -> Any:
     """Make a cached property of `Contact` that evaluates one quantity of its laws."""
 
     def compute_quantity(self: Contact) -> Array:
@@ -93,14 +93,14 @@ class Contact(Outcome):
     force: Array
     indentation: Array
 
-    half_angle = _law_property("half_angle")
-    max_pressure = _law_property("max_pressure")
-    max_pressure_angle = _law_property("max_pressure_angle")
-    pole_pressure = _law_property("pole_pressure")
-    stiffness = _law_property("stiffness")
-    energy = _law_property("energy")
-    foundation_modulus = _law_property("foundation_modulus")
-    pressure_integral = _law_property("pressure_integral")
+    half_angle = _quantity_property("half_angle")
+    max_pressure = _quantity_property("max_pressure")
+    max_pressure_angle = _quantity_property("max_pressure_angle")
+    pole_pressure = _quantity_property("pole_pressure")
+    stiffness = _quantity_property("stiffness")
+    energy = _quantity_property("energy")
+    foundation_modulus = _quantity_property("foundation_modulus")
+    pressure_integral = _quantity_property("pressure_integral")
 
     @property
     def _load(self) -> Array:
@@ -169,7 +169,7 @@ class Contact(Outcome):
         return strength.von_mises_ratio(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
 
     @property
-    def _limits(self) -> tuple[Range, ...]:
+    def _validity_ranges(self) -> tuple[Range, ...]:
         """Ranges of quantities in which a contact is valid, with the elastic limit if a strength is known."""
         return (*self.model.validity, _ELASTIC) if self.joint.strengths() else self.model.validity
 
@@ -180,7 +180,9 @@ class Contact(Outcome):
             [self.utilisation_note] if self.utilisation_note and arrays.all_true(self._failed) is not True else []
         )
         compared = (
-            note for good, text in strength.strength_remarks(self) for note in self._note(good | self._failed, text)
+            note
+            for good, text in strength.strength_remarks(self)
+            for note in self._note_on_invalid_points(good | self._failed, text)
         )
         return (*super().notes, *unchecked, *compared)
 
@@ -309,7 +311,7 @@ class Contact(Outcome):
             angle = self.half_angle * sin(pi / 2 * fraction)  # removes the square root singularity at the edge
             width = self.half_angle * (pi / 2 * cos(pi / 2 * fraction))
             arc = angle if self.model.planar else arrays.sin(angle)
-            return self.pressure(angle) * _mean_lever(angle, axis_angle) * arc * width
+            return self.pressure(angle) * _mean_friction_lever(angle, axis_angle) * arc * width
 
         socket_radius = self.joint.socket_radius
         friction_lever = coefficient * self.joint.ball_radius
@@ -382,7 +384,7 @@ _UNIT_TOLERANCE = 1e-10
 """Tolerance of the square of (x² + y² + z² - 1) of a unit vector."""
 
 
-def _mean_lever(angle: Array, axis_angle: float) -> Array:
+def _mean_friction_lever(angle: Array, axis_angle: float) -> Array:
     """Compute the mean lever arm of friction, divided by the ball radius, on the circle at a polar angle in rad.
 
     It is the mean sine of the angle between radius and axis of rotation.

@@ -45,13 +45,13 @@ class Outcome(ABC):
     def valid(self) -> Array:
         """Mask of the valid points: joint and result lie inside the model's validity."""
         valid_mask = self.status == int(Status.OK)
-        for limit in self._limits:
+        for limit in self._validity_ranges:
             valid_mask = valid_mask & limit.holds(self)
         valid_mask = arrays.broadcast(valid_mask, self._load) if hasattr(valid_mask, "shape") else valid_mask
         return bool(valid_mask) if self._is_plain else valid_mask
 
     @property
-    def _limits(self) -> tuple[Range, ...]:
+    def _validity_ranges(self) -> tuple[Range, ...]:
         """Ranges of quantities in which a result is valid."""
         return self.model.validity
 
@@ -61,12 +61,12 @@ class Outcome(ABC):
         notes = []
         for status in list(Status)[1:]:
             reason = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
-            notes += self._note(self.status != int(status), status.sentence + reason)
+            notes += self._note_on_invalid_points(self.status != int(status), status.sentence + reason)
         for limit in (*self.model.validity, *self.model.remarks):
-            notes += self._note(limit.holds(self) | self._failed, limit.sentence)
+            notes += self._note_on_invalid_points(limit.holds(self) | self._failed, limit.sentence)
         return tuple(notes)
 
-    def _note(self, valid: Array, sentence: str) -> list[str]:
+    def _note_on_invalid_points(self, valid: Array, sentence: str) -> list[str]:
         """Return a note with the number of points where the mask `valid` is false; [] if there are none."""
         if arrays.all_true(valid) is not False:
             return []

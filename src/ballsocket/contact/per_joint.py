@@ -57,7 +57,7 @@ class JointContacts:
     reached: numpy.ndarray
     error: dict[str, numpy.ndarray]
 
-    def expand(self, values: numpy.ndarray) -> numpy.ndarray:
+    def expand_to_all_loads(self, values: numpy.ndarray) -> numpy.ndarray:
         """Expand values of the touching contacts (..., touching) to all loads (..., loads).
 
         Loads of 0 get 0, and loads without a solution NaN.
@@ -91,8 +91,8 @@ def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *para
         Traced numbers without a value (inside `jax.jit`, `jax.grad`).
     """
     joint = joint.without_strengths()
-    numbers = [_to_concrete(model, number) for number in joint.numbers()]
-    load_arrays = [_to_concrete(model, value) for value in (load, *parameters)]
+    numbers = [_to_concrete_array(model, number) for number in joint.numbers()]
+    load_arrays = [_to_concrete_array(model, value) for value in (load, *parameters)]
     shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, *load_arrays)))
     loads = [numpy.broadcast_to(value, shape).ravel().astype(float) for value in load_arrays]
     joint_contacts = []
@@ -124,7 +124,7 @@ def joint_at(joint: Joint, shape: tuple[int, ...], index: int) -> Joint:
     return joint.with_numbers([float(number.flat[index]) for number in broadcast])
 
 
-def _to_concrete(model: Model, number: Array) -> numpy.ndarray:
+def _to_concrete_array(model: Model, number: Array) -> numpy.ndarray:
     """Convert a number or array to NumPy; raise TypeError if JAX traces it."""
     values = arrays.concrete_values(number)
     if values is None:
@@ -132,11 +132,11 @@ def _to_concrete(model: Model, number: Array) -> numpy.ndarray:
     return values
 
 
-def _combined_property(quantity_name: str) -> Any:
-    """Make a cached property that combines a named quantity of all joints to one array."""
+def _quantity_of_all_joints(quantity_name: str) -> Any:
+    """Make a cached property: the values of one quantity in all joints, as one array."""
 
     def combine_quantity(self: CombinedSolution) -> Array:
-        """Combine the values of all joints to one array."""
+        """Return the values of the quantity in all joints as one array."""
         return self.combine(lambda contacts: getattr(contacts.state, quantity_name))
 
     combine_quantity.__name__ = quantity_name
@@ -166,20 +166,20 @@ class CombinedSolution:
     def combine(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
         """Combine a quantity of all joints to one array (*rows, *shape); NaN at points without a solution."""
         return self._match_load_array(
-            self._combine_joints(lambda indices, contacts: quantity(contacts), prod(rows)), rows
+            self._combine_to_numpy_array(lambda indices, contacts: quantity(contacts), prod(rows)), rows
         )
 
     def combine_by_index(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
         """Combine a quantity that is a function of the flat indices of the points to one array."""
-        return self._match_load_array(self._combine_joints(quantity))
+        return self._match_load_array(self._combine_to_numpy_array(quantity))
 
-    def _combine_joints(
+    def _combine_to_numpy_array(
         self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: int = 1
     ) -> numpy.ndarray:
-        """Combine a quantity of all joints to one NumPy array (rows, points); NaN without a solution."""
+        """Put the values of a quantity in all joints into one NumPy array (rows, points)."""
         combined = numpy.full((rows, prod(self.shape)), numpy.nan)
         for indices, contacts in self.pieces:
-            combined[:, indices] = contacts.expand(quantity(indices, contacts))
+            combined[:, indices] = contacts.expand_to_all_loads(quantity(indices, contacts))
         return combined
 
     def _match_load_array(self, values: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
@@ -188,7 +188,7 @@ class CombinedSolution:
         xp = arrays.namespace(self.like)
         return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
 
-    def _combine_error(self, name: str) -> Array:
+    def _combine_relative_error(self, name: str) -> Array:
         """Combine the estimated relative error of one quantity of all joints to one array."""
         return self.combine(lambda contacts: contacts.error[name])
 
@@ -200,17 +200,17 @@ class CombinedSolution:
     @property
     def error(self) -> dict[str, Array]:
         """Estimated relative errors, one array for each quantity name."""
-        return {name: self._combine_error(name) for name in QUANTITIES}
+        return {name: self._combine_relative_error(name) for name in QUANTITIES}
 
-    force = _combined_property("force")
-    indentation = _combined_property("indentation")
-    half_angle = _combined_property("half_angle")
-    max_pressure = _combined_property("max_pressure")
-    max_pressure_angle = _combined_property("max_pressure_angle")
-    pole_pressure = _combined_property("pole_pressure")
-    stiffness = _combined_property("stiffness")
-    energy = _combined_property("energy")
-    pressure_integral = _combined_property("pressure_integral")
+    force = _quantity_of_all_joints("force")
+    indentation = _quantity_of_all_joints("indentation")
+    half_angle = _quantity_of_all_joints("half_angle")
+    max_pressure = _quantity_of_all_joints("max_pressure")
+    max_pressure_angle = _quantity_of_all_joints("max_pressure_angle")
+    pole_pressure = _quantity_of_all_joints("pole_pressure")
+    stiffness = _quantity_of_all_joints("stiffness")
+    energy = _quantity_of_all_joints("energy")
+    pressure_integral = _quantity_of_all_joints("pressure_integral")
 
     @property
     def foundation_modulus(self) -> Array:
@@ -233,7 +233,7 @@ class CombinedSolution:
             pressures: numpy.ndarray = contacts.state.pressure(rows[:, indices[contacts.touching]])
             return pressures
 
-        return self._match_load_array(self._combine_joints(joint_pressure, rows=len(rows)), angle_shape)
+        return self._match_load_array(self._combine_to_numpy_array(joint_pressure, rows=len(rows)), angle_shape)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)

@@ -175,14 +175,14 @@ def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
     if joint.liner.proportional_limit is not None:
         yield from _linearity_remarks("liner", joint.liner, _estimate_von_mises(contact))
     if joint.liner.strengths:
-        yield from _limit_remarks(
+        yield from _exceeded_strength_remarks(
             "liner", joint.liner, contact.von_mises_bounds[1], lambda: contact.von_mises, pressure
         )
     if joint.ball is not None:
         stress = joint_ball_stress_ratio(joint) * pressure
         if joint.ball.proportional_limit is not None:
             yield from _linearity_remarks("ball", joint.ball, stress)
-        yield from _limit_remarks("ball", joint.ball, stress, lambda: stress, pressure)
+        yield from _exceeded_strength_remarks("ball", joint.ball, stress, lambda: stress, pressure)
         if not joint.ball.strengths:
             yield logical_not(stress > _SAFE_STRAIN * joint.ball.young), _BALL_UNCHECKED
 
@@ -197,7 +197,7 @@ def _estimate_von_mises(contact: Any) -> Array:
     return middle if all_true(isfinite(middle) | is_missing(contact.status)) is not False else contact.von_mises
 
 
-def _limit_remarks(
+def _exceeded_strength_remarks(
     body: str, material: Material, upper_bound: Array, von_mises: Callable[[], Array], pressure: Array
 ) -> Iterator[tuple[Array, str]]:
     """Yield a mask of acceptable points and a note for each strength of a material that is exceeded.
@@ -211,7 +211,10 @@ def _limit_remarks(
         ratio = (pressure if is_pressure_limit else von_mises()) / strength
         stress = "pressure" if is_pressure_limit else "von Mises stress"
         limit = f": a linear result is valid up to {MAX_ELASTIC_UTILISATION:g} times" if name == "yield_stress" else ""
-        yield logical_not(ratio > 1), f"{stress} {_ratio_text(ratio)} the {STRENGTH[name].title} of the {body}{limit}"
+        yield (
+            logical_not(ratio > 1),
+            f"{stress} {_stress_ratio_text(ratio)} the {STRENGTH[name].title} of the {body}{limit}",
+        )
 
 
 def _linearity_remarks(body: str, material: Material, stress: Array) -> Iterator[tuple[Array, str]]:
@@ -225,7 +228,7 @@ def _linearity_remarks(body: str, material: Material, stress: Array) -> Iterator
     )
     if all_true(linear) is not False:
         return
-    ratio_text = _ratio_text(where(linear, nan, stress / limit))
+    ratio_text = _stress_ratio_text(where(linear, nan, stress / limit))
     title = LINEARITY["proportional_limit"].title
     yield linear, f"estimated von Mises stress {ratio_text} the {title} of the {body}: {_SOFTER}"
 
@@ -233,7 +236,7 @@ def _linearity_remarks(body: str, material: Material, stress: Array) -> Iterator
 _SOFTER = "its secant modulus is below E, so d and ε are larger and pmax is smaller"
 
 
-def _ratio_text(ratio: Array) -> str:
+def _stress_ratio_text(ratio: Array) -> str:
     """Format a ratio of stress to strength, such as "2.5 times"; "up to 2.5 times" for an array."""
     ratios = to_numpy(ratio)
     digits_text = f"{numpy.nanmax(ratios, initial=0.0):.2g}"

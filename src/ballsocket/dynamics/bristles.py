@@ -7,7 +7,13 @@ from typing import ClassVar
 
 from ..core.arrays import Array, safe_divisor, sqrt, where
 from ..core.sources import Source
-from .friction import CoulombCoefficients, effective_slip, friction_coefficient, rolling_slip_ratio, set_checked_number
+from .friction import (
+    CoulombCoefficients,
+    check_and_store_number,
+    effective_slip,
+    friction_coefficient,
+    rolling_slip_ratio,
+)
 from .reaction import BallCentre, Sliding, versine
 
 Deflections = tuple[Array, Array, Array, Array]
@@ -70,11 +76,11 @@ class Bristles(CoulombCoefficients):
 
     def __post_init__(self) -> None:
         for name in ("coefficient", "damping", "viscous"):
-            set_checked_number(
+            check_and_store_number(
                 self, name, 0.0, "friction must be at least 0 and finite; negative friction would generate energy"
             )
         for name in ("stiffness", "stribeck_speed", "release"):
-            set_checked_number(self, name, 5e-324, "it must be above 0 and finite")
+            check_and_store_number(self, name, 5e-324, "it must be above 0 and finite")
         self.check_static()
 
 

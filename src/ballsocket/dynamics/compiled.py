@@ -153,14 +153,14 @@ def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no
 
     The components of the tangent stiffness are xx, yy, zz, xy, yz, zx.
     """
-    centre = reaction.centre_of(position[0], position[1], position[2], constants.clearance)
+    centre = reaction.ball_centre_at(position[0], position[1], position[2], constants.clearance)
     return load_from_contact(centre, reaction.elastic_contact(potential, centre, constants), velocity, spin, constants)
 
 
 def load_from_contact(centre, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
     """Compute force, moment, energy and tangent stiffness from the elastic contact and the motion of the ball."""
     fx, fy, fz, mx, my, mz = reaction.force_and_moment(centre, contact, velocity, spin, constants)
-    return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(centre, contact, constants)
+    return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent_stiffness(centre, contact, constants)
 
 
 _BLOCK_SIZE = 256
@@ -178,13 +178,13 @@ def _compiled_batch_loop() -> Any:
         for first in range(0, len(energy), _BLOCK_SIZE):
             last = min(first + _BLOCK_SIZE, len(energy))
             for i in range(first, last):
-                centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                U, F, k = potential(reaction.ramp(centre.indentation, constants.smoothing)[0])
+                centre = reaction.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                U, F, k = potential(reaction.smooth_ramp(centre.indentation, constants.smoothing)[0])
                 block[i - first, 0], block[i - first, 1], block[i - first, 2] = U, F, k
             for i in range(first, last):
-                centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                centre = reaction.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
                 slopes = block[i - first, 0], block[i - first, 1], block[i - first, 2]
-                rounded = reaction.ramp(centre.indentation, constants.smoothing)
+                rounded = reaction.smooth_ramp(centre.indentation, constants.smoothing)
                 contact = reaction.elastic_from_slopes(centre, rounded, slopes, constants)
                 v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
                 w = spin[i, 0], spin[i, 1], spin[i, 2]
@@ -205,8 +205,8 @@ def _compiled_march() -> Any:
 for _formula in (
     kinematics.linear_energy,
     kinematics.circular_energy,
-    reaction.ramp,
-    reaction.ramp_value,
+    reaction.smooth_ramp,
+    reaction.smooth_ramp_value,
     reaction._corner_polynomial,
     reaction.rim_share,
     friction.widening_factor,
@@ -214,7 +214,7 @@ for _formula in (
     friction.friction_coefficient,
     friction.rolling_slip_ratio,
     friction.effective_slip,
-    reaction.centre_of,
+    reaction.ball_centre_at,
     reaction.elastic_contact,
     reaction.elastic_at_rim,
     reaction.dome_angle,
@@ -223,13 +223,13 @@ for _formula in (
     reaction.versine,
     reaction.force_and_moment,
     reaction.dissipation,
-    reaction.tangent,
+    reaction.tangent_stiffness,
     stepping.end_state,
     stepping.surface_speed,
     stepping.mean_contact,
     stepping.step_residual,
     stepping.newton_correction,
-    stepping.advance,
+    stepping.advance_one_step,
     loads_at,
 ):
     jit_formula(_formula)

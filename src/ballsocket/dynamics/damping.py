@@ -49,10 +49,10 @@ class Damping:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
-        _check_and_store(
+        _check_and_store_number(
             self, "hysteresis", "damping must be at least 0 and finite; negative damping would generate energy"
         )
-        _check_and_store(self, "time", "a retardation time (s) must be at least 0 and finite")
+        _check_and_store_number(self, "time", "a retardation time (s) must be at least 0 and finite")
 
     def restitution(self, speed: float) -> float:
         """Compute the coefficient of restitution at an impact speed in mm/s, for the hysteresis χ without τ.
@@ -62,8 +62,8 @@ class Damping:
         return restitution_of(self.hysteresis * speed)
 
 
-def _check_and_store(damping: Damping, name: str, allowed: str) -> None:
-    """Check a number of a damping against its limits, and store it as a float."""
+def _check_and_store_number(damping: Damping, name: str, allowed: str) -> None:
+    """Check a field of a `Damping` against its limits, and store it as a float."""
     value = check_number(name, getattr(damping, name))
     require(name, value, 0.0 <= value < math.inf, allowed)
     object.__setattr__(damping, name, value)

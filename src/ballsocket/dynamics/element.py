@@ -21,15 +21,15 @@ from ..problem.cup import Cup
 from .bristles import Bristles
 from .damping import Damping
 from .friction import Friction
-from .load import Load, apply_bristles
-from .matrices import vector
+from .load import Load, add_bristle_loads
+from .matrices import join_vector
 from .potential import Potential, adhesion_potential, energy_derivatives_of_array, potential_of
 from .reaction import (
     NO_CONTACT,
     BallCentre,
     Constants,
     Vector,
-    centre_of,
+    ball_centre_at,
     elastic_contact,
     force_and_moment,
     remove_tension_damping,
@@ -185,12 +185,12 @@ class ForceElement:
         if not isinstance(self.friction, Bristles):
             return load
         with numpy.errstate(all="ignore"):
-            return apply_bristles(load, self.friction, deflection)
+            return add_bristle_loads(load, self.friction, deflection)
 
     def _load_of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
         """Compute the load at one state, given as tuples of plain numbers."""
         constants = self.constants
-        centre = centre_of(*position, constants.clearance)
+        centre = ball_centre_at(*position, constants.clearance)
         is_adhesive = self.stretch > 0.0
         if is_adhesive:
             centre = self._attached_centre(centre, attached)
@@ -212,12 +212,12 @@ class ForceElement:
         states = [_as_array_like(position, value) for value in (position, velocity, spin)]
         r, v, w = (_split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
         with numpy.errstate(all="ignore"):  # states without a result have a status
-            centre = self._attached_centre(centre_of(*r, self.constants.clearance), attached)
+            centre = self._attached_centre(ball_centre_at(*r, self.constants.clearance), attached)
             self._validity_monitor.check_array(centre.indentation)
             contact = elastic_contact(self.potential, centre, self.constants)
             contact = remove_tension_damping(contact) if self.stretch > 0.0 else contact
             loads = force_and_moment(centre, contact, v, w, self.constants)
-        force, moment = vector(object, *loads[:3]), vector(object, *loads[3:])
+        force, moment = join_vector(object, *loads[:3]), join_vector(object, *loads[3:])
         return Load(force, moment, contact.energy, self, centre, contact, r, v, w)
 
     def _attached_centre(self, centre: BallCentre, attached: Any) -> BallCentre:

@@ -32,7 +32,7 @@ class CoulombCoefficients:
         """Check that the static coefficient of friction is not below the sliding one; ValueError otherwise."""
         if self.static_coefficient is not None:
             allowed = "static friction must be at least the sliding friction"
-            set_checked_number(self, "static_coefficient", self.coefficient, allowed)
+            check_and_store_number(self, "static_coefficient", self.coefficient, allowed)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,15 +81,15 @@ class Friction(CoulombCoefficients):
 
     def __post_init__(self) -> None:
         for name in ("coefficient", "viscous"):
-            set_checked_number(
+            check_and_store_number(
                 self, name, 0.0, "friction must be at least 0 and finite; negative friction would generate energy"
             )
         for name in ("transition_speed", "stribeck_speed"):
-            set_checked_number(self, name, 5e-324, "a speed (mm/s) must be above 0 and finite")
+            check_and_store_number(self, name, 5e-324, "a speed (mm/s) must be above 0 and finite")
         self.check_static()
 
 
-def set_checked_number(instance: object, name: str, low: float, allowed: str) -> None:
+def check_and_store_number(instance: object, name: str, low: float, allowed: str) -> None:
     """Check a number of a frozen dataclass against its limits, and store it as a float."""
     value = check_number(name, getattr(instance, name))
     require(name, value, low <= value < math.inf, allowed)

@@ -16,7 +16,7 @@ from ..core.checks import shown
 from ..core.deprecation import RenamedAttribute
 from . import reaction as formulas
 from .bristles import Bristles, Deflections, bristle_forces
-from .matrices import damping_matrix, matrix, vector
+from .matrices import damping_matrix, join_matrix, join_vector
 from .reaction import BallCentre, Constants, Elastic, Vector, normal_force, sliding_state
 
 
@@ -151,12 +151,12 @@ class Load(NamedTuple):
         if type(self.force) is tuple:
             return self._tangent_rows
         with numpy.errstate(all="ignore"):
-            return matrix(self._tangent_rows)
+            return join_matrix(self._tangent_rows)
 
     @property
     def _tangent_rows(self) -> Any:
         """Rows of the tangent stiffness matrix in N/mm, as tuples of components."""
-        xx, yy, zz, xy, yz, zx = formulas.tangent(self.centre, self.contact, self.element.constants)
+        xx, yy, zz, xy, yz, zx = formulas.tangent_stiffness(self.centre, self.contact, self.element.constants)
         return (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
 
     @property
@@ -176,7 +176,7 @@ class Load(NamedTuple):
     @_without_warnings
     def status(self) -> ContactState | Array:
         """State of the contact (free, contact, at the rim, ...): a `ContactState`, or an array of its codes."""
-        return status_of(self.centre, self.contact, self._is_finite, self.element.constants)
+        return contact_state_of(self.centre, self.contact, self._is_finite, self.element.constants)
 
     def summary(self) -> dict[str, Any]:
         """Return the load as a dictionary for JSON, in N, mm, N mm, MPa and degrees; missing numbers are None."""
@@ -193,7 +193,7 @@ class Load(NamedTuple):
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences on states with contact at the rim or without a load, with their positions."""
-        return describe_states(self)
+        return describe_contact_states(self)
 
     @property
     def _is_finite(self) -> Array:
@@ -208,7 +208,7 @@ class Load(NamedTuple):
     @property
     def _join_components(self) -> Any:
         """Function that joins three components to a vector of the same type as the force."""
-        return partial(vector, type(self.force))
+        return partial(join_vector, type(self.force))
 
     @staticmethod
     def _split_vector(packed: Any) -> Vector:
@@ -229,7 +229,9 @@ def _to_json_value(value: Any) -> Any:
     return [to_list(part) for part in value] if type(value) is tuple else to_list(value)
 
 
-def status_of(centre: BallCentre, contact: Elastic, is_finite: Array, constants: Constants) -> ContactState | Array:
+def contact_state_of(
+    centre: BallCentre, contact: Elastic, is_finite: Array, constants: Constants
+) -> ContactState | Array:
     """Determine the state of the contact (free, contact, at the rim, ...), as `ContactState` or array of codes.
 
     `is_finite` is False for states that are not finite.
@@ -252,7 +254,7 @@ def status_of(centre: BallCentre, contact: Elastic, is_finite: Array, constants:
     return xp.astype(code, xp.int8)
 
 
-def describe_states(load: Load) -> tuple[str, ...]:
+def describe_contact_states(load: Load) -> tuple[str, ...]:
     """Describe contacts at the rim and states without a load in sentences, with their first positions."""
     codes = numpy.atleast_1d(arrays.to_numpy(load.status)).ravel()
     return tuple(_describe_state(load, codes, state) for state in list(ContactState)[2:] if (codes == state).any())
@@ -272,8 +274,8 @@ def _value_at_index(values: Array, codes: Numbers, index: int) -> float:
     return float(numpy.broadcast_to(arrays.to_numpy(values), codes.shape).ravel()[index])
 
 
-def apply_bristles(load: Load, bristles: Bristles, deflection: Any) -> Load:
-    """Return a load with the force, moment and dissipated power of bristles added."""
+def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
+    """Add friction force, moment and dissipated power of bristles to a load, and return the sum."""
     centre, constants = load.centre, load.element.constants
     speed = sum(rate * component for rate, component in zip(load.velocity, centre[1:4], strict=True))
     slip = sliding_state(centre, normal_force(load.contact, speed, constants), load.velocity, load.spin, constants)
@@ -284,11 +286,11 @@ def apply_bristles(load: Load, bristles: Bristles, deflection: Any) -> Load:
     lever_force = _cross_product(direction, friction_force)
     kind = type(load.force)
     return load._replace(
-        force=vector(kind, *(a + b for a, b in zip(_vector_components(load.force), friction_force, strict=True))),
-        moment=vector(
+        force=join_vector(kind, *(a + b for a, b in zip(_vector_components(load.force), friction_force, strict=True))),
+        moment=join_vector(
             kind, *(R1 * a + drilling_moment * component for a, component in zip(lever_force, direction, strict=True))
         ),
-        deflection_rate=vector(kind, *rate),
+        deflection_rate=join_vector(kind, *rate),
         bristle_dissipation=N * dissipated,
     )
 

@@ -17,13 +17,13 @@ from .reaction import (
     Sliding,
     Vector,
     normal_force,
-    ramp,
     sliding_state,
+    smooth_ramp,
     versine,
 )
 
 
-def vector(kind: type, *components: Array) -> Any:
+def join_vector(kind: type, *components: Array) -> Any:
     """Join components to a vector: a tuple, or an array with the components along its last axis."""
     if kind is tuple:
         return components
@@ -39,7 +39,7 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     velocity, spin = _floats_to_arrays(velocity), _floats_to_arrays(spin)
     direction, unit, zero = _stack_components(centre.x, centre.y, centre.z), *_ones_and_zeros(centre.distance)
     normal = direction[..., :, None] * direction[..., None, :]
-    tangential = matrix(((unit, zero, zero), (zero, unit, zero), (zero, zero, unit))) - normal
+    tangential = join_matrix(((unit, zero, zero), (zero, unit, zero), (zero, zero, unit))) - normal
     normal_damping, tangential_damping = _damping_coefficients(centre, contact, velocity, constants)
     normal_block = normal_damping[..., None, None] * normal + tangential_damping[..., None, None] * tangential
     slip = sliding_state(
@@ -47,7 +47,7 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     )
     slip = Sliding(*_floats_to_arrays(slip))
     x, y, z = centre.x, centre.y, centre.z
-    rotation = constants.ball_radius * matrix(((zero, z, -y), (-z, zero, x), (y, -x, zero)))
+    rotation = constants.ball_radius * join_matrix(((zero, z, -y), (-z, zero, x), (y, -x, zero)))
     lever = arrays.sqrt(slip.lever_squared)
     xp = arrays.namespace(direction)
     # rows: v across the load, R1 ω x n, and the speed at the lever; columns: v and ω
@@ -80,7 +80,7 @@ def _damping_coefficients(
     force = contact.normal + damping_rate * _normal_speed(centre, velocity)
     if constants.smoothing > 0.0:
         width = SMOOTHING_SHARE * contact.damped_force
-        slope = ramp(force / arrays.safe_divisor(width), 1.0)[1]
+        slope = smooth_ramp(force / arrays.safe_divisor(width), 1.0)[1]
     else:
         slope = where(force > 0.0, 0.0 * force + 1.0, 0.0 * force)
     return damping_rate * slope, constants.time * contact.damped_force * centre.inverse_distance
@@ -157,7 +157,7 @@ def _stack_components(*components: Array) -> Any:
     return arrays.namespace(*components).stack(components, axis=-1)
 
 
-def matrix(rows: Any) -> Any:
+def join_matrix(rows: Any) -> Any:
     """Join rows of components to matrices, along the last two axes of an array."""
     stacked = [_stack_components(*row) for row in rows]
     return arrays.namespace(*stacked).stack(stacked, axis=-2)

@@ -84,7 +84,7 @@ NO_CONTACT = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
 """Elastic contact of a ball that does not touch the socket."""
 
 
-def centre_of(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
+def ball_centre_at(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
     """Compute distance, direction and indentation of the ball centre from its coordinates in mm."""
     distance = sqrt(x * x + y * y + z * z)
     inverse_distance = 1.0 / safe_divisor(distance)
@@ -100,7 +100,7 @@ def centre_of(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
 
 def elastic_contact(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
     """Compute the elastic contact at a position of the ball, with the first touch smoothed over ± `smoothing`."""
-    smoothed_depth = ramp(centre.indentation, constants.smoothing)
+    smoothed_depth = smooth_ramp(centre.indentation, constants.smoothing)
     return elastic_from_slopes(centre, smoothed_depth, potential(smoothed_depth[0]), constants)
 
 
@@ -180,7 +180,7 @@ def normal_force(elastic: Elastic, speed: Array, constants: Constants) -> Array:
     damping_rate = constants.hysteresis * elastic.damped_force + constants.time * elastic.damped_stiffness
     force = elastic.normal + damping_rate * speed
     if constants.smoothing > 0.0:
-        return ramp_value(force, SMOOTHING_SHARE * elastic.damped_force)
+        return smooth_ramp_value(force, SMOOTHING_SHARE * elastic.damped_force)
     lower_limit = where(elastic.normal < 0.0, elastic.normal, 0.0)  # negative for an adhesive ball
     return where(force < lower_limit, lower_limit, force)  # keeps NaN
 
@@ -317,7 +317,7 @@ def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Ve
     return (normal - contact.normal) * speed + drag * squared_velocity + slip.rate * friction_power
 
 
-def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple[Array, ...]:
+def tangent_stiffness(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple[Array, ...]:
     """Compute the tangent stiffness ∂²U/∂r² in N/mm: components xx, yy, zz, xy, yz, zx."""
     nx, ny, nz, px, py, pz = centre.x, centre.y, centre.z, contact.px, contact.py, contact.pz
     # where the centres coincide, without clearance, the stiffness is isotropic
@@ -337,7 +337,7 @@ def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple
     return xx, yy, zz, xy, yz, zx
 
 
-def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
+def smooth_ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
     """Compute max(y, 0) with a smooth corner within ± `width`, and its first and second derivative."""
     if width == 0.0:
         zero = 0.0 * y
@@ -347,7 +347,7 @@ def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
     return where(y >= width, y, 2.0 * width * _corner_polynomial(t)), t * t * t * (10.0 - 15.0 * t + 6.0 * t * t), bend
 
 
-def ramp_value(y: Array, width: Array) -> Array:
+def smooth_ramp_value(y: Array, width: Array) -> Array:
     """Compute max(y, 0) with a smooth corner within ± `width`; the width may be an array."""
     span = where(width > 0.0, width, 1.0)
     t = clip((y + width) / (2.0 * span), 0.0, 1.0)

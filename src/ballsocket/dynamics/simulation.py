@@ -65,11 +65,11 @@ def simulate(
     force_element = getattr(element, "element", element)
     if not isinstance(force_element, ForceElement):
         raise TypeError(f"element must be a ForceElement, got {shown(element)}")
-    checked_mass = _check_inertia("mass", mass)
+    checked_mass = _check_mass_or_inertia("mass", mass)
     solid_ball = 0.4 * checked_mass * element.constants.ball_radius**2
-    checked_inertia = solid_ball if inertia is None else _check_inertia("inertia", inertia)
-    duration = _check_positive("duration", duration)
-    steps = duration / _check_positive("step", step)
+    checked_inertia = solid_ball if inertia is None else _check_mass_or_inertia("inertia", inertia)
+    duration = _check_positive_number("duration", duration)
+    steps = duration / _check_positive_number("step", step)
     require("the number of steps", steps, steps <= _MAX_STEPS, f"at most {_MAX_STEPS:g}")
     count = max(int(numpy.ceil(steps - 1e-9)), 1)
     initial = BallState(*components(position), *components(velocity), *components(spin))
@@ -77,8 +77,8 @@ def simulate(
         element, force_element, checked_mass, checked_inertia, initial, pull, duration / count, count
     )
     if ContactState(force_element(initial[:3], initial[3:6], initial[6:]).status).failed:
-        return problem.failed_motion()
-    return problem.advance_with_contact_state() if force_element.internal_state else problem.advance()
+        return problem.motion_without_steps()
+    return problem.simulate_with_contact_state() if force_element.internal_state else problem.simulate_by_energy_steps()
 
 
 _MAX_STEPS = 1e8
@@ -98,7 +98,7 @@ class _InitialValueProblem:
     step: float
     count: int
 
-    def failed_motion(self) -> Motion:
+    def motion_without_steps(self) -> Motion:
         """Return a motion that ends at the initial state, because this state has no load."""
         states, none = numpy.array([self.initial]), numpy.zeros(1)
         return self._build_motion(
@@ -109,7 +109,7 @@ class _InitialValueProblem:
             end_reason=_failure_note(self.force_element, states[0]),
         )
 
-    def advance(self) -> Motion:
+    def simulate_by_energy_steps(self) -> Motion:
         """Simulate the motion by energy-momentum steps."""
         step, count, potential_and_constants = self.step, self.count, (self.element.potential, self.element.constants)
         states, dissipated = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
@@ -140,7 +140,7 @@ class _InitialValueProblem:
             states, self.force_element(position), dissipated_energy=dissipated, end_reason=end_reason, **sums
         )
 
-    def advance_with_contact_state(self) -> Motion:
+    def simulate_with_contact_state(self) -> Motion:
         """Simulate the motion with bristles or adhesion by the integrator LSODA."""
         ball = StatefulIntegrator(
             element=self.force_element,
@@ -192,7 +192,7 @@ _MASS_RANGE = (1e-100, 1e100)
 """Range of masses and moments of inertia whose products are neither zero nor infinite."""
 
 
-def _check_inertia(name: str, value: Any) -> float:
+def _check_mass_or_inertia(name: str, value: Any) -> float:
     """Check that a mass or moment of inertia lies in the allowed range, and return it."""
     number = check_number(name, value)
     low, high = _MASS_RANGE
@@ -200,7 +200,7 @@ def _check_inertia(name: str, value: Any) -> float:
     return number
 
 
-def _check_positive(name: str, value: Any) -> float:
+def _check_positive_number(name: str, value: Any) -> float:
     """Check that a number is above 0 and finite, and return it."""
     number = check_number(name, value)
     require(name, number, 0.0 < number < inf, "it must be above 0 and finite")

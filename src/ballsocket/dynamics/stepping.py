@@ -17,7 +17,7 @@ from .reaction import (
     Constants,
     Elastic,
     Vector,
-    centre_of,
+    ball_centre_at,
     dissipation,
     dome_angle,
     elastic_contact,
@@ -55,7 +55,7 @@ class StepResult(NamedTuple):
     converged: bool
 
 
-def advance(  # type: ignore[no-untyped-def]
+def advance_one_step(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pull: Vector, h: float
 ) -> StepResult:
     """Advance the state of a ball by one time step of h seconds.
@@ -64,7 +64,7 @@ def advance(  # type: ignore[no-untyped-def]
     spin at the midpoint of the step. Each iteration solves for them with constant stiffness and rate of friction.
     """
     mass_rate, inertia_rate = 2.0 * mass / h, 2.0 * inertia / h
-    initial = centre_of(ball.x, ball.y, ball.z, constants.clearance)
+    initial = ball_centre_at(ball.x, ball.y, ball.z, constants.clearance)
     midpoint = Midpoint(
         ball.vx + pull[0] / mass_rate,
         ball.vy + pull[1] / mass_rate,
@@ -189,8 +189,8 @@ def mean_contact(  # type: ignore[no-untyped-def]
     the differences of the invariants, also for a step that hardly changes them.
     """
     ax, ay, az = midpoint.x, midpoint.y, midpoint.z
-    half = centre_of(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, constants.clearance)
-    end = centre_of(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, constants.clearance)
+    half = ball_centre_at(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, constants.clearance)
+    end = ball_centre_at(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, constants.clearance)
     mean = 0.5 * (distance + end.distance)
     nx, ny, nz, over = half.x, half.y, half.z, 1.0 / safe_divisor(mean)
     shortening, depth = half.distance * over, mean - constants.clearance
@@ -337,7 +337,7 @@ def march(  # type: ignore[no-untyped-def]
     for number in range(len(dissipated) - 1):
         row = pulls[number]
         pull = row[0], row[1], row[2]
-        after = advance(potential, constants, ball, mass, inertia, pull, h)
+        after = advance_one_step(potential, constants, ball, mass, inertia, pull, h)
         ball = after.ball
         states[number + 1, :] = ball
         dissipated[number + 1] = dissipated[number] + after.dissipated

@@ -73,7 +73,9 @@ class ValidityMonitor:
 
     def _exceeds_range(self, contact: Contact) -> bool:
         """Check if a contact is invalid for a reason other than its small size."""
-        return not contact.valid and not all(map(partial(_is_satisfied_by_larger_contact, contact), contact._limits))
+        return not contact.valid and not all(
+            map(partial(_is_satisfied_by_larger_contact, contact), contact._validity_ranges)
+        )
 
 
 def _is_satisfied_by_larger_contact(contact: Contact, limit: Range) -> bool:

@@ -15,7 +15,7 @@ from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
 from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement, reaction
-from ..dynamics.load import status_of
+from ..dynamics.load import contact_state_of
 from ..dynamics.potential import CurvePotential, energy_curve
 from ..dynamics.reaction import BallCentre, Constants, Elastic, Vector
 from ..version import __version__
@@ -73,7 +73,7 @@ class Recording:
     @cached_property
     def centre(self) -> BallCentre:
         """Recorded position of the ball centre."""
-        return reaction.centre_of(*self.state[0], self.constants.clearance)
+        return reaction.ball_centre_at(*self.state[0], self.constants.clearance)
 
     @cached_property
     def contact(self) -> Elastic:
@@ -107,12 +107,12 @@ class Recording:
     @cached_property
     def status(self) -> Outputs:
         """Recorded code of the `ContactState` (free, contact, at the rim, ...)."""
-        return {"status": status_of(self.centre, self.contact, isfinite(self.centre.distance), self.constants)}
+        return {"status": contact_state_of(self.centre, self.contact, isfinite(self.centre.distance), self.constants)}
 
     @cached_property
     def tangent(self) -> Outputs:
         """Recorded tangent stiffness ∂²U/∂r² in N/mm, nine components by C variable."""
-        xx, yy, zz, xy, yz, zx = reaction.tangent(self.centre, self.contact, self.constants)
+        xx, yy, zz, xy, yz, zx = reaction.tangent_stiffness(self.centre, self.contact, self.constants)
         return _by_array_element("tangent", (xx, xy, zx, xy, yy, yz, zx, yz, zz))
 
     @cached_property
@@ -198,9 +198,9 @@ class CElement:
             name=self.name,
             NAME=self.name.upper(),
             along=_read_template("curve.c"),
-            curves="\n".join(_curve_function(name, curve) for name, curve in sorted(recording.curves.items())),
+            curves="\n".join(_curve_function_code(name, curve) for name, curve in sorted(recording.curves.items())),
             defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
-            checks="\n".join(_range_check(parameter.name, parameter.above) for parameter in TUNABLES),
+            checks="\n".join(_range_check_statement(parameter.name, parameter.above) for parameter in TUNABLES),
             first_touch=c_number(constants.clearance - constants.smoothing),
             load=c_statements({**recording.status, **recording.load}),
             pressed=c_statements({**recording.status, **recording.contact_size}),
@@ -229,14 +229,14 @@ class CElement:
         return {"version": __version__, "model": self.element.model.name, "joint": joint}
 
 
-def _range_check(name: str, is_positive: bool) -> str:
+def _range_check_statement(name: str, is_positive: bool) -> str:
     """Return the C statement that rejects a parameter outside its range."""
     operator, allowed = (">", "above 0") if is_positive else (">=", "0 or more")
     condition = f"p->{name} {operator} 0.0 && p->{name} < INFINITY"
     return f'    if (!({condition})) return "{name} must be finite and {allowed}";'
 
 
-def _curve_function(name: str, curve: CurveLaw) -> str:
+def _curve_function_code(name: str, curve: CurveLaw) -> str:
     """Return the C code of a fitted curve: its coefficients and the function that evaluates it."""
     pieces: Numbers = curve.pieces
     rows = ",\n".join("    " + ", ".join(map(c_number, row)) for row in pieces.tolist())

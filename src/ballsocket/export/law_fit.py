@@ -199,7 +199,7 @@ def _fit_exponential(
     )
 
 
-def depth_of(element: ForceElement, load: dict[str, float]) -> float:
+def fit_depth(element: ForceElement, load: dict[str, float]) -> float:
     """Return the largest indentation in mm of a fit: that under a given load, else the largest valid one."""
     if load:
         model: Model = element.model

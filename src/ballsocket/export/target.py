@@ -29,17 +29,17 @@ class ExportJob:
     depth: float
 
     @cached_property
-    def program(self) -> CElement:
+    def c_program(self) -> CElement:
         """C source and header of the force element."""
         return CElement(element=self.element, name=self.name)
 
     @cached_property
-    def power(self) -> PowerFit:
+    def fitted_power_law(self) -> PowerFit:
         """Fitted power law F = k d^n of the force element."""
         return power_fit(self.element, self.depth)
 
     @cached_property
-    def expression(self) -> ExpressionFit:
+    def fitted_expression(self) -> ExpressionFit:
         """Force law fitted as one expression of the distance."""
         return expression_fit(self.element, self.depth)
 
@@ -47,7 +47,7 @@ class ExportJob:
     def template_context(self) -> dict[str, str]:
         """Values for the placeholders of file templates, by name."""
         return {
-            **self.program.about,
+            **self.c_program.about,
             "name": self.name,
             "NAME": self.name.upper(),
             "library": f"_{self.name}{LIBRARY_ENDING}",
@@ -62,7 +62,7 @@ class ExportJob:
 
     def program_texts(self) -> dict[str, str]:
         """Return the texts of the C header and source, by file name."""
-        return {f"{self.name}.h": self.program.header, f"{self.name}.c": self.program.source}
+        return {f"{self.name}.h": self.c_program.header, f"{self.name}.c": self.c_program.source}
 
 
 @dataclass(frozen=True, kw_only=True)

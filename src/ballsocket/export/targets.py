@@ -36,7 +36,7 @@ def _compile_library(job: ExportJob, folder: Path) -> str:
 
 def _opensim_texts(job: ExportJob) -> Texts:
     """Return the text of the OpenSim file with an expression force, by file name."""
-    fitted_expression, element = job.expression, job.element
+    fitted_expression, element = job.fitted_expression, job.element
     accuracy = fitted_expression.range_note or f"within {100 * fitted_expression.error:.1g} % of the law"
     hysteresis = element.damping.hysteresis if element.damping else 0.0
     expression = fitted_expression.text("d", "ddot", 1e3 * hysteresis)
@@ -82,7 +82,7 @@ def _drake_texts(job: ExportJob) -> Texts:
 
 def _exudyn_texts(job: ExportJob) -> Texts:
     """Return the texts of the Python module and the Exudyn module with its power law, by file name."""
-    power, constants = job.power, job.element.constants
+    power, constants = job.fitted_power_law, job.element.constants
     fit = {
         "stiffness": repr(power.stiffness * 1e3**power.exponent),
         "exponent": repr(power.exponent),
@@ -121,7 +121,7 @@ def _table_texts(job: ExportJob) -> Texts:
     """Return the texts of the table of the force law and of the fitted power law, by file name."""
     return {
         f"{job.name}_law.csv": _law_table(job.element, job.depth),
-        f"{job.name}_power.txt": _power_law_text(job.element, job.power, __version__),
+        f"{job.name}_power.txt": _power_law_text(job.element, job.fitted_power_law, __version__),
     }
 
 
@@ -166,7 +166,7 @@ TARGETS: Mapping[str, Target] = {
             name="opensim",
             title="an expression force in an .osim file",
             texts=_opensim_texts,
-            note=lambda job: job.expression.range_note,
+            note=lambda job: job.fitted_expression.range_note,
             without=_LINE_OF_CENTRES,
         ),
         Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco_texts, compiled=_compile_plugin),

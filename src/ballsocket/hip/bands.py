@@ -11,7 +11,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_arguments
-from .contact_checks import list_notes
+from .contact_checks import list_check_notes
 from .variability import RESULT_UNITS, CohortResult, PatientVariability, summarize_distributions
 from .wear_law import coefficient_field
 
@@ -171,7 +171,7 @@ class Bands:
     def nominal_notes(self) -> tuple[str, ...]:
         """Sentences on the simulation of the nominal patient: contact model, cycle, cup and laws."""
         checks = [("nominal patient, in the first cycle", self.variability.coarse_simulation.unworn_checks)]
-        return (*list_notes(checks), *self.variability.use.notes)
+        return (*list_check_notes(checks), *self.variability.use.notes)
 
     @property
     def _coefficient_note(self) -> tuple[str, ...]:

@@ -76,7 +76,7 @@ class CohortRun:
 
     @property
     def pieces(self) -> range:
-        """Indices of all pieces (groups of patients), from 0."""
+        """Indices from 0 of the pieces of work; each piece is a group of patients."""
         return range(ceil(len(self) / PATIENTS_PER_PIECE))
 
     def patient_numbers(self, piece: int) -> range:
@@ -155,7 +155,7 @@ class CohortStore(PieceStore):
     n_patients: int = 0
 
     @property
-    def _label_path(self) -> Path:
+    def _label_file_path(self) -> Path:
         """Path of the label file, which identifies the cohort."""
         return self.folder / _LABEL_NAME
 
@@ -172,8 +172,8 @@ class CohortStore(PieceStore):
             The folder is not writable.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
-        if not self._label_path.exists():
-            write_text(self._label_path, json.dumps({"identity": self.identity}))
+        if not self._label_file_path.exists():
+            write_text(self._label_file_path, json.dumps({"identity": self.identity}))
 
     def check(self) -> None:
         """Check that an existing store belongs to this cohort; ValueError otherwise.
@@ -183,7 +183,7 @@ class CohortStore(PieceStore):
         ValueError
             The folder has another cohort or a damaged label.
         """
-        label = self._label_path
+        label = self._label_file_path
         if not label.exists():
             return
         try:

@@ -221,7 +221,7 @@ def largest_utilisation(checks: Sequence[ContactCheck]) -> float | None:
     return max((check.utilisation for check in checks if check.utilisation is not None), default=None)
 
 
-def list_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator[str]:
+def list_check_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator[str]:
     """Yield the notes of contact checks at several stages of a run, each kind of note only once.
 
     A missing yield stress holds throughout the run: its note names no instant.

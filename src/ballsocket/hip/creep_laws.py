@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from ..core.checks import NamedItems, known_name
 from ..core.deprecation import renamed_names
 from .creep_law import CreepLaw, constrained_share
-from .law_fields import law_field, list_unit, read_law, select_law
+from .law_fields import law_field, list_unit, read_law, select_law_class
 
 _MINUTE = 60.0
 """Seconds in a minute."""
@@ -145,7 +145,7 @@ def read_creep_law(table: Mapping[str, Any], poisson: float) -> CreepLaw:
         An unknown law or confinement, a missing key, a key of another law, or a value that is not allowed.
     """
     name = known_name("confinement", table.get("confinement", "unconfined"), _CONFINEMENTS)
-    law = select_law(table, CREEP_LAWS, "creep law")
+    law = select_law_class(table, CREEP_LAWS, "creep law")
     return read_law(table, CREEP_LAWS, law, confinement=_CONFINEMENTS[name](poisson))
 
 

@@ -243,7 +243,7 @@ class ElasticFoundation:
             kind=LinearGap,
         )
         bore_contact = BoreContact(compliance=self.compliance, gap=gap, tether=lateral_stiffness)
-        solved = self._solve_levels(bore_contact, levels, depth, start)
+        solved = self._solve_load_levels(bore_contact, levels, depth, start)
         level_pressure = solved.pressure.reshape(shape[0], -1)
         return CycleEquilibrium(
             displacement=levels.interpolate(solved.displacement),
@@ -252,10 +252,10 @@ class ElasticFoundation:
             levels=(solved.displacement, solved.pressure),
         )
 
-    def _solve_levels(
+    def _solve_load_levels(
         self, bore_contact: BoreContact, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
     ) -> EquilibriumBatch:
-        """Solve the contacts under the solved loads; restart those without convergence deeper."""
+        """Solve the contacts under all load levels; repeat unconverged ones from a deeper start."""
         level_count, sizes = len(levels.loads), magnitudes_and_directions(levels.loads)
         initial_guess = initial_displacement(self, self.compliance.uniform_stiffness, depth, *sizes)
         previous = None if start is None else start.levels

@@ -13,7 +13,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_names
-from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_notes
+from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes
 from .film import Lubricant
 from .hip_setup import HipSetup
 from .law_fields import law_summary
@@ -189,7 +189,7 @@ class History:
         """Sentences of the contact model, each kind only once."""
         later = (_AFTER_CYCLES.format(report.cycles) for report in self.reports)
         return tuple(
-            list_notes([(_FIRST_CYCLE, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
+            list_check_notes([(_FIRST_CYCLE, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
         )
 
     @property
@@ -231,7 +231,7 @@ class History:
                 "pressure_slide_integral_Nm": first.work,
                 "cross_shear_mean": first.cross_shear,
                 "crossing_angle_mean_deg": degrees(self.use.crossing_angle),
-                "edge": _edge_summary(self.worst),
+                "edge": _closest_approach_summary(self.worst),
                 "microseparation": None if separation is None else separation.summary(self.use.cycle),
                 "peaks": {
                     "force_N": first.max_force,
@@ -266,7 +266,7 @@ class History:
             "utilisation": largest_utilisation(checks),
             "contact": [check.summary() for check in checks],
         }
-        return {**report.summary(), **years, "edge": _edge_summary(edge), **contact}
+        return {**report.summary(), **years, "edge": _closest_approach_summary(edge), **contact}
 
 
 _THIN_LINER = 0.25
@@ -284,7 +284,7 @@ _AT_RIM = (
 _NOT_CONVERGED = "a contact did not balance its load: the results of this run are invalid"
 
 
-def _edge_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
+def _closest_approach_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
     """Return the closest approach to the rim as a dictionary for JSON; None without contact."""
     return None if worst is None else worst.summary()
 

@@ -284,7 +284,7 @@ def _describe_laws_with_key(key: str, laws: Mapping[str, type[AnyLaw]]) -> str:
     return f"the law {names[0]}" if len(names) == 1 else f"the laws {', '.join(names)}"
 
 
-def select_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:
+def select_law_class(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:
     """Select the class of a law by its name in a table, else by the keys in the table.
 
     Without such a key the first law of the registry is the default.

@@ -287,7 +287,7 @@ class SpringLoadedBall:
         )
 
     def _loads_after_displacement(self, forces: Numbers, displacement: Numbers) -> Numbers:
-        """Compute the loads (n, 3) in N from forces and displacements in mm along the spring."""
+        """Compute the loads (n, 3) in N: forces minus the spring force at displacements (n,) in mm."""
         return forces - self.spring.stiffness * displacement[:, None] * self._pull_direction
 
     def _ball_centre_on_rim(self, forces: Numbers, displacement: Numbers) -> Numbers:

@@ -109,7 +109,9 @@ class HipSimulation(HipSetup):
         finer_steps = replace(self, cycle=self.cycle.finer())
         finer_rings = replace(finer_steps, ring_width=max(self.ring_width / 2, MIN_RING_WIDTH))
         firsts = (self.first, finer_steps.first, finer_rings.first)
-        return _halving_error([first.volume for first in firsts]), _halving_error([first.depth for first in firsts])
+        return _relative_discretization_error([first.volume for first in firsts]), _relative_discretization_error(
+            [first.depth for first in firsts]
+        )
 
 
 _ERROR_RATIO = 1 / (1 - 2**-1.5)
@@ -120,7 +122,7 @@ the error by 3.
 """
 
 
-def _halving_error(values: list[float]) -> float:
+def _relative_discretization_error(values: list[float]) -> float:
     """Estimate the relative discretization error from results with coarse and halved steps and rings."""
     coarse, finer_steps, finer_rings = values
     if not finer_rings:

@@ -169,7 +169,7 @@ class SpringFoundation:
             directions=self.directions[:, cells],
             normals=self.normals[:, cells],
             areas=self.areas[cells],
-            neighbours=subset_neighbours(self.neighbours, cells),
+            neighbours=neighbours_in_subset(self.neighbours, cells),
         )
 
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
@@ -285,7 +285,7 @@ def grid_neighbours(grid: Grid) -> Numbers:
     return numpy.stack([previous_ring, next_ring, *ring_neighbours]).reshape(2, 2, -1)
 
 
-def subset_neighbours(neighbours: Numbers, cells: Numbers) -> Numbers:
+def neighbours_in_subset(neighbours: Numbers, cells: Numbers) -> Numbers:
     """Renumber the neighbour indices for a subset of cells; cells outside are replaced by the cell itself."""
     subset_indices = numpy.full(neighbours.shape[-1], -1)
     subset_indices[cells] = numpy.arange(len(cells))

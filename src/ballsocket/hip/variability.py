@@ -114,7 +114,7 @@ class PatientVariability:
                 require(f"the median of {name}", median, 0 < median < inf, "it must be positive")
 
     @cached_property
-    def _medians(self) -> dict[str, float]:
+    def _medians_by_name(self) -> dict[str, float]:
         """Median of each sampled quantity, by name."""
         return {name: float(distribution.frozen.median()) for name, distribution in self.distributions.items()}
 
@@ -122,7 +122,7 @@ class PatientVariability:
     def cycles_per_year(self) -> float | None:
         """Number of cycles of the nominal patient a year; None if unknown."""
         per_year = self.use.cycle.per_year
-        return self._medians.get("cycles_per_year") if per_year is None else per_year
+        return self._medians_by_name.get("cycles_per_year") if per_year is None else per_year
 
     @cached_property
     def coarse_simulation(self) -> HipSimulation:
@@ -180,7 +180,7 @@ class PatientVariability:
             return 1.0
         nominal = self.body_weight if name == "body_weight" else self.cycles_per_year
         require(name, values[name], 0 < values[name] < inf, "it must be positive")
-        return values[name] / (nominal or self._medians[name])
+        return values[name] / (nominal or self._medians_by_name[name])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -293,7 +293,7 @@ def join_results(results: Sequence[CohortResult]) -> CohortResult:
 
 def result_table(reports: Sequence[Report]) -> Numbers:
     """Tabulate the results named in `RESULT_UNITS` at each report: (reports, results)."""
-    return numpy.array([[_result_number(report, name) for name in RESULT_UNITS] for report in reports])
+    return numpy.array([[_result_as_number(report, name) for name in RESULT_UNITS] for report in reports])
 
 
 def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
@@ -303,7 +303,7 @@ def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
     )
 
 
-def _result_number(report: Report, name: str) -> float:
+def _result_as_number(report: Report, name: str) -> float:
     """Return one result of a report as a number, for `edge_distance` the least of the cycle."""
     value = getattr(report, name)
     return float(value.min(initial=inf)) if name == "edge_distance" else float(value)

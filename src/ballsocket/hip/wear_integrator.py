@@ -211,7 +211,7 @@ class WearIntegrator:
                 self.margin *= 2
                 self._update_active_cells()
                 continue
-            relative_error = self._block_error(block, decay_rate)
+            relative_error = self._relative_block_error(block, decay_rate)
             self.length = length * min(
                 max(_STEP_SAFETY * max(relative_error, 1e-12) ** (-1 / 3), _MIN_GROWTH), _MAX_GROWTH
             )
@@ -222,8 +222,8 @@ class WearIntegrator:
         self.steps, self._rate = self.steps + 1, block.rate
         self.cycles = count if length == remaining else self.cycles + length
         if self.setup.creep is not None:
-            self._advance_creep(self.setup.creep, length * self.setup.seconds)
-        if self._contact_spreads or self.setup.creep is not None:
+            self._advance_creep_strain(self.setup.creep, length * self.setup.seconds)
+        if self._contact_near_inactive_cells or self.setup.creep is not None:
             self._update_active_cells()
 
     def _store_state_vector(self, state_vector: Numbers) -> None:
@@ -242,7 +242,7 @@ class WearIntegrator:
             return inf
         return max(_CREEP_GROWTH * self.cycles, _FIRST_CREEP_BLOCK / self.setup.seconds)
 
-    def _advance_creep(self, creep: CreepLaw, seconds: float) -> None:
+    def _advance_creep_strain(self, creep: CreepLaw, seconds: float) -> None:
         """Advance the creep strains by a time in s, under the mean pressures of a cycle.
 
         Creep decreases this pressure: both are iterated.
@@ -268,7 +268,7 @@ class WearIntegrator:
         pressure[active.cells] = mean_pressure
         self.strain = creep.advance_strain(self.strain, pressure, seconds)
 
-    def _block_error(self, block: ChebyshevStep, decay_rate: float) -> float:
+    def _relative_block_error(self, block: ChebyshevStep, decay_rate: float) -> float:
         """Estimate the root mean square depth error of a block, divided by the allowed error."""
         initial_depth = _FIRST_BLOCK * float(self._rate[:-1].max(initial=0.0)) / decay_rate if decay_rate > 0 else 0.0
         allowed_error = self.setup.tolerance * max(float(block.values[:-1].max(initial=0.0)), initial_depth)
@@ -289,7 +289,7 @@ class WearIntegrator:
         return bool(mask.any())
 
     @property
-    def _contact_spreads(self) -> bool:
+    def _contact_near_inactive_cells(self) -> bool:
         """True if a contact is close to inactive cells."""
         depth = self.depth + self.creep_depth
         mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)

@@ -11,7 +11,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import NamedItems, require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
-from .law_fields import NUMBER, PRESSURE, Law, law_field, read_law, select_law
+from .law_fields import NUMBER, PRESSURE, Law, law_field, read_law, select_law_class
 from .wear_law import (
     COEFFICIENT,
     METRE,
@@ -201,7 +201,7 @@ def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
     ValueError
         An unknown law, a missing key, a key of another law, or a value that is not allowed.
     """
-    return read_law(table, WEAR_LAWS, select_law(table, WEAR_LAWS, "law"))
+    return read_law(table, WEAR_LAWS, select_law_class(table, WEAR_LAWS, "law"))
 
 
 def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
@@ -212,7 +212,7 @@ def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
     ValueError
         A law that does not wear balls, or as `read_wear_law`.
     """
-    law = select_law(table, WEAR_LAWS, "law")
+    law = select_law_class(table, WEAR_LAWS, "law")
     if BALL_COEFFICIENT not in table:
         return None
     if not law.wears_balls:

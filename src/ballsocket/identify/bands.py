@@ -11,7 +11,7 @@ from ..core.arrays import Numbers
 from ..core.deprecation import renamed_names
 from .information import QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
 from .misfit import FitResult, Misfit
-from .search import minimise
+from .search import minimise_misfit
 from .unknowns import Unknown
 
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
@@ -54,7 +54,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
     widening_factor = scatter_ratio(misfit, best)
     if widening_factor > 1:
         misfit = replace(misfit, widening=widening_factor)
-        best = replace(minimise(misfit, best.theta), rivals=best.rivals)
+        best = replace(minimise_misfit(misfit, best.theta), rivals=best.rivals)
     quantile = _band_quantile(widening_factor, misfit.freedom)
     chi_squared_limits = (quantile**2, (quantile * QUANTILE_99 / QUANTILE_95) ** 2)
     for _ in range(_MAX_RESTARTS):
@@ -64,7 +64,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
         profiles = profile_ends(misfit, [best.theta, *rivals], best.cost, chi_squared_limits)
         if profiles.cost > best.cost - _MIN_DECREASE:
             break
-        best = replace(minimise(misfit, profiles.lowest), rivals=best.rivals)
+        best = replace(minimise_misfit(misfit, profiles.lowest), rivals=best.rivals)
     unknowns_and_ends = enumerate(zip(misfit.transform.unknowns, *profiles.ends, strict=True))
     intervals = tuple(_make_interval(index, *row) for index, row in unknowns_and_ends)
     fisher_matrix = misfit.fisher_information(best.theta)
@@ -147,7 +147,7 @@ class Profiles:
 
 
 @dataclass(eq=False)
-class _Path:
+class _EndSearch:
     """State of the search for one end of a profile likelihood interval."""
 
     index: int
@@ -160,7 +160,7 @@ class _Path:
 
 
 @dataclass(frozen=True, eq=False)
-class _Point:
+class _QuadraticModel:
     """Quadratic approximation of χ² about the present point of a search path."""
 
     rise: float
@@ -189,7 +189,7 @@ def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: 
     """
     indices = range(len(starts[0]))
     paths = [
-        _Path(index, side, rise, start, start)
+        _EndSearch(index, side, rise, start, start)
         for rise in rises
         for index in indices
         for side in (-1, 1)
@@ -223,7 +223,9 @@ def _next_outermost_end(ends: Iterator[ProfileEnd], count: int, index: int, side
     return max([next(ends) for _ in range(count)], key=lambda end: side * float(end.theta[index]))
 
 
-def _limiting_unknowns(path: _Path, point: _Point, theta_step: Numbers, low: Numbers, high: Numbers) -> tuple[int, ...]:
+def _limiting_unknowns(
+    path: _EndSearch, point: _QuadraticModel, theta_step: Numbers, low: Numbers, high: Numbers
+) -> tuple[int, ...]:
     """Find the other unknowns whose search range limits an interval at its end.
 
     The gradient of χ² points outward there.
@@ -253,7 +255,7 @@ def _chi_squared_decrease(hessian: Numbers, gradient: Numbers, free_indices: lis
 
 
 def _advance_path(
-    path: _Path, residual: Numbers, slope: Numbers, best_cost: float, low: Numbers, high: Numbers
+    path: _EndSearch, residual: Numbers, slope: Numbers, best_cost: float, low: Numbers, high: Numbers
 ) -> None:
     """Advance a search path by a Newton step; cut its last step to a quarter if the model failed there."""
     if not (numpy.isfinite(residual).all() and numpy.isfinite(slope).all()):
@@ -264,7 +266,7 @@ def _advance_path(
         return
     theta = path.theta
     hessian = slope.T @ slope + _DAMPING * numpy.eye(len(theta))
-    point = _Point(float(residual @ residual) - 2 * best_cost, slope.T @ residual, hessian)
+    point = _QuadraticModel(float(residual @ residual) - 2 * best_cost, slope.T @ residual, hessian)
     theta_step, profile_rise, decrease = _newton_step(path, point, low, high)
     distance_to_range_end = (
         high[path.index] - theta[path.index] if path.side > 0 else theta[path.index] - low[path.index]
@@ -282,7 +284,7 @@ def _advance_path(
         path.theta = numpy.clip(theta + theta_step, low, high)
 
 
-def _newton_step(path: _Path, point: _Point, low: Numbers, high: Numbers) -> tuple[Numbers, float, float]:
+def _newton_step(path: _EndSearch, point: _QuadraticModel, low: Numbers, high: Numbers) -> tuple[Numbers, float, float]:
     """Compute the Newton step towards an interval end: change of theta, rise of χ² and possible decrease.
 
     Returns the step, the rise of χ² on the profile, and the gain.

@@ -15,7 +15,7 @@ from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..problem import Joint
 from ..studies.parameters import varied
 from .estimates import Estimate
-from .forward_model import insert_numbers, split_numbers
+from .forward_model import insert_model_numbers, split_joint_and_model_values
 from .information import Information
 from .measured import Measured
 from .misfit import FitResult, Misfit
@@ -45,7 +45,7 @@ class FittedModel:
     @property
     def model(self) -> Model:
         """Contact model, whose parameters have their best-fit values."""
-        return insert_numbers(self.misfit.forward.model, split_numbers(self.point)[1])
+        return insert_model_numbers(self.misfit.forward.model, split_joint_and_model_values(self.point)[1])
 
     @property
     def data(self) -> tuple[Measured, ...]:
@@ -69,7 +69,7 @@ class FittedModel:
     @property
     def joint(self) -> Joint:
         """Joint, whose numbers have their best-fit values."""
-        return varied(self.misfit.forward.joint, split_numbers(self.point)[0])[0]
+        return varied(self.misfit.forward.joint, split_joint_and_model_values(self.point)[0])[0]
 
     @cached_property
     def estimates(self) -> dict[str, Estimate]:
@@ -81,7 +81,7 @@ class FittedModel:
         unknown, information = self.transform.unknowns[index], self.information
         interval, name = information.intervals[index], unknown.name
         interval_ends = (interval.low, interval.high)
-        low, high = (_snap_to_range(unknown, self.transform.to_values(end.theta)[index]) for end in interval_ends)
+        low, high = (_snap_to_range_end(unknown, self.transform.to_values(end.theta)[index]) for end in interval_ends)
         value = float("nan") if name in information.unidentifiable else self.point[name]
         band_width_ratio, limiting_names = information.deviations[name], information.limited_by(name)
         return Estimate(name, unknown.quantity.unit, value, low, high, band_width_ratio, limiting_names)
@@ -160,6 +160,6 @@ class FittedModel:
         return not self.information.unidentifiable
 
 
-def _snap_to_range(unknown: Unknown, value: float) -> float:
+def _snap_to_range_end(unknown: Unknown, value: float) -> float:
     """Replace an end of a band by an end of the search range, if they differ only by rounding."""
     return next((end for end in (unknown.low, unknown.high) if abs(value - end) <= 1e-9 * abs(end)), float(value))

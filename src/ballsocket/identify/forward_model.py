@@ -24,7 +24,7 @@ Columns = Mapping[str, Array]
 _NEWTON_ITERATIONS = 3  # for the force of a compliant machine; its compliance is small
 
 
-def split_numbers(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
+def split_joint_and_model_values(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
     """Split values of unknowns by name into numbers of the joint and numbers of the contact model.
 
     Errors of a machine are in neither.
@@ -33,7 +33,7 @@ def split_numbers(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[s
     return joint_values, {name: value for name, value in values.items() if name in MODEL_NUMBERS}
 
 
-def insert_numbers(model: Model, values: Mapping[str, Array]) -> Model:
+def insert_model_numbers(model: Model, values: Mapping[str, Array]) -> Model:
     """Return a copy of the contact model with new values of its parameters, by name."""
     for name, value in values.items():
         model = MODEL_NUMBERS[name].insert_into(model, value)
@@ -76,10 +76,10 @@ class ForwardModel:
         Values may be of any array library. `load_perturbation` is a relative change of every load.
         """
         values_by_name = {name: values[:, index : index + 1] for index, name in enumerate(self.names)}
-        joint_values, model_values = split_numbers(values_by_name)
+        joint_values, model_values = split_joint_and_model_values(values_by_name)
         joint, valid_geometry = varied(self.joint, joint_values)
         joints_at_points = _JointsAtPoints(
-            insert_numbers(self.model, model_values), joint, self._known_errors | values_by_name
+            insert_model_numbers(self.model, model_values), joint, self._known_errors | values_by_name
         )
         result_rows = self._compute_results(joints_at_points, 1 + load_perturbation)
         xp = arrays.namespace(values)

@@ -95,7 +95,7 @@ def identify(
     _check_counts_and_areas(sets, joint, unknowns)
     _check_observables(sets, {unknown.name for unknown in unknowns})
     forward = ForwardModel(model, joint, sets, tuple(unknown.name for unknown in unknowns))
-    uncertainty = _concatenate(measured.uncertainty for measured in sets)
+    uncertainty = _join_data_sets(measured.uncertainty for measured in sets)
     misfit = Misfit(forward, ParameterTransform(unknowns), scatter, slopes, uncertainty)
     best = find_best_fit(misfit, seed)
     uncertain_loads = any(measured.load and measured.load_uncertainty.any() for measured in sets)
@@ -113,8 +113,8 @@ def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
     data, values = misfit.forward.data, misfit.transform.to_values(best.theta[None])
     above, below = (misfit.forward.results_at(values, load_perturbation=side * _LOAD_STEP)[0] for side in (1, -1))
     slope = (above - below) / (2 * _LOAD_STEP)  # by ln of the load
-    of_loads = _concatenate(_relative_load_uncertainty(measured) for measured in data)
-    of_values = _concatenate(measured.uncertainty for measured in data)
+    of_loads = _join_data_sets(_relative_load_uncertainty(measured) for measured in data)
+    of_values = _join_data_sets(measured.uncertainty for measured in data)
     return numpy.hypot(of_values, numpy.where(of_loads > 0, slope * of_loads, 0.0))
 
 
@@ -126,7 +126,7 @@ def _relative_load_uncertainty(measured: Measured) -> Numbers:
     return numpy.where(loads > 0, measured.load_uncertainty / numpy.where(loads > 0, loads, 1.0), 0.0)
 
 
-def _concatenate(rows: Iterable[Numbers]) -> Numbers:
+def _join_data_sets(rows: Iterable[Numbers]) -> Numbers:
     """Join the arrays of all data sets to one array (data,)."""
     return numpy.concatenate(list(rows))
 

@@ -98,14 +98,14 @@ class Information:
     untold = RenamedAttribute("unidentifiable")
 
     @cached_property
-    def _eigenmodes(self) -> tuple[Numbers, Numbers]:
+    def _eigenvalues_and_vectors(self) -> tuple[Numbers, Numbers]:
         """Eigenvalues and eigenvectors of the Fisher information matrix."""
-        return _eigenmodes(self.matrix)
+        return _eigenvalues_and_vectors(self.matrix)
 
     @property
     def eigenvalues(self) -> Numbers:
         """Eigenvalues of the Fisher information matrix, in descending order."""
-        return self._eigenmodes[0]
+        return self._eigenvalues_and_vectors[0]
 
     @cached_property
     def rank(self) -> int:
@@ -179,7 +179,7 @@ class Information:
     @cached_property
     def _identifiable_information(self) -> Numbers:
         """Fisher information matrix without the unidentifiable directions."""
-        values, vectors = self._eigenmodes
+        values, vectors = self._eigenvalues_and_vectors
         return (vectors[:, : self.rank] * values[: self.rank]) @ vectors[:, : self.rank].T
 
     @cached_property
@@ -200,7 +200,7 @@ class Information:
         """Identifiable products of powers of unknowns that are unidentifiable separately."""
         if not self.unidentifiable:
             return ()
-        products = (self._make_product(vector) for vector in self._eigenmodes[1][:, : self.rank].T)
+        products = (self._make_product(vector) for vector in self._eigenvalues_and_vectors[1][:, : self.rank].T)
         return tuple(product for product in products if product is not None)
 
     def _make_product(self, vector: Numbers) -> Product | None:
@@ -266,7 +266,7 @@ def _width_ratio(unknown: Unknown, interval: Interval, index: int) -> float:
     return width / (2 * QUANTILE_95 if unknown.has_distribution else sqrt(12))
 
 
-def _eigenmodes(matrix: Numbers) -> tuple[Numbers, Numbers]:
+def _eigenvalues_and_vectors(matrix: Numbers) -> tuple[Numbers, Numbers]:
     """Compute the eigenvalues (descending) and eigenvectors (columns) of a symmetric matrix."""
     values, vectors = numpy.linalg.eigh((matrix + matrix.T) / 2)
     return numpy.maximum(values[::-1], 0.0), vectors[:, ::-1]

@@ -111,17 +111,19 @@ class Measured:
         values = _to_float_array(self._format_label(self.quantity), self.values)
         self._set_field("values", values)
         self._check_values(values)
-        self._set_field("uncertainty", self._broadcast(f"{self.quantity}_uncertainty", self.uncertainty, values))
+        self._set_field(
+            "uncertainty", self._broadcast_to_values(f"{self.quantity}_uncertainty", self.uncertainty, values)
+        )
         sigma, title = self.uncertainty, self._format_label(f"{self.quantity}_uncertainty")
         require(title, sigma, (sigma > 0) & (sigma < inf), "an uncertainty is above 0 and finite")
         require("saturation", self.saturation, self.saturation > 0, "the largest reading of a film is above 0")
         if self.quantity not in OF_JOINT:
-            self._set_load(values)
+            self._check_and_set_load(values)
         if (self.angle is not None) != (self.quantity == "pressure"):
             rule = "needs an angle" if self.angle is None else "takes no angle"
             raise ValueError(f"{self._format_label(self.quantity)} {rule}")
         if self.angle is not None:
-            self._set_field("angle", FIELD["angle"].check(self._broadcast("angle", self.angle, values)))
+            self._set_field("angle", FIELD["angle"].check(self._broadcast_to_values("angle", self.angle, values)))
         if self.machine is not IDEAL_MACHINE and "indentation" not in (self.quantity, self.load):
             raise ValueError(
                 f"{self._format_label(self.quantity)} has a machine, but only indentations are read by one"
@@ -140,7 +142,7 @@ class Measured:
         """Check the sequence numbers of the readings, and return them; 0, 1, 2, ... by default."""
         if self.order is None:
             return numpy.arange(float(values.size))
-        reading_numbers = self._broadcast("order", self.order, values)
+        reading_numbers = self._broadcast_to_values("order", self.order, values)
         require(
             self._format_label("order"),
             reading_numbers,
@@ -165,7 +167,7 @@ class Measured:
             allowed = self.described.allows(values)
             require(self._format_label(self.quantity), values, allowed, self.described.allowed)
 
-    def _broadcast(self, name: str, numbers: Any, values: Numbers) -> Numbers:
+    def _broadcast_to_values(self, name: str, numbers: Any, values: Numbers) -> Numbers:
         """Repeat one number for all values, or check that there is one number for each value."""
         number_array = _to_float_array(self._format_label(name), numbers)
         if number_array.size not in (1, values.size):
@@ -178,19 +180,19 @@ class Measured:
             )
         return numpy.broadcast_to(number_array, values.shape)
 
-    def _set_load(self, values: Numbers) -> None:
+    def _check_and_set_load(self, values: Numbers) -> None:
         """Check the loads of the data set and their uncertainty, and store both."""
         kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
         if kind == self.quantity:
             raise ValueError(
                 f"{self._format_label(kind)} is both the measured quantity and the load; choose another load"
             )
-        loads = self._broadcast(kind, load, values)
+        loads = self._broadcast_to_values(kind, load, values)
         if self.machine is IDEAL_MACHINE or kind != "indentation":
             require(self._format_label(kind), loads, LOADS[kind].allows(loads), LOADS[kind].allowed)
         self._set_field("load", kind)
         self._set_field(kind, loads)
-        load_sigma = self._broadcast("load_uncertainty", self.load_uncertainty, values)
+        load_sigma = self._broadcast_to_values("load_uncertainty", self.load_uncertainty, values)
         require(
             self._format_label("load_uncertainty"), load_sigma, (load_sigma >= 0) & (load_sigma < inf), _NOT_NEGATIVE
         )

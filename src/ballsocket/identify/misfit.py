@@ -188,7 +188,7 @@ class Misfit:
     def fisher_information(self, theta: Numbers) -> Numbers:
         """Compute the Fisher information matrix (unknowns, unknowns) of the data about theta."""
         results, slopes = self.slopes(self.forward, self.transform, theta)
-        return (slopes * self._weights(results)[:, None]).T @ slopes
+        return (slopes * self._information_weights(results)[:, None]).T @ slopes
 
     def project_errors(self, theta: Numbers, errors: Numbers) -> Numbers:
         """Compute the weighted projections Jᵀ W δ of errors δ of the values on the unknowns.
@@ -196,9 +196,9 @@ class Misfit:
         J are the derivatives, W the weights, and δ the errors (kinds, data).
         """
         results, slopes = self.slopes(self.forward, self.transform, theta)
-        return slopes.T @ (self._weights(results) * errors).T
+        return slopes.T @ (self._information_weights(results) * errors).T
 
-    def _weights(self, results: Numbers) -> Numbers:
+    def _information_weights(self, results: Numbers) -> Numbers:
         """Compute the weight of each value: its Fisher information about the model result, in 1/unit²."""
         information = numpy.where(self.saturated, self._censored_information(results), self.scatter.information)
         return information / (self.widening * self.uncertainty) ** 2

@@ -23,14 +23,14 @@ def find_best_fit(misfit: Misfit, seed: int) -> FitResult:
     ValueError
         The model has no result for all data at any point within the ranges.
     """
-    ends = [minimise(misfit, start) for start in _choose_starts(misfit, seed)]
-    best = _choose_fit(misfit, ends)
+    ends = [minimise_misfit(misfit, start) for start in _choose_starting_points(misfit, seed)]
+    best = _choose_best_fit(misfit, ends)
     distant = [end for end in ends if numpy.max(abs(end.theta - best.theta)) > _SAME_POINT]
     rivals = tuple(end.theta for end in distant if end.cost < best.cost + _RIVAL_COST)
     return FitResult(best.theta, best.cost, best.converged, rivals)
 
 
-def _choose_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
+def _choose_best_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
     """Choose the fit with the smallest misfit; among equal ones, that nearest to the middle of the ranges.
 
     Among fits of equal cost it is the one nearest to the middle of the ranges.
@@ -40,7 +40,7 @@ def _choose_fit(misfit: Misfit, ends: list[FitResult]) -> FitResult:
     return min(lowest_ends, key=lambda end: float(numpy.max(abs(end.theta - range_middle))))
 
 
-def _choose_starts(misfit: Misfit, seed: int) -> list[Numbers]:
+def _choose_starting_points(misfit: Misfit, seed: int) -> list[Numbers]:
     """Choose one or two starting points of the fit from a Sobol sequence over the search ranges.
 
     They are the point of lowest cost, and the best point far from it.
@@ -65,7 +65,7 @@ def _choose_starts(misfit: Misfit, seed: int) -> list[Numbers]:
     return [points[first], points[second]] if numpy.isfinite(costs[second]) and distant[second] else [points[first]]
 
 
-def minimise(misfit: Misfit, start: Numbers) -> FitResult:
+def minimise_misfit(misfit: Misfit, start: Numbers) -> FitResult:
     """Minimise the misfit from a starting point theta by least squares."""
     from scipy.optimize import least_squares
 

@@ -71,7 +71,7 @@ def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
     values = transform.to_values(theta[None])
     results = forward.results_at(values)[0]
     errors = numpy.stack(
-        [_result_change(fitted, machine, error, values, results) for machine, error in neglected_errors]
+        [_change_by_machine_error(fitted, machine, error, values, results) for machine, error in neglected_errors]
     )
     theta_shifts = fitted.information.covariance @ fitted.misfit.project_errors(theta, errors)
     shifts = transform.derivatives(theta)[:, None] * theta_shifts
@@ -101,12 +101,12 @@ def _reads_indentation(measured: Measured) -> bool:
     return "indentation" in (measured.quantity, measured.load)
 
 
-def _result_change(
+def _change_by_machine_error(
     fitted: FittedModel, machine_name: str, error: MachineError, values: Numbers, results: Numbers
 ) -> Numbers:
     """Compute the change of the model results (data,) by a machine error of assumed size."""
     data = tuple(
-        _add_error(measured, error)
+        _add_machine_error(measured, error)
         if _reads_indentation(measured) and measured.machine.name == machine_name
         else measured
         for measured in fitted.data
@@ -115,7 +115,7 @@ def _result_change(
     return (changed_results - results) / _RELATIVE_STEP
 
 
-def _add_error(measured: Measured, error: MachineError) -> Measured:
+def _add_machine_error(measured: Measured, error: MachineError) -> Measured:
     """Return a copy of a data set whose machine has one more error."""
     machine = measured.machine if measured.machine.name else Machine(name=_DEFAULT_NAME)
     size: dict[str, Any] = {error.name: getattr(machine, error.name) + _RELATIVE_STEP * error.assumed}

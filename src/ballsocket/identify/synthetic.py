@@ -102,12 +102,14 @@ def draw_data_sets(fitted: FittedModel, random: numpy.random.Generator) -> tuple
     uncertainties = numpy.split(widened, numpy.cumsum([len(measured) for measured in fitted.data])[:-1])
     scatter = fitted.misfit.scatter
     return tuple(
-        replace(measured, values=_add_noise(measured, results, uncertainty * scatter.draw(len(measured), random)))
+        replace(
+            measured, values=_add_reading_noise(measured, results, uncertainty * scatter.draw(len(measured), random))
+        )
         for measured, results, uncertainty in zip(fitted.data, fitted.results, uncertainties, strict=True)
     )
 
 
-def _add_noise(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
+def _add_reading_noise(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
     """Add random noise to model results, and limit the readings to the range of the machine."""
     readings = results + noise
     return numpy.minimum(readings if measured.machine.name else numpy.maximum(readings, 0.0), measured.saturation)

@@ -111,7 +111,7 @@ def write_cross_check(element: ForceElement, path: Path) -> tuple[Path, Path, Pa
     state = trajectory(element, time)
     fmu_variables = variables(element)
     stem = path.with_suffix("")
-    tables = (("in", "input", in_si(state)), ("ref", "output", reference_loads(element, state)))
+    tables = (("in", "input", states_in_si(state)), ("ref", "output", reference_loads(element, state)))
     inputs, reference = (
         write_text(Path(f"{stem}_{ending}.csv"), _csv_text(_names_of_kind(fmu_variables, causality), time, values))
         for ending, causality, values in tables
@@ -138,7 +138,7 @@ def trajectory(element: ForceElement, time: Numbers) -> Numbers:
     return numpy.hstack([distance[:, None] * normal, velocity, spin])
 
 
-def in_si(state: Numbers) -> Numbers:
+def states_in_si(state: Numbers) -> Numbers:
     """Convert states (position, velocity, spin) from mm, mm/s and rad/s to m, m/s and rad/s."""
     return numpy.hstack([_MM * state[:, :6], state[:, 6:]])
 
