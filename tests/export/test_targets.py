@@ -308,7 +308,11 @@ def test_the_text_of_a_power_law_has_its_numbers_for_every_program():
     job = ExportJob(element=DAMPED, name="hip", depth=0.05)
     text = TARGETS["table"].texts(job)["hip_power.txt"]
     numbers = {name: float(value) for name, value in re.findall(r"^(\w+) = (\S+)$", text, re.MULTILINE)}
-    assert numbers == {"k": job.fitted_power_law.stiffness, "n": job.power.exponent, "clearance": pytest.approx(0.1)}
+    assert numbers == {
+        "k": job.fitted_power_law.stiffness,
+        "n": job.fitted_power_law.exponent,
+        "clearance": pytest.approx(0.1),
+    }
     depth, error = re.search(r"error up to (\S+) mm at most (\S+) % of the force", text).groups()
     assert float(depth) == 0.05
     assert float(error) == pytest.approx(100 * job.fitted_power_law.error, rel=0.05)

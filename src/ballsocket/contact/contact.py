@@ -181,8 +181,8 @@ class Contact(Outcome):
         )
         compared = (
             note
-            for good, text in strength.strength_remarks(self)
-            for note in self._note_on_invalid_points(good | self._failed, text)
+            for acceptable, text in strength.strength_remarks(self)
+            for note in self._note_on_invalid_points(acceptable | self._failed, text)
         )
         return (*super().notes, *unchecked, *compared)
 

@@ -119,12 +119,12 @@ class Model(ModelInfo):
                 return self._press_floats(joint, kind, float(value))
             except ArithmeticError:
                 pass  # where Python floats raise, NumPy numbers become infinite or NaN
-        plain, array_joint, load = as_arrays(joint, value, *self.parameters)
+        is_plain, array_joint, load = as_arrays(joint, value, *self.parameters)
         points = check_domain((*self.fits, *self.domain), array_joint, self.name)
         with numpy.errstate(all="ignore"):  # a failed point gets a status, not a warning
             result = self._solve(array_joint, kind, load)
-            contact_joint = joint if plain else array_joint
-            return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, plain)
+            contact_joint = joint if is_plain else array_joint
+            return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, is_plain)
 
     def _can_press_floats(self, joint: Joint, load: Array) -> bool:
         """Check if joint, load and parameters are plain numbers and the model accepts Python floats."""

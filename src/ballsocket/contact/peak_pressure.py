@@ -38,18 +38,26 @@ def find_peak_pressure(
         Largest pressure in MPa and its angle in rad.
     """
     values = numpy.vstack([pole, pressure(edge * _PROFILE_POSITIONS[1:-1, None]), 0.0 * edge])
-    best = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
-    peak_off_pole = (best > 0) & (values.max(axis=0, initial=-inf, where=numpy.isfinite(values)) > pole * (1 + noise))
+    largest_index = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
+    peak_off_pole = (largest_index > 0) & (
+        values.max(axis=0, initial=-inf, where=numpy.isfinite(values)) > pole * (1 + noise)
+    )
     if not peak_off_pole.any():
         return pole, 0.0 * edge
-    low, high = (edge * _PROFILE_POSITIONS[numpy.clip(best + step, 0, len(_PROFILE_POSITIONS) - 1)] for step in (-1, 1))
+    low, high = (
+        edge * _PROFILE_POSITIONS[numpy.clip(largest_index + neighbour, 0, len(_PROFILE_POSITIONS) - 1)]
+        for neighbour in (-1, 1)
+    )
     contacts = numpy.arange(len(edge))
     for _ in range(_REFINEMENTS):
         angles = low + (high - low) * _INTERVAL_POSITIONS[:, None]
         values = pressure(angles)
-        best = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
-        angle, largest = angles[best, contacts], values[best, contacts]
-        low, high = (angles[numpy.clip(best + step, 0, len(_INTERVAL_POSITIONS) - 1), contacts] for step in (-1, 1))
+        largest_index = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
+        angle, largest = angles[largest_index, contacts], values[largest_index, contacts]
+        low, high = (
+            angles[numpy.clip(largest_index + neighbour, 0, len(_INTERVAL_POSITIONS) - 1), contacts]
+            for neighbour in (-1, 1)
+        )
     return numpy.where(peak_off_pole, largest, pole), numpy.where(peak_off_pole, angle, 0.0)
 
 

@@ -93,14 +93,14 @@ def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *para
     joint = joint.without_strengths()
     numbers = [_to_concrete_array(model, number) for number in joint.numbers()]
     load_arrays = [_to_concrete_array(model, value) for value in (load, *parameters)]
-    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, *load_arrays)))
-    loads = [numpy.broadcast_to(value, shape).ravel().astype(float) for value in load_arrays]
+    common_shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, *load_arrays)))
+    loads = [numpy.broadcast_to(value, common_shape).ravel().astype(float) for value in load_arrays]
     joint_contacts = []
-    for joint_numbers, indices in _distinct_joints(numbers, shape):
+    for joint_numbers, indices in _distinct_joints(numbers, common_shape):
         single_joint = joint.with_numbers(joint_numbers)
         if indices.size and all(limit.strictly_holds(SimpleNamespace(joint=single_joint)) for limit in model.domain):
             joint_contacts.append((indices, solve(single_joint, *(values[indices] for values in loads))))
-    return CombinedSolution(like=load, shape=shape, pieces=tuple(joint_contacts))
+    return CombinedSolution(like=load, shape=common_shape, pieces=tuple(joint_contacts))
 
 
 def _distinct_joints(
@@ -174,17 +174,17 @@ class CombinedSolution:
         return self._match_load_array(self._combine_to_numpy_array(quantity))
 
     def _combine_to_numpy_array(
-        self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: int = 1
+        self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], row_count: int = 1
     ) -> numpy.ndarray:
         """Put the values of a quantity in all joints into one NumPy array (rows, points)."""
-        combined = numpy.full((rows, prod(self.shape)), numpy.nan)
+        combined = numpy.full((row_count, prod(self.shape)), numpy.nan)
         for indices, contacts in self.pieces:
             combined[:, indices] = contacts.expand_to_all_loads(quantity(indices, contacts))
         return combined
 
-    def _match_load_array(self, values: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
+    def _match_load_array(self, values: numpy.ndarray, leading_shape: tuple[int, ...] = ()) -> Array:
         """Convert NumPy values to the shape, library, data type and device of the load."""
-        values = values.reshape((*shape, *self.shape))
+        values = values.reshape((*leading_shape, *self.shape))
         xp = arrays.namespace(self.like)
         return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
 

@@ -59,7 +59,7 @@ def fit_variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> 
 def _read_polynomial_terms() -> tuple[tuple[float, int, int, int], ...]:
     """Read the coefficients and exponents of the fitted stress ratio from the data file of the package."""
     table = tomllib.loads((files("ballsocket") / "data" / "von_mises.toml").read_text(encoding="utf-8"))
-    return tuple((number, *powers) for number, *powers in table["terms"])
+    return tuple((coefficient, *powers) for coefficient, *powers in table["terms"])
 
 
 def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
@@ -193,8 +193,12 @@ def _estimate_von_mises(contact: Any) -> Array:
     The stress is solved for only where a bound is infinite.
     """
     low, high = contact.von_mises_bounds
-    middle = (low + high) / 2
-    return middle if all_true(isfinite(middle) | is_missing(contact.status)) is not False else contact.von_mises
+    mean_of_bounds = (low + high) / 2
+    return (
+        mean_of_bounds
+        if all_true(isfinite(mean_of_bounds) | is_missing(contact.status)) is not False
+        else contact.von_mises
+    )
 
 
 def _exceeded_strength_remarks(

@@ -110,21 +110,22 @@ def bristle_forces(
     )
     decay = bristles.stiffness * speed / friction_coefficient_at_speed
     damping = bristles.damping / (1.0 + bristles.damping * speed / (4.0 * friction_coefficient_at_speed * least_slope))
-    losses = tuple(decay * bend / share for bend, share in zip(tangential_deflection, slopes, strict=True))
-    rate = tuple(slip_rate - loss for slip_rate, loss in zip(slip_components, losses, strict=True))
-    states = zip(tangential_deflection, rate, slip_components, strict=True)
+    losses = tuple(decay * bend / slope for bend, slope in zip(tangential_deflection, slopes, strict=True))
+    deflection_rates = tuple(slip_rate - loss for slip_rate, loss in zip(slip_components, losses, strict=True))
+    states = zip(tangential_deflection, deflection_rates, slip_components, strict=True)
     force = tuple(
         bristles.stiffness * bend + damping * change + bristles.viscous * slip_rate
         for bend, change, slip_rate in states
     )
     dissipated = (
         bristles.stiffness * _dot_product(losses, tangential_deflection)
-        + damping * _dot_product(rate, slip_components)
+        + damping * _dot_product(deflection_rates, slip_components)
         + bristles.viscous * _dot_product(slip_components, slip_components)
     )
     touching = slip.normal > 0.0
     released_rate = tuple(
-        where(touching, change, -bend / bristles.release) for change, bend in zip(rate, deflection, strict=True)
+        where(touching, change, -bend / bristles.release)
+        for change, bend in zip(deflection_rates, deflection, strict=True)
     )
     return force, released_rate, dissipated
 
@@ -159,6 +160,9 @@ def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array,
     )
 
 
-def _dot_product(first: Deflections, second: Deflections) -> Array:
+def _dot_product(first_deflection: Deflections, second_deflection: Deflections) -> Array:
     """Compute the dot product of two deflections."""
-    return sum((a * b for a, b in zip(first[1:], second[1:], strict=True)), first[0] * second[0])
+    return sum(
+        (a * b for a, b in zip(first_deflection[1:], second_deflection[1:], strict=True)),
+        first_deflection[0] * second_deflection[0],
+    )

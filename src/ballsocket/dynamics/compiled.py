@@ -103,8 +103,13 @@ class CompiledElement:
         arrays (states, 3), (states, 3), (states,), (states, 6)
         """
         state = [numpy.ascontiguousarray(values, dtype=float) for values in (position, velocity, spin)]
-        count = len(position)
-        outputs = numpy.empty((count, 3)), numpy.empty((count, 3)), numpy.empty(count), numpy.empty((count, 6))
+        state_count = len(position)
+        outputs = (
+            numpy.empty((state_count, 3)),
+            numpy.empty((state_count, 3)),
+            numpy.empty(state_count),
+            numpy.empty((state_count, 6)),
+        )
         _compiled_batch_loop()(self.potential, self.constants, *state, *outputs)
         return outputs
 
@@ -114,8 +119,8 @@ def compiled_potential(element: ForceElement) -> CompiledLaw:
     energy_law = element.potential
     if isinstance(energy_law, SpringPotential):
         springs = energy_law.springs
-        numbers: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
-        return CompiledLaw(function=_compiled_spring_potential(springs.kinematics), numbers=numbers)
+        spring_constants: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
+        return CompiledLaw(function=_compiled_spring_potential(springs.kinematics), numbers=spring_constants)
     curve = (
         energy_law.curve
         if isinstance(energy_law, CurvePotential)

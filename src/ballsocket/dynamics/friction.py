@@ -169,18 +169,21 @@ def effective_slip(
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
     a, t, eta, lam_z = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, (l0 + l1 * m) * z
     G = x + theta * y + scale * transition_squared
-    along, turned = a * x + b * z, t * x + n * z
-    over, roll = 1.0 / (G * (G + eta * z) + lam_z * z), g / (1.0 + (zeta - 1.0) * z)
-    inner = x * along + p * turned
-    ratio, rolling = z * inner * over, roll * y * z
-    fall = ratio * (2.0 * G + eta * z) * over
-    push = rolling * roll / g
+    axial_sum, turning_sum = a * x + b * z, t * x + n * z
+    inverse_denominator, roll = 1.0 / (G * (G + eta * z) + lam_z * z), g / (1.0 + (zeta - 1.0) * z)
+    numerator = x * axial_sum + p * turning_sum
+    ratio, rolling = z * numerator * inverse_denominator, roll * y * z
+    denominator_slope = ratio * (2.0 * G + eta * z) * inverse_denominator
+    rolling_slope = rolling * roll / g
     return (
         total * (1.0 - ratio - rolling) - tilt_squared * slip,
-        1.0 - tilt_squared - z * (along + a * x + t * p) * over + fall + push,
-        1.0 + theta * fall - roll * z + push,
-        1.0 - (inner + z * (b * x + n * p) - ratio * (eta * G + 2.0 * lam_z)) * over - roll * y + zeta * push,
-        -z * turned * over,
+        1.0 - tilt_squared - z * (axial_sum + a * x + t * p) * inverse_denominator + denominator_slope + rolling_slope,
+        1.0 + theta * denominator_slope - roll * z + rolling_slope,
+        1.0
+        - (numerator + z * (b * x + n * p) - ratio * (eta * G + 2.0 * lam_z)) * inverse_denominator
+        - roll * y
+        + zeta * rolling_slope,
+        -z * turning_sum * inverse_denominator,
     )
 
 
@@ -196,28 +199,34 @@ def effective_slip_bends(
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
     a, t, eta, lam = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, l0 + l1 * m
     G = x + theta * y + scale * transition_squared
-    over, out, none = 1.0 / (G * (G + eta * z) + lam * z * z), 1.0 / (1.0 + (zeta - 1.0) * z), 0.0 * x
+    inverse_denominator, inverse_roll_denominator, zero = (
+        1.0 / (G * (G + eta * z) + lam * z * z),
+        1.0 / (1.0 + (zeta - 1.0) * z),
+        0.0 * x,
+    )
     # N/d with N = z [x (α x + β z) + p (τ x + ν z)]
-    ratio = z * (x * (a * x + b * z) + p * (t * x + n * z)) * over
+    ratio = z * (x * (a * x + b * z) + p * (t * x + n * z)) * inverse_denominator
     top = (
         z * (2.0 * a * x + b * z + t * p),
-        none,
+        zero,
         x * (a * x + 2.0 * b * z) + p * (t * x + 2.0 * n * z),
         z * (t * x + n * z),
     )
-    low = 2.0 * G + eta * z, theta * (2.0 * G + eta * z), eta * G + 2.0 * lam * z, none
-    first = [(up - ratio * down) * over for up, down in zip(top, low, strict=True)]
+    low = 2.0 * G + eta * z, theta * (2.0 * G + eta * z), eta * G + 2.0 * lam * z, zero
+    first = [(up - ratio * down) * inverse_denominator for up, down in zip(top, low, strict=True)]
     tops = {(0, 0): 2.0 * a * z, (0, 2): 2.0 * (a * x + b * z) + t * p, (0, 3): t * z, (2, 3): t * x + 2.0 * n * z}
     tops |= {(2, 2): 2.0 * (b * x + n * p)}
     lows = {(0, 0): 2.0, (0, 1): 2.0 * theta, (1, 1): 2.0 * theta * theta, (0, 2): eta, (1, 2): theta * eta}
     lows |= {(2, 2): 2.0 * lam}
     # γ y z/o with o = x + y + ζ z + v0²
-    roll, edge = g * y * z * out, (1.0, 1.0, zeta, 0.0)
-    rolled = [(g * part - roll * down) * out for part, down in zip((none, z, y, none), edge, strict=True)]
+    roll, edge = g * y * z * inverse_roll_denominator, (1.0, 1.0, zeta, 0.0)
+    rolled = [
+        (g * part - roll * down) * inverse_roll_denominator for part, down in zip((zero, z, y, zero), edge, strict=True)
+    ]
     bends = {}
     for i in range(4):
         for j in range(i, 4):
-            bend = tops.get((i, j), none) - ratio * lows.get((i, j), 0.0) - first[i] * low[j] - first[j] * low[i]
+            bend = tops.get((i, j), zero) - ratio * lows.get((i, j), 0.0) - first[i] * low[j] - first[j] * low[i]
             tilted = (g if (i, j) == (1, 2) else 0.0) - rolled[i] * edge[j] - rolled[j] * edge[i]
-            bends[i, j] = -scale * (bend * over + tilted * out)
+            bends[i, j] = -scale * (bend * inverse_denominator + tilted * inverse_roll_denominator)
     return bends

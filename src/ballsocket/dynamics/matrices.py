@@ -37,9 +37,9 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     """
     centre, contact = BallCentre(*_floats_to_arrays(centre)), Elastic(*_floats_to_arrays(contact))
     velocity, spin = _floats_to_arrays(velocity), _floats_to_arrays(spin)
-    direction, unit, zero = _stack_components(centre.x, centre.y, centre.z), *_ones_and_zeros(centre.distance)
+    direction, ones, zeros = _stack_components(centre.x, centre.y, centre.z), *_ones_and_zeros(centre.distance)
     normal = direction[..., :, None] * direction[..., None, :]
-    tangential = join_matrix(((unit, zero, zero), (zero, unit, zero), (zero, zero, unit))) - normal
+    tangential = join_matrix(((ones, zeros, zeros), (zeros, ones, zeros), (zeros, zeros, ones))) - normal
     normal_damping, tangential_damping = _damping_coefficients(centre, contact, velocity, constants)
     normal_block = normal_damping[..., None, None] * normal + tangential_damping[..., None, None] * tangential
     slip = sliding_state(
@@ -47,7 +47,7 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     )
     slip = Sliding(*_floats_to_arrays(slip))
     x, y, z = centre.x, centre.y, centre.z
-    rotation = constants.ball_radius * join_matrix(((zero, z, -y), (-z, zero, x), (y, -x, zero)))
+    rotation = constants.ball_radius * join_matrix(((zeros, z, -y), (-z, zeros, x), (y, -x, zeros)))
     lever = arrays.sqrt(slip.lever_squared)
     xp = arrays.namespace(direction)
     # rows: v across the load, R1 ω x n, and the speed at the lever; columns: v and ω

@@ -124,17 +124,21 @@ def energy_derivatives_of_array(
 ) -> Slopes:
     """Evaluate a fitted energy curve at an array of indentations in mm: energy, force and stiffness."""
     xp = arrays.namespace(indentation)
-    rows = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
+    coefficient_table = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
     d = where(indentation == indentation, clip(indentation, _MIN_INDENTATION, deepest), deepest)
     piece_position = (log(clip(d, shallowest, deepest)) - first) * density
-    piece_index = xp.astype(clip(xp.floor(arrays.stop_gradient(piece_position)), 0.0, rows.shape[0] - 1.0), xp.int64)
+    piece_index = xp.astype(
+        clip(xp.floor(arrays.stop_gradient(piece_position)), 0.0, coefficient_table.shape[0] - 1.0), xp.int64
+    )
     coordinate = 2.0 * (piece_position - xp.astype(piece_index, d.dtype)) - 1.0
     flat_indices = xp.reshape(piece_index, (-1,))
     log_energy, log_energy_slope, log_energy_bend = 0.0 * coordinate, 0.0 * coordinate, 0.0 * coordinate
-    for term in range(rows.shape[1]):
+    for term in range(coefficient_table.shape[1]):
         log_energy_bend = log_energy_bend * coordinate + log_energy_slope
         log_energy_slope = log_energy_slope * coordinate + log_energy
-        log_energy = log_energy * coordinate + xp.reshape(xp.take(rows[:, term], flat_indices), tuple(d.shape))
+        log_energy = log_energy * coordinate + xp.reshape(
+            xp.take(coefficient_table[:, term], flat_indices), tuple(d.shape)
+        )
     exponent, curvature = 2.0 * density * log_energy_slope, 8.0 * density * density * log_energy_bend
     below = d < shallowest
     energy = exp(log_energy + where(below, exponent * log(where(below, d, shallowest) / shallowest), 0.0))

@@ -134,16 +134,19 @@ def elastic_at_rim(
     c, g = constants.clearance, safe_divisor(constants.clearance + depth)
     w = where(touching, sqrt(where(touching, depth * (g + c), 1.0)), 1.0)
     epsilon = where(touching, atan2(w, c + 0.0 * w), 1.0)
-    first, second = c / (g * w), -c * (2.0 * g * g - c * c) / (g * g * w * w * w)
+    epsilon_slope, epsilon_bend = c / (g * w), -c * (2.0 * g * g - c * c) / (g * g * w * w * w)
     rim_ratio = (constants.rim - gamma) / epsilon
     W, W1, W2 = rim_share(rim_ratio)
     U, F, k = where(rim_ratio > -1.0, U, 0.0), where(rim_ratio > -1.0, F, 0.0), where(rim_ratio > -1.0, k, 0.0)
-    s1, s2 = -rim_ratio * first / epsilon, rim_ratio * (2.0 * first * first / epsilon - second) / epsilon
+    s1, s2 = (
+        -rim_ratio * epsilon_slope / epsilon,
+        rim_ratio * (2.0 * epsilon_slope * epsilon_slope / epsilon - epsilon_bend) / epsilon,
+    )
     # derivatives of U W(s) over the depth and γ; s decreases by 1/ε per γ
     by_depth = F * W + U * W1 * s1
-    by_both = (U * W1 * first / epsilon - F * W1 - U * W2 * s1) / epsilon
+    by_both = (U * W1 * epsilon_slope / epsilon - F * W1 - U * W2 * s1) / epsilon
     by_angle = -U * W1 / epsilon
-    over, nearer = 1.0 / safe_divisor(dome_sine), centre.inverse_distance
+    inverse_sine, inverse_distance = 1.0 / safe_divisor(dome_sine), centre.inverse_distance
     return Elastic(
         energy=U * W,
         normal=by_depth * slope,
@@ -151,13 +154,13 @@ def elastic_at_rim(
         damped_force=F * W * slope,
         damped_stiffness=W * (k * slope * slope + F * bend),
         rim_margin=rim_ratio,
-        polar=-by_angle * nearer,
-        mixed=(by_both * slope - by_angle * nearer) * nearer,
-        along=U * W2 * (nearer * nearer / (epsilon * epsilon)),
-        around=by_angle * dome_cosine * over * nearer * nearer,
-        px=ax * over,
-        py=ay * over,
-        pz=az * over,
+        polar=-by_angle * inverse_distance,
+        mixed=(by_both * slope - by_angle * inverse_distance) * inverse_distance,
+        along=U * W2 * (inverse_distance * inverse_distance / (epsilon * epsilon)),
+        around=by_angle * dome_cosine * inverse_sine * inverse_distance * inverse_distance,
+        px=ax * inverse_sine,
+        py=ay * inverse_sine,
+        pz=az * inverse_sine,
     )
 
 
@@ -258,8 +261,8 @@ def sliding_state(centre: BallCentre, force: Array, velocity: Vector, spin: Vect
     q, by_tilt, by_mixed = sqrt(q2), squared_kappa * by_tilt, kappa * by_mixed
     mu = friction.friction_coefficient(q, constants.sliding, constants.static, constants.stribeck_speed)
     N = force * friction.widening_factor(patch_versine)
-    rate, mean = N * (mu / q + constants.viscous), by_slip + by_tilt
-    push, rotation = mean + by_mixed, mean - by_mixed
+    rate, mean_slope = N * (mu / q + constants.viscous), by_slip + by_tilt
+    push, rotation = mean_slope + by_mixed, mean_slope - by_mixed
     return Sliding(ax, ay, az, bx, by, bz, turning, squared, N, rate, q, push, by_slip - by_tilt, rotation, by_drill)
 
 
@@ -321,9 +324,9 @@ def tangent_stiffness(centre: BallCentre, contact: Elastic, constants: Constants
     """Compute the tangent stiffness ∂²U/∂r² in N/mm: components xx, yy, zz, xy, yz, zx."""
     nx, ny, nz, px, py, pz = centre.x, centre.y, centre.z, contact.px, contact.py, contact.pz
     # where the centres coincide, without clearance, the stiffness is isotropic
-    across = where(centre.distance > 0.0, contact.normal * centre.inverse_distance, contact.stiffness)
-    radial = contact.stiffness - across
-    xx, yy, zz = across + radial * nx * nx, across + radial * ny * ny, across + radial * nz * nz
+    tangential = where(centre.distance > 0.0, contact.normal * centre.inverse_distance, contact.stiffness)
+    radial = contact.stiffness - tangential
+    xx, yy, zz = tangential + radial * nx * nx, tangential + radial * ny * ny, tangential + radial * nz * nz
     xy, yz, zx = radial * nx * ny, radial * ny * nz, radial * nz * nx
     if constants.rim > 0.0:
         A, B = contact.mixed, contact.around
@@ -367,8 +370,8 @@ def rim_share(rim_distance: Array) -> tuple[Array, Array, Array]:
     the marginal of (1 - x² - y²)² over a disc, the energy density of radial springs under a small patch.
     """
     clipped_distance = clip(rim_distance, -1.0, 1.0)
-    square = clip(1.0 - clipped_distance * clipped_distance, 0.0, 1.0)
-    root = sqrt(square)
+    one_minus_square = clip(1.0 - clipped_distance * clipped_distance, 0.0, 1.0)
+    root = sqrt(one_minus_square)
     W = (
         0.5
         + (
@@ -380,5 +383,5 @@ def rim_share(rim_distance: Array) -> tuple[Array, Array, Array]:
         )
         / pi
     )
-    slope = 16.0 / (5.0 * pi) * square * square * root
-    return clip(W, 0.0, 1.0), slope, -16.0 / pi * clipped_distance * square * root
+    slope = 16.0 / (5.0 * pi) * one_minus_square * one_minus_square * root
+    return clip(W, 0.0, 1.0), slope, -16.0 / pi * clipped_distance * one_minus_square * root

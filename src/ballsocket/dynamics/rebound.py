@@ -152,8 +152,8 @@ def _fit_hysteresis(speeds: Numbers, restitutions: Numbers) -> float:
     chi = float(numpy.median(1.5 * (1 - restitutions) / speeds))
     for _ in range(50):
         slope = _restitution_slopes(chi, speeds)
-        step = float(numpy.sum(slope * (restitutions - _restitutions(chi, speeds))) / numpy.sum(slope**2))
-        updated = max(chi + step, chi / 4)
+        newton_step = float(numpy.sum(slope * (restitutions - _restitutions(chi, speeds))) / numpy.sum(slope**2))
+        updated = max(chi + newton_step, chi / 4)
         change, chi = abs(updated - chi), updated
         if change <= 1e-12 * chi:
             break

@@ -71,10 +71,10 @@ def simulate(
     duration = _check_positive_number("duration", duration)
     steps = duration / _check_positive_number("step", step)
     require("the number of steps", steps, steps <= _MAX_STEPS, f"at most {_MAX_STEPS:g}")
-    count = max(int(numpy.ceil(steps - 1e-9)), 1)
+    step_count = max(int(numpy.ceil(steps - 1e-9)), 1)
     initial = BallState(*components(position), *components(velocity), *components(spin))
     problem = _InitialValueProblem(
-        element, force_element, checked_mass, checked_inertia, initial, pull, duration / count, count
+        element, force_element, checked_mass, checked_inertia, initial, pull, duration / step_count, step_count
     )
     if ContactState(force_element(initial[:3], initial[3:6], initial[6:]).status).failed:
         return problem.motion_without_steps()
@@ -111,9 +111,13 @@ class _InitialValueProblem:
 
     def simulate_by_energy_steps(self) -> Motion:
         """Simulate the motion by energy-momentum steps."""
-        step, count, potential_and_constants = self.step, self.count, (self.element.potential, self.element.constants)
-        states, dissipated = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
-        pulls = _pulls_at(self.pull, step * (numpy.arange(count) + 0.5))
+        step, step_count, potential_and_constants = (
+            self.step,
+            self.count,
+            (self.element.potential, self.element.constants),
+        )
+        states, dissipated = numpy.zeros((step_count + 1, 9)), numpy.zeros(step_count + 1)
+        pulls = _pulls_at(self.pull, step * (numpy.arange(step_count) + 0.5))
         is_uncompiled = isinstance(self.element, ForceElement)
         march, pull_rows = (stepping.march, pulls.tolist()) if is_uncompiled else (self.element.march, pulls)
         converged = march(
@@ -128,7 +132,7 @@ class _InitialValueProblem:
         )
         end_reason = (
             ""
-            if converged == count
+            if converged == step_count
             else _failure_note(self.force_element, states[converged + 1], converged * step, step)
         )
         states, dissipated, pulls = states[: converged + 1], dissipated[: converged + 1], pulls[:converged]
@@ -194,14 +198,14 @@ _MASS_RANGE = (1e-100, 1e100)
 
 def _check_mass_or_inertia(name: str, value: Any) -> float:
     """Check that a mass or moment of inertia lies in the allowed range, and return it."""
-    number = check_number(name, value)
+    checked = check_number(name, value)
     low, high = _MASS_RANGE
-    require(name, number, low <= number <= high, f"{name} must be between {low:g} and {high:g}")
-    return number
+    require(name, checked, low <= checked <= high, f"{name} must be between {low:g} and {high:g}")
+    return checked
 
 
 def _check_positive_number(name: str, value: Any) -> float:
     """Check that a number is above 0 and finite, and return it."""
-    number = check_number(name, value)
-    require(name, number, 0.0 < number < inf, "it must be above 0 and finite")
-    return number
+    checked = check_number(name, value)
+    require(name, checked, 0.0 < checked < inf, "it must be above 0 and finite")
+    return checked

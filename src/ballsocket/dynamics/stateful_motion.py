@@ -66,9 +66,14 @@ class StatefulIntegrator:
                 attachments.append(attached)
         except _NoLoad as error:
             failure = error.load
-        rows = numpy.array(states)
+        state_array = numpy.array(states)
         return StatefulTrajectory(
-            rows[:, :9], rows[:, 9:13], numpy.array(attachments), rows[:, 13], rows[:, 14], failure
+            state_array[:, :9],
+            state_array[:, 9:13],
+            numpy.array(attachments),
+            state_array[:, 13],
+            state_array[:, 14],
+            failure,
         )
 
     def _iterate_states(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
@@ -142,8 +147,8 @@ class StatefulIntegrator:
         def switch_distance(time: float) -> float:
             return self._indentation_at(interpolant(time)) + (stretch if attached else 0.0)
 
-        before, after = switch_distance(interpolant.t_old), switch_distance(interpolant.t)
-        state_changes = before > 0.0 >= after if attached else before < 0.0 <= after
+        start_distance, end_distance = switch_distance(interpolant.t_old), switch_distance(interpolant.t)
+        state_changes = start_distance > 0.0 >= end_distance if attached else start_distance < 0.0 <= end_distance
         return float(brentq(switch_distance, interpolant.t_old, interpolant.t, xtol=1e-15)) if state_changes else inf
 
 

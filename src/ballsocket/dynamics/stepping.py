@@ -75,27 +75,40 @@ def advance_one_step(  # type: ignore[no-untyped-def]
     )
     if initial.indentation + h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z)) < -constants.smoothing:
         return StepResult(end_state(ball, midpoint, h), 0.0, True)
-    start = elastic_contact(potential, initial, constants)
-    push = start.normal / mass_rate
+    start_contact = elastic_contact(potential, initial, constants)
+    normal_push = start_contact.normal / mass_rate
     ax, ay, az, bx, by, bz = midpoint
-    midpoint = Midpoint(ax - push * initial.x, ay - push * initial.y, az - push * initial.z, bx, by, bz)
-    size, best, change = 1e-300, 1e300, 1e300
+    midpoint = Midpoint(
+        ax - normal_push * initial.x, ay - normal_push * initial.y, az - normal_push * initial.z, bx, by, bz
+    )
+    speed_scale, smallest_change, change = 1e-300, 1e300, 1e300
     for _ in range(MAX_ITERATIONS):
         residual = step_residual(
-            potential, constants, ball, midpoint, initial.distance, start.energy, mass_rate, inertia_rate, pull, h
+            potential,
+            constants,
+            ball,
+            midpoint,
+            initial.distance,
+            start_contact.energy,
+            mass_rate,
+            inertia_rate,
+            pull,
+            h,
         )
-        after, change = newton_correction(residual, midpoint, constants, mass_rate, inertia_rate, h)
+        corrected, change = newton_correction(residual, midpoint, constants, mass_rate, inertia_rate, h)
         if not isfinite(change):
             break
-        midpoint = after
-        size = max(size, surface_speed(midpoint, constants) + residual.force / mass_rate)
-        if change <= _RELATIVE_TOLERANCE * size or (change <= _ROUNDING_TOLERANCE * size and change >= 0.5 * best):
+        midpoint = corrected
+        speed_scale = max(speed_scale, surface_speed(midpoint, constants) + residual.force / mass_rate)
+        if change <= _RELATIVE_TOLERANCE * speed_scale or (
+            change <= _ROUNDING_TOLERANCE * speed_scale and change >= 0.5 * smallest_change
+        ):
             break
-        best = min(best, change)
+        smallest_change = min(smallest_change, change)
     ax, ay, az, bx, by, bz = midpoint
     dissipated = h * dissipation(residual.centre, residual.contact, (ax, ay, az), (bx, by, bz), constants)
     return StepResult(
-        end_state(ball, midpoint, h), dissipated, residual.in_cup and change <= _ROUNDING_TOLERANCE * size
+        end_state(ball, midpoint, h), dissipated, residual.in_cup and change <= _ROUNDING_TOLERANCE * speed_scale
     )
 
 
@@ -189,27 +202,38 @@ def mean_contact(  # type: ignore[no-untyped-def]
     the differences of the invariants, also for a step that hardly changes them.
     """
     ax, ay, az = midpoint.x, midpoint.y, midpoint.z
-    half = ball_centre_at(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, constants.clearance)
+    midpoint_centre = ball_centre_at(
+        ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, constants.clearance
+    )
     end = ball_centre_at(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, constants.clearance)
-    mean = 0.5 * (distance + end.distance)
-    nx, ny, nz, over = half.x, half.y, half.z, 1.0 / safe_divisor(mean)
-    shortening, depth = half.distance * over, mean - constants.clearance
-    centre = BallCentre(mean, nx, ny, nz, depth, over)
+    mean_distance = 0.5 * (distance + end.distance)
+    nx, ny, nz, inverse_distance = (
+        midpoint_centre.x,
+        midpoint_centre.y,
+        midpoint_centre.z,
+        1.0 / safe_divisor(mean_distance),
+    )
+    shortening, depth = midpoint_centre.distance * inverse_distance, mean_distance - constants.clearance
+    centre = BallCentre(mean_distance, nx, ny, nz, depth, inverse_distance)
     if constants.rim == 0.0:
         contact = elastic_contact(potential, centre, constants)
         return MeanContact(centre, end, contact, shortening, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    cosine, sine, px, py, pz = dome_angle(half, constants)
+    cosine, sine, px, py, pz = dome_angle(midpoint_centre, constants)
     lean, across = shortening * cosine, 1.0 / safe_divisor(sine)
-    level = sqrt(max(1.0 - lean * lean, 0.0))
-    stretch, steep = level * across, 1.0 / safe_divisor(level)
+    mean_sine = sqrt(max(1.0 - lean * lean, 0.0))
+    sine_ratio, inverse_sine = mean_sine * across, 1.0 / safe_divisor(mean_sine)
     gx, gy, gz = constants.dome_x, constants.dome_y, constants.dome_z
     kx, ky, kz = lean * gx, lean * gy, lean * gz
-    kx, ky, kz = kx + stretch * (nx - cosine * gx), ky + stretch * (ny - cosine * gy), kz + stretch * (nz - cosine * gz)
-    contact = elastic_contact(potential, BallCentre(mean, kx, ky, kz, depth, over), constants)
+    kx, ky, kz = (
+        kx + sine_ratio * (nx - cosine * gx),
+        ky + sine_ratio * (ny - cosine * gy),
+        kz + sine_ratio * (nz - cosine * gz),
+    )
+    contact = elastic_contact(potential, BallCentre(mean_distance, kx, ky, kz, depth, inverse_distance), constants)
     tilt = lean * shortening
     return MeanContact(
         centre, end, contact, shortening,
-        (tilt * nx - gx) * steep, (tilt * ny - gy) * steep, (tilt * nz - gz) * steep,
+        (tilt * nx - gx) * inverse_sine, (tilt * ny - gy) * inverse_sine, (tilt * nz - gz) * inverse_sine,
         px * across, py * across, pz * across,
     )  # fmt: skip
 
@@ -305,15 +329,23 @@ def newton_correction(
     dw = -turning / (inertia_rate + drill)
     # friction couples the velocity across the load with u = ω x n
     A, B, C = mass_rate + push + tangential_stiffness, inertia_rate + rotation * R1 * R1, mixed * R1
-    over = 1.0 / (A * B - C * C)
+    inverse_determinant = 1.0 / (A * B - C * C)
     tx, ty, tz = residual.x - outward * nx, residual.y - outward * ny, residual.z - outward * nz
     ux = residual.wy * nz - residual.wz * ny
     uy = residual.wz * nx - residual.wx * nz
     uz = residual.wx * ny - residual.wy * nx
-    dx, dy, dz = (C * ux - B * tx) * over, (C * uy - B * ty) * over, (C * uz - B * tz) * over
-    ex, ey, ez = (C * tx - A * ux) * over, (C * ty - A * uy) * over, (C * tz - A * uz) * over
+    dx, dy, dz = (
+        (C * ux - B * tx) * inverse_determinant,
+        (C * uy - B * ty) * inverse_determinant,
+        (C * uz - B * tz) * inverse_determinant,
+    )
+    ex, ey, ez = (
+        (C * tx - A * ux) * inverse_determinant,
+        (C * ty - A * uy) * inverse_determinant,
+        (C * tz - A * uz) * inverse_determinant,
+    )
     change = abs(dx) + abs(dy) + abs(dz) + abs(dn) + R1 * (abs(ex) + abs(ey) + abs(ez) + abs(dw))
-    after = Midpoint(
+    new_midpoint = Midpoint(
         midpoint.x + dx + dn * nx,
         midpoint.y + dy + dn * ny,
         midpoint.z + dz + dn * nz,
@@ -321,7 +353,7 @@ def newton_correction(
         midpoint.wy + nz * ex - nx * ez + dw * ny,
         midpoint.wz + nx * ey - ny * ex + dw * nz,
     )
-    return after, change
+    return new_midpoint, change
 
 
 def march(  # type: ignore[no-untyped-def]
@@ -334,13 +366,13 @@ def march(  # type: ignore[no-untyped-def]
     `pulls` (steps, 3) is the pull in each step. In Python it is a list, which is faster than an array.
     """
     states[0, :] = ball
-    for number in range(len(dissipated) - 1):
-        row = pulls[number]
-        pull = row[0], row[1], row[2]
-        after = advance_one_step(potential, constants, ball, mass, inertia, pull, h)
-        ball = after.ball
-        states[number + 1, :] = ball
-        dissipated[number + 1] = dissipated[number] + after.dissipated
-        if not after.converged:
-            return number
+    for index in range(len(dissipated) - 1):
+        components = pulls[index]
+        pull = components[0], components[1], components[2]
+        result = advance_one_step(potential, constants, ball, mass, inertia, pull, h)
+        ball = result.ball
+        states[index + 1, :] = ball
+        dissipated[index + 1] = dissipated[index] + result.dissipated
+        if not result.converged:
+            return index
     return len(dissipated) - 1

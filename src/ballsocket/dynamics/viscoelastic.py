@@ -82,8 +82,10 @@ class Prony:
 
     def mean(self, early: Numbers, late: Numbers) -> Numbers:
         """Compute the mean of the relative relaxation modulus g(t) between two times in s."""
-        first, span = early[..., None] / self.times, (late - early)[..., None] / self.times
-        return self.long_term_share + numpy.sum(self.shares * numpy.exp(-first) * -numpy.expm1(-span) / span, axis=-1)
+        early_ratio, span_ratio = early[..., None] / self.times, (late - early)[..., None] / self.times
+        return self.long_term_share + numpy.sum(
+            self.shares * numpy.exp(-early_ratio) * -numpy.expm1(-span_ratio) / span_ratio, axis=-1
+        )
 
     def complex_modulus(self, frequency: Numbers) -> Numbers:
         """Compute the complex modulus over the instantaneous modulus at frequencies in Hz.
@@ -276,17 +278,19 @@ def _maxwell_pressures(modulus: Prony, time: Numbers, spring_displacements: Numb
     surface = numpy.zeros(spring_displacements.shape[1])
     stresses = numpy.zeros((len(modulus.terms), spring_displacements.shape[1]))
     pressure = numpy.zeros(spring_displacements.shape)
-    g, tau, g_inf = modulus.shares[:, None], modulus.times[:, None], modulus.long_term_share
-    for instant, step in enumerate(numpy.diff(time), start=1):
-        decay_factor, weight = numpy.exp(-step / tau), -numpy.expm1(-step / tau) * tau / step
-        past_pressure = numpy.sum(g * (decay_factor * stresses - weight * surface), axis=0)
-        effective_stiffness = g_inf + float(numpy.sum(g * weight))
+    shares, times, long_term_share = modulus.shares[:, None], modulus.times[:, None], modulus.long_term_share
+    for instant, time_step in enumerate(numpy.diff(time), start=1):
+        decay_factor, weight = numpy.exp(-time_step / times), -numpy.expm1(-time_step / times) * times / time_step
+        past_pressure = numpy.sum(shares * (decay_factor * stresses - weight * surface), axis=0)
+        effective_stiffness = long_term_share + float(numpy.sum(shares * weight))
         displaced = numpy.maximum(
             spring_displacements[instant], -past_pressure / effective_stiffness
         )  # the ball surface, or the recovering liner surface
         stresses = decay_factor * stresses + weight * (displaced - surface)
         pressure[instant] = numpy.where(
-            displaced == spring_displacements[instant], g_inf * displaced + numpy.sum(g * stresses, axis=0), 0.0
+            displaced == spring_displacements[instant],
+            long_term_share * displaced + numpy.sum(shares * stresses, axis=0),
+            0.0,
         )
         surface = displaced
     return pressure

@@ -118,7 +118,7 @@ class Recording:
     @cached_property
     def slope(self) -> Outputs:
         """Recorded directional derivatives of load, half angle and pressure with respect to the state."""
-        names = (f"way[{number}]" for number in range(9))
+        names = (f"way[{index}]" for index in range(9))
         direction = {part: self.tape.input(name) for part, name in zip(chain(*self.state), names, strict=True)}
         return _by_array_element(
             "slope", directional_derivatives([*self.load.values(), *self.contact_size.values()], direction)
@@ -127,7 +127,7 @@ class Recording:
 
 def _by_array_element(name: str, parts: Any) -> Outputs:
     """Return recorded parts by their C array elements, such as "force[0]"."""
-    return {f"{name}[{number}]": part for number, part in enumerate(parts)}
+    return {f"{name}[{index}]": part for index, part in enumerate(parts)}
 
 
 def _is_recordable(potential: Any) -> bool:
@@ -239,10 +239,10 @@ def _range_check_statement(name: str, is_positive: bool) -> str:
 def _curve_function_code(name: str, curve: CurveLaw) -> str:
     """Return the C code of a fitted curve: its coefficients and the function that evaluates it."""
     pieces: Numbers = curve.pieces
-    rows = ",\n".join("    " + ", ".join(map(c_number, row)) for row in pieces.tolist())
+    coefficient_rows = ",\n".join("    " + ", ".join(map(c_number, coefficients)) for coefficients in pieces.tolist())
     ends = ", ".join(map(c_number, (curve.shallowest, curve.deepest, curve.first, curve.density)))
     return (
-        f"static const double {name}_rows[] = {{\n{rows}\n}};\n"
+        f"static const double {name}_rows[] = {{\n{coefficient_rows}\n}};\n"
         f"static const curve {name}_data = {{{ends}, {pieces.shape[0]}, {pieces.shape[1]}, {name}_rows}};\n"
         f"static void {name}(double d, double out[4]) {{ along_curve(&{name}_data, d, out); }}\n"
     )

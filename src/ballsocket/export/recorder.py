@@ -197,8 +197,8 @@ _NAMESPACE = _Namespace()
 def directional_derivatives(parts: Sequence[Part], direction: Mapping[Recorded, Part]) -> list[Part]:
     """Record the derivatives of some parts with respect to the inputs, along a direction."""
     slopes: dict[int, Slope] = {variable.number: rate for variable, rate in direction.items()}
-    recorded = [part for part in parts if isinstance(part, Recorded)]
-    for step in list(recorded[0].tape.steps) if recorded else ():
+    recorded_parts = [part for part in parts if isinstance(part, Recorded)]
+    for step in list(recorded_parts[0].tape.steps) if recorded_parts else ():
         if step.number not in slopes:
             slopes[step.number] = (
                 None

@@ -133,10 +133,10 @@ _COLUMNS = ("indentation_mm", "force_N", "stiffness_N/mm", "energy_N_mm", "half_
 
 def _law_table(element: ForceElement, depth: float) -> str:
     """Return a CSV table of force, stiffness, energy, half angle and pressure up to an indentation in mm."""
-    d = numpy.linspace(0.0, depth, _TABLE_ROWS)
-    energy, force, stiffness = element.potential(d)
-    angle = numpy.degrees(element.half_angle(d))
-    columns = (d, force, stiffness, energy, angle, element.max_pressure(d))
+    depths = numpy.linspace(0.0, depth, _TABLE_ROWS)
+    energy, force, stiffness = element.potential(depths)
+    angle = numpy.degrees(element.half_angle(depths))
+    columns = (depths, force, stiffness, energy, angle, element.max_pressure(depths))
     rows = numpy.stack(columns, axis=1).tolist()
     return "\n".join([",".join(_COLUMNS), *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
 

@@ -64,8 +64,8 @@ def interpolation_at(grid: Grid, directions: Numbers) -> BilinearInterpolation:
 
 def ball_directions(grid: Grid) -> Numbers:
     """Compute unit vectors (3, cells) to the centres of the cells of an unrotated ball, in the body's frame."""
-    first, second, axis = grid.middles.reshape(3, -1)
-    return numpy.stack([second, axis, first])
+    first_axis, second_axis, axis = grid.middles.reshape(3, -1)
+    return numpy.stack([second_axis, axis, first_axis])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

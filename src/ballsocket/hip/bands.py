@@ -266,8 +266,8 @@ class Bands:
         """Return the bands of all results at one report as a dictionary for JSON."""
         bands: dict[str, dict[str, Any]] = {
             name: {
-                end: _finite_or_none(self.quantile(name, fraction)[report])
-                for end, fraction in self._probabilities_by_name.items()
+                end_name: _finite_or_none(self.quantile(name, fraction)[report])
+                for end_name, fraction in self._probabilities_by_name.items()
             }
             for name in RESULT_UNITS
         }
@@ -281,8 +281,8 @@ class Bands:
             **bands,
             "edge_loading": _finite_or_none(self.edge_loading(report)),
             "peak_utilisation": {
-                end: _finite_or_none(self.utilisation_quantile(fraction)[report])
-                for end, fraction in self._probabilities_by_name.items()
+                end_name: _finite_or_none(self.utilisation_quantile(fraction)[report])
+                for end_name, fraction in self._probabilities_by_name.items()
             },
             "valid": _finite_or_none(self.valid_fraction(report)),
         }
@@ -291,8 +291,8 @@ class Bands:
         """Return the bands of one result at one report for each shared coefficient, for JSON."""
         return {
             coefficient: {
-                end: _finite_or_none(shared.quantile(coefficient, name, fraction)[report])
-                for end, fraction in self._probabilities_by_name.items()
+                end_name: _finite_or_none(shared.quantile(coefficient, name, fraction)[report])
+                for end_name, fraction in self._probabilities_by_name.items()
             }
             for coefficient in shared.values
         }

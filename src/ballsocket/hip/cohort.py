@@ -93,7 +93,7 @@ class CohortRun:
         """
         check_worker_code(self.code)
         tables, contacts, errors = zip(
-            *(self._simulate_patient(number) for number in self.patient_numbers(piece)), strict=True
+            *(self._simulate_patient(patient_index) for patient_index in self.patient_numbers(piece)), strict=True
         )
         return CohortResult(table=numpy.stack(tables), refused=numpy.array(errors), contact=numpy.stack(contacts))
 

@@ -48,15 +48,15 @@ class CupFrame:
 
     def __post_init__(self) -> None:
         """Check that no load pushes the ball over the rim, unless a spring balances it; ValueError otherwise."""
-        outside = self._instants_beyond_rim
+        dislocated = self._instants_beyond_rim
         if self.separation is not None:
-            outside = outside[numpy.isnan(self.separation.displacement[:, 0])]
-        if len(outside):
-            first = outside[0]
+            dislocated = dislocated[numpy.isnan(self.separation.displacement[:, 0])]
+        if len(dislocated):
+            first_dislocated = dislocated[0]
             raise ValueError(
-                f"dislocated at {self.cycle.describe_step(first)}: the load of "
-                f"{numpy.linalg.norm(self.forces[first]):.0f} N points "
-                f"{degrees(self._force_angles[first]):.1f}° from the dome's pole, and the bore ends at "
+                f"dislocated at {self.cycle.describe_step(first_dislocated)}: the load of "
+                f"{numpy.linalg.norm(self.forces[first_dislocated]):.0f} N points "
+                f"{degrees(self._force_angles[first_dislocated]):.1f}° from the dome's pole, and the bore ends at "
                 f"{degrees(self.reach):.1f}°"
             )
 
@@ -79,8 +79,8 @@ class CupFrame:
     @cached_property
     def _load_mask(self) -> Numbers:
         """Mask of the instants with a load: (instants,)."""
-        sizes = self.cycle.force_magnitudes
-        return numpy.asarray(sizes > _MIN_RELATIVE_FORCE * max(float(sizes.max()), 1e-300))
+        magnitudes = self.cycle.force_magnitudes
+        return numpy.asarray(magnitudes > _MIN_RELATIVE_FORCE * max(float(magnitudes.max()), 1e-300))
 
     @cached_property
     def _spring_loaded_ball(self) -> SpringLoadedBall | None:
@@ -117,21 +117,21 @@ class CupFrame:
     @cached_property
     def _instants_beyond_rim(self) -> Numbers:
         """Indices of the instants in which the load points beyond the rim."""
-        beyond = numpy.flatnonzero(self._load_mask & (self._force_angles >= self.reach))
+        beyond_rim = numpy.flatnonzero(self._load_mask & (self._force_angles >= self.reach))
         return (
-            beyond
+            beyond_rim
             if self._spring_loaded_ball is None
-            else beyond[self._spring_loaded_ball.leaves_bore(self.forces[beyond])]
+            else beyond_rim[self._spring_loaded_ball.leaves_bore(self.forces[beyond_rim])]
         )
 
     @cached_property
     def separation(self) -> Microseparation | None:
         """Microseparation: instants in which a spring has pushed the ball onto the rim; None without any."""
-        beyond = self._instants_beyond_rim
+        beyond_rim = self._instants_beyond_rim
         return (
             None
-            if self._spring_loaded_ball is None or not len(beyond)
-            else self._spring_loaded_ball.solve_separation(self.forces[beyond], beyond)
+            if self._spring_loaded_ball is None or not len(beyond_rim)
+            else self._spring_loaded_ball.solve_separation(self.forces[beyond_rim], beyond_rim)
         )
 
     @cached_property
@@ -156,10 +156,14 @@ class CupFrame:
     def activities(self) -> tuple[tuple[str, Numbers], ...]:
         """Name of each activity with contact, and indices of its loads among the loaded instants."""
         indices = {
-            number: numpy.flatnonzero((self.loaded >= part.start) & (self.loaded < part.stop))
-            for number, (_, part) in enumerate(self.cycle.activity_slices)
+            activity_index: numpy.flatnonzero((self.loaded >= step_range.start) & (self.loaded < step_range.stop))
+            for activity_index, (_, step_range) in enumerate(self.cycle.activity_slices)
         }
-        return tuple((self.cycle.activity_slices[number][0], loads) for number, loads in indices.items() if len(loads))
+        return tuple(
+            (self.cycle.activity_slices[activity_index][0], loads)
+            for activity_index, loads in indices.items()
+            if len(loads)
+        )
 
     @cached_property
     def loads(self) -> Numbers:
@@ -169,8 +173,8 @@ class CupFrame:
     @property
     def largest_load_index(self) -> Numbers:
         """Index of the largest load among the loaded instants: (1,), or (0,) without loads."""
-        sizes = numpy.linalg.norm(self.loads, axis=1)
-        return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
+        magnitudes = numpy.linalg.norm(self.loads, axis=1)
+        return numpy.flatnonzero(magnitudes == magnitudes.max(initial=0.0))[:1]
 
     @cached_property
     def rotation_increments(self) -> Numbers:
@@ -180,8 +184,8 @@ class CupFrame:
     @property
     def slide(self) -> float:
         """Sliding distance in mm in a cycle, at the point of the socket to which the load points."""
-        sizes = self.cycle.force_magnitudes[:, None]
-        directions = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
+        magnitudes = self.cycle.force_magnitudes[:, None]
+        directions = numpy.divide(self.forces, magnitudes, out=numpy.zeros_like(self.forces), where=magnitudes > 0)
         rotations = _convert_to_cup_frame(self.placed, self.side_cycle.rotation_increments)
         return sliding_distance(
             float(self.joint.ball_radius), rotations, _fill_unloaded_directions(directions, self.loaded)
@@ -219,8 +223,8 @@ def _fill_unloaded_directions(directions: Numbers, loaded: Numbers) -> Numbers:
     """Replace the direction of each unloaded instant by that of the last loaded instant before."""
     if not len(loaded):
         return directions
-    last = numpy.searchsorted(loaded, numpy.arange(len(directions)), side="right") - 1
-    return directions[loaded[last]]
+    last_loaded = numpy.searchsorted(loaded, numpy.arange(len(directions)), side="right") - 1
+    return directions[loaded[last_loaded]]
 
 
 T = TypeVar("T")

@@ -256,8 +256,10 @@ class ElasticFoundation:
         self, bore_contact: BoreContact, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
     ) -> EquilibriumBatch:
         """Solve the contacts under all load levels; repeat unconverged ones from a deeper start."""
-        level_count, sizes = len(levels.loads), magnitudes_and_directions(levels.loads)
-        initial_guess = initial_displacement(self, self.compliance.uniform_stiffness, depth, *sizes)
+        level_count, magnitudes_and_unit_vectors = len(levels.loads), magnitudes_and_directions(levels.loads)
+        initial_guess = initial_displacement(
+            self, self.compliance.uniform_stiffness, depth, *magnitudes_and_unit_vectors
+        )
         previous = None if start is None else start.levels
         start_displacement, pressure = (
             previous if previous is not None and len(previous[0]) == level_count else (initial_guess, None)

@@ -144,9 +144,9 @@ class Film:
             "power_W": self.heat / self.duration,
             "heat_J_per_cycle": self.heat,
         }
-        numbers = {name: float(value) if numpy.isfinite(value) else None for name, value in values.items()}
+        finite_values = {name: float(value) if numpy.isfinite(value) else None for name, value in values.items()}
         largest_moment = [float(component) for component in self.moment[moment_magnitudes.argmax()]]
-        return {**numbers, "moment_on_cup_Nmm": largest_moment, "regime": self.regime, "note": CONFORMITY_NOTE}
+        return {**finite_values, "moment_on_cup_Nmm": largest_moment, "regime": self.regime, "note": CONFORMITY_NOTE}
 
 
 class LoadedCycle(Protocol):

@@ -259,7 +259,7 @@ class HipSetup:
         worn = self._depth_field(depth)
         worn = worn[rows] if worn.ndim == 2 else worn
         overlap = equilibrium.displacement[rows] @ self.foundation.normals - self.foundation.clearance - worn
-        chosen = CycleEquilibrium(
+        worst_equilibrium = CycleEquilibrium(
             displacement=equilibrium.displacement[rows],
             pressure=equilibrium.pressure[rows],
             converged=equilibrium.converged,
@@ -269,7 +269,7 @@ class HipSetup:
                 rows,
                 numpy.linalg.norm(self.frame.loads[rows], axis=1),
                 numpy.maximum(overlap.max(axis=1, initial=0.0), 0.0),
-                half_angles(self.grid, self.frame.reach, self.foundation.edge_field(chosen, worn)),
+                half_angles(self.grid, self.frame.reach, self.foundation.edge_field(worst_equilibrium, worn)),
                 largest[rows],
             ],
             axis=1,

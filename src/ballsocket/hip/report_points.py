@@ -161,21 +161,22 @@ def run_to_report_points(
         integrator.resume(state)
         reports = tuple(report for report in reports if report.cycles in counts)
     reported = {report.cycles for report in reports}
-    for count in counts:
-        if count in reported:
+    for report_count in counts:
+        if report_count in reported:
             continue
-        if count < integrator.cycles:
+        if report_count < integrator.cycles:
             raise ValueError(
-                f"the store has reached {integrator.cycles:g} cycles without a report at {count:g}; give another folder"
+                f"the store has reached {integrator.cycles:g} cycles without a report at {report_count:g}; "
+                "give another folder"
             )
 
         def store_block(cycles: float) -> None:
             """Store the state after a block of cycles, and report the progress."""
-            if stored is not None and cycles < count:  # noqa: B023 (called before the next)
+            if stored is not None and cycles < report_count:  # noqa: B023 (called before the next)
                 stored.write(integrator.state, reports)  # noqa: B023
             progress(cycles)
 
-        reports = (*reports, make_report(integrator.run_until(count, store_block)))
+        reports = (*reports, make_report(integrator.run_until(report_count, store_block)))
         if stored is not None:
             stored.write(integrator.state, reports)
     return reports
@@ -183,7 +184,7 @@ def run_to_report_points(
 
 def make_report(integrator: WearIntegrator) -> Report:
     """Create a report of the present state of a wear simulation."""
-    setup, creep_depth, shape = integrator.setup, integrator.creep_depth, (integrator.setup.grid.rings, -1)
+    setup, creep_depth, grid_shape = integrator.setup, integrator.creep_depth, (integrator.setup.grid.rings, -1)
     depth = integrator.depth + creep_depth
     if setup.ball_wear is not None:
         counterface = map_counterface(setup, numpy.arange(len(depth)))
@@ -196,7 +197,7 @@ def make_report(integrator: WearIntegrator) -> Report:
     edge = setup.edge(contacts, depth)
     return Report(
         cycles=integrator.cycles,
-        wear=integrator.depth.reshape(shape),
+        wear=integrator.depth.reshape(grid_shape),
         volume=integrator.volume,
         depth=float(integrator.depth.max()),
         work=integrator.work,
@@ -207,7 +208,7 @@ def make_report(integrator: WearIntegrator) -> Report:
         edge_distance=edge.distance,
         edge_place=edge.azimuth,
         edge_pressure=edge.pressure,
-        crept=creep_depth.reshape(shape),
+        crept=creep_depth.reshape(grid_shape),
         creep_depth=float(creep_depth.max()),
         ball_wear=integrator.ball,
         ball_volume=integrator.ball_volume,

@@ -208,9 +208,9 @@ class Microseparation:
 
     def summary(self, cycle: StepSequence) -> dict[str, Any]:
         """Return the microseparation as a dictionary for JSON, in mm and degrees."""
-        first, last = (cycle.describe_step(step) for step in self._first_and_last_step(cycle.n_steps))
+        first_text, last_text = (cycle.describe_step(step) for step in self._first_and_last_step(cycle.n_steps))
         azimuth = self.azimuth[int(numpy.linalg.norm(self.displacement, axis=1).argmax())]
-        return {"from": first, "to": last, "largest_mm": self.largest, "place_deg": degrees(azimuth)}
+        return {"from": first_text, "to": last_text, "largest_mm": self.largest, "place_deg": degrees(azimuth)}
 
     def describe(self, cycle: StepSequence) -> str:
         """Describe the microseparation in one sentence for reports."""
@@ -274,9 +274,12 @@ class SpringLoadedBall:
         mismatch = abs(self.spring.mismatch)
         low, high = numpy.zeros(len(forces)), numpy.full(len(forces), mismatch)
         for _ in range(_BISECTIONS):
-            middle = (low + high) / 2
-            is_beyond = self._ball_centre_on_rim(forces, middle) @ self._pull_direction > middle
-            low, high = numpy.where(is_beyond, low, middle), numpy.where(is_beyond, middle, high)
+            trial_displacement = (low + high) / 2
+            is_beyond = self._ball_centre_on_rim(forces, trial_displacement) @ self._pull_direction > trial_displacement
+            low, high = (
+                numpy.where(is_beyond, low, trial_displacement),
+                numpy.where(is_beyond, trial_displacement, high),
+            )
         ball_centre = self._ball_centre_on_rim(forces, high)
         is_balanced = abs(ball_centre @ self._pull_direction - high) <= _BALANCE_TOLERANCE * mismatch
         loads = self._loads_after_displacement(forces, high)

@@ -108,10 +108,10 @@ class HipSimulation(HipSetup):
         """
         finer_steps = replace(self, cycle=self.cycle.finer())
         finer_rings = replace(finer_steps, ring_width=max(self.ring_width / 2, MIN_RING_WIDTH))
-        firsts = (self.first, finer_steps.first, finer_rings.first)
-        return _relative_discretization_error([first.volume for first in firsts]), _relative_discretization_error(
-            [first.depth for first in firsts]
-        )
+        first_cycles = (self.first, finer_steps.first, finer_rings.first)
+        return _relative_discretization_error(
+            [first_cycle.volume for first_cycle in first_cycles]
+        ), _relative_discretization_error([first_cycle.depth for first_cycle in first_cycles])
 
 
 _ERROR_RATIO = 1 / (1 - 2**-1.5)

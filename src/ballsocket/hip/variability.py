@@ -209,7 +209,8 @@ class Patient:
         check_total_wear(self.use, self.cycle_ratio * counts[-1])
         integrator = WearIntegrator(setup=self.use)
         reports = tuple(
-            make_report(integrator.run_until(self.cycle_ratio * count, lambda cycles: None)) for count in counts
+            make_report(integrator.run_until(self.cycle_ratio * report_count, lambda cycles: None))
+            for report_count in counts
         )
         if not all(report.converged for report in reports):
             raise ValueError("a contact did not balance its load")
@@ -237,7 +238,7 @@ class _CycleTable:
     def __call__(self, phases: Numbers) -> Numbers:
         """Interpolate the tabulated values at phases (n,) from 0 to 1: (..., n)."""
         interpolated_rows = [
-            numpy.interp(phases, self.phases, row, period=1.0) for row in numpy.atleast_2d(self.values)
+            numpy.interp(phases, self.phases, row_values, period=1.0) for row_values in numpy.atleast_2d(self.values)
         ]
         return numpy.reshape(interpolated_rows, (*self.values.shape[:-1], -1))
 

@@ -216,7 +216,7 @@ def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
     if BALL_COEFFICIENT not in table:
         return None
     if not law.wears_balls:
-        names = ", ".join(repr(name) for name, known in WEAR_LAWS.items() if known.wears_balls)
+        names = ", ".join(repr(name) for name, registered_law in WEAR_LAWS.items() if registered_law.wears_balls)
         raise ValueError(f"{BALL_COEFFICIENT} is not allowed with the law {law.name!r}; it belongs to {names}")
     return read_law(table, WEAR_LAWS, law, keys={COEFFICIENT: BALL_COEFFICIENT})
 

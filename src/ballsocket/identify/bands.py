@@ -66,7 +66,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
             break
         best = replace(minimise_misfit(misfit, profiles.lowest), rivals=best.rivals)
     unknowns_and_ends = enumerate(zip(misfit.transform.unknowns, *profiles.ends, strict=True))
-    intervals = tuple(_make_interval(index, *row) for index, row in unknowns_and_ends)
+    intervals = tuple(_make_interval(index, *unknown_and_ends) for index, unknown_and_ends in unknowns_and_ends)
     fisher_matrix = misfit.fisher_information(best.theta)
     return misfit, best, Information(misfit.transform, best.theta, fisher_matrix, intervals, quantile)
 
@@ -218,9 +218,9 @@ def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: 
     return Profiles(end_pairs, lowest, least_cost)
 
 
-def _next_outermost_end(ends: Iterator[ProfileEnd], count: int, index: int, side: int) -> ProfileEnd:
-    """Return the outermost of the next `count` interval ends, one for each starting point."""
-    return max([next(ends) for _ in range(count)], key=lambda end: side * float(end.theta[index]))
+def _next_outermost_end(ends: Iterator[ProfileEnd], start_count: int, index: int, side: int) -> ProfileEnd:
+    """Return the outermost of the next `start_count` interval ends, one for each starting point."""
+    return max([next(ends) for _ in range(start_count)], key=lambda end: side * float(end.theta[index]))
 
 
 def _limiting_unknowns(

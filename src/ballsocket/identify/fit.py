@@ -151,8 +151,8 @@ class FittedModel:
 
         It is NaN without degrees of freedom.
         """
-        total = sum(float(numpy.sum(row**2)) for row in self.residuals)
-        return (total / self.freedom) ** 0.5 if self.freedom > 0 else float("nan")
+        chi_squared = sum(float(numpy.sum(residuals**2)) for residuals in self.residuals)
+        return (chi_squared / self.freedom) ** 0.5 if self.freedom > 0 else float("nan")
 
     @property
     def identifiable(self) -> bool:

@@ -63,10 +63,10 @@ class ForwardModel:
     _known_errors: dict[str, float] = field(init=False)
 
     def __post_init__(self) -> None:
-        known: dict[str, float] = {}
+        known_errors: dict[str, float] = {}
         for measured in self.data:
-            known |= measured.machine.known_errors()
-        object.__setattr__(self, "_known_errors", known)
+            known_errors |= measured.machine.known_errors()
+        object.__setattr__(self, "_known_errors", known_errors)
 
     def results_at(self, values: Array, load_perturbation: float = 0.0) -> Array:
         """Compute the model results (points, data) for values of the unknowns (points, unknowns).
@@ -218,8 +218,8 @@ def _add_point_axis(values: Array) -> Array:
 def _read_joint_number(joint: Joint, measured: Measured) -> Array:
     """Return a measured number of the joint, repeated for each value of the data set."""
     if measured.quantity in PARTS:
-        part, _, number = measured.quantity.partition("_")
-        value = getattr(getattr(joint, part), number)
+        part_name, _, field_name = measured.quantity.partition("_")
+        value = getattr(getattr(joint, part_name), field_name)
     else:
         value = getattr(joint, measured.quantity)
     if arrays.is_plain_number(value):

@@ -126,9 +126,9 @@ def _relative_load_uncertainty(measured: Measured) -> Numbers:
     return numpy.where(loads > 0, measured.load_uncertainty / numpy.where(loads > 0, loads, 1.0), 0.0)
 
 
-def _join_data_sets(rows: Iterable[Numbers]) -> Numbers:
+def _join_data_sets(arrays: Iterable[Numbers]) -> Numbers:
     """Join the arrays of all data sets to one array (data,)."""
-    return numpy.concatenate(list(rows))
+    return numpy.concatenate(list(arrays))
 
 
 def _check_data_sets(data: Any) -> tuple[Measured, ...]:

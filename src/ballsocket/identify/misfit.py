@@ -47,7 +47,7 @@ def by_differences(forward: ForwardModel, transform: ParameterTransform, theta: 
     )
     centre, above, below = results[:, 0], results[:, 1 : 1 + unknown_count], results[:, 1 + unknown_count :]
     theta_above, theta_below = (
-        numpy.diagonal(half, axis1=1, axis2=2) for half in numpy.split(stencil[:, 1:], 2, axis=1)
+        numpy.diagonal(half_stencil, axis1=1, axis2=2) for half_stencil in numpy.split(stencil[:, 1:], 2, axis=1)
     )
     above, theta_above = _replace_missing_neighbours(above, theta_above, centre, points[:, 0])
     below, theta_below = _replace_missing_neighbours(below, theta_below, centre, points[:, 0])

@@ -132,7 +132,7 @@ class Calibration:
         return {
             "reference": self.reference.name,
             "modulus": self.modulus.name,
-            "constants": [float(number) for number in self.modulus.constants],
+            "constants": [float(constant_value) for constant_value in self.modulus.constants],
             "force": self.force.tolist(),
             "foundation_modulus": numpy.asarray(self.wanted).tolist(),
             "spread_over_load": self.spread,
@@ -180,8 +180,8 @@ def calibrate(
     loads = numpy.atleast_1d(numpy.asarray(force, dtype=float))
     if loads.size == 0 or not numpy.all(loads > 0):
         raise ValueError(f"force = {loads.tolist()} is not allowed: a calibration needs loads (N) above 0")
-    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in joint.numbers()))
-    contact = model.press(joint, force=loads.reshape(-1, *(1 for _ in shape)))
+    joint_shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in joint.numbers()))
+    contact = model.press(joint, force=loads.reshape(-1, *(1 for _ in joint_shape)))
     moduli = _to_floats(contact.foundation_modulus)
     if not numpy.all(numpy.isfinite(moduli)):
         raise ValueError(f"{model.name} has no result for some joints or loads: {'; '.join(contact.notes)}")

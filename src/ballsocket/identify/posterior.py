@@ -112,7 +112,7 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
     """
     needs("identify", "emcee")
     require("samples", samples, samples >= 100, "a posterior has 100 samples or more")
-    ensembles = [_start_ensemble(fitted, seed + number) for number in range(_N_ENSEMBLES)]
+    ensembles = [_start_ensemble(fitted, seed + ensemble_index) for ensemble_index in range(_N_ENSEMBLES)]
     steps = ceil(samples / (_N_WALKERS * _N_ENSEMBLES))
     for _ in range(_MAX_ROUNDS):
         for sampler in ensembles:
@@ -172,8 +172,8 @@ def _make_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) 
     from emcee.moves import DEMove, MHMove, StretchMove
 
     moves = [(MHMove(proposal), 0.5), (DEMove(), 0.35), (StretchMove(), 0.15)]
-    count = len(proposal.centre)
-    sampler = EnsembleSampler(_N_WALKERS, count, fitted.misfit.log_posterior, moves=moves, vectorize=True)
+    unknown_count = len(proposal.centre)
+    sampler = EnsembleSampler(_N_WALKERS, unknown_count, fitted.misfit.log_posterior, moves=moves, vectorize=True)
     sampler.random_state = random.get_state()
     return sampler
 

@@ -59,10 +59,14 @@ def _choose_starting_points(misfit: Misfit, seed: int) -> list[Numbers]:
             f"{model.name} has no result for all the data anywhere within the ranges: check the measured values, the "
             "ranges and the model"
         )
-    first = int(numpy.argmin(costs))
-    distant = numpy.max(abs(points - points[first]), axis=1) > 0.25 * numpy.max(high - low)
-    second = int(numpy.argmin(numpy.where(distant, costs, numpy.inf)))
-    return [points[first], points[second]] if numpy.isfinite(costs[second]) and distant[second] else [points[first]]
+    best_index = int(numpy.argmin(costs))
+    distant_mask = numpy.max(abs(points - points[best_index]), axis=1) > 0.25 * numpy.max(high - low)
+    distant_index = int(numpy.argmin(numpy.where(distant_mask, costs, numpy.inf)))
+    return (
+        [points[best_index], points[distant_index]]
+        if numpy.isfinite(costs[distant_index]) and distant_mask[distant_index]
+        else [points[best_index]]
+    )
 
 
 def minimise_misfit(misfit: Misfit, start: Numbers) -> FitResult:

@@ -83,9 +83,9 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
     widened_uncertainty = fitted.misfit.widening * fitted.misfit.uncertainty
     trial_misfit = replace(fitted.misfit, uncertainty=widened_uncertainty, widening=1.0)
     best_points, low_ends, high_ends = [], [], []
-    for number in range(count):
+    for trial in range(count):
         misfit = replace(trial_misfit, forward=replace(trial_misfit.forward, data=draw_data_sets(fitted, random)))
-        _, best, information = compute_bands(misfit, find_best_fit(misfit, seed + number))
+        _, best, information = compute_bands(misfit, find_best_fit(misfit, seed + trial))
         best_points.append(best.theta)
         low_ends.append([interval.low.theta[index] for index, interval in enumerate(information.intervals)])
         high_ends.append([interval.high.theta[index] for index, interval in enumerate(information.intervals)])

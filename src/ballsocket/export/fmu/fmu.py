@@ -64,10 +64,10 @@ def fmi2_description(information: UnitInformation, variables: Sequence[Variable]
     _add_units(root)
     _add_log_categories(SubElement(root, "LogCategories"))
     SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
-    listed = SubElement(root, "ModelVariables")
+    variables_element = SubElement(root, "ModelVariables")
     for variable in variables:
-        kind = SubElement(listed, "ScalarVariable", _variable_attributes(variable))
-        SubElement(kind, "Real", _unit_and_start_attributes(variable))
+        scalar_variable = SubElement(variables_element, "ScalarVariable", _variable_attributes(variable))
+        SubElement(scalar_variable, "Real", _unit_and_start_attributes(variable))
     structure = SubElement(root, "ModelStructure")
     outputs = [variable for variable in variables if variable.causality == "output"]
     for parent in (SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")):
@@ -86,11 +86,13 @@ def fmi3_description(information: UnitInformation, variables: Sequence[Variable]
     _add_units(root)
     _add_log_categories(SubElement(root, "LogCategories"))
     SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
-    listed = SubElement(root, "ModelVariables")
+    variables_element = SubElement(root, "ModelVariables")
     time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous"}
-    SubElement(listed, "Float64", time, unit="s")
+    SubElement(variables_element, "Float64", time, unit="s")
     for variable in variables:
-        SubElement(listed, "Float64", {**_variable_attributes(variable), **_unit_and_start_attributes(variable)})
+        SubElement(
+            variables_element, "Float64", {**_variable_attributes(variable), **_unit_and_start_attributes(variable)}
+        )
     structure = SubElement(root, "ModelStructure")
     outputs = [variable for variable in variables if variable.causality == "output"]
     for tag in ("Output", "InitialUnknown"):
@@ -271,7 +273,7 @@ class Fmu:
         """Numbers and texts for the placeholders in the template of the C wrapper, by name."""
         element, constants = self.element, self.element.constants
         deepest = valid_depth(element)
-        beyond = f"{element.model.name} is not valid beyond an indentation of {deepest:.4g} mm"
+        validity_message = f"{element.model.name} is not valid beyond an indentation of {deepest:.4g} mm"
         return {
             "parameters": str(len(TUNABLES)),
             "units": ", ".join(c_number(parameter.si) for parameter in TUNABLES),
@@ -279,16 +281,16 @@ class Fmu:
                 c_number(getattr(constants, parameter.constant) * parameter.si) for parameter in TUNABLES
             ),
             "valid": c_number(element.joint.with_floats().clearance + deepest),
-            "beyond": beyond,
+            "beyond": validity_message,
         }
 
     @property
     def information(self) -> UnitInformation:
         """Name, identifier and texts for the description file of the FMU."""
-        texts = [name for name in self.sources if name.endswith(".c")]
-        text = f"ball in a socket, {self.element.model.title}"
+        c_sources = [name for name in self.sources if name.endswith(".c")]
+        description = f"ball in a socket, {self.element.model.title}"
         return UnitInformation(
-            name=self.name, guid=self.guid, text=text, tool=f"ballsocket {__version__}", sources=texts
+            name=self.name, guid=self.guid, text=description, tool=f"ballsocket {__version__}", sources=c_sources
         )
 
     def write(self, path: Path) -> FmuFile:

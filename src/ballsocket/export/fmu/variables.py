@@ -67,8 +67,11 @@ _STATE, _POSITION = tuple(range(1, 10)), (1, 2, 3)
 
 def variables(element: ForceElement) -> tuple[Variable, ...]:
     """List all variables of an FMU in the order of their reference numbers, from 1."""
-    parts = [*_input_properties(), *_output_properties(), *_parameter_properties(element)]
-    return tuple(Variable(reference=number, **part) for number, part in enumerate(parts, 1))
+    properties = [*_input_properties(), *_output_properties(), *_parameter_properties(element)]
+    return tuple(
+        Variable(reference=reference, **variable_properties)
+        for reference, variable_properties in enumerate(properties, 1)
+    )
 
 
 def _input_properties() -> Iterator[dict]:
