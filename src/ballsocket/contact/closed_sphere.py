@@ -48,13 +48,13 @@ def polynomial_exponents(degree: int) -> tuple[tuple[int, int, int], ...]:
 
 
 @cache
-def _read_coefficients(polynomial_name: str) -> tuple[float, ...]:
+def _read_polynomial_coefficients(polynomial_name: str) -> tuple[float, ...]:
     """Read the coefficients of a fitted polynomial by its name from the data file of the package."""
     coefficient_table = tomllib.loads((files("ballsocket") / "data" / "hemisphere.toml").read_text(encoding="utf-8"))
     return tuple(coefficient_table[polynomial_name])
 
 
-def _evaluate_fit(polynomial_name: str, degree: int, contact: Any) -> Array:
+def _evaluate_fitted_polynomial(polynomial_name: str, degree: int, contact: Any) -> Array:
     """Evaluate the fitted relative change of a contact: the exponential of a polynomial."""
     joint = contact.joint
     x, y, z = polynomial_variables(contact.half_angle, joint.liner.poisson, joint.thickness_ratio)
@@ -62,7 +62,7 @@ def _evaluate_fit(polynomial_name: str, degree: int, contact: Any) -> Array:
         sum(
             coefficient * x**i * y**j * z**k
             for coefficient, (i, j, k) in zip(
-                _read_coefficients(polynomial_name), polynomial_exponents(degree), strict=True
+                _read_polynomial_coefficients(polynomial_name), polynomial_exponents(degree), strict=True
             )
         )
     )
@@ -73,7 +73,9 @@ def hemisphere_indentation_change(contact: Any) -> Array:
 
     The force is the same.
     """
-    return _evaluate_fit("indentation", 5, contact) + contact.joint.modulus_ratio * _evaluate_fit("ball", 4, contact)
+    return _evaluate_fitted_polynomial(
+        "indentation", 5, contact
+    ) + contact.joint.modulus_ratio * _evaluate_fitted_polynomial("ball", 4, contact)
 
 
 def max_hemisphere_change(contact: Any) -> Array:
@@ -81,8 +83,8 @@ def max_hemisphere_change(contact: Any) -> Array:
 
     It is the largest of the changes of indentation, half angle, largest pressure and stiffness at the same force.
     """
-    ball = BALL_FACTOR * contact.joint.modulus_ratio * _evaluate_fit("ball", 4, contact)
-    return _evaluate_fit("largest", 5, contact) + ball
+    ball = BALL_FACTOR * contact.joint.modulus_ratio * _evaluate_fitted_polynomial("ball", 4, contact)
+    return _evaluate_fitted_polynomial("largest", 5, contact) + ball
 
 
 LIKE_HEMISPHERE = Range(

@@ -114,9 +114,9 @@ class Model(ModelInfo):
         check_joint(joint)
         kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         value = broadcast_load(value, joint.strengths())
-        if self._can_press_floats(joint, value):
+        if self._can_press_with_floats(joint, value):
             try:
-                return self._press_floats(joint, kind, float(value))
+                return self._press_with_floats(joint, kind, float(value))
             except ArithmeticError:
                 pass  # where Python floats raise, NumPy numbers become infinite or NaN
         is_plain, array_joint, load = as_arrays(joint, value, *self.parameters)
@@ -126,13 +126,13 @@ class Model(ModelInfo):
             contact_joint = joint if is_plain else array_joint
             return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, is_plain)
 
-    def _can_press_floats(self, joint: Joint, load: Array) -> bool:
+    def _can_press_with_floats(self, joint: Joint, load: Array) -> bool:
         """Check if joint, load and parameters are plain numbers and the model accepts Python floats."""
         plain_parameters = (type(number) in (float, int) for number in self.parameters)
         all_numbers_plain = all(map(arrays.is_plain_number, (*joint.numbers(), load)))
         return self.accepts_floats and all_numbers_plain and all(plain_parameters)
 
-    def _press_floats(self, joint: Joint, kind: str, load: float) -> Contact:
+    def _press_with_floats(self, joint: Joint, kind: str, load: float) -> Contact:
         """Compute the contact of a joint of Python floats, which is faster than arrays."""
         float_joint = joint.with_floats()
         check_domain((*self.fits, *self.domain), float_joint, self.name)
@@ -233,14 +233,16 @@ class Model(ModelInfo):
         return -displacement * (force / length)[..., None]
 
 
-def _declared_names(base: type) -> set[str]:
+def _declared_attribute_names(base: type) -> set[str]:
     """Collect the names of all public properties and class variables of a class and its bases."""
     names = {name for cls in base.__mro__ for name in vars(cls).get("__annotations__", {})}
     return names | {name for cls in base.__mro__ for name, value in vars(cls).items() if isinstance(value, property)}
 
 
 _Delegation: Any = type(
-    "_Delegation", (), {name: property(attrgetter(f"model.{name}")) for name in _declared_names(Model) - {"off_axis"}}
+    "_Delegation",
+    (),
+    {name: property(attrgetter(f"model.{name}")) for name in _declared_attribute_names(Model) - {"off_axis"}},
 )
 """Class whose properties read every declared attribute of a model from `self.model`."""
 

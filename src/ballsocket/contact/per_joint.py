@@ -233,7 +233,7 @@ class CombinedSolution:
             pressures: numpy.ndarray = contacts.state.pressure(rows[:, indices[contacts.touching]])
             return pressures
 
-        return self._match_load_array(self._combine_to_numpy_array(joint_pressure, rows=len(rows)), angle_shape)
+        return self._match_load_array(self._combine_to_numpy_array(joint_pressure, row_count=len(rows)), angle_shape)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)

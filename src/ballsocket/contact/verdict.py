@@ -52,13 +52,17 @@ def strength_uses(contact: Contact) -> tuple[StrengthUse, ...]:
 def strength_uses_at(contact: Contact, von_mises: float) -> tuple[StrengthUse, ...]:
     """Compare a contact's stresses with all strengths, for a given von Mises stress of the liner in MPa."""
     joint, pressure = contact.joint, float(contact.max_pressure)
-    uses = list(_material_uses("liner", joint.liner, pressure, von_mises))
+    uses = list(_compare_with_material_strengths("liner", joint.liner, pressure, von_mises))
     if joint.ball is not None:
-        uses += _material_uses("ball", joint.ball, pressure, joint_ball_stress_ratio(joint) * pressure)
+        uses += _compare_with_material_strengths(
+            "ball", joint.ball, pressure, joint_ball_stress_ratio(joint) * pressure
+        )
     return tuple(sorted(uses, key=lambda use: -use.ratio))
 
 
-def _material_uses(body: str, material: Material, pressure: float, von_mises: float) -> Iterator[StrengthUse]:
+def _compare_with_material_strengths(
+    body: str, material: Material, pressure: float, von_mises: float
+) -> Iterator[StrengthUse]:
     """Yield the comparison of stress with strength for each strength of one material."""
     for name, strength in material.strengths.items():
         stress = pressure if name == "allowable_pressure" else von_mises

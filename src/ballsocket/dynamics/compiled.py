@@ -124,13 +124,13 @@ def compiled_potential(element: ForceElement) -> CompiledLaw:
     curve = (
         energy_law.curve
         if isinstance(energy_law, CurvePotential)
-        else _energy_curve(element.joint, element.model.law(element.joint))
+        else _fit_energy_curve(element.joint, element.model.law(element.joint))
     )
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
     return CompiledLaw(function=_compiled_curve_potential(), numbers=(*ends, curve.pieces))
 
 
-def _energy_curve(joint: Joint, law: ForceLaw) -> Any:
+def _fit_energy_curve(joint: Joint, law: ForceLaw) -> Any:
     """Fit the elastic energy of a joint with a force law by a curve over the indentation."""
     return energy_curve(law, 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius)
 

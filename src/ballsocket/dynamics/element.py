@@ -103,7 +103,7 @@ class ForceElement:
         valid = 0.0 <= smoothing <= clearance
         require("smoothing", smoothing, valid, f"it must be between 0 and the clearance, {clearance:g} mm")
         object.__setattr__(self, "potential", potential)
-        object.__setattr__(self, "constants", self._constants(smoothing))
+        object.__setattr__(self, "constants", self._collect_constants(smoothing))
 
     def _elastic_energy(self) -> Potential:
         """Return the elastic energy of model and joint over the indentation."""
@@ -127,7 +127,7 @@ class ForceElement:
 
     remembers = RenamedAttribute("internal_state")
 
-    def _constants(self, smoothing: float) -> Constants:
+    def _collect_constants(self, smoothing: float) -> Constants:
         """Collect the constants of joint, damping, friction and cup."""
         joint, cup = self.joint.with_floats(), self.cup
         damping = self.damping or Damping()
@@ -193,7 +193,7 @@ class ForceElement:
         centre = ball_centre_at(*position, constants.clearance)
         is_adhesive = self.stretch > 0.0
         if is_adhesive:
-            centre = self._attached_centre(centre, attached)
+            centre = self._centre_if_attached(centre, attached)
         if centre.indentation <= -constants.smoothing and centre.distance > 0.0:
             return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, NO_CONTACT, position, velocity, spin)
         if centre.indentation > self._validity_monitor.limit:
@@ -212,7 +212,7 @@ class ForceElement:
         states = [_as_array_like(position, value) for value in (position, velocity, spin)]
         r, v, w = (_split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
         with numpy.errstate(all="ignore"):  # states without a result have a status
-            centre = self._attached_centre(ball_centre_at(*r, self.constants.clearance), attached)
+            centre = self._centre_if_attached(ball_centre_at(*r, self.constants.clearance), attached)
             self._validity_monitor.check_array(centre.indentation)
             contact = elastic_contact(self.potential, centre, self.constants)
             contact = remove_tension_damping(contact) if self.stretch > 0.0 else contact
@@ -220,7 +220,7 @@ class ForceElement:
         force, moment = join_vector(object, *loads[:3]), join_vector(object, *loads[3:])
         return Load(force, moment, contact.energy, self, centre, contact, r, v, w)
 
-    def _attached_centre(self, centre: BallCentre, attached: Any) -> BallCentre:
+    def _centre_if_attached(self, centre: BallCentre, attached: Any) -> BallCentre:
         """Return the ball centre; an adhesive ball that is not attached gets a negative indentation.
 
         Before first touch an adhesive ball has no contact unless it is attached.

@@ -176,7 +176,7 @@ class Load(NamedTuple):
     @_without_warnings
     def status(self) -> ContactState | Array:
         """State of the contact (free, contact, at the rim, ...): a `ContactState`, or an array of its codes."""
-        return contact_state_of(self.centre, self.contact, self._is_finite, self.element.constants)
+        return contact_state_of(self.centre, self.contact, self._is_finite_state, self.element.constants)
 
     def summary(self) -> dict[str, Any]:
         """Return the load as a dictionary for JSON, in N, mm, N mm, MPa and degrees; missing numbers are None."""
@@ -196,7 +196,7 @@ class Load(NamedTuple):
         return describe_contact_states(self)
 
     @property
-    def _is_finite(self) -> Array:
+    def _is_finite_state(self) -> Array:
         """True if all numbers of the state are finite and small enough to square."""
         deflection_rates = self.deflection_rate
         rate_components = (
@@ -279,7 +279,7 @@ def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
     centre, constants = load.centre, load.element.constants
     speed = sum(rate * component for rate, component in zip(load.velocity, centre[1:4], strict=True))
     slip = sliding_state(centre, normal_force(load.contact, speed, constants), load.velocity, load.spin, constants)
-    force, rate, dissipated = bristle_forces(centre, slip, _four_deflections(load, deflection), bristles)
+    force, rate, dissipated = bristle_forces(centre, slip, _split_deflections(load, deflection), bristles)
     N, R1, direction = slip.normal, constants.ball_radius, centre[1:4]
     friction_force = [-N * part for part in force[:3]]
     drilling_moment = -N * sqrt(slip.lever_squared) * force[3]
@@ -295,7 +295,7 @@ def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
     )
 
 
-def _four_deflections(load: Load, deflection: Any) -> Deflections:
+def _split_deflections(load: Load, deflection: Any) -> Deflections:
     """Split bristle deflections into four components; raise ValueError for another number."""
     if type(load.force) is not tuple and type(deflection) in (tuple, list):
         deflection = numpy.asarray(deflection, dtype=float)

@@ -42,7 +42,7 @@ class DampingEstimate:
     @property
     def residuals(self) -> Numbers:
         """Measured minus fitted coefficients of restitution."""
-        return self.restitution - _restitutions(self.damping.hysteresis, self.speed)
+        return self.restitution - _restitutions_at(self.damping.hysteresis, self.speed)
 
     def __str__(self) -> str:
         return f"χ = {self.damping.hysteresis:.4g} ± {self.error:.2g} s/mm from {len(self.speed)} restitutions"
@@ -91,7 +91,7 @@ def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None 
     restitution_slopes = _restitution_slopes(hysteresis, speeds)
     degrees_of_freedom = len(speeds) - 1
     scatter = (
-        float(numpy.sqrt(numpy.sum((restitutions - _restitutions(hysteresis, speeds)) ** 2) / degrees_of_freedom))
+        float(numpy.sqrt(numpy.sum((restitutions - _restitutions_at(hysteresis, speeds)) ** 2) / degrees_of_freedom))
         if degrees_of_freedom
         else nan
     )
@@ -130,7 +130,7 @@ def from_bounces(*, times: Any, gravity: float = GRAVITY, uncertainty: float | N
     return from_restitution(speed=speed[:-1], restitution=speed[1:] / speed[:-1], uncertainty=uncertainty)
 
 
-def _restitutions(chi: float, speeds: Numbers) -> Numbers:
+def _restitutions_at(chi: float, speeds: Numbers) -> Numbers:
     """Compute the coefficients of restitution at impact speeds in mm/s, for a hysteresis χ in s/mm."""
     return numpy.array([restitution_of(chi * speed) for speed in speeds.tolist()])
 
@@ -140,7 +140,7 @@ def _restitution_slopes(chi: float, speeds: Numbers) -> Numbers:
 
     They follow from h (1 + e) = ln[(1 + h)/(1 - h e)].
     """
-    h, e = chi * speeds, _restitutions(chi, speeds)
+    h, e = chi * speeds, _restitutions_at(chi, speeds)
     small = h < 1e-4
     nonzero_h = numpy.where(small, 0.5, h)
     slope = (1 / (1 + nonzero_h) - e * e / (1 - nonzero_h * e)) * (1 - nonzero_h * e) / (nonzero_h * e)
@@ -152,7 +152,7 @@ def _fit_hysteresis(speeds: Numbers, restitutions: Numbers) -> float:
     chi = float(numpy.median(1.5 * (1 - restitutions) / speeds))
     for _ in range(50):
         slope = _restitution_slopes(chi, speeds)
-        newton_step = float(numpy.sum(slope * (restitutions - _restitutions(chi, speeds))) / numpy.sum(slope**2))
+        newton_step = float(numpy.sum(slope * (restitutions - _restitutions_at(chi, speeds))) / numpy.sum(slope**2))
         updated = max(chi + newton_step, chi / 4)
         change, chi = abs(updated - chi), updated
         if change <= 1e-12 * chi:

@@ -117,7 +117,7 @@ class _InitialValueProblem:
             (self.element.potential, self.element.constants),
         )
         states, dissipated = numpy.zeros((step_count + 1, 9)), numpy.zeros(step_count + 1)
-        pulls = _pulls_at(self.pull, step * (numpy.arange(step_count) + 0.5))
+        pulls = _pull_forces_at(self.pull, step * (numpy.arange(step_count) + 0.5))
         is_uncompiled = isinstance(self.element, ForceElement)
         march, pull_rows = (stepping.march, pulls.tolist()) if is_uncompiled else (self.element.march, pulls)
         converged = march(
@@ -178,7 +178,7 @@ class _InitialValueProblem:
         )
 
 
-def _pulls_at(pull: Any, time: Numbers) -> Numbers:
+def _pull_forces_at(pull: Any, time: Numbers) -> Numbers:
     """Evaluate the pull on the ball in N at some times in s: (times, 3)."""
     if callable(pull):
         return numpy.array([components(pull(instant), "a pull") for instant in time.tolist()])

@@ -52,7 +52,7 @@ class ValidityMonitor:
         if not self.limit < indentation <= self.wall:
             return
         contact = self._contact_at(indentation)
-        if not self._exceeds_range(contact):
+        if not self._exceeds_validity_range(contact):
             self.limit = self._find_valid_indentation(indentation)
             return
         self.limit = inf
@@ -62,7 +62,7 @@ class ValidityMonitor:
         """Find an indentation in mm, `depth` or larger, at which the model is valid."""
         deeper = min(max(2 * depth, 1e-3 * self.wall), self.wall)
         for _ in range(6):
-            if not self._exceeds_range(self._contact_at(deeper)):
+            if not self._exceeds_validity_range(self._contact_at(deeper)):
                 return deeper
             deeper = (depth + deeper) / 2
         return depth
@@ -71,7 +71,7 @@ class ValidityMonitor:
         """Compute the contact at an indentation in mm."""
         return self.model.press(self.joint, indentation=indentation)
 
-    def _exceeds_range(self, contact: Contact) -> bool:
+    def _exceeds_validity_range(self, contact: Contact) -> bool:
         """Check if a contact is invalid for a reason other than its small size."""
         return not contact.valid and not all(
             map(partial(_is_satisfied_by_larger_contact, contact), contact._validity_ranges)

@@ -49,12 +49,12 @@ def power_fit(element: ForceElement, depth: float) -> PowerFit:
     """Fit the power law F = k d^n (force F, indentation d) by the smallest largest error, up to a depth in mm."""
     depths = depth * numpy.linspace(_LOWEST_FITTED_SHARE, 1.0, _SAMPLES)
     forces = element.potential(depths)[1]
-    exponent = _find_minimum(lambda n: _best_stiffness(depths, forces, n)[1])
-    k, error = _best_stiffness(depths, forces, exponent)
+    exponent = _find_minimum(lambda n: _fit_stiffness(depths, forces, n)[1])
+    k, error = _fit_stiffness(depths, forces, exponent)
     return PowerFit(stiffness=k, exponent=exponent, depth=depth, error=error / float(forces[-1]))
 
 
-def _best_stiffness(depths: Numbers, forces: Numbers, exponent: float) -> tuple[float, float]:
+def _fit_stiffness(depths: Numbers, forces: Numbers, exponent: float) -> tuple[float, float]:
     """Find the stiffness k of F = k d^n with the smallest largest force error; return k and the error in N."""
     relative_force = (depths / depths[-1]) ** exponent
     k = _find_minimum(
@@ -169,18 +169,20 @@ def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
     if c > 0.0 and numpy.ptp(ratio) < 1e-12 * ratio[0]:
         fit = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **lengths)
     else:
-        fit = _fit_exponential(element, fitted_depth, c or 1e-3 * R2, lengths)
+        fit = _fit_exponential_law(element, fitted_depth, c or 1e-3 * R2, lengths)
     deeper = numpy.linspace(fitted_depth, max(min(2.0 * fitted_depth, element.wall), fitted_depth), 100)
-    return replace(fit, error=_largest_error(fit, element, d), error_beyond=_largest_error(fit, element, deeper))
+    return replace(
+        fit, error=_largest_force_error(fit, element, d), error_beyond=_largest_force_error(fit, element, deeper)
+    )
 
 
-def _largest_error(fit: ExpressionFit, element: ForceElement, depths: Numbers) -> float:
+def _largest_force_error(fit: ExpressionFit, element: ForceElement, depths: Numbers) -> float:
     """Compute the largest relative error of the fitted force at indentations in mm."""
     forces = element.potential(depths)[1]
     return float(numpy.nanmax(abs(fit(1e-3 * (element.constants.clearance + depths)) / forces - 1.0)))
 
 
-def _fit_exponential(
+def _fit_exponential_law(
     element: ForceElement, depth: float, transition_depth: float, lengths: dict[str, float]
 ) -> ExpressionFit:
     """Fit the force by a power of the indentation times the exponential of a polynomial, up to a depth in mm."""

@@ -108,17 +108,17 @@ class CounterfaceMap:
 
     def ball_exposure(self, cycle: CycleExposure) -> CycleExposure:
         """Compute pressure and sliding of the ball's cells; their friction work equals that of the socket."""
-        pressure = self._interpolate_on_ball(cycle.pressure)
+        pressure = self._interpolate_to_ball(cycle.pressure)
         socket_work = (cycle.pressure * cycle.sliding.distances) @ self.socket_areas
         ball_work = (pressure * self.sliding.distances) @ self.areas
         work_ratio = numpy.divide(socket_work, ball_work, out=numpy.zeros_like(socket_work), where=ball_work > 0)
         return CycleExposure(
             pressure=pressure * work_ratio[:, None],
             sliding=self.sliding,
-            contact_shares=lambda: self._interpolate_on_ball(cycle.contact),
+            contact_shares=lambda: self._interpolate_to_ball(cycle.contact),
         )
 
-    def _interpolate_on_ball(self, values: Numbers) -> Numbers:
+    def _interpolate_to_ball(self, values: Numbers) -> Numbers:
         """Interpolate values of the socket's cells (instants, n) to the ball's cells: (instants, m)."""
         field = numpy.zeros((len(values), self.socket_size))
         field[:, self.socket_cells] = values

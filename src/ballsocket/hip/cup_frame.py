@@ -196,10 +196,10 @@ class CupFrame:
         """Sentences on the orientation of the cup, unloaded instants and microseparation."""
         tilted = () if self.placed == self.cup else (_TILTED.format(degrees(self.cycle.cup_tilt or 0.0)),)
         separated = () if self.separation is None else (self.separation.describe(self.cycle),)
-        return (*tilted, *self._unloaded_notes, *separated)
+        return (*tilted, *self._unloaded_instants_note, *separated)
 
     @property
-    def _unloaded_notes(self) -> tuple[str, ...]:
+    def _unloaded_instants_note(self) -> tuple[str, ...]:
         """Sentence on the instants without a load; empty if all are loaded."""
         unloaded = numpy.flatnonzero(~self._load_mask)
         if len(unloaded) == self.cycle.n_steps:

@@ -113,7 +113,7 @@ class GridSmoothing:
         return numpy.where(m < half_circle, numpy.cos(numpy.pi * m / (2 * half_circle)) ** 2, 0.0)
 
     @cached_property
-    def _ring_flux(self) -> Numbers:
+    def _ring_exchange(self) -> Numbers:
         """Exchange coefficients between neighbouring rings in the filter, as areas: (rings - 1, 1)."""
         areas = self.grid.areas
         return numpy.minimum(areas[1:], areas[:-1]) / 4
@@ -122,7 +122,7 @@ class GridSmoothing:
         """Smooth fields (..., rings, meridians) on the grid."""
         waves = scipy.fft.rfft(fields) * self._harmonic_factors
         filtered = scipy.fft.irfft(waves, n=self.grid.meridians)
-        flux = self._ring_flux * numpy.diff(filtered, axis=-2)
+        flux = self._ring_exchange * numpy.diff(filtered, axis=-2)
         no_flux = numpy.zeros_like(filtered[..., :1, :])
         flux = numpy.concatenate([no_flux, flux, no_flux], axis=-2)
         return filtered + numpy.diff(flux, axis=-2) / self.grid.areas
@@ -167,13 +167,13 @@ class ElasticFoundation:
         return numpy.repeat(self.grid.areas[:, 0], self.grid.meridians) * self.socket_radius**2
 
     @cached_property
-    def _smoothing(self) -> GridSmoothing:
+    def _smoothing_filter(self) -> GridSmoothing:
         """Filter that smooths fields on the grid of the bore."""
         return GridSmoothing(grid=self.grid)
 
     def smooth(self, depth: Numbers) -> Numbers:
         """Smooth a worn depth (cells,) in mm to waves that the grid resolves, with the same volume."""
-        return self._smoothing(depth.reshape(self.grid.rings, -1)).ravel()
+        return self._smoothing_filter(depth.reshape(self.grid.rings, -1)).ravel()
 
     @cached_property
     def max_stiffness(self) -> float:
@@ -185,7 +185,7 @@ class ElasticFoundation:
         stiffness = 0.0
         for _ in range(_POWER_ITERATIONS):
             field = field / numpy.linalg.norm(field)
-            field = self._smoothing(self.compliance.pressure(field))
+            field = self._smoothing_filter(self.compliance.pressure(field))
             stiffness = float(numpy.linalg.norm(field))
         return stiffness
 

@@ -199,14 +199,14 @@ def film(
         least=least,
         central=central,
         ratio=least / roughness if roughness > 0 else numpy.full_like(least, inf),
-        moment=lubricant.friction * _unit_moment(foundation, sliding, equilibrium.pressure),
+        moment=lubricant.friction * _moment_at_unit_friction(foundation, sliding, equilibrium.pressure),
         power=1e-3 * work / durations,
         heat=1e-3 * float(work.sum()),
         duration=frame.cycle.duration,
     )
 
 
-def _unit_moment(foundation: SocketFoundation, sliding: SurfaceSliding, pressure: Numbers) -> Numbers:
+def _moment_at_unit_friction(foundation: SocketFoundation, sliding: SurfaceSliding, pressure: Numbers) -> Numbers:
     """Compute the friction moment on the cup in N mm for a coefficient of friction of 1: (instants, 3).
 
     It is ∫ R n × v/abs(v) p dA with v = R ω × n, and n × (ω × n) = ω - (ω·n) n.

@@ -175,15 +175,15 @@ class SurfaceSliding:
         return self.radius * numpy.cross(angular_velocities[:, None], self.directions.T[None])
 
     @cached_property
-    def _rotated_components(self) -> tuple[Numbers, Numbers]:
+    def _rotated_sliding_components(self) -> tuple[Numbers, Numbers]:
         """Two tangential components of each sliding step, rotated by 90°, in mm: (steps, points)."""
         first, second = tangents(self.directions)
         return self.radius * (self.rotation_increments @ first), self.radius * (self.rotation_increments @ second)
 
     @cached_property
-    def _second_moments(self) -> tuple[Numbers, ...]:
+    def _sliding_second_moments(self) -> tuple[Numbers, ...]:
         """Second moments xx, yy and xy of each sliding step divided by its length: (steps, points)."""
-        first_component, second_component = self._rotated_components
+        first_component, second_component = self._rotated_sliding_components
         inverse_length = numpy.divide(
             1.0, self.distances, out=numpy.zeros_like(self.distances), where=self.distances > 0
         )
@@ -195,7 +195,7 @@ class SurfaceSliding:
 
     def cross_shear(self, pressure: Numbers) -> Numbers:
         """Compute the cross-shear ratio (points,) of sliding, weighted by the pressure (steps, points)."""
-        return cross_shear(*(numpy.einsum("tp,tp->p", pressure, moment) for moment in self._second_moments))
+        return cross_shear(*(numpy.einsum("tp,tp->p", pressure, moment) for moment in self._sliding_second_moments))
 
     def crossing_angle(self, pressure: Numbers) -> Numbers:
         """Compute the mean angle (points,) in rad between sliding and its principal direction.
@@ -203,8 +203,11 @@ class SurfaceSliding:
         The mean is weighted by pressure (steps, points) and sliding distance. It is 0 on a straight track and π/4 on
         a circle.
         """
-        xx, yy, xy = (numpy.einsum("tp,tp->p", pressure, moment) for moment in self._second_moments)
-        principal, (first_component, second_component) = numpy.arctan2(2 * xy, xx - yy) / 2, self._rotated_components
+        xx, yy, xy = (numpy.einsum("tp,tp->p", pressure, moment) for moment in self._sliding_second_moments)
+        principal, (first_component, second_component) = (
+            numpy.arctan2(2 * xy, xx - yy) / 2,
+            self._rotated_sliding_components,
+        )
         deviation = numpy.arccos(
             numpy.clip(abs(numpy.cos(numpy.arctan2(second_component, first_component) - principal)), 0.0, 1.0)
         )

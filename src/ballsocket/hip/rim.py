@@ -248,7 +248,7 @@ class SpringLoadedBall:
     ball_radius: float
 
     @cached_property
-    def _pull_direction(self) -> Numbers:
+    def _spring_force_direction(self) -> Numbers:
         """Direction of the spring force on an undisplaced ball, a unit vector: (3,)."""
         return numpy.sign(self.spring.mismatch) * self.side
 
@@ -258,7 +258,7 @@ class SpringLoadedBall:
         The ball stays in the bore if its displacement within the clearance reduces the spring force enough.
         """
         undisplaced = numpy.zeros(len(forces))
-        leaves: Numbers = self._ball_centre_on_rim(forces, undisplaced) @ self._pull_direction <= undisplaced
+        leaves: Numbers = self._ball_centre_on_rim(forces, undisplaced) @ self._spring_force_direction <= undisplaced
         return leaves
 
     def solve_separation(self, forces: Numbers, steps: Numbers) -> Microseparation:
@@ -275,13 +275,15 @@ class SpringLoadedBall:
         low, high = numpy.zeros(len(forces)), numpy.full(len(forces), mismatch)
         for _ in range(_BISECTIONS):
             trial_displacement = (low + high) / 2
-            is_beyond = self._ball_centre_on_rim(forces, trial_displacement) @ self._pull_direction > trial_displacement
+            is_beyond = (
+                self._ball_centre_on_rim(forces, trial_displacement) @ self._spring_force_direction > trial_displacement
+            )
             low, high = (
                 numpy.where(is_beyond, low, trial_displacement),
                 numpy.where(is_beyond, trial_displacement, high),
             )
         ball_centre = self._ball_centre_on_rim(forces, high)
-        is_balanced = abs(ball_centre @ self._pull_direction - high) <= _BALANCE_TOLERANCE * mismatch
+        is_balanced = abs(ball_centre @ self._spring_force_direction - high) <= _BALANCE_TOLERANCE * mismatch
         loads = self._loads_after_displacement(forces, high)
         return Microseparation(
             steps=steps,
@@ -291,7 +293,7 @@ class SpringLoadedBall:
 
     def _loads_after_displacement(self, forces: Numbers, displacement: Numbers) -> Numbers:
         """Compute the loads (n, 3) in N: forces minus the spring force at displacements (n,) in mm."""
-        return forces - self.spring.stiffness * displacement[:, None] * self._pull_direction
+        return forces - self.spring.stiffness * displacement[:, None] * self._spring_force_direction
 
     def _ball_centre_on_rim(self, forces: Numbers, displacement: Numbers) -> Numbers:
         """Compute the position (n, 3) in mm of the ball's centre on the rim, after a displacement in mm."""

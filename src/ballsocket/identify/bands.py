@@ -55,7 +55,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
     if widening_factor > 1:
         misfit = replace(misfit, widening=widening_factor)
         best = replace(minimise_misfit(misfit, best.theta), rivals=best.rivals)
-    quantile = _band_quantile(widening_factor, misfit.freedom)
+    quantile = _band_half_width(widening_factor, misfit.freedom)
     chi_squared_limits = (quantile**2, (quantile * QUANTILE_99 / QUANTILE_95) ** 2)
     for _ in range(_MAX_RESTARTS):
         rivals = [
@@ -116,7 +116,7 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
     return float(brentq(excess_of_squares, 1.0, upper, rtol=1e-6))
 
 
-def _band_quantile(factor: float, freedom: int) -> float:
+def _band_half_width(factor: float, freedom: int) -> float:
     """Compute the half width of a 95 % band in standard deviations, by Student's or the normal distribution.
 
     It is Student's quantile for an improbably large scatter, else the normal quantile.
@@ -206,7 +206,7 @@ def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: 
         if costs.min() < least_cost:
             lowest, least_cost = active[int(costs.argmin())].theta, float(costs.min())
         for path, residual, slope in zip(active, residuals, slopes, strict=True):
-            _advance_path(path, residual, slope, cost, low, high)
+            _advance_end_search(path, residual, slope, cost, low, high)
     ends = iter([path.end or ProfileEnd(path.previous, False, (path.index,)) for path in paths])
     end_pairs = [
         [
@@ -254,7 +254,7 @@ def _chi_squared_decrease(hessian: Numbers, gradient: Numbers, free_indices: lis
     )
 
 
-def _advance_path(
+def _advance_end_search(
     path: _EndSearch, residual: Numbers, slope: Numbers, best_cost: float, low: Numbers, high: Numbers
 ) -> None:
     """Advance a search path by a Newton step; cut its last step to a quarter if the model failed there."""

@@ -178,7 +178,7 @@ def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
         for force in forces
     ]
     candidates = [
-        Candidate(quantity, 1.0, force, *_choose_machine(fitted, quantity))
+        Candidate(quantity, 1.0, force, *_choose_indentation_machine(fitted, quantity))
         for quantity, force in dict.fromkeys(quantities_and_forces)
     ]
     values = _candidate_results(fitted, candidates)
@@ -199,7 +199,7 @@ def _candidate_forces(fitted: FittedModel) -> list[float]:
     return numpy.linspace(0.0, _LOAD_FACTOR * (largest or _DEFAULT_FORCE), _N_LOADS + 1)[1:].tolist()
 
 
-def _choose_machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
+def _choose_indentation_machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
     """Choose the machine of the measured indentations, and the number of its next reading."""
     reading_numbers = {
         measured.machine: measured.order for measured in fitted.data if measured.machine is not IDEAL_MACHINE

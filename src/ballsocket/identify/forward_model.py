@@ -146,24 +146,30 @@ class _JointsAtPoints:
         """Compute the readings of one data set: model results plus machine errors."""
         if contact is None:
             return numpy.full((1, len(measured)), numpy.nan)
-        return self._read_quantity(contact, contact_count, measured, value_range) + self._indentation_error(
+        return self._measured_quantity_values(contact, contact_count, measured, value_range) + self._indentation_error(
             measured, contact, value_range
         )
 
     def compute_at_read_indentation(self, measured: Measured, load_factor: float) -> Array:
         """Compute the results at indentations that a machine with errors has read."""
-        zero_error = self._sum_errors(measured, 0.0, depends_on_force=False)
+        zero_error = self._sum_machine_errors(measured, 0.0, depends_on_force=False)
         force: Array = measured.values if measured.quantity == "force" else 0.0 * measured.values
-        contact = self.press("indentation", _clip_negative(load_factor * measured.loads - zero_error))
+        contact = self.press("indentation", _clip_negative_indentation(load_factor * measured.loads - zero_error))
         for _ in range(_NEWTON_ITERATIONS if measured.machine.depends_on_force else 0):
-            force_error = self._sum_errors(measured, force, depends_on_force=True)
-            contact = self.press("indentation", _clip_negative(load_factor * measured.loads - zero_error - force_error))
+            force_error = self._sum_machine_errors(measured, force, depends_on_force=True)
+            contact = self.press(
+                "indentation", _clip_negative_indentation(load_factor * measured.loads - zero_error - force_error)
+            )
             if contact is not None:
                 stiffness = arrays.where(arrays.isfinite(contact.stiffness), contact.stiffness, 0.0)
-                force = force - (force - contact.force) / (1 + self._sum_error_slopes(measured, force) * stiffness)
+                force = force - (force - contact.force) / (
+                    1 + self._sum_machine_error_slopes(measured, force) * stiffness
+                )
         return self.compute_readings(contact, len(measured), measured, slice(None))
 
-    def _read_quantity(self, contact: Contact, contact_count: int, measured: Measured, value_range: slice) -> Array:
+    def _measured_quantity_values(
+        self, contact: Contact, contact_count: int, measured: Measured, value_range: slice
+    ) -> Array:
         """Return the values of the measured quantity of a data set from the computed contacts."""
         if measured.observable is not None:
             numbers = {name: self.numbers[name] for name in measured.observable.numbers}
@@ -179,11 +185,11 @@ class _JointsAtPoints:
         if measured.quantity != "indentation" or not measured.machine.name:
             return 0.0
         force = _add_point_axis(contact.force)[:, value_range]
-        return self._sum_errors(measured, force, depends_on_force=True) + self._sum_errors(
+        return self._sum_machine_errors(measured, force, depends_on_force=True) + self._sum_machine_errors(
             measured, 0.0, depends_on_force=False
         )
 
-    def _sum_errors(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
+    def _sum_machine_errors(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
         """Sum the machine errors in mm: either those that depend on the force, or the others."""
         return sum(
             self.numbers[measured.machine.key(name)] * error.effect(force, measured.order)
@@ -191,7 +197,7 @@ class _JointsAtPoints:
             if (error.slope is not None) == depends_on_force
         )
 
-    def _sum_error_slopes(self, measured: Measured, force: Array) -> Array:
+    def _sum_machine_error_slopes(self, measured: Measured, force: Array) -> Array:
         """Sum the derivatives of the machine errors with respect to the force in mm/N."""
         return sum(
             self.numbers[measured.machine.key(name)] * error.slope(force, measured.order)
@@ -205,7 +211,7 @@ def _is_load_read_by_machine(measured: Measured) -> bool:
     return measured.load == "indentation" and bool(measured.machine.name)
 
 
-def _clip_negative(indentation: Array) -> Array:
+def _clip_negative_indentation(indentation: Array) -> Array:
     """Replace negative indentations by 0 mm."""
     return arrays.clip(indentation, 0.0, inf)
 

@@ -131,7 +131,8 @@ class Information:
         """Width of each 95 % band divided by the width of the prior range, by unknown."""
         unknowns_and_intervals = zip(self.transform.unknowns, self.intervals, range(len(self.intervals)), strict=True)
         return {
-            unknown.name: _width_ratio(unknown, interval, index) for unknown, interval, index in unknowns_and_intervals
+            unknown.name: _band_to_prior_width_ratio(unknown, interval, index)
+            for unknown, interval, index in unknowns_and_intervals
         }
 
     @cached_property
@@ -151,11 +152,11 @@ class Information:
         shifted_indices = {
             index
             for index in range_indices
-            if any(self._is_shifted(index, limiting_index) for limiting_index in wide_indices - {index})
+            if any(self._is_band_shifted(index, limiting_index) for limiting_index in wide_indices - {index})
         }
         return tuple(unknown.name for index, unknown in enumerate(unknowns) if index in wide_indices | shifted_indices)
 
-    def _is_shifted(self, index: int, limiting_index: int) -> bool:
+    def _is_band_shifted(self, index: int, limiting_index: int) -> bool:
         """Check if the range of another unknown limits the band of an unknown and shifts it by 10 % or more."""
         is_limited = limiting_index in self.intervals[index].limiting_indices
         return is_limited and abs(self._band_vector(limiting_index)[index]) >= MAX_SHIFT * sqrt(12)
@@ -200,10 +201,12 @@ class Information:
         """Identifiable products of powers of unknowns that are unidentifiable separately."""
         if not self.unidentifiable:
             return ()
-        products = (self._make_product(vector) for vector in self._eigenvalues_and_vectors[1][:, : self.rank].T)
+        products = (
+            self._product_from_eigenvector(vector) for vector in self._eigenvalues_and_vectors[1][:, : self.rank].T
+        )
         return tuple(product for product in products if product is not None)
 
-    def _make_product(self, vector: Numbers) -> Product | None:
+    def _product_from_eigenvector(self, vector: Numbers) -> Product | None:
         """Convert an eigenvector to a product of powers of unknowns; None if it is not identifiable.
 
         Its largest power is 1.
@@ -220,7 +223,7 @@ class Information:
         ):
             return None
         powers = powers / powers[factor_indices[numpy.argmax(abs(powers[factor_indices]))]]
-        exponents = {unknowns[index].name: _round_power(float(powers[index])) for index in factor_indices}
+        exponents = {unknowns[index].name: _round_exponent(float(powers[index])) for index in factor_indices}
         product = self._product_band(exponents)
         band_widths = [
             abs(self._band_vector(index)[index]) * prior_deviations[index]
@@ -257,7 +260,7 @@ class Information:
         return sum(power * log(values[name]) for name, power in exponents.items())
 
 
-def _width_ratio(unknown: Unknown, interval: Interval, index: int) -> float:
+def _band_to_prior_width_ratio(unknown: Unknown, interval: Interval, index: int) -> float:
     """Compute the width of the 95 % band of an unknown, divided by the width of its prior.
 
     The prior width is that of the range, or of the 95 % band of a distribution.
@@ -272,7 +275,7 @@ def _eigenvalues_and_vectors(matrix: Numbers) -> tuple[Numbers, Numbers]:
     return numpy.maximum(values[::-1], 0.0), vectors[:, ::-1]
 
 
-def _round_power(power: float) -> float:
+def _round_exponent(power: float) -> float:
     """Round an exponent to the nearest multiple of 1/2 if the difference is below 0.1."""
     half_integer = round(2 * power) / 2
     return half_integer if abs(power - half_integer) < 0.1 and half_integer else power

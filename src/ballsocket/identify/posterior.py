@@ -112,7 +112,7 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
     """
     needs("identify", "emcee")
     require("samples", samples, samples >= 100, "a posterior has 100 samples or more")
-    ensembles = [_start_ensemble(fitted, seed + ensemble_index) for ensemble_index in range(_N_ENSEMBLES)]
+    ensembles = [_start_ensemble_sampler(fitted, seed + ensemble_index) for ensemble_index in range(_N_ENSEMBLES)]
     steps = ceil(samples / (_N_WALKERS * _N_ENSEMBLES))
     for _ in range(_MAX_ROUNDS):
         for sampler in ensembles:
@@ -122,10 +122,10 @@ def posterior(fitted: FittedModel, samples: int = 4000, seed: int = 0) -> Poster
         steps = ceil(0.5 * chains.shape[1])
         if chains[..., 0].size >= samples * times.max() and chains.shape[1] > 10 * times.max():
             break
-    return _select_samples(fitted, ensembles, chains, times, samples)
+    return _select_posterior_samples(fitted, ensembles, chains, times, samples)
 
 
-def _select_samples(
+def _select_posterior_samples(
     fitted: FittedModel, ensembles: list[Any], chains: Numbers, autocorrelation_times: Numbers, samples: int
 ) -> Posterior:
     """Select equally spaced samples from all chains, and compute the convergence measures."""
@@ -142,7 +142,7 @@ def _select_samples(
     )
 
 
-def _start_ensemble(fitted: FittedModel, seed: int) -> Any:
+def _start_ensemble_sampler(fitted: FittedModel, seed: int) -> Any:
     """Create an ensemble sampler, run its burn-in, and adapt its proposals to the first chains."""
     random = numpy.random.RandomState(seed)
     initial_proposal = _StudentProposal(fitted.best.theta, numpy.linalg.cholesky(fitted.information.covariance))
@@ -152,12 +152,12 @@ def _start_ensemble(fitted: FittedModel, seed: int) -> Any:
     start_points = numpy.where(
         (start_points > transform.low) & (start_points < transform.high), start_points, uniform_start
     )
-    burn_in_sampler = _make_sampler(fitted, initial_proposal, random)
+    burn_in_sampler = _make_ensemble_sampler(fitted, initial_proposal, random)
     start_points = burn_in_sampler.run_mcmc(start_points, _BURN_IN, skip_initial_state_check=True).coords
     chain = burn_in_sampler.get_chain(discard=_BURN_IN // 2, flat=True)
     unknown_count = len(transform.names)
     covariance = numpy.cov(chain.T).reshape(2 * [unknown_count]) + 1e-12 * numpy.eye(unknown_count)
-    adapted_sampler = _make_sampler(
+    adapted_sampler = _make_ensemble_sampler(
         fitted, _StudentProposal(chain.mean(axis=0), numpy.linalg.cholesky(covariance)), random
     )
     state = adapted_sampler.run_mcmc(start_points, _BURN_IN // 2, skip_initial_state_check=True)
@@ -166,7 +166,7 @@ def _start_ensemble(fitted: FittedModel, seed: int) -> Any:
     return adapted_sampler
 
 
-def _make_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
+def _make_ensemble_sampler(fitted: FittedModel, proposal: _StudentProposal, random: Any) -> Any:
     """Create an ensemble sampler of emcee with three kinds of moves."""
     from emcee import EnsembleSampler
     from emcee.moves import DEMove, MHMove, StretchMove

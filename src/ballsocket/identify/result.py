@@ -57,7 +57,7 @@ class IdentificationResult(FittedModel):
         writers = (
             _identifiability_notes,
             _band_notes,
-            _search_notes,
+            _convergence_notes,
             _range_notes,
             _fit_notes,
             _machine_notes,
@@ -178,7 +178,7 @@ def _join_with_and(names: Sequence[str]) -> str:
     return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 
 
-def _search_notes(result: IdentificationResult) -> Iterator[str]:
+def _convergence_notes(result: IdentificationResult) -> Iterator[str]:
     """Yield sentences on a search without convergence, and on other points that fit equally well."""
     if not result.best.converged:
         yield "the search did not converge: the numbers are those of its last step"

@@ -119,7 +119,7 @@ def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], mod
         if name in MODEL_NUMBERS:
             _check_has_number(MODEL_NUMBERS[name], model)
     number_unknowns = [_make_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
-    return (*number_unknowns, *_unknown_errors(machines))
+    return (*number_unknowns, *_collect_machine_errors(machines))
 
 
 def _check_has_number(number: ModelNumber, model: Model) -> None:
@@ -129,7 +129,7 @@ def _check_has_number(number: ModelNumber, model: Model) -> None:
         raise ValueError(f"{number.name} is not a number of the model {model.name}; models that have it: {models}")
 
 
-def _unknown_errors(machines: Iterable[Machine]) -> list[Unknown]:
+def _collect_machine_errors(machines: Iterable[Machine]) -> list[Unknown]:
     """List the unknown errors of all machines; ValueError if two machines have the same name."""
     machines_by_name: dict[str, Machine] = {}
     for machine in machines:
