@@ -108,25 +108,25 @@ class Measured:
         if self.observable is None:
             self._set_field("quantity", known_name("quantity", self.quantity, MEASURED))
         self._set_field("described", MEASURED[self.quantity] if self.observable is None else self.observable.described)
-        values = _to_float_array(self._format_message_label(self.quantity), self.values)
+        values = _to_float_array(self._message_label(self.quantity), self.values)
         self._set_field("values", values)
         self._check_measured_values(values)
         self._set_field(
             "uncertainty", self._broadcast_to_values(f"{self.quantity}_uncertainty", self.uncertainty, values)
         )
-        sigma, title = self.uncertainty, self._format_message_label(f"{self.quantity}_uncertainty")
+        sigma, title = self.uncertainty, self._message_label(f"{self.quantity}_uncertainty")
         require(title, sigma, (sigma > 0) & (sigma < inf), "an uncertainty is above 0 and finite")
         require("saturation", self.saturation, self.saturation > 0, "the largest reading of a film is above 0")
         if self.quantity not in OF_JOINT:
             self._check_and_set_load(values)
         if (self.angle is not None) != (self.quantity == "pressure"):
             rule = "needs an angle" if self.angle is None else "takes no angle"
-            raise ValueError(f"{self._format_message_label(self.quantity)} {rule}")
+            raise ValueError(f"{self._message_label(self.quantity)} {rule}")
         if self.angle is not None:
             self._set_field("angle", FIELD["angle"].check(self._broadcast_to_values("angle", self.angle, values)))
         if self.machine is not IDEAL_MACHINE and "indentation" not in (self.quantity, self.load):
             raise ValueError(
-                f"{self._format_message_label(self.quantity)} has a machine, but only indentations are read by one"
+                f"{self._message_label(self.quantity)} has a machine, but only indentations are read by one"
             )
         self._set_field("order", self._check_reading_numbers(values))
 
@@ -134,7 +134,7 @@ class Measured:
         """Set a field of this frozen data set."""
         object.__setattr__(self, name, value)
 
-    def _format_message_label(self, quantity: str) -> str:
+    def _message_label(self, quantity: str) -> str:
         """Format the names of data set and quantity as a label for messages."""
         return f"{self.name}: {quantity}" if self.name else quantity
 
@@ -144,7 +144,7 @@ class Measured:
             return numpy.arange(float(values.size))
         reading_numbers = self._broadcast_to_values("order", self.order, values)
         require(
-            self._format_message_label("order"),
+            self._message_label("order"),
             reading_numbers,
             abs(reading_numbers) < inf,
             "numbers of readings must be finite",
@@ -157,26 +157,26 @@ class Measured:
         if len(missing_indices):
             row_numbers = ", ".join(str(index + 1) for index in missing_indices[:8])
             raise ValueError(
-                f"{self._format_message_label(self.quantity)} has no number in row {row_numbers}: add it, or omit the row"
+                f"{self._message_label(self.quantity)} has no number in row {row_numbers}: add it, or omit the row"
             )
         if self.observable is not None:
             return
         if not self.described.allowed:
-            require(self._format_message_label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
+            require(self._message_label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
         elif self.machine is IDEAL_MACHINE:  # a machine with an offset may read less than 0
             allowed = self.described.allows(values)
-            require(self._format_message_label(self.quantity), values, allowed, self.described.allowed)
+            require(self._message_label(self.quantity), values, allowed, self.described.allowed)
 
     def _broadcast_to_values(self, name: str, numbers: Any, values: Numbers) -> Numbers:
         """Repeat one number for all values, or check that there is one number for each value."""
-        number_array = _to_float_array(self._format_message_label(name), numbers)
+        number_array = _to_float_array(self._message_label(name), numbers)
         if number_array.size not in (1, values.size):
             raise ValueError(
-                f"{self._format_message_label(name)} must have 1 or {values.size} numbers, got {number_array.size}"
+                f"{self._message_label(name)} must have 1 or {values.size} numbers, got {number_array.size}"
             )
         if numpy.isnan(number_array).any():
             raise ValueError(
-                f"{self._format_message_label(name)} has no number in row {int(numpy.isnan(number_array).argmax()) + 1}"
+                f"{self._message_label(name)} has no number in row {int(numpy.isnan(number_array).argmax()) + 1}"
             )
         return numpy.broadcast_to(number_array, values.shape)
 
@@ -185,16 +185,16 @@ class Measured:
         kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
         if kind == self.quantity:
             raise ValueError(
-                f"{self._format_message_label(kind)} is both the measured quantity and the load; choose another load"
+                f"{self._message_label(kind)} is both the measured quantity and the load; choose another load"
             )
         loads = self._broadcast_to_values(kind, load, values)
         if self.machine is IDEAL_MACHINE or kind != "indentation":
-            require(self._format_message_label(kind), loads, LOADS[kind].allows(loads), LOADS[kind].allowed)
+            require(self._message_label(kind), loads, LOADS[kind].allows(loads), LOADS[kind].allowed)
         self._set_field("load", kind)
         self._set_field(kind, loads)
         load_sigma = self._broadcast_to_values("load_uncertainty", self.load_uncertainty, values)
         require(
-            self._format_message_label("load_uncertainty"),
+            self._message_label("load_uncertainty"),
             load_sigma,
             (load_sigma >= 0) & (load_sigma < inf),
             _NOT_NEGATIVE,
@@ -206,7 +206,7 @@ class Measured:
         """Check that measured values at zero load are 0, unless the machine has a zero error."""
         if not self.machine.has_zero_error:
             rule = f"at first touch the {self.described.title} is 0, except with a zero error of the machine"
-            require(self._format_message_label(self.load), load, (load > 0) | (values == 0), rule)
+            require(self._message_label(self.load), load, (load > 0) | (values == 0), rule)
 
     def __len__(self) -> int:
         return len(self.values)
@@ -226,7 +226,7 @@ class Measured:
         if self.quantity == "area":
             half_ball_area = 2 * pi * float(joint.ball_radius) ** 2
             rule = f"a contact area is below half of the ball, 2π R1² = {half_ball_area:.4g} mm²"
-            require(self._format_message_label("area"), self.values, self.values < half_ball_area, rule)
+            require(self._message_label("area"), self.values, self.values < half_ball_area, rule)
 
 
 def _to_float_array(name: str, numbers: Any) -> Numbers:
