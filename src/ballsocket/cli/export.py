@@ -80,7 +80,7 @@ def export(
     out: Annotated[Path, typer.Option(help="Output folder, also the name of the files; created if it does not exist.")],
 ) -> None:
     """Write a joint as a force element for another program."""
-    from ..export.law_fit import depth_of
+    from ..export.law_fit import fit_depth
 
     chosen = TARGETS[known_name("target", target, TARGETS)]
     existing = next(path for path in (out, *out.parents, Path()) if path.exists())
@@ -88,7 +88,7 @@ def export(
         raise ValueError(f"{str(existing)!r} is a file; a folder is needed")
     file = joint_options.read(joint)
     element = element_options.element(file)
-    job = ExportJob(element=element, name=identifier(out), depth=depth_of(element, file.load))
+    job = ExportJob(element=element, name=identifier(out), depth=fit_depth(element, file.load))
     paths, missing = chosen.write(job, out)
     echo_path(out, f": {', '.join(path.relative_to(out).as_posix() for path in paths)}")
     if missing:

@@ -143,7 +143,7 @@ class ElasticContact(SolvedContact):
         unaffected = (negligible & bounded) | arrays.to_numpy(self._failed)
         if not unaffected.all() and bounded.all() and self.joint.strengths() and self._is_single:
             changes["von Mises"] = numpy.array(self._hemisphere_von_mises)
-        return self._note(unaffected, _describe_changes(changes))
+        return self._note_on_invalid_points(unaffected, _describe_changes(changes))
 
     @property
     def _is_single(self) -> bool:
