@@ -57,7 +57,7 @@ def _is_poisson_ratio(x: Array) -> Array:
 
 
 def _angle_limits(subject: str, low: float, high: float) -> dict[str, Any]:
-    """Make the arguments `allows` and `allowed` of an angle between two limits in degrees."""
+    """Make the arguments `allows` and `allowed` of a `Quantity` for angles between two limits in degrees."""
     minimum, maximum = radians(low), radians(high)
     allowed = f"{subject} is {low:g} to {high:g} degrees, which are {minimum:.4g} to {maximum:.4g} radians"
     return {"allows": lambda x: (x >= minimum) & (x <= maximum), "allowed": allowed}
@@ -175,7 +175,7 @@ def _make_table(*quantities: Quantity) -> Mapping[str, Quantity]:
 
 
 def _make_body_quantities(body: str, symbols: tuple[str, str, str]) -> Mapping[str, Quantity]:
-    """Make the moduli and yield stress of one body, such as "liner_young".
+    """Make the quantities of one body, such as "liner_young": its elastic constants and its yield stress.
 
     `symbols` are those of E, ν and σy.
     """

@@ -115,7 +115,7 @@ def corrected_vessel_formula(R2: Array, L: Array, E: Array, nu: Array, a0: Array
 
 
 def constant_formula(R2: Array, L: Array, E: Array, nu: Array, K: Array) -> Array:
-    """Return a constant foundation modulus in MPa/mm, broadcast to the shape of the joint."""
+    """Broadcast a constant foundation modulus in MPa/mm to the shape of the joint."""
     return K + 0.0 * R2
 
 

@@ -120,7 +120,7 @@ class RefinedSolution:
         return self._zero_without_load(d * self._secant_stiffness), self._zero_without_load(d)
 
     def relative_residual(self, indentation: Array) -> Array:
-        """Compute the relative error of the half angle that solves for an indentation in mm."""
+        """Compute the relative error of the solved half angle from the prescribed indentation in mm."""
         d = self._scaled_contact.indentation
         error = abs(1 - indentation / (self.joint.clearance * d)) / self._scaled_contact.indentation_rate
         return where(self.edge > 0, error, 0.0)
@@ -136,6 +136,7 @@ class RefinedSolution:
 
     @cached_property
     def stiffness(self) -> Array:
+        """Tangent stiffness dF/dd in N/mm."""
         return self._zero_without_load(
             self._secant_stiffness * (1 + self._scaled_contact.secant_rate / self._scaled_contact.indentation_rate)
         )
@@ -148,14 +149,15 @@ class RefinedSolution:
         rate = self._scaled_contact.indentation_rate / edge
         width = arrays.log(1 + rate * edge)
 
-        def work(x: float) -> Array:
+        def work_rate(x: float) -> Array:
+            """Compute the scaled work per unit of x, a coordinate that is dense near the edge."""
             growth = arrays.exp(width * x)
             angle = edge - (growth - 1) / rate
             contact = scaled_contact(angle, self._liner)
             return contact.secant * contact.indentation**2 * contact.indentation_rate / angle * (growth * width / rate)
 
         scale = self.joint.liner.young * self.joint.socket_radius * self.joint.clearance**2
-        return self._zero_without_load(scale * integral(work, 24))
+        return self._zero_without_load(scale * integral(work_rate, 24))
 
     @property
     def _modulus(self) -> Array:
@@ -178,7 +180,7 @@ class RefinedSolution:
 
     @property
     def max_pressure(self) -> Array:
-        return self.pole_pressure * self._profile(self._peak_position)
+        return self.pole_pressure * self._pressure_ratio(self._peak_position)
 
     @property
     def max_pressure_angle(self) -> Array:
@@ -204,13 +206,13 @@ class RefinedSolution:
         ring = 4 * pi * self.joint.socket_radius**2 * self._squared_sine
         return ring * self.pole_pressure * (2 / 3 + 4 * self._shape_coefficient / 15)
 
-    def _profile(self, y: Array) -> Array:
+    def _pressure_ratio(self, y: Array) -> Array:
         """Compute the pressure ratio p/p0 at the position y = sin²(φ/2)/sin²(ε/2), 0 to 1."""
         return arrays.sqrt(clip(1 - y, 0.0, 1.0)) * (1 + self._shape_coefficient * y)
 
     def pressure(self, angle: Array) -> Array:
         y = sin(clip(angle, -pi, pi) / 2) ** 2 / self._squared_sine
-        return where(y < 1, self.pole_pressure * self._profile(y), self._zero_without_load(0.0 * y))
+        return where(y < 1, self.pole_pressure * self._pressure_ratio(y), self._zero_without_load(0.0 * y))
 
 
 def _mask_half_angle(joint: Joint, half_angle: Array) -> Array:

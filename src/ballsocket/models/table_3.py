@@ -40,7 +40,7 @@ Row = tuple[float, ...]
 """Row of numbers."""
 
 
-def _cubics() -> tuple[Row, Row, Row, Any]:
+def _interpolate_constants() -> tuple[Row, Row, Row, Any]:
     """Compute the monotone cubics in ν that interpolate Table 3.
 
     Returns knots, widths, (C1, C2, C3) at the first knot, and for each interval and constant the coefficients of the
@@ -53,16 +53,16 @@ def _cubics() -> tuple[Row, Row, Row, Any]:
     slopes = _monotone_slopes(knots, values)
     second = (3 * rise - 2 * slopes[:, :-1] - slopes[:, 1:]) / width
     third = (slopes[:, :-1] + slopes[:, 1:] - 2 * rise) / width**2
-    rows = [[_row(part[:, i]) for part in (slopes, second, third)] for i in range(len(width))]
-    return _row(knots), _row(width), _row(values[:, 0]), tuple(map(tuple, rows))
+    rows = [[_float_tuple(part[:, i]) for part in (slopes, second, third)] for i in range(len(width))]
+    return _float_tuple(knots), _float_tuple(width), _float_tuple(values[:, 0]), tuple(map(tuple, rows))
 
 
-def _row(values: Numbers) -> Row:
+def _float_tuple(values: Numbers) -> Row:
     """Convert an array to a tuple of floats."""
     return tuple(map(float, values))
 
 
-(_X1, _X2, _X3, _X4, _), (_W1, _W2, _W3, _W4), _START, _CUBICS = _cubics()
+(_X1, _X2, _X3, _X4, _), (_W1, _W2, _W3, _W4), _START, _CUBICS = _interpolate_constants()
 (_A1, _B1, _C1), (_A2, _B2, _C2), (_A3, _B3, _C3), (_A4, _B4, _C4) = _CUBICS
 
 

@@ -132,7 +132,7 @@ def available_cores() -> int:
 def _submit_until_worker_dies(
     pool: ProcessPoolExecutor, pending: deque[int], max_queued: int
 ) -> Iterator[tuple[int, Any]]:
-    """Submit the pending pieces, and yield (number, completed future) of each.
+    """Submit pending pieces to worker processes; yield the number and completed future of each piece.
 
     It stops when a worker process has died. The affected pieces have `_WORKER_DIED` in place of a future.
     """

@@ -79,12 +79,12 @@ def make_draft_folder(path: Path) -> Iterator[Path]:
         temporary_folder = TemporaryDirectory(prefix=prefix, suffix=_DRAFT_SUFFIX, dir=path.parent)
     except OSError as error:  # the error names the path of the caller instead of the draft folder
         raise OSError(error.errno, error.strerror, str(path)) from error
-    with temporary_folder as name, _lock(Path(name)):
+    with temporary_folder as name, _lock_folder(Path(name)):
         yield Path(name)
 
 
 @contextmanager
-def _lock(folder: Path) -> Iterator[bool]:
+def _lock_folder(folder: Path) -> Iterator[bool]:
     """Lock a folder until the end of the block, and yield True; yield False if this is impossible."""
     if fcntl is None:
         yield False
@@ -101,7 +101,7 @@ def _lock(folder: Path) -> Iterator[bool]:
 
 def _is_abandoned(folder: Path) -> bool:
     """Check if the process that made a draft folder has ended."""
-    with _lock(folder) as locked:
+    with _lock_folder(folder) as locked:
         return locked and time.time() - folder.stat().st_mtime > _MIN_AGE
 
 
