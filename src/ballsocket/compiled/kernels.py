@@ -161,7 +161,7 @@ def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) ->
         _tabulated_kernel(kind)(*(as_row(number, load.shape) for number in inputs), curves.functions, outputs)
         return tuple(outputs)
 
-    return model.solve_with(joint, kind, load, read_curves)
+    return model.solve_with_reader(joint, kind, load, read_curves)
 
 
 @cache
@@ -216,11 +216,11 @@ def _evaluate_table_functions(angle, curve):  # type: ignore[no-untyped-def]
         force_slope += c[1, k] * rise
         pole_slope += c[2, k] * rise
         U, U_next = U_next, twice * U_next - U
-    coordinate_slope = formulas.angle_derivative(angle, root, curve.ratio)
+    rate = formulas.angle_derivative(angle, root, curve.ratio)
     return (
-        (opening, coordinate_slope * opening_slope),
-        (force, coordinate_slope * force_slope),
-        (pole, coordinate_slope * pole_slope),
+        (opening, rate * opening_slope),
+        (force, rate * force_slope),
+        (pole, rate * pole_slope),
     )
 
 

@@ -35,7 +35,7 @@ def strain_energy_error(order: int) -> float:
     trace = 2 * a + b
     density = G * (2 * a * a + b * b - trace**2 / 3) + K * trace**2 / 2
     volume = 2 * numpy.pi / 3 * (OUTER**3 - INNER**3) * (1 - numpy.cos(end))
-    return float(abs(moved @ (elastic.matrix() @ moved) / 2 / (density * volume) - 1))
+    return float(abs(moved @ (elastic.stiffness_matrix() @ moved) / 2 / (density * volume) - 1))
 
 
 def thick_sphere_error(order: int, elements: int, poisson: float) -> float:
@@ -51,7 +51,7 @@ def thick_sphere_error(order: int, elements: int, poisson: float) -> float:
     held[2 * mesh.number[[0, -1]]] = True  # the axis, and the plane of symmetry
     held[2 * mesh.number[:, -1]] = held[2 * mesh.number[:, -1] + 1] = True
     moved = numpy.zeros(len(held))
-    moved[~held] = spsolve(elastic.matrix()[~held][:, ~held], pressed(mesh)[~held])
+    moved[~held] = spsolve(elastic.stiffness_matrix()[~held][:, ~held], pressed(mesh)[~held])
     k = INNER / OUTER
     modulus = (2 * (1 - 2 * poisson) + (1 + poisson) * k**3) / ((1 + poisson) * (1 - 2 * poisson) * (1 - k**3))
     error = moved[2 * mesh.number[:, 0] + 1] * modulus - 1

@@ -446,7 +446,7 @@ def test_windows_of_knots_surround_their_half_angles():
 @pytest.mark.parametrize("index", [0, 3, 6])
 def test_a_refined_search_lies_between_the_neighbours_of_the_largest_value(index):
     values = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0, 8.0])
-    finer = subsurface._refined_points(values, index)
+    finer = subsurface._refine_points_around(values, index)
     assert len(finer) == 9
     assert finer[4] == values[index]
     assert finer[0] == values[max(index - 1, 0)]

@@ -163,7 +163,7 @@ def test_the_report_names_the_joint_of_the_largest_error():
 def test_coordinates_and_angles_are_inverse():
     place, ratio = np.linspace(-0.9, 1.0, 9), np.array([[0.2], [20.0]])
     np.testing.assert_allclose(
-        chebyshev.angle_coordinate(chebyshev.angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
+        chebyshev.angle_coordinate(chebyshev.half_angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
     )
 
 
@@ -191,9 +191,9 @@ def test_builder_coordinates_invert_those_of_the_tables():
     assert poisson[[0, -1]] == pytest.approx(chebyshev.POISSON[:: 1 if poisson[0] < 0 else -1])
     assert ratio[[0, -1]] == pytest.approx(chebyshev.THICKNESS_RATIO)
     for place in (-1.0, 0.2, 1.0):
-        share = build_tables._share_at(place, 0.4, 3.0)
+        share = build_tables._ball_share_at(place, 0.4, 3.0)
         assert chebyshev.ball_coordinate(share, 0.4, 3.0) == pytest.approx(place, abs=1e-10)
-    assert build_tables._share_at(1.0, 0.4, 3.0) == pytest.approx(chebyshev.MAX_BALL_SHARE)
+    assert build_tables._ball_share_at(1.0, 0.4, 3.0) == pytest.approx(chebyshev.MAX_BALL_SHARE)
 
 
 def test_sampled_functions_are_those_of_the_exact_solution():
@@ -232,7 +232,7 @@ def test_a_small_table_interpolates_its_function():
     spec = build_tables._TableSpec(sample=sample, counts=(3, 4), order=4, single=False)
     stored = spec.fit(lambda function, liners, chunksize: map(function, liners))
     assert stored.shape == (3, 4, 1, 1, 2, 2)
-    table = chebyshev.compress(stored, angles=5)
+    table = chebyshev.compress_coefficients(stored, angles=5)
     nu, ratio = np.array([0.3]), np.array([2.5])
     coordinates = [chebyshev.poisson_coordinate(nu), chebyshev.thickness_coordinate(ratio)]
     values = table.coefficients_at(coordinates)[:, :, 0]
@@ -258,7 +258,7 @@ def test_orders_of_products_are_limited():
 def test_balls_are_interpolated_in_their_shrinkage():
     balls = (0.15, 0.27, 0.38)
     values = np.array([[1.0 + 2.0 * chebyshev.ball_shrinkage(nu)] for nu in balls])
-    series = build_tables._in_ball_shrinkage(balls, values)
+    series = build_tables._shrinkage_coefficients(balls, values)
     np.testing.assert_allclose(series[:, 0], [1.0, 2.0, 0.0], atol=1e-12)
 
 

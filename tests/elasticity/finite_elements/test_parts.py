@@ -485,11 +485,11 @@ def test_the_gap_of_a_solved_contact_is_open_and_its_pressure_positive(pair):
 
 def test_a_bracket_spans_its_class_and_the_next_four(curve):
     for number in (0, 3):
-        bracket = curve._bracket(number, load_curve.COARSE)
+        bracket = curve._contact_bracket(number, load_curve.COARSE)
         assert curve.classes[number + 5] < bracket.low < curve.classes[number + 4]
         assert curve.classes[number] <= bracket.high <= 1.12 * curve.classes[number]
-    assert curve._bracket(0, load_curve.COARSE).high == curve.classes[0]
-    assert curve._bracket(3, load_curve.COARSE) is curve._bracket(3, load_curve.COARSE)
+    assert curve._contact_bracket(0, load_curve.COARSE).high == curve.classes[0]
+    assert curve._contact_bracket(3, load_curve.COARSE) is curve._contact_bracket(3, load_curve.COARSE)
 
 
 def test_loads_are_solved_on_the_mesh_of_their_class(curve):

@@ -104,7 +104,7 @@ def solve_on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState
     iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_pressure_modes(closed) @ extra_response.T]
     for _ in range(_ITERATIONS):
         iterates.append(low_pressure_modes(_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
-    return _hemisphere_state(closed, _extrapolate(numpy.stack(iterates, axis=-1)))
+    return _hemisphere_state(closed, _extrapolate_iterates(numpy.stack(iterates, axis=-1)))
 
 
 def low_pressure_modes(state: AbelState) -> Numbers:
@@ -118,7 +118,7 @@ def low_pressure_modes(state: AbelState) -> Numbers:
 
 @lru_cache(maxsize=16)
 def _waves(angles: tuple[float, ...]) -> tuple[Numbers, Numbers]:
-    """Compute the sines and weights of the integral that gives the pressure modes p_n.
+    """Compute the sines and weights of the quadrature that gives the pressure modes p_n.
 
     The sines are sin((n + ½) s) at quadrature points s of each contact. The weights include sin s.
     """
@@ -148,7 +148,7 @@ def _hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
     )
 
 
-def _extrapolate(iterates: Numbers) -> Numbers:
+def _extrapolate_iterates(iterates: Numbers) -> Numbers:
     """Extrapolate the iterates of linear fixed-point maps to their limit.
 
     The method is reduced-rank extrapolation, a least-squares fit of differences. `iterates` has the shape
@@ -184,7 +184,7 @@ class ContactSeries:
 
     @cached_property
     def _slopes(self) -> dict[str, Numbers]:
-        """Derivatives of the logarithms by ln ε at the given contacts, from parabolas through three points."""
+        """Slopes of the logarithmic quantities by ln ε at the contacts, from parabolas through three points."""
         return {name: numpy.gradient(y, self.x, edge_order=2) for name, y in self.logs.items()}
 
     def values(self, x: Numbers) -> dict[str, Numbers]:
@@ -236,7 +236,7 @@ class Hemisphere:
         return LoadCurve(kernel=self.kernel, gap=gap, tolerance=_TOLERANCE)
 
     @cached_property
-    def _response(self) -> Numbers:
+    def _extra_response(self) -> Numbers:
         """Additional displacement of both surfaces per mode of pressure, in mm/MPa."""
         return hemisphere_response(self.kernel.socket, self.kernel.ball)
 
@@ -246,8 +246,8 @@ class Hemisphere:
         return self._solve_bodies(self._curve.knots)
 
     @cached_property
-    def _windows(self) -> dict[int, Bodies | None]:
-        """Contacts of both bodies around half angles solved so far, by the index of the first one."""
+    def _cached_windows(self) -> dict[int, Bodies | None]:
+        """Contacts of both bodies solved so far, by the index of the first of their half angles."""
         return {}
 
     def _bodies_around(self, half_angle: Numbers) -> Bodies | None:
@@ -261,16 +261,16 @@ class Hemisphere:
         try:
             if window is None:
                 return self._knot_bodies
-            if window.start not in self._windows:
+            if window.start not in self._cached_windows:
                 closed = self._curve.knots_in(window)
-                self._windows[window.start] = self._knot_bodies if closed is None else self._solve_bodies(closed)
-            return self._windows[window.start]
+                self._cached_windows[window.start] = self._knot_bodies if closed is None else self._solve_bodies(closed)
+            return self._cached_windows[window.start]
         except numpy.linalg.LinAlgError:
             return None
 
     def _solve_bodies(self, closed: AbelState) -> Bodies | None:
         """Solve the hemisphere at the half angles of contacts on the closed sphere; make the series of both."""
-        free = solve_on_hemisphere(closed, self._response)
+        free = solve_on_hemisphere(closed, self._extra_response)
         clearance, angle = closed.gap.clearance, closed.half_angle
         quantity_sets = [{name: getattr(state, name) for name in ("indentation", "force")} for state in (closed, free)]
         for quantities, state in zip(quantity_sets, (closed, free), strict=True):
@@ -318,7 +318,7 @@ _MIN_CONTACTS, _MAX_SHARE, _NEWTON_STEPS, _RELATIVE_TOLERANCE, _TOLERANCE = 4, 1
 
 def _max_pressure(state: AbelState) -> Numbers:
     """Estimate the largest pressure in MPa: that at the pole, or the largest at a few angles."""
-    if state.decreases.all():
+    if state.pressure_decreases.all():
         return state.pole_pressure
     return state.pressure(state.half_angle * numpy.linspace(0.0, 0.95, 20)[:, None]).max(axis=0)
 

@@ -56,7 +56,7 @@ class Intervals:
     grid: QuadratureGrid
 
     def closed_form_operators(self, a: Numbers) -> Operators:
-        """Compute the integral operators of the part of the kernel in closed form, from its coefficients a_1 .. a_6."""
+        """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
         grid, edge = self.grid, self.half_angle[:, None, None]
         square = numpy.multiply(edge, grid.distance, out=workspace_array("square", (edge.size, *grid.distance.shape)))
         square *= square
@@ -74,7 +74,7 @@ class Intervals:
         return left + right, right - left
 
     def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
-        """Add the integral operators of the rest of the kernel, a sum of cosines with weights r_n, in place."""
+        """Add the integral operators of the kernel's remainder, a sum of cosines with weights r_n, in place."""
         size = max(1, _BLOCK // (_wave_panels(self.half_angle, self.grid, len(remainder)).count * len(remainder)))
         for first in range(0, len(self.half_angle), size):
             block = slice(first, first + size)
@@ -107,12 +107,12 @@ class CachedIntervals:
         return {}
 
     def closed_form_operators(self, a: Numbers) -> Operators:
-        """Compute the integral operators of the part of the kernel in closed form, from its coefficients a_1 .. a_6."""
+        """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
         even, odd = self._unit_operators
         return even @ a, odd @ a
 
     def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
-        """Add the integral operators of the rest of the kernel, a sum of cosines with weights r_n, in place."""
+        """Add the integral operators of the kernel's remainder, a sum of cosines with weights r_n, in place."""
         if len(remainder) > _CACHED_COUNTS[-1]:
             self._intervals.add_remainder(remainder, operators)
             return

@@ -118,7 +118,7 @@ class Socket:
         P = 2 * (1 - nu) * n * n + (4 - 5 * nu) * n + (1 - nu)
         Q = (n + 2) * (n * n + n + 1 - nu * (2 * n + 1))
         c = numpy.asarray(self.asymptote / (2 * (1 - nu)) * P / Q)
-        layered = n < self.reach(_NEGLIGIBLE)
+        layered = n < self.backing_degree(_NEGLIGIBLE)
         if layered.any():
             c[layered] = -self.radius * self._layers(n[layered])[0].compliance[0, 0]
         return c
@@ -127,7 +127,7 @@ class Socket:
         """Compute the relative excess of each modal compliance over its limit, ρ_n = c_n (n + ½)/C - 1."""
         n = _check_degrees(degrees)
         rho = homogeneous_excess(n + 0.5, self.shells[0].poisson)
-        layered = n < self.reach(_NEGLIGIBLE)
+        layered = n < self.backing_degree(_NEGLIGIBLE)
         if layered.any():
             correction = self._layers(n[layered])[0].layer_correction[0, 0]
             rho[layered] -= self.radius * correction * (n[layered] + 0.5) / self.asymptote
@@ -138,12 +138,12 @@ class Socket:
 
         They are those of an infinite socket of the innermost material.
 
-        That series converges for n >= 2; the contribution of the layers is exponentially small, see `reach`.
+        That series converges for n >= 2; the contribution of the layers is exponentially small, see `backing_degree`.
         """
         return homogeneous_expansion(self.shells[0].poisson, order)
 
-    def reach(self, tolerance: float = 1e-12) -> int:
-        """Compute the degree from which the backing of the liner changes ρ_n by less than `tolerance`."""
+    def backing_degree(self, tolerance: float = 1e-12) -> int:
+        """Compute the degree n from which the backing of the liner changes ρ_n by less than `tolerance`."""
         require("tolerance", tolerance, 0 < tolerance < 1, "a tolerance must lie between 0 and 1")
         shell = self.shells[0]
         if isinf(shell.thickness):
@@ -317,7 +317,7 @@ def asymptote_of(radius: float, young: float, poisson: float) -> float:
     return 2 * (1 - poisson**2) * radius / young
 
 
-def _polynomials(nu: float) -> tuple[list[float], list[float]]:
+def _excess_polynomials(nu: float) -> tuple[list[float], list[float]]:
     """Compute numerator and denominator of ρ_n in an infinite socket, in falling powers of q = n + ½.
 
     The numerator begins with q², the denominator with q³. A ball has -q in place of q.
@@ -332,13 +332,13 @@ def homogeneous_excess(q: Numbers, nu: float) -> Numbers:
 
     The excess is ρ_n = c_n (n + ½)/C - 1.
     """
-    numerator, _ = _polynomials(nu)
+    numerator, _ = _excess_polynomials(nu)
     return numpy.asarray(numpy.polyval(numerator, q) / ((q + 1.5) * (q * (q - 2 * nu) + 0.75)))
 
 
 def homogeneous_expansion(nu: float, order: int) -> Numbers:
     """Compute the coefficients a_1, ..., a_order of ρ_n in powers of 1/q, for an infinite socket."""
-    numerator, denominator = _polynomials(nu)
+    numerator, denominator = _excess_polynomials(nu)
     a = [0.0, 0.0, 0.0]
     for j in range(order):
         earlier = denominator[1] * a[-1] + denominator[2] * a[-2] + denominator[3] * a[-3]

@@ -31,17 +31,17 @@ UNIT: Matrix = numpy.eye(2)[:, :, None]
 
 
 def _matmul(a: Matrix, b: Matrix) -> Matrix:
-    """Multiply the 2×2 matrices of each degree."""
+    """Multiply the 2×2 matrices of each degree n."""
     return a[:, :1] * b[:1] + a[:, 1:] * b[1:]
 
 
 def _inverse(a: Matrix) -> Matrix:
-    """Invert the 2×2 matrices of each degree."""
+    """Invert the 2×2 matrices of each degree n."""
     return numpy.array([[a[1, 1], -a[0, 1]], [-a[1, 0], a[0, 0]]]) / (a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0])
 
 
-def _outer(column: tuple[numpy.ndarray, ...], row: tuple[numpy.ndarray, ...]) -> Matrix:
-    """Compute the outer product of a column and a row for each degree."""
+def _outer_product(column: tuple[numpy.ndarray, ...], row: tuple[numpy.ndarray, ...]) -> Matrix:
+    """Compute the outer product of a column and a row for each degree n."""
     return numpy.array(column)[:, None] * numpy.array(row)
 
 
@@ -105,8 +105,8 @@ def growing_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
     compressibility = 1 - 2 * nu
     denominator = numpy.maximum(n + compressibility * (2 * n + 1), _MIN_DENOMINATOR)
     weight = (2 - nu - compressibility * n) / denominator
-    N = _outer(((n + 1) * (n - 2 + 4 * nu), n + 5 - 4 * nu), (-1 / denominator, n / denominator))
-    K = (n - 1) * UNIT + _outer((n + 1, -1 + 0 * n), (weight, -n * weight))
+    N = _outer_product(((n + 1) * (n - 2 + 4 * nu), n + 5 - 4 * nu), (-1 / denominator, n / denominator))
+    K = (n - 1) * UNIT + _outer_product((n + 1, -1 + 0 * n), (weight, -n * weight))
     return Wave.from_matrices(n, N, K * _twice_shear(young, nu), power=n - 1, single_power=1)
 
 
@@ -118,8 +118,8 @@ def decaying_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
     compressibility = 1 - 2 * nu
     denominator = n + 1 + compressibility * (2 * n + 1)
     weight = (3 * (1 - nu) + compressibility * n) / denominator
-    N = _outer((-n - 1, 1 + 0 * n), ((n - 4 + 4 * nu) / denominator, n * (n + 3 - 4 * nu) / denominator))
-    K = -(n + 2) * UNIT + _outer((n, 1 + 0 * n), (weight, (n + 1) * weight))
+    N = _outer_product((-n - 1, 1 + 0 * n), ((n - 4 + 4 * nu) / denominator, n * (n + 3 - 4 * nu) / denominator))
+    K = -(n + 2) * UNIT + _outer_product((n, 1 + 0 * n), (weight, (n + 1) * weight))
     return Wave.from_matrices(n, N, K * _twice_shear(young, nu), power=n, single_power=2)
 
 
@@ -159,7 +159,7 @@ class SupportedLayer:
 
     @cached_property
     def _transmission(self) -> Matrix:
-        """Decaying wave at the outer surface, per unit of it at the inner surface."""
+        """Decaying wave at the outer surface, per unit of decaying wave at the inner surface."""
         return self._decaying_wave.propagate(self._log_ratio, UNIT)
 
     @cached_property
@@ -204,27 +204,27 @@ class SupportedLayer:
         departure = UNIT - _matmul(_inverse(self._decaying_wave.K), self._growing_wave.K)
         return _matmul(departure, _matmul(self._inner_reflection, self._traction_response))
 
-    def _waves(self, load: Matrix) -> tuple[Matrix, Matrix]:
+    def _wave_amplitudes(self, traction: Matrix) -> tuple[Matrix, Matrix]:
         """Compute the growing wave at the outer surface and the decaying wave at the inner surface.
 
-        `load` is the traction r σ on the inner surface.
+        `traction` is the traction r σ on the inner surface.
         """
-        decaying = _matmul(self._traction_response, load)
+        decaying = _matmul(self._traction_response, traction)
         return _matmul(self._outer_reflection, _matmul(self._transmission, decaying)), decaying
 
-    def outer_traction(self, load: Matrix) -> Matrix:
+    def outer_traction(self, traction: Matrix) -> Matrix:
         """Compute the traction r σ on the outer surface from that on the inner surface."""
-        growing, decaying = self._waves(load)
+        growing, decaying = self._wave_amplitudes(traction)
         return _matmul(self._growing_wave.K, growing) + _matmul(
             self._decaying_wave.K, _matmul(self._transmission, decaying)
         )
 
-    def fields(self, load: Matrix, r: numpy.ndarray) -> numpy.ndarray:
+    def fields(self, traction: Matrix, r: numpy.ndarray) -> numpy.ndarray:
         """Compute displacements and stresses at radii r (mm) from the traction r σ on the inner surface.
 
         The rows are the seven components of `Fields`.
         """
-        growing, decaying = self._waves(load)
+        growing, decaying = self._wave_amplitudes(traction)
         x = numpy.log(r / self.inner)
         grown = self._growing_wave.evaluate(numpy.maximum(self._log_ratio - x, 0.0), growing)
         inward = self._decaying_wave.evaluate(x, decaying)

@@ -110,6 +110,7 @@ class ContactBracket:
         """Solve the contact under a load by Brent's method between two half angles (rad)."""
 
         def residual(angle: float) -> float:
+            """Compute the difference between 1 and a power of the load ratio at a half angle; 1 without contact."""
             contact = partial_contact(self.pair, self.gap, angle)
             return float(1 - (load / getattr(contact, kind)) ** 0.25) if is_pressed(contact) else 1.0
 

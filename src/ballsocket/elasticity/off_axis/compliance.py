@@ -94,9 +94,9 @@ class Compliance:
         return self.stiffness(displacement)
 
     @cached_property
-    def coarser(self) -> Compliance | None:
+    def coarser_compliance(self) -> Compliance | None:
         """Compliance in cells twice as wide, or None if the grid has few rings."""
-        cells = self.grid.coarser
+        cells = self.grid.coarser_grid
         if cells is None:
             return None
         if isinstance(self.softness, UniformOperator):

@@ -290,9 +290,9 @@ class TiltedDeck:
         yield from ("*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "LINED, PRESSED")
         number = self.socket.number
         plane = numpy.concatenate([number[:, 0].ravel(), number[:, -1].ravel()])
-        yield from _node_set("MIRROR", plane)
-        yield from _node_set("OUTSIDE", number[:, :, -1].ravel())
-        yield from _node_set("PUSHED", self.ball.number.ravel())
+        yield from _node_set_lines("MIRROR", plane)
+        yield from _node_set_lines("OUTSIDE", number[:, :, -1].ravel())
+        yield from _node_set_lines("PUSHED", self.ball.number.ravel())
         yield from ("*BOUNDARY", "MIRROR, 2, 2", "OUTSIDE, 1, 3", "PUSHED, 1, 3")
 
     def _step_lines(self) -> Iterator[str]:
@@ -320,7 +320,7 @@ def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iter
             yield ", ".join(map(str, row[start:end])) + ("," if end < len(row) else "")
 
 
-def _node_set(name: str, nodes: Numbers) -> Iterator[str]:
+def _node_set_lines(name: str, nodes: Numbers) -> Iterator[str]:
     """Yield the lines of a named set of nodes; the number 0 is omitted."""
     yield f"*NSET, NSET={name}"
     numbers = sorted({int(node) for node in nodes if node})

@@ -107,6 +107,7 @@ class Preload:
         start = self.equilibrium.displacement @ numpy.array(self.model.cup.frame)
 
         def is_closed(distance: float) -> bool:
+            """Check if the bore touches the ball everywhere at a distance in mm from equilibrium."""
             return _touches_everywhere(self.displace(start + distance * vector / numpy.linalg.norm(vector)))
 
         return self._bisect(is_closed)
@@ -115,6 +116,7 @@ class Preload:
         """Compute the uniform wear of the bore in mm at which the unloaded ball first loses contact in any cell."""
 
         def is_closed(depth: float) -> bool:
+            """Check if the bore touches the ball everywhere at a uniform wear depth in mm."""
             worn = replace(self.model, worn=BoreDeviation(of=lambda n: depth + 0.0 * n[2]))
             return _touches_everywhere(worn.press(self.joint, force=0.0))  # type: ignore[arg-type]
 

@@ -16,8 +16,8 @@ from .chebyshev import (
     ball_coordinate,
     ball_shrinkage,
     convert_like,
+    load_tables,
     poisson_coordinate,
-    tables,
     thickness_coordinate,
 )
 from .formulas import CurveCoefficients, Scale, angle_of_force, angle_of_indentation, contact
@@ -69,7 +69,7 @@ class JointCurves:
         """Compute coefficients (functions, angles, joints) of the table `name`, with the change by an elastic ball."""
         if self.shared is not None:
             return self._take_shared(self.shared.series(name))
-        nu, stored = self.joint.liner.poisson, tables(self.file)
+        nu, stored = self.joint.liner.poisson, load_tables(self.file)
         coordinates = [poisson_coordinate(nu), thickness_coordinate(self.ratio)]
         evaluate = ChebyshevTable.coefficients_of_one if self._is_plain else ChebyshevTable.coefficients_at
         total = evaluate(stored[name], coordinates)
@@ -82,7 +82,7 @@ class JointCurves:
 
     @cached_property
     def functions(self) -> Array:
-        """Chebyshev coefficients of the three tabulated functions, which `formulas` explains."""
+        """Chebyshev coefficients of the three tabulated functions: opening, force and pole pressure."""
         return self.series("rigid") if self.shared is None else self._take_shared(self.shared.functions)
 
     @cached_property
@@ -91,14 +91,16 @@ class JointCurves:
         if self.shared is not None:
             return self._take_shared(self.shared.slopes)
         xp = arrays.namespace(self.functions)
-        derivative = convert_like(_derivative(self.functions.shape[1]), self.functions)
+        derivative = convert_like(_derivative_matrix(self.functions.shape[1]), self.functions)
         return xp.stack([derivative @ self.functions[row, ...] for row in range(3)])
 
     @cached_property
     def curve(self) -> CurveCoefficients:
         """Chebyshev coefficients of the tabulated functions and of their derivatives."""
         if self._is_plain:
-            stacked = numpy.concatenate([self.functions, self.functions @ _derivative(self.functions.shape[1]).T])
+            stacked = numpy.concatenate(
+                [self.functions, self.functions @ _derivative_matrix(self.functions.shape[1]).T]
+            )
             return CurveCoefficients(self.ratio, stacked, stacked)
         return CurveCoefficients(self.ratio, self.functions, self.slopes)
 
@@ -109,7 +111,7 @@ class JointCurves:
         return Scale(self.joint.clearance, R2 * R2, self.compliance)
 
     def contact(self, angle: Array) -> tuple[Array, ...]:
-        """Compute indentation, force, pole pressure, stiffness and dd/d(ln ε) at half angles above 0.
+        """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε) at half angles above 0.
 
         The units are mm, N, MPa, N/mm and mm.
         """
@@ -132,7 +134,7 @@ def plain_joint_curves(file: str, joint: Joint) -> JointCurves:
 
 
 @cache
-def _derivative(count: int) -> numpy.ndarray:
+def _derivative_matrix(count: int) -> numpy.ndarray:
     """Compute the matrix from the Chebyshev coefficients of a function to those of its derivative."""
     square = numpy.zeros((count, count))
     square[:-1] = numpy.polynomial.chebyshev.chebder(numpy.eye(count))

@@ -55,7 +55,7 @@ class Scale(NamedTuple):
 
 
 def evaluate(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> tuple[Pair, ...]:
-    """Evaluate the tabulated functions in `rows` and their slopes by ln ε at half angles above 0."""
+    """Evaluate the tabulated functions in `rows`, with their slopes by ln ε, at half angles above 0."""
     root = angle_root(angle, curve.ratio)
     coordinate, widening = 2 * root - 1, angle_derivative(angle, root, curve.ratio)
     if type(angle) is float:
@@ -85,13 +85,13 @@ def angle_derivative(angle: Array, root: Array, ratio: Array) -> Array:
 
 
 def opening(angle: Array, share: Pair) -> Pair:
-    """Compute the relative indentation σ = d/(c + d) and d ln σ/d ln ε from the first tabulated function."""
+    """Compute the relative indentation σ = d/(c + d) and its log slope by ln ε from the first tabulated function."""
     half = sin(angle / 2)
     return exp(share[0]) * 2 * half * half, share[1] + angle * cos(angle / 2) / half
 
 
 def contact(angle: Array, curve: CurveCoefficients, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute indentation, force, pole pressure, stiffness and dd/d(ln ε) at half angles above 0.
+    """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε) at half angles above 0.
 
     The units are mm, N, MPa, N/mm and mm.
     """
@@ -123,7 +123,7 @@ def _solve_angle(residual: Increasing, load: Array, log_estimate: Array, curve: 
 
 
 def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of a relative indentation d/c at a half angle, and its slope.
+    """Compute the residual of the relative indentation d/c at a trial half angle, and its slope by ln ε.
 
     The residual is ln d/(c + d) minus that of the load.
     """
@@ -133,7 +133,7 @@ def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficient
 
 
 def _force_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of a dimensionless force at a half angle, and its slope.
+    """Compute the residual of the dimensionless force at a trial half angle, and its slope by ln ε.
 
     The residual is ln d/(c + d) minus that of the indentation F/secant, where secant is the ratio F/d.
     """

@@ -81,10 +81,10 @@ class Tabulated(Model):
     promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        return self.solve_with(joint, kind, load, curve_reader(kind))
+        return self.solve_with_reader(joint, kind, load, curve_reader(kind))
 
-    def solve_with(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
-        """Solve the contacts for loads of one kind with a function that reads the curves of joints.
+    def solve_with_reader(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
+        """Solve the contacts for loads of one kind with a function that evaluates the curves of joints.
 
         `read` is such a function, see `curve_reader`.
         """

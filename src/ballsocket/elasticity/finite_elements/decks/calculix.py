@@ -213,7 +213,7 @@ def read_contact_pressures(frd: Path) -> dict[int, dict[int, float]]:
 
 
 def _split_by_step(path: Path, head: str) -> dict[int, str]:
-    """Split a file at its headers; return the text after each by the index of its step.
+    """Split a file at its headers; return the text after each header, by the index of the load step.
 
     A header without a time ends the previous text. A step may end in a second increment of zero length at nearly the
     same time: the later one counts.
