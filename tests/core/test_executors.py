@@ -233,9 +233,9 @@ def test_a_worker_ends_with_its_parent(before):
 @pytest.mark.skipif(not hasattr(os, "O_ASYNC"), reason="signals of pipes of a system like Unix")
 def test_a_closed_pipe_is_recognized():
     receiver, sender = os.pipe()
-    assert not module._is_closed(receiver)
+    assert not module._is_pipe_closed(receiver)
     os.close(sender)
-    assert module._is_closed(receiver)
+    assert module._is_pipe_closed(receiver)
     os.close(receiver)
 
 

@@ -20,7 +20,7 @@ from ..elasticity.exact.tabulated.formulas import (
     Scale,
     angle_of_force,
     angle_of_indentation,
-    contact,
+    contact_quantities,
 )
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..models import kinematics, liner_compliance, refined_state
@@ -30,7 +30,7 @@ from ..models.liner_compliance import liner_coefficients
 from ..models.modulus import Formula
 from ..models.refined import RefinedSolution, make_solver_result, scaled_load
 from ..models.refined_state import ScaledContact, half_angle_of_force, half_angle_of_indentation, scaled_contact
-from ..models.table_3 import eq_18
+from ..models.table_3 import scaled_modulus
 from ..problem import Joint
 from .overloads import as_row, compile_loop, inline_formula, jit_formula, pick_element
 
@@ -178,13 +178,13 @@ def _tabulated_kernel(kind: str) -> Any:
             curve = CurveCoefficients(pick_element(ratio, i), functions, functions)
             angle = solve(pick_element(load, i), curve)
             scale = Scale(pick_element(clearance, i), pick_element(area, i), pick_element(compliance, i))
-            d, F, p0, stiffness, _ = contact(angle, curve, scale)
+            d, F, p0, stiffness, _ = contact_quantities(angle, curve, scale)
             outputs[0, i], outputs[1, i], outputs[2, i], outputs[3, i], outputs[4, i] = angle, d, F, p0, stiffness
 
     return compile_loop(solve_contacts)
 
 
-@overload(formulas.evaluate, strict=False)
+@overload(formulas.evaluate_table_functions, strict=False)
 def _overload_evaluate(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
     """Implement the evaluation of the first one, two or three tabulated functions in compiled code."""
     if rows.count == 1:
@@ -225,7 +225,7 @@ def _evaluate_table_functions(angle, curve):  # type: ignore[no-untyped-def]
 
 
 for _formula in (
-    eq_18,
+    scaled_modulus,
     kinematics.linear_indentation,
     kinematics.linear_force,
     kinematics.linear_stiffness,
@@ -258,7 +258,7 @@ for _long_formula in (
     chebyshev.angle_root,
     formulas.angle_derivative,
     formulas.opening,
-    formulas.contact,
+    formulas.contact_quantities,
     formulas._solve_angle,
     formulas._indentation_residual,
     formulas._force_residual,

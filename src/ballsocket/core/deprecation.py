@@ -221,11 +221,11 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
     Example: `@renamed_arguments(listen="progress")`.
     """
 
-    def decorate(function: Callable[P, T]) -> Callable[P, T]:
+    def accept_old_names(function: Callable[P, T]) -> Callable[P, T]:
         """Wrap a function so that it accepts the old names of its arguments."""
 
         @functools.wraps(function)
-        def wrapper(*args: P.args, **kwargs: P.kwargs) -> T:
+        def call_with_new_names(*args: P.args, **kwargs: P.kwargs) -> T:
             """Call the function after translation of old argument names to the new ones."""
             for old in names.keys() & kwargs.keys():
                 new = names[old]
@@ -235,9 +235,9 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
                 kwargs[new] = kwargs.pop(old)
             return function(*args, **kwargs)
 
-        return wrapper
+        return call_with_new_names
 
-    return decorate
+    return accept_old_names
 
 
 def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
@@ -246,24 +246,24 @@ def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
     An old name of a field replaces the value under the new name, which `dataclasses.replace` passes as well.
     """
 
-    def decorate(owner: type[T]) -> type[T]:
+    def accept_old_names(owner: type[T]) -> type[T]:
         """Make a dataclass accept the old names of its fields, attributes and methods."""
         initialise: Any = owner.__init__
         arguments = {old: new for old, new in names.items() if new in owner.__dict__.get("__dataclass_fields__", {})}
 
         @functools.wraps(initialise)
-        def wrapper(self: T, *args: Any, **kwargs: Any) -> None:
+        def call_with_new_names(self: T, *args: Any, **kwargs: Any) -> None:
             """Initialise the dataclass after translation of old field names to the new ones."""
             for old in arguments.keys() & kwargs.keys():
                 _warn_renamed(f"argument {old!r} of {owner.__name__}()", repr(arguments[old]))
                 kwargs[arguments[old]] = kwargs.pop(old)
             initialise(self, *args, **kwargs)
 
-        setattr(owner, "__init__", wrapper)  # noqa: B010 (mypy refuses to assign to a method)
+        setattr(owner, "__init__", call_with_new_names)  # noqa: B010 (mypy refuses to assign to a method)
         for old, new in names.items():
             attribute = RenamedAttribute(new)
             attribute.__set_name__(owner, old)
             setattr(owner, old, attribute)
         return owner
 
-    return decorate
+    return accept_old_names

@@ -6,7 +6,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..elasticity.finite_elements.elasticity import ElasticBlock
-from ..elasticity.finite_elements.mesh import Block, block
+from ..elasticity.finite_elements.mesh import Block, mesh_block
 
 INNER, OUTER = 1.0, 1.4
 """Radii of the sphere."""
@@ -15,7 +15,7 @@ INNER, OUTER = 1.0, 1.4
 def a_block(order: int, elements: int = 6, poisson: float = 0.3, end: float = numpy.pi / 2) -> ElasticBlock:
     """A thick shell of Young's modulus 1, from the axis to a polar angle, `elements` through its wall."""
     angle, radius = numpy.linspace(0.0, end, 2 * elements + 1), numpy.linspace(INNER, OUTER, elements + 1)
-    return ElasticBlock(block=block(angle, [radius], order), young=numpy.ones(1), poisson=numpy.array([poisson]))
+    return ElasticBlock(block=mesh_block(angle, [radius], order), young=numpy.ones(1), poisson=numpy.array([poisson]))
 
 
 def polar(elastic: ElasticBlock, across: Numbers, along: Numbers) -> Numbers:

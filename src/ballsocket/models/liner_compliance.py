@@ -185,7 +185,7 @@ def _decay_mean(x: Array) -> Pair:
 
 
 def _evaluate_polynomial(x: Array, coefficients: tuple[Array, ...]) -> Pair:
-    """Evaluate a polynomial of x and its slope; coefficients start with the highest power."""
+    """Evaluate a polynomial and its slope at x; the coefficients start with the highest power."""
     value, slope = coefficients[0] + 0.0 * x, 0.0 * x
     for coefficient in coefficients[1:]:
         slope = slope * x + value

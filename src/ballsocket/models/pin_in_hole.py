@@ -87,7 +87,7 @@ class PinInHole(ModelInfo):
         with numpy.errstate(all="ignore"):
             stiffness = joint.liner.young / (1 - joint.liner.poisson**2) * joint.clearance
             if kind == "line_load":
-                line_load, angle = load, 2 * atan(sqrt(_squared_tangent(stiffness, load)))
+                line_load, angle = load, 2 * atan(sqrt(_solve_squared_tangent(stiffness, load)))
             else:
                 reached = stiffness / _flexibility(tan(load / 2) ** 2)
                 line_load, angle = where((stiffness > 0) | (load == 0), reached, numpy.nan), load
@@ -151,7 +151,7 @@ def _flexibility(s: Array) -> Array:
     return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * safe_divisor(s))
 
 
-def _squared_tangent(stiffness: Array, load: Array) -> Array:
+def _solve_squared_tangent(stiffness: Array, load: Array) -> Array:
     """Solve for the squared half-angle tangent β² = tan²(ε/2) of a line load; `stiffness` is E1 c."""
     ratio = stiffness / safe_divisor(load)
 
@@ -166,5 +166,5 @@ def _squared_tangent(stiffness: Array, load: Array) -> Array:
     return where(load > 0, root, 0.0 * root)
 
 
-PERFECT_FIT = float(2 * atan(sqrt(_squared_tangent(numpy.float64(0.0), numpy.float64(1.0)))))
+PERFECT_FIT = float(2 * atan(sqrt(_solve_squared_tangent(numpy.float64(0.0), numpy.float64(1.0)))))
 """Half angle in rad without clearance: 84.83 degrees."""

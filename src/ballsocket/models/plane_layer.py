@@ -106,7 +106,7 @@ class PlaneLayer(Model):
         )
 
 
-def layer_ratio(x: Array, poisson: Array) -> Array:
+def kernel_deviation(x: Array, poisson: Array) -> Array:
     """Compute the kernel Φ(x) - 1 of a bonded layer, the deviation of its response from that of a half-space.
 
     Φ = [2 k0 sinh 2x - 4x]/[2 k0 cosh 2x + 1 + k0² + 4x²], k0 = 3 - 4ν, and x is the wave number times L.
@@ -144,7 +144,7 @@ class LayerSolution:
     def _weighted_kernel(self) -> Array:
         """Kernel Φ - 1 at the quadrature points of the wave number, times their weights."""
         _, _, k, wk = self._quadrature_points
-        return layer_ratio(k, self.joint.liner.poisson[..., None]) * wk
+        return kernel_deviation(k, self.joint.liner.poisson[..., None]) * wk
 
     @cached_property
     def _solution_integrals(self) -> tuple[Array, Array, Array, Array]:
@@ -160,12 +160,12 @@ class LayerSolution:
         flat_width, flat_kernel = xp.reshape(self.width, (-1,)), xp.reshape(kernel, (-1, k.shape[0]))
         count, size = flat_width.shape[0], max(1, _BLOCK // (k.shape[0] * x.shape[0]))
         spans = [slice(first, min(first + size, count)) for first in range(0, max(count, 1), size)]
-        blocks = [self._solve_block(flat_width[span], flat_kernel[span, :]) for span in spans]
+        blocks = [self._solve_contact_block(flat_width[span], flat_kernel[span, :]) for span in spans]
         joined = (xp.concat(part, axis=0) if len(blocks) > 1 else part[0] for part in zip(*blocks, strict=True))
         transform, edge, mean, second = (xp.reshape(part, (*self.width.shape, *part.shape[1:])) for part in joined)
         return transform, edge, mean, second
 
-    def _solve_block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
+    def _solve_contact_block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
         """Solve the integral equations of a block of contacts for h1 and h2, and compute their integrals.
 
         The four arrays are those of `_solution_integrals`.

@@ -90,14 +90,14 @@ class RefinedSolution:
     edge: Array
 
     @cached_property
-    def _liner(self) -> Liner:
+    def _joint_liner(self) -> Liner:
         """Compliance coefficients of the liner."""
-        return _liner(self.joint)
+        return _joint_liner(self.joint)
 
     @cached_property
     def _scaled_contact(self) -> ScaledContact:
         """Dimensionless contact quantities at the half angle."""
-        return scaled_contact(safe_divisor(self.edge), self._liner)
+        return scaled_contact(safe_divisor(self.edge), self._joint_liner)
 
     def _zero_without_load(self, value: Array) -> Array:
         """Replace values of contacts without load by 0."""
@@ -108,7 +108,7 @@ class RefinedSolution:
         """Secant stiffness F/d in N/mm."""
         return self.joint.liner.young * self.joint.socket_radius * self._scaled_contact.secant
 
-    def loads(self, kind: str, load: Array) -> tuple[Array, Array]:
+    def force_and_indentation(self, kind: str, load: Array) -> tuple[Array, Array]:
         """Compute the force F in N and the indentation d in mm from the applied load.
 
         The applied load is returned unchanged.
@@ -153,7 +153,7 @@ class RefinedSolution:
             """Compute the scaled work per unit of x, a coordinate that is dense near the edge."""
             growth = arrays.exp(width * x)
             angle = edge - (growth - 1) / rate
-            contact = scaled_contact(angle, self._liner)
+            contact = scaled_contact(angle, self._joint_liner)
             return contact.secant * contact.indentation**2 * contact.indentation_rate / angle * (growth * width / rate)
 
         scale = self.joint.liner.young * self.joint.socket_radius * self.joint.clearance**2
@@ -225,7 +225,7 @@ def _mask_half_angle(joint: Joint, half_angle: Array) -> Array:
 def _solve_half_angle(joint: Joint, kind: str, load: Array) -> Array:
     """Solve for the half angle in rad of a force or an indentation; NaN beyond the largest half angle."""
     half_angle_of = half_angle_of_force if kind == "force" else half_angle_of_indentation
-    return where(load > 0, half_angle_of(scaled_load(joint, kind, load), _liner(joint)), 0.0 * load)
+    return where(load > 0, half_angle_of(scaled_load(joint, kind, load), _joint_liner(joint)), 0.0 * load)
 
 
 def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
@@ -235,8 +235,8 @@ def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
 
 
 def make_solver_result(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
-    """Make the solver result of a solution, with its convergence check."""
-    force, indentation = solution.loads(kind, load)
+    """Make the solver result of solved contacts, with a check of their convergence."""
+    force, indentation = solution.force_and_indentation(kind, load)
     return SolverResult(
         laws=solution,
         force=force,
@@ -249,7 +249,7 @@ def make_solver_result(solution: RefinedSolution, kind: str, load: Array) -> Sol
     )
 
 
-def _liner(joint: Joint) -> Liner:
+def _joint_liner(joint: Joint) -> Liner:
     """Return the compliance coefficients of a joint's liner."""
     nu, b = joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius
     return _liner_of_numbers(nu, b) if type(nu) is float and type(b) is float else liner_coefficients(nu, b)

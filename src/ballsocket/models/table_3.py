@@ -66,8 +66,8 @@ def _float_tuple(values: Numbers) -> Row:
 (_A1, _B1, _C1), (_A2, _B2, _C2), (_A3, _B3, _C3), (_A4, _B4, _C4) = _CUBICS
 
 
-def eq_18(constants: tuple[Array, ...], ratio: Array) -> Array:
-    """Compute the scaled foundation modulus K R2/E from the thickness ratio R2/L, Eq. (18) of the paper."""
+def scaled_modulus(constants: tuple[Array, ...], ratio: Array) -> Array:
+    """Compute the scaled foundation modulus K R2/E from the thickness ratio R2/L by Eq. (18) of the paper."""
     return constants[0] + ratio * (constants[1] + ratio * constants[2])
 
 
@@ -78,9 +78,9 @@ def table_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
     x = R2 / L
     t1, t2 = clip(nu - _X1, 0.0, _W1), clip(nu - _X2, 0.0, _W2)
     t3, t4 = clip(nu - _X3, 0.0, _W3), clip(nu - _X4, 0.0, _W4)
-    scaled = eq_18(_START, x)
-    scaled = scaled + t1 * (eq_18(_A1, x) + t1 * (eq_18(_B1, x) + t1 * eq_18(_C1, x)))
-    scaled = scaled + t2 * (eq_18(_A2, x) + t2 * (eq_18(_B2, x) + t2 * eq_18(_C2, x)))
-    scaled = scaled + t3 * (eq_18(_A3, x) + t3 * (eq_18(_B3, x) + t3 * eq_18(_C3, x)))
-    scaled = scaled + t4 * (eq_18(_A4, x) + t4 * (eq_18(_B4, x) + t4 * eq_18(_C4, x)))
+    scaled = scaled_modulus(_START, x)
+    scaled = scaled + t1 * (scaled_modulus(_A1, x) + t1 * (scaled_modulus(_B1, x) + t1 * scaled_modulus(_C1, x)))
+    scaled = scaled + t2 * (scaled_modulus(_A2, x) + t2 * (scaled_modulus(_B2, x) + t2 * scaled_modulus(_C2, x)))
+    scaled = scaled + t3 * (scaled_modulus(_A3, x) + t3 * (scaled_modulus(_B3, x) + t3 * scaled_modulus(_C3, x)))
+    scaled = scaled + t4 * (scaled_modulus(_A4, x) + t4 * (scaled_modulus(_B4, x) + t4 * scaled_modulus(_C4, x)))
     return E / R2 * scaled

@@ -413,7 +413,7 @@ def test_errors_grow_with_the_slopes_of_a_point_contact():
     }
     pressures = {"force": 2 * e, "indentation": 2.5 * e, "half_angle": e}
     for kind, values in expected.items():
-        errors = load_curve.errors(kind, state)
+        errors = load_curve.estimate_errors(kind, state)
         for name, value in values.items():
             np.testing.assert_allclose(errors[name], value, err_msg=f"{kind} {name}")
         for name in ("max_pressure", "pole_pressure", "stiffness", "pressure_integral"):

@@ -50,7 +50,7 @@ def test_forces_are_in_equilibrium_with_the_loads():
     assert solution.converged.all()
     error = np.linalg.norm(BORE.force(solution.pressure) - LOADS, axis=1)
     assert (error <= 1e-6 * np.linalg.norm(LOADS, axis=1)).all()
-    again = BORE.solve_displacement(solution.displacement)
+    again = BORE.solve_displaced(solution.displacement)
     assert again.pressure == pytest.approx(solution.pressure, abs=1e-3)
     assert again.converged.all()
 

@@ -217,11 +217,11 @@ def exit_with_parent() -> None:
         signal.signal(signal.SIGIO, signal.SIG_DFL)
         fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
         fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
-        if _is_closed(pipe):
+        if _is_pipe_closed(pipe):
             os._exit(_PARENT_ENDED)  # the parent ended before the signal was set
 
 
-def _is_closed(pipe: int) -> bool:
+def _is_pipe_closed(pipe: int) -> bool:
     """Check if the other end of a pipe is closed."""
     poll = select.poll()
     poll.register(pipe, select.POLLHUP)

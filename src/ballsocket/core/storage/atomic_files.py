@@ -73,7 +73,7 @@ def make_draft_folder(path: Path) -> Iterator[Path]:
     prefix = f".{path.name[:_PREFIX_LENGTH]}."
     with suppress(OSError):
         for folder in path.parent.iterdir():
-            if folder.name.startswith(prefix) and is_draft_folder(folder.name) and _is_abandoned(folder):
+            if folder.name.startswith(prefix) and is_draft_folder(folder.name) and _is_abandoned_draft(folder):
                 rmtree(folder, ignore_errors=True)
     try:
         temporary_folder = TemporaryDirectory(prefix=prefix, suffix=_DRAFT_SUFFIX, dir=path.parent)
@@ -99,7 +99,7 @@ def _lock_folder(folder: Path) -> Iterator[bool]:
         os.close(descriptor)
 
 
-def _is_abandoned(folder: Path) -> bool:
+def _is_abandoned_draft(folder: Path) -> bool:
     """Check if the process that made a draft folder has ended."""
     with _lock_folder(folder) as locked:
         return locked and time.time() - folder.stat().st_mtime > _MIN_AGE

@@ -20,7 +20,7 @@ from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .abel import ROUNDING, AbelState, scaled_pressure
 from .kernel import Kernel
-from .load_curve import LoadCurve, errors, log_slope
+from .load_curve import LoadCurve, estimate_errors, log_slope
 from .subsurface import StressCurve
 from .tabulated.chebyshev import (
     angle_root,
@@ -83,8 +83,8 @@ class ChebyshevCurve:
             if kind == "half_angle"
             else _evaluate_contacts_in_blocks(lambda block: self._solve_angle(kind, block), positive_load)
         )
-        reachable = angle <= self.curve.widest
-        state = ChebyshevState(series=self, half_angle=numpy.where(reachable, angle, self.curve.widest))
+        reachable = angle <= self.curve.widest_angle
+        state = ChebyshevState(series=self, half_angle=numpy.where(reachable, angle, self.curve.widest_angle))
         return JointContacts(
             load=load, touching=touching, state=state, reached=reachable, error=self._errors(kind, state)
         )
@@ -94,12 +94,12 @@ class ChebyshevCurve:
         # near the perfect fit X depends strongly on the half angle, but the half angle hardly on a load
         sensitivity = 1.0 if kind == "half_angle" else _MAX_LOG_SLOPE / log_slope(kind, state)
         series_error = sensitivity * state.displacement_error + self.curve.kernel.tolerance
-        return {name: series_error * (name != kind) + error for name, error in errors(kind, state).items()}
+        return {name: series_error * (name != kind) + error for name, error in estimate_errors(kind, state).items()}
 
     @cached_property
     def _widest_coordinate(self) -> float:
         """Coordinate of the half angle of the widest contact, from 0 to 1."""
-        return float(angle_root(self.curve.widest, self.curve.ratio))
+        return float(angle_root(self.curve.widest_angle, self.curve.ratio))
 
     @cached_property
     def _chebyshev_coefficients(self) -> Numbers:
@@ -159,7 +159,7 @@ class ChebyshevCurve:
     @cached_property
     def _start_angles(self) -> Numbers:
         """Half angles in rad of the initial estimates, dense near a point contact and near the perfect fit."""
-        widest = self.curve.widest
+        widest = self.curve.widest_angle
         small, last = numpy.geomspace(_MIN_START, 0.98 * widest, _STARTS), numpy.geomspace(0.02, 1e-8, _STARTS // 4)
         return numpy.concatenate([small, widest * (1 - last[1:]), [widest]])
 
@@ -177,7 +177,7 @@ class ChebyshevCurve:
         for _ in range(_NEWTON_STEPS):
             state = ChebyshevState(series=self, half_angle=angle)
             step = (numpy.log(getattr(state, kind)) - goal) / log_slope(kind, state)
-            angle = numpy.minimum(angle * numpy.exp(-step), self.curve.widest)
+            angle = numpy.minimum(angle * numpy.exp(-step), self.curve.widest_angle)
         return numpy.where(goal <= start_loads[-1] + _ROUNDING, angle, inf)
 
 
@@ -190,12 +190,12 @@ class ChebyshevState(PeakPressure):
 
     @property
     def kernel(self) -> Kernel:
-        """Kernel of the joint."""
+        """Kernel of the joint's contact equation."""
         return self.series.curve.kernel
 
     @property
     def gap(self) -> Gap:
-        """Gap function of the joint."""
+        """Gap between ball and socket, as a function of angle and indentation."""
         return self.series.curve.gap
 
     @cached_property
@@ -326,7 +326,7 @@ def fit_curve(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
     """Fit Chebyshev series to a load curve to its tolerance; return the load curve itself if the fit fails."""
     terms, points = _TERMS, _POINTS
     with numpy.errstate(all="ignore"):
-        for _ in range(_ATTEMPTS if curve.widest > 0 else 0):
+        for _ in range(_ATTEMPTS if curve.widest_angle > 0 else 0):
             candidate = ChebyshevCurve(curve=curve, knots=curve.state(_knot_angles(curve, terms), points))
             if candidate.is_accurate:
                 return candidate
@@ -337,7 +337,7 @@ def fit_curve(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
 
 def _knot_angles(curve: LoadCurve, terms: int) -> Numbers:
     """Compute half angles in rad at Chebyshev points up to the widest contact."""
-    widest_root = float(angle_root(curve.widest, curve.ratio))
+    widest_root = float(angle_root(curve.widest_angle, curve.ratio))
     return half_angle_at(widest_root * (1 + chebyshev_points(terms)) - 1, curve.ratio)
 
 

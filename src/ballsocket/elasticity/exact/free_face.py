@@ -83,7 +83,7 @@ class FreeFace:
 
     @cached_property
     def _stiffness_matrix(self) -> Numbers:
-        """Stiffness matrix of the hemispherical socket over 2π, for the coefficients of u_r and then of u_φ.
+        """Stiffness matrix of the hemispherical socket over 2π, for the coefficients of u_r, then those of u_φ.
 
         The displacements are u_r = f(r) P(cos φ) and u_φ = f(r) sin φ P(cos φ).
         """

@@ -148,10 +148,10 @@ def _waves_and_integration_matrices(
     """
     edge = half_angle[:, None]
     panels = _wave_panels(half_angle, grid, count)
-    even, odd = _waves("targets", edge * grid.position, count)
+    even, odd = _cosines_and_sines("targets", edge * grid.position, count)
     odd *= edge[..., None]
     even *= edge[..., None]
-    panel_cosines, panel_sines = _waves("sources", edge * panels.position, count)
+    panel_cosines, panel_sines = _cosines_and_sines("sources", edge * panels.position, count)
     shape = (len(half_angle), count, grid.points)
     even_integrals = numpy.matmul(
         panel_cosines.swapaxes(-1, -2), _even_interpolation(grid, panels), out=workspace_array("even integrals", shape)
@@ -167,7 +167,7 @@ def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Pane
     return _panels_with_points(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
 
 
-def _waves(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
+def _cosines_and_sines(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
     """Compute cos and sin of (n + ½) angle for n below count, in workspace arrays of this name."""
     waves = workspace_array("waves", (*angle.shape, count), complex)
     waves[..., 0] = numpy.exp(0.5j * angle)

@@ -121,7 +121,7 @@ _NEAR_HEMISPHERE = NearHemisphere()
 
 
 def make_solver_result(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
-    """Make the solver result of a solution; errors beyond the tolerance count as not converged."""
+    """Make the solver result of solved contacts; errors beyond the tolerance count as not converged."""
     return SolverResult(
         laws=solution,
         force=solution.force,

@@ -30,7 +30,7 @@ def surface_displacement(state: AbelState, angle: Numbers) -> Numbers:
     """Compute the outward radial displacement of the socket's surface in mm for one contact; shape of `angle`."""
     count = _mode_count(state, 0.0)
     amplitudes = _taper_modes(state, count) * state.kernel.socket.compliance(numpy.arange(count))
-    return (amplitudes @ _legendre(angle.ravel(), count)[0]).reshape(angle.shape)
+    return (amplitudes @ _legendre_and_slopes(angle.ravel(), count)[0]).reshape(angle.shape)
 
 
 def stress(state: AbelState, angle: Numbers, depth: Numbers) -> Stress:
@@ -45,7 +45,7 @@ def _sum_stresses(state: AbelState, angle: Numbers, depth: Numbers, count: int) 
     angles, column = numpy.unique(angle.ravel(), return_inverse=True)
     depths, row = numpy.unique(depth.ravel(), return_inverse=True)
     fields = state.kernel.socket.fields(numpy.arange(count), state.gap.socket_radius + depths)
-    P, slope = _legendre(angles, count)
+    P, slope = _legendre_and_slopes(angles, count)
     modes = _taper_modes(state, count)
 
     def sum_modes(field: Numbers, wave: Numbers) -> Numbers:
@@ -169,7 +169,7 @@ def _taper_modes(state: AbelState, count: int) -> Numbers:
     return state.pressure_modes(count)[0] * taper
 
 
-def _legendre(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
+def _legendre_and_slopes(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
     """Compute the Legendre polynomials P_n(cos φ) and their derivatives by cos φ: (count, angles)."""
     x, n = numpy.cos(angle), numpy.arange(count)[:, None]
     P, slope = numpy.empty((count, len(x))), numpy.zeros((count, len(x)))
@@ -206,7 +206,7 @@ class StressCurve:
     @cached_property
     def _widest_coordinate(self) -> float:
         """Coordinate of the half angle of the widest contact, from 0 to 1."""
-        return float(angle_root(self.curve.widest, self._thickness_ratio))
+        return float(angle_root(self.curve.widest_angle, self._thickness_ratio))
 
     def stress_ratio(self, angle: Numbers) -> Numbers:
         """Interpolate the ratio of the largest von Mises stress to the largest pressure at half angles."""
@@ -236,7 +236,7 @@ class StressCurve:
         if number not in self._cached_ratios:
             coordinate = self._first_coordinate_and_step[0] + number * self._first_coordinate_and_step[1]
             angle = float(half_angle_at(2 * coordinate - 1, self._thickness_ratio))
-            state = self.curve.state(numpy.array([min(angle, self.curve.widest)]), self.points)
+            state = self.curve.state(numpy.array([min(angle, self.curve.widest_angle)]), self.points)
             self._cached_ratios[number] = float((largest_von_mises(state, numpy.array([True])) / state.max_pressure)[0])
         return self._cached_ratios[number]
 

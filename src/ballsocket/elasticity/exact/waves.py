@@ -90,7 +90,7 @@ class Wave:
         decay = self.power * x
         return -numpy.expm1(-decay) * UNIT - expm1(-2 * x) / 2 * numpy.exp(-decay) * self.N
 
-    def evaluate(self, x: numpy.ndarray, u: Matrix) -> tuple[Matrix, Matrix]:
+    def evaluate_fields(self, x: numpy.ndarray, u: Matrix) -> tuple[Matrix, Matrix]:
         """Compute displacements and tractions r σ at several logarithmic distances x, on a new last axis."""
         wave = Wave(N=self.N[..., None], K=self.K[..., None], power=self.power[:, None])
         displacements = wave.propagate(x, u[..., None])
@@ -226,8 +226,8 @@ class SupportedLayer:
         """
         growing, decaying = self._wave_amplitudes(traction)
         x = numpy.log(r / self.inner)
-        grown = self._growing_wave.evaluate(numpy.maximum(self._log_ratio - x, 0.0), growing)
-        inward = self._decaying_wave.evaluate(x, decaying)
+        grown = self._growing_wave.evaluate_fields(numpy.maximum(self._log_ratio - x, 0.0), growing)
+        inward = self._decaying_wave.evaluate_fields(x, decaying)
         (u_r, u_phi), (s_rr, s_rphi) = (a[:, 0] + b[:, 0] for a, b in zip(grown, inward, strict=True))
         # Hooke: hoop strains (u_r P + u_φ P'')/r and (u_r P + u_φ cot φ P')/r, P'' = -n (n + 1) P - cot φ P'
         nu, bent = self.poisson, (self.n * (self.n + 1))[:, None] * u_phi

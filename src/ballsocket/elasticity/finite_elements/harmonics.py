@@ -159,7 +159,7 @@ class Harmonics:
         gradients = self.elastic.gradients(elements, points)
         volume = gradients.volume * weights
         shear, bulk = (modulus[self._block.layers][:, None] * volume for modulus in self.elastic.moduli)
-        plain, azimuthal = self._strains(gradients.strain, points, gradients.coordinates[0])
+        plain, azimuthal = self._harmonic_strains(gradients.strain, points, gradients.coordinates[0])
         traces = plain[..., :2, :].sum(axis=-2) + plain[..., _HOOP, :], azimuthal[..., _HOOP, :]
         swelling = [self.elastic.project_volume(elements, gradients.coordinates, volume, trace) for trace in traces]
         rows = [
@@ -177,7 +177,7 @@ class Harmonics:
         mixed = multiply_strains(0, 1)
         return multiply_strains(0, 0), mixed + mixed.swapaxes(1, 2), multiply_strains(1, 1)
 
-    def _strains(self, axisymmetric: Numbers, points: Numbers, rho: Numbers) -> tuple[Numbers, Numbers]:
+    def _harmonic_strains(self, axisymmetric: Numbers, points: Numbers, rho: Numbers) -> tuple[Numbers, Numbers]:
         """Compute the strains per unknown (elements, points, 6, unknowns): terms without m, and terms per unit of m.
 
         The components are ε_ρρ, ε_zz, γ_ρz, ε_φφ, γ_ρφ and γ_zφ.

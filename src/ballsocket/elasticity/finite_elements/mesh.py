@@ -82,7 +82,7 @@ class Block:
         return numpy.cumsum(inside)
 
 
-def block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tuple[int, ...] = ()) -> Block:
+def mesh_block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tuple[int, ...] = ()) -> Block:
     """Mesh a spherical block from the corners of its elements.
 
     Parameters

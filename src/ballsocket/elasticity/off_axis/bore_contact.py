@@ -79,8 +79,8 @@ class BoreContact:
         force: Numbers = pressure.reshape(len(pressure), len(self._force_weights)) @ self._force_weights
         return force
 
-    def solve_displacement(self, displacement: Numbers) -> EquilibriumBatch:
-        """Solve the contacts of a ball at prescribed displacements (batch, 3) in mm."""
+    def solve_displaced(self, displacement: Numbers) -> EquilibriumBatch:
+        """Solve one contact for each prescribed displacement (batch, 3) of the ball in mm."""
         pressure, converged = self.zero_pressure(len(displacement)), numpy.zeros(len(displacement), dtype=bool)
         for block in self.split_into_blocks(numpy.arange(len(displacement))):
             solution = solve_pressure(self.compliance, self.gap.overlap(displacement[block]))

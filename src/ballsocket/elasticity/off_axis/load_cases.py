@@ -41,7 +41,7 @@ beyond its end; one that ends behind it holds any load.
 def _solve_indentations(bore: BoreContact, indentation: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
     """Solve the contacts of balls that are displaced by clearance plus indentation (mm) along axes."""
     clearance = bore.gap.clearance
-    equilibrium = bore.solve_displacement(axes * (clearance + indentation)[:, None])
+    equilibrium = bore.solve_displaced(axes * (clearance + indentation)[:, None])
     separated = ~(equilibrium.pressure > 0).any(axis=(1, 2))
     distance = (clearance + indentation) / bore.gap.socket_radius
     dislocated = numpy.asarray((separated & (distance > _MAX_FREE_DISPLACEMENT)) | (distance > 1))

@@ -149,7 +149,7 @@ class Sphere(Model):
         raise TypeError("sphere has no force law: its rings are too coarse near first touch; use exact")
 
     def in_cup(self, cup: Cup) -> Sphere:
-        """Return this model with another cup."""
+        """Return a copy of the model with another cup."""
         return replace(self, cup=cup)
 
     def press(

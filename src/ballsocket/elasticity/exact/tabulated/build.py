@@ -102,7 +102,7 @@ def build_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: i
                 stored[name] = spec.fit(pool.map)
         with draft.open("wb") as stream:
             numpy.savez_compressed(stream, allow_pickle=False, **stored)
-    return check(path, points=points, workers=workers)
+    return check_tables(path, points=points, workers=workers)
 
 
 @contextmanager
@@ -173,14 +173,14 @@ def _profile_coefficients(state: AbelState) -> Numbers:
     return chebyshev.chebyshev_coefficients(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
 
 
-def _sample_rigid(
+def _sample_rigid_ball(
     liner: _LinerParameters, *, function: Callable[[AbelState], Numbers], angles: int, points: int
 ) -> Numbers:
-    """Sample a function of contacts with a rigid ball at Chebyshev points of the half angle."""
+    """Sample a function of contacts with a rigid ball, at Chebyshev points of the half angle."""
     return function(_solve_state(liner, chebyshev.half_angle_at(chebyshev.chebyshev_points(angles), liner[1]), points))
 
 
-def _sample_ball(
+def _sample_ball_change(
     liner: _LinerParameters,
     *,
     function: Callable[[AbelState], Numbers],
@@ -246,24 +246,28 @@ def _shrinkage_coefficients(balls: tuple[float, ...], values: Numbers) -> Number
 
 _TABLE_SPECS = {
     "rigid": _TableSpec(
-        sample=partial(_sample_rigid, function=_tabulated_functions, angles=32, points=40),
+        sample=partial(_sample_rigid_ball, function=_tabulated_functions, angles=32, points=40),
         counts=(19, 21),
         order=33,
         single=False,
     ),
     "ball": _TableSpec(
         sample=partial(
-            _sample_ball, function=_tabulated_functions, angles=24, points=30, shares=_SHARE_POINTS, balls=_BALLS
+            _sample_ball_change, function=_tabulated_functions, angles=24, points=30, shares=_SHARE_POINTS, balls=_BALLS
         ),
         counts=(15, 16),
         order=22,
         balls=_BALLS,
     ),
     "profile": _TableSpec(
-        sample=partial(_sample_rigid, function=_profile_coefficients, angles=24, points=30), counts=(12, 13), order=16
+        sample=partial(_sample_rigid_ball, function=_profile_coefficients, angles=24, points=30),
+        counts=(12, 13),
+        order=16,
     ),
     "profile_ball": _TableSpec(
-        sample=partial(_sample_ball, function=_profile_coefficients, angles=20, points=28, shares=3, balls=_BALLS[1:2]),
+        sample=partial(
+            _sample_ball_change, function=_profile_coefficients, angles=20, points=28, shares=3, balls=_BALLS[1:2]
+        ),
         counts=(9, 10),
         order=14,
         balls=_BALLS[1:2],
@@ -274,7 +278,7 @@ _TABLE_SPECS = {
 # Checks
 
 
-def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
+def check_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
     """Compare the tables in a file with solutions of the contact equation for random contacts.
 
     Half angles are 2 to 80 degrees, ν is 0 to 0.499, and R2/L is 0.2 to 20.
@@ -303,7 +307,7 @@ def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Nu
     return angle, poisson, ratio, softness, random.uniform(0.2, 0.35, count)
 
 
-def joint_of(
+def make_joints(
     poisson: Numbers, ratio: Numbers, softness: Numbers, ball_poisson: Numbers, *, clearance: float = _CLEARANCE
 ) -> Joint:
     """Make joints with R2 = E = 1 from arrays of parameters; `softness` is E/E_ball, 0 for rigid balls."""
@@ -325,7 +329,7 @@ def _largest_errors(model: table.Tabulated, numbers: tuple[Numbers, ...], exact:
     """Find the largest errors of a model against exact values, by half angle and by force."""
     known = dict(zip(QUANTITIES, exact, strict=True))
     known["stiffness"] = known["stiffness"] / _CLEARANCE
-    joint = joint_of(*numbers[1:])
+    joint = make_joints(*numbers[1:])
     by_angle, by_force = model.press(joint, half_angle=numbers[0]), model.press(joint, force=known["force"])
     results = [(name, getattr(by_angle, name), known[name], "") for name in BY_ANGLE]
     results += [(name, getattr(by_force, name), known[name], " by force") for name in BY_FORCE]

@@ -54,7 +54,7 @@ class Scale(NamedTuple):
     """C in mm/MPa."""
 
 
-def evaluate(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> tuple[Pair, ...]:
+def evaluate_table_functions(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> tuple[Pair, ...]:
     """Evaluate the tabulated functions in `rows`, with their slopes by ln ε, at half angles above 0."""
     root = angle_root(angle, curve.ratio)
     coordinate, widening = 2 * root - 1, angle_derivative(angle, root, curve.ratio)
@@ -90,12 +90,14 @@ def opening(angle: Array, share: Pair) -> Pair:
     return exp(share[0]) * 2 * half * half, share[1] + angle * cos(angle / 2) / half
 
 
-def contact(angle: Array, curve: CurveCoefficients, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
+def contact_quantities(
+    angle: Array, curve: CurveCoefficients, scale: Scale
+) -> tuple[Array, Array, Array, Array, Array]:
     """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε) at half angles above 0.
 
     The units are mm, N, MPa, N/mm and mm.
     """
-    share, load, pole = evaluate(angle, curve, ALL)
+    share, load, pole = evaluate_table_functions(angle, curve, ALL)
     sigma, rate = opening(angle, share)
     reach = scale.clearance / (1 - sigma)
     outer = sigma * rate / (1 - sigma)
@@ -128,7 +130,7 @@ def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficient
     The residual is ln d/(c + d) minus that of the load.
     """
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
-    sigma, rate = opening(angle, evaluate(angle, curve, ONE)[0])
+    sigma, rate = opening(angle, evaluate_table_functions(angle, curve, ONE)[0])
     return log(sigma * (1 + 1 / load)), rate
 
 
@@ -138,7 +140,7 @@ def _force_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> 
     The residual is ln d/(c + d) minus that of the indentation F/secant, where secant is the ratio F/d.
     """
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
-    share, force = evaluate(angle, curve, TWO)
+    share, force = evaluate_table_functions(angle, curve, TWO)
     sigma, rate = opening(angle, share)
     secant = exp(force[0]) * angle * angle * angle / sigma
     return log(sigma * (1 + secant / load)), rate + (force[1] + 3 - rate) * secant / (secant + load)

@@ -125,7 +125,7 @@ def _evaluate_series(series: Array, x: Array) -> Array:
 
 def _profile_coefficients(curves: JointCurves, angle: Array) -> tuple[Array]:
     """Compute the Chebyshev coefficients of the pressure profile at half angles."""
-    series = curves.series("profile")
+    series = curves.table_series("profile")
     if series.ndim == 2:
         return (series @ chebyshev_values(angle_coordinate(angle, curves.ratio), series.shape[1]),)
     waves = chebyshev_polynomials(angle_coordinate(angle, curves.ratio), series.shape[1])
@@ -139,7 +139,7 @@ def _integrate_work(curves: JointCurves, angle: Array) -> tuple[Array]:
     """
     total = 0.0 * angle
     for node, weight in zip(*gauss_legendre(32), strict=True):
-        _, F, _, _, deepening = curves.contact(angle * math.sin(pi / 2 * node) ** 2)
+        _, F, _, _, deepening = curves.contact_quantities(angle * math.sin(pi / 2 * node) ** 2)
         total = total + pi * weight / math.tan(pi / 2 * node) * F * deepening
     return (total,)
 
@@ -178,7 +178,7 @@ def curve_reader(kind: str) -> CurveReader:
 
     def compute_quantities(curves: JointCurves, load: Array) -> tuple[Array, ...]:
         angle = where(load <= LIMIT, load, float("nan")) if kind == "half_angle" else curves.angle(kind, load)
-        return (angle, *curves.contact(angle)[:4])
+        return (angle, *curves.contact_quantities(angle)[:4])
 
     return compute_quantities
 

@@ -251,15 +251,20 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
     They act along x and y on the axis and for fixed nodes of the ball, elsewhere along radius and angle.
     """
     socket, ball = bodies.socket, bodies.ball
-    upright = [*socket.numbers(socket.on_axis & ~socket.fixed), *ball.numbers(ball.on_axis | ball.fixed)]
-    seated, rolling = socket.fixed_directions & ~socket.fixed & ~socket.on_axis
-    yield from node_set_lines("PUSHED", ball.numbers(ball.fixed_directions[0] & (ball.fixed | ~ball.on_axis)))
+    upright = [
+        *socket.node_numbers(socket.axis_nodes & ~socket.fixed_nodes),
+        *ball.node_numbers(ball.axis_nodes | ball.fixed_nodes),
+    ]
+    seated, rolling = socket.fixed_directions & ~socket.fixed_nodes & ~socket.axis_nodes
+    yield from node_set_lines(
+        "PUSHED", ball.node_numbers(ball.fixed_directions[0] & (ball.fixed_nodes | ~ball.axis_nodes))
+    )
     yield from _polar_lines(socket, seated | rolling)
     for name, directions, nodes in (
         ("UPRIGHT", "1, 1", upright),
-        ("FIXED", "1, 2", socket.numbers(socket.fixed)),
-        ("SEATED", "2, 2", socket.numbers(seated)),
-        ("ROLLING", "1, 1", socket.numbers(rolling)),
+        ("FIXED", "1, 2", socket.node_numbers(socket.fixed_nodes)),
+        ("SEATED", "2, 2", socket.node_numbers(seated)),
+        ("ROLLING", "1, 1", socket.node_numbers(rolling)),
     ):
         yield from _boundary_lines(name, directions, nodes)
 
@@ -272,14 +277,14 @@ def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
     inner, outer = socket.sliding
     polar = fixed_directions.copy()
     polar[inner] = polar[outer] = True
-    numbers = socket.numbers(polar & ~socket.on_axis)
+    numbers = socket.node_numbers(polar & ~socket.axis_nodes)
     if numbers:
         yield from node_set_lines("POLAR", numbers)
         yield from ("*TRANSFORM, NSET=POLAR, TYPE=C", "0., 0., 0., 0., 0., 1.")
     if len(inner):
         yield "*EQUATION"
     for inner_node, outer_node in zip(inner, outer, strict=True):
-        direction = 2 if socket.on_axis[inner_node] else 1
+        direction = 2 if socket.axis_nodes[inner_node] else 1
         yield from ("2", f"{socket.number[inner_node]}, {direction}, 1., {socket.number[outer_node]}, {direction}, -1.")
 
 
