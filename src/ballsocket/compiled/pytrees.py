@@ -27,9 +27,11 @@ def _register_pytree(cls: Any, leaves: tuple[str, ...], fixed: tuple[str, ...]) 
     """Register a class as a JAX pytree: `leaves` are its children, `fixed` its static data."""
 
     def flatten_instance(instance: Any) -> tuple[Leaves, Leaves]:
+        """Return the children and the static data of an instance."""
         return tuple(getattr(instance, name) for name in leaves), tuple(getattr(instance, name) for name in fixed)
 
     def unflatten_instance(fixed_values: Leaves, values: Leaves) -> Any:
+        """Make an instance from its static data and its children."""
         names = (*leaves, *fixed)
         return make_unchecked(cls, **dict(zip(names, (*values, *fixed_values), strict=True)))
 

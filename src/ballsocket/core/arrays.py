@@ -56,10 +56,10 @@ def namespace(*values: Array) -> Any:
 
 
 def _make_elementwise(name: str, scalar_function: Callable[[float], float]) -> Callable[[Array], Array]:
-    """Make an elementwise elementwise_function, such as `exp`, for Python numbers and arrays of any library."""
+    """Make an elementwise function, such as `exp`, for Python numbers and arrays of any library."""
 
     def elementwise_function(x: Array) -> Array:
-        """Evaluate the elementwise_function at each element of x; infinite or NaN where `math` raises an error."""
+        """Evaluate the function at each element of x; infinite or NaN where `math` raises an error."""
         if type(x) is not float:
             return getattr(namespace(x), name)(x)
         try:
@@ -182,7 +182,7 @@ def stop_gradient(x: Array) -> Array:
 
 
 def to_common_arrays(*values: Array) -> tuple[Array, ...]:
-    """Convert values to arrays of one library, float_arrays dtype and device.
+    """Convert values to arrays of one library, floating dtype and device.
 
     The arrays among the values determine all three.
 
@@ -225,7 +225,7 @@ def gauss_legendre(points: int) -> tuple[tuple[float, ...], tuple[float, ...]]:
 
 
 def integral(integrand: Callable[[float], Array], points: int) -> Array:
-    """Integrate a elementwise_function over [0, 1] by Gauss-Legendre quadrature.
+    """Integrate a function over [0, 1] by Gauss-Legendre quadrature.
 
     The values of the function may be arrays of any library.
     """

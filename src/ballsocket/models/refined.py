@@ -188,7 +188,7 @@ class RefinedSolution:
 
     @property
     def _squared_sine(self) -> Array:
-        """Squared sine sin²(ε/2) of half the half angle."""
+        """Squared sine sin²(ε/2), with the half angle ε of the contact."""
         return sin(safe_divisor(self.edge) / 2) ** 2
 
     @cached_property

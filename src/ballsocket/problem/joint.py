@@ -251,7 +251,7 @@ class Joint(Dimensions):
         return self if all(type(number) is float for number in numbers) else self.with_numbers(map(float, numbers))
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the joint for JSON, in mm and MPa.
+        """Return the joint as a dictionary for JSON, in mm and MPa.
 
         Arrays become lists, and infinity the text "inf".
         """

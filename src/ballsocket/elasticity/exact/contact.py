@@ -142,17 +142,17 @@ class ElasticContact(SolvedContact):
         bounded = numpy.all([numpy.isfinite(values) for values in changes.values()], axis=0)
         unaffected = (negligible & bounded) | arrays.to_numpy(self._failed)
         if not unaffected.all() and bounded.all() and self.joint.strengths() and self._is_single:
-            changes["von Mises"] = numpy.array(self._hemisphere_von_mises)
+            changes["von Mises"] = numpy.array(self._hemisphere_von_mises_change)
         return self._note(unaffected, _describe_changes(changes))
 
     @property
     def _is_single(self) -> bool:
-        """True for one contact that is wide enough for a sum of modes."""
+        """True for a single contact whose half angle is large enough for a sum of modes."""
         return prod(self.laws.shape) == 1 and bool(self.single_state.half_angle[0] >= MIN_HALF_ANGLE)
 
     @property
-    def _hemisphere_von_mises(self) -> float:
-        """Relative change of the largest von Mises stress on a hemisphere."""
+    def _hemisphere_von_mises_change(self) -> float:
+        """Relative change of the largest von Mises stress in the liner, from the closed sphere to a hemisphere."""
         state: AbelState = self.single_state.single_contact(0)
         factor = 1 + float(arrays.to_numpy(self.hemisphere["half_angle"]).item())
         return von_mises_change(state, float(state.half_angle[0]) * factor)

@@ -103,8 +103,8 @@ def solve_on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState
     """
     iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_pressure_modes(closed) @ extra_response.T]
     for _ in range(_ITERATIONS):
-        iterates.append(low_pressure_modes(_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
-    return _hemisphere_state(closed, _extrapolate_iterates(numpy.stack(iterates, axis=-1)))
+        iterates.append(low_pressure_modes(_make_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
+    return _make_hemisphere_state(closed, _extrapolate_iterates(numpy.stack(iterates, axis=-1)))
 
 
 def low_pressure_modes(state: AbelState) -> Numbers:
@@ -137,7 +137,7 @@ def _even_legendre(count: int) -> Numbers:
     return even
 
 
-def _hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
+def _make_hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
     """Make the contacts on a hemisphere from the additional displacements of the surfaces."""
     gap = closed.gap
     return HemisphereState(

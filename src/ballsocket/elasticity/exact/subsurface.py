@@ -76,7 +76,7 @@ def find_peak_stress(state: AbelState, thickness: float) -> Peak:
 
 
 def _search_grid(state: AbelState, thickness: float) -> tuple[Numbers, Numbers]:
-    """Make the first search grid: angles (rad) to slightly beyond the edge, and depths (mm)."""
+    """Make the first grid to search for the largest stress: angles (rad) to beyond the edge, and depths (mm)."""
     angles = float(state.half_angle[0]) * numpy.linspace(0.0, 1.3, 27)
     deepest = min(thickness, 3 * state.gap.socket_radius * float(numpy.sin(state.half_angle[0])))
     return angles, deepest * numpy.linspace(0.0, 1.0, 26)

@@ -82,7 +82,7 @@ class Wave:
         return cls(N=N, K=K, power=numpy.where(zero, single_power, power))
 
     def propagate(self, x: float | numpy.ndarray, u: Matrix) -> Matrix:
-        """Compute the displacements at the logarithmic distance x = -ln κ, over which the wave decays from u."""
+        """Compute the displacements of a wave after its decay from u over a logarithmic distance x of radii."""
         return numpy.exp(-self.power * x) * (u + numpy.expm1(-2 * x) / 2 * _matmul(self.N, u))
 
     def decay_deficit(self, x: float) -> Matrix:

@@ -130,7 +130,7 @@ class ChebyshevTable:
 
 
 def _apply_factors(matrix: Array, *factors: Array) -> Array:
-    """Multiply a matrix by the outer product of several factors, for each joint.
+    """Multiply a matrix by the outer product of the columns of several factors, for each joint.
 
     The matrix has the shape (rows, products), each factor (rows, joints or 1).
     Factors that all joints share are multiplied first, which makes a sweep of one material three times as fast.
@@ -178,12 +178,12 @@ def chebyshev_coefficients(values: Numbers, axis: int) -> Numbers:
 
 def chebyshev_values(coordinate: float, count: int) -> numpy.ndarray:
     """Compute the Chebyshev polynomials T_0 ... T_count-1 at one coordinate."""
-    return numpy.cos(_orders(count) * math.acos(min(max(coordinate, -1.0), 1.0)))
+    return numpy.cos(_polynomial_orders(count) * math.acos(min(max(coordinate, -1.0), 1.0)))
 
 
 @cache
-def _orders(count: int) -> numpy.ndarray:
-    """Return the orders 0 ... count - 1 as floats."""
+def _polynomial_orders(count: int) -> numpy.ndarray:
+    """Return the orders of the Chebyshev polynomials, 0 to count - 1, as floats."""
     return numpy.arange(count, dtype=float)
 
 

@@ -14,7 +14,7 @@ from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
 from ....problem import Joint
 from .chebyshev import POISSON, THICKNESS_RATIO
-from .solution import CurveReader, curve_reader, solution_of
+from .solution import CurveReader, curve_reader, solve_with_tables
 
 
 def _ball_poisson(contact: Any) -> Array:
@@ -88,7 +88,7 @@ class Tabulated(Model):
 
         `read` is such a function, see `curve_reader`.
         """
-        solution = solution_of(self.file, joint, load, read)
+        solution = solve_with_tables(self.file, joint, load, read)
         d, F, _, _ = solution.values
         return SolverResult(
             laws=solution,

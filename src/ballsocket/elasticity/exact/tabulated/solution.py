@@ -160,8 +160,8 @@ CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
 """Function of the curves of joints and the loads of contacts (contacts,) that returns arrays (contacts,)."""
 
 
-def solution_of(file: str, joint: Joint, load: Array, compute_quantities: CurveReader) -> TableSolution:
-    """Solve the contacts for loads; NaN beyond the tables.
+def solve_with_tables(file: str, joint: Joint, load: Array, compute_quantities: CurveReader) -> TableSolution:
+    """Solve contacts for loads with the tables; NaN beyond the range of the tables.
 
     `compute_quantities` returns ε, d, F, p0 and dF/dd from the curves of joints and the loads.
     """
