@@ -49,15 +49,8 @@ def _zeta(s: int) -> float:
 
 
 @cache
-<<<<<<< HEAD
 def _power_series_matrix() -> Numbers:
     """Compute the matrix that converts the kernel's coefficients a_1 .. a_6 to those of the power series s."""
-    from scipy.special import zeta  # a top-level import would double the import time of the package
-
-=======
-def _power_series_matrix() -> Numbers:
-    """Compute the matrix that converts the kernel's coefficients a_1 .. a_6 to those of the power series s."""
->>>>>>> main
     k = numpy.arange(1, _MAX_TERMS - 2)
     series = (1 - 2.0 ** (1 - 2 * k)) * numpy.array([_zeta(2 * int(n)) for n in k]) / k * (2 * pi) ** (-2.0 * k)
     twice = series / ((2 * k + 1) * (2 * k + 2))
