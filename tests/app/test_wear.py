@@ -22,7 +22,7 @@ from ballsocket.app.reading import Reading
 from ballsocket.app.running import Done, RunRefused
 from ballsocket.app.views import wear
 from ballsocket.app.wear_charts import depth_maps, penetration_chart, wear_numbers
-from ballsocket.output.unit_systems import Units
+from ballsocket.reports.unit_systems import Units
 
 LINK = (
     "view=wear&preset=hip-36&cup.inclination=40&cup.anteversion=15&use.millions=0.1&use.coefficient=1e-7&use.spread=1"

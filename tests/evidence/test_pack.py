@@ -26,7 +26,7 @@ from ballsocket.paper.plan import Plan
 from ..places import EXAMPLES, ROOT
 
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
-from ballsocket.output.evidence_page import evidence_page
+from ballsocket.reports.evidence_page import evidence_page
 
 from .small_pack import QUESTION_TEXT, page
 

@@ -10,8 +10,8 @@ import ballsocket as bs
 from ballsocket.hip import logarithmic, population, uncertainty
 from ballsocket.hip.config import read_hip
 from ballsocket.hip.uncertainty import share_coefficient
-from ballsocket.output.hip_bands import band_sections, print_bands
-from ballsocket.output.hip_plots import penetration_curve
+from ballsocket.reports.hip_bands import band_sections, print_bands
+from ballsocket.reports.hip_plots import penetration_curve
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from ..cli.command import run

@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.output import accuracy_table
 from ballsocket.paper import cases, claims, curves
 from ballsocket.paper.accuracy import FORCES, accuracies, edge_joints, paper_joints
 from ballsocket.paper.claims import agreement, elsewhere
 from ballsocket.paper.figure import Figure
 from ballsocket.paper.plan import Plan, full_plan, quick_plan
+from ballsocket.reports import accuracy_table
 
 from .. import extent
 from ..places import DATA, ROOT

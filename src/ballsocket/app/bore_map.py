@@ -13,8 +13,8 @@ from ..core.quantities import DERIVED, FIELD
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.grid import Grid
 from ..hip.ball_wear import interpolation_at
-from ..output.cup_map import drawn, from_page, highest, on_page
 from ..problem.cup import Cup
+from ..reports.cup_map import drawn, from_page, highest, on_page
 from . import svg
 from .contours import Contours, levels_of, scale
 from .reading import Reading

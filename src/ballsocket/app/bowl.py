@@ -12,7 +12,7 @@ import numpy
 from ..core.quantities import FIELD
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import unit_vectors
-from ..output.cup_map import drawn, highest
+from ..reports.cup_map import drawn, highest
 
 _RINGS, _MERIDIANS = 40, 96
 _THICKEST = 0.8  # of the bore's radius: what is thicker is drawn so thick

@@ -12,8 +12,8 @@ from ..contact.describe import to_summary
 from ..core.validity import OutsideDomainError
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..io.joint_file import JointFile
-from ..output.html import drawn
-from ..output.section_plot import section_figure
+from ..reports.html import drawn
+from ..reports.section_plot import section_figure
 from .running import Reached, Told
 
 _SHARES = (0.25, 0.5, 0.75, 1.0)

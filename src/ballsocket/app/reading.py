@@ -8,7 +8,7 @@ from math import floor, isfinite, isnan, log10
 from ..contact.describe import Column
 from ..core.kinds import Kind, Unit
 from ..core.quantities import CONTACT, JOINT, Quantity
-from ..output.unit_systems import Units
+from ..reports.unit_systems import Units
 
 _DIGITS = 4
 _INCH = Unit("in", 1 / 25.4)

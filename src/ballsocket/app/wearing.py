@@ -12,9 +12,9 @@ from ..elasticity.off_axis.grid import Grid
 from ..hip import HipSimulation, History, PatientVariability, population
 from ..hip.cycle_registry import CYCLES
 from ..io.joint_file import JointFile
-from ..output.hip_plots import penetration_curve
-from ..output.html import drawn
 from ..problem.cup import Cup
+from ..reports.hip_plots import penetration_curve
+from ..reports.html import drawn
 from ..studies.distributions import LogNormal
 from .in_use import Use, hip_of
 from .running import Reached, Told

@@ -9,7 +9,7 @@ import typer
 
 import ballsocket as bs
 
-from ..output.terminal import print_curve
+from ..reports.terminal import print_curve
 from ..studies.file import named_model
 from .elements import CupWords
 from .groups import grouped

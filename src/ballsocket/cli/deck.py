@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from ..io.joint_file import JointFile, read_aim
-from ..output.reference_terminal import print_rival, print_tilted_rival
+from ..reports.reference_terminal import print_rival, print_tilted_rival
 from .elements import CupWords, MeshWords, timed
 from .groups import grouped
 from .root import app, echo_path

@@ -22,7 +22,7 @@ from ..evidence.folder import WORK, check_room, digest_of, sign_pack, write
 from ..evidence.pack import Listener, count_kept, gathered, remove_kept
 from ..evidence.question import Question, read_question
 from ..evidence.signature import PublicKey, SignatureError, public_key_of, read_private_key, read_public_key
-from ..output.evidence_page import conclusions, evidence_page
+from ..reports.evidence_page import conclusions, evidence_page
 from .root import FAILURE, app, echo_path
 from .words import AsJson, echo_json
 

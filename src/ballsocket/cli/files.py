@@ -14,9 +14,9 @@ from ..catalogue import judge, off_axis, reference
 from ..compare import Comparison, successful_contacts
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..output import quick_plot
-from ..output.save import check_format, save
-from ..output.section_plot import section_figure
+from ..reports import quick_plot
+from ..reports.save import check_format, save
+from ..reports.section_plot import section_figure
 
 _THREE_D = ".png"
 
@@ -96,6 +96,6 @@ def _surfaces(contact: OffAxisContact, path: Path) -> None:
 
 
 def _view(contact: OffAxisContact, path: Path) -> None:
-    from ..output.cup_view import save_view
+    from ..reports.cup_view import save_view
 
     save_view(contact, path)

@@ -15,8 +15,8 @@ from ..core.checks import known_name
 from ..core.kinds import Kind
 from ..identify.modulus import FORCES, Form
 from ..io.units import parse
-from ..output.reference_terminal import print_calibration, print_table_3
 from ..paper.table_3 import refit_table_3
+from ..reports.reference_terminal import print_calibration, print_table_3
 from .root import app, echo_path
 from .words import AsJson, echo_json, named_joint
 

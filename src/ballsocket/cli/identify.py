@@ -12,9 +12,9 @@ import ballsocket as bs
 from ..identify.file import read_identify
 from ..identify.posterior import Posterior
 from ..identify.result import IdentificationResult
-from ..output import identify_plots
-from ..output.identify_terminal import print_identified
-from ..output.save import check_format, save
+from ..reports import identify_plots
+from ..reports.identify_terminal import print_identified
+from ..reports.save import check_format, save
 from .root import FAILURE, app
 from .words import AsJson, echo_json
 

@@ -11,10 +11,10 @@ import ballsocket as bs
 
 from ..catalogue import listed_models
 from ..core.checks import known_name
-from ..output.list_summary import model_summary, preset_summary
-from ..output.list_terminal import print_model, print_models, print_preset, print_presets
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
+from ..reports.list_summary import model_summary, preset_summary
+from ..reports.list_terminal import print_model, print_models, print_preset, print_presets
 from .root import app
 from .words import AsJson, echo_json
 

@@ -16,9 +16,9 @@ from ..contact import Model
 from ..core.checks import known_name
 from ..core.validity import Status
 from ..io.joint_file import JointFile
-from ..output import terminal
-from ..output.unit_systems import Units
 from ..problem.cup import UP
+from ..reports import terminal
+from ..reports.unit_systems import Units
 from . import elements
 from .files import Files
 from .groups import grouped

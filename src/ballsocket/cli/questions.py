@@ -15,10 +15,10 @@ from ..catalogue import reference
 from ..contact import Model
 from ..core.checks import require
 from ..io.joint_file import JointFile
-from ..output import study_plots, study_summary, study_terminal
-from ..output.save import check_format, save
 from ..problem import Joint
 from ..problem.cup import Cup
+from ..reports import study_plots, study_summary, study_terminal
+from ..reports.save import check_format, save
 from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.file import named_model

@@ -13,8 +13,8 @@ from ..catalogue import off_axis, reference
 from ..compare import Comparison
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..io.joint_file import JointFile
-from ..output.press_report import press_report
-from ..output.unit_systems import Units
+from ..reports.press_report import press_report
+from ..reports.unit_systems import Units
 from ..studies.around import Around, around
 from ..studies.phrases import spread_of
 

@@ -41,6 +41,7 @@ MOVED = {
     "ballsocket.npz": "ballsocket.core.storage.array_files",
     "ballsocket.engines": "ballsocket.core.executors",
     "ballsocket.engines.local": "ballsocket.core.executors.processes",
+    "ballsocket.output": "ballsocket.reports",
     "ballsocket.sphere.kept": "ballsocket.core.storage.array_files",
     "ballsocket.hip.coefficient_response": "ballsocket.hip.uncertainty",
     "ballsocket.hip.checkpoint": "ballsocket.hip.report_points",

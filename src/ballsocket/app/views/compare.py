@@ -14,10 +14,10 @@ from ...compare import relative_deviation, successful_contacts
 from ...contact import Contact
 from ...core.quantities import JOINT
 from ...io.joint_file import JointFile
-from ...output.html import drawn, table
-from ...output.press_plot import press_figure
-from ...output.style import LineStyle, numbered
 from ...problem.presets import joints
+from ...reports.html import drawn, table
+from ...reports.press_plot import press_figure
+from ...reports.style import LineStyle, numbered
 from ..drawing import extent_of, section
 from ..press_charts import press_charts
 from ..pressing import fine_curves, pressed

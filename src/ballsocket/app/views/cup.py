@@ -15,8 +15,8 @@ from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ...core.validity import OutsideDomainError
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...io.joint_file import JointFile
-from ...output import html as page
-from ...output.cup_plot import cup_figure
+from ...reports import html as page
+from ...reports.cup_plot import cup_figure
 from ..angle_map import angle_map
 from ..beside import beside
 from ..bore_map import pressed_bore

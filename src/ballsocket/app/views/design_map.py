@@ -14,10 +14,10 @@ import panel as pn
 from ...core.kinds import Unit
 from ...core.quantities import QUANTITIES
 from ...io.joint_file import JointFile
-from ...output.html import drawn, table
-from ...output.study_plots import design_map
-from ...output.study_terminal import map_rows
-from ...output.unit_systems import Units
+from ...reports.html import drawn, table
+from ...reports.study_plots import design_map
+from ...reports.study_terminal import map_rows
+from ...reports.unit_systems import Units
 from ...studies.parameters import PARAMETERS
 from ...studies.phrases import limit_of, range_of
 from ..beside import beside

@@ -12,9 +12,9 @@ from typing import Any
 from ...core.checks import check_names, shown
 from ...evidence.terms import title_of
 from ...io.joint_file import JointFile
-from ...output import evidence_words
-from ...output import html as page
-from ...output.evidence_words import case_text, listed, value_text
+from ...reports import evidence_words
+from ...reports import html as page
+from ...reports.evidence_words import case_text, listed, value_text
 from ..asked import Asked
 from ..evidencing import LONGEST, Packed, cases_of, packed
 from ..fields import Field, segments, words

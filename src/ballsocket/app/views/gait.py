@@ -14,8 +14,8 @@ import numpy
 from ...core.checks import check_names
 from ...core.kinds import Kind, Unit
 from ...io.joint_file import JointFile
-from ...output import html as page
-from ...output.gait_plot import course_figure
+from ...reports import html as page
+from ...reports.gait_plot import course_figure
 from ..fields import typed
 from ..gaiting import Gaited, gait_of, gaited
 from ..in_use import Own, Use

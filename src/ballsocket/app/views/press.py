@@ -15,10 +15,10 @@ from ...compare import Comparison, successful_contacts
 from ...contact import Contact
 from ...core.quantities import BEARING, FIELD
 from ...io.joint_file import JointFile
-from ...output import html as page
-from ...output.press_plot import press_figure
-from ...output.press_report import press_lede, press_sections
-from ...output.style import line_of
+from ...reports import html as page
+from ...reports.press_plot import press_figure
+from ...reports.press_report import press_lede, press_sections
+from ...reports.style import line_of
 from ...studies.around import Around, around
 from ..beside import beside
 from ..chart import swatch

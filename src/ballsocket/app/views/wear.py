@@ -12,8 +12,8 @@ from ...core.kinds import Kind, Unit
 from ...core.quantities import CONTACT
 from ...hip.law_fields import LawField
 from ...io.joint_file import JointFile
-from ...output import html as page
 from ...problem.presets import joints
+from ...reports import html as page
 from ..fields import Field, choice, number, segments, typed
 from ..in_use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS, Use
 from ..jobs import CachedRun, ViewJob

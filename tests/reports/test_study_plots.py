@@ -3,7 +3,7 @@
 import pytest
 
 import ballsocket as bs
-from ballsocket.output import study_plots
+from ballsocket.reports import study_plots
 from ballsocket.studies.design import Span, grid, sample
 from ballsocket.studies.distributions import tolerance
 from ballsocket.studies.limits import Limit

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.output.cup_map import drawn, highest, on_page
-from ballsocket.output.cup_plot import cup_figure
+from ballsocket.reports.cup_map import drawn, highest, on_page
+from ballsocket.reports.cup_plot import cup_figure
 
 from ..joints import HIP
 
@@ -119,7 +119,7 @@ def test_an_edge_that_digs_in_has_no_largest_pressure_on_the_figure():
     ids=["massive", "backed", "free"],
 )
 def test_every_socket_has_a_section(joint, tmp_path):
-    from ballsocket.output.save import save
+    from ballsocket.reports.save import save
 
     contact = bs.Sphere(ring_width=WIDE).press(joint, force=2000.0)  # along the axis
     save(cup_figure(contact), tmp_path / "a.svg")
@@ -163,7 +163,7 @@ def test_a_view_in_three_dimensions(contact, tmp_path):
         pytest.skip("nothing can be drawn in three dimensions here")
     from matplotlib.image import imread
 
-    from ballsocket.output.cup_view import save_view
+    from ballsocket.reports.cup_view import save_view
 
     save_view(contact, tmp_path / "cup.png")
     assert [path.name for path in tmp_path.iterdir()] == ["cup.png"]

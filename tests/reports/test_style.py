@@ -9,12 +9,12 @@ from matplotlib.colors import to_hex, to_rgb
 import ballsocket as bs
 from ballsocket.catalogue import judge
 from ballsocket.compare import force_curves
-from ballsocket.output import style
-from ballsocket.output.paper_plots import draw
-from ballsocket.output.press_plot import press_figure
-from ballsocket.output.style import INK, LineStyle, line_of
 from ballsocket.paper.curves import figure_3_or_4
 from ballsocket.paper.plan import ELEMENTS, quick_plan
+from ballsocket.reports import style
+from ballsocket.reports.paper_plots import draw
+from ballsocket.reports.press_plot import press_figure
+from ballsocket.reports.style import INK, LineStyle, line_of
 
 from ..joints import HIP
 

@@ -6,10 +6,10 @@ import json
 import pytest
 
 import ballsocket as bs
-from ballsocket.output import accuracy_table
-from ballsocket.output.report import write_report
 from ballsocket.paper import claims, curves
 from ballsocket.paper.plan import quick_plan
+from ballsocket.reports import accuracy_table
+from ballsocket.reports.report import write_report
 
 from ..places import DATA
 

@@ -11,10 +11,10 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.io.joint_file import JointFile
-from ballsocket.output.joint_section import joint_section
-from ballsocket.output.press_report import press_report
-from ballsocket.output.section_scale import gap_factor
-from ballsocket.output.unit_systems import Units
+from ballsocket.reports.joint_section import joint_section
+from ballsocket.reports.press_report import press_report
+from ballsocket.reports.section_scale import gap_factor
+from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
 from ballsocket.studies.around import around
 
