@@ -146,7 +146,7 @@ def measure() -> Report:
 def _draw(found: list[tuple[int, float, float]]) -> None:
     from matplotlib.figure import Figure
 
-    from ballsocket.reports.save import save
+    from ballsocket.reports.figure_files import save
     from ballsocket.reports.style import finish, in_matplotlib, line_of
 
     presses = [10.0**power for power, _, _ in found]

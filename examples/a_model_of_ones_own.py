@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 import ballsocket as bs
+from ballsocket.reports.figure_files import save
 from ballsocket.reports.press_plot import press_figure
-from ballsocket.reports.save import save
 
 hip = bs.joints["hip-32"]
 models = {

@@ -14,7 +14,7 @@ import ballsocket as bs
 from ballsocket.app.screen import START, MapAxis, link_of
 from ballsocket.io.joint_file import JointFile
 from ballsocket.io.joint_toml import toml_of
-from ballsocket.reports.save import save
+from ballsocket.reports.figure_files import save
 from ballsocket.reports.section_plot import section_figure
 from ballsocket.studies import Span, allowed, design_map, limit_of
 

@@ -10,7 +10,7 @@ joints; Sobol's indices say which number they come from.
 """
 
 import ballsocket as bs
-from ballsocket.reports.save import save
+from ballsocket.reports.figure_files import save
 from ballsocket.studies import (
     Rectangular,
     Span,

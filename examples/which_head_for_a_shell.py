@@ -12,7 +12,7 @@ the rim under a vertical load, in a cup that opens 20° to the side.
 from math import radians
 
 import ballsocket as bs
-from ballsocket.reports.save import save
+from ballsocket.reports.figure_files import save
 from ballsocket.studies import Limit, Span, design_map, front_figure, optimise, pareto
 
 hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE, ball=bs.COCR)

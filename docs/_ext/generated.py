@@ -18,7 +18,7 @@ from ballsocket.evidence.comparators import PUBLISHED
 from ballsocket.evidence.validity import measure, promising
 from ballsocket.paper.plan import quick_plan
 from ballsocket.reports.accuracy_table import markdown
-from ballsocket.reports.report import write_report
+from ballsocket.reports.paper_report import write_report
 
 _PROMISED = Path(__file__).parents[2] / "tests" / "data" / "promised.json"
 _COLUMNS = 88  # of the terminal whose help texts are shown

@@ -32,7 +32,7 @@ LINK = (
 @pytest.fixture(autouse=True)
 def nothing_is_known(monkeypatch):
     monkeypatch.setattr(wear, "_FOUND", wear.CachedRun(most=4))
-    monkeypatch.setattr(wearing, "drawn", lambda figure: b"a picture")
+    monkeypatch.setattr(wearing, "figure_bytes", lambda figure: b"a picture")
 
 
 @pytest.fixture

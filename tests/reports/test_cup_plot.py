@@ -119,7 +119,7 @@ def test_an_edge_that_digs_in_has_no_largest_pressure_on_the_figure():
     ids=["massive", "backed", "free"],
 )
 def test_every_socket_has_a_section(joint, tmp_path):
-    from ballsocket.reports.save import save
+    from ballsocket.reports.figure_files import save
 
     contact = bs.Sphere(ring_width=WIDE).press(joint, force=2000.0)  # along the axis
     save(cup_figure(contact), tmp_path / "a.svg")

@@ -9,7 +9,7 @@ import ballsocket as bs
 from ballsocket.paper import claims, curves
 from ballsocket.paper.plan import quick_plan
 from ballsocket.reports import accuracy_table
-from ballsocket.reports.report import write_report
+from ballsocket.reports.paper_report import write_report
 
 from ..places import DATA
 

@@ -15,7 +15,7 @@ from ..elasticity.off_axis import Orientations, Sphere, orient
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..io.joint_file import JointFile
 from ..problem.cup import Cup, Side
-from ..reports.html import drawn
+from ..reports.figure_files import figure_bytes
 from ..reports.orientation_plot import orientation_figure
 from .jobs import CachedRun
 from .running import Reached, Told
@@ -113,5 +113,5 @@ def _plain(found: Orientations) -> Stood:
         max_pressure=found.max_pressure,
         held=found.held,
         summary=found.summary(),
-        figure=drawn(orientation_figure(found)),
+        figure=figure_bytes(orientation_figure(found)),
     )

@@ -12,8 +12,8 @@ from typing import Any
 from ..core.checks import check_names
 from ..io.joint_file import JointFile
 from ..io.joint_toml import toml_of
-from ..reports.html import picture
 from ..reports.joint_report import joint_report
+from ..reports.pages import picture
 from ..reports.unit_systems import Units
 from .view import Document
 

@@ -12,7 +12,7 @@ from ..contact.describe import to_summary
 from ..core.validity import OutsideDomainError
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..io.joint_file import JointFile
-from ..reports.html import drawn
+from ..reports.figure_files import figure_bytes
 from ..reports.section_plot import section_figure
 from .running import Reached, Told
 
@@ -61,8 +61,8 @@ def judged(file: JointFile, told: Told) -> Judged:
         elements=contact.mesh.elements,
         seconds=time.perf_counter() - start,
         notes=tuple(contact.notes),
-        png=drawn(figure),
-        svg=drawn(figure, "svg"),
+        png=figure_bytes(figure),
+        svg=figure_bytes(figure, "svg"),
     )
 
 

@@ -10,7 +10,7 @@ import numpy
 
 from ..compare import relative_deviation
 from ..core.quantities import CONTACT, DERIVED
-from ..reports.html import table
+from ..reports.pages import table
 from ..reports.style import BLUE, VERMILLION, LineStyle
 from .bore_map import SHOWN, BoreField, cells_of, worn_bore
 from .chart import Curve, chart, legend

@@ -15,7 +15,7 @@ from ..compare import Comparison, successful_contacts
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..reports import quick_plot
-from ..reports.save import check_format, save
+from ..reports.figure_files import check_format, save
 from ..reports.section_plot import section_figure
 
 _THREE_D = ".png"

@@ -13,8 +13,8 @@ from ..identify.file import read_identify
 from ..identify.posterior import Posterior
 from ..identify.result import IdentificationResult
 from ..reports import identify_plots
+from ..reports.figure_files import check_format, save
 from ..reports.identify_terminal import print_identified
-from ..reports.save import check_format, save
 from .root import FAILURE, app
 from .words import AsJson, echo_json
 

@@ -18,7 +18,7 @@ from ..io.joint_file import JointFile
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports import study_plots, study_summary, study_terminal
-from ..reports.save import check_format, save
+from ..reports.figure_files import check_format, save
 from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.file import named_model

@@ -13,7 +13,7 @@ from rich.progress import Progress
 from ..core.checks import needs
 from ..core.executors.processes import Processes
 from ..paper.plan import full_plan, quick_plan
-from ..reports.report import write_report
+from ..reports.paper_report import write_report
 from .root import app, echo_path
 
 

@@ -16,7 +16,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 import ballsocket as bs
 
 from ..reports import study_plots, study_summary, study_terminal
-from ..reports.save import check_format, save
+from ..reports.figure_files import check_format, save
 from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
 from ..studies.run import Listener

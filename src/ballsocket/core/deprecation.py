@@ -33,6 +33,17 @@ _OFF_AXIS_MODULES = {
 }
 """New names of the modules of `ballsocket.sphere`."""
 
+_REPORT_MODULES = {
+    "evidence_sections": "evidence_page",
+    "evidence_words": "evidence_text",
+    "gait_plot": "hip_plots",
+    **dict.fromkeys(("hip_bands", "hip_contact"), "hip_tables"),
+    "html": "pages",
+    **dict.fromkeys(("report", "report_tables"), "paper_report"),
+    "save": "figure_files",
+}
+"""New names of the modules of `ballsocket.output`."""
+
 MOVED = {
     **{f"ballsocket.{name}": f"ballsocket.core.{name}" for name in ("arrays", "checks", "kinds", "quantities")},
     **{f"ballsocket.{name}": f"ballsocket.core.{name}" for name in ("sources", "stress", "validity", "input_files")},
@@ -42,6 +53,7 @@ MOVED = {
     "ballsocket.engines": "ballsocket.core.executors",
     "ballsocket.engines.local": "ballsocket.core.executors.processes",
     "ballsocket.output": "ballsocket.reports",
+    **{f"ballsocket.output.{old}": f"ballsocket.reports.{new}" for old, new in _REPORT_MODULES.items()},
     "ballsocket.sphere.kept": "ballsocket.core.storage.array_files",
     "ballsocket.hip.coefficient_response": "ballsocket.hip.uncertainty",
     "ballsocket.hip.checkpoint": "ballsocket.hip.report_points",

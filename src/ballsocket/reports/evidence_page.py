@@ -1,52 +1,58 @@
-"""A pack of evidence as one page, in the order in which a reviewer reads; it prints on A4 and Letter."""
+"""Page of an evidence pack, from its record alone, in the order in which a reviewer reads; for A4 and Letter."""
 
 from __future__ import annotations
 
-from html import escape
+from collections.abc import Iterable
+from itertools import starmap
+from types import MappingProxyType
+from typing import Any
 
-from ..core.storage.fingerprint import fingerprint
-from ..evidence.terms import input_title, limit_text, number, title_of
-from . import html
-from .evidence_sections import (
-    calculation_section,
-    credibility_section,
-    matrix_section,
-    requirements_section,
-    uncertainty_section,
-    validation_section,
-    wear_section,
-)
-from .evidence_words import (
+from ..evidence.folder import RECORD
+from ..evidence.matrix import NAMES
+from ..evidence.requirements import MET, NOT_MET, UNKNOWN
+from ..evidence.terms import KEYS, input_title, limit_text, number, title_of
+from . import evidence_figures as figures
+from .evidence_text import (
     Record,
-    listed,
+    band_text,
+    case_text,
+    column_head,
+    error_text,
+    named_number,
     percent,
     quantities_of_interest,
     recentred_text,
-    words,
+    unloaded,
+    value_text,
 )
+from .figure_files import default_style
+from .pages import render_page, svg_address
 
-_SAID = {True: "passed", False: "FAILED", None: "not run"}
-_LIMITS = (
-    "Materials are linear elastic: where von Mises stress passes the yield stress, the numbers end (see utilisation).",
-    "Contact is without friction as far as pressures go; torques are Coulomb's on these pressures.",
-    "Bodies are those that the notes name: a whole shell behind the liner for the exact answer, the cup with its rim "
-    "off the axis and in finite elements.",
-    "Loads do not change in time; what wear says is in its own section.",
+_SECTIONS = MappingProxyType(
+    {
+        "question": "Question and context of use",
+        "risk": "Model risk and required accuracy",
+        "inputs": "Inputs",
+        "matrix": "Worst-case matrix",
+        "code": "Code verification",
+        "calculation": "Calculation verification",
+        "validation": "Validation",
+        "uncertainty": "Sensitivity and uncertainty",
+        "wear": "Wear",
+        "limits": "Limits and assumptions",
+        "credibility": "Credibility factors (ASME V&V 40)",
+        "requirements": "Requirements and evidence",
+        "signed": "Signatures",
+    }
 )
-_STYLE = """<style>
-@media print { table { break-inside: auto; } .sign { break-inside: avoid; } .sign td { height: 2.5rem; }
-.call { break-before: avoid; } h3 { break-after: avoid; }
-details::details-content { content-visibility: visible; display: block; } }
-.sign td { min-width: 14rem; }
-.words td, .words th { text-align: left; vertical-align: top; }
-.call { font-family: monospace; font-size: 0.8rem; color: #555; }
-.digest { font-family: monospace; overflow-wrap: anywhere; }</style>"""
-_MARGINS = """<style>@page { margin: 22mm 15mm 20mm;
-@top-left { content: "Evidence, ballsocket %(version)s"; font: 8pt sans-serif; color: #555; }
-@top-right { content: "pack %(short)s"; font: 8pt monospace; color: #555; }
-@bottom-right { content: "page " counter(page) " of " counter(pages); font: 8pt sans-serif; color: #555; } }</style>"""
-_SHORT = 16
-"""Number of digest characters in the head of a printed page."""
+"""Titles of the sections by their ids, which are blocks of the template."""
+
+_CHECK_RESULTS = {True: "passed", False: "FAILED", None: "not run"}
+_STATUS_ORDER = (NOT_MET, UNKNOWN, MET)
+_MAPPED = ("max_pressure", "edge_distance", "wear_rate")
+"""Results that are drawn over the matrix."""
+
+Rows = list[tuple[str, ...]]
 
 
 def evidence_page(record: Record, digest: str = "") -> str:
@@ -59,94 +65,266 @@ def evidence_page(record: Record, digest: str = "") -> str:
     digest : str
         Digest of the pack, see `evidence.folder.digest`; omitted if empty.
     """
-    with html.plain_style():
-        sections = {
-            "question": ("Question and context of use", _question(record)),
-            "risk": ("Model risk and required accuracy", _risk(record)),
-            "inputs": ("Inputs", _inputs(record)),
-            "matrix": ("Worst-case matrix", matrix_section(record)),
-            "code": ("Code verification", _code(record)),
-            "calculation": ("Calculation verification", calculation_section(record)),
-            "validation": ("Validation", validation_section(record)),
-            "uncertainty": ("Sensitivity and uncertainty", uncertainty_section(record)),
-            "wear": ("Wear", wear_section(record)),
-            "limits": ("Limits and assumptions", listed(_LIMITS)),
-            "credibility": ("Credibility factors (ASME V&V 40)", credibility_section(record)),
-            "requirements": ("Requirements and evidence", requirements_section(record)),
-            "signed": ("Signatures", _signed(record, digest)),
+    with default_style():
+        context = {
+            **_inputs(record),
+            **_matrix(record),
+            **_verification(record),
+            **_validation(record),
+            **_credibility(record),
+            "uncertainty": _uncertainty(record),
+            "wear": _wear(record),
         }
-    head = _margins(digest) if digest else ""
-    lede = f"{html.PRINT}{_STYLE}{head}<p>{escape(record['question'])}</p>{listed(conclusions(record))}"
-    return html.page("Evidence", lede, sections)
-
-
-def _margins(digest: str) -> str:
-    """Return the style of head and foot of printed pages."""
-    return _MARGINS % {"version": fingerprint(), "short": f"{digest[:_SHORT]}…"}
+    sections = {name: (title, None) for name, title in _SECTIONS.items()}
+    return render_page(
+        "evidence.html", "Evidence", sections, record=record, digest=digest, conclusions=conclusions(record), **context
+    )
 
 
 def conclusions(record: Record) -> list[str]:
-    """What it comes to, in sentences: how limits are kept, and whether the numbers are as exact as is required."""
-    limits = [f"{limit_text(each)}: {each['verdict']}" for each in record["limits"]] or ["no limit was given"]
+    """Return the conclusions in sentences: verdict on each limit, accuracy, adequacy, changed nominal values."""
+    limits = [f"{limit_text(limit)}: {limit['verdict']}" for limit in record["limits"]] or ["no limit was given"]
     accurate = record["accurate"]
     largest = "unknown" if accurate["largest"] is None else percent(accurate["largest"])
-    holds = "within" if accurate["holds"] else "NOT within"
-    said = f"Error bars and other methods: {largest} at most, {holds} the required {percent(accurate['required'])}."
-    return [*limits, said, f"{record['adequacy']['text']}.", *map(recentred_text, record["recentred"])]
+    within = "within" if accurate["holds"] else "NOT within"
+    accuracy = (
+        f"Error bars and other methods: {largest} at most, {within} the required {percent(accurate['required'])}."
+    )
+    return [*limits, accuracy, f"{record['adequacy']['text']}.", *map(recentred_text, record["recentred"])]
 
 
-def _question(record: Record) -> str:
-    return f"<p>{escape(record['question'])}</p><p>{escape(record['context_of_use'])}</p>"
-
-
-def _risk(record: Record) -> str:
+def _inputs(record: Record) -> dict[str, Any]:
+    """Return the tables of the model risk and of the inputs."""
     risk = record["risk"]
-    rows = [
-        ("influence of the model on the decision", risk["influence"]),
-        ("consequence of a wrong decision", risk["consequence"]),
-        ("model risk", f"{risk['level']} ({risk['rank']} of 5): it sets the goals of the credibility factors"),
-        ("required accuracy", percent(record["required"]["accuracy"])),
-        ("quantities of interest", ", ".join(map(title_of, quantities_of_interest(record)))),
-        *(("limit", limit_text(each)) for each in record["limits"]),
+    return {
+        "risk": [
+            ("influence of the model on the decision", risk["influence"]),
+            ("consequence of a wrong decision", risk["consequence"]),
+            ("model risk", f"{risk['level']} ({risk['rank']} of 5): it sets the goals of the credibility factors"),
+            ("required accuracy", percent(record["required"]["accuracy"])),
+            ("quantities of interest", ", ".join(map(title_of, quantities_of_interest(record)))),
+            *(("limit", limit_text(limit)) for limit in record["limits"]),
+        ],
+        "inputs": [
+            (input_title(row["name"]), number(row["value"]), row["unit"], row["tolerance"], row["source"] or "none")
+            for row in record["inputs"]
+        ],
+        "recentred": [recentred_text(change) for change in record["recentred"]],
+    }
+
+
+def _matrix(record: Record) -> dict[str, Any]:
+    """Return limits and worst cases, the figures of the joint and of the matrix, and all cases."""
+    worst = [(title_of(name), value_text(name, row), case_text(row["case"])) for name, row in record["worst"].items()]
+    return {
+        "limits": [
+            (limit_text(limit), limit["verdict"], *(str(limit[key]) for key in ("beyond", "unknown", "near")))
+            for limit in record["limits"]
+        ],
+        "worst": [*worst, *_final_wear(record)],
+        "matrix_figures": [] if record["drawn"] is None else [_joint_picture(record), *_matrix_pictures(record)],
+        "cases": _cases(record["matrix"]),
+    }
+
+
+def _final_wear(record: Record) -> Rows:
+    """Return the row of the wear after all cycles where it is worst, with its band; no row without wear."""
+    wear = record["wear"]
+    if wear is None:
+        return []
+    last, bands = wear["history"][-1], wear.get("bands", ())
+    band = f" ({band_text(bands[-1]['volume'])} in 95 of 100 patients)" if bands else ""
+    case = case_text(unloaded(record["worst"]["wear_rate"]["case"]))
+    return [(f"worn volume after {number(last['cycles'])} cycles", f"{number(last['volume'])} mm³{band}", case)]
+
+
+def _joint_picture(record: Record) -> dict[str, str]:
+    """Return the picture of the joint with the largest pressure."""
+    aside = "" if record["drawn"]["half_angle_deg"] is not None else " Its contact lies off the axis and is not drawn."
+    caption = f"The joint where the pressure is worst.{aside}"
+    return {"address": svg_address(figures.joint_figure(record)), "title": "section", "caption": caption}
+
+
+def _matrix_pictures(record: Record) -> list[dict[str, str]]:
+    """Return a picture of each mapped result over the matrix; none for a single case."""
+    names = [name for name in _MAPPED if name in record["worst"]] if len(record["matrix"]) > 1 else []
+    return [
+        {
+            "address": svg_address(figures.matrix_figure(record, name)),
+            "title": NAMES[name].title,
+            "caption": _map_caption(record, name),
+        }
+        for name in names
     ]
-    return words(("", ""), rows)
 
 
-def _inputs(record: Record) -> str:
-    rows = [
-        (input_title(each["name"]), number(each["value"]), each["unit"], each["tolerance"], each["source"] or "none")
-        for each in record["inputs"]
-    ]
-    table = words(("input", "value", "unit", "tolerance", "source"), rows)
-    return table + listed(map(recentred_text, record["recentred"]))
+def _map_caption(record: Record, name: str) -> str:
+    """Describe the figure of a result over the matrix."""
+    limited = any(limit["name"] == name for limit in record["limits"])
+    crosses = " Marked ×: the limit is not kept." if limited else ""
+    title = NAMES[name].title
+    return f"{title[:1].upper()}{title[1:]} over the matrix; framed where it is worst.{crosses}"
 
 
-def _code(record: Record) -> str:
-    rows = [
-        (each["what"], number(each["observed"]), _allowed(each), _SAID[each["passed"]] + _why(each))
-        for each in record["code_verification"]
-    ]
-    made = ", ".join(f"{name} {text}" for name, text in record["made_with"].items())
-    told = f"<p>Run when this pack was made, by ballsocket {escape(record['version'])} ({escape(made)}).</p>"
-    return told + html.table(("check", "observed", "allowed", ""), rows)
+def _cases(rows: list[Record]) -> dict[str, Any]:
+    """Return heads and rows of all cases with their results."""
+    inputs, results = list(rows[0]["case"]), list(rows[0]["numbers"])
+    return {
+        "heads": [*(column_head(key) for key in (*inputs, *results)), "valid"],
+        "rows": [
+            (
+                *(number(row["case"][key]) for key in inputs),
+                *(number(row["numbers"][key]) for key in results),
+                "yes" if row["valid"] else row["status"].lower().replace("_", " "),
+            )
+            for row in rows
+        ],
+    }
 
 
-def _allowed(check: Record) -> str:
+def _verification(record: Record) -> dict[str, Any]:
+    """Return the checks of the code, and every worst case by every method."""
+    deviating = any(piece["deviation"] for piece in record["calculation"])
+    return {
+        "checks": [
+            (check["what"], number(check["observed"]), _allowed_text(check), _check_text(check))
+            for check in record["code_verification"]
+        ],
+        "calculations": [_methods(piece) for piece in record["calculation"]],
+        "methods_figure": svg_address(figures.methods_figure(record)) if deviating else None,
+    }
+
+
+def _allowed_text(check: Record) -> str:
+    """Describe the range that a check allows."""
     return f"at least {check['low']:g}" if check["high"] is None else f"at most {check['high']:g}"
 
 
-def _why(check: Record) -> str:
-    return f": {check['why']}" if check["why"] else ""
+def _check_text(check: Record) -> str:
+    """Describe the result of a check, with its reason if it has one."""
+    return _CHECK_RESULTS[check["passed"]] + (f": {check['why']}" if check["why"] else "")
 
 
-def _signed(record: Record, digest: str) -> str:
-    told = (
-        f"<p>Made on {escape(record['made_on'])} by ballsocket {escape(record['version'])}. The digest below is the "
-        "SHA-256 sum of the checksums of all files of the pack except this page, which is made from them. "
-        "<code>ballsocket evidence --check FOLDER</code> computes all of it again, compares every byte of this page "
-        "and prints the digest; <code>--sign KEY</code> and <code>--verify KEY.pub</code> sign the pack and verify "
-        "its signature.</p>"
-    )
-    shown = f"<p>Digest of the pack: <span class='digest'>{escape(digest)}</span></p>" if digest else ""
-    rows = "".join(f"<tr><td>{name}</td><td></td><td></td></tr>" for name in ("prepared", "reviewed", "approved"))
-    return f"{told}{shown}<table class='sign'><tr><th></th><th>name, date</th><th>signature</th></tr>{rows}</table>"
+def _methods(piece: Record) -> dict[str, Any]:
+    """Return one worst case by every method, and the largest deviation of each result."""
+    keys = list(piece["methods"][0]["numbers"])
+    rows: Rows = [
+        (method["name"], *(_with_error(method, key) for key in keys), "yes" if method["valid"] else "no")
+        for method in piece["methods"]
+    ]
+    deviations = (percent(piece["deviation"][key]) if key in piece["deviation"] else "" for key in keys)
+    return {
+        "title": ", ".join(NAMES[name].title for name in piece["worst_of"]),
+        "heads": ["method", *map(column_head, keys), "valid"],
+        "rows": [*rows, ("largest deviation", *deviations, "")],
+        "notes": _grouped_notes(piece["methods"]),
+        "call": piece["call"],
+    }
+
+
+def _with_error(method: Record, key: str) -> str:
+    """Write a result of a method with its error bar; empty if the method does not have it."""
+    if key not in method["numbers"]:
+        return ""
+    return number(method["numbers"][key]) + error_text(method["errors"].get(key))
+
+
+def _grouped_notes(methods: Iterable[Record]) -> list[str]:
+    """List each note once, after the names of its methods."""
+    holders: dict[str, list[str]] = {}
+    for method in methods:
+        for note in method["notes"]:
+            holders.setdefault(note, []).append(method["name"])
+    return [f"{', '.join(names)}: {note}" for note, names in holders.items()]
+
+
+def _validation(record: Record) -> dict[str, Any]:
+    """Return published results beside those of ballsocket, with their applicability to the question."""
+    return {
+        "claims": [
+            (
+                claim["sentence"],
+                claim["where"],
+                claim["text"],
+                "; ".join(starmap(named_number, claim["numbers"].items())),
+                claim["applicability"]["text"],
+            )
+            for claim in record["claims"]
+        ],
+        "comparators": [
+            {**comparator, "applicability": comparator["applicability"]["text"], "rows": _comparator_rows(comparator)}
+            for comparator in record["comparators"]
+        ],
+    }
+
+
+def _comparator_rows(comparator: Record) -> Rows:
+    """Return inputs, assumptions and published results of a comparator, and the range of ballsocket's."""
+    texts = {"inputs": "published input", "assumed": "assumed", "published": "published"}
+    rows: Rows = [(kind, name, text) for key, kind in texts.items() for name, text in comparator[key].items()]
+    ranges = comparator["ours"].items()
+    return [*rows, *(("ours", name, f"{number(low)} to {number(high)}") for name, (low, high) in ranges)]
+
+
+def _uncertainty(record: Record) -> dict[str, Any] | None:
+    """Return bands and Sobol indices of the tolerances; None without tolerances."""
+    uncertainty = record["uncertainty"]
+    if uncertainty is None:
+        return None
+    names, indices = next(iter(uncertainty["sobol"].values())), uncertainty["sobol"].values()
+    return {
+        **uncertainty,
+        "figure": svg_address(figures.bands_figure(record)),
+        "bands": [
+            (column_head(key), *(number(band[end]) for end in ("low", "median", "high")))
+            for key, band in uncertainty["bands"].items()
+        ],
+        "heads": ["tolerance", *(f"share in the variance of the {KEYS[key].title}" for key in uncertainty["sobol"])],
+        "shares": [(title_of(name), *(percent(shares[name]) for shares in indices)) for name in names],
+    }
+
+
+def _wear(record: Record) -> dict[str, Any] | None:
+    """Return the history of the joint that wears most; None without wear."""
+    wear = record["wear"]
+    if wear is None:
+        return None
+    names = ("cycles", "volume", "depth", "penetration", "max_pressure")
+    return {
+        "file": wear["file"],
+        "case": case_text(unloaded(record["worst"]["wear_rate"]["case"])),
+        "figure": svg_address(figures.wear_figure(record)),
+        "history": [tuple(number(row[name]) for name in names) for row in wear["history"]],
+        "bands": [
+            (number(band["cycles"]), *(band_text(band[name]) for name in ("volume", "depth", "penetration")))
+            for band in wear.get("bands", ())
+        ],
+        "notes": wear.get("notes", ()),
+        "call": wear["call"],
+    }
+
+
+def _credibility(record: Record) -> dict[str, Any]:
+    """Return the credibility factors with their gradations, and the requirements with gaps first."""
+    requirements = sorted(record["requirements"], key=lambda row: _STATUS_ORDER.index(row["status"]))
+    factors = record["credibility"]
+    return {
+        "factors": [
+            (
+                *(factor[key] for key in ("activity", "factor", "goal", "reached")),
+                "met" if factor["adequate"] else "NOT met",
+                factor["supported_by"],
+                factor["missing"],
+            )
+            for factor in factors
+        ],
+        "gradations": [
+            (factor["factor"], letter, text) for factor in factors for letter, text in factor["gradation"].items()
+        ],
+        "requirements": [
+            tuple(row[key] for key in ("id", "requirement", "status", "evidence", "gap", "where"))
+            for row in requirements
+        ],
+        "gaps": sum(row["status"] != MET for row in requirements),
+        "record_name": RECORD,
+    }

@@ -1,7 +1,8 @@
-"""Figures of a hip in use: what is worn, how far the ball has sunk in, tracks, film, the distance to the rim."""
+"""Figures of a wear simulation: wear, penetration, tracks, film, distance to the rim, sensitivity, one cycle."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import accumulate
 from math import degrees, pi
 from typing import TYPE_CHECKING, Any
@@ -9,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..hip.ball_wear import ball_directions
-from ..hip.bands import Bands
+from ..hip.bands import INFLUENCED_RESULTS, Bands
 from ..hip.history import History, Report
 from ..hip.kinematics import tracks
+from .style import BLUE, ORANGE, finish
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -204,3 +206,55 @@ def _over_the_cycle(axes: Any, use: HipSetup) -> None:
     axes.set_xlabel("each activity from its beginning to its end")
     for end in ends[1:-1]:
         axes.axvline(end, color="0.6", linewidth=0.8)
+
+
+def share_figure(bands: Bands) -> Figure:
+    """Draw first and total Sobol indices of the inputs that differ between patients, with 95 % intervals."""
+    from matplotlib.figure import Figure
+
+    names, indices = list(bands.variability.distributions), bands.indices or {}
+    figure = Figure(figsize=(3.0 * len(INFLUENCED_RESULTS) + 1.2, 0.5 * len(names) + 1.6), layout="constrained")
+    rows = numpy.arange(len(names))
+    panels = figure.subplots(1, len(INFLUENCED_RESULTS), squeeze=False, sharey=True).ravel()
+    for number, (axes, result) in enumerate(zip(panels, INFLUENCED_RESULTS, strict=True)):
+        for order, offset, colour in zip(("first", "total"), (-0.17, 0.17), (BLUE, ORANGE), strict=True):
+            value, low, high = (indices[f"{order}_order{end}"][number] for end in ("", "_low", "_high"))
+            off = numpy.nan_to_num(numpy.clip([value - low, high - value], 0.0, None))
+            axes.barh(rows + offset, value, 0.32, xerr=off, color=colour, edgecolor="white", label=f"{order} order")
+        axes.set_yticks(rows, [name.replace("_", " ") for name in names])
+        axes.set_xlim(0.0, 1.05)
+        finish(axes, "share of the variance", "")
+        axes.set_title(result, fontsize=10)
+    figure.axes[0].invert_yaxis()
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    return figure
+
+
+def course_figure(phase: Numbers, courses: Mapping[str, Numbers], title: str) -> Figure:
+    """Draw quantities over a cycle, in panels below each other.
+
+    Parameters
+    ----------
+    phase : array (instants,)
+        Phases in % of the cycle.
+    courses : mapping of str to array (instants,)
+        Values by the label of their axis; NaN where there is none.
+    title : str
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 1.6 * len(courses) + 0.9), layout="constrained")
+    panels = figure.subplots(len(courses), 1, sharex=True, squeeze=False)[:, 0]
+    for axes, (label, values) in zip(panels, courses.items(), strict=True):
+        axes.plot(phase, values, color=BLUE)
+        axes.set_ylabel(label)
+        axes.set_ylim(bottom=0)
+        axes.grid(color="0.9", linewidth=0.6)
+        axes.spines[["top", "right"]].set_visible(False)
+    panels[-1].set_xlabel("% of the cycle")
+    figure.suptitle(title, fontsize=10, parse_math=False)
+    return figure

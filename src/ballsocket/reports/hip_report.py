@@ -1,21 +1,29 @@
-"""A hip in use as one page of HTML."""
+"""Page of a wear simulation."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from html import escape
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..hip.bands import Bands
 from ..hip.film import CONFORMITY_NOTE
 from ..hip.history import History
 from . import hip_plots
-from .hip_bands import band_sections
-from .hip_contact import HEADS, contact_line, contact_rows
-from .html import drawn, page, picture, table, words
+from .figure_files import figure_bytes
+from .hip_tables import (
+    CONTACT_HEADS,
+    band_contact_line,
+    band_heads,
+    band_rows,
+    band_summary,
+    contact_line,
+    contact_rows,
+    rim_lines,
+)
+from .pages import picture, render_page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,10 +51,14 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
         "edge": ("Edge distance", hip_plots.edge_figure, "0 is edge loading; a dot where the contact comes nearest."),
     }
 )
-_OF_BALLS: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = MappingProxyType(
+"""Title, figure and caption of each section with a figure, by its id."""
+
+_BALL_FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = MappingProxyType(
     {"ball": ("Wear of the ball", hip_plots.ball_map, "Seen from above, in the ball's own frame.")}
 )
-_HEADS = (
+"""Sections of a hip whose ball wears."""
+
+_WEAR_HEADS = (
     "million cycles",
     "volume [mm³]",
     "depth [mm]",
@@ -58,81 +70,140 @@ _HEADS = (
 
 
 def check_page(path: Path) -> None:
-    """Raise ValueError unless a page can be written there."""
+    """Check that a path ends in .html and that its folder exists.
+
+    Raises
+    ------
+    ValueError
+        Another ending, or a folder that does not exist.
+    """
     if path.suffix.lower() != ".html":
         raise ValueError(f"report {str(path)!r} must end in .html")
     check_parent_folder(path)
 
 
 def write_hip_report(history: History, path: Path, bands: Bands | None = None) -> Path:
-    """Write the page, with the bands of patients who differ where there are any; returns its path.
+    """Write the page of a wear simulation and return its path.
+
+    Parameters
+    ----------
+    history : History
+        Results of the simulation.
+    path : Path
+        File to write, which ends in .html.
+    bands : Bands, optional
+        Bands of patients who differ, for two more sections.
 
     Raises
     ------
     ValueError
-        Another ending than .html, or no folder.
+        Another ending than .html, or a folder that does not exist.
     OSError
-        It cannot be written.
+        The page cannot be written.
     """
     check_page(path)
-    sections = {"numbers": ("Numbers", _numbers(history))}
+    return write_text(path, hip_report(history, bands))
+
+
+def hip_report(history: History, bands: Bands | None = None) -> str:
+    """Return the page of a wear simulation as HTML."""
+    sections: dict[str, tuple[str, str | None]] = {"numbers": ("Numbers", None)}
     if history.use.unworn_checks:
-        sections["contact"] = ("Validity of the contact", _contacts(history))
+        sections["contact"] = ("Validity of the contact", None)
     if len(history.use.loaded):
-        drawn_here = _FIGURES if history.use.ball_wear is None else _FIGURES | _OF_BALLS
-        for name, (title, draw, caption) in drawn_here.items():
-            sections[name] = (title, picture(drawn(draw(history)), title, escape(caption)))
+        figures = _FIGURES if history.use.ball_wear is None else _FIGURES | _BALL_FIGURES
+        for name, (title, draw, caption) in figures.items():
+            sections[name] = (title, picture(figure_bytes(draw(history)), title, caption))
     if bands is not None:
-        sections |= band_sections(history, bands)
-    return write_text(path, page("A hip in use", _lede(history), sections))
+        sections |= _band_sections(history, bands)
+    return render_page(
+        "hip_report.html",
+        "A hip in use",
+        sections,
+        summary=_summary(history),
+        notes=history.notes,
+        first_cycle=_first_cycle(history),
+        rim=_rim_approach(history),
+        wear={"heads": _WEAR_HEADS, "rows": _wear_rows(history)},
+        contacts={"summary": contact_line(history), "heads": CONTACT_HEADS, "rows": contact_rows(history)},
+        bands=None if bands is None else _band_table(bands),
+    )
 
 
-def _lede(history: History) -> str:
+def _band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str | None]]:
+    """Return the sections about patients who differ."""
+    caption = f"The line is the usual patient's, the band holds {100 * bands.level:g} % of the {bands.subject}"
+    caption += "." if bands.shared is None else ", the dark band that share of the patients at the median coefficient."
+    curve = figure_bytes(hip_plots.penetration_curve(history, bands))
+    sections: dict[str, tuple[str, str | None]] = {
+        "penetration": ("Penetration", picture(curve, "Penetration", caption)),
+        "patients": ("Patients who differ", None),
+    }
+    if bands.indices is not None:
+        shares = figure_bytes(hip_plots.share_figure(bands))
+        sections["matters"] = (
+            "What matters",
+            picture(shares, "What matters", "Sobol's indices with 95 % intervals."),
+        )
+    return sections
+
+
+def _band_table(bands: Bands) -> Mapping[str, Any]:
+    """Return the table of the bands with its sentences."""
+    tail = (1 - bands.level) / 2
+    return {
+        "summary": band_summary(bands),
+        "lines": (*rim_lines(bands), band_contact_line(bands)),
+        "notes": bands.notes,
+        "heads": band_heads(bands),
+        "rows": band_rows(bands, (tail, 0.5, 1 - tail)),
+    }
+
+
+def _summary(history: History) -> str:
+    """Describe the result of the simulation in one sentence."""
     use, last = history.use, history.last
-    notes = "".join(f"<li>{escape(note)}</li>" for note in history.notes)
-    told = (
+    return (
         f"{use.joint}, {use.cycle.name}: {last.volume:.4g} mm³ worn and a penetration of {last.penetration:.3g} mm "
         f"after {last.cycles / 1e6:g} million cycles."
     )
-    return f"<p>{escape(told)}</p><ul class='quiet'>{notes}</ul>"
 
 
-def _numbers(history: History) -> str:
-    first, error = history.use.first, history.error
-    rows = [
+def _wear_rows(history: History) -> list[tuple[str, ...]]:
+    """Return the wear at each report: the cells below `_WEAR_HEADS`."""
+    return [
         (
-            f"{each.cycles / 1e6:g}",
-            *(f"{number:.4g}" for number in (each.volume, each.depth, each.penetration, each.max_pressure)),
-            f"{each.creep_depth:.4g}",
-            f"{each.edge_distance.min(initial=float('inf')):.3g}",
+            f"{report.cycles / 1e6:g}",
+            *(f"{number:.4g}" for number in (report.volume, report.depth, report.penetration, report.max_pressure)),
+            f"{report.creep_depth:.4g}",
+            f"{report.edge_distance.min(initial=float('inf')):.3g}",
         )
-        for each in history.reports
+        for report in history.reports
     ]
-    told = (
+
+
+def _first_cycle(history: History) -> str:
+    """Describe slide, work, cross-shear and wear rate of the first cycle, and the error of the time steps."""
+    first, error = history.use.first, history.error
+    return (
         f"A cycle slides {first.slide:.4g} mm; pressure times slide is {first.work:.4g} N m, the mean cross-shear "
         f"{first.cross_shear:.3g}. Unworn it wears {first.volume:.4g} mm³ and {first.depth:.3g} mm a million cycles. "
         f"Against the same model in the finest steps the volume is within {100 * error.volume:.2g} %, the depth within "
         f"{100 * error.depth:.2g} %."
     )
-    return f"<p>{escape(told)}</p><p>{escape(_rim(history))}</p>{table(_HEADS, rows)}"
 
 
-def _contacts(history: History) -> str:
-    """Lay out validity and utilisation of the worst contact of each activity."""
-    said = "The instant of the largest pressure of each activity, unworn and at each report."
-    return f"<p>{escape(contact_line(history))}. {said}</p>{words(HEADS, contact_rows(history))}"
-
-
-def _rim(history: History) -> str:
-    """How near the contact comes to the rim, when and where, new and at the end."""
-    seen = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use)}
-    told = (
-        f"{name} the contact {_how_near(worst.distance)} at {worst.location}"
-        for name, worst in seen.items()
+def _rim_approach(history: History) -> str:
+    """Describe the least distance to the rim with its instant and location, new and at the end."""
+    nearest = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use)}
+    sentences = (
+        f"{stage} the contact {_distance_words(worst.distance)} at {worst.location}"
+        for stage, worst in nearest.items()
         if worst is not None
     )
-    return "; ".join(told) or "nothing is pressed"
+    return "; ".join(sentences) or "nothing is pressed"
 
 
-def _how_near(distance: float) -> str:
+def _distance_words(distance: float) -> str:
+    """Describe a distance (mm) to the rim."""
     return f"comes within {distance:.3g} mm of the rim" if distance > 0 else "reaches the rim"

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from datetime import date
 from hashlib import sha256
-from html import escape
 from math import inf
 from typing import Any
 
@@ -18,14 +17,14 @@ from ..io.joint_toml import tables_of
 from ..problem import Material
 from ..problem.cup import Cup
 from ..studies.parameters import PARAMETERS
-from . import html
 from .joint_section import joint_section
+from .pages import Sections, render_page, svg_address, trusted_html
 from .unit_systems import Units
 
 
 def joint_report(
     file: JointFile,
-    sections: Mapping[str, tuple[str, str]],
+    sections: Sections,
     lede: str = "",
     units: Units = Units.SI,
     contact: Contact | None = None,
@@ -57,14 +56,20 @@ def joint_report(
         HTML that needs nothing beside it.
     """
     painted = None if contact is None or contact.status.failed or isinstance(contact, OffAxisContact) else contact
-    section = html.drawn(joint_section(file.joint, file.cup, painted, units), "svg")
-    whole = {
-        "drawing": ("Drawing", html.picture(section, f"{file.joint} in section", form="svg+xml")),
-        "inputs": ("Inputs", html.words(("input", "value", "source"), _inputs(file, units))),
-        **sections,
-        "origin": ("Origin", _origin(file, day or date.today())),
-    }
-    return html.page(title or file.joint.name or "A ball in its socket", html.PRINT + lede, whole)
+    all_sections = {"drawing": ("Drawing", None), "inputs": ("Inputs", None), **sections, "origin": ("Origin", None)}
+    text = json.dumps(_finite(tables_of(file)), indent=1, ensure_ascii=False)
+    return render_page(
+        "joint_report.html",
+        title or file.joint.name or "A ball in its socket",
+        all_sections,
+        lede=trusted_html(lede),
+        joint=str(file.joint),
+        drawing=svg_address(joint_section(file.joint, file.cup, painted, units)),
+        inputs=_inputs(file, units),
+        day=(day or date.today()).isoformat(),
+        checksum=sha256(text.encode()).hexdigest(),
+        file=text,
+    )
 
 
 def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
@@ -105,14 +110,6 @@ def _cup(cup: Cup, units: Units) -> Iterable[tuple[str, str, str]]:
         number = float(getattr(cup, name))
         yield quantity.title, units.length(number) if name == "chamfer" else units.told(quantity, number), ""
     yield "liner on its backing", cup.interface.value, ""
-
-
-def _origin(file: JointFile, day: date) -> str:
-    """The question as a file, with its checksum and the day."""
-    text = json.dumps(_finite(tables_of(file)), indent=1, ensure_ascii=False)
-    checksum = sha256(text.encode()).hexdigest()
-    told = "The joint as the tables of a joint file, with which <code>ballsocket press</code> computes it again"
-    return f"<p>{day.isoformat()}. {told}; their SHA-256 is <code>{checksum}</code>.</p><pre>{escape(text)}</pre>"
 
 
 def _finite(tables: Any) -> Any:

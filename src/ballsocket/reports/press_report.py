@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from datetime import date
-from html import escape
 
 from ..compare import Comparison, successful_contacts
 from ..contact import Contact
@@ -15,11 +14,14 @@ from ..elasticity.off_axis.contact import OffAxisContact
 from ..io.joint_file import JointFile
 from ..studies.around import Around
 from ..studies.parameters import PARAMETERS
-from . import html, quick_plot
+from . import quick_plot
 from .joint_report import joint_report
+from .pages import render_part, svg_address
 from .unit_systems import Units
 
-_CLASSES = {True: "holds", False: "fails", None: "nearly"}
+_TEMPLATE = "press.html"
+_VERDICT_STYLES = {True: "holds", False: "fails", None: "nearly"}
+"""Style of a verdict by whether the liner bears the load; None if that is unknown."""
 
 
 def press_report(
@@ -59,10 +61,10 @@ def press_report(
 
 def press_lede(contact: Contact, units: Units = Units.SI) -> str:
     """The first number of a contact with the verdict in words, as HTML."""
-    said = assess_strength(contact)
-    pressure, load = (escape(_number(contact, name, units)) for name in ("max_pressure", "force"))
-    told = f"<strong>{pressure}</strong> largest pressure under {load}, by {escape(contact.model.name)}"
-    return f"<p>{told}: <span class='{_CLASSES[said.bears]}'>{escape(said.words)}.</span></p>"
+    verdict = assess_strength(contact)
+    pressure, load = (_number(contact, name, units) for name in ("max_pressure", "force"))
+    model, kind = contact.model.name, _VERDICT_STYLES[verdict.bears]
+    return render_part(_TEMPLATE, "lede", pressure, load, model, verdict.words, kind)
 
 
 def press_sections(
@@ -92,38 +94,33 @@ def _answers(comparison: Comparison, units: Units) -> str:
         for name, contact in comparison.items()
     ]
     heads = ("model", *(column.head for column in columns), "valid")
-    meant = ", ".join(f"{column.symbol} {column.title}" for column in columns)
-    notes = "".join(f"<p class='quiet'>{escape(note)}</p>" for note in comparison.notes())
-    return f"{html.table(heads, rows)}<p class='quiet'>{escape(meant)}</p>{notes}"
+    symbols = ", ".join(f"{column.symbol} {column.title}" for column in columns)
+    return render_part(_TEMPLATE, "answers", heads, rows, symbols, comparison.notes())
 
 
 def _curves(comparison: Comparison, leading: Contact) -> str:
     """The curves; the cup seen from its opening for a contact beside its axis."""
     shown = {leading.model.name: leading} if isinstance(leading, OffAxisContact) else successful_contacts(comparison)
-    if not shown or leading.status.failed:
-        return "<p>There is nothing to draw.</p>"
-    return html.picture(html.drawn(quick_plot.plot(shown), "svg"), "pressure and force", form="svg+xml")
+    drawable = shown and not leading.status.failed
+    return render_part(_TEMPLATE, "figures", svg_address(quick_plot.plot(shown)) if drawable else None)
 
 
 def _around(found: Around | None, units: Units) -> str:
     """Elasticities, and the band of the tolerances."""
     if found is None:
-        return "<p>Not asked for.</p>"
+        return render_part(_TEMPLATE, "tolerances", None, ())
     names = list(next(iter(found.changes.values())))
     rows = [(CONTACT[asked].title, *(f"{each[name]:+.2f}" for name in names)) for asked, each in found.changes.items()]
     heads = ("changes by %, where 1 % is added to the", *(PARAMETERS[name].title for name in names))
-    text = html.table(heads, rows)
-    if not found.band:
-        return text + "<p class='quiet'>No tolerances were given.</p>"
     ends = [
         (CONTACT[asked].title, *(units.told(CONTACT[asked], end) for end in band)) for asked, band in found.band.items()
     ]
-    return text + html.table(("95 % of the joints within the tolerances lie", "above", "half above", "below"), ends)
+    return render_part(_TEMPLATE, "tolerances", {"heads": heads, "rows": rows}, ends)
 
 
 def _sources(comparison: Comparison) -> str:
-    return "<ul>" + "".join(f"<li>{escape(_told(source))}</li>" for source in comparison.sources) + "</ul>"
+    return render_part(_TEMPLATE, "sources", map(_source_text, comparison.sources))
 
 
-def _told(source: Source) -> str:
+def _source_text(source: Source) -> str:
     return f"{source}, doi {source.doi}" if source.doi else str(source)

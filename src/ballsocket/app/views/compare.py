@@ -15,7 +15,8 @@ from ...contact import Contact
 from ...core.quantities import JOINT
 from ...io.joint_file import JointFile
 from ...problem.presets import joints
-from ...reports.html import drawn, table
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import table
 from ...reports.press_plot import press_figure
 from ...reports.style import LineStyle, numbered
 from ..drawing import extent_of, section
@@ -107,7 +108,7 @@ class Compare:
         title = f"answered by {screen.answered_by}"
 
         def picture(form: str) -> bytes:
-            return drawn(
+            return figure_bytes(
                 press_figure(contacts, fine_curves(contacts, models), title, _lines(files), units=screen.reading.units),
                 form,
             )

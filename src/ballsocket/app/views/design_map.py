@@ -14,7 +14,8 @@ import panel as pn
 from ...core.kinds import Unit
 from ...core.quantities import QUANTITIES
 from ...io.joint_file import JointFile
-from ...reports.html import drawn, table
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import table
 from ...reports.study_plots import design_map
 from ...reports.study_terminal import map_rows
 from ...reports.unit_systems import Units
@@ -221,7 +222,7 @@ class DesignMap:
         limits = list(limits_of(screen))
 
         return Document(
-            picture=lambda form: drawn(design_map(found, limits), form),
+            picture=lambda form: figure_bytes(design_map(found, limits), form),
             rows=lambda: _rows(found, screen.reading),
             sections=lambda: {"map": ("Design map", table(*map_rows(found, limits)))},
         )

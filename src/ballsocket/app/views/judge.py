@@ -15,7 +15,7 @@ from ...core.quantities import CONTACT, CUP
 from ...io.joint_file import JointFile, read_cup
 from ...io.joint_toml import cup_table
 from ...problem.cup import Interface
-from ...reports.html import picture, table
+from ...reports.pages import picture, table
 from ..judging import Judged, judged
 from ..reading import number_text
 from ..running import LONGEST, Done, Reached, Run, RunRefused, looked_at

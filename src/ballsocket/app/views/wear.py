@@ -13,7 +13,7 @@ from ...core.quantities import CONTACT
 from ...hip.law_fields import LawField
 from ...io.joint_file import JointFile
 from ...problem.presets import joints
-from ...reports import html as page
+from ...reports.pages import picture
 from ..fields import Field, choice, number, segments, typed
 from ..in_use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS, Use
 from ..jobs import CachedRun, ViewJob
@@ -108,7 +108,7 @@ class Wear:
                 each.cycles, each.penetration, each.low, each.high, each.deepest, each.volume, strict=True
             )
         ]
-        pictures = "".join(page.picture(each.figure, f"penetration of {name}") for name, each in found.items())
+        pictures = "".join(picture(each.figure, f"penetration of {name}") for name, each in found.items())
         return Document(
             rows=lambda: [["design", "million cycles", *depths, "volume [mm3]"], *rows],
             sections=lambda: {"wear": ("Wear", wear_numbers(found, screen.reading) + pictures)},

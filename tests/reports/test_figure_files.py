@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from ballsocket.reports.save import save
+from ballsocket.reports.figure_files import save
 
 
 def test_a_figure_that_cannot_be_drawn_leaves_no_file(tmp_path):
