@@ -11,7 +11,7 @@ import numpy as np
 
 import ballsocket as bs
 from ballsocket.reports.figure_files import save
-from ballsocket.reports.press_plot import press_figure
+from ballsocket.reports.press_plots import press_figure
 
 hip = bs.joints["hip-32"]
 models = {

@@ -11,7 +11,7 @@ import numpy as np
 
 import ballsocket as bs
 from ballsocket.reports.figure_files import save
-from ballsocket.reports.press_plot import press_figure
+from ballsocket.reports.press_plots import press_figure
 
 hip = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
 

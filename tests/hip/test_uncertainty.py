@@ -13,7 +13,7 @@ from ballsocket.hip.config import read_hip
 from ballsocket.hip.uncertainty import share_coefficient
 from ballsocket.reports.hip_plots import penetration_curve
 from ballsocket.reports.hip_report import hip_report
-from ballsocket.reports.hip_terminal import print_bands
+from ballsocket.reports.hip_tables import print_bands
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from ..cli.command import run

@@ -11,9 +11,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.io.joint_file import JointFile
-from ballsocket.reports.joint_section import joint_section
+from ballsocket.reports.joint_section import gap_factor, joint_section
 from ballsocket.reports.press_report import press_report
-from ballsocket.reports.section_scale import gap_factor
 from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
 from ballsocket.studies.around import around

@@ -13,7 +13,7 @@ from ballsocket.paper.curves import figure_3_or_4
 from ballsocket.paper.plan import ELEMENTS, quick_plan
 from ballsocket.reports import style
 from ballsocket.reports.paper_plots import draw
-from ballsocket.reports.press_plot import press_figure
+from ballsocket.reports.press_plots import press_figure
 from ballsocket.reports.style import INK, LineStyle, line_of
 
 from ..joints import HIP

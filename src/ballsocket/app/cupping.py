@@ -16,7 +16,7 @@ from ..elasticity.off_axis.contact import OffAxisContact
 from ..io.joint_file import JointFile
 from ..problem.cup import Cup, Side
 from ..reports.figure_files import figure_bytes
-from ..reports.orientation_plot import orientation_figure
+from ..reports.orientation_results import orientation_figure
 from .jobs import CachedRun
 from .running import Reached, Told
 

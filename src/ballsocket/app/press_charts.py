@@ -10,7 +10,7 @@ import numpy
 from ..contact import Contact
 from ..contact.describe import Column
 from ..core.quantities import FIELD
-from ..reports.press_plot import force_axes
+from ..reports.press_plots import force_axes
 from ..reports.style import LineStyle
 from .chart import Curve, chart, legend
 from .pressing import curve, profile, rounded_up

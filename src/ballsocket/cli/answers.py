@@ -9,7 +9,7 @@ from ..catalogue import listed_models
 from ..core.sources import Source, bibliography, find_cited_keys
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
-from ..reports.list_summary import source_summary
+from ..reports.catalogue_lists import source_summary
 from .next_steps import asked_of, next_steps
 
 Answer = dict[str, Any]

@@ -14,7 +14,7 @@ from ..catalogue import judge, off_axis, reference
 from ..compare import Comparison, successful_contacts
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..reports import quick_plot
+from ..reports import press_plots
 from ..reports.figure_files import check_format, save
 from ..reports.section_plot import section_figure
 
@@ -61,7 +61,7 @@ class Files:
         shown = successful_contacts(comparison)
         if self.figure is not None and shown:
             alone = leading == off_axis.name and leading in shown
-            save(quick_plot.plot({leading: shown[leading]} if alone else shown), self.figure)
+            save(press_plots.plot({leading: shown[leading]} if alone else shown), self.figure)
         loaded = {name: contact for name, contact in shown.items() if contact.max_pressure > 0}
         meshed, tilted = loaded.get(judge.name), loaded.get(off_axis.name)
         exact = shown.get(reference.name)
@@ -96,6 +96,6 @@ def _surfaces(contact: OffAxisContact, path: Path) -> None:
 
 
 def _view(contact: OffAxisContact, path: Path) -> None:
-    from ..reports.cup_view import save_view
+    from ..reports.cup_plots import save_view
 
     save_view(contact, path)

@@ -20,7 +20,7 @@ from ..hip.config import HipFile, read_hip
 from ..hip.history import History
 from ..hip.uncertainty import population, uncertainty
 from ..reports.hip_report import check_page, write_hip_report
-from ..reports.hip_terminal import print_bands, print_hip, print_notes
+from ..reports.hip_tables import print_bands, print_hip, print_notes
 from .engine import Scheduler, Workers, engine_of
 from .root import FAILURE, app, echo_path
 from .words import AsJson, echo_json

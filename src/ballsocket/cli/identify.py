@@ -12,9 +12,9 @@ import ballsocket as bs
 from ..identify.file import read_identify
 from ..identify.posterior import Posterior
 from ..identify.result import IdentificationResult
-from ..reports import identify_plots
+from ..reports import identify_results
 from ..reports.figure_files import check_format, save
-from ..reports.identify_terminal import print_identified
+from ..reports.identify_results import print_identified
 from .root import FAILURE, app
 from .words import AsJson, echo_json
 
@@ -48,11 +48,11 @@ def identify(
     else:
         print_identified(found, drawn)
     if figure is not None:
-        save(identify_plots.fit_figure(found), figure)
+        save(identify_results.fit_figure(found), figure)
     if corner is not None:
-        save(identify_plots.corner_figure(found, drawn), corner)
+        save(identify_results.corner_figure(found, drawn), corner)
     if experiment is not None:
-        save(identify_plots.experiment_figure(found.next), experiment)
+        save(identify_results.experiment_figure(found.next), experiment)
     if not found.best.converged:
         typer.echo("ballsocket: the search did not converge (see the notes)", err=True)
         raise typer.Exit(FAILURE)

@@ -13,8 +13,14 @@ from ..catalogue import listed_models
 from ..core.checks import known_name
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
-from ..reports.list_summary import model_summary, preset_summary
-from ..reports.list_terminal import print_model, print_models, print_preset, print_presets
+from ..reports.catalogue_lists import (
+    model_summary,
+    preset_summary,
+    print_model,
+    print_models,
+    print_preset,
+    print_presets,
+)
 from .root import app
 from .words import AsJson, echo_json
 

@@ -17,8 +17,7 @@ from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as stand
 from ..io.joint_file import JointFile, read_aim
 from ..io.units import as_given
-from ..reports.orientation_plot import orientation_figure
-from ..reports.orientation_terminal import print_orientations
+from ..reports.orientation_results import orientation_figure, print_orientations
 from ..studies.phrases import ends_of
 from .elements import CupWords
 from .groups import grouped

@@ -17,7 +17,7 @@ from ..core.checks import require
 from ..io.joint_file import JointFile
 from ..problem import Joint
 from ..problem.cup import Cup
-from ..reports import study_plots, study_summary, study_terminal
+from ..reports import study_plots, study_tables
 from ..reports.figure_files import check_format, save
 from ..studies.axes import Span
 from ..studies.design import grid
@@ -125,7 +125,7 @@ def design_map(
     load, model = press.load(file, ends), press.model_for(file, ends)
     axes = {name: Span(low, high, points or _points_of(model)) for name, (low, high) in ends.items()}
     found = bs.study(model, file.joint, grid(**axes, **load), quantities=_quantities((), limits))
-    form.print(lambda: study_summary.map_summary(found, limits), lambda: study_terminal.print_map(found, limits))
+    form.print(lambda: study_tables.map_summary(found, limits), lambda: study_tables.print_map(found, limits))
     form.draw(lambda: study_plots.design_map(found, limits))
 
 
@@ -175,7 +175,7 @@ def optimise(
     best = find_optimum(model, file.joint, ranges, among=among, minimise=chosen[0], limits=limits, load=load)
     form.print(
         lambda: {"version": bs.__version__, "model": model.name, **best.summary()},
-        lambda: study_terminal.print_optimum(best),
+        lambda: study_tables.print_optimum(best),
     )
     sizes = {name: value for name, value in best.point.items() if name in among}
     form.draw(lambda: study_plots.design_map(everywhere(best.joint, sizes), limits, _shown(chosen), best=best.point))
@@ -184,7 +184,7 @@ def optimise(
 def _front(found: Any, wishes: tuple[str, str], limits: list[Limit], form: FormWords) -> None:
     """Show the joints that none beats in both wishes."""
     front = pareto(found, wishes, limits)
-    form.print(lambda: study_summary.front_summary(front), lambda: study_terminal.print_front(front))
+    form.print(lambda: study_tables.front_summary(front), lambda: study_tables.print_front(front))
     form.draw(lambda: study_plots.front_figure(found, front, wishes, limits))
 
 
@@ -213,9 +213,9 @@ def sensitivity(
         lambda: {
             "version": bs.__version__,
             "model": found.attrs["model"],
-            **study_summary.sensitivity_summary(found),
+            **study_tables.sensitivity_summary(found),
         },
-        lambda: study_terminal.print_sensitivity(found),
+        lambda: study_tables.print_sensitivity(found),
     )
     form.draw(lambda: study_plots.sensitivity_figure(found))
 

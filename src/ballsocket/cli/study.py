@@ -15,7 +15,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 
 import ballsocket as bs
 
-from ..reports import study_plots, study_summary, study_terminal
+from ..reports import study_plots, study_tables
 from ..reports.figure_files import check_format, save
 from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
@@ -58,9 +58,9 @@ def study(
             listen=listen,
         )
     if as_json:
-        echo_json({"version": bs.__version__, "joint": given.joint.summary(), **study_summary.study_summary(found)})
+        echo_json({"version": bs.__version__, "joint": given.joint.summary(), **study_tables.study_summary(found)})
     else:
-        study_terminal.print_study(found)
+        study_tables.print_study(found)
     if out is not None:
         export(found, out)
     if draw is not None and figure is not None:

@@ -1,8 +1,8 @@
-"""A joint in section to scale, with the lengths that a drawing has."""
+"""Joint in section to scale, with the dimensions of a drawing."""
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from math import isinf, pi
 from typing import TYPE_CHECKING
 
@@ -12,7 +12,6 @@ from ..contact import Contact
 from ..core.quantities import CONTACT
 from ..problem import Joint
 from ..problem.cup import Cup
-from .section_scale import gap_factor, radii_of
 from .style import BLUE, GREEN, GREY, INK, ORANGE, PINK, SKY, VERMILLION
 from .unit_systems import Units
 
@@ -21,6 +20,25 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     Points = tuple[numpy.ndarray, numpy.ndarray]
+
+_MASSIVE = 0.8  # of the socket's radius is drawn of what has no end
+_ROUND = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+_WIDEST_GAP = 0.09  # of the socket's radius, beside the ball
+
+
+def radii_of(joint: Joint) -> list[float]:
+    """Radii in mm of the bore, and from there outwards behind the liner and each layer."""
+    bore = float(joint.socket_radius)
+    thick = (float(each) for each in (joint.liner_thickness, *(layer.thickness for layer in joint.backing)))
+    return list(accumulate((_MASSIVE * bore if isinf(each) else each for each in thick), initial=bore))
+
+
+def gap_factor(joint: Joint) -> int:
+    """How many times the gap between ball and socket is drawn: a round number, so that it can be seen."""
+    gap = abs(float(joint.clearance))
+    fitting = [times for times in _ROUND if times * gap <= _WIDEST_GAP * float(joint.socket_radius)]
+    return fitting[-1] if fitting and gap > 0 else 1
+
 
 _LAYERS = (SKY, GREY, ORANGE, GREEN, PINK, BLUE)
 _LINE = {"color": INK, "linewidth": 0.8}

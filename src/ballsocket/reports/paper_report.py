@@ -19,9 +19,8 @@ from ..paper.accuracy import RANGES, THICKNESS
 from ..paper.figure import Figure
 from ..paper.table_3 import RATIOS
 from . import accuracy_table
-from .accuracy_plot import heat_map
 from .pages import data_address, render_page
-from .paper_plots import draw
+from .paper_plots import draw, heat_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Drawing

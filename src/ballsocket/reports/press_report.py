@@ -14,7 +14,7 @@ from ..elasticity.off_axis.contact import OffAxisContact
 from ..io.joint_file import JointFile
 from ..studies.around import Around
 from ..studies.parameters import PARAMETERS
-from . import quick_plot
+from . import press_plots
 from .joint_report import joint_report
 from .pages import render_part, svg_address
 from .unit_systems import Units
@@ -102,7 +102,7 @@ def _curves(comparison: Comparison, leading: Contact) -> str:
     """The curves; the cup seen from its opening for a contact beside its axis."""
     shown = {leading.model.name: leading} if isinstance(leading, OffAxisContact) else successful_contacts(comparison)
     drawable = shown and not leading.status.failed
-    return render_part(_TEMPLATE, "figures", svg_address(quick_plot.plot(shown)) if drawable else None)
+    return render_part(_TEMPLATE, "figures", svg_address(press_plots.plot(shown)) if drawable else None)
 
 
 def _around(found: Around | None, units: Units) -> str:

@@ -18,7 +18,7 @@ def register_plots() -> None:
 
 
 def _load_contact_plot() -> Plot:
-    from .quick_plot import plot
+    from .press_plots import plot
 
     return plot
 

@@ -17,7 +17,7 @@ from ...io.joint_file import JointFile
 from ...problem.presets import joints
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import table
-from ...reports.press_plot import press_figure
+from ...reports.press_plots import press_figure
 from ...reports.style import LineStyle, numbered
 from ..drawing import extent_of, section
 from ..press_charts import press_charts

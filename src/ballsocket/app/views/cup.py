@@ -15,7 +15,7 @@ from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ...core.validity import OutsideDomainError
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...io.joint_file import JointFile
-from ...reports.cup_plot import cup_figure
+from ...reports.cup_plots import cup_figure
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import picture, table
 from ..angle_map import angle_map

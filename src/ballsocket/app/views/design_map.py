@@ -17,7 +17,7 @@ from ...io.joint_file import JointFile
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import table
 from ...reports.study_plots import design_map
-from ...reports.study_terminal import map_rows
+from ...reports.study_tables import map_rows
 from ...reports.unit_systems import Units
 from ...studies.parameters import PARAMETERS
 from ...studies.phrases import limit_of, range_of

@@ -16,7 +16,7 @@ from ...contact import Contact
 from ...core.quantities import BEARING, FIELD
 from ...io.joint_file import JointFile
 from ...reports.figure_files import figure_bytes
-from ...reports.press_plot import press_figure
+from ...reports.press_plots import press_figure
 from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
 from ...studies.around import Around, around

@@ -10,7 +10,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.reports.cup_map import drawn, highest, on_page
-from ballsocket.reports.cup_plot import cup_figure
+from ballsocket.reports.cup_plots import cup_figure
 
 from ..joints import HIP
 
@@ -163,7 +163,7 @@ def test_a_view_in_three_dimensions(contact, tmp_path):
         pytest.skip("nothing can be drawn in three dimensions here")
     from matplotlib.image import imread
 
-    from ballsocket.reports.cup_view import save_view
+    from ballsocket.reports.cup_plots import save_view
 
     save_view(contact, tmp_path / "cup.png")
     assert [path.name for path in tmp_path.iterdir()] == ["cup.png"]

@@ -6,7 +6,7 @@ from math import degrees
 import pytest
 
 import ballsocket as bs
-from ballsocket.reports.study_terminal import print_optimum, print_study
+from ballsocket.reports.study_tables import print_optimum, print_study
 from ballsocket.studies.optimum import optimise
 
 HIP = bs.joints["hip-28"]

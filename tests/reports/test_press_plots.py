@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.reports.press_plot import press_figure
+from ballsocket.reports.press_plots import press_figure
 
 from ..joints import HIP
 

@@ -1,17 +1,51 @@
-"""Lists in a terminal: models and presets, with what is to be said of each."""
+"""Models and presets as dictionaries for JSON and as lists in a terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from math import isfinite
+from typing import Any
 
 from rich.table import Table
 from rich.text import Text
 
 from ..contact.model_info import ModelInfo
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS, Quantity
+from ..core.sources import Source
+from ..core.validity import Range
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
 from .terminal import console, print_folded
+
+
+def model_summary(model: ModelInfo) -> dict[str, Any]:
+    """A model: what it promises, and where; angles of ranges are in rad, an open end is null."""
+    promise = model.promise
+    return {
+        "name": model.name,
+        "title": model.title,
+        "promise": None if promise is None else {"within": promise.within, "quantities": list(promise.quantities)},
+        "validity": list(map(_range, model.validity)),
+        "reach": model.reach,
+        "sources": list(map(source_summary, model.sources)),
+    }
+
+
+def preset_summary(preset: Material | Joint) -> dict[str, Any]:
+    """A material or joint with its source."""
+    return {**preset.summary(), "source": preset.source}
+
+
+def _range(limit: Range) -> dict[str, Any]:
+    low, high = (end if isfinite(end) else None for end in (limit.low, limit.high))
+    name = limit.quantity if isinstance(limit.quantity, str) else None
+    return {"quantity": name, "text": str(limit), "low": low, "high": high, "why": limit.why}
+
+
+def source_summary(source: Source) -> dict[str, Any]:
+    """A publication, and the place in it."""
+    return {"key": source.key, "text": str(source), "doi": source.doi or None}
+
 
 _NARROW = 72  # columns: lists are paragraphs below
 
@@ -31,7 +65,7 @@ def _trust(model: ModelInfo) -> str:
 def print_presets() -> None:
     """Materials and joints with the sources of their numbers."""
     for title, presets in (("materials", materials), ("joints", joints)):
-        rows = [(name, _numbers(preset), preset.source) for name, preset in presets.items()]
+        rows = [(name, _preset_numbers(preset), preset.source) for name, preset in presets.items()]
         _print_rows((title, "numbers", "source"), rows, gap=0)
         console().print()
 
@@ -85,7 +119,7 @@ def _sources(model: ModelInfo) -> str:
     return "\n".join(", ".join([short, *place]) for short, place in places.items())
 
 
-def _numbers(preset: Material | Joint) -> str:
+def _preset_numbers(preset: Material | Joint) -> str:
     text = str(preset).removeprefix(preset.name)
     if isinstance(preset, Joint):
         return text.removeprefix(": ")
