@@ -28,7 +28,7 @@ class Reading:
             return Unit(quantity.unit) if self.angle == "radians" else quantity.shown
         if self.units is Units.IMPERIAL and quantity.kind is Kind.LENGTH and quantity.display_unit is None:
             return _INCH
-        return self.units.of(quantity)
+        return self.units.unit_of(quantity)
 
     @property
     def length(self) -> Unit:

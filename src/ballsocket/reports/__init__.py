@@ -1,1 +1,1 @@
-"""Results become pictures, tables and pages. Nothing is solved here."""
+"""Figures, tables and pages of results; nothing is computed here."""

@@ -1,4 +1,4 @@
-"""The accuracy of the catalogue as text: Markdown for readers, CSV for programs. Nothing is computed here.
+"""Accuracy of all models as text: Markdown for readers, CSV for programs.
 
 Rows are the dictionaries of `Accuracy.summary()`.
 """
@@ -12,15 +12,15 @@ from typing import Any
 
 from ..core.quantities import CONTACT, QUANTITIES
 
-_GIVEN = {"indentation": "force", "max_pressure": "force", "half_angle": "force", "force": "indentation"}
-HEADS = {name: f"{CONTACT[name].symbol} at given {CONTACT[load].symbol}" for name, load in _GIVEN.items()}
-"""The quantities, as a reader names them."""
+_LOADS = {"indentation": "force", "max_pressure": "force", "half_angle": "force", "force": "indentation"}
+HEADS = {name: f"{CONTACT[name].symbol} at given {CONTACT[load].symbol}" for name, load in _LOADS.items()}
+"""Heads of the columns by quantity."""
 
 Row = Mapping[str, Any]
 
 
 def markdown(rows: Iterable[Row]) -> str:
-    """One table: median, 95th percentile and worst error in percent, and the joint that is worst of all."""
+    """Write a Markdown table: median, 95th percentile and worst error in percent, and the joint of the worst error."""
     lines = [
         f"| model | {' | '.join(HEADS.values())} | worst joint |",
         "|---|" + "---:|" * len(HEADS) + "---|",
@@ -32,13 +32,13 @@ def markdown(rows: Iterable[Row]) -> str:
 
 
 def spread(error: Row) -> str:
-    """Median / 95th percentile / worst in percent."""
-    shares = [percent(error[name]) for name in ("median", "percentile_95", "worst")]
-    return shares[0] if len(set(shares)) == 1 else " / ".join(shares)
+    """Write median, 95th percentile and worst error in percent; one number if they are equal."""
+    errors = [percent(error[name]) for name in ("median", "percentile_95", "worst")]
+    return errors[0] if len(set(errors)) == 1 else " / ".join(errors)
 
 
 def percent(share: float) -> str:
-    """To two digits: 0.74, 12, 160; `<0.001` below."""
+    """Write a share in percent with two digits: 0.74, 12, 160; `<0.001` below."""
     value = 100 * share
     if value < 0.001:
         return "<0.001"
@@ -46,13 +46,13 @@ def percent(share: float) -> str:
 
 
 def worst_joint(row: Row) -> str:
-    """Where the largest of all errors of a model lies."""
-    name = max(HEADS, key=lambda each: float(row["errors"][each]["worst"]))
+    """Describe the joint of the largest error of a model, after the symbol of its quantity."""
+    name = max(HEADS, key=lambda quantity: float(row["errors"][quantity]["worst"]))
     return f"{CONTACT[name].symbol}: {place(row['errors'][name])}"
 
 
 def place(error: Row) -> str:
-    """The joint and the load of a worst error."""
+    """Describe the joint and the load of a worst error."""
     at = _numbers(error)
     digits = {"ball_radius": 3, "clearance": 2, "liner_thickness": 3, "poisson": 2}
     joint = ", ".join(f"{QUANTITIES[name].symbol} {at[name]:.{count}g}" for name, count in digits.items())
@@ -60,14 +60,14 @@ def place(error: Row) -> str:
 
 
 def table(rows: Iterable[Row]) -> str:
-    """CSV, a row a model and quantity; errors as shares, lengths in mm, forces in N."""
+    """Write CSV with one row for each model and quantity; errors as shares, lengths in mm, forces in N."""
     text = StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow((*_COLUMNS, "ball_radius", "clearance", "liner_thickness", "poisson", "force"))
     for row in rows:
         for name, error in row["errors"].items():
-            shares = (error[each] for each in ("median", "percentile_95", "worst"))
-            writer.writerow((row["model"], name, *shares, row["answered"], row["valid"], *_numbers(error).values()))
+            errors = (error[statistic] for statistic in ("median", "percentile_95", "worst"))
+            writer.writerow((row["model"], name, *errors, row["answered"], row["valid"], *_numbers(error).values()))
     return text.getvalue()
 
 
@@ -75,10 +75,12 @@ _COLUMNS = ("model", "quantity", "median", "percentile_95", "worst", "answered",
 
 
 def _numbers(error: Row) -> dict[str, float]:
-    return dict(_named(error["worst_at"]))
+    """Return the lengths (mm), Poisson's ratio and force (N) of a worst error by name."""
+    return dict(_joint_numbers(error["worst_at"]))
 
 
-def _named(at: Row) -> Iterator[tuple[str, float]]:
+def _joint_numbers(at: Row) -> Iterator[tuple[str, float]]:
+    """Yield name and value of the numbers of a worst joint."""
     joint = at["joint"]
     for name in ("ball_radius", "clearance", "liner_thickness"):
         yield name, joint[name]

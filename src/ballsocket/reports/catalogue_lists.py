@@ -19,7 +19,7 @@ from .terminal import console, print_folded
 
 
 def model_summary(model: ModelInfo) -> dict[str, Any]:
-    """A model: what it promises, and where; angles of ranges are in rad, an open end is null."""
+    """Summarise a model: promised accuracy, range of validity, sources; angles are in rad, an open end is null."""
     promise = model.promise
     return {
         "name": model.name,
@@ -32,18 +32,19 @@ def model_summary(model: ModelInfo) -> dict[str, Any]:
 
 
 def preset_summary(preset: Material | Joint) -> dict[str, Any]:
-    """A material or joint with its source."""
+    """Summarise a material or joint with its source."""
     return {**preset.summary(), "source": preset.source}
 
 
 def _range(limit: Range) -> dict[str, Any]:
+    """Summarise a range of validity; an open end is None."""
     low, high = (end if isfinite(end) else None for end in (limit.low, limit.high))
     name = limit.quantity if isinstance(limit.quantity, str) else None
     return {"quantity": name, "text": str(limit), "low": low, "high": high, "why": limit.why}
 
 
 def source_summary(source: Source) -> dict[str, Any]:
-    """A publication, and the place in it."""
+    """Summarise a publication with its key, text and DOI."""
     return {"key": source.key, "text": str(source), "doi": source.doi or None}
 
 
@@ -51,19 +52,19 @@ _NARROW = 72  # columns: lists are paragraphs below
 
 
 def print_models(models: Iterable[ModelInfo]) -> None:
-    """The catalogue with validity and sources."""
-    rows = [(model.name, model.title, _trust(model), _sources(model)) for model in models]
+    """Print the catalogue of models with validity and sources."""
+    rows = [(model.name, model.title, _validity_text(model), _sources(model)) for model in models]
     _print_rows(("model", "what it is", "trusted for", "source"), rows, gap=1)
 
 
-def _trust(model: ModelInfo) -> str:
-    """What the model promises, and where."""
+def _validity_text(model: ModelInfo) -> str:
+    """Describe the promised accuracy of a model and its range of validity."""
     promised = [] if model.promise is None else [f"{model.promise}:"]
     return "\n".join([*promised, *map(str, model.validity)])
 
 
 def print_presets() -> None:
-    """Materials and joints with the sources of their numbers."""
+    """Print materials and joints with the sources of their numbers."""
     for title, presets in (("materials", materials), ("joints", joints)):
         rows = [(name, _preset_numbers(preset), preset.source) for name, preset in presets.items()]
         _print_rows((title, "numbers", "source"), rows, gap=0)
@@ -71,7 +72,7 @@ def print_presets() -> None:
 
 
 def print_model(model: ModelInfo) -> None:
-    """One model: what it is, what it promises, where and why only there, and where it comes from."""
+    """Print one model: title, promised accuracy, range of validity with reasons, sources."""
     terminal = console()
     print_folded(terminal, f"{model.name}: {model.title}", "bold")
     promise = "" if model.promise is None else f"{model.promise} of the elastic answer, "
@@ -85,16 +86,16 @@ def print_model(model: ModelInfo) -> None:
 
 
 def print_preset(name: str) -> None:
-    """One material or joint with all its numbers."""
+    """Print one material or joint with all its numbers."""
     terminal = console()
     preset: Material | Joint = materials[name] if name in materials else joints[name]
     print_folded(terminal, name, "bold")
-    for title, text in (*_of(preset), ("source", preset.source)):
+    for title, text in (*_titled_numbers(preset), ("source", preset.source)):
         print_folded(terminal, f"  {title:<22}{text}", "")
 
 
-def _of(preset: Material | Joint) -> list[tuple[str, str]]:
-    """Titles with text."""
+def _titled_numbers(preset: Material | Joint) -> list[tuple[str, str]]:
+    """Return the numbers of a material or joint as pairs of title and text."""
     if isinstance(preset, Material):
         return [
             ("name", preset.name),
@@ -104,22 +105,24 @@ def _of(preset: Material | Joint) -> list[tuple[str, str]]:
     return [*_quantities(preset, JOINT), ("liner", str(preset.liner)), ("ball", ball)]
 
 
-def _quantities(thing: Material | Joint, named: Mapping[str, Quantity]) -> list[tuple[str, str]]:
+def _quantities(preset: Material | Joint, named: Mapping[str, Quantity]) -> list[tuple[str, str]]:
+    """Return quantities of a material or joint as pairs of title and value with unit."""
     return [
-        (quantity.title, f"{float(getattr(thing, name)):g} {quantity.written.text}".strip())
+        (quantity.title, f"{float(getattr(preset, name)):g} {quantity.written.text}".strip())
         for name, quantity in named.items()
     ]
 
 
 def _sources(model: ModelInfo) -> str:
-    """A line for each publication, with all its places."""
-    places: dict[str, list[str]] = {}
+    """List the publications of a model, one in a line with all cited equations and sections."""
+    citations: dict[str, list[str]] = {}
     for source in model.sources:
-        places.setdefault(source.authors_and_year, []).extend([source.place] if source.place else [])
-    return "\n".join(", ".join([short, *place]) for short, place in places.items())
+        citations.setdefault(source.authors_and_year, []).extend([source.place] if source.place else [])
+    return "\n".join(", ".join([short, *citation]) for short, citation in citations.items())
 
 
 def _preset_numbers(preset: Material | Joint) -> str:
+    """Describe the numbers of a material or joint in one line."""
     text = str(preset).removeprefix(preset.name)
     if isinstance(preset, Joint):
         return text.removeprefix(": ")
@@ -128,7 +131,7 @@ def _preset_numbers(preset: Material | Joint) -> str:
 
 
 def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], gap: int) -> None:
-    """A table with `gap` empty lines between rows; a paragraph for each row where the terminal is narrow."""
+    """Print a table with `gap` empty lines between rows; in a narrow terminal a paragraph for each row."""
     terminal = console()
     if terminal.width < _NARROW:
         for name, *texts in rows:

@@ -280,7 +280,7 @@ def _uncertainty(record: Record) -> dict[str, Any] | None:
             for key, band in uncertainty["bands"].items()
         ],
         "heads": ["tolerance", *(f"share in the variance of the {KEYS[key].title}" for key in uncertainty["sobol"])],
-        "shares": [(title_of(name), *(percent(shares[name]) for shares in indices)) for name in names],
+        "shares": [(title_of(name), *(percent(share[name]) for share in indices)) for name in names],
     }
 
 

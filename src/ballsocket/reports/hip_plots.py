@@ -24,10 +24,11 @@ if TYPE_CHECKING:
 _INK, _SECOND, _THIRD = "#0072B2", "#D55E00", "#009E73"
 _SIZE = (6.4, 4.2)
 _HEADROOM = 1.2
-"""Of what is drawn, for a legend above it."""
+"""Height of the axes relative to the largest value, which leaves room for a legend."""
 
 
 def _figure(size: tuple[float, float] = _SIZE, polar: bool = False) -> tuple[Figure, Any]:
+    """Create a figure with one pair of axes, polar or with a grid; the size is in inches."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=size, layout="constrained")
@@ -39,24 +40,26 @@ def _figure(size: tuple[float, float] = _SIZE, polar: bool = False) -> tuple[Fig
 
 
 def wear_map(history: History, report: Report | None = None) -> Figure:
-    """The worn depth over the bore, seen along the cup's axis: the dome's pole in the middle, the rim outside."""
-    seen = history.last if report is None else report
-    title = f"{seen.volume:.4g} mm³ after {seen.cycles / 1e6:g} million cycles; the load leans to the right"
-    return _map(history.use, 1e3 * seen.wear, "worn depth [µm]", title)
+    """Draw the worn depth over the bore, seen along the cup's axis: the pole in the middle, the rim outside."""
+    shown_report = history.last if report is None else report
+    title = (
+        f"{shown_report.volume:.4g} mm³ after {shown_report.cycles / 1e6:g} million cycles; the load leans to the right"
+    )
+    return _map(history.use, 1e3 * shown_report.wear, "worn depth [µm]", title)
 
 
 def cross_shear_map(history: History) -> Figure:
-    """The cross-shear of the first cycle over the bore, seen as the worn depth."""
+    """Draw the cross-shear of the first cycle over the bore."""
     use = history.use
-    done = use.exposure(use.unworn)
-    field = done.cross_shear.reshape(use.grid.rings, -1)
+    exposure = use.exposure(use.unworn)
+    field = exposure.cross_shear.reshape(use.grid.rings, -1)
     return _map(use, field, "cross-shear", "0 on a straight track, 0.5 where no direction is preferred")
 
 
 def ball_map(history: History) -> Figure:
-    """The worn depth of the ball, seen from above as it is not turned: to the side is to the right, the front above."""
-    own = history.use.ball_grid
-    x, y, z = ball_directions(own)
+    """Draw the worn depth of the unrotated ball, seen from above: the side is to the right, the front above."""
+    grid = history.use.ball_grid
+    x, y, z = ball_directions(grid)
     upper, radius = z > 0, float(history.use.joint.ball_radius)
     figure, axes = _figure((5.6, 4.8))
     depth = 1e3 * history.last.ball_wear[upper]
@@ -65,20 +68,20 @@ def ball_map(history: History) -> Figure:
     axes.set_aspect("equal")
     axes.set_xlabel("to the side [mm]")
     axes.set_ylabel("to the front [mm]")
-    told = f"{history.last.ball_volume:.4g} mm³ of the ball after {history.last.cycles / 1e6:g} million cycles"
-    axes.set_title(told, fontsize=10)
+    title = f"{history.last.ball_volume:.4g} mm³ of the ball after {history.last.cycles / 1e6:g} million cycles"
+    axes.set_title(title, fontsize=10)
     return figure
 
 
 def _map(use: HipSetup, field: Numbers, label: str, title: str) -> Figure:
-    """A field (rings, meridians) over the bore, with a cross where the largest load points."""
+    """Draw a field (rings, meridians) over the bore, with a cross in the direction of the largest load."""
     figure, axes = _figure((5.6, 4.8), polar=True)
-    around = numpy.append(use.grid.azimuth, use.grid.azimuth[0] + 2 * pi)
+    azimuth = numpy.append(use.grid.azimuth, use.grid.azimuth[0] + 2 * pi)
     pole = numpy.full_like(field[:1], field[0].mean())
-    whole = numpy.maximum(numpy.vstack([pole, field, field[-1:]]), 0.0)  # rounding leaves less than nothing
+    values = numpy.maximum(numpy.vstack([pole, field, field[-1:]]), 0.0)  # rounding leaves less than nothing
     polar = numpy.degrees([0.0, *use.grid.polar, use.reach])
-    closed = numpy.hstack([whole, whole[:, :1]])
-    shown = axes.contourf(around, polar, closed, levels=20, cmap="cividis")
+    closed = numpy.hstack([values, values[:, :1]])
+    shown = axes.contourf(azimuth, polar, closed, levels=20, cmap="cividis")
     sizes = numpy.linalg.norm(use.loads, axis=1)
     if len(sizes):
         x, y, z = use.loads[sizes.argmax()] / sizes.max()
@@ -93,22 +96,26 @@ def _map(use: HipSetup, field: Numbers, label: str, title: str) -> Figure:
 
 
 def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
-    """How far the ball has sunk in, and how much of it wear and creep alone would make.
+    """Draw the penetration over the cycles, with its parts from wear alone and from creep alone.
 
-    With the band of patients who differ where there is one, and that of the error else.
+    The band holds the patients who differ if `bands` is given, and the numerical error otherwise.
     """
     figure, axes = _figure()
     count = numpy.array([0.0, *(report.cycles / 1e6 for report in history.reports)])
-    whole = numpy.array([0.0, *(report.penetration for report in history.reports)])
-    off = history.error.depth * whole
-    low, high = (whole - off, whole + off) if bands is None else ([0.0, *ends] for ends in bands.band("penetration"))
+    penetration = numpy.array([0.0, *(report.penetration for report in history.reports)])
+    error = history.error.depth * penetration
+    low, high = (
+        (penetration - error, penetration + error)
+        if bands is None
+        else ([0.0, *ends] for ends in bands.band("penetration"))
+    )
     label = None if bands is None else f"{100 * bands.level:g} % of the {bands.subject}"
     axes.fill_between(count, low, high, color=_INK, alpha=0.2, linewidth=0, label=label)
     if bands is not None and bands.shared is not None:
         low, high = ([0.0, *ends] for ends in bands.population_band("penetration"))
         label = f"{100 * bands.level:g} % of the patients, median coefficient"
         axes.fill_between(count, low, high, color=_INK, alpha=0.3, linewidth=0, label=label)
-    axes.plot(count, whole, "o-", color=_INK, ms=4, label="penetration")
+    axes.plot(count, penetration, "o-", color=_INK, ms=4, label="penetration")
     if any(report.creep_depth > 0 for report in history.reports):
         parts = {"wear_displacement": ("wear alone", _SECOND, "--"), "creep_displacement": ("creep alone", _THIRD, ":")}
         for name, (label, colour, dash) in parts.items():
@@ -123,12 +130,12 @@ def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
 
 
 def track_map(history: History) -> Figure:
-    """The tracks that points of the ball draw on the socket in a cycle, seen along the cup's axis, in mm."""
+    """Draw the sliding tracks (mm) of points of the ball on the socket in one cycle, seen along the cup's axis."""
     use = history.use
     figure, axes = _figure((5.2, 4.8))
     frame = numpy.array(use.placed.frame)
-    turned = numpy.einsum("ij,njk,lk->nil", frame, use.side_cycle.rotations, frame)
-    for track in tracks(turned, _points(use.reach), float(use.joint.ball_radius)):
+    rotations = numpy.einsum("ij,njk,lk->nil", frame, use.side_cycle.rotations, frame)
+    for track in tracks(rotations, _points(use.reach), float(use.joint.ball_radius)):
         axes.plot(track[:, 0], track[:, 1], color=_INK, linewidth=0.8)
     rim = numpy.linspace(0.0, 2 * pi, 200)
     size = float(use.joint.socket_radius) * numpy.sin(min(use.reach, pi / 2))
@@ -140,40 +147,40 @@ def track_map(history: History) -> Figure:
 
 
 def _points(reach: float) -> Numbers:
-    """The pole, and three rings of points around it."""
+    """Return unit vectors of the pole and of three rings of points around it."""
     rings = [(0.0, 1), *((0.85 * reach * share, count) for share, count in ((0.25, 6), (0.5, 12), (0.75, 18)))]
-    polar, around = numpy.array([(angle, 2 * pi * i / count) for angle, count in rings for i in range(count)]).T
+    polar, azimuth = numpy.array([(angle, 2 * pi * i / count) for angle, count in rings for i in range(count)]).T
     across = numpy.sin(polar)
-    return numpy.stack([across * numpy.cos(around), across * numpy.sin(around), numpy.cos(polar)])
+    return numpy.stack([across * numpy.cos(azimuth), across * numpy.sin(azimuth), numpy.cos(polar)])
 
 
 def film_figure(history: History) -> Figure:
-    """Film thickness and the moment of friction over the first cycle."""
+    """Draw the film thickness by Hamrock and Dowson and the friction moment over the first cycle."""
     use, film = history.use, history.use.film(history.lubricant)
     figure, axes = _figure()
     axes.plot(*_course(use, 1e6 * film.least), color=_INK, label="least film")
     axes.plot(*_course(use, 1e6 * film.central), "--", color=_INK, label="central film")
     axes.set_ylabel("film [nm]")
-    other = axes.twinx()
-    other.plot(*_course(use, 1e-3 * numpy.linalg.norm(film.moment, axis=1)), ":", color=_SECOND)
-    other.set_ylabel("moment of friction [N m], dotted", color=_SECOND)
-    for each in (axes, other):
-        each.set_ylim(0, _HEADROOM * each.dataLim.ymax or 1.0)
+    moment_axes = axes.twinx()
+    moment_axes.plot(*_course(use, 1e-3 * numpy.linalg.norm(film.moment, axis=1)), ":", color=_SECOND)
+    moment_axes.set_ylabel("moment of friction [N m], dotted", color=_SECOND)
+    for either in (axes, moment_axes):
+        either.set_ylim(0, _HEADROOM * either.dataLim.ymax or 1.0)
     _over_the_cycle(axes, use)
     return figure
 
 
 def edge_figure(history: History) -> Figure:
-    """The distance from the contact's edge to the rim over the cycle, unworn and at the end."""
+    """Draw the distance (mm) from the contact's edge to the rim over the cycle, unworn and at the end."""
     use, last = history.use, history.last
     figure, axes = _figure()
     axes.plot(*_course(use, use.edge_distance(use.unworn)), color=_INK, label="unworn")
-    told = f"after {last.cycles / 1e6:g} million cycles"
-    axes.plot(*_course(use, last.edge_distance), "--", color=_SECOND, label=told)
+    label = f"after {last.cycles / 1e6:g} million cycles"
+    axes.plot(*_course(use, last.edge_distance), "--", color=_SECOND, label=label)
     worst = last.edge.closest_index(use)
     if worst is not None:
-        at = 100 * use.cycle.phases[use.loaded[worst]]
-        axes.plot(at, last.edge_distance[worst], "o", color=_SECOND, ms=5)
+        phase = 100 * use.cycle.phases[use.loaded[worst]]
+        axes.plot(phase, last.edge_distance[worst], "o", color=_SECOND, ms=5)
     axes.set_ylabel("contact's edge to the rim [mm]")
     axes.set_ylim(-0.2, _HEADROOM * axes.dataLim.ymax or 1.0)  # a line at 0 is seen
     _over_the_cycle(axes, use)
@@ -181,20 +188,20 @@ def edge_figure(history: History) -> Figure:
 
 
 def _course(use: HipSetup, values: Numbers) -> tuple[Numbers, Numbers]:
-    """% of the cycle, and values (loaded,) over it: a line ends where nothing is pressed and where activities part."""
-    whole = numpy.full(use.cycle.n_steps, numpy.nan)
-    whole[use.loaded] = values
-    parted = _ends(use)[:-1]
-    return numpy.insert(100 * use.cycle.phases, parted, numpy.nan), numpy.insert(whole, parted, numpy.nan)
+    """Return % of the cycle and values (loaded,) over it, with gaps between activities and where nothing is pressed."""
+    course = numpy.full(use.cycle.n_steps, numpy.nan)
+    course[use.loaded] = values
+    gaps = _ends(use)[:-1]
+    return numpy.insert(100 * use.cycle.phases, gaps, numpy.nan), numpy.insert(course, gaps, numpy.nan)
 
 
 def _ends(use: HipSetup) -> list[int]:
-    """Instants after which a cycle, or an activity of a mix, ends."""
+    """Return the steps at which a cycle, or each activity of a mix, ends."""
     return list(accumulate(cycle.n_steps for cycle in use.cycle.activity_cycles))
 
 
 def _over_the_cycle(axes: Any, use: HipSetup) -> None:
-    """The horizontal axis and a legend; where it is a mix, its activities side by side with their names."""
+    """Label the horizontal axis and add a legend; a mix has its activities side by side with their names."""
     axes.legend(frameon=False, loc="upper center", ncol=2)
     axes.set_xlim(0, 100)
     cycles = use.cycle.activity_cycles

@@ -140,10 +140,10 @@ def _band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str |
         "patients": ("Patients who differ", None),
     }
     if bands.indices is not None:
-        shares = figure_bytes(hip_plots.share_figure(bands))
+        indices = figure_bytes(hip_plots.share_figure(bands))
         sections["matters"] = (
             "What matters",
-            picture(shares, "What matters", "Sobol's indices with 95 % intervals."),
+            picture(indices, "What matters", "Sobol's indices with 95 % intervals."),
         )
     return sections
 

@@ -87,8 +87,8 @@ def band_units(bands: Bands) -> dict[str, str]:
     """Return table heads with units; a shared coefficient has a column, and the rim has a separate line."""
     if bands.shared is None:
         return _BAND_UNITS
-    (cycles, million), (years, no_unit), *others, _ = _BAND_UNITS.items()
-    return {cycles: million, years: no_unit, "coefficient": "", **dict(others)}
+    (cycles, million), (years, no_unit), *more, _ = _BAND_UNITS.items()
+    return {cycles: million, years: no_unit, "coefficient": "", **dict(more)}
 
 
 def band_heads(bands: Bands) -> list[str]:
@@ -96,13 +96,15 @@ def band_heads(bands: Bands) -> list[str]:
     return [f"{head} [{unit}]" if unit else head for head, unit in band_units(bands).items()]
 
 
-def band_rows(bands: Bands, shares: Sequence[float]) -> Iterator[tuple[str, ...]]:
+def band_rows(bands: Bands, quantiles: Sequence[float]) -> Iterator[tuple[str, ...]]:
     """List the quantiles of each result at each report; `shares` are the shares of patients below each quantile."""
     cycles_per_year = bands.variability.cycles_per_year
     for report, count in enumerate(bands.counts):
         years = "-" if cycles_per_year is None else f"{count / cycles_per_year:.3g}"
         time = f"{count / 1e6:g}", years
-        ranges = [_range_text(bands.quantile(name, share)[report] for share in shares) for name in INFLUENCED_RESULTS]
+        ranges = [
+            _range_text(bands.quantile(name, level)[report] for level in quantiles) for name in INFLUENCED_RESULTS
+        ]
         if bands.shared is None:
             yield (*time, *ranges, f"{100 * bands.edge_loading(report):.3g} %")
             continue
@@ -111,7 +113,7 @@ def band_rows(bands: Bands, shares: Sequence[float]) -> Iterator[tuple[str, ...]
             yield (
                 *time,
                 coefficient,
-                *(_range_text(quantile(name, share)[report] for share in shares) for name in INFLUENCED_RESULTS),
+                *(_range_text(quantile(name, level)[report] for level in quantiles) for name in INFLUENCED_RESULTS),
             )
         yield (*time, _ANY, *ranges)
 
@@ -125,9 +127,9 @@ def rim_lines(bands: Bands) -> Iterator[str]:
     """Describe the share of contacts at the rim at each report, where the table has no column for it."""
     if bands.shared is None:
         return
-    shares = [f"{100 * bands.edge_loading(report):.3g} %" for report in range(len(bands.counts))]
+    percentages = [f"{100 * bands.edge_loading(report):.3g} %" for report in range(len(bands.counts))]
     counts = [f"after {count / 1e6:g} million cycles" for count in bands.counts]
-    yield f"contact at the rim: {', '.join(map(' '.join, zip(shares, counts, strict=True)))}"
+    yield f"contact at the rim: {', '.join(map(' '.join, zip(percentages, counts, strict=True)))}"
 
 
 def band_contact_line(bands: Bands) -> str:

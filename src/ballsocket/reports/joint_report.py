@@ -1,4 +1,4 @@
-"""A joint as one page to send, whatever was asked of it: drawing, inputs, answers, origin; it prints."""
+"""Page of a joint: drawing, inputs, results, and the joint file of the computation; it prints."""
 
 from __future__ import annotations
 
@@ -31,31 +31,31 @@ def joint_report(
     day: date | None = None,
     title: str = "",
 ) -> str:
-    """The page of a joint.
+    """Return the page of a joint as HTML.
 
     Parameters
     ----------
     file : JointFile
-        The joint, of plain numbers, with its cup and load.
+        Joint without axes, with its cup and load.
     sections : mapping of str to tuple of str
-        What was found, between the inputs and the origin: by id a title and HTML.
+        Sections between the inputs and the joint file: title and HTML by id.
     lede : str
-        HTML above all.
+        HTML above the sections.
     units : Units
-        Of the drawing and the inputs.
+        Units of the drawing and the inputs.
     contact : Contact, optional
-        What is painted on the drawing, where it is on the axis.
+        Contact that is drawn, if it lies on the axis.
     day : date, optional
-        By default today's.
+        Date of the page; by default today.
     title : str
-        By default the joint's name.
+        Title; by default the joint's name.
 
     Returns
     -------
     str
-        HTML that needs nothing beside it.
+        HTML that needs no other file.
     """
-    painted = None if contact is None or contact.status.failed or isinstance(contact, OffAxisContact) else contact
+    drawn_contact = None if contact is None or contact.status.failed or isinstance(contact, OffAxisContact) else contact
     all_sections = {"drawing": ("Drawing", None), "inputs": ("Inputs", None), **sections, "origin": ("Origin", None)}
     text = json.dumps(_finite(tables_of(file)), indent=1, ensure_ascii=False)
     return render_page(
@@ -64,7 +64,7 @@ def joint_report(
         all_sections,
         lede=trusted_html(lede),
         joint=str(file.joint),
-        drawing=svg_address(joint_section(file.joint, file.cup, painted, units)),
+        drawing=svg_address(joint_section(file.joint, file.cup, drawn_contact, units)),
         inputs=_inputs(file, units),
         day=(day or date.today()).isoformat(),
         checksum=sha256(text.encode()).hexdigest(),
@@ -73,6 +73,7 @@ def joint_report(
 
 
 def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
+    """Yield title, value and source of each input."""
     joint = file.joint
     yield "head diameter", units.length(2 * float(joint.ball_radius)), joint.source
     yield "bore diameter", units.length(2 * float(joint.socket_radius)), ""
@@ -91,29 +92,31 @@ def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
     yield from _cup(file.cup, units)
     for name, angle in file.aim.items():
         if name == "tilt":
-            yield PARAMETERS[name].title, units.told(PARAMETERS[name], float(angle)), "between load and cup's axis"
+            yield PARAMETERS[name].title, units.text_of(PARAMETERS[name], float(angle)), "between load and cup's axis"
         else:
             yield name, ", ".join(f"{part:.4g}" for part in angle), "to the right, to the front, up"
     for name, value in file.load.items():
-        yield PARAMETERS[name].title, units.told(PARAMETERS[name], float(value)), ""
+        yield PARAMETERS[name].title, units.text_of(PARAMETERS[name], float(value)), ""
 
 
 def _material(material: Material, units: Units) -> str:
-    known = {MATERIAL[name]: getattr(material, name) for name in ("young", "poisson")}
-    known |= {STRESS_LIMITS[name]: limit for name, limit in material.stress_limits.items()}
-    numbers = (f"{quantity.title} {units.told(quantity, float(number))}" for quantity, number in known.items())
+    """Describe a material with its elastic constants and stress limits."""
+    values = {MATERIAL[name]: getattr(material, name) for name in ("young", "poisson")}
+    values |= {STRESS_LIMITS[name]: limit for name, limit in material.stress_limits.items()}
+    numbers = (f"{quantity.title} {units.text_of(quantity, float(number))}" for quantity, number in values.items())
     return f"{material.name or 'a material'}: {', '.join(numbers)}"
 
 
 def _cup(cup: Cup, units: Units) -> Iterable[tuple[str, str, str]]:
+    """Yield title and value of each dimension of the cup."""
     for name, quantity in CUP.items():
         number = float(getattr(cup, name))
-        yield quantity.title, units.length(number) if name == "chamfer" else units.told(quantity, number), ""
+        yield quantity.title, units.length(number) if name == "chamfer" else units.text_of(quantity, number), ""
     yield "liner on its backing", cup.interface.value, ""
 
 
 def _finite(tables: Any) -> Any:
-    """With what is infinite in words, as JSON needs it and a joint file takes it."""
+    """Replace infinity by the text "inf", which JSON lacks and a joint file accepts."""
     if isinstance(tables, dict):
         return {name: _finite(value) for name, value in tables.items()}
     if isinstance(tables, list):

@@ -1,4 +1,4 @@
-"""A press as one page to send: verdict, answers, tolerances, sources."""
+"""Page of a press: verdict, results, sensitivity to tolerances, sources."""
 
 from __future__ import annotations
 
@@ -32,35 +32,35 @@ def press_report(
     surroundings: Around | None = None,
     day: date | None = None,
 ) -> str:
-    """The page of single contacts of one joint.
+    """Return the page of single contacts of one joint as HTML.
 
     Parameters
     ----------
     comparison : Comparison
     file : JointFile
-        The joint with its cup and load.
+        Joint with its cup and load.
     leading : str
-        The name of the model that gives the verdict; the exact answer, where there is one, is best.
+        Name of the model whose contact gets the verdict; the exact one if there is one.
     units : Units
-        Of every number.
+        Units of every number.
     surroundings : Around, optional
-        What a percent of each number and the tolerances do.
+        Sensitivity of the results to each number and to the tolerances.
     day : date, optional
-        By default today's.
+        Date of the page; by default today.
 
     Returns
     -------
     str
-        HTML that needs nothing beside it.
+        HTML that needs no other file.
     """
     contact = comparison[leading]
-    answers, *rest = press_sections(comparison, units, surroundings).items()
-    drawn = ("figures", ("Pressure and force", _curves(comparison, contact)))
-    return joint_report(file, dict([answers, drawn, *rest]), press_lede(contact, units), units, contact, day)
+    answers, *more = press_sections(comparison, units, surroundings).items()
+    drawn = ("figures", ("Pressure and force", _figures(comparison, contact)))
+    return joint_report(file, dict([answers, drawn, *more]), press_lede(contact, units), units, contact, day)
 
 
 def press_lede(contact: Contact, units: Units = Units.SI) -> str:
-    """The first number of a contact with the verdict in words, as HTML."""
+    """Return the largest pressure of a contact with the verdict in words, as HTML."""
     verdict = assess_strength(contact)
     pressure, load = (_number(contact, name, units) for name in ("max_pressure", "force"))
     model, kind = contact.model.name, _VERDICT_STYLES[verdict.bears]
@@ -70,20 +70,22 @@ def press_lede(contact: Contact, units: Units = Units.SI) -> str:
 def press_sections(
     comparison: Comparison, units: Units = Units.SI, surroundings: Around | None = None
 ) -> dict[str, tuple[str, str]]:
-    """What a press puts on a page, without its figures: by id a title and HTML."""
+    """Return the sections of a press without its figures: title and HTML by id."""
     return {
-        "answers": ("Answers", _answers(comparison, units)),
-        "tolerances": ("What tolerances do", _around(surroundings, units)),
+        "answers": ("Answers", _results(comparison, units)),
+        "tolerances": ("What tolerances do", _tolerances(surroundings, units)),
         "sources": ("Sources", _sources(comparison)),
     }
 
 
 def _number(contact: Contact, name: str, units: Units) -> str:
+    """Write a quantity of a contact with its unit."""
     column = next(column for column in units.columns if column.attribute == name)
     return f"{number_text(column.values_of(contact), 4, 'no answer')} {column.unit}"
 
 
-def _answers(comparison: Comparison, units: Units) -> str:
+def _results(comparison: Comparison, units: Units) -> str:
+    """Return the table of results by model with the notes, as HTML."""
     columns = units.columns
     rows = [
         (
@@ -98,29 +100,35 @@ def _answers(comparison: Comparison, units: Units) -> str:
     return render_part(_TEMPLATE, "answers", heads, rows, symbols, comparison.notes())
 
 
-def _curves(comparison: Comparison, leading: Contact) -> str:
-    """The curves; the cup seen from its opening for a contact beside its axis."""
-    shown = {leading.model.name: leading} if isinstance(leading, OffAxisContact) else successful_contacts(comparison)
-    drawable = shown and not leading.status.failed
-    return render_part(_TEMPLATE, "figures", svg_address(press_plots.plot(shown)) if drawable else None)
+def _figures(comparison: Comparison, leading: Contact) -> str:
+    """Return the figure of the curves as HTML; for a contact off the cup's axis the pressure map of the cup."""
+    contacts = {leading.model.name: leading} if isinstance(leading, OffAxisContact) else successful_contacts(comparison)
+    drawable = contacts and not leading.status.failed
+    return render_part(_TEMPLATE, "figures", svg_address(press_plots.plot(contacts)) if drawable else None)
 
 
-def _around(found: Around | None, units: Units) -> str:
-    """Elasticities, and the band of the tolerances."""
-    if found is None:
+def _tolerances(surroundings: Around | None, units: Units) -> str:
+    """Return elasticities and the bands of the tolerances as HTML."""
+    if surroundings is None:
         return render_part(_TEMPLATE, "tolerances", None, ())
-    names = list(next(iter(found.changes.values())))
-    rows = [(CONTACT[asked].title, *(f"{each[name]:+.2f}" for name in names)) for asked, each in found.changes.items()]
+    names = list(next(iter(surroundings.changes.values())))
+    rows = [
+        (CONTACT[name].title, *(f"{changes[name]:+.2f}" for name in names))
+        for name, changes in surroundings.changes.items()
+    ]
     heads = ("changes by %, where 1 % is added to the", *(PARAMETERS[name].title for name in names))
     ends = [
-        (CONTACT[asked].title, *(units.told(CONTACT[asked], end) for end in band)) for asked, band in found.band.items()
+        (CONTACT[name].title, *(units.text_of(CONTACT[name], end) for end in band))
+        for name, band in surroundings.band.items()
     ]
     return render_part(_TEMPLATE, "tolerances", {"heads": heads, "rows": rows}, ends)
 
 
 def _sources(comparison: Comparison) -> str:
+    """Return the list of sources as HTML."""
     return render_part(_TEMPLATE, "sources", map(_source_text, comparison.sources))
 
 
 def _source_text(source: Source) -> str:
+    """Write a source with its DOI."""
     return f"{source}, doi {source.doi}" if source.doi else str(source)

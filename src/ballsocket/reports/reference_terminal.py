@@ -1,4 +1,4 @@
-"""Fits and rivals in a terminal: our numbers beside those of a reference, of the paper, of CalculiX."""
+"""Fits and reference solutions in a terminal: results of ballsocket beside those of the paper and of CalculiX."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 def print_calibration(fit: Calibration) -> None:
-    """A fitted modulus with its residual and the error of the closed form that takes it."""
+    """Print a fitted modulus with its residual and the error of the closed form that uses it."""
     terminal = console()
     print_folded(terminal, str(fit.joint), "bold")
     low, high = float(fit.force.min()), float(fit.force.max())
@@ -41,7 +41,7 @@ def print_calibration(fit: Calibration) -> None:
 
 
 def print_table_3(columns: Sequence[TableColumn]) -> None:
-    """Table 3 of the paper beside the same fit to the exact answer."""
+    """Print Table 3 of the paper beside the same fit to the exact solution."""
     terminal = console()
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for head in ("", *(f"ν {column.poisson:g}" for column in columns)):
@@ -66,7 +66,7 @@ def print_table_3(columns: Sequence[TableColumn]) -> None:
 
 
 def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
-    """Our own answer at each step of a deck beside CalculiX', with how far that lies above ours."""
+    """Print the result of ballsocket at each step of a deck beside that of CalculiX, with the deviation."""
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     heads = list(_rival_heads())
     for head, _ in heads:
@@ -82,7 +82,7 @@ def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
 
 
 def _rival_heads() -> Iterator[tuple[str, str]]:
-    """Symbols and units of those columns."""
+    """Yield symbols and units of the columns of `print_rival`."""
     yield CONTACT["indentation"].symbol, CONTACT["indentation"].written.text
     for name, apart in (("force", "%"), ("pole_pressure", "%"), ("half_angle", "°")):
         symbol, unit = CONTACT[name].symbol, CONTACT[name].written.text
@@ -90,7 +90,7 @@ def _rival_heads() -> Iterator[tuple[str, str]]:
 
 
 def print_tilted_rival(ours: Sequence[float], rival: Sequence[float]) -> None:
-    """Forces of a tilted contact beside those of CalculiX."""
+    """Print the force components (N) of a tilted contact beside those of CalculiX."""
     terminal, size = console(), float(numpy.linalg.norm(rival))
     for name, mine, its in zip(("towards the rim", "across", "towards the dome"), ours, rival, strict=True):
         off = 100 * (mine - its) / size

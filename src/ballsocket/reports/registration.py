@@ -1,4 +1,4 @@
-"""Registration of the plots that contacts, comparisons and studies offer as methods and attributes."""
+"""Registration of the plots that contacts, comparisons and studies provide as methods and attributes."""
 
 from __future__ import annotations
 
@@ -18,13 +18,17 @@ def register_plots() -> None:
 
 
 def _load_contact_plot() -> Plot:
+    """Import and return the plot of contacts."""
     from .press_plots import plot
 
     return plot
 
 
 def _study_plot_loader(name: str) -> Callable[[], Plot]:
+    """Make a function that imports a plot of studies by its name."""
+
     def load() -> Plot:
+        """Import and return the plot."""
         from . import study_plots
 
         plot: Plot = getattr(study_plots, name)

@@ -1,4 +1,4 @@
-"""Finite elements become a picture: the mesh, the stresses in it, and the pressure beside the exact one."""
+"""Figure of a finite-element solution: mesh, stresses, and the pressure beside the exact one."""
 
 from __future__ import annotations
 
@@ -19,40 +19,41 @@ if TYPE_CHECKING:
     from ..elasticity.finite_elements.section import Part
 
 _RIM = {4: (0, 1, 2, 3), 9: (0, 4, 1, 5, 2, 6, 3, 7)}
-"""The nodes around an element, one after the other."""
+"""Nodes around an element in order, by its number of nodes."""
 
 _LEVELS = 14
 _SCALES = {"backing": "magma", "liner": "viridis", "ball": "cividis"}
-"""Stresses of a shell and of a liner differ by orders of magnitude: each kind of part has a scale of its own."""
+"""Colour map of each kind of part; stresses of a shell and of a liner differ by orders of magnitude."""
 
 
 def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figure:
-    """Half mesh, half von Mises stress, to scale, each part named; beside it the pressure with its error bar.
+    """Draw mesh and von Mises stress in section, to scale, beside the pressure with its error bar.
 
     Parameters
     ----------
     contact : MeshedContact
         One contact under load.
     exact : Contact, optional
-        The exact answer to the same load, drawn in black.
+        Exact contact of the same load, drawn in black.
 
     Raises
     ------
     ValueError
-        More than one contact, or one without load or answer.
+        More than one contact, a contact without load, or a failed one.
     """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(11.0, 4.8), layout="constrained")
-    left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
-    _draw_section(figure, left, contact)
-    _draw_pressure(right, contact, exact)
+    section_axes, pressure_axes = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
+    _draw_section(figure, section_axes, contact)
+    _draw_pressure(pressure_axes, contact, exact)
     title = f"{contact.joint.dimensions}; {contact.force:.4g} N, {contact.mesh.elements} elements"
     figure.suptitle(title, fontsize=10)
     return figure
 
 
 def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
+    """Draw the mesh at the left and the stress at the right, with a colour bar for each kind of part."""
     section = contact.section
     outermost = max(float(part.position[0].max()) for part in section.parts)
     extent = 1.03 * min(outermost, float(contact.joint.socket_radius) + 40.0)
@@ -61,7 +62,7 @@ def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
     for kind, colours in _SCALES.items():
         parts = [part for part in section.parts if part.name.startswith(kind)]
         if parts:
-            highest = section.peak_stress.von_mises if kind == "liner" else max(map(_highest, parts))
+            highest = section.peak_stress.von_mises if kind == "liner" else max(map(_largest_stress, parts))
             filled = [_draw_stress(axes, part, highest, colours) for part in parts][-1]
             bar = figure.colorbar(filled, ax=axes, shrink=0.75, pad=0.01, extend="max")
             bar.set_label(f"von Mises stress in the {kind} [MPa]", fontsize=8)
@@ -77,7 +78,7 @@ def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
 
 
 def _draw_mesh(axes: Axes, part: Part) -> None:
-    """The outlines of the elements, on the left."""
+    """Draw the outlines of the elements at the left."""
     from matplotlib.collections import PolyCollection
 
     corners = part.position[:, part.elements[list(_RIM[len(part.elements)])]]
@@ -86,23 +87,23 @@ def _draw_mesh(axes: Axes, part: Part) -> None:
     axes.add_collection(PolyCollection(list(outlines), facecolors="white", edgecolors=colour, linewidths=0.25))
 
 
-def _highest(part: Part) -> float:
-    """The largest stress but for the sharpest corners."""
+def _largest_stress(part: Part) -> float:
+    """Return the largest stress (MPa) of a part without the sharpest corners."""
     return float(numpy.percentile(part.stress.von_mises, 99.5))
 
 
 def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
-    """What each part is, on the side of the meshes, and how far the cup reaches around its ball."""
+    """Label each part on the side of the mesh, and state the arc of cover."""
     joint = contact.joint
-    of = {"ball": joint.ball, "liner": joint.liner}
-    of |= {f"backing {number}": layer.material for number, layer in enumerate(joint.backing, start=1)}
+    materials = {"ball": joint.ball, "liner": joint.liner}
+    materials |= {f"backing {number}": layer.material for number, layer in enumerate(joint.backing, start=1)}
     for number, part in enumerate(sorted(contact.section.parts, key=lambda part: part.name != "ball")):
         angle, middle = (
             0.9 * float(part.angle.max()),
             (float(part.radius.min()) + min(float(part.radius.max()), extent)) / 2,
         )
         nearest = numpy.argmin((part.angle - angle) ** 2 * middle**2 + (part.radius - middle) ** 2)
-        material = of[part.name]
+        material = materials[part.name]
         text = f"{part.name}: {material.name}" if material is not None and material.name else part.name
         x, y = part.position[:, nearest]
         arrow = {"arrowstyle": "-", "lw": 0.6, "color": "0.2", "relpos": (1.0, 0.5)}
@@ -113,7 +114,7 @@ def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
 
 
 def _draw_stress(axes: Axes, part: Part, highest: float, colours: str) -> Any:
-    """Contours of the von Mises stress, on the right."""
+    """Draw contours of the von Mises stress at the right."""
     from matplotlib.ticker import MaxNLocator
     from matplotlib.tri import Triangulation
 
@@ -125,19 +126,25 @@ def _draw_stress(axes: Axes, part: Part, highest: float, colours: str) -> Any:
 
 
 def _draw_pressure(axes: Axes, contact: MeshedContact, exact: Contact | None) -> None:
+    """Draw the pressure over the angle beside the exact one, with the error bar of its largest value."""
     edge = contact.half_angle
     angle = edge * numpy.append(numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 300)), 1 + 1e-6)
     pressure = contact.pressure(angle)
     if exact is not None:
-        there = numpy.linspace(0.0, 1.0, 300) * exact.half_angle * (1 + 1e-6)
-        axes.plot(numpy.degrees(there), exact.pressure(there), label="exact", **in_matplotlib(line_of(reference.name)))
+        exact_angle = numpy.linspace(0.0, 1.0, 300) * exact.half_angle * (1 + 1e-6)
+        axes.plot(
+            numpy.degrees(exact_angle),
+            exact.pressure(exact_angle),
+            label="exact",
+            **in_matplotlib(line_of(reference.name)),
+        )
     line = line_of(judge.name)
     axes.plot(numpy.degrees(angle), pressure, label="finite elements", **in_matplotlib(line))
     error = contact.error["max_pressure"]
     if error > 0:
         bars = {"yerr": error * contact.max_pressure, "capsize": 3, "fmt": "none"}
         axes.errorbar([0.0], [contact.max_pressure], color=line.colour, label=f"p0 ± {100 * error:.1g} %", **bars)
-    finish(axes, *(each.label() for each in FIELD.values()))
+    finish(axes, *(quantity.label() for quantity in FIELD.values()))
     axes.set_xlim(0.0, max(1.08 * numpy.degrees(edge), 5.0))
     axes.set_ylim(bottom=0.0)
     axes.legend(**LEGEND)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
+from ..core.deprecation import renamed_arguments
 from ..core.quantities import QUANTITIES
 from ..studies.limits import Limit, allowed, margin_over
 from .style import BLUE, INK, LEGEND, ORANGE, finish
@@ -20,23 +21,25 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SHOWN = ("max_pressure", "area", "half_angle")
-"""What a design map shows."""
+"""Results that a design map shows by default."""
 
 _VEIL = 0.65
+"""Opacity of the white veil over forbidden areas."""
 
 
 def design_map(
     study: xarray.Dataset, limits: Sequence[Limit] = (), quantities: Iterable[str] = SHOWN, best: Any = None
 ) -> Figure:
-    """Contours of answers over the two axes of a study, pale where a limit is broken, hatched where the model is
-    not to be trusted.
+    """Draw contours of results over the two axes of a study, with limits and validity.
+
+    The map is pale where a limit is broken or a result is missing, and hatched where the model is not valid.
 
     Parameters
     ----------
     study : xarray.Dataset
         From `study`, with two axes of more than one value.
     limits : sequence of Limit
-        Their ends are dotted lines, by name.
+        Limits; their ends are dotted lines with text.
     quantities : iterable of str
     best : mapping of str to float, optional
         A point to mark.
@@ -44,14 +47,14 @@ def design_map(
     Raises
     ------
     ValueError
-        A study that has not two axes.
+        A study without exactly two axes of more than one value.
     """
     from matplotlib.figure import Figure
 
     names = [name for name in quantities if name in study.data_vars]
     across, up = _two_axes(study)
     figure = Figure(figsize=(4.4 * len(names) + 0.4, 4.4), layout="constrained")
-    answered, trusted = (each.transpose(up, across).values for each in (allowed(study, ()), study.valid))
+    answered, trusted = (condition.transpose(up, across).values for condition in (allowed(study, ()), study.valid))
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
         values = read(study, name).transpose(up, across).values
         x, y = read(study, across).values, read(study, up).values
@@ -60,30 +63,31 @@ def design_map(
         if not answered.all():
             axes.contourf(x, y, (~answered).astype(float), levels=[0.5, 1.5], colors="white", alpha=_VEIL)
         if not trusted.all():
-            doubt = axes.contourf(x, y, (~trusted).astype(float), levels=[0.5, 1.5], colors="none", hatches=["//"])
-            doubt.set_edgecolor("0.85")
-            doubt.set_linewidth(0)
+            hatching = axes.contourf(x, y, (~trusted).astype(float), levels=[0.5, 1.5], colors="none", hatches=["//"])
+            hatching.set_edgecolor("0.85")
+            hatching.set_linewidth(0)
         _draw_limits(axes, study, limits, across, up)
-        _label(axes, lines)
+        _label_lines(axes, lines)
         if best is not None:
-            place = (best[axis] * QUANTITIES[axis].shown.factor for axis in (across, up))
-            axes.plot(*place, "o", color="white", markeredgecolor="black", markersize=8)
+            position = (best[axis] * QUANTITIES[axis].shown.factor for axis in (across, up))
+            axes.plot(*position, "o", color="white", markeredgecolor="black", markersize=8)
         axes.set_xlabel(QUANTITIES[across].label())
         axes.set_ylabel(QUANTITIES[up].label())
         axes.set_title(QUANTITIES[name].label(), fontsize=10)
     figure.suptitle(_title(study), fontsize=10, parse_math=False)
     within = allowed(study, limits).transpose(up, across).values
-    said = [(within, "pale: a limit is broken, or no answer"), (trusted, "hatched: the model is not to be trusted")]
-    figure.supxlabel("; ".join(words for where, words in said if not where.all()), fontsize=8, color="0.3")
+    texts = [(within, "pale: a limit is broken, or no answer"), (trusted, "hatched: the model is not to be trusted")]
+    figure.supxlabel("; ".join(words for where, words in texts if not where.all()), fontsize=8, color="0.3")
     return figure
 
 
 def read(study: xarray.Dataset, name: str) -> xarray.DataArray:
-    """A quantity or axis in the unit in which it is drawn."""
+    """Return a quantity or axis of a study in the unit of figures."""
     return study[name] * QUANTITIES[name].shown.factor
 
 
 def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
+    """Return the names of the two axes of a study that have more than one value."""
     long = [str(dim) for dim, size in study.sizes.items() if size > 1]
     if len(long) != 2:
         raise ValueError(f"a map needs two axes of more than one value, got {', '.join(long) or 'none'}")
@@ -94,23 +98,24 @@ def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
 
 
 def _title(study: xarray.Dataset) -> str:
-    """The joint by its name, what does not vary of what is asked, and who answers."""
+    """Describe the joint, the fixed parameters and the model of a study."""
     fixed = [
-        _said(str(name), "=", float(each))
-        for name, each in study.coords.items()
-        if not each.dims and name in QUANTITIES and numpy.issubdtype(each.dtype, numpy.number)
+        _value_text(str(name), "=", float(coordinate))
+        for name, coordinate in study.coords.items()
+        if not coordinate.dims and name in QUANTITIES and numpy.issubdtype(coordinate.dtype, numpy.number)
     ]
     joint = json.loads(study.attrs["joint"])["name"]
     return "; ".join([*([joint] if joint else []), *fixed, f"answered by {study.attrs['model']}"])
 
 
-def _said(name: str, sign: str, value: float) -> str:
+def _value_text(name: str, sign: str, value: float) -> str:
+    """Write a quantity with a sign, a value and its unit."""
     quantity = QUANTITIES[name]
     return f"{quantity.title} {sign} {value * quantity.shown.factor:.4g} {quantity.shown.text}".strip()
 
 
 def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], across: str, up: str) -> None:
-    """A veil over what each limit forbids, up to a dotted line that says which it is."""
+    """Draw a veil over the area that each limit forbids, bounded by a dotted line with its text."""
     x, y = read(study, across).values, read(study, up).values
     nearest = numpy.full((len(y), len(x)), numpy.inf)
     for limit in limits:
@@ -120,25 +125,28 @@ def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], acr
     if numpy.nanmin(nearest) < 0:
         axes.contourf(x, y, numpy.clip(nearest, -1.0, 1.0), levels=[-2.0, 0.0], colors="white", alpha=_VEIL)
     for limit in limits:
-        for end in _ends(limit):
+        for end in _one_sided_limits(limit):
             values = margin_over(study, end, across, up)
             if numpy.nanmin(values) < 0 < numpy.nanmax(values):
                 line = axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
-                _label(axes, line, _of(end))
+                _label_lines(axes, line, _limit_text(end))
 
 
-def _ends(limit: Limit) -> list[Limit]:
-    """Each end of a limit as one of its own."""
+def _one_sided_limits(limit: Limit) -> list[Limit]:
+    """Split a limit into one for each finite end."""
     ends = (replace(limit, high=numpy.inf), replace(limit, low=-numpy.inf))
     return [end for end in ends if (end.low, end.high) != (-numpy.inf, numpy.inf)]
 
 
-def _of(limit: Limit) -> str:
-    return _said(limit.name, "≤", limit.high) if limit.high < numpy.inf else _said(limit.name, "≥", limit.low)
+def _limit_text(limit: Limit) -> str:
+    """Write a limit with one finite end."""
+    return (
+        _value_text(limit.name, "≤", limit.high) if limit.high < numpy.inf else _value_text(limit.name, "≥", limit.low)
+    )
 
 
-def _label(axes: Axes, lines: ContourSet, text: str = "") -> None:
-    """Numbers, or a text, on lines: dark in a light halo, so that they can be read on every colour."""
+def _label_lines(axes: Axes, lines: ContourSet, text: str = "") -> None:
+    """Write numbers, or a text, on contour lines, legible on every colour."""
     from matplotlib.patheffects import withStroke
 
     fmt: Any = {float(level): text for level in lines.levels} if text else None
@@ -147,7 +155,7 @@ def _label(axes: Axes, lines: ContourSet, text: str = "") -> None:
 
 
 def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressure", "half_angle")) -> Figure:
-    """The median of answers over the one axis beside `sample`, with bands that hold 50, 90 and 99 % of the samples.
+    """Draw the median of results over an axis, with bands that contain 50, 90 and 99 % of the samples.
 
     Raises
     ------
@@ -156,18 +164,18 @@ def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressur
     """
     from matplotlib.figure import Figure
 
-    others = [str(dim) for dim in study.sizes if dim != "sample"]
-    if "sample" not in study.sizes or len(others) != 1:
+    axis_names = [str(dim) for dim in study.sizes if dim != "sample"]
+    if "sample" not in study.sizes or len(axis_names) != 1:
         raise ValueError("bands need samples and one more axis, such as the force")
     names = [name for name in quantities if name in study.data_vars]
     figure = Figure(figsize=(5.0 * len(names), 4.0), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values, x = read(study, name), read(study, others[0]).values
+        values, x = read(study, name), read(study, axis_names[0]).values
         for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
             low, high = (values.quantile(end, dim="sample").values for end in ((1 - share) / 2, (1 + share) / 2))
             axes.fill_between(x, low, high, color=shade, label=f"{100 * share:g} % of the joints", linewidth=0)
         axes.plot(x, values.median(dim="sample").values, color="black", linewidth=1.8, label="median")
-        finish(axes, QUANTITIES[others[0]].label(), QUANTITIES[name].label())
+        finish(axes, QUANTITIES[axis_names[0]].label(), QUANTITIES[name].label())
     figure.axes[0].legend(**LEGEND)
     return figure
 
@@ -175,7 +183,7 @@ def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressur
 def front_figure(
     study: xarray.Dataset, front: xarray.Dataset, minimise: tuple[str, str], limits: Sequence[Limit]
 ) -> Figure:
-    """Every allowed design as a dot, and those that no other beats as a line.
+    """Draw every allowed design as a dot, and the Pareto front as a line.
 
     Parameters
     ----------
@@ -189,8 +197,8 @@ def front_figure(
     figure = Figure(figsize=(6.4, 4.6), layout="constrained")
     axes = figure.subplots()
     good = allowed(study, limits)
-    one, other = (read(study, name).where(good).values.ravel() for name in minimise)
-    axes.plot(one, other, ".", color="0.75", markersize=3, label="allowed")
+    first, second = (read(study, name).where(good).values.ravel() for name in minimise)
+    axes.plot(first, second, ".", color="0.75", markersize=3, label="allowed")
     best = [read(front, name).values for name in minimise]
     axes.plot(*best, "o-", color=INK, markersize=4, linewidth=1.2, label="no other is better in both")
     finish(axes, *(QUANTITIES[name].label() for name in minimise))
@@ -198,18 +206,19 @@ def front_figure(
     return figure
 
 
-def sensitivity_figure(found: xarray.Dataset) -> Figure:
-    """First and total Sobol indices of every quantity, with their intervals."""
+@renamed_arguments(found="indices")
+def sensitivity_figure(indices: xarray.Dataset) -> Figure:
+    """Draw first and total Sobol indices of every quantity with their intervals."""
     from matplotlib.figure import Figure
 
-    quantities, parameters = found.quantity.values.tolist(), found.parameter.values.tolist()
+    quantities, parameters = indices.quantity.values.tolist(), indices.parameter.values.tolist()
     figure = Figure(figsize=(3.4 * len(quantities) + 1.2, 0.55 * len(parameters) + 1.8), layout="constrained")
     rows = numpy.arange(len(parameters))
     for axes, quantity in zip(
         figure.subplots(1, len(quantities), squeeze=False, sharey=True).ravel(), quantities, strict=True
     ):
         for order, offset, colour in (("first", -0.17, BLUE), ("total", 0.17, ORANGE)):
-            part = found.sel(quantity=quantity)
+            part = indices.sel(quantity=quantity)
             values, low, high = (part[f"{order}_order{end}"].values for end in ("", "_low", "_high"))
             error = numpy.clip([values - low, high - values], 0.0, None)
             hatch = "" if order == "first" else "//"

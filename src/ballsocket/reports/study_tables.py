@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class End(NamedTuple):
-    """A least or largest value, and the number of its point."""
+    """Least or largest value of a result, and the index of its point."""
 
     value: float
     place: int
@@ -32,7 +32,7 @@ class End(NamedTuple):
 
 @dataclass
 class StudyReport:
-    """What is told of a study, gathered part by part: it may be larger than the memory."""
+    """Least, largest and sampled values of a study, collected in parts: a study may exceed the memory."""
 
     ends: dict[str, tuple[End, End]]
     sampled: dict[str, list[numpy.ndarray]]
@@ -41,87 +41,96 @@ class StudyReport:
 
     @classmethod
     def of(cls, study: xarray.Dataset) -> StudyReport:
-        names = answers(study)
+        """Collect the values of a study."""
+        names = result_names(study)
         nothing = (End(float("nan"), 0), End(float("nan"), 0))
-        seen = cls(
-            dict.fromkeys(names, nothing), {name: [] for name in names}, {one: 0 for one in Status if one.failed}
+        report = cls(
+            dict.fromkeys(names, nothing),
+            {name: [] for name in names},
+            {status: 0 for status in Status if status.failed},
         )
-        first, stride = 0, max(1, study.status.size // _SAMPLED)
+        first, stride = 0, max(1, study.status.size // _MAX_SAMPLED)
         for part in pieces(study):
             for name in names:
-                seen._add(name, part[name].values.ravel(), first, stride)
-            for one in seen.failed:
-                seen.failed[one] += int((part.status.values == int(one)).sum())
-            seen.valid += int(part.valid.values.sum())
+                report._add(name, part[name].values.ravel(), first, stride)
+            for status in report.failed:
+                report.failed[status] += int((part.status.values == int(status)).sum())
+            report.valid += int(part.valid.values.sum())
             first += part.status.size
-        return seen
+        return report
 
     def _add(self, name: str, values: numpy.ndarray, first: int, stride: int) -> None:
+        """Add the values of one part of a result."""
         self.sampled[name].append(values[::stride].copy())
         if numpy.isnan(values).all():
             return
         low, high = self.ends[name]
-        least, most = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
-        if not values[least] >= low.value:
-            low = End(float(values[least]), first + least)
-        if not values[most] <= high.value:
-            high = End(float(values[most]), first + most)
+        smallest, largest = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
+        if not values[smallest] >= low.value:
+            low = End(float(values[smallest]), first + smallest)
+        if not values[largest] <= high.value:
+            high = End(float(values[largest]), first + largest)
         self.ends[name] = low, high
 
 
-_SAMPLED = 1_000_000  # points over which a median is taken
-_LISTED = 5000  # points up to which all values are told
+_MAX_SAMPLED = 1_000_000
+"""Points from which a median is computed."""
+
+_MAX_LISTED = 5000
+"""Points up to which a summary contains all values."""
 
 
 def study_summary(study: xarray.Dataset) -> dict[str, Any]:
-    """Least, median and largest value of each answer with their places, and all values where these are few."""
-    seen, size = StudyReport.of(study), int(study.status.size)
-    quantities = {name: _ends_of(study, name, seen) for name in seen.ends}
+    """Summarise a study: least, median and largest value of each result with coordinates, and few points in full."""
+    report, size = StudyReport.of(study), int(study.status.size)
+    quantities = {name: _ends_of(study, name, report) for name in report.ends}
     return {
         "model": study.attrs["model"],
         "points": size,
-        "valid": seen.valid == size,
-        "notes": [f"{count} of {size}: {one.sentence}" for one, count in seen.failed.items() if count],
+        "valid": report.valid == size,
+        "notes": [f"{count} of {size}: {status.sentence}" for status, count in report.failed.items() if count],
         "quantities": quantities,
-        "values": _values(study) if size <= _LISTED else None,
+        "values": _values(study) if size <= _MAX_LISTED else None,
     }
 
 
 def _values(study: xarray.Dataset) -> dict[str, Any]:
-    """What varies and what was answered, point by point in the order of the axes."""
+    """Return the varied parameters and the results at all points, in the order of the axes."""
     flat = study.stack(point=dims_of(study)) if dims_of(study) else study.expand_dims("point")
-    names = [*varying(study), *answers(study)]
+    names = [*varying_parameters(study), *result_names(study)]
     return {name: _plain(flat[name].values) for name in names}
 
 
 def _plain(values: numpy.ndarray) -> Any:
+    """Convert an array to a list for JSON."""
     return values.tolist() if values.dtype.kind in "OUS" else to_list(values)
 
 
-def _ends_of(study: xarray.Dataset, name: str, seen: StudyReport) -> dict[str, Any]:
-    low, high = seen.ends[name]
+def _ends_of(study: xarray.Dataset, name: str, report: StudyReport) -> dict[str, Any]:
+    """Summarise least, median and largest value of a result."""
+    low, high = report.ends[name]
     if numpy.isnan(low.value):
         return {"least": None, "median": None, "largest": None}
-    told = {
-        end: {"value": one.value, "at": coordinates(study, one.place)}
-        for end, one in (("least", low), ("largest", high))
+    ends = {
+        end: {"value": extreme.value, "at": coordinates(study, extreme.place)}
+        for end, extreme in (("least", low), ("largest", high))
     }
-    return {**told, "median": float(numpy.nanmedian(numpy.concatenate(seen.sampled[name])))}
+    return {**ends, "median": float(numpy.nanmedian(numpy.concatenate(report.sampled[name])))}
 
 
 def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any]:
-    """Least and largest values with their places.
+    """Summarise the allowed points of a map: least and largest values with coordinates.
 
     Raises
     ------
     ValueError
-        Nothing is allowed.
+        No point is allowed.
     """
     good = allowed(study, limits)
     if not bool(good.any()):
         raise ValueError(refusal(study, limits, "no point of the map is allowed", "at any point of the map"))
     quantities = {}
-    for name in answers(study):
+    for name in result_names(study):
         values = study[name].where(good).transpose(*dims_of(study)).values
         ends = (int(numpy.nanargmin(values)), int(numpy.nanargmax(values)))
         quantities[name] = [{"value": float(values.flat[end]), "at": coordinates(study, end)} for end in ends]
@@ -134,34 +143,34 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
 
 
 def front_summary(front: xarray.Dataset) -> dict[str, Any]:
-    """Columns of numbers."""
+    """Summarise a Pareto front as lists of numbers."""
     names = [str(name) for name in (*front.coords, *front.data_vars) if front[name].dims]
     return {"model": front.attrs["model"], "points": {name: to_list(front[name].values) for name in names}}
 
 
-def sensitivity_summary(found: xarray.Dataset) -> dict[str, Any]:
-    """By quantity, then by number."""
+def sensitivity_summary(indices: xarray.Dataset) -> dict[str, Any]:
+    """Summarise Sobol indices and elasticities by quantity and parameter."""
     orders = ("first_order", "first_order_low", "first_order_high", "total_order", "elasticity")
     return {
-        "samples": found.attrs["samples"],
+        "samples": indices.attrs["samples"],
         "quantities": {
             quantity: {
-                "mean": float(found["mean"].sel(quantity=quantity)),
-                "deviation": float(found["deviation"].sel(quantity=quantity)),
+                "mean": float(indices["mean"].sel(quantity=quantity)),
+                "deviation": float(indices["deviation"].sel(quantity=quantity)),
                 "numbers": {
                     name: {
-                        order: to_list(found[order].sel(quantity=quantity, parameter=name).values) for order in orders
+                        order: to_list(indices[order].sel(quantity=quantity, parameter=name).values) for order in orders
                     }
-                    for name in found.parameter.values.tolist()
+                    for name in indices.parameter.values.tolist()
                 },
             }
-            for quantity in found.quantity.values.tolist()
+            for quantity in indices.quantity.values.tolist()
         },
     }
 
 
-def varying(study: xarray.Dataset) -> list[str]:
-    """The parameters that vary, materials by their names alone."""
+def varying_parameters(study: xarray.Dataset) -> list[str]:
+    """Return the names of the parameters that vary; a material is one name."""
     return [
         str(name)
         for name, variable in study.coords.items()
@@ -169,42 +178,42 @@ def varying(study: xarray.Dataset) -> list[str]:
     ]
 
 
-def answers(study: xarray.Dataset) -> list[str]:
-    """What a study holds of the contacts, by name."""
+def result_names(study: xarray.Dataset) -> list[str]:
+    """Return the names of the results of a study."""
     return [str(name) for name in study.data_vars if name not in ("status", "valid")]
 
 
 def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
-    """The parameters at a point, by its number in the order of the dimensions."""
+    """Return the parameters at a point, by its index in the order of the dimensions."""
     dims = dims_of(study)
-    place = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
-    found = {}
+    index = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
+    values = {}
     for name, variable in study.coords.items():
-        here = variable.isel({dim: int(place[dim]) for dim in variable.dims})
-        found[str(name)] = here.values.item()
-    return found
+        value = variable.isel({dim: int(index[dim]) for dim in variable.dims})
+        values[str(name)] = value.values.item()
+    return values
 
 
 def print_study(study: xarray.Dataset) -> None:
-    """Each answer with its least, median and largest value, and where the ends are."""
+    """Print least, median and largest value of each result, with the coordinates of the ends."""
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
     Console().print(f"{study.attrs['model']}, {shape or 'one point'}", highlight=False)
     table = _table("quantity", "unit", "least", "median", "largest", "least at", "largest at")
-    seen = StudyReport.of(study)
-    for name, (low, high) in seen.ends.items():
+    report = StudyReport.of(study)
+    for name, (low, high) in report.ends.items():
         if numpy.isnan(low.value):
             table.add_row(name, _unit(name), *["no answer"] * 3, "", "")
             continue
-        middle = float(numpy.nanmedian(numpy.concatenate(seen.sampled[name])))
-        numbers = (_shown(name, value) for value in (low.value, middle, high.value))
-        table.add_row(name, _unit(name), *numbers, _place(study, low.place), _place(study, high.place))
+        middle = float(numpy.nanmedian(numpy.concatenate(report.sampled[name])))
+        numbers = (_value_text(name, value) for value in (low.value, middle, high.value))
+        table.add_row(name, _unit(name), *numbers, _point_text(study, low.place), _point_text(study, high.place))
     Console().print(table)
-    failed = "".join(f"; {count} {one.sentence}" for one, count in seen.failed.items() if count)
-    Console().print(f"{study.status.size} points, {seen.valid} of them valid{failed}", highlight=False)
+    failed = "".join(f"; {count} {status.sentence}" for status, count in report.failed.items() if count)
+    Console().print(f"{study.status.size} points, {report.valid} of them valid{failed}", highlight=False)
 
 
 def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
-    """The least and largest value of each answer among what the limits allow, and where."""
+    """Print least and largest value of each result within the limits, with coordinates."""
     heads, rows = map_rows(study, limits)
     table = _table(*heads)
     for row in rows:
@@ -217,33 +226,35 @@ def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
 
 
 def map_rows(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[list[str], list[list[str]]]:
-    """Heads and text of that table."""
+    """Return heads and rows of the table of a map."""
     rows = []
     for name, ends in map_summary(study, limits)["quantities"].items():
         row = [name, _unit(name)]
         for end in ends:
-            varied = {axis: end["at"][axis] for axis in varying(study)}
-            row += [_shown(name, end["value"]), _words(varied)]
+            varied = {axis: end["at"][axis] for axis in varying_parameters(study)}
+            row += [_value_text(name, end["value"]), _parameter_text(varied)]
         rows.append(row)
     return ["quantity", "unit", "least", "at", "largest", "at"], rows
 
 
-def print_front(front: xarray.Dataset, most: int = 12) -> None:
-    """Designs that no other beats in both, at most so many of them, evenly chosen."""
-    chosen = front.isel(point=numpy.unique(numpy.linspace(0, front.sizes["point"] - 1, most).round().astype(int)))
-    names = [*(str(name) for name in front.coords if front[name].dims), *answers(front)]
+def print_front(front: xarray.Dataset, max_rows: int = 12) -> None:
+    """Print evenly chosen designs of a Pareto front."""
+    chosen = front.isel(point=numpy.unique(numpy.linspace(0, front.sizes["point"] - 1, max_rows).round().astype(int)))
+    names = [*(str(name) for name in front.coords if front[name].dims), *result_names(front)]
     table = _table(*(_head(name) for name in names))
-    for place in range(chosen.sizes["point"]):
-        table.add_row(*(_shown(name, chosen[name].values[place].item()) for name in names))
+    for index in range(chosen.sizes["point"]):
+        table.add_row(*(_value_text(name, chosen[name].values[index].item()) for name in names))
     Console().print(table)
     Console().print(f"{front.sizes['point']} designs that no other beats in both", highlight=False)
 
 
 def print_optimum(best: Optimum) -> None:
-    """The best joint, what holds it back, and how the answer changes around it."""
+    """Print the best design, its active limits, and the derivatives of the objective."""
     console = Console()
     console.print(
-        f"{best.minimise} {_shown(best.minimise, best.value)} {_unit(best.minimise)}", style="bold", highlight=False
+        f"{best.minimise} {_value_text(best.minimise, best.value)} {_unit(best.minimise)}",
+        style="bold",
+        highlight=False,
     )
     table = _table("number", "value", "unit", f"d {best.minimise} / d number")
     for name, value in best.point.items():
@@ -258,55 +269,63 @@ def print_optimum(best: Optimum) -> None:
         console.print(f"held by {', '.join(best.active)}", highlight=False)
 
 
-def print_sensitivity(found: xarray.Dataset) -> None:
-    """First and total indices with their intervals, and elasticities, by quantity."""
+def print_sensitivity(indices: xarray.Dataset) -> None:
+    """Print first and total Sobol indices with intervals, and elasticities, by quantity."""
     console = Console()
-    for quantity in found.quantity.values.tolist():
-        part = found.sel(quantity=quantity)
-        mean, deviation = (_shown(quantity, float(part[name])) for name in ("mean", "deviation"))
+    for quantity in indices.quantity.values.tolist():
+        part = indices.sel(quantity=quantity)
+        mean, deviation = (_value_text(quantity, float(part[name])) for name in ("mean", "deviation"))
         console.print(f"{quantity}: {mean} ± {deviation} {_unit(quantity)}", style="bold", highlight=False)
         table = _table("number", "alone", "with others", "% per %")
         for name in part.parameter.values.tolist():
             row = part.sel(parameter=name)
-            indices = (
+            cells = (
                 f"{float(row[f'{order}_order']):.2f} ({float(row[f'{order}_order_low']):.2f}.."
                 f"{float(row[f'{order}_order_high']):.2f})"
                 for order in ("first", "total")
             )
-            table.add_row(name, *indices, f"{float(row.elasticity):+.2f}")
+            table.add_row(name, *cells, f"{float(row.elasticity):+.2f}")
         console.print(table)
 
 
-def _place(study: xarray.Dataset, flat: int) -> str:
+def _point_text(study: xarray.Dataset, flat: int) -> str:
+    """Describe the varied parameters at a point."""
     at = coordinates(study, flat)
-    return _words({name: at[name] for name in varying(study)})
+    return _parameter_text({name: at[name] for name in varying_parameters(study)})
 
 
-def _words(at: Mapping[str, Any]) -> str:
-    return ", ".join(f"{_symbol(name)} {_shown(name, value)}" for name, value in at.items())
+def _parameter_text(at: Mapping[str, Any]) -> str:
+    """Write parameters with symbol and value."""
+    return ", ".join(f"{_symbol(name)} {_value_text(name, value)}" for name, value in at.items())
 
 
 def _symbol(name: str) -> str:
+    """Return the symbol of a quantity."""
     return QUANTITIES[name].symbol if name in QUANTITIES else name
 
 
 def _head(name: str) -> str:
+    """Return the head of a column with its unit."""
     return QUANTITIES[name].head() if name in QUANTITIES else name
 
 
 def _unit(name: str) -> str:
+    """Return the unit of a quantity in tables."""
     return QUANTITIES[name].shown.text
 
 
 def _factor(name: str) -> float:
+    """Return the factor to the unit of tables."""
     return QUANTITIES[name].shown.factor
 
 
-def _shown(name: str, value: float | str) -> str:
+def _value_text(name: str, value: float | str) -> str:
+    """Write a value in the unit of tables."""
     return value if isinstance(value, str) else f"{value * _factor(name):.4g}"
 
 
 def _table(*heads: str) -> Table:
+    """Make an empty table with dim heads."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     for head in heads:
         table.add_column(head, overflow="fold")

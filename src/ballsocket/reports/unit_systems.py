@@ -1,4 +1,4 @@
-"""In which units a terminal shows contacts."""
+"""Systems of units for tables and figures of contacts."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..core.kinds import Kind, Unit
 from ..core.quantities import CONTACT, Quantity
 
 _LARGE = 1e4
-"""Numbers from here on are written out."""
+"""Value from which numbers are written without an exponent."""
 
 _INCH, _POUND = 25.4, 4.4482216152605  # mm, N
 _PSI = _INCH**2 / _POUND
@@ -27,35 +27,35 @@ _IMPERIAL = MappingProxyType(
         Kind.FOUNDATION: Unit("ksi/in", 1e-3 * _PSI * _INCH),
     }
 )
-"""Units by what they measure; a mil is a thousandth of an inch."""
+"""Imperial units by kind; a mil is a thousandth of an inch."""
 
 
 class Units(StrEnum):
-    """A system of units: SI with mm, N and MPa, or inches and pounds."""
+    """System of units: SI with mm, N and MPa, or inches and pounds."""
 
     SI = "SI"
     IMPERIAL = "imperial"
 
     def length(self, millimetres: float) -> str:
-        """A length of a drawing, in mm or in."""
+        """Write a length (mm) in mm or in inches."""
         if isinf(millimetres):
             return "to infinity"
         if self is Units.IMPERIAL:
             return f"{millimetres / _INCH:.4g} in"
         return f"{millimetres:.4g} mm"
 
-    def of(self, quantity: Quantity) -> Unit:
-        """The unit of a contact's quantity."""
+    def unit_of(self, quantity: Quantity) -> Unit:
+        """Return the unit of a quantity."""
         return _IMPERIAL.get(quantity.kind, quantity.shown) if self is Units.IMPERIAL else quantity.shown
 
-    def told(self, quantity: Quantity, number: float) -> str:
-        """A number from the unit inside with its unit; degrees and plain numbers as they are read."""
-        unit = self.of(quantity)
+    def text_of(self, quantity: Quantity, number: float) -> str:
+        """Write a number, stated in the internal unit, with the unit of this system."""
+        unit = self.unit_of(quantity)
         shown = number * unit.factor
         text = f"{shown:.0f}" if _LARGE <= abs(shown) < inf else f"{shown:.4g}"
         return text if not unit.text else f"{text}{'' if unit.text == '°' else ' '}{unit.text}"
 
     @property
     def columns(self) -> tuple[Column, ...]:
-        """What is shown of a contact, each in its unit."""
-        return (*(Column(each, self.of(each)) for each in CONTACT.values()), UTILISATION)
+        """Columns of a contact, each with its unit."""
+        return (*(Column(quantity, self.unit_of(quantity)) for quantity in CONTACT.values()), UTILISATION)
