@@ -52,7 +52,7 @@ def test_a_map_says_what_it_shows_and_names_its_limits():
     )
     limits = (Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0, high=12.0))
     figure = study_plots.design_map(space, limits, ["max_pressure"])
-    assert figure.get_suptitle() == "hess-forsbach; normal force = 3000 N; answered by hess-forsbach"
+    assert figure.get_suptitle() == "hess-forsbach; normal force = 3000 N; model hess-forsbach"
     said = {text.get_text() for text in figure.axes[0].texts}
     assert {"outer radius ≤ 26 mm", "liner thickness ≥ 4 mm", "liner thickness ≤ 12 mm"} <= said
     assert all(text.get_path_effects() for text in figure.axes[0].texts)

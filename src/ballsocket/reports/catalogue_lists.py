@@ -54,7 +54,7 @@ _NARROW = 72  # columns: lists are paragraphs below
 def print_models(models: Iterable[ModelInfo]) -> None:
     """Print the catalogue of models with validity and sources."""
     rows = [(model.name, model.title, _validity_text(model), _sources(model)) for model in models]
-    _print_rows(("model", "what it is", "trusted for", "source"), rows, gap=1)
+    _print_rows(("model", "title", "valid for", "source"), rows, gap=1)
 
 
 def _validity_text(model: ModelInfo) -> str:
@@ -76,7 +76,7 @@ def print_model(model: ModelInfo) -> None:
     terminal = console()
     print_folded(terminal, f"{model.name}: {model.title}", "bold")
     promise = "" if model.promise is None else f"{model.promise} of the elastic answer, "
-    print_folded(terminal, f"{promise}to be trusted for", "")
+    print_folded(terminal, f"{promise}valid for", "")
     for limit in model.validity:
         print_folded(terminal, f"  {limit}: {limit.why}", "")
     if model.reach:

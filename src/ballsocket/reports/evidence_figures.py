@@ -172,7 +172,7 @@ def methods_figure(record: Record) -> Figure:
     axes.set_yticks(range(len(keys)), [_KEYS[key].title for key in keys])
     axes.set_ylim(len(keys) - 0.4, -0.6)
     _legend(axes)
-    finish(axes, f"away from {pieces[0]['methods'][0]['name']} [%] (grey: required accuracy)", "")
+    finish(axes, f"deviation from {pieces[0]['methods'][0]['name']} [%] (grey: required accuracy)", "")
     return figure
 
 
@@ -215,7 +215,7 @@ def bands_figure(record: Record) -> Figure:
     band_axes.set_yticks(range(len(keys)), [_KEYS[key].title for key in keys])
     band_axes.set_xlim(-1.15 * reach, 3.2 * reach)
     band_axes.invert_yaxis()
-    finish(band_axes, "away from the median [%], 95 %", "")
+    finish(band_axes, "deviation from the median [%], 95 %", "")
     height = 0.8 / len(uncertainty["sobol"])
     for number, (key, sobol_indices) in enumerate(uncertainty["sobol"].items()):
         up = [row + height * (number - (len(uncertainty["sobol"]) - 1) / 2) for row in range(len(names))]

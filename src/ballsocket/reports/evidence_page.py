@@ -83,7 +83,7 @@ def evidence_page(record: Record, digest: str = "") -> str:
 
 def conclusions(record: Record) -> list[str]:
     """Return the conclusions in sentences: verdict on each limit, accuracy, adequacy, changed nominal values."""
-    limits = [f"{limit_text(limit)}: {limit['verdict']}" for limit in record["limits"]] or ["no limit was given"]
+    limits = [f"{limit_text(limit)}: {limit['verdict']}" for limit in record["limits"]] or ["no limit is stated"]
     accurate = record["accurate"]
     largest = "unknown" if accurate["largest"] is None else percent(accurate["largest"])
     within = "within" if accurate["holds"] else "NOT within"
@@ -141,7 +141,7 @@ def _final_wear(record: Record) -> Rows:
 def _joint_picture(record: Record) -> dict[str, str]:
     """Return the picture of the joint with the largest pressure."""
     aside = "" if record["drawn"]["half_angle_deg"] is not None else " Its contact lies off the axis and is not drawn."
-    caption = f"The joint where the pressure is worst.{aside}"
+    caption = f"The joint with the largest pressure.{aside}"
     return {"address": svg_address(figures.joint_figure(record)), "title": "section", "caption": caption}
 
 
@@ -161,9 +161,9 @@ def _matrix_pictures(record: Record) -> list[dict[str, str]]:
 def _map_caption(record: Record, name: str) -> str:
     """Describe the figure of a result over the matrix."""
     limited = any(limit["name"] == name for limit in record["limits"])
-    crosses = " Marked ×: the limit is not kept." if limited else ""
+    crosses = " × marks cases that break the limit." if limited else ""
     title = NAMES[name].title
-    return f"{title[:1].upper()}{title[1:]} over the matrix; framed where it is worst.{crosses}"
+    return f"{title[:1].upper()}{title[1:]} over the matrix; a frame marks the worst case.{crosses}"
 
 
 def _cases(rows: list[Record]) -> dict[str, Any]:

@@ -33,22 +33,22 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
         "wear": (
             "Wear map",
             hip_plots.wear_map,
-            "Seen along the cup's axis; a cross where the largest load points.",
+            "Seen along the cup's axis; the cross marks the direction of the largest load.",
         ),
         "penetration": (
             "Penetration",
             hip_plots.penetration_curve,
-            "How far the ball's centre has moved; the band is what blocks, rings and instants leave open, "
-            "not what the law does.",
+            "Displacement of the ball's centre. The band is the numerical error of blocks, rings and steps, "
+            "without that of the wear law.",
         ),
-        "tracks": ("Tracks", hip_plots.track_map, "Of points of the ball on the socket, in one cycle."),
+        "tracks": ("Tracks", hip_plots.track_map, "Paths of points of the ball on the socket in one cycle."),
         "cross_shear": (
             "Cross-shear",
             hip_plots.cross_shear_map,
-            "Of the first cycle, each slide weighted by its pressure.",
+            "Cross-shear of the first cycle; each sliding distance is weighted by its pressure.",
         ),
         "film": ("Film and friction", hip_plots.film_figure, f"{CONFORMITY_NOTE}."),
-        "edge": ("Edge distance", hip_plots.edge_figure, "0 is edge loading; a dot where the contact comes nearest."),
+        "edge": ("Edge distance", hip_plots.edge_figure, "0 means edge loading; the dot marks the least distance."),
     }
 )
 """Title, figure and caption of each section with a figure, by its id."""
@@ -118,7 +118,7 @@ def hip_report(history: History, bands: Bands | None = None) -> str:
         sections |= _band_sections(history, bands)
     return render_page(
         "hip_report.html",
-        "A hip in use",
+        "Wear of a hip",
         sections,
         summary=_summary(history),
         notes=history.notes,
@@ -132,18 +132,22 @@ def hip_report(history: History, bands: Bands | None = None) -> str:
 
 def _band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str | None]]:
     """Return the sections about patients who differ."""
-    caption = f"The line is the usual patient's, the band holds {100 * bands.level:g} % of the {bands.subject}"
-    caption += "." if bands.shared is None else ", the dark band that share of the patients at the median coefficient."
+    caption = f"The line is the nominal patient; the band holds {100 * bands.level:g} % of the {bands.subject}"
+    caption += (
+        "."
+        if bands.shared is None
+        else ", the dark band holds the same share of the patients at the median coefficient."
+    )
     curve = figure_bytes(hip_plots.penetration_curve(history, bands))
     sections: dict[str, tuple[str, str | None]] = {
         "penetration": ("Penetration", picture(curve, "Penetration", caption)),
-        "patients": ("Patients who differ", None),
+        "patients": ("Bands of different patients", None),
     }
     if bands.indices is not None:
         indices = figure_bytes(hip_plots.share_figure(bands))
         sections["matters"] = (
-            "What matters",
-            picture(indices, "What matters", "Sobol's indices with 95 % intervals."),
+            "Sensitivity",
+            picture(indices, "Sensitivity", "Sobol's indices with 95 % intervals."),
         )
     return sections
 
@@ -186,10 +190,11 @@ def _first_cycle(history: History) -> str:
     """Describe slide, work, cross-shear and wear rate of the first cycle, and the error of the time steps."""
     first, error = history.use.first, history.error
     return (
-        f"A cycle slides {first.slide:.4g} mm; pressure times slide is {first.work:.4g} N m, the mean cross-shear "
-        f"{first.cross_shear:.3g}. Unworn it wears {first.volume:.4g} mm³ and {first.depth:.3g} mm a million cycles. "
-        f"Against the same model in the finest steps the volume is within {100 * error.volume:.2g} %, the depth within "
-        f"{100 * error.depth:.2g} %."
+        f"The sliding distance of a cycle is {first.slide:.4g} mm; pressure times slide is {first.work:.4g} N m, "
+        f"the mean cross-shear {first.cross_shear:.3g}. "
+        f"The unworn hip wears {first.volume:.4g} mm³ and {first.depth:.3g} mm in a million cycles. "
+        f"Compared with the finest steps of the same model, the volume is within {100 * error.volume:.2g} %, "
+        f"the depth within {100 * error.depth:.2g} %."
     )
 
 

@@ -154,7 +154,7 @@ def sobol_lines(bands: Bands) -> Iterator[str]:
         order = numpy.argsort(-numpy.nan_to_num(values, nan=-inf))
         names = list(bands.variability.distributions)
         indices = ", ".join(f"{names[i]} {values[i]:.2f} ({low[i]:.2f} to {high[i]:.2f})" for i in order)
-        yield f"what matters to {result} (Sobol, total order): {indices}"
+        yield f"Sobol indices of {result} (total order): {indices}"
 
 
 def print_hip(history: History) -> None:
@@ -176,7 +176,8 @@ def print_hip(history: History) -> None:
     print_folded(terminal, contact_line(history), "")
     if len(history.use.unworn_checks) > 1:
         terminal.print(_contact_table(history))
-    print_folded(terminal, _film_line(history), "")
+    for line in _film_lines(history):
+        print_folded(terminal, line, "")
     accuracy = f"volume within {100 * history.error.volume:.2g} % of the same model in the finest steps"
     print_folded(terminal, f"{accuracy}, in {history.steps} blocks", "dim")
     print_notes(history.notes)
@@ -234,12 +235,13 @@ def _wear_table(history: History) -> Table:
     return table
 
 
-def _film_line(history: History) -> str:
-    """Describe film thickness, lubrication and friction of the first cycle in one line."""
+def _film_lines(history: History) -> Iterator[str]:
+    """Yield the film thickness with its regime, and the friction, of the first cycle."""
     film = history.use.film(history.lubricant)
     if not len(film.phases):
-        return "no film: nothing is pressed"
+        yield "no film: nothing is pressed"
+        return
     summary = film.summary()
-    thickness = f"film {1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm, λ up to {film.ratio.max():.2g}"
-    friction = f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"
-    return f"{thickness}, {summary['regime']} lubrication; {friction}"
+    thickness = f"{1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm"
+    yield f"film (Hamrock-Dowson) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
+    yield f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"

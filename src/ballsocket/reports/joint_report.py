@@ -56,7 +56,12 @@ def joint_report(
         HTML that needs no other file.
     """
     drawn_contact = None if contact is None or contact.status.failed or isinstance(contact, OffAxisContact) else contact
-    all_sections = {"drawing": ("Drawing", None), "inputs": ("Inputs", None), **sections, "origin": ("Origin", None)}
+    all_sections = {
+        "drawing": ("Drawing", None),
+        "inputs": ("Inputs", None),
+        **sections,
+        "origin": ("Joint file", None),
+    }
     text = json.dumps(_finite(tables_of(file)), indent=1, ensure_ascii=False)
     return render_page(
         "joint_report.html",
@@ -77,7 +82,7 @@ def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
     joint = file.joint
     yield "head diameter", units.length(2 * float(joint.ball_radius)), joint.source
     yield "bore diameter", units.length(2 * float(joint.socket_radius)), ""
-    yield "diametral clearance", units.length(2 * float(joint.clearance)), "twice the radial one"
+    yield "diametral clearance", units.length(2 * float(joint.clearance)), "twice the radial clearance"
     yield "liner thickness", units.length(float(joint.liner_thickness)), ""
     yield "liner", _material(joint.liner, units), joint.liner.source
     yield "ball", "rigid" if joint.ball is None else _material(joint.ball, units), getattr(joint.ball, "source", "")
@@ -94,7 +99,7 @@ def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
         if name == "tilt":
             yield PARAMETERS[name].title, units.text_of(PARAMETERS[name], float(angle)), "between load and cup's axis"
         else:
-            yield name, ", ".join(f"{part:.4g}" for part in angle), "to the right, to the front, up"
+            yield name, ", ".join(f"{part:.4g}" for part in angle), "components to the right, to the front, up"
     for name, value in file.load.items():
         yield PARAMETERS[name].title, units.text_of(PARAMETERS[name], float(value)), ""
 

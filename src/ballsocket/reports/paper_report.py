@@ -59,12 +59,12 @@ def write_report(results: Mapping[str, Sequence[Any]], folder: Path, engine: Eng
     pictures = dict(engine.run(_DrawFigure(tuple(figures.items()), tuple(rows), folder), range(len(figures) + 1)))
     _write_accuracy(rows, folder)
     sections = {
-        "claims": (f"What the paper says: {_tally(results['claims'])}", None),
-        "elsewhere": ("What others found", None),
-        "given": ("Tables 1 and 2: what is given", None),
+        "claims": (f"Claims of the paper: {_tally(results['claims'])}", None),
+        "elsewhere": ("Results of others", None),
+        "given": ("Tables 1 and 2: input data", None),
         "table_3": ("Table 3, fitted again", None),
         "figures": ("Figures 2 to 6", None),
-        "accuracy": ("How accurate is which model?", None),
+        "accuracy": ("Accuracy of the models", None),
     }
     page = render_page(
         "paper_report.html",

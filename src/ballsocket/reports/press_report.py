@@ -72,8 +72,8 @@ def press_sections(
 ) -> dict[str, tuple[str, str]]:
     """Return the sections of a press without its figures: title and HTML by id."""
     return {
-        "answers": ("Answers", _results(comparison, units)),
-        "tolerances": ("What tolerances do", _tolerances(surroundings, units)),
+        "answers": ("Results", _results(comparison, units)),
+        "tolerances": ("Sensitivity and tolerances", _tolerances(surroundings, units)),
         "sources": ("Sources", _sources(comparison)),
     }
 
@@ -81,7 +81,7 @@ def press_sections(
 def _number(contact: Contact, name: str, units: Units) -> str:
     """Write a quantity of a contact with its unit."""
     column = next(column for column in units.columns if column.attribute == name)
-    return f"{number_text(column.values_of(contact), 4, 'no answer')} {column.unit}"
+    return f"{number_text(column.values_of(contact), 4, 'no result')} {column.unit}"
 
 
 def _results(comparison: Comparison, units: Units) -> str:
@@ -116,7 +116,7 @@ def _tolerances(surroundings: Around | None, units: Units) -> str:
         (CONTACT[name].title, *(f"{changes[name]:+.2f}" for name in names))
         for name, changes in surroundings.changes.items()
     ]
-    heads = ("changes by %, where 1 % is added to the", *(PARAMETERS[name].title for name in names))
+    heads = ("change in % if 1 % is added to the", *(PARAMETERS[name].title for name in names))
     ends = [
         (CONTACT[name].title, *(units.text_of(CONTACT[name], end) for end in band))
         for name, band in surroundings.band.items()

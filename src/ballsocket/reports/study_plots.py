@@ -76,7 +76,7 @@ def design_map(
         axes.set_title(QUANTITIES[name].label(), fontsize=10)
     figure.suptitle(_title(study), fontsize=10, parse_math=False)
     within = allowed(study, limits).transpose(up, across).values
-    texts = [(within, "pale: a limit is broken, or no answer"), (trusted, "hatched: the model is not to be trusted")]
+    texts = [(within, "pale: a limit is broken, or no result"), (trusted, "hatched: the model is not valid")]
     figure.supxlabel("; ".join(words for where, words in texts if not where.all()), fontsize=8, color="0.3")
     return figure
 
@@ -105,7 +105,7 @@ def _title(study: xarray.Dataset) -> str:
         if not coordinate.dims and name in QUANTITIES and numpy.issubdtype(coordinate.dtype, numpy.number)
     ]
     joint = json.loads(study.attrs["joint"])["name"]
-    return "; ".join([*([joint] if joint else []), *fixed, f"answered by {study.attrs['model']}"])
+    return "; ".join([*([joint] if joint else []), *fixed, f"model {study.attrs['model']}"])
 
 
 def _value_text(name: str, sign: str, value: float) -> str:

@@ -264,9 +264,9 @@ def print_optimum(best: Optimum) -> None:
         table.add_row(part, material, "", "-")
     console.print(table)
     if not best.valid:
-        console.print("the model does not trust itself there: ask another", highlight=False)
+        console.print("the model is not valid there: use another model", highlight=False)
     if best.active:
-        console.print(f"held by {', '.join(best.active)}", highlight=False)
+        console.print(f"active limits: {', '.join(best.active)}", highlight=False)
 
 
 def print_sensitivity(indices: xarray.Dataset) -> None:
@@ -276,7 +276,7 @@ def print_sensitivity(indices: xarray.Dataset) -> None:
         part = indices.sel(quantity=quantity)
         mean, deviation = (_value_text(quantity, float(part[name])) for name in ("mean", "deviation"))
         console.print(f"{quantity}: {mean} ± {deviation} {_unit(quantity)}", style="bold", highlight=False)
-        table = _table("number", "alone", "with others", "% per %")
+        table = _table("number", "first order", "total order", "% per %")
         for name in part.parameter.values.tolist():
             row = part.sel(parameter=name)
             cells = (
