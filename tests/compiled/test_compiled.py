@@ -14,7 +14,7 @@ pytest.importorskip("numba")
 import numba
 
 from ballsocket.compiled import Compiled, compiled_law
-from ballsocket.compiled.kernels import _angle_polynomial, _evaluate_functions
+from ballsocket.compiled.kernels import _angle_polynomial, _evaluate_table_functions
 from ballsocket.contact.roots import increasing_root
 from ballsocket.core.deprecation import RenamedAttribute
 from ballsocket.elasticity.exact.tabulated.chebyshev import angle_root
@@ -98,7 +98,7 @@ def test_functions_of_a_table_are_chebyshev_series_with_their_slopes(angle):
 
     step = 1e-5
     slopes = (series(angle * np.exp(step)) - series(angle * np.exp(-step))) / (2 * step)
-    values = _evaluate_functions(angle, curve)
+    values = _evaluate_table_functions(angle, curve)
     np.testing.assert_allclose([value for value, _ in values], series(angle), rtol=1e-12)
     np.testing.assert_allclose([slope for _, slope in values], slopes, rtol=1e-7, atol=1e-8)
 

@@ -42,9 +42,9 @@ class Files:
         if self.view is not None and self.view.suffix.lower() != _THREE_D:
             raise ValueError(f"view {str(self.view)!r} must end in {_THREE_D}")
         if self.vtk is not None:
-            from ..elasticity.finite_elements.decks.vtk import check_suffix
+            from ..elasticity.finite_elements.decks.vtk import check_vtk_path
 
-            check_suffix(self.vtk)
+            check_vtk_path(self.vtk)
 
     def check_models(self, asked: Container[str]) -> None:
         """Raise ValueError where nobody is asked who could fill a file; `asked` holds names."""

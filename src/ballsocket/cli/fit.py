@@ -71,5 +71,5 @@ def build_tables(
     from ..elasticity.exact.tabulated import build as builder
 
     path = builder.SHIPPED if out is None else out
-    do = builder.check if check else builder.build
+    do = builder.check if check else builder.build_tables
     echo_path(path, f": {do(path, points=points, workers=workers)}")

@@ -209,7 +209,7 @@ def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
     `names` maps each old name to the present one, in the same module or with the path of another.
     """
 
-    def find(name: str) -> Any:
+    def resolve(name: str) -> Any:
         """Return a function or class by its old name, with a warning."""
         if name not in names:
             raise AttributeError(f"module {module!r} has no attribute {name!r}")
@@ -217,7 +217,7 @@ def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
         path, _, attribute = names[name].rpartition(".")
         return getattr(import_module(path or module), attribute)
 
-    return find
+    return resolve
 
 
 class RenamedAttribute:

@@ -395,7 +395,7 @@ def power_law(state_error):
         indentation=d,
         force=force,
         stiffness=1.5 * force / d,
-        widening=2 * d / angle,
+        indentation_slope=2 * d / angle,
         error=np.array(state_error),
     )
 
