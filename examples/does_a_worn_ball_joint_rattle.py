@@ -1,6 +1,6 @@
 """
-When does a worn ball joint begin to rattle?
-============================================
+Rattle of a worn ball joint
+===========================
 
 The ball joint of a suspension is preloaded by a spring when it is new. Wear takes the force of the spring. What
 happens then?

@@ -1,6 +1,6 @@
 """
-The exact answer, and the inside of the liner
-=============================================
+The exact solution, and stresses inside the liner
+=================================================
 
 The paper's model predicts 11.3 MPa for a hip at 3 kN. How large is its error, and where is the stress in the liner
 largest?

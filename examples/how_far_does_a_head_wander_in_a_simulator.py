@@ -1,6 +1,6 @@
 """
-How far does a head wander in a simulator?
-==========================================
+Motion of a head in a hip simulator
+===================================
 
 A wear simulator pushes a cup against a head that its motors turn. The holder of the cup can move across the load. How
 far does the head move in a steep cup, and where does the work of load and motors go?

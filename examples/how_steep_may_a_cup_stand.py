@@ -1,6 +1,6 @@
 """
-How steep may a cup stand?
-==========================
+Wear at different cup inclinations
+==================================
 
 The worn volume is the same within 1 % from 35° to 65° of inclination, since the sliding distance under the load is
 the same. The distance to the rim changes: 8 mm at 35°, 2 mm at 55°, none at 65°. At 65° the contact reaches the rim

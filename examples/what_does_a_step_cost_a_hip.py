@@ -1,6 +1,6 @@
 """
-What does a step cost a hip?
-============================
+Friction moment and heat in a hip during a step
+===============================================
 
 The head of a hip turns in its cup under three times the body weight. How large are the friction moment and the heat?
 

@@ -1,6 +1,6 @@
 """
-What does clearance do to a spatial four-bar?
-=============================================
+Spatial four-bar with clearance in a ball joint
+===============================================
 
 A crank, a coupler and a rocker whose axes cross in space fall from rest. The ball joint between coupler and rocker
 has clearance. Do other programs compute the same motion, and where does the energy go?

@@ -1,6 +1,6 @@
 """
-What does clearance do to a pendulum?
-=====================================
+Pendulum on a ball joint with clearance
+=======================================
 
 A pendulum hangs from a ball in a socket that is wider than the ball. Where is the ball, and how much energy does
 friction take?

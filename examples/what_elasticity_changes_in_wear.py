@@ -1,6 +1,6 @@
 """
-What does elasticity change in wear?
-====================================
+Wear with springs and with an elastic liner
+===========================================
 
 Elasticity changes volume and depth by almost nothing. A liner of full elasticity, as a closed shell or as the real
 cup, loses the same volume as springs within 0.2 %, from the first steps to five million. The depths agree within 1.1

@@ -1,6 +1,6 @@
 """
-When does the rim of a cup matter?
-==================================
+Effect of the rim on the contact
+================================
 
 Finite elements with a rim are compared with a socket that is a full sphere.
 

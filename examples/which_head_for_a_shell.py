@@ -1,6 +1,6 @@
 """
-Which head and liner for a 52 mm shell?
-=======================================
+Head and liner for a 52 mm shell
+================================
 
 A shell of 52 mm leaves 26 mm for head radius, clearance and liner. A larger head distributes the load, a thinner
 liner is stiffer. Which head has the smallest peak pressure, and how does a smaller contact area affect it?

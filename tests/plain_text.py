@@ -139,9 +139,13 @@ def _plain(text):
 
 
 def _prose_of_markdown(lines):
-    """Yield the lines outside code; options of directives and reference labels are blank."""
-    fence = None
+    """Yield the lines outside code and display formulas; options of directives and reference labels are blank."""
+    fence, formula = None, False
     for number, line in enumerate(lines, 1):
+        if not fence and line.count("$$") == 1:
+            formula, line = not formula, ""
+        elif formula:
+            line = ""
         opening = re.match(r"\s*(`{3,}|~{3,})(?:\{(\w+)\})?", line)
         if fence and line.strip().startswith(fence):
             fence, line = None, ""
