@@ -221,9 +221,9 @@ def _comparator(each) -> str:
 
 
 def _commands() -> str:
-    from ballsocket.cli.root import app
+    from ballsocket.cli.root import load_commands
 
-    names = sorted(command.name or command.callback.__name__.replace("_", "-") for command in app.registered_commands)
+    names = sorted(load_commands())
     return "\n".join(f"## {name}\n\n```text\n{_help(name)}\n```\n" for name in names)
 
 

@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.cli.force_elements import ElementWords, identifier
+from ballsocket.cli.export import ForceElementOptions, identifier
 from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
 from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
@@ -188,7 +188,7 @@ def test_missing_folders_are_created_with_their_parents(tmp_path):
 
 def test_a_cup_in_a_file_has_a_rim_and_a_file_without_a_cup_has_none():
     cup = bs.Cup(arc_of_cover=2.6)
-    words = ElementWords(friction=0.1, restitution=0.8, impact_speed=100.0)
+    words = ForceElementOptions(friction=0.1, restitution=0.8, impact_speed=100.0)
     element = words.element(JointFile(HIP, {}, cup))
     assert (element.cup, element.constants.rim) == (cup, 1.3)
     assert element.constants.sliding == 0.1
