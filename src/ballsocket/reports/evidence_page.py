@@ -8,9 +8,8 @@ from types import MappingProxyType
 from typing import Any
 
 from ..evidence.folder import RECORD
-from ..evidence.matrix import NAMES
+from ..evidence.matrix import KEYS, NAMES, input_title, limit_text, number, title_of
 from ..evidence.requirements import MET, NOT_MET, UNKNOWN
-from ..evidence.terms import KEYS, input_title, limit_text, number, title_of
 from . import evidence_figures as figures
 from .evidence_text import (
     Record,
@@ -61,7 +60,7 @@ def evidence_page(record: Record, digest: str = "") -> str:
     Parameters
     ----------
     record : mapping
-        See `evidence.pack.gathered`.
+        See `evidence.pack.gather_evidence`.
     digest : str
         Digest of the pack, see `evidence.folder.digest`; omitted if empty.
     """

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..evidence.matrix import NAMES
-from ..evidence.terms import KEYS, LIMITED, number, title_of
+from ..evidence.matrix import KEYS, LIMITED, NAMES, number, title_of
 from ..studies.parameters import LOADS
 
 Record = Mapping[str, Any]
