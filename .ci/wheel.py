@@ -10,7 +10,13 @@ from zipfile import ZipFile
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "src" / "ballsocket"
-MUST_BE_THERE = {"py.typed", "data/references.bib", "data/exact_tables.npz", "app/assets/page.html"}
+MUST_BE_THERE = {
+    "py.typed",
+    "data/references.bib",
+    "data/exact_tables.npz",
+    "app/assets/page.html",
+    "reports/templates/style.css",
+}
 IN_THE_SDIST = {"README.md", "LICENSE", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "pyproject.toml"}
 ROOMS_OF_THE_SDIST = {"src", "tests", "docs", "examples", "benchmarks"}
 

@@ -18,7 +18,7 @@ import numpy
 from matplotlib.figure import Figure
 
 import ballsocket as bs
-from ballsocket.output.style import finish, line_of
+from ballsocket.reports.style import finish, line_of
 
 from .fem_rival import PAPER, PAPERS_MESH, at_equal_error, forget
 from .report import Report, Rows

@@ -74,8 +74,8 @@ def _percent(shares: tuple[float, float]) -> tuple[str, ...]:
 def _draw(rings: numpy.ndarray, seconds: list[dict[str, Spread]], off: numpy.ndarray) -> None:
     from matplotlib.figure import Figure
 
-    from ballsocket.output.save import save
-    from ballsocket.output.style import LEGEND, finish, in_matplotlib, numbered
+    from ballsocket.reports.figure_files import save
+    from ballsocket.reports.style import LEGEND, finish, in_matplotlib, numbered
 
     figure = Figure(figsize=(8.6, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)

@@ -146,8 +146,8 @@ def measure() -> Report:
 def _draw(found: list[tuple[int, float, float]]) -> None:
     from matplotlib.figure import Figure
 
-    from ballsocket.output.save import save
-    from ballsocket.output.style import finish, in_matplotlib, line_of
+    from ballsocket.reports.figure_files import save
+    from ballsocket.reports.style import finish, in_matplotlib, line_of
 
     presses = [10.0**power for power, _, _ in found]
     figure = Figure(figsize=(8.6, 3.8), layout="constrained")

@@ -9,7 +9,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, Predicted, Ratio, patients, ratios, simulators
-from ballsocket.output.style import BLUE, VERMILLION, finish
+from ballsocket.reports.style import BLUE, VERMILLION, finish
 
 DOCS = Path(__file__).parent
 _UNITS = {"mm3/Mc": "mm³/Mc", "mm3/year": "mm³/year"}

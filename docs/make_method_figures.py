@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 import ballsocket as bs
 from ballsocket.elasticity.exact.model import curve_of
 from ballsocket.elasticity.exact.modes import socket_of
-from ballsocket.output.style import LEGEND, finish, in_matplotlib, numbered
+from ballsocket.reports.style import LEGEND, finish, in_matplotlib, numbered
 
 ROOT = Path(__file__).parents[1]
 HERE = Path(__file__).with_name("paper")

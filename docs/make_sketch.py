@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ballsocket.output.style import BLUE, GREY, INK, SKY, VERMILLION
+from ballsocket.reports.style import BLUE, GREY, INK, SKY, VERMILLION
 
 SOCKET, LINER, CLEARANCE, INDENTATION = 18.0, 6.75, 2.0, 1.4
 BALL = SOCKET - CLEARANCE

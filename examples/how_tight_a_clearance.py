@@ -10,7 +10,7 @@ joints. Sobol indices show which number causes them.
 """
 
 import ballsocket as bs
-from ballsocket.output.save import save
+from ballsocket.reports.figure_files import save
 from ballsocket.studies import (
     Rectangular,
     Span,

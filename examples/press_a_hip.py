@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 import ballsocket as bs
-from ballsocket.output.press_plot import press_figure
-from ballsocket.output.save import save
+from ballsocket.reports.figure_files import save
+from ballsocket.reports.press_plots import press_figure
 
 hip = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
 

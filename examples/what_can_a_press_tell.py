@@ -14,8 +14,8 @@ import numpy as np
 
 import ballsocket as bs
 from ballsocket.identify import Measured
-from ballsocket.output.identify_plots import corner_figure, experiment_figure, fit_figure
-from ballsocket.output.save import save
+from ballsocket.reports.figure_files import save
+from ballsocket.reports.identify_results import corner_figure, experiment_figure, fit_figure
 
 hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
 free = {"clearance": (0.05, 0.2), "liner.young": (500.0, 2000.0)}

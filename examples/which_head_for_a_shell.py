@@ -12,7 +12,7 @@ at least 10 mm of arc under a vertical load, in a cup that opens 20° to the sid
 from math import radians
 
 import ballsocket as bs
-from ballsocket.output.save import save
+from ballsocket.reports.figure_files import save
 from ballsocket.studies import Limit, Span, design_map, front_figure, optimise, pareto
 
 hip = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE, ball=bs.COCR)

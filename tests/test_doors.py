@@ -31,7 +31,7 @@ OWN_FILES = {
     "models/refined_state.py": "a table of the package",
     "models/table_3.py": "a table of the package",
     "core/storage/array_files.py": "writes arrays",
-    "output/report.py": "a picture that it has just drawn",
+    "reports/paper_report.py": "a picture that it has just drawn",
     "paper/claims/elsewhere.py": "a table of the package",
     "core/storage/plan.py": "pieces of a run",
     "core/sources.py": "the bibliography of the package",

@@ -34,7 +34,7 @@ def test_exported_names_exist_and_are_unique(room):
 
 
 def test_studies_exports_its_functions_and_suggests_similar_names():
-    from ballsocket.output import study_plots
+    from ballsocket.reports import study_plots
     from ballsocket.studies.pareto import pareto
 
     assert bs.studies.design_map is study_plots.design_map

@@ -16,9 +16,9 @@ from ballsocket.core.sources import Source, bibliography
 from ballsocket.evidence.applicability import range_text
 from ballsocket.evidence.comparators import PUBLISHED
 from ballsocket.evidence.validity import measure, models_with_promise
-from ballsocket.output.accuracy_table import markdown
-from ballsocket.output.report import write_report
 from ballsocket.paper.plan import quick_plan
+from ballsocket.reports.accuracy_table import markdown
+from ballsocket.reports.paper_report import write_report
 
 _PROMISED = Path(__file__).parents[2] / "tests" / "data" / "promised.json"
 _COLUMNS = 88  # of the terminal whose help texts are shown

@@ -58,7 +58,6 @@ from .models.modulus import bonded_layer, constant, corrected_vessel, hess_forsb
 from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
-from .output.registration import register_plots
 from .problem import Joint, Layer, Material, Support
 from .problem.cup import Cup, Interface, Side
 from .problem.gaps import CircularGap, LinearGap
@@ -78,6 +77,7 @@ from .problem.presets import (
     joints,
     materials,
 )
+from .reports.registration import register_plots
 from .studies.run import study
 from .version import __version__ as __version__
 

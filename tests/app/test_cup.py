@@ -22,8 +22,8 @@ from ballsocket.app.page import Page
 from ballsocket.app.reading import Reading
 from ballsocket.app.running import Done
 from ballsocket.app.views.cup import _hint
-from ballsocket.output.unit_systems import Units
 from ballsocket.problem.cup import Cup, Side
+from ballsocket.reports.unit_systems import Units
 
 LINK = "view=cup&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
 JOINT = bs.joints["hip-36"]

@@ -15,7 +15,7 @@ from ballsocket.app.page import Page
 from ballsocket.app.reading import Reading, handy_step
 from ballsocket.app.screen import VIEWS
 from ballsocket.core.quantities import QUANTITIES
-from ballsocket.output.unit_systems import Units
+from ballsocket.reports.unit_systems import Units
 
 from .asking import does, edits, saved, trouble
 

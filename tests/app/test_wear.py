@@ -22,7 +22,7 @@ from ballsocket.app.reading import Reading
 from ballsocket.app.running import Done, RunRefused
 from ballsocket.app.views import wear
 from ballsocket.app.wear_charts import depth_maps, penetration_chart, wear_numbers
-from ballsocket.output.unit_systems import Units
+from ballsocket.reports.unit_systems import Units
 
 LINK = (
     "view=wear&preset=hip-36&cup.inclination=40&cup.anteversion=15&use.millions=0.1&use.coefficient=1e-7&use.spread=1"
@@ -32,7 +32,7 @@ LINK = (
 @pytest.fixture(autouse=True)
 def nothing_is_known(monkeypatch):
     monkeypatch.setattr(wear, "_FOUND", wear.CachedRun(most=4))
-    monkeypatch.setattr(wearing, "drawn", lambda figure: b"a picture")
+    monkeypatch.setattr(wearing, "figure_bytes", lambda figure: b"a picture")
 
 
 @pytest.fixture

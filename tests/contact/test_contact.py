@@ -75,7 +75,7 @@ def test_contacts_and_comparisons_have_plots():
     assert left.lines[0].get_ydata()[0] == PRESSED.max_pressure
     assert right.lines[-1].get_ydata() == pytest.approx([3.0])
     assert len(bs.compare(HIP, force=1000.0, models=few).plot().axes[0].lines) == 2
-    with pytest.raises(ValueError, match="a plot shows one contact of a model, and here are 2: a study draws many"):
+    with pytest.raises(ValueError, match="a plot shows one contact for each model, got 2; draw several with a study"):
         bs.Hertz().press(HIP, force=[1.0, 2.0]).plot()
     with pytest.raises(ValueError, match="there is nothing to draw: no model has an answer"):
         bs.Exact().press(HIP, force=1e13).plot()

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 import ballsocket as bs
-from ballsocket.output import accuracy_table
 from ballsocket.paper.accuracy import accuracies, paper_joints
+from ballsocket.reports import accuracy_table
 
 from ..places import CONTRIBUTING, ROOT
 

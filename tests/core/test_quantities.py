@@ -182,7 +182,7 @@ def test_keys_of_files_are_names_of_quantities():
 
 _ADDED = """
 import json, ballsocket as bs
-from ballsocket.output import terminal
+from ballsocket.reports import terminal
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.studies.design import grid
 hip = bs.joints["hip-28"]

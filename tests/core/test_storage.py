@@ -261,7 +261,7 @@ def test_the_fingerprint_is_the_version_and_a_digest_of_the_package():
     package = Path(bs.__file__).parent
     digest = sha256()
     for path in sorted(package.rglob("*")):
-        if path.suffix in {".py", ".npz", ".toml", ".csv"}:
+        if path.suffix in {".py", ".npz", ".toml", ".csv", ".html", ".css"}:
             digest.update(path.relative_to(package).as_posix().encode())
             digest.update(path.read_bytes())
     assert fingerprint() == f"{bs.__version__}+{digest.hexdigest()[:8]}"

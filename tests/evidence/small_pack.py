@@ -8,7 +8,7 @@ from tempfile import mkdtemp
 from ballsocket.evidence.folder import write
 from ballsocket.evidence.pack import gather_evidence
 from ballsocket.evidence.question import read_question
-from ballsocket.output.evidence_page import evidence_page
+from ballsocket.reports.evidence_page import evidence_page
 
 QUESTION_TEXT = """
 question = "May it be?"

@@ -27,7 +27,7 @@ from ballsocket.evidence.worst_case import propagate_tolerances, wear_history, w
 from ..places import EXAMPLES, ROOT
 
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
-from ballsocket.output.evidence_page import evidence_page
+from ballsocket.reports.evidence_page import evidence_page
 
 from .small_pack import QUESTION_TEXT, page
 

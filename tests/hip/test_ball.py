@@ -8,7 +8,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.hip import Archard, CustomWearLaw, Cycle, flexion, iso_14242_1, logarithmic
 from ballsocket.hip.ball_wear import ball_directions, map_counterface
-from ballsocket.output.hip_report import write_hip_report
+from ballsocket.reports.hip_report import write_hip_report
 
 from .test_wear import K, hip
 

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from ballsocket.cli.root import app
 from ballsocket.hip import Activity, Mix, logarithmic
-from ballsocket.output.hip_report import write_hip_report
+from ballsocket.reports.hip_report import write_hip_report
 
 from ..cli.command import run
 from .test_file import write_edited_file
@@ -53,7 +53,7 @@ def test_results_are_printed_before_the_report_fails(tmp_path, monkeypatch):
 
 
 def test_figures_show_the_results_of_the_run(tmp_path):
-    from ballsocket.output import hip_plots
+    from ballsocket.reports import hip_plots
 
     walk = Activity(cycle=replace(walked(2000.0, -1.0), n_steps=40), per_year=1e6)
     history = hip(creep=logarithmic()).after(1e5, [5e4])

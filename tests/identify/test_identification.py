@@ -8,7 +8,7 @@ from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
 from ballsocket.identify.experiment import Candidate, experiment
 from ballsocket.identify.jax_derivatives import by_tracing
 from ballsocket.identify.synthetic import draw_data_sets, trials
-from ballsocket.output.identify_plots import fit_figure
+from ballsocket.reports.identify_results import fit_figure
 from ballsocket.studies import LogNormal, Normal
 
 RIGID = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))

@@ -8,13 +8,13 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.storage.plan import Plan
-from ballsocket.output import accuracy_table
 from ballsocket.paper import cases, claims, curves
 from ballsocket.paper.accuracy import FORCES, accuracies, edge_joints, paper_joints
 from ballsocket.paper.claims import elsewhere
 from ballsocket.paper.claims.evaluation import EXACTLY, Claim, Evaluation, Verdict, judge
 from ballsocket.paper.figure import Figure
 from ballsocket.paper.plan import full_plan, quick_plan
+from ballsocket.reports import accuracy_table
 
 from .. import extent
 from ..places import DATA, ROOT

@@ -13,8 +13,8 @@ from ..core.quantities import DERIVED, FIELD
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.grid import Grid
 from ..hip.ball_wear import interpolation_at
-from ..output.cup_map import drawn, from_page, highest, on_page
 from ..problem.cup import Cup
+from ..reports.cup_map import from_page, on_page, shown_maximum, shown_pressure
 from . import svg
 from .contours import Contours, levels_of, scale
 from .reading import Reading
@@ -59,8 +59,8 @@ def pressed_bore(contact: OffAxisContact, reading: Reading = SHOWN) -> str:
     reach, unit = float(contact.model.reach_of(contact.joint)), reading.unit(FIELD["pressure"])
     field = BoreField(
         name="cup",
-        at=lambda directions: unit.factor * drawn(contact, directions),
-        highest=unit.factor * highest(contact),
+        at=lambda directions: unit.factor * shown_pressure(contact, directions),
+        highest=unit.factor * shown_maximum(contact),
         label=reading.label(FIELD["pressure"]),
         reach=reach,
         cup=contact.model.cup,
@@ -72,7 +72,7 @@ def pressed_bore(contact: OffAxisContact, reading: Reading = SHOWN) -> str:
         x, y = map(float, place(contact.max_pressure_at))
         marks.append(f'<circle class="most" cx="{x:.1f}" cy="{y:.1f}" r="5"/>')
     said = (
-        f"pressure on the cup seen from its opening, up to {reading.said(FIELD['pressure'], highest(contact))}; "
+        f"pressure on the cup seen from its opening, up to {reading.said(FIELD['pressure'], shown_maximum(contact))}; "
         f"the contact ends {reading.said(DERIVED['edge_distance'], float(contact.edge_distance))} from the rim"
     )
     return bore_map(said, field, marks)

@@ -12,7 +12,7 @@ import numpy
 from ..core.quantities import FIELD
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import unit_vectors
-from ..output.cup_map import drawn, highest
+from ..reports.cup_map import shown_maximum, shown_pressure
 
 _RINGS, _MERIDIANS = 40, 96
 _THICKEST = 0.8  # of the bore's radius: what is thicker is drawn so thick
@@ -24,15 +24,15 @@ def pressed_bowl(contact: OffAxisContact) -> str:
     polar = numpy.linspace(0.0, reach, _RINGS + 1)
     around = 2 * pi * numpy.arange(_MERIDIANS) / _MERIDIANS
     middles = unit_vectors(((polar[1:] + polar[:-1]) / 2)[:, None], around + pi / _MERIDIANS)
-    values = drawn(contact, numpy.moveaxis(middles, 0, -1))
+    values = shown_pressure(contact, numpy.moveaxis(middles, 0, -1))
     radius = float(joint.socket_radius)
-    said = f"the cup in three dimensions with its pressure, up to {highest(contact):.3g} {FIELD['pressure'].unit}"
+    said = f"the cup in three dimensions with its pressure, up to {shown_maximum(contact):.3g} {FIELD['pressure'].unit}"
     return bowl(
         "cup",
         f"{said}; arrow keys turn it, Home looks into its opening",
         polar=polar.round(5).tolist(),
         meridians=_MERIDIANS,
-        values=(values / highest(contact)).round(3).ravel().tolist(),
+        values=(values / shown_maximum(contact)).round(3).ravel().tolist(),
         outer=1 + min(float(joint.liner_thickness) / radius, _THICKEST),
         load=(contact.force_vector / contact.force).tolist(),
         turned=[0.5, -0.35],

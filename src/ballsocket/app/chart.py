@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy
 
-from ..output.style import INK, THICK, THIN, LineStyle
+from ..reports.style import INK, THICK, THIN, LineStyle
 from . import svg
 
 _WIDE, _HIGH = 440.0, 300.0

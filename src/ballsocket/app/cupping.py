@@ -14,9 +14,9 @@ from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis import Orientations, Sphere, orient
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
-from ..output.html import drawn
-from ..output.orientation_plot import orientation_figure
 from ..problem.cup import Cup, Side
+from ..reports.figure_files import figure_bytes
+from ..reports.orientation_results import orientation_figure
 from .jobs import CachedRun
 from .running import Reached, Told
 
@@ -113,5 +113,5 @@ def _plain(found: Orientations) -> Stood:
         max_pressure=found.max_pressure,
         held=found.held,
         summary=found.summary(),
-        figure=drawn(orientation_figure(found)),
+        figure=figure_bytes(orientation_figure(found)),
     )

@@ -11,7 +11,7 @@ import numpy
 
 from ..contact import Contact
 from ..files.joint_file import JointFile
-from ..output.section_scale import gap_factor, radii_of
+from ..reports.joint_section import gap_factor, radii_of
 from . import svg
 from .pressing import profile
 

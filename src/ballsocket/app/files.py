@@ -12,9 +12,9 @@ from typing import Any
 from ..core.checks import check_names
 from ..files.joint_file import JointFile
 from ..files.joint_toml import toml_of
-from ..output.html import picture
-from ..output.joint_report import joint_report
-from ..output.unit_systems import Units
+from ..reports.joint_report import joint_report
+from ..reports.pages import picture
+from ..reports.unit_systems import Units
 from .view import Document
 
 

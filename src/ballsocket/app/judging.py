@@ -12,8 +12,8 @@ from ..contact.describe import to_summary
 from ..core.validity import OutsideDomainError
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..files.joint_file import JointFile
-from ..output.html import drawn
-from ..output.section_plot import section_figure
+from ..reports.figure_files import figure_bytes
+from ..reports.section_plot import section_figure
 from .running import Reached, Told
 
 _SHARES = (0.25, 0.5, 0.75, 1.0)
@@ -61,8 +61,8 @@ def judged(file: JointFile, told: Told) -> Judged:
         elements=contact.mesh.elements,
         seconds=time.perf_counter() - start,
         notes=tuple(contact.notes),
-        png=drawn(figure),
-        svg=drawn(figure, "svg"),
+        png=figure_bytes(figure),
+        svg=figure_bytes(figure, "svg"),
     )
 
 

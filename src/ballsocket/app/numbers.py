@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from ..core.kinds import Unit
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, Quantity
-from ..output.unit_systems import Units
 from ..problem.dimensions import DIAMETERS
+from ..reports.unit_systems import Units
 from .fields import Field, number, typed
 from .reading import Reading, handy_step
 

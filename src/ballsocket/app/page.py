@@ -15,7 +15,7 @@ import panel as pn
 
 from ..core.checks import check_names
 from ..files.joint_file import parse_joint
-from ..output.unit_systems import Units
+from ..reports.unit_systems import Units
 from .beside import beside
 from .channel import Channel
 from .controls import behind, edited, fields_of

@@ -13,7 +13,7 @@ import numpy
 
 from ..core.kinds import Unit
 from ..core.quantities import CONTACT, DERIVED, Quantity
-from ..output.style import INK, LineStyle
+from ..reports.style import INK, LineStyle
 from .bowl import bowl
 from .chart import Curve, chart
 from .gaiting import MERIDIANS, Gaited

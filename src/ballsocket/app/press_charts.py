@@ -10,8 +10,8 @@ import numpy
 from ..contact import Contact
 from ..contact.describe import Column
 from ..core.quantities import FIELD
-from ..output.press_plot import force_axes
-from ..output.style import LineStyle
+from ..reports.press_plots import force_axes
+from ..reports.style import LineStyle
 from .chart import Curve, chart, legend
 from .pressing import curve, profile, rounded_up
 from .reading import Reading

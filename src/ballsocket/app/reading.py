@@ -8,7 +8,7 @@ from math import floor, isfinite, isnan, log10
 from ..contact.describe import Column
 from ..core.kinds import Kind, Unit
 from ..core.quantities import CONTACT, JOINT, Quantity
-from ..output.unit_systems import Units
+from ..reports.unit_systems import Units
 
 _DIGITS = 4
 _INCH = Unit("in", 1 / 25.4)
@@ -28,7 +28,7 @@ class Reading:
             return Unit(quantity.unit) if self.angle == "radians" else quantity.shown
         if self.units is Units.IMPERIAL and quantity.kind is Kind.LENGTH and quantity.display_unit is None:
             return _INCH
-        return self.units.of(quantity)
+        return self.units.unit_of(quantity)
 
     @property
     def length(self) -> Unit:

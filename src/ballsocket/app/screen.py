@@ -15,8 +15,8 @@ from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
 from ..files.joint_file import JointFile, joint_of
 from ..files.joint_toml import Tables, tables_of
-from ..output.unit_systems import Units
 from ..problem.presets import joints
+from ..reports.unit_systems import Units
 from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS
 from ..studies.phrases import limit_of, range_of

@@ -10,8 +10,8 @@ import numpy
 
 from ..compare import relative_deviation
 from ..core.quantities import CONTACT, DERIVED
-from ..output.html import table
-from ..output.style import BLUE, VERMILLION, LineStyle
+from ..reports.pages import table
+from ..reports.style import BLUE, VERMILLION, LineStyle
 from .bore_map import SHOWN, BoreField, cells_of, worn_bore
 from .chart import Curve, chart, legend
 from .pressing import rounded_up

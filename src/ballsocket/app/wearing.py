@@ -12,9 +12,9 @@ from ..elasticity.off_axis.grid import Grid
 from ..files.joint_file import JointFile
 from ..hip import HipSimulation, History, PatientVariability, population
 from ..hip.cycle_registry import CYCLES
-from ..output.hip_plots import penetration_curve
-from ..output.html import drawn
 from ..problem.cup import Cup
+from ..reports.figure_files import figure_bytes
+from ..reports.hip_plots import penetration_curve
 from ..studies.distributions import LogNormal
 from .in_use import Use, hip_of
 from .running import Reached, Told
@@ -143,5 +143,5 @@ def _plain(hip: HipSimulation, history: History, bands: Any) -> Worn:
         load=largest / numpy.linalg.norm(largest),
         summary=history.summary(),
         notes=history.notes,
-        figure=drawn(penetration_curve(history, bands)),
+        figure=figure_bytes(penetration_curve(history, bands)),
     )

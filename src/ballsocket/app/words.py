@@ -13,8 +13,8 @@ from ..contact import Contact
 from ..contact.describe import COLUMNS, Column
 from ..core.kinds import Unit
 from ..core.quantities import HEADLINE, Quantity
-from ..output.style import line_of
-from ..output.unit_systems import Units
+from ..reports.style import line_of
+from ..reports.unit_systems import Units
 from .chart import swatch
 from .reading import Reading, number_text
 

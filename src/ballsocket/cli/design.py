@@ -12,9 +12,9 @@ from ..catalogue import named_model, reference
 from ..contact import Model
 from ..core.checks import require
 from ..files.joint_file import JointFile
-from ..output import study_plots, study_summary, study_terminal
 from ..problem import Joint
 from ..problem.cup import Cup
+from ..reports import study_plots, study_tables
 from ..studies.axes import Span
 from ..studies.design import grid
 from ..studies.limits import Limit
@@ -113,7 +113,7 @@ def design_map(
     load, model = press_options.load(file, ends), press_options.choose_model(file, ends)
     axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
     result = study(model, file.joint, grid(**axes, **load), quantities=_quantities((), limits))
-    output.print(lambda: study_summary.map_summary(result, limits), lambda: study_terminal.print_map(result, limits))
+    output.print(lambda: study_tables.map_summary(result, limits), lambda: study_tables.print_map(result, limits))
     output.draw(lambda: study_plots.design_map(result, limits))
 
 
@@ -171,7 +171,7 @@ def optimise(
     best = find_optimum(model, file.joint, ranges, among=choices, minimise=goals[0], limits=limits, load=load)
     output.print(
         lambda: {"version": __version__, "model": model.name, **best.summary()},
-        lambda: study_terminal.print_optimum(best),
+        lambda: study_tables.print_optimum(best),
     )
     sizes = {name: value for name, value in best.point.items() if name in choices}
     names = list(dict.fromkeys((*goals, *study_plots.SHOWN)))
@@ -181,7 +181,7 @@ def optimise(
 def _show_front(result: Any, goals: tuple[str, str], limits: list[Limit], output: OutputOptions) -> None:
     """Print and draw the Pareto front of two goals."""
     front = pareto(result, goals, limits)
-    output.print(lambda: study_summary.front_summary(front), lambda: study_terminal.print_front(front))
+    output.print(lambda: study_tables.front_summary(front), lambda: study_tables.print_front(front))
     output.draw(lambda: study_plots.front_figure(result, front, goals, limits))
 
 
@@ -218,9 +218,9 @@ def sensitivity(
         lambda: {
             "version": __version__,
             "model": result.attrs["model"],
-            **study_summary.sensitivity_summary(result),
+            **study_tables.sensitivity_summary(result),
         },
-        lambda: study_terminal.print_sensitivity(result),
+        lambda: study_tables.print_sensitivity(result),
     )
     output.draw(lambda: study_plots.sensitivity_figure(result))
 

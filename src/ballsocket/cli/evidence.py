@@ -21,7 +21,7 @@ from ..evidence.pack import Listener, gather_evidence
 from ..evidence.plan import count_stored_pieces, remove_stored_pieces
 from ..evidence.question import Question, read_question
 from ..evidence.signature import PublicKey, SignatureError, public_key_of, read_private_key, read_public_key
-from ..output.evidence_page import conclusions, evidence_page
+from ..reports.evidence_page import conclusions, evidence_page
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson

@@ -17,9 +17,8 @@ from ..hip.cohort import cohort_store, write_csv
 from ..hip.config import HipFile, read_hip
 from ..hip.history import History
 from ..hip.uncertainty import population, uncertainty
-from ..output.hip_bands import print_bands, print_notes
-from ..output.hip_report import check_page, write_hip_report
-from ..output.hip_terminal import print_hip
+from ..reports.hip_report import check_page, write_hip_report
+from ..reports.hip_tables import print_bands, print_hip, print_notes
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, Scheduler, Workers, choose_executor

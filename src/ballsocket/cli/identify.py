@@ -18,11 +18,11 @@ from ..identify.file import read_identify
 from ..identify.modulus import FORCES, Form
 from ..identify.posterior import Posterior
 from ..identify.result import IdentificationResult
-from ..output import identify_plots
-from ..output.identify_terminal import print_identified
-from ..output.reference_terminal import print_calibration, print_table_3
-from ..output.save import check_format, save
 from ..paper.table_3 import refit_table_3
+from ..reports import identify_results
+from ..reports.figure_files import check_format, save
+from ..reports.identify_results import print_identified
+from ..reports.reference_terminal import print_calibration, print_table_3
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, named_joint
@@ -69,11 +69,11 @@ def identify(
     else:
         print_identified(result, posterior)
     if figure is not None:
-        save(identify_plots.fit_figure(result), figure)
+        save(identify_results.fit_figure(result), figure)
     if corner is not None:
-        save(identify_plots.corner_figure(result, posterior), corner)
+        save(identify_results.corner_figure(result, posterior), corner)
     if experiment is not None:
-        save(identify_plots.experiment_figure(result.next), experiment)
+        save(identify_results.experiment_figure(result.next), experiment)
     if not result.best.converged:
         typer.echo("ballsocket: the search did not converge (see the notes)", err=True)
         raise typer.Exit(FAILURE)

@@ -18,10 +18,10 @@ from ..catalogue import judge, listed_models, off_axis, reference
 from ..contact.closed_sphere import NOTED_CHANGE
 from ..core.quantities import QUANTITIES
 from ..core.sources import Source, bibliography, find_cited_keys
-from ..output.list_summary import source_summary
 from ..problem import Joint, Material
 from ..problem.dimensions import DIAMETERS, LENGTHS
 from ..problem.presets import joints, materials
+from ..reports.catalogue_lists import source_summary
 
 Answer = Mapping[str, Any]
 Arguments = Sequence[str]

@@ -10,10 +10,16 @@ import typer
 from ..catalogue import listed_models
 from ..core.checks import known_name
 from ..core.sources import cite as bibtex_of
-from ..output.list_summary import model_summary, preset_summary
-from ..output.list_terminal import print_model, print_models, print_preset, print_presets
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
+from ..reports.catalogue_lists import (
+    model_summary,
+    preset_summary,
+    print_model,
+    print_models,
+    print_preset,
+    print_presets,
+)
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson

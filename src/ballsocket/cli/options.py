@@ -15,9 +15,9 @@ from ..core.checks import nearest, normalise_name
 from ..core.executors.processes import Engine, Processes
 from ..core.input_files import resolve_input
 from ..files.joint_file import JointFile, joint_of, read_joint, read_load, varied
-from ..output.save import check_format, save
 from ..problem.dimensions import LENGTHS
 from ..problem.presets import joints
+from ..reports.figure_files import check_format, save
 from .json_answers import echo_json
 
 if TYPE_CHECKING:

@@ -17,8 +17,7 @@ from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
 from ..files.joint_file import JointFile, read_aim
 from ..files.units import as_given
-from ..output.orientation_plot import orientation_figure
-from ..output.orientation_terminal import print_orientations
+from ..reports.orientation_results import orientation_figure, print_orientations
 from ..studies.phrases import ends_of
 from .elasticity_options import CupOptions, DirectionOptions
 from .options import JointName, JointOptions, LoadOptions, OutputOptions, drop_missing, expand_groups

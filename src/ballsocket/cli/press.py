@@ -15,9 +15,9 @@ from ..contact import Model
 from ..core.checks import known_name
 from ..core.validity import Status
 from ..files.joint_file import JointFile
-from ..output.terminal import print_curve, print_press
-from ..output.unit_systems import Units
 from ..problem.cup import UP
+from ..reports.terminal import print_curve, print_press
+from ..reports.unit_systems import Units
 from ..version import __version__
 from .elasticity_options import (
     CupOptions,

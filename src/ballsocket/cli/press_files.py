@@ -15,8 +15,8 @@ from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
-from ..output.save import check_format, save
-from ..output.unit_systems import Units
+from ..reports.figure_files import check_format, save
+from ..reports.unit_systems import Units
 from ..studies.around import Around, around
 from ..studies.phrases import spread_of
 from .root import print_message
@@ -92,15 +92,15 @@ def _write(path: Path | None, contact: Any, write: Callable[[Any, Path], None]) 
 
 def _write_figure(contacts: Mapping[str, Any], first_model: str, path: Path) -> None:
     """Write a figure of all contacts, or of the cup alone if `sphere` is the first model."""
-    from ..output import quick_plot
+    from ..reports import press_plots
 
     alone = first_model == off_axis.name and first_model in contacts
-    save(quick_plot.plot({first_model: contacts[first_model]} if alone else contacts), path)
+    save(press_plots.plot({first_model: contacts[first_model]} if alone else contacts), path)
 
 
 def _write_section(contact: MeshedContact, exact: Any, path: Path) -> None:
     """Write a figure of the meshed section with the exact pressure."""
-    from ..output.section_plot import section_figure
+    from ..reports.section_plot import section_figure
 
     save(section_figure(contact, exact), path)
 
@@ -121,7 +121,7 @@ def _write_surfaces(contact: OffAxisContact, path: Path) -> None:
 
 def _write_view(contact: OffAxisContact, path: Path) -> None:
     """Write a three-dimensional picture of the cup."""
-    from ..output.cup_view import save_view
+    from ..reports.cup_plots import save_view
 
     save_view(contact, path)
 
@@ -152,7 +152,7 @@ class ReportOptions:
         """Write the report if there is a file for it."""
         if self.report is None:
             return
-        from ..output.press_report import press_report
+        from ..reports.press_report import press_report
 
         page = press_report(
             comparison, file, _verdict_model(comparison), units, self._tolerance_study(comparison, file)

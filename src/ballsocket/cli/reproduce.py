@@ -12,8 +12,8 @@ from rich.progress import Progress
 
 from ..core.checks import needs
 from ..core.executors.processes import Processes
-from ..output.report import write_report
 from ..paper.plan import full_plan, quick_plan
+from ..reports.paper_report import write_report
 from .root import app, echo_path
 
 

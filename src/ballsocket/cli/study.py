@@ -13,8 +13,8 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from ..output import study_plots, study_summary, study_terminal
-from ..output.save import check_format, save
+from ..reports import study_plots, study_tables
+from ..reports.figure_files import check_format, save
 from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
 from ..studies.run import Listener
@@ -64,10 +64,10 @@ def study(
             listen=progress,
         )
     if as_json:
-        summary = study_summary.study_summary(result)
+        summary = study_tables.study_summary(result)
         echo_json({"version": __version__, "joint": study_file.joint.summary(), **summary})
     else:
-        study_terminal.print_study(result)
+        study_tables.print_study(result)
     if out is not None:
         export(result, out)
     if draw is not None and figure is not None:

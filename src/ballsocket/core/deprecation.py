@@ -33,6 +33,26 @@ _OFF_AXIS_MODULES = {
 }
 """New names of the modules of `ballsocket.sphere`."""
 
+_REPORT_MODULES = {
+    "accuracy_plot": "paper_plots",
+    **dict.fromkeys(("cup_plot", "cup_section", "cup_view"), "cup_plots"),
+    "design_map": "study_plots",
+    "evidence_sections": "evidence_page",
+    "evidence_words": "evidence_text",
+    "gait_plot": "hip_plots",
+    **dict.fromkeys(("hip_bands", "hip_contact", "hip_terminal"), "hip_tables"),
+    "html": "pages",
+    **dict.fromkeys(("identify_plots", "identify_terminal"), "identify_results"),
+    **dict.fromkeys(("list_summary", "list_terminal"), "catalogue_lists"),
+    **dict.fromkeys(("orientation_plot", "orientation_terminal"), "orientation_results"),
+    **dict.fromkeys(("press_plot", "quick_plot"), "press_plots"),
+    **dict.fromkeys(("report", "report_tables"), "paper_report"),
+    "save": "figure_files",
+    "section_scale": "joint_section",
+    **dict.fromkeys(("study_summary", "study_terminal"), "study_tables"),
+}
+"""New names of the modules of `ballsocket.output`."""
+
 MOVED = {
     **{f"ballsocket.{name}": f"ballsocket.core.{name}" for name in ("arrays", "checks", "kinds", "quantities")},
     **{f"ballsocket.{name}": f"ballsocket.core.{name}" for name in ("sources", "stress", "validity", "input_files")},
@@ -41,6 +61,8 @@ MOVED = {
     "ballsocket.npz": "ballsocket.core.storage.array_files",
     "ballsocket.engines": "ballsocket.core.executors",
     "ballsocket.engines.local": "ballsocket.core.executors.processes",
+    "ballsocket.output": "ballsocket.reports",
+    **{f"ballsocket.output.{old}": f"ballsocket.reports.{new}" for old, new in _REPORT_MODULES.items()},
     "ballsocket.sphere.kept": "ballsocket.core.storage.array_files",
     "ballsocket.hip.coefficient_response": "ballsocket.hip.uncertainty",
     "ballsocket.hip.checkpoint": "ballsocket.hip.report_points",

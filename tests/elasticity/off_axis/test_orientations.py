@@ -9,7 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.elasticity.finite_elements.progress import progress_to
-from ballsocket.output.orientation_plot import orientation_figure
+from ballsocket.reports.orientation_results import orientation_figure
 
 from ...joints import HIP
 

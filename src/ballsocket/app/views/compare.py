@@ -14,10 +14,11 @@ from ...compare import relative_deviation, successful_contacts
 from ...contact import Contact
 from ...core.quantities import JOINT
 from ...files.joint_file import JointFile
-from ...output.html import drawn, table
-from ...output.press_plot import press_figure
-from ...output.style import LineStyle, numbered
 from ...problem.presets import joints
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import table
+from ...reports.press_plots import press_figure
+from ...reports.style import LineStyle, numbered
 from ..drawing import extent_of, section
 from ..press_charts import press_charts
 from ..pressing import fine_curves, pressed
@@ -107,7 +108,7 @@ class Compare:
         title = f"answered by {screen.answered_by}"
 
         def picture(form: str) -> bytes:
-            return drawn(
+            return figure_bytes(
                 press_figure(contacts, fine_curves(contacts, models), title, _lines(files), units=screen.reading.units),
                 form,
             )

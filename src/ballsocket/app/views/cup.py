@@ -15,8 +15,9 @@ from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ...core.validity import OutsideDomainError
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...files.joint_file import JointFile
-from ...output import html as page
-from ...output.cup_plot import cup_figure
+from ...reports.cup_plots import cup_figure
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import picture, table
 from ..angle_map import angle_map
 from ..beside import beside
 from ..bore_map import pressed_bore
@@ -166,11 +167,11 @@ class CupView:
             raise ValueError("this bore is still being set up: wait until its pressure is there")
         contact = pressed_in_cup(screen.file)
         found: Stood | None = _STOOD.get(stand_of(screen.file))
-        stands = {} if found is None else {"orientations": ("How the cup may stand", page.picture(found.figure, "map"))}
+        stands = {} if found is None else {"orientations": ("How the cup may stand", picture(found.figure, "map"))}
         rows = [["quantity", "value"], *_told(contact, screen.reading)]
-        listed = page.table(rows[0], [[name, told(value)] for name, value in rows[1:]])
+        listed = table(rows[0], [[name, told(value)] for name, value in rows[1:]])
         return Document(
-            picture=lambda form: page.drawn(cup_figure(contact), form),
+            picture=lambda form: figure_bytes(cup_figure(contact), form),
             rows=lambda: rows,
             sections=lambda: {"cup": ("In the cup", listed), **stands},
         )

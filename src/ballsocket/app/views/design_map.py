@@ -14,10 +14,11 @@ import panel as pn
 from ...core.kinds import Unit
 from ...core.quantities import QUANTITIES
 from ...files.joint_file import JointFile
-from ...output.html import drawn, table
-from ...output.study_plots import design_map
-from ...output.study_terminal import map_rows
-from ...output.unit_systems import Units
+from ...reports.figure_files import figure_bytes
+from ...reports.pages import table
+from ...reports.study_plots import design_map
+from ...reports.study_tables import map_rows
+from ...reports.unit_systems import Units
 from ...studies.parameters import PARAMETERS
 from ...studies.phrases import limit_of, range_of
 from ..beside import beside
@@ -221,7 +222,7 @@ class DesignMap:
         limits = list(limits_of(screen))
 
         return Document(
-            picture=lambda form: drawn(design_map(found, limits), form),
+            picture=lambda form: figure_bytes(design_map(found, limits), form),
             rows=lambda: _rows(found, screen.reading),
             sections=lambda: {"map": ("Design map", table(*map_rows(found, limits)))},
         )

@@ -12,9 +12,8 @@ from typing import Any
 from ...core.checks import check_names, shown
 from ...evidence.matrix import title_of
 from ...files.joint_file import JointFile
-from ...output import evidence_words
-from ...output import html as page
-from ...output.evidence_words import case_text, listed, value_text
+from ...reports.evidence_text import case_text, value_text
+from ...reports.pages import items, table
 from ..asked import Asked
 from ..evidencing import LONGEST, Packed, cases_of, packed
 from ..fields import Field, segments, words
@@ -100,7 +99,7 @@ class Evidence:
         heads, rows = _worst(found)
         return Document(
             rows=lambda: [heads, *rows],
-            sections=lambda: {"evidence": ("Evidence", listed(found.conclusions) + page.table(heads, rows))},
+            sections=lambda: {"evidence": ("Evidence", items(found.conclusions) + table(heads, rows))},
         )
 
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
@@ -156,7 +155,7 @@ def _said(screen: Screen) -> str:
 
 def _told(found: Packed) -> str:
     take = "<p><button type='button' class='plain' data-tell='evidence.take'>Take the pack (ZIP)</button></p>"
-    return f"{listed(found.conclusions)}{evidence_words.words(*_worst(found))}{take}"
+    return f"{items(found.conclusions)}{table(*_worst(found), kind='words')}{take}"
 
 
 def _worst(found: Packed) -> tuple[list[str], list[list[str]]]:

@@ -14,8 +14,9 @@ import numpy
 from ...core.checks import check_names
 from ...core.kinds import Kind, Unit
 from ...files.joint_file import JointFile
-from ...output import html as page
-from ...output.gait_plot import course_figure
+from ...reports.figure_files import figure_bytes
+from ...reports.hip_plots import course_figure
+from ...reports.pages import table
 from ..fields import typed
 from ..gaiting import Gaited, gait_of, gaited
 from ..in_use import Own, Use
@@ -111,9 +112,9 @@ class Gait:
         courses = {each.label(reading): each.of(found, reading) for each in COURSES}
         heads = ["phase [%]", *courses]
         rows = numpy.stack([found.phase, *courses.values()], axis=1).tolist()
-        listed = page.table(["quantity", "value"], [[name, told(value)] for name, value in found.numbers.items()])
+        listed = table(["quantity", "value"], [[name, told(value)] for name, value in found.numbers.items()])
         return Document(
-            picture=lambda form: page.drawn(course_figure(found.phase, courses, found.name), form),
+            picture=lambda form: figure_bytes(course_figure(found.phase, courses, found.name), form),
             rows=lambda: [heads, *rows],
             sections=lambda: {"gait": (f"A cycle: {found.name}", listed + notes_list(found.notes))},
         )

@@ -14,8 +14,8 @@ from ...compare import relative_deviation
 from ...core.quantities import CONTACT, CUP
 from ...files.joint_file import JointFile, read_cup
 from ...files.joint_toml import cup_table
-from ...output.html import picture, table
 from ...problem.cup import Interface
+from ...reports.pages import picture, table
 from ..judging import Judged, judged
 from ..reading import number_text
 from ..running import LONGEST, Done, Reached, Run, RunRefused, looked_at

@@ -15,10 +15,10 @@ from ...compare import Comparison, successful_contacts
 from ...contact import Contact
 from ...core.quantities import BEARING, FIELD
 from ...files.joint_file import JointFile
-from ...output import html as page
-from ...output.press_plot import press_figure
-from ...output.press_report import press_lede, press_sections
-from ...output.style import line_of
+from ...reports.figure_files import figure_bytes
+from ...reports.press_plots import press_figure
+from ...reports.press_report import press_lede, press_sections
+from ...reports.style import line_of
 from ...studies.around import Around, around
 from ..beside import beside
 from ..chart import swatch
@@ -139,7 +139,7 @@ class Press:
         by = found.contacts.get(screen.answered_by)
         drawn = {name: found[name] for name in screen.shown if name in successful_contacts(found)}
         return Document(
-            picture=(lambda form: page.drawn(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
+            picture=(lambda form: figure_bytes(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
             if drawn
             else None,
             rows=lambda: _rows(found, screen),

@@ -12,8 +12,8 @@ from ...core.kinds import Kind, Unit
 from ...core.quantities import CONTACT
 from ...files.joint_file import JointFile
 from ...hip.law_fields import LawField
-from ...output import html as page
 from ...problem.presets import joints
+from ...reports.pages import picture
 from ..fields import Field, choice, number, segments, typed
 from ..in_use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS, Use
 from ..jobs import CachedRun, ViewJob
@@ -108,7 +108,7 @@ class Wear:
                 each.cycles, each.penetration, each.low, each.high, each.deepest, each.volume, strict=True
             )
         ]
-        pictures = "".join(page.picture(each.figure, f"penetration of {name}") for name, each in found.items())
+        pictures = "".join(picture(each.figure, f"penetration of {name}") for name, each in found.items())
         return Document(
             rows=lambda: [["design", "million cycles", *depths, "volume [mm3]"], *rows],
             sections=lambda: {"wear": ("Wear", wear_numbers(found, screen.reading) + pictures)},

@@ -8,14 +8,14 @@ from pathlib import Path
 
 from ...version import __version__
 
-_SUFFIXES = {".py", ".npz", ".toml", ".csv"}
+_SUFFIXES = {".py", ".npz", ".toml", ".csv", ".html", ".css"}
 
 
 @cache
 def fingerprint() -> str:
     """Compute an identifier of the installed code: version and eight characters of a hash.
 
-    It changes with any line of code or data of the package.
+    It changes with any line of code, data or page template of the package.
     """
     package = Path(__file__).parents[2]
     digest = sha256()

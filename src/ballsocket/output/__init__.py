@@ -1,1 +1,0 @@
-"""Results become pictures, tables and pages. Nothing is solved here."""

@@ -1,0 +1,147 @@
+"""Models and presets as dictionaries for JSON and as lists in a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from math import isfinite
+from typing import Any
+
+from rich.table import Table
+from rich.text import Text
+
+from ..contact.model_info import ModelInfo
+from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS, Quantity
+from ..core.sources import Source
+from ..core.validity import Range
+from ..problem import Joint, Material
+from ..problem.presets import joints, materials
+from .terminal import console, print_folded
+
+
+def model_summary(model: ModelInfo) -> dict[str, Any]:
+    """Summarise a model: promised accuracy, range of validity, sources; angles are in rad, an open end is null."""
+    promise = model.promise
+    return {
+        "name": model.name,
+        "title": model.title,
+        "promise": None if promise is None else {"within": promise.within, "quantities": list(promise.quantities)},
+        "validity": list(map(_range, model.validity)),
+        "reach": model.reach,
+        "sources": list(map(source_summary, model.sources)),
+    }
+
+
+def preset_summary(preset: Material | Joint) -> dict[str, Any]:
+    """Summarise a material or joint with its source."""
+    return {**preset.summary(), "source": preset.source}
+
+
+def _range(limit: Range) -> dict[str, Any]:
+    """Summarise a range of validity; an open end is None."""
+    low, high = (end if isfinite(end) else None for end in (limit.low, limit.high))
+    name = limit.quantity if isinstance(limit.quantity, str) else None
+    return {"quantity": name, "text": str(limit), "low": low, "high": high, "why": limit.why}
+
+
+def source_summary(source: Source) -> dict[str, Any]:
+    """Summarise a publication with its key, text and DOI."""
+    return {"key": source.key, "text": str(source), "doi": source.doi or None}
+
+
+_NARROW = 72  # columns: lists are paragraphs below
+
+
+def print_models(models: Iterable[ModelInfo]) -> None:
+    """Print the catalogue of models with validity and sources."""
+    rows = [(model.name, model.title, _validity_text(model), _sources(model)) for model in models]
+    _print_rows(("model", "title", "valid for", "source"), rows, gap=1)
+
+
+def _validity_text(model: ModelInfo) -> str:
+    """Describe the promised accuracy of a model and its range of validity."""
+    promised = [] if model.promise is None else [f"{model.promise}:"]
+    return "\n".join([*promised, *map(str, model.validity)])
+
+
+def print_presets() -> None:
+    """Print materials and joints with the sources of their numbers."""
+    for title, presets in (("materials", materials), ("joints", joints)):
+        rows = [(name, _preset_numbers(preset), preset.source) for name, preset in presets.items()]
+        _print_rows((title, "numbers", "source"), rows, gap=0)
+        console().print()
+
+
+def print_model(model: ModelInfo) -> None:
+    """Print one model: title, promised accuracy, range of validity with reasons, sources."""
+    terminal = console()
+    print_folded(terminal, f"{model.name}: {model.title}", "bold")
+    promise = "" if model.promise is None else f"{model.promise} of the elastic answer, "
+    print_folded(terminal, f"{promise}valid for", "")
+    for limit in model.validity:
+        print_folded(terminal, f"  {limit}: {limit.why}", "")
+    if model.reach:
+        print_folded(terminal, model.reach, "")
+    for source in model.sources:
+        print_folded(terminal, f"source: {source}{f', doi {source.doi}' if source.doi else ''}", "")
+
+
+def print_preset(name: str) -> None:
+    """Print one material or joint with all its numbers."""
+    terminal = console()
+    preset: Material | Joint = materials[name] if name in materials else joints[name]
+    print_folded(terminal, name, "bold")
+    for title, text in (*_titled_numbers(preset), ("source", preset.source)):
+        print_folded(terminal, f"  {title:<22}{text}", "")
+
+
+def _titled_numbers(preset: Material | Joint) -> list[tuple[str, str]]:
+    """Return the numbers of a material or joint as pairs of title and text."""
+    if isinstance(preset, Material):
+        return [
+            ("name", preset.name),
+            *_quantities(preset, {name: QUANTITIES[name] for name in (*MATERIAL, *preset.stress_limits)}),
+        ]
+    ball = "rigid" if preset.ball is None else str(preset.ball)
+    return [*_quantities(preset, JOINT), ("liner", str(preset.liner)), ("ball", ball)]
+
+
+def _quantities(preset: Material | Joint, named: Mapping[str, Quantity]) -> list[tuple[str, str]]:
+    """Return quantities of a material or joint as pairs of title and value with unit."""
+    return [
+        (quantity.title, f"{float(getattr(preset, name)):g} {quantity.written.text}".strip())
+        for name, quantity in named.items()
+    ]
+
+
+def _sources(model: ModelInfo) -> str:
+    """List the publications of a model, one in a line with all cited equations and sections."""
+    citations: dict[str, list[str]] = {}
+    for source in model.sources:
+        citations.setdefault(source.authors_and_year, []).extend([source.place] if source.place else [])
+    return "\n".join(", ".join([short, *citation]) for short, citation in citations.items())
+
+
+def _preset_numbers(preset: Material | Joint) -> str:
+    """Describe the numbers of a material or joint in one line."""
+    text = str(preset).removeprefix(preset.name)
+    if isinstance(preset, Joint):
+        return text.removeprefix(": ")
+    limits = (f"{STRESS_LIMITS[name].title} {value:g} MPa" for name, value in preset.stress_limits.items())
+    return ", ".join([text.strip(" ()"), *limits])
+
+
+def _print_rows(heads: Sequence[str], rows: Sequence[Sequence[str]], gap: int) -> None:
+    """Print a table with `gap` empty lines between rows; in a narrow terminal a paragraph for each row."""
+    terminal = console()
+    if terminal.width < _NARROW:
+        for name, *texts in rows:
+            terminal.print(Text(name, style="bold"))
+            for text in texts:
+                print_folded(terminal, f"  {text.replace(chr(10), '; ')}", "")
+        return
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, gap, 0))
+    for head in heads:
+        table.add_column(head, overflow="fold", no_wrap=head == heads[0])
+    for name, *texts in rows:
+        table.add_row(Text(name, style="bold"), *map(Text, texts))
+    terminal.print(table)

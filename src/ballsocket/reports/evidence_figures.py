@@ -1,0 +1,260 @@
+"""Figures of an evidence pack, from its record alone; they are legible in grey."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import product
+from math import prod, radians
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.quantities import QUANTITIES, Quantity
+from ..evidence.matrix import NAMES
+from ..problem import Joint, Layer, Material, Support
+from ..problem.cup import Cup
+from ..studies.parameters import PARAMETERS
+from .joint_section import joint_section
+from .style import BLUE, GREY, INK, LEGEND, ORANGE, VERMILLION, finish, numbered
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Record = Mapping[str, Any]
+
+_KEYS: Mapping[str, Quantity] = {
+    each.key: each for each in (*QUANTITIES.values(), *PARAMETERS.values(), *NAMES.values())
+}
+_MAX_WRITTEN_CELLS = 150
+"""Cells of a map up to which each contains its number."""
+
+
+def joint_figure(record: Record) -> Figure:
+    """Draw the section of the joint with the largest pressure, and the arc of an axial contact."""
+    drawn = record["drawn"]
+    joint = _joint(drawn["joint"])
+    figure = joint_section(joint, Cup(arc_of_cover=radians(drawn["arc_of_cover_deg"])))
+    if drawn["half_angle_deg"] is None:
+        return figure
+    edge = radians(drawn["half_angle_deg"])
+    angle, radius = numpy.linspace(-edge, edge, 121), float(joint.socket_radius)
+    axes = figure.axes[0]
+    axes.plot(radius * numpy.sin(angle), -radius * numpy.cos(angle), color=VERMILLION, linewidth=3.5)
+    axes.text(
+        0.0, -0.75 * radius, f"contact to {drawn['half_angle_deg']:.3g}°", color=VERMILLION, ha="center", fontsize=9
+    )
+    return figure
+
+
+def _joint(summary: Record) -> Joint:
+    """Create a joint from its summary."""
+    ball, layers = summary["ball"], [dict(layer) for layer in summary["backing"]]
+    return Joint(
+        ball_radius=summary["ball_radius"],
+        clearance=summary["clearance"],
+        liner_thickness=float(summary["liner_thickness"]),
+        liner=Material(**summary["liner"]),
+        ball=None if ball is None else Material(**ball),
+        backing=tuple(Layer(thickness=float(layer.pop("thickness")), material=Material(**layer)) for layer in layers),
+        support=Support(summary["support"]),
+        name=summary["name"],
+    )
+
+
+def matrix_figure(record: Record, name: str = "max_pressure") -> Figure:
+    """Draw a result over the matrix, one cell for each case; the worst is framed, a broken limit is crossed."""
+    rows, key = record["matrix"], NAMES[name].key
+    down, across = _sides(rows)
+    table = {tuple(row["case"].values()): row for row in rows}
+    names = list(rows[0]["case"])
+    cases = [
+        [_case(names, down, across, row, column) for column in _combinations(across)] for row in _combinations(down)
+    ]
+    values = numpy.array([[_number(table[case]["numbers"].get(key)) for case in line] for line in cases])
+    figure, axes = _single_axes(min(11.0, 3.4 + 0.62 * values.shape[1]), min(9.0, 2.2 + 0.34 * values.shape[0]))
+    drawn = axes.imshow(values, cmap="cividis", aspect="auto")
+    figure.colorbar(drawn, label=_UNITS.get(name) or NAMES[name].head(NAMES[name].written), pad=0.02)
+    _tick(axes, down, across)
+    _mark(axes, values, record, name, cases)
+    return figure
+
+
+def _number(value: Any) -> float:
+    """Convert a value of the record to a number; NaN for None."""
+    return numpy.nan if value is None else float(value)
+
+
+_UNITS = {"edge_distance": "[mm]", "wear_rate": "[mm³/10⁶]"}
+Axis = tuple[str, list[float]]
+
+
+def _sides(rows: Sequence[Record]) -> tuple[list[Axis], list[Axis]]:
+    """Distribute the axes of the matrix over two sides of about the same length."""
+    axes = [(key, list(dict.fromkeys(row["case"][key] for row in rows))) for key in rows[0]["case"]]
+    splits = [(axes[:split], axes[split:]) for split in range(len(axes) + 1)]
+    return min(splits, key=lambda pair: abs(2 * _count(pair[0]) - _count(pair[1])))
+
+
+def _count(axes: Sequence[Axis]) -> int:
+    """Count the combinations of the values of axes."""
+    return prod(len(values) for _, values in axes)
+
+
+def _combinations(axes: Sequence[Axis]) -> list[tuple[float, ...]]:
+    """List the combinations of the values of axes."""
+    return list(product(*(values for _, values in axes)))
+
+
+def _case(names: list[str], down: Sequence[Axis], across: Sequence[Axis], row: Any, column: Any) -> tuple[float, ...]:
+    """Return the case of a row and a column, in the order of the names."""
+    values = dict(zip([key for key, _ in (*down, *across)], (*row, *column), strict=True))
+    return tuple(values[name] for name in names)
+
+
+def _tick(axes: Axes, down: Sequence[Axis], across: Sequence[Axis]) -> None:
+    """Label the cells of both sides with the values of their axes."""
+    for side, set_ticks, set_label in (
+        (across, axes.set_xticks, axes.set_xlabel),
+        (down, axes.set_yticks, axes.set_ylabel),
+    ):
+        texts = [" | ".join(f"{value:.4g}" for value in values) for values in _combinations(side)]
+        step = max(1, len(texts) // 40)
+        rotation: Any = {"rotation": 90} if side is across and max(map(len, texts), default=0) > 9 else {}
+        set_ticks(range(0, len(texts), step), texts[::step], fontsize=8, **rotation)
+        set_label(" | ".join(_head(key) for key, _ in side))
+
+
+def _mark(axes: Axes, values: Numbers, record: Record, name: str, cases: Any) -> None:
+    """Write numbers in the cells, frame the worst case, and cross cells that break a limit."""
+    low, high = _allowed(record, name)
+    middle = 0.5 * (numpy.nanmin(values) + numpy.nanmax(values))
+    worst = tuple(record["worst"][name]["case"].values()) if name in record["worst"] else None
+    for (row, column), value in numpy.ndenumerate(values):
+        ink = "white" if value < middle else "black"
+        if values.size <= _MAX_WRITTEN_CELLS:
+            axes.text(column, row, f"{value:.3g}", ha="center", va="center", fontsize=8, color=ink)
+        if not low <= value <= high:
+            axes.plot(column + 0.38, row - 0.3, marker="x", markersize=6, color=ink, linewidth=0.8)
+        if cases[row][column] == worst:
+            frame: Any = {"fill": False, "edgecolor": VERMILLION, "linewidth": 2.2}
+            axes.add_patch(_rectangle(column - 0.47, row - 0.47, 0.94, 0.94, **frame))
+
+
+def _rectangle(*sizes: float, **style: Any) -> Any:
+    """Create a rectangle from x, y, width and height."""
+    from matplotlib.patches import Rectangle
+
+    return Rectangle((sizes[0], sizes[1]), *sizes[2:], **style)
+
+
+def _allowed(record: Record, name: str) -> tuple[float, float]:
+    """Return the range that the limits of a result allow, in the unit of files."""
+    ends = [(limit["low"], limit["high"]) for limit in record["limits"] if limit["name"] == name]
+    lows, highs = ([end for end in side if end is not None] for side in zip(*ends, strict=True)) if ends else ([], [])
+    return max(lows, default=-numpy.inf), min(highs, default=numpy.inf)
+
+
+def methods_figure(record: Record) -> Figure:
+    """Draw the deviation of every other method by result at each worst case, with the required accuracy."""
+    pieces = [piece for piece in record["calculation"] if piece["methods"][0]["numbers"]]
+    keys = list(dict.fromkeys(key for piece in pieces for key in piece["deviation"]))
+    figure, axes = _single_axes(7.2, 1.4 + 0.5 * len(keys))
+    pairs = [(method, piece["methods"][0]) for piece in pieces for method in piece["methods"][1:]]
+    pairs = [(method, first) for method, first in pairs if method["valid"] and method["aligned"] == first["aligned"]]
+    names = list(dict.fromkeys(method["name"] for method, _ in pairs))
+    for method, first in pairs:
+        _dots(axes, keys, names, method, first)
+    required = 100 * record["required"]["accuracy"]
+    axes.axvspan(-required, required, color="0.94", zorder=0)
+    axes.axvline(0.0, color=INK, linewidth=0.8)
+    axes.set_yticks(range(len(keys)), [_KEYS[key].title for key in keys])
+    axes.set_ylim(len(keys) - 0.4, -0.6)
+    _legend(axes)
+    finish(axes, f"deviation from {pieces[0]['methods'][0]['name']} [%] (grey: required accuracy)", "")
+    return figure
+
+
+def _dots(axes: Axes, keys: Sequence[str], names: Sequence[str], method: Record, first: Record) -> None:
+    """Draw the deviations of one method as dots."""
+    index = names.index(method["name"])
+    common = [key for key in keys if key in method["numbers"] and first["numbers"].get(key)]
+    off = [100 * (method["numbers"][key] / first["numbers"][key] - 1) for key in common]
+    up = [keys.index(key) + 0.12 * (index - (len(names) - 1) / 2) for key in common]
+    style: Any = {"color": numbered(index).colour, "marker": "osD^vP"[index % 6], "linestyle": "", "markersize": 5}
+    axes.plot(off, up, **style, label=method["name"])
+
+
+def _legend(axes: Axes) -> None:
+    """Add a legend with each name once."""
+    handles, labels = axes.get_legend_handles_labels()
+    once = dict(zip(labels, handles, strict=True))
+    if once:
+        axes.legend(once.values(), once.keys(), **LEGEND)
+
+
+def bands_figure(record: Record) -> Figure:
+    """Draw the band of each result from the tolerances beside the Sobol indices of the tolerances."""
+    from matplotlib.figure import Figure
+
+    uncertainty = record["uncertainty"]
+    names, keys = list(next(iter(uncertainty["sobol"].values()))), list(uncertainty["bands"])
+    figure = Figure(figsize=(9.6, 1.5 + 0.34 * max(len(names), len(keys))), layout="constrained")
+    band_axes, sobol_axes = figure.subplots(1, 2)
+    reach = 0.0
+    for row, key in enumerate(keys):
+        band = uncertainty["bands"][key]
+        low, high = (100 * (band[end] / band["median"] - 1) for end in ("low", "high"))
+        reach = max(reach, -low, high)
+        band_axes.barh(row, high - low, left=low, height=0.55, color=BLUE, edgecolor=INK, linewidth=0.6)
+        band_axes.text(
+            high, row, f"  {band['low']:.4g} to {band['high']:.4g} {_KEYS[key].written.text}", fontsize=8, va="center"
+        )
+    band_axes.axvline(0.0, color=INK, linewidth=0.8)
+    band_axes.set_yticks(range(len(keys)), [_KEYS[key].title for key in keys])
+    band_axes.set_xlim(-1.15 * reach, 3.2 * reach)
+    band_axes.invert_yaxis()
+    finish(band_axes, "deviation from the median [%], 95 %", "")
+    height = 0.8 / len(uncertainty["sobol"])
+    for number, (key, sobol_indices) in enumerate(uncertainty["sobol"].items()):
+        up = [row + height * (number - (len(uncertainty["sobol"]) - 1) / 2) for row in range(len(names))]
+        style: Any = {"color": (ORANGE, GREY)[number % 2], "hatch": ("", "///")[number % 2], "edgecolor": INK}
+        sobol_axes.barh(
+            up, [sobol_indices[name] for name in names], height, **style, linewidth=0.6, label=_KEYS[key].title
+        )
+    sobol_axes.set_yticks(range(len(names)), [QUANTITIES[name].title for name in names])
+    sobol_axes.set_xlim(0.0, 1.05)
+    sobol_axes.invert_yaxis()
+    sobol_axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, **LEGEND)
+    finish(sobol_axes, "share in the variance (total order)", "")
+    return figure
+
+
+def wear_figure(record: Record) -> Figure:
+    """Draw the worn volume over the cycles of the worst case, with the band of patients who differ."""
+    wear = record["wear"]
+    figure, axes = _single_axes(5.6, 3.2)
+    cycles = [0.0, *(1e-6 * row["cycles"] for row in wear["history"])]
+    axes.plot(cycles, [0.0, *(row["volume"] for row in wear["history"])], color=INK, marker="o", markersize=4)
+    bands = [band for band in wear.get("bands", ()) if band["volume"]["low"] is not None]
+    if bands:
+        low, high = ([0.0, *(band["volume"][end] for band in bands)] for end in ("low", "high"))
+        through = [0.0, *(1e-6 * band["cycles"] for band in bands)]
+        axes.fill_between(through, low, high, color=BLUE, alpha=0.25, linewidth=0)
+    finish(axes, "cycles [million]", "worn volume [mm³]" + (", band of 95 %" if bands else ""))
+    return figure
+
+
+def _single_axes(width: float, height: float) -> tuple[Figure, Axes]:
+    """Create a figure with one pair of axes; sizes in inches."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplots()
+
+
+def _head(key: str) -> str:
+    """Return the title of a number with its unit in brackets."""
+    quantity = _KEYS[key]
+    return f"{quantity.title}{quantity.written.text_in_brackets}"

@@ -1,0 +1,329 @@
+"""Page of an evidence pack, from its record alone, in the order in which a reviewer reads; for A4 and Letter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import starmap
+from types import MappingProxyType
+from typing import Any
+
+from ..evidence.folder import RECORD
+from ..evidence.matrix import KEYS, NAMES, input_title, limit_text, number, title_of
+from ..evidence.requirements import MET, NOT_MET, UNKNOWN
+from . import evidence_figures as figures
+from .evidence_text import (
+    Record,
+    band_text,
+    case_text,
+    column_head,
+    error_text,
+    named_number,
+    percent,
+    quantities_of_interest,
+    recentred_text,
+    unloaded,
+    value_text,
+)
+from .figure_files import default_style
+from .pages import render_page, svg_address
+
+_SECTIONS = MappingProxyType(
+    {
+        "question": "Question and context of use",
+        "risk": "Model risk and required accuracy",
+        "inputs": "Inputs",
+        "matrix": "Worst-case matrix",
+        "code": "Code verification",
+        "calculation": "Calculation verification",
+        "validation": "Validation",
+        "uncertainty": "Sensitivity and uncertainty",
+        "wear": "Wear",
+        "limits": "Limits and assumptions",
+        "credibility": "Credibility factors (ASME V&V 40)",
+        "requirements": "Requirements and evidence",
+        "signed": "Signatures",
+    }
+)
+"""Titles of the sections by their ids, which are blocks of the template."""
+
+_CHECK_RESULTS = {True: "passed", False: "FAILED", None: "not run"}
+_STATUS_ORDER = (NOT_MET, UNKNOWN, MET)
+_MAPPED = ("max_pressure", "edge_distance", "wear_rate")
+"""Results that are drawn over the matrix."""
+
+Rows = list[tuple[str, ...]]
+
+
+def evidence_page(record: Record, digest: str = "") -> str:
+    """Return the page of a pack as HTML.
+
+    Parameters
+    ----------
+    record : mapping
+        See `evidence.pack.gather_evidence`.
+    digest : str
+        Digest of the pack, see `evidence.folder.digest`; omitted if empty.
+    """
+    with default_style():
+        context = {
+            **_inputs(record),
+            **_matrix(record),
+            **_verification(record),
+            **_validation(record),
+            **_credibility(record),
+            "uncertainty": _uncertainty(record),
+            "wear": _wear(record),
+        }
+    sections = {name: (title, None) for name, title in _SECTIONS.items()}
+    return render_page(
+        "evidence.html", "Evidence", sections, record=record, digest=digest, conclusions=conclusions(record), **context
+    )
+
+
+def conclusions(record: Record) -> list[str]:
+    """Return the conclusions in sentences: verdict on each limit, accuracy, adequacy, changed nominal values."""
+    limits = [f"{limit_text(limit)}: {limit['verdict']}" for limit in record["limits"]] or ["no limit is stated"]
+    accurate = record["accurate"]
+    largest = "unknown" if accurate["largest"] is None else percent(accurate["largest"])
+    within = "within" if accurate["holds"] else "NOT within"
+    accuracy = (
+        f"Error bars and other methods: {largest} at most, {within} the required {percent(accurate['required'])}."
+    )
+    return [*limits, accuracy, f"{record['adequacy']['text']}.", *map(recentred_text, record["recentred"])]
+
+
+def _inputs(record: Record) -> dict[str, Any]:
+    """Return the tables of the model risk and of the inputs."""
+    risk = record["risk"]
+    return {
+        "risk": [
+            ("influence of the model on the decision", risk["influence"]),
+            ("consequence of a wrong decision", risk["consequence"]),
+            ("model risk", f"{risk['level']} ({risk['rank']} of 5): it sets the goals of the credibility factors"),
+            ("required accuracy", percent(record["required"]["accuracy"])),
+            ("quantities of interest", ", ".join(map(title_of, quantities_of_interest(record)))),
+            *(("limit", limit_text(limit)) for limit in record["limits"]),
+        ],
+        "inputs": [
+            (input_title(row["name"]), number(row["value"]), row["unit"], row["tolerance"], row["source"] or "none")
+            for row in record["inputs"]
+        ],
+        "recentred": [recentred_text(change) for change in record["recentred"]],
+    }
+
+
+def _matrix(record: Record) -> dict[str, Any]:
+    """Return limits and worst cases, the figures of the joint and of the matrix, and all cases."""
+    worst = [(title_of(name), value_text(name, row), case_text(row["case"])) for name, row in record["worst"].items()]
+    return {
+        "limits": [
+            (limit_text(limit), limit["verdict"], *(str(limit[key]) for key in ("beyond", "unknown", "near")))
+            for limit in record["limits"]
+        ],
+        "worst": [*worst, *_final_wear(record)],
+        "matrix_figures": [] if record["drawn"] is None else [_joint_picture(record), *_matrix_pictures(record)],
+        "cases": _cases(record["matrix"]),
+    }
+
+
+def _final_wear(record: Record) -> Rows:
+    """Return the row of the wear after all cycles where it is worst, with its band; no row without wear."""
+    wear = record["wear"]
+    if wear is None:
+        return []
+    last, bands = wear["history"][-1], wear.get("bands", ())
+    band = f" ({band_text(bands[-1]['volume'])} in 95 of 100 patients)" if bands else ""
+    case = case_text(unloaded(record["worst"]["wear_rate"]["case"]))
+    return [(f"worn volume after {number(last['cycles'])} cycles", f"{number(last['volume'])} mm³{band}", case)]
+
+
+def _joint_picture(record: Record) -> dict[str, str]:
+    """Return the picture of the joint with the largest pressure."""
+    aside = "" if record["drawn"]["half_angle_deg"] is not None else " Its contact lies off the axis and is not drawn."
+    caption = f"The joint with the largest pressure.{aside}"
+    return {"address": svg_address(figures.joint_figure(record)), "title": "section", "caption": caption}
+
+
+def _matrix_pictures(record: Record) -> list[dict[str, str]]:
+    """Return a picture of each mapped result over the matrix; none for a single case."""
+    names = [name for name in _MAPPED if name in record["worst"]] if len(record["matrix"]) > 1 else []
+    return [
+        {
+            "address": svg_address(figures.matrix_figure(record, name)),
+            "title": NAMES[name].title,
+            "caption": _map_caption(record, name),
+        }
+        for name in names
+    ]
+
+
+def _map_caption(record: Record, name: str) -> str:
+    """Describe the figure of a result over the matrix."""
+    limited = any(limit["name"] == name for limit in record["limits"])
+    crosses = " × marks cases that break the limit." if limited else ""
+    title = NAMES[name].title
+    return f"{title[:1].upper()}{title[1:]} over the matrix; a frame marks the worst case.{crosses}"
+
+
+def _cases(rows: list[Record]) -> dict[str, Any]:
+    """Return heads and rows of all cases with their results."""
+    inputs, results = list(rows[0]["case"]), list(rows[0]["numbers"])
+    return {
+        "heads": [*(column_head(key) for key in (*inputs, *results)), "valid"],
+        "rows": [
+            (
+                *(number(row["case"][key]) for key in inputs),
+                *(number(row["numbers"][key]) for key in results),
+                "yes" if row["valid"] else row["status"].lower().replace("_", " "),
+            )
+            for row in rows
+        ],
+    }
+
+
+def _verification(record: Record) -> dict[str, Any]:
+    """Return the checks of the code, and every worst case by every method."""
+    deviating = any(piece["deviation"] for piece in record["calculation"])
+    return {
+        "checks": [
+            (check["what"], number(check["observed"]), _allowed_text(check), _check_text(check))
+            for check in record["code_verification"]
+        ],
+        "calculations": [_methods(piece) for piece in record["calculation"]],
+        "methods_figure": svg_address(figures.methods_figure(record)) if deviating else None,
+    }
+
+
+def _allowed_text(check: Record) -> str:
+    """Describe the range that a check allows."""
+    return f"at least {check['low']:g}" if check["high"] is None else f"at most {check['high']:g}"
+
+
+def _check_text(check: Record) -> str:
+    """Describe the result of a check, with its reason if it has one."""
+    return _CHECK_RESULTS[check["passed"]] + (f": {check['why']}" if check["why"] else "")
+
+
+def _methods(piece: Record) -> dict[str, Any]:
+    """Return one worst case by every method, and the largest deviation of each result."""
+    keys = list(piece["methods"][0]["numbers"])
+    rows: Rows = [
+        (method["name"], *(_with_error(method, key) for key in keys), "yes" if method["valid"] else "no")
+        for method in piece["methods"]
+    ]
+    deviations = (percent(piece["deviation"][key]) if key in piece["deviation"] else "" for key in keys)
+    return {
+        "title": ", ".join(NAMES[name].title for name in piece["worst_of"]),
+        "heads": ["method", *map(column_head, keys), "valid"],
+        "rows": [*rows, ("largest deviation", *deviations, "")],
+        "notes": _grouped_notes(piece["methods"]),
+        "call": piece["call"],
+    }
+
+
+def _with_error(method: Record, key: str) -> str:
+    """Write a result of a method with its error bar; empty if the method does not have it."""
+    if key not in method["numbers"]:
+        return ""
+    return number(method["numbers"][key]) + error_text(method["errors"].get(key))
+
+
+def _grouped_notes(methods: Iterable[Record]) -> list[str]:
+    """List each note once, after the names of its methods."""
+    holders: dict[str, list[str]] = {}
+    for method in methods:
+        for note in method["notes"]:
+            holders.setdefault(note, []).append(method["name"])
+    return [f"{', '.join(names)}: {note}" for note, names in holders.items()]
+
+
+def _validation(record: Record) -> dict[str, Any]:
+    """Return published results beside those of ballsocket, with their applicability to the question."""
+    return {
+        "claims": [
+            (
+                claim["sentence"],
+                claim["where"],
+                claim["text"],
+                "; ".join(starmap(named_number, claim["numbers"].items())),
+                claim["applicability"]["text"],
+            )
+            for claim in record["claims"]
+        ],
+        "comparators": [
+            {**comparator, "applicability": comparator["applicability"]["text"], "rows": _comparator_rows(comparator)}
+            for comparator in record["comparators"]
+        ],
+    }
+
+
+def _comparator_rows(comparator: Record) -> Rows:
+    """Return inputs, assumptions and published results of a comparator, and the range of ballsocket's."""
+    texts = {"inputs": "published input", "assumed": "assumed", "published": "published"}
+    rows: Rows = [(kind, name, text) for key, kind in texts.items() for name, text in comparator[key].items()]
+    ranges = comparator["ours"].items()
+    return [*rows, *(("ours", name, f"{number(low)} to {number(high)}") for name, (low, high) in ranges)]
+
+
+def _uncertainty(record: Record) -> dict[str, Any] | None:
+    """Return bands and Sobol indices of the tolerances; None without tolerances."""
+    uncertainty = record["uncertainty"]
+    if uncertainty is None:
+        return None
+    names, indices = next(iter(uncertainty["sobol"].values())), uncertainty["sobol"].values()
+    return {
+        **uncertainty,
+        "figure": svg_address(figures.bands_figure(record)),
+        "bands": [
+            (column_head(key), *(number(band[end]) for end in ("low", "median", "high")))
+            for key, band in uncertainty["bands"].items()
+        ],
+        "heads": ["tolerance", *(f"share in the variance of the {KEYS[key].title}" for key in uncertainty["sobol"])],
+        "shares": [(title_of(name), *(percent(share[name]) for share in indices)) for name in names],
+    }
+
+
+def _wear(record: Record) -> dict[str, Any] | None:
+    """Return the history of the joint that wears most; None without wear."""
+    wear = record["wear"]
+    if wear is None:
+        return None
+    names = ("cycles", "volume", "depth", "penetration", "max_pressure")
+    return {
+        "file": wear["file"],
+        "case": case_text(unloaded(record["worst"]["wear_rate"]["case"])),
+        "figure": svg_address(figures.wear_figure(record)),
+        "history": [tuple(number(row[name]) for name in names) for row in wear["history"]],
+        "bands": [
+            (number(band["cycles"]), *(band_text(band[name]) for name in ("volume", "depth", "penetration")))
+            for band in wear.get("bands", ())
+        ],
+        "notes": wear.get("notes", ()),
+        "call": wear["call"],
+    }
+
+
+def _credibility(record: Record) -> dict[str, Any]:
+    """Return the credibility factors with their gradations, and the requirements with gaps first."""
+    requirements = sorted(record["requirements"], key=lambda row: _STATUS_ORDER.index(row["status"]))
+    factors = record["credibility"]
+    return {
+        "factors": [
+            (
+                *(factor[key] for key in ("activity", "factor", "goal", "reached")),
+                "met" if factor["adequate"] else "NOT met",
+                factor["supported_by"],
+                factor["missing"],
+            )
+            for factor in factors
+        ],
+        "gradations": [
+            (factor["factor"], letter, text) for factor in factors for letter, text in factor["gradation"].items()
+        ],
+        "requirements": [
+            tuple(row[key] for key in ("id", "requirement", "status", "evidence", "gap", "where"))
+            for row in requirements
+        ],
+        "gaps": sum(row["status"] != MET for row in requirements),
+        "record_name": RECORD,
+    }

@@ -1,0 +1,68 @@
+"""Figures as files and as bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..core.storage.atomic_files import check_parent_folder, write_atomically
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+FORMATS = ("png", "svg", "pdf")
+"""Endings of the files that `save` writes."""
+
+
+def check_format(path: Path) -> None:
+    """Check that a path ends in .png, .svg or .pdf and that its folder exists.
+
+    Raises
+    ------
+    ValueError
+        Another ending, or a folder that does not exist.
+    """
+    if path.suffix.lower().lstrip(".") not in FORMATS:
+        raise ValueError(f"figure {str(path)!r} must end in {', '.join('.' + name for name in FORMATS)}")
+    check_parent_folder(path)
+
+
+def save(figure: Figure, path: str | Path) -> None:
+    """Write a figure as PNG, SVG or PDF, according to the ending of `path`; after an error there is no file.
+
+    Raises
+    ------
+    ValueError
+        Another ending, or a folder that does not exist.
+    OSError
+        The path cannot be written to.
+    """
+    path = Path(path)
+    check_format(path)
+    with write_atomically(path) as draft:
+        figure.savefig(draft, dpi=160)
+
+
+def figure_bytes(figure: Figure, form: str = "png") -> bytes:
+    """Return a figure as PNG or SVG bytes, reproducible with the same libraries."""
+    from matplotlib import rc_context
+
+    stream = BytesIO()
+    metadata = {"Date": None} if form == "svg" else None
+    with rc_context({"svg.hashsalt": "ballsocket"}):
+        figure.savefig(stream, format=form, dpi=140, metadata=metadata)
+    return stream.getvalue()
+
+
+@contextmanager
+def default_style() -> Iterator[None]:
+    """Draw with the default style of matplotlib, independent of user settings."""
+    from matplotlib import rc_context, rcdefaults
+
+    with rc_context():
+        rcdefaults()
+        yield

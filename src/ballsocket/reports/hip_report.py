@@ -1,0 +1,214 @@
+"""Page of a wear simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from ..core.storage.atomic_files import check_parent_folder, write_text
+from ..hip.bands import Bands
+from ..hip.film import CONFORMITY_NOTE
+from ..hip.history import History
+from . import hip_plots
+from .figure_files import figure_bytes
+from .hip_tables import (
+    CONTACT_HEADS,
+    band_contact_line,
+    band_heads,
+    band_rows,
+    band_summary,
+    contact_line,
+    contact_rows,
+    rim_lines,
+)
+from .pages import picture, render_page
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = MappingProxyType(
+    {
+        "wear": (
+            "Wear map",
+            hip_plots.wear_map,
+            "Seen along the cup's axis; the cross marks the direction of the largest load.",
+        ),
+        "penetration": (
+            "Penetration",
+            hip_plots.penetration_curve,
+            "Displacement of the ball's centre. The band is the numerical error of blocks, rings and steps, "
+            "without that of the wear law.",
+        ),
+        "tracks": ("Tracks", hip_plots.track_map, "Paths of points of the ball on the socket in one cycle."),
+        "cross_shear": (
+            "Cross-shear",
+            hip_plots.cross_shear_map,
+            "Cross-shear of the first cycle; each sliding distance is weighted by its pressure.",
+        ),
+        "film": ("Film and friction", hip_plots.film_figure, f"{CONFORMITY_NOTE}."),
+        "edge": ("Edge distance", hip_plots.edge_figure, "0 means edge loading; the dot marks the least distance."),
+    }
+)
+"""Title, figure and caption of each section with a figure, by its id."""
+
+_BALL_FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = MappingProxyType(
+    {"ball": ("Wear of the ball", hip_plots.ball_map, "Seen from above, in the ball's own frame.")}
+)
+"""Sections of a hip whose ball wears."""
+
+_WEAR_HEADS = (
+    "million cycles",
+    "volume [mm³]",
+    "depth [mm]",
+    "penetration [mm]",
+    "pmax [MPa]",
+    "creep [mm]",
+    "to the rim [mm]",
+)
+
+
+def check_page(path: Path) -> None:
+    """Check that a path ends in .html and that its folder exists.
+
+    Raises
+    ------
+    ValueError
+        Another ending, or a folder that does not exist.
+    """
+    if path.suffix.lower() != ".html":
+        raise ValueError(f"report {str(path)!r} must end in .html")
+    check_parent_folder(path)
+
+
+def write_hip_report(history: History, path: Path, bands: Bands | None = None) -> Path:
+    """Write the page of a wear simulation and return its path.
+
+    Parameters
+    ----------
+    history : History
+        Results of the simulation.
+    path : Path
+        File to write, which ends in .html.
+    bands : Bands, optional
+        Bands of patients who differ, for two more sections.
+
+    Raises
+    ------
+    ValueError
+        Another ending than .html, or a folder that does not exist.
+    OSError
+        The page cannot be written.
+    """
+    check_page(path)
+    return write_text(path, hip_report(history, bands))
+
+
+def hip_report(history: History, bands: Bands | None = None) -> str:
+    """Return the page of a wear simulation as HTML."""
+    sections: dict[str, tuple[str, str | None]] = {"numbers": ("Numbers", None)}
+    if history.use.unworn_checks:
+        sections["contact"] = ("Validity of the contact", None)
+    if len(history.use.loaded):
+        figures = _FIGURES if history.use.ball_wear is None else _FIGURES | _BALL_FIGURES
+        for name, (title, draw, caption) in figures.items():
+            sections[name] = (title, picture(figure_bytes(draw(history)), title, caption))
+    if bands is not None:
+        sections |= _band_sections(history, bands)
+    return render_page(
+        "hip_report.html",
+        "Wear of a hip",
+        sections,
+        summary=_summary(history),
+        notes=history.notes,
+        first_cycle=_first_cycle(history),
+        rim=_rim_approach(history),
+        wear={"heads": _WEAR_HEADS, "rows": _wear_rows(history)},
+        contacts={"summary": contact_line(history), "heads": CONTACT_HEADS, "rows": contact_rows(history)},
+        bands=None if bands is None else _band_table(bands),
+    )
+
+
+def _band_sections(history: History, bands: Bands) -> dict[str, tuple[str, str | None]]:
+    """Return the sections about patients who differ."""
+    caption = f"The line is the nominal patient; the band holds {100 * bands.level:g} % of the {bands.subject}"
+    caption += (
+        "."
+        if bands.shared is None
+        else ", the dark band holds the same share of the patients at the median coefficient."
+    )
+    curve = figure_bytes(hip_plots.penetration_curve(history, bands))
+    sections: dict[str, tuple[str, str | None]] = {
+        "penetration": ("Penetration", picture(curve, "Penetration", caption)),
+        "patients": ("Bands of different patients", None),
+    }
+    if bands.indices is not None:
+        indices = figure_bytes(hip_plots.share_figure(bands))
+        sections["matters"] = (
+            "Sensitivity",
+            picture(indices, "Sensitivity", "Sobol's indices with 95 % intervals."),
+        )
+    return sections
+
+
+def _band_table(bands: Bands) -> Mapping[str, Any]:
+    """Return the table of the bands with its sentences."""
+    tail = (1 - bands.level) / 2
+    return {
+        "summary": band_summary(bands),
+        "lines": (*rim_lines(bands), band_contact_line(bands)),
+        "notes": bands.notes,
+        "heads": band_heads(bands),
+        "rows": band_rows(bands, (tail, 0.5, 1 - tail)),
+    }
+
+
+def _summary(history: History) -> str:
+    """Describe the result of the simulation in one sentence."""
+    use, last = history.use, history.last
+    return (
+        f"{use.joint}, {use.cycle.name}: {last.volume:.4g} mm³ worn and a penetration of {last.penetration:.3g} mm "
+        f"after {last.cycles / 1e6:g} million cycles."
+    )
+
+
+def _wear_rows(history: History) -> list[tuple[str, ...]]:
+    """Return the wear at each report: the cells below `_WEAR_HEADS`."""
+    return [
+        (
+            f"{report.cycles / 1e6:g}",
+            *(f"{number:.4g}" for number in (report.volume, report.depth, report.penetration, report.max_pressure)),
+            f"{report.creep_depth:.4g}",
+            f"{report.edge_distance.min(initial=float('inf')):.3g}",
+        )
+        for report in history.reports
+    ]
+
+
+def _first_cycle(history: History) -> str:
+    """Describe slide, work, cross-shear and wear rate of the first cycle, and the error of the time steps."""
+    first, error = history.use.first, history.error
+    return (
+        f"The sliding distance of a cycle is {first.slide:.4g} mm; pressure times slide is {first.work:.4g} N m, "
+        f"the mean cross-shear {first.cross_shear:.3g}. "
+        f"The unworn hip wears {first.volume:.4g} mm³ and {first.depth:.3g} mm in a million cycles. "
+        f"Compared with the finest steps of the same model, the volume is within {100 * error.volume:.2g} %, "
+        f"the depth within {100 * error.depth:.2g} %."
+    )
+
+
+def _rim_approach(history: History) -> str:
+    """Describe the least distance to the rim with its instant and location, new and at the end."""
+    nearest = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use)}
+    sentences = (
+        f"{stage} the contact {_distance_words(worst.distance)} at {worst.location}"
+        for stage, worst in nearest.items()
+        if worst is not None
+    )
+    return "; ".join(sentences) or "nothing is pressed"
+
+
+def _distance_words(distance: float) -> str:
+    """Describe a distance (mm) to the rim."""
+    return f"comes within {distance:.3g} mm of the rim" if distance > 0 else "reaches the rim"

@@ -1,0 +1,247 @@
+"""Tables and sentences about a wear simulation, for its page and for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
+from math import inf, isnan
+
+import numpy
+from rich.table import Table
+
+from ..hip.bands import INFLUENCED_RESULTS, Bands
+from ..hip.contact_checks import largest_utilisation
+from ..hip.history import History
+from .terminal import console, print_folded
+
+_WEAR_UNITS = {
+    "cycles": "million",
+    "volume": "mm³",
+    "depth": "mm",
+    "penetration": "mm",
+    "pmax": "MPa",
+    "creep": "mm",
+    "to the rim": "mm",
+}
+"""Units of the columns of the wear table by their heads."""
+
+CONTACT_HEADS = ("cycles", "activity", "at", "F [N]", "pmax [MPa]", "σv/σy", "valid")
+"""Heads of `contact_rows`."""
+
+_BAND_UNITS = {
+    "cycles": "million",
+    "years": "",
+    "volume": "mm³",
+    "depth": "mm",
+    "penetration": "mm",
+    "at the rim": "patients",
+}
+"""Units of the columns of `band_rows` by their heads."""
+
+_ANY = "any"
+"""Wear coefficient of a row that holds for all coefficients."""
+
+
+def contact_line(history: History) -> str:
+    """Describe validity and largest utilisation of the contacts in one line."""
+    model = history.use.contact_model.name
+    verdict = "valid" if history.contact_valid else "NOT VALID, see the notes"
+    return f"contact ({model}): {verdict}; {_utilisation_words(history)}"
+
+
+def _utilisation_words(history: History) -> str:
+    """Describe the largest utilisation of the unworn hip and of the last report."""
+    checks = history.use.unworn_checks
+    unworn, end = largest_utilisation(checks), largest_utilisation(history.contact_checks[-1])
+    if unworn is None or end is None:
+        return checks[0].utilisation_note if checks else "nothing is pressed"
+    return f"utilisation σv/σy {unworn:.3g} unworn, {end:.3g} after {history.last.cycles:g} cycles"
+
+
+def contact_rows(history: History) -> Iterator[tuple[str, ...]]:
+    """List the checked contacts, unworn and at each report: the cells below `CONTACT_HEADS`."""
+    stages = [("unworn", history.use.unworn_checks)]
+    stages += [
+        (f"{report.cycles:g}", checks) for report, checks in zip(history.reports, history.contact_checks, strict=True)
+    ]
+    for stage, checks in stages:
+        for check in checks:
+            utilisation = "not known" if check.utilisation is None else f"{check.utilisation:.3g}"
+            numbers = f"{check.force:.4g}", f"{check.max_pressure:.4g}", utilisation
+            yield stage, check.activity, check.instant, *numbers, "yes" if check.valid else "no"
+
+
+def band_summary(bands: Bands) -> str:
+    """Describe what a band holds: the share of the patients or of the predictions."""
+    share, patients = f"{100 * bands.level:g} %", bands.n_patients - bands.n_failed
+    if bands.shared is None:
+        among = "" if bands.subject == "patients" else "predictions from "
+        return f"{share} of {among}{patients} patients"
+    return (
+        f"{share} of {patients} patients for a low, median and high wear coefficient, and {share} of the predictions "
+        f"for {_ANY} coefficient,"
+    )
+
+
+def band_units(bands: Bands) -> dict[str, str]:
+    """Return table heads with units; a shared coefficient has a column, and the rim has a separate line."""
+    if bands.shared is None:
+        return _BAND_UNITS
+    (cycles, million), (years, no_unit), *more, _ = _BAND_UNITS.items()
+    return {cycles: million, years: no_unit, "coefficient": "", **dict(more)}
+
+
+def band_heads(bands: Bands) -> list[str]:
+    """Return table heads with units in brackets."""
+    return [f"{head} [{unit}]" if unit else head for head, unit in band_units(bands).items()]
+
+
+def band_rows(bands: Bands, quantiles: Sequence[float]) -> Iterator[tuple[str, ...]]:
+    """List the quantiles of each result at each report; `shares` are the shares of patients below each quantile."""
+    cycles_per_year = bands.variability.cycles_per_year
+    for report, count in enumerate(bands.counts):
+        years = "-" if cycles_per_year is None else f"{count / cycles_per_year:.3g}"
+        time = f"{count / 1e6:g}", years
+        ranges = [
+            _range_text(bands.quantile(name, level)[report] for level in quantiles) for name in INFLUENCED_RESULTS
+        ]
+        if bands.shared is None:
+            yield (*time, *ranges, f"{100 * bands.edge_loading(report):.3g} %")
+            continue
+        for coefficient in bands.shared.values:
+            quantile = partial(bands.shared.quantile, coefficient)
+            yield (
+                *time,
+                coefficient,
+                *(_range_text(quantile(name, level)[report] for level in quantiles) for name in INFLUENCED_RESULTS),
+            )
+        yield (*time, _ANY, *ranges)
+
+
+def _range_text(numbers: Iterable[float]) -> str:
+    """Write numbers with "to" between them."""
+    return " to ".join(f"{number:.3g}" for number in numbers)
+
+
+def rim_lines(bands: Bands) -> Iterator[str]:
+    """Describe the share of contacts at the rim at each report, where the table has no column for it."""
+    if bands.shared is None:
+        return
+    percentages = [f"{100 * bands.edge_loading(report):.3g} %" for report in range(len(bands.counts))]
+    counts = [f"after {count / 1e6:g} million cycles" for count in bands.counts]
+    yield f"contact at the rim: {', '.join(map(' '.join, zip(percentages, counts, strict=True)))}"
+
+
+def band_contact_line(bands: Bands) -> str:
+    """Describe validity and utilisation of the contacts from the first cycle to the last report."""
+    tail = (1 - bands.level) / 2
+    low, high = (bands.utilisation_quantile(share)[-1] for share in (tail, 1 - tail))
+    reasons = [check.utilisation_note for check in bands.variability.coarse_simulation.unworn_checks] or [
+        "nothing is pressed"
+    ]
+    peak = reasons[0] if isnan(low) else f"utilisation σv/σy {low:.3g} to {high:.3g}"
+    model = bands.variability.coarse_simulation.contact_model.name
+    return f"contact ({model}): valid in {100 * bands.valid_fraction(-1):.3g} % of the {bands.subject}; {peak}"
+
+
+def sobol_lines(bands: Bands) -> Iterator[str]:
+    """Describe the total Sobol indices of each result in one line, largest first."""
+    if bands.indices is None:
+        return
+    for row, result in enumerate(INFLUENCED_RESULTS):
+        values = bands.indices["total_order"][row]
+        low, high = (bands.indices[f"total_order_{end}"][row] for end in ("low", "high"))
+        order = numpy.argsort(-numpy.nan_to_num(values, nan=-inf))
+        names = list(bands.variability.distributions)
+        indices = ", ".join(f"{names[i]} {values[i]:.2f} ({low[i]:.2f} to {high[i]:.2f})" for i in order)
+        yield f"Sobol indices of {result} (total order): {indices}"
+
+
+def print_hip(history: History) -> None:
+    """Print the first cycle, the wear at each report, contacts, film, accuracy and notes."""
+    terminal, use, first = console(), history.use, history.use.first
+    print_folded(terminal, str(use.joint), "bold")
+    print_folded(
+        terminal,
+        f"{use.cycle.name}: slide {first.slide:.4g} mm a cycle, pressure times slide {first.work:.4g} N m, "
+        f"cross-shear {first.cross_shear:.3g}, up to {first.max_force:.4g} N and {first.max_pressure:.4g} MPa",
+        "",
+    )
+    print_folded(terminal, f"unworn: {first.volume:.4g} mm³ and {first.depth:.4g} mm a million cycles", "")
+    terminal.print(_wear_table(history))
+    if history.use.ball_wear is not None:
+        last = history.last
+        ball_wear = f"{last.ball_volume:.4g} mm³ and {last.ball_depth:.3g} mm"
+        print_folded(terminal, f"the ball: {ball_wear} after {last.cycles / 1e6:g} million cycles", "")
+    print_folded(terminal, contact_line(history), "")
+    if len(history.use.unworn_checks) > 1:
+        terminal.print(_contact_table(history))
+    for line in _film_lines(history):
+        print_folded(terminal, line, "")
+    accuracy = f"volume within {100 * history.error.volume:.2g} % of the same model in the finest steps"
+    print_folded(terminal, f"{accuracy}, in {history.steps} blocks", "dim")
+    print_notes(history.notes)
+
+
+def print_bands(bands: Bands) -> None:
+    """Print the bands of patients who differ as a table, the Sobol indices of each result, and notes."""
+    terminal = console()
+    print_folded(terminal, f"{band_summary(bands)} lie between", "bold")
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for head in band_units(bands):
+        table.add_column(head, justify="right", overflow="fold")
+    table.add_row(*band_units(bands).values(), style="dim")
+    tail = (1 - bands.level) / 2
+    for row in band_rows(bands, (tail, 1 - tail)):
+        table.add_row(*row)
+    terminal.print(table)
+    for line in (*rim_lines(bands), band_contact_line(bands), *sobol_lines(bands)):
+        print_folded(terminal, line, "")
+    print_notes(bands.notes)
+
+
+def print_notes(notes: Iterable[str]) -> None:
+    """Print notes, each on its own line."""
+    terminal = console()
+    for note in notes:
+        print_folded(terminal, note, "dim")
+
+
+def _contact_table(history: History) -> Table:
+    """Lay out the worst contact of each activity, unworn and at the end."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for head in CONTACT_HEADS:
+        table.add_column(head, justify="left" if head in CONTACT_HEADS[1:3] else "right", no_wrap=head != "at")
+    rows = list(contact_rows(history))
+    count = len(history.use.unworn_checks)
+    for row in (*rows[:count], *rows[-count:]):
+        table.add_row(*row)
+    return table
+
+
+def _wear_table(history: History) -> Table:
+    """Lay out the wear at each report."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    cycles_per_year = history.use.cycle.per_year
+    heads = _WEAR_UNITS if cycles_per_year is None else {"time": "years", **_WEAR_UNITS}
+    for head in heads:
+        table.add_column(head, justify="right", no_wrap=True)
+    table.add_row(*heads.values(), style="dim")
+    for report in history.reports:
+        rim = report.edge_distance.min(initial=float("inf"))
+        numbers = (report.volume, report.depth, report.penetration, report.max_pressure, report.creep_depth, rim)
+        time = () if cycles_per_year is None else (f"{report.cycles / cycles_per_year:.4g}",)
+        table.add_row(*time, f"{report.cycles / 1e6:.6g}", *(f"{number:.4g}" for number in numbers))
+    return table
+
+
+def _film_lines(history: History) -> Iterator[str]:
+    """Yield the film thickness with its regime, and the friction, of the first cycle."""
+    film = history.use.film(history.lubricant)
+    if not len(film.phases):
+        yield "no film: nothing is pressed"
+        return
+    summary = film.summary()
+    thickness = f"{1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm"
+    yield f"film (Hamrock-Dowson) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
+    yield f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"

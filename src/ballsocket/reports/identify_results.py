@@ -1,0 +1,312 @@
+"""Results of an identification as figures and as tables in a terminal."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy
+from rich.table import Table
+
+from ..core.deprecation import renamed_arguments
+from ..core.kinds import Unit
+from ..core.quantities import FIELD, LOADS, Quantity
+from ..identify.experiment import Experiment
+from ..identify.measured import MEASURED, Measured
+from ..identify.posterior import CONVERGED, Posterior
+from ..identify.result import IdentificationResult
+from ..identify.sensitivity import Sensitivity
+from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
+from .terminal import console, print_folded
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..core.arrays import Numbers
+
+_MARKS = ("o", "s", "^", "D", "v", "P")
+_COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PINK, SKY)
+_SAMPLES = 4000
+"""Samples about the best fit, without a posterior."""
+
+_CONTENTS = (0.5, 0.95)
+"""Shares of the samples within the drawn regions."""
+
+
+@renamed_arguments(found="result")
+def fit_figure(result: IdentificationResult) -> Figure:
+    """Draw measured values with the fitted model above, and residuals in units of the uncertainty below."""
+    from matplotlib.figure import Figure
+
+    indices = [index for index, data in enumerate(result.data) if data.load]
+    figure = Figure(figsize=(4.2 * max(1, len(indices)), 5.2), layout="constrained")
+    if not indices:
+        figure.text(0.5, 0.5, "nothing was measured at a load", ha="center")
+        return figure
+    panels = figure.subplots(2, len(indices), squeeze=False, sharex="col", height_ratios=(2.2, 1.0))
+    for column, index in enumerate(indices):
+        _draw_set(panels[0, column], panels[1, column], result, index)
+    for axes in panels[0]:
+        axes.legend(**LEGEND)
+    panels[1, 0].set_ylabel("residual [uncertainties]")
+    return figure
+
+
+def _draw_set(above: Axes, below: Axes, result: IdentificationResult, index: int) -> None:
+    """Draw one data set with the fitted model, and its residuals."""
+    data, residuals = result.data[index], result.residuals[index]
+    x, label = _horizontal_values(data)
+    quantity, factor = data.described, data.described.shown.factor
+    colour, mark = _COLOURS[index % len(_COLOURS)], _MARKS[index % len(_MARKS)]
+    above.plot(*_model_line(result, index, x, factor), color=INK, linewidth=1.4, label=result.model.name)
+    bars = {"yerr": factor * data.uncertainty, "color": colour, "fmt": mark, "markersize": 4, "linewidth": 1}
+    above.errorbar(x, factor * data.values, **bars, label="measured")
+    cut = data.saturated
+    if cut.any():
+        more: Any = {"marker": "$\\uparrow$", "linestyle": "", "markersize": 14, "color": colour}
+        above.plot(x[cut], factor * data.values[cut], **more, label="at least")
+    below.axhspan(-2, 2, color="0.93", linewidth=0)
+    below.axhline(0.0, color=INK, linewidth=0.8)
+    below.plot(x, residuals, mark, color=colour, markersize=4)
+    reach = max(3.0, 1.1 * float(abs(residuals).max()))
+    below.set_ylim(-reach, reach)
+    above.set_title(data.name, fontsize=9)
+    finish(above, "", quantity.label())
+    finish(below, label, "")
+
+
+def _model_line(result: IdentificationResult, index: int, x: Numbers, factor: float) -> tuple[Numbers, Numbers]:
+    """Return the model's curve, or its results at the measured angles."""
+    data = result.data[index]
+    if data.angle is not None:
+        order = numpy.argsort(x)
+        return x[order], factor * result.results[index][order]
+    loads, answers = result.curve(index)
+    return LOADS[data.load].shown.factor * loads, factor * answers
+
+
+def _horizontal_values(data: Measured) -> tuple[Numbers, str]:
+    """Return values and label of the horizontal axis: the load, or angles at a single load."""
+    if data.angle is not None and numpy.ptp(data.loads) == 0:
+        return FIELD["angle"].shown.factor * data.angle, FIELD["angle"].label()
+    load = LOADS[data.load]
+    return load.shown.factor * data.loads, load.label()
+
+
+@renamed_arguments(found="result", drawn="posterior")
+def corner_figure(result: IdentificationResult, posterior: Posterior | None = None) -> Figure:
+    """Draw samples of the posterior: each unknown alone, and each pair of unknowns.
+
+    Without a posterior, samples of the normal distribution about the best fit are drawn.
+    """
+    from matplotlib.figure import Figure
+
+    samples = _approximate_samples(result) if posterior is None else posterior.samples
+    unknowns = result.transform.unknowns
+    count = len(unknowns)
+    figure = Figure(figsize=(2.3 * count + 1.2, 2.1 * count + 1.0), layout="constrained")
+    panels = figure.subplots(count, count, squeeze=False, sharex="col")
+    columns = [unknown.quantity.shown.factor * samples[:, index] for index, unknown in enumerate(unknowns)]
+    for row in range(count):
+        for column in range(count):
+            axes = panels[row, column]
+            if column > row:
+                axes.set_axis_off()
+            elif column == row:
+                _draw_histogram(axes, columns[row])
+            else:
+                _draw_regions(axes, columns[column], columns[row])
+            across = _label(unknowns[column].name, unknowns[column].quantity) if row == count - 1 else ""
+            upwards = _label(unknowns[row].name, unknowns[row].quantity) if column == 0 and row else ""
+            axes.set_xlabel(across, fontsize=9)
+            axes.set_ylabel(upwards, fontsize=9)
+            axes.spines[["top", "right"]].set_visible(False)
+            axes.tick_params(labelsize=8)
+    source = (
+        "drawn about the best point" if posterior is None else f"posterior, R-hat {max(posterior.r_hat.values()):.3f}"
+    )
+    figure.suptitle(f"{result.model.name}: {source}; 50 and 95 % shaded", fontsize=10)
+    return figure
+
+
+def _label(name: str, quantity: Quantity) -> str:
+    """Return the name of an unknown with its unit; each machine has an offset of its name."""
+    return f"{name}\n{quantity.shown.text_in_brackets}".strip()
+
+
+def _approximate_samples(result: IdentificationResult) -> Numbers:
+    """Draw samples from the normal distribution about the best fit."""
+    random = numpy.random.default_rng(0)
+    theta = random.multivariate_normal(result.best.theta, result.information.covariance, _SAMPLES)
+    return result.transform.to_values(numpy.clip(theta, result.transform.low, result.transform.high))
+
+
+def _draw_histogram(axes: Axes, values: Numbers) -> None:
+    """Draw the histogram of one unknown with its 95 % interval."""
+    axes.hist(values, bins=40, color=SKY, histtype="stepfilled")
+    for end in numpy.quantile(values, [0.025, 0.975]):
+        axes.axvline(end, color=INK, linewidth=0.9, linestyle="--")
+    axes.set_yticks([])
+
+
+def _draw_regions(axes: Axes, x: Numbers, y: Numbers) -> None:
+    """Draw the regions that contain 50 % and 95 % of the samples of two unknowns."""
+    counts, across, upwards = numpy.histogram2d(x, y, bins=26)
+    smooth = _smoothed(counts)
+    ordered = numpy.sort(smooth.ravel())[::-1]
+    content = numpy.cumsum(ordered) / ordered.sum()
+    levels = sorted({float(ordered[numpy.searchsorted(content, share)]) for share in _CONTENTS})
+    middles = ((edges[1:] + edges[:-1]) / 2 for edges in (across, upwards))
+    shades: Any = ["#BBDDF2", BLUE][-len(levels) :]
+    axes.contourf(*middles, smooth.T, levels=[*levels, max(float(smooth.max()), levels[-1] * 1.01)], colors=shades)
+
+
+def _smoothed(counts: Numbers) -> Numbers:
+    """Smooth counts by one conservative [1 2 1] pass along each axis."""
+    for axis in (0, 1):
+        padded = numpy.pad(counts, [(1, 1) if axis == other_axis else (0, 0) for other_axis in (0, 1)], mode="edge")
+        parts = [numpy.take(padded, range(start, start + counts.shape[axis]), axis) for start in (0, 1, 2)]
+        counts = (parts[0] + 2 * parts[1] + parts[2]) / 4
+    return counts
+
+
+def experiment_figure(experiment: Experiment) -> Figure:
+    """Draw the expected information gain of each candidate for the next measurement over its load."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+    axes = figure.subplots()
+    names = list(dict.fromkeys(gain.candidate.quantity for gain in experiment.gains))
+    for number, name in enumerate(names):
+        gains = [gain for gain in experiment.gains if gain.candidate.quantity == name]
+        colour, mark = _COLOURS[number % len(_COLOURS)], _MARKS[number % len(_MARKS)]
+        title = MEASURED[name].title
+        if gains[0].candidate.force is None:
+            axes.axhline(gains[0].bits, color=GREY, linestyle="--", label=f"{title}, without a load")
+            continue
+        points = sorted((gain.candidate.force or 0.0, gain.bits) for gain in gains)
+        axes.plot(*zip(*points, strict=True), marker=mark, color=colour, markersize=4, label=title)
+    axes.set_ylim(bottom=0.0)
+    finish(axes, LOADS["force"].label(), "expected gain [bits]")
+    axes.legend(**LEGEND)
+    return figure
+
+
+_ROWS = 5
+
+
+def print_identified(result: IdentificationResult, posterior: Posterior | None) -> None:
+    """Print the unknowns with their bands, products, fit, sensitivity to machine errors, and the next measurement."""
+    terminal, information = console(), result.information
+    print_folded(terminal, f"{result.model.name} through {_data_text(result)}", "bold")
+    terminal.print(_table(result, posterior))
+    rank = f"rank {information.rank} of {len(result.transform.names)}, condition {information.condition:.2g}"
+    print_folded(terminal, f"information of {rank}; {_scatter_text(result)}", "")
+    if posterior is not None:
+        print_folded(terminal, _sampling_text(posterior), "")
+    if result.sensitivity:
+        terminal.print(_sensitivity_table(result))
+    terminal.print(_next_table(result))
+    for note in result.notes:
+        print_folded(terminal, note, "dim")
+
+
+def _data_text(result: IdentificationResult) -> str:
+    """Count the measured values of each data set."""
+    sets = ", ".join(f"{len(data)} x {data.quantity}" for data in result.data)
+    return f"{len(result.misfit.value)} values ({sets})"
+
+
+def _scatter_text(result: IdentificationResult) -> str:
+    """Describe the scatter of the data against their uncertainties."""
+    if result.freedom <= 0:
+        return "as many values as unknowns: the quality of the fit cannot be tested"
+    return f"the data scatter {result.spread:.2f} times as far as their uncertainties say"
+
+
+def _sampling_text(posterior: Posterior) -> str:
+    """Describe the sampling of the posterior: effective samples, acceptance, R-hat."""
+    worst, fewest = max(posterior.r_hat.values()), min(posterior.effective.values())
+    verdict = "converged" if posterior.converged else f"not converged, which is up to {CONVERGED}"
+    return (
+        f"{len(posterior.samples)} samples, as good as {fewest:.0f} independent ones; "
+        f"acceptance {posterior.acceptance:.2f}, R-hat {worst:.4f}: {verdict}"
+    )
+
+
+def _table(result: IdentificationResult, posterior: Posterior | None) -> Table:
+    """Make the table of unknowns and products with their bands."""
+    table = _plain_table("", "best", "95 %", "unit", *(("posterior",) if posterior else ()))
+    for unknown, estimate in zip(result.transform.unknowns, result.estimates.values(), strict=True):
+        unit = unknown.quantity.shown
+        best = _number_text(unit.factor, estimate.value) if estimate.identifiable else "not identifiable"
+        band = _band_text(unit.factor, estimate.low, estimate.high)
+        table.add_row(estimate.name, best, band, unit.text, *_posterior_band(posterior, estimate.name, unit))
+    for product in result.information.products:
+        table.add_row(
+            product.name, _number_text(1.0, product.value), _band_text(1.0, product.low, product.high), product.unit
+        )
+    return table
+
+
+def _plain_table(*heads: str) -> Table:
+    """Make an empty table; the first column and units are at the left."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for index, head in enumerate(heads):
+        table.add_column(head, justify="left" if index == 0 or head == "unit" else "right", no_wrap=index == 0)
+    return table
+
+
+def _posterior_band(posterior: Posterior | None, name: str, unit: Unit) -> tuple[str, ...]:
+    """Return the posterior band of an unknown in a tuple; empty without posterior."""
+    return () if posterior is None else (_band_text(unit.factor, *posterior.band(name)),)
+
+
+def _band_text(factor: float, low: float, high: float) -> str:
+    """Write a band in the unit of a factor."""
+    return f"{_number_text(factor, low)} to {_number_text(factor, high)}"
+
+
+def _number_text(factor: float, number: float) -> str:
+    """Write a number in the unit of a factor with four digits."""
+    return f"{factor * number:.4g}"
+
+
+def _sensitivity_table(result: IdentificationResult) -> Table:
+    """Make the table of shifts by machine errors, with ratios to half bands."""
+    unknowns = result.transform.unknowns
+    heads = [f"Δ{unknown.quantity.symbol}, {unknown.quantity.shown.text}".removesuffix(", ") for unknown in unknowns]
+    table = _plain_table("if the machine had", *heads)
+    for error in result.sensitivity:
+        shifts = [_shift_text(result, error, index) for index in range(len(unknowns))]
+        table.add_row(error.title, *shifts)
+    return table
+
+
+def _shift_text(result: IdentificationResult, error: Sensitivity, index: int) -> str:
+    """Format a shift and its ratio to half a band."""
+    unknown = result.transform.unknowns[index]
+    ratio = result.shift_ratio(error, unknown.name)
+    if not result.estimates[unknown.name].identifiable:
+        return "-"
+    return f"{unknown.quantity.shown.factor * error.shifts[unknown.name]:+.3g} ({ratio:.1f}x)" if ratio > 5e-3 else "0"
+
+
+def _next_table(result: IdentificationResult) -> Table:
+    """Make the table of the best load of each quantity for the next measurement."""
+    unknowns = result.transform.unknowns
+    table = _plain_table(
+        "measure next", "at", "to within", "bits", *(f"{unknown.quantity.symbol} left" for unknown in unknowns)
+    )
+    for gain in result.next.best_by_quantity[:_ROWS]:
+        candidate, quantity = gain.candidate, MEASURED[gain.candidate.quantity]
+        within = f"{_short_text(candidate.uncertainty * quantity.shown.factor)} {quantity.shown.text}"
+        load = "-" if candidate.force is None else f"{candidate.force:.4g} N"
+        ratios = [f"{100 * gain.uncertainty_ratio[unknown.name]:.0f} %" for unknown in unknowns]
+        table.add_row(quantity.title, load, within, f"{gain.bits:.2f}", *ratios)
+    return table
+
+
+def _short_text(number: float) -> str:
+    """Write a number with two digits, without an exponent if it is short."""
+    return f"{float(f'{number:.2g}'):g}"

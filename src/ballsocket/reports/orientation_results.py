@@ -1,0 +1,213 @@
+"""Orientations of a cup as a map of inclination and anteversion, and as text in a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees
+from typing import TYPE_CHECKING, Any
+
+import numpy
+from rich.table import Table
+from rich.text import Text
+
+from ..core.arrays import Numbers
+from ..core.deprecation import renamed_arguments
+from ..core.quantities import CONTACT, CUP, DERIVED, Quantity
+from ..core.validity import Status
+from ..elasticity.off_axis.orientations import Orientations
+from .style import LEGEND
+from .terminal import console, print_folded
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_LEVELS = 12
+_LOST_BALL_HATCH, _RIM_HATCH = "xxx", "///"
+
+
+@renamed_arguments(stood="orientations")
+def orientation_figure(orientations: Orientations) -> Figure:
+    """Draw distance to the rim and largest pressure over inclination and anteversion.
+
+    The contact reaches the rim on the dotted line. Two hatchings mark cups that do not hold the ball, and cups whose
+    rim digs in, where the pressure is unbounded. A circle marks the orientation of the cup, if it is set.
+
+    Parameters
+    ----------
+    stood : Orientations
+        Results for at least two inclinations and two anteversions.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    ValueError
+        Fewer orientations.
+    """
+    from matplotlib.figure import Figure
+
+    if min(orientations.status.shape) < 2:
+        raise ValueError(f"a map needs two values of each angle, got {' x '.join(map(str, orientations.status.shape))}")
+    figure = Figure(figsize=(10.4, 4.6), layout="constrained")
+    distance_axes, pressure_axes = figure.subplots(1, 2, sharey=True)
+    _draw(distance_axes, orientations, orientations.edge_distance, DERIVED["edge_distance"])
+    _draw(pressure_axes, orientations, orientations.max_pressure, CONTACT["max_pressure"])
+    pressure_axes.set_ylabel("")
+    _draw_legend(figure)
+    figure.suptitle(f"{orientations.joint.dimensions}; {load_text(orientations)}", fontsize=10, parse_math=False)
+    return figure
+
+
+def _draw_legend(figure: Figure) -> None:
+    """Add one legend for both maps, with each text once."""
+    pairs: dict[str, Any] = {}
+    for axes in figure.axes:
+        pairs |= {label: handle for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)}
+    if pairs:
+        figure.legend(list(pairs.values()), list(pairs), loc="outside lower center", ncols=len(pairs), **LEGEND)
+
+
+def _draw(axes: Axes, orientations: Orientations, values: Numbers, quantity: Quantity) -> None:
+    """Draw one field with contours, and hatch orientations without a number."""
+    x, y = numpy.degrees(orientations.inclination), numpy.degrees(orientations.anteversion)
+    shown = numpy.where(orientations.held & numpy.isfinite(values), values, numpy.nan).T
+    if numpy.isfinite(shown).any() and numpy.nanmax(shown) > numpy.nanmin(shown):
+        axes.contourf(x, y, shown, levels=_LEVELS, cmap="viridis")
+        lines = axes.contour(x, y, shown, levels=_LEVELS // 2, colors="white", linewidths=0.6)
+        axes.clabel(lines, fontsize=8, fmt="%.4g")
+    _draw_rim(axes, orientations, x, y)
+    _hatch(axes, x, y, ~orientations.held.T, _LOST_BALL_HATCH, "the load leaves the bore")
+    _hatch(axes, x, y, numpy.isposinf(values).T, _RIM_HATCH, "the rim digs in: unbounded pressure")
+    _mark(axes, orientations)
+    axes.set_xlabel(CUP["inclination"].label())
+    axes.set_ylabel(CUP["anteversion"].label())
+    axes.set_title(quantity.label(), fontsize=10)
+    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
+
+
+def _draw_rim(axes: Axes, orientations: Orientations, x: Numbers, y: Numbers) -> None:
+    """Draw the line of orientations at which the contact reaches the rim."""
+    apart = orientations.edge_distance.T
+    if numpy.nanmin(apart, initial=0.0) < 0 < numpy.nanmax(apart, initial=0.0):
+        axes.contour(x, y, apart, levels=[0.0], colors="black", linestyles=":", linewidths=1.8)
+        axes.plot([], [], ":", color="black", linewidth=1.8, label="the contact reaches the rim")
+
+
+def _hatch(axes: Axes, x: Numbers, y: Numbers, where: Numbers, hatch: str, label: str) -> None:
+    """Hatch all cells at the points of a mask."""
+    from matplotlib.patches import Rectangle
+
+    if not where.any():
+        return
+    area = axes.contourf(x, y, where.astype(float), levels=[1e-3, 1.5], colors="white", hatches=[hatch], zorder=1.8)
+    area.set_edgecolor("0.5")
+    area.set_linewidth(0)
+    axes.add_patch(Rectangle((x[0], y[0]), 0.0, 0.0, facecolor="white", edgecolor="0.5", hatch=hatch, label=label))
+
+
+def _mark(axes: Axes, orientations: Orientations) -> None:
+    """Mark the orientation of the cup, if it is set and lies on the map."""
+    cup = orientations.model.cup
+    inside = (
+        orientations.inclination[0] <= cup.inclination <= orientations.inclination[-1]
+        and orientations.anteversion[0] <= cup.anteversion <= orientations.anteversion[-1]
+    )
+    if inside and cup.oriented:
+        position = degrees(cup.inclination), degrees(cup.anteversion)
+        mark: Any = {
+            "color": "white",
+            "markeredgecolor": "black",
+            "markersize": 8,
+            "linestyle": "",
+            "label": "this cup",
+        }
+        axes.plot(*position, "o", clip_on=False, **mark)
+
+
+def load_text(orientations: Orientations) -> str:
+    """Describe the load with its direction in the body."""
+    load = ", ".join(f"{CONTACT[name].symbol} {_number(name, value)}" for name, value in orientations.load.items())
+    along = ", ".join(f"{part:g}" for part in orientations.model.direction)
+    return f"{load} along ({along}); arc of cover {degrees(orientations.model.cup.arc_of_cover):.4g}°"
+
+
+def _number(name: str, value: float) -> str:
+    """Write a number after its symbol."""
+    unit = CONTACT[name].shown
+    return f"{value * unit.factor:.4g} {unit.text}"
+
+
+_MAX_VALUES = 7
+"""Values of each angle that a table shows."""
+
+
+def print_orientations(orientations: Orientations) -> None:
+    """Print distance to the rim and largest pressure by orientation, the best orientations, and the duration."""
+    terminal = console()
+    print_folded(terminal, str(orientations.joint), "bold")
+    print_folded(terminal, load_text(orientations), "bold")
+    fields = {DERIVED["edge_distance"]: orientations.edge_distance, CONTACT["max_pressure"]: orientations.max_pressure}
+    for quantity, values in fields.items():
+        terminal.print(Text(f"{quantity.label()}, anteversion by inclination"))
+        terminal.print(_table(orientations, values))
+    for line in _remarks(orientations):
+        print_folded(terminal, line, "dim")
+
+
+def _table(orientations: Orientations, values: Numbers) -> Table:
+    """Make the table of a field: anteversion by inclination."""
+    rows, columns = (_chosen_indices(len(angles)) for angles in (orientations.anteversion, orientations.inclination))
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for head in ("", *(_degree_text(orientations.inclination[i]) for i in columns)):
+        table.add_column(head, justify="right", no_wrap=True)
+    for j in rows:
+        cells = (_cell(orientations, values, i, j) for i in columns)
+        table.add_row(Text(_degree_text(orientations.anteversion[j]), style="bold"), *cells)
+    return table
+
+
+def _chosen_indices(count: int) -> list[int]:
+    """Choose evenly spaced indices, the first and the last included."""
+    indices = numpy.linspace(0, count - 1, min(count, _MAX_VALUES)).round().astype(int)
+    return [int(index) for index in indices]
+
+
+def _cell(orientations: Orientations, values: Numbers, i: int, j: int) -> Text:
+    """Write one value; yellow if the rim is loaded, a dash if the ball is not held."""
+    if not orientations.held[i, j]:
+        return Text("-", style="dim")
+    return Text(f"{values[i, j]:.1f}", style="yellow" if orientations.edge_loaded[i, j] else "")
+
+
+def _remarks(orientations: Orientations) -> Iterator[str]:
+    """Yield sentences about the best orientations, loaded rims, failures and the duration."""
+    if orientations.held.any():
+        yield f"furthest from the rim: {_best_text(orientations, orientations.edge_distance, 'mm')}"
+    if (orientations.held & numpy.isfinite(orientations.max_pressure)).any():
+        yield f"least pressure: {_best_text(orientations, -orientations.max_pressure, 'MPa')}"
+    loaded = int((orientations.edge_loaded & orientations.held).sum())
+    if loaded:
+        yield f"{loaded} of {orientations.status.size} orientations load the rim (below 0: how far beyond first touch)"
+    if numpy.isposinf(orientations.max_pressure).any():
+        yield "inf: the end of the bore digs in, where the pressure is unbounded"
+    for status in Status:
+        count = int((orientations.status == int(status)).sum())
+        if status.failed and count:
+            yield f"{count} of {orientations.status.size}: {status.sentence}"
+    took = f"{orientations.status.size} orientations in {orientations.seconds:.2f} s"
+    yield f"{orientations.model.name}: rings of {degrees(orientations.model.ring_width):.3g}°, {took}"
+
+
+def _best_text(orientations: Orientations, values: Numbers, unit: str) -> str:
+    """Describe the best orientation with its value."""
+    inclination, anteversion, index = orientations.best(values)
+    size = abs(float(values.flat[index])) if unit == "MPa" else float(values.flat[index])
+    return f"{size:.1f} {unit} at inclination {_degree_text(inclination)}, anteversion {_degree_text(anteversion)}"
+
+
+def _degree_text(angle: float) -> str:
+    """Write an angle (rad) in degrees."""
+    return f"{degrees(angle):.3g}°"

@@ -1,0 +1,176 @@
+"""Figures of pressed joints: pressure over angle beside force over indentation."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..catalogue import reference
+from ..compare import force_curves, successful_contacts
+from ..contact import Contact
+from ..contact.describe import Column
+from ..core import arrays
+from ..core.kinds import Unit
+from ..core.quantities import CONTACT, FIELD
+from ..elasticity.off_axis.contact import OffAxisContact
+from .cup_plots import cup_figure
+from .style import LEGEND, THICK, THIN, LineStyle, finish, in_matplotlib, line_of
+from .unit_systems import Units
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORCE_CURVE = (
+    Column(CONTACT["indentation"], CONTACT["indentation"].shown),
+    Column(CONTACT["force"], Unit("kN", 1e-3)),
+)
+"""Columns of the force curve: indentation and force."""
+
+
+def force_axes(units: Units) -> tuple[Column, Column]:
+    """Return the columns of indentation and force in a system of units."""
+    if units is Units.SI:
+        return FORCE_CURVE
+    depth, force = (Column(column.quantity, units.unit_of(column.quantity)) for column in FORCE_CURVE)
+    return depth, force
+
+
+def press_figure(
+    contacts: Mapping[str, Contact],
+    curves: Mapping[str, Contact],
+    title: str = "",
+    lines: Mapping[str, LineStyle] | None = None,
+    note: str = "",
+    units: Units = Units.SI,
+) -> Figure:
+    """Draw the pressure over the angle beside the force over the indentation.
+
+    Parameters
+    ----------
+    contacts : mapping of str to Contact
+        One contact without axes for each model: the pressed state.
+    curves : mapping of str to Contact
+        For each of these models a contact of a 1-D array of loads: its force-indentation curve.
+    title : str
+        Title; by default the joint of the first contact and its load.
+    lines : mapping of str to LineStyle, optional
+        Line style of each contact; by default that of the model of its name.
+    note : str
+        Text above the legend.
+    units : Units
+        Units of the axes.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Figure; curves outside the validity of their model are thin.
+    """
+    from matplotlib.figure import Figure
+
+    figure, axes = Figure(figsize=(10.0, 4.6), layout="constrained"), force_axes(units)
+    pressure = units.unit_of(FIELD["pressure"])
+    pressure_axes, force_panel = figure.subplots(1, 2)
+    for name, contact in contacts.items():
+        line = line_of(name) if lines is None else lines[name]
+        style = in_matplotlib(line, THICK if contact.valid else THIN)
+        angle = _angles(contact)
+        pressure_axes.plot(
+            numpy.degrees(angle), contact.pressure(angle) * pressure.factor, label=_legend_name(name), **style
+        )
+        force_panel.plot(*(arrays.to_numpy(axis.values_of(curves[name])) for axis in axes), **style)
+        force_panel.plot(*(axis.values_of(contact) for axis in axes), "o", color=line.colour, markersize=4.5)
+    finish(pressure_axes, FIELD["angle"].label(), FIELD["pressure"].label(pressure))
+    pressure_axes.set_xlim(0.0, 90.0)
+    if pressure_axes.dataLim.ymin > -0.02 * pressure_axes.dataLim.ymax:
+        pressure_axes.set_ylim(bottom=0.0)
+    pressure_axes.set_xticks(range(0, 91, 15))
+    finish(force_panel, *(axis.label for axis in axes))
+    furthest = [max(axis.values_of(contact) for contact in contacts.values()) for axis in axes]
+    force_panel.set_xlim(0.0, 1.12 * furthest[0] or 1.0)
+    force_panel.set_ylim(0.0, 1.6 * furthest[1] or 1.0)
+    columns = min(len(contacts), 4)
+    legend = figure.legend(loc="outside lower center", ncols=columns, title=note, title_fontsize=8, **LEGEND)
+    for text in (*legend.get_texts(), legend.get_title()):
+        text.set_parse_math(False)
+    figure.suptitle(title or _title(next(iter(contacts.values())), units), fontsize=10, parse_math=False)
+    return figure
+
+
+def _legend_name(name: str) -> str:
+    """Return a name that a legend shows: matplotlib omits names that begin with an underscore."""
+    return f"\u200b{name}" if name.startswith("_") else name
+
+
+def _angles(contact: Contact) -> numpy.ndarray:
+    """Return polar angles (rad) to just beyond the edge of the contact, dense where the pressure is steep."""
+    edge = min(float(contact.half_angle), numpy.pi / 2)
+    return edge * numpy.append(numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 200)), 1.0 + 1e-6)
+
+
+def _title(contact: Contact, units: Units) -> str:
+    """Describe the joint and its load in one line."""
+    joint = contact.joint
+    if units is Units.IMPERIAL:
+        lengths = {"head": joint.head_diameter, "clearance": joint.diametral_clearance}
+        text = ", ".join(f"{name} ⌀ {units.length(float(length))}" for name, length in lengths.items())
+        return f"{text}; ● at {units.text_of(CONTACT['force'], float(contact.force))}"
+    ball = "rigid ball" if joint.ball is None else f"ball {float(joint.ball.young) / 1e3:g} GPa"
+    return (
+        f"{joint.dimensions} of {float(joint.liner.young) / 1e3:g} GPa, "
+        f"ν {float(joint.liner.poisson):g}; {ball}; ● at {contact.force:.4g} N"
+    )
+
+
+MAX_CURVES = 7
+"""Curves that are distinguishable in one figure."""
+
+
+def plot(contacts: Mapping[str, Contact]) -> Figure:
+    """Draw single contacts: the pressure over the angle, beside the force over the indentation.
+
+    A contact off the cup's axis that is alone is drawn in its cup. Of many models at most `MAX_CURVES` are drawn, and
+    the others are named.
+
+    Raises
+    ------
+    ValueError
+        More than one contact of a model, or only failed contacts.
+    """
+    for contact in contacts.values():
+        shape = tuple(getattr(contact.indentation, "shape", ()))
+        if shape:
+            sizes = " x ".join(map(str, shape))
+            raise ValueError(f"a plot shows one contact for each model, got {sizes}; draw several with a study")
+    shown = successful_contacts(contacts)
+    if not shown:
+        raise ValueError("there is nothing to draw: no model has an answer")
+    single = next(iter(shown.values())) if len(shown) == 1 else None
+    if isinstance(single, OffAxisContact) and single.max_pressure > 0:
+        return cup_figure(single)
+    chosen = select_curves(shown)
+    models: Any = {name: contact.model for name, contact in chosen.items()}
+    return press_figure(chosen, force_curves(chosen, models), note=_omission_note(shown, chosen))
+
+
+def select_curves(contacts: Mapping[str, Contact]) -> dict[str, Contact]:
+    """Select at most `MAX_CURVES` contacts: valid ones first, none that coincides with the exact one."""
+    if len(contacts) <= MAX_CURVES:
+        return dict(contacts)
+    exact = contacts.get(reference.name)
+    distinct = [name for name, contact in contacts.items() if exact in (None, contact) or not _coincide(contact, exact)]
+    chosen = sorted(distinct, key=lambda name: not contacts[name].valid)[:MAX_CURVES]
+    return {name: contact for name, contact in contacts.items() if name in chosen}
+
+
+def _coincide(contact: Contact, exact: Contact) -> bool:
+    """Return whether two contacts agree within 0.1 %, so that their curves coincide."""
+    ratios = [getattr(contact, name) / getattr(exact, name) for name in ("force", "indentation", "max_pressure")]
+    return all(abs(ratio - 1) < 1e-3 for ratio in ratios)
+
+
+def _omission_note(shown: Iterable[str], chosen: Mapping[str, Contact]) -> str:
+    """Describe the contacts that are not drawn."""
+    names = [name for name in shown if name not in chosen]
+    return f"not drawn: {', '.join(names)}" if names else ""

@@ -1,0 +1,150 @@
+"""Figure of a finite-element solution: mesh, stresses, and the pressure beside the exact one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..catalogue import judge, reference
+from ..contact import Contact
+from ..core.quantities import FIELD
+from ..elasticity.finite_elements.contact import MeshedContact
+from .style import BLUE, LEGEND, finish, in_matplotlib, line_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from ..elasticity.finite_elements.section import Part
+
+_RIM = {4: (0, 1, 2, 3), 9: (0, 4, 1, 5, 2, 6, 3, 7)}
+"""Nodes around an element in order, by its number of nodes."""
+
+_LEVELS = 14
+_SCALES = {"backing": "magma", "liner": "viridis", "ball": "cividis"}
+"""Colour map of each kind of part; stresses of a shell and of a liner differ by orders of magnitude."""
+
+
+def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figure:
+    """Draw mesh and von Mises stress in section, to scale, beside the pressure with its error bar.
+
+    Parameters
+    ----------
+    contact : MeshedContact
+        One contact under load.
+    exact : Contact, optional
+        Exact contact of the same load, drawn in black.
+
+    Raises
+    ------
+    ValueError
+        More than one contact, a contact without load, or a failed one.
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11.0, 4.8), layout="constrained")
+    section_axes, pressure_axes = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
+    _draw_section(figure, section_axes, contact)
+    _draw_pressure(pressure_axes, contact, exact)
+    title = f"{contact.joint.dimensions}; {contact.force:.4g} N, {contact.mesh.elements} elements"
+    figure.suptitle(title, fontsize=10)
+    return figure
+
+
+def _draw_section(figure: Figure, axes: Axes, contact: MeshedContact) -> None:
+    """Draw the mesh at the left and the stress at the right, with a colour bar for each kind of part."""
+    section = contact.section
+    outermost = max(float(part.position[0].max()) for part in section.parts)
+    extent = 1.03 * min(outermost, float(contact.joint.socket_radius) + 40.0)
+    for part in section.parts:
+        _draw_mesh(axes, part)
+    for kind, colours in _SCALES.items():
+        parts = [part for part in section.parts if part.name.startswith(kind)]
+        if parts:
+            highest = section.peak_stress.von_mises if kind == "liner" else max(map(_largest_stress, parts))
+            filled = [_draw_stress(axes, part, highest, colours) for part in parts][-1]
+            bar = figure.colorbar(filled, ax=axes, shrink=0.75, pad=0.01, extend="max")
+            bar.set_label(f"von Mises stress in the {kind} [MPa]", fontsize=8)
+    _name_parts(axes, contact, extent)
+    axes.set_aspect("equal")
+    low = min(part.position[1].min() for part in section.parts)
+    high = max(part.position[1].max() for part in section.parts)
+    axes.set_xlim(-extent, extent)
+    axes.set_ylim(max(low, -extent) - 1.0, min(high, extent) + 0.1 * extent * (len(section.parts) + 1))
+    axes.set_xlabel("distance from the load axis [mm]")
+    axes.set_ylabel("height [mm]")
+    axes.spines[["top", "right"]].set_visible(False)
+
+
+def _draw_mesh(axes: Axes, part: Part) -> None:
+    """Draw the outlines of the elements at the left."""
+    from matplotlib.collections import PolyCollection
+
+    corners = part.position[:, part.elements[list(_RIM[len(part.elements)])]]
+    outlines = numpy.moveaxis(corners * numpy.array([-1.0, 1.0])[:, None, None], (0, 1, 2), (2, 1, 0))
+    colour = "0.45" if part.name == "ball" else BLUE
+    axes.add_collection(PolyCollection(list(outlines), facecolors="white", edgecolors=colour, linewidths=0.25))
+
+
+def _largest_stress(part: Part) -> float:
+    """Return the largest stress (MPa) of a part without the sharpest corners."""
+    return float(numpy.percentile(part.stress.von_mises, 99.5))
+
+
+def _name_parts(axes: Axes, contact: MeshedContact, extent: float) -> None:
+    """Label each part on the side of the mesh, and state the arc of cover."""
+    joint = contact.joint
+    materials = {"ball": joint.ball, "liner": joint.liner}
+    materials |= {f"backing {number}": layer.material for number, layer in enumerate(joint.backing, start=1)}
+    for number, part in enumerate(sorted(contact.section.parts, key=lambda part: part.name != "ball")):
+        angle, middle = (
+            0.9 * float(part.angle.max()),
+            (float(part.radius.min()) + min(float(part.radius.max()), extent)) / 2,
+        )
+        nearest = numpy.argmin((part.angle - angle) ** 2 * middle**2 + (part.radius - middle) ** 2)
+        material = materials[part.name]
+        text = f"{part.name}: {material.name}" if material is not None and material.name else part.name
+        x, y = part.position[:, nearest]
+        arrow = {"arrowstyle": "-", "lw": 0.6, "color": "0.2", "relpos": (1.0, 0.5)}
+        where = (0.02, 0.98 - 0.07 * number)
+        axes.annotate(text, (-x, y), where, textcoords="axes fraction", fontsize=7, va="top", arrowprops=arrow)
+    arc = numpy.degrees(contact.model.cup.arc_of_cover)
+    axes.set_title(f"arc of cover {arc:.4g}°, outside {joint.support.value}", fontsize=8)
+
+
+def _draw_stress(axes: Axes, part: Part, highest: float, colours: str) -> Any:
+    """Draw contours of the von Mises stress at the right."""
+    from matplotlib.ticker import MaxNLocator
+    from matplotlib.tri import Triangulation
+
+    a, b, c, d = part.elements[:4]
+    triangles = numpy.concatenate([numpy.stack([a, b, c], -1), numpy.stack([a, c, d], -1)])
+    levels = MaxNLocator(_LEVELS).tick_values(0.0, highest)
+    mesh = Triangulation(part.position[0], part.position[1], triangles)
+    return axes.tricontourf(mesh, part.stress.von_mises, levels=levels, cmap=colours, extend="max")
+
+
+def _draw_pressure(axes: Axes, contact: MeshedContact, exact: Contact | None) -> None:
+    """Draw the pressure over the angle beside the exact one, with the error bar of its largest value."""
+    edge = contact.half_angle
+    angle = edge * numpy.append(numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 300)), 1 + 1e-6)
+    pressure = contact.pressure(angle)
+    if exact is not None:
+        exact_angle = numpy.linspace(0.0, 1.0, 300) * exact.half_angle * (1 + 1e-6)
+        axes.plot(
+            numpy.degrees(exact_angle),
+            exact.pressure(exact_angle),
+            label="exact",
+            **in_matplotlib(line_of(reference.name)),
+        )
+    line = line_of(judge.name)
+    axes.plot(numpy.degrees(angle), pressure, label="finite elements", **in_matplotlib(line))
+    error = contact.error["max_pressure"]
+    if error > 0:
+        bars = {"yerr": error * contact.max_pressure, "capsize": 3, "fmt": "none"}
+        axes.errorbar([0.0], [contact.max_pressure], color=line.colour, label=f"p0 ± {100 * error:.1g} %", **bars)
+    finish(axes, *(quantity.label() for quantity in FIELD.values()))
+    axes.set_xlim(0.0, max(1.08 * numpy.degrees(edge), 5.0))
+    axes.set_ylim(bottom=0.0)
+    axes.legend(**LEGEND)

@@ -1,0 +1,241 @@
+"""Figures of studies: design maps with limits, bands, Pareto fronts, Sobol indices."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..core.deprecation import renamed_arguments
+from ..core.quantities import QUANTITIES
+from ..studies.limits import Limit, allowed, margin_over
+from .style import BLUE, INK, LEGEND, ORANGE, finish
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.contour import ContourSet
+    from matplotlib.figure import Figure
+
+SHOWN = ("max_pressure", "area", "half_angle")
+"""Results that a design map shows by default."""
+
+_VEIL = 0.65
+"""Opacity of the white veil over forbidden areas."""
+
+
+def design_map(
+    study: xarray.Dataset, limits: Sequence[Limit] = (), quantities: Iterable[str] = SHOWN, best: Any = None
+) -> Figure:
+    """Draw contours of results over the two axes of a study, with limits and validity.
+
+    The map is pale where a limit is broken or a result is missing, and hatched where the model is not valid.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        From `study`, with two axes of more than one value.
+    limits : sequence of Limit
+        Limits; their ends are dotted lines with text.
+    quantities : iterable of str
+    best : mapping of str to float, optional
+        A point to mark.
+
+    Raises
+    ------
+    ValueError
+        A study without exactly two axes of more than one value.
+    """
+    from matplotlib.figure import Figure
+
+    names = [name for name in quantities if name in study.data_vars]
+    across, up = _two_axes(study)
+    figure = Figure(figsize=(4.4 * len(names) + 0.4, 4.4), layout="constrained")
+    answered, trusted = (condition.transpose(up, across).values for condition in (allowed(study, ()), study.valid))
+    for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
+        values = read(study, name).transpose(up, across).values
+        x, y = read(study, across).values, read(study, up).values
+        axes.contourf(x, y, values, levels=14, cmap="viridis")
+        lines = axes.contour(x, y, values, levels=7, colors="white", linewidths=0.6)
+        if not answered.all():
+            axes.contourf(x, y, (~answered).astype(float), levels=[0.5, 1.5], colors="white", alpha=_VEIL)
+        if not trusted.all():
+            hatching = axes.contourf(x, y, (~trusted).astype(float), levels=[0.5, 1.5], colors="none", hatches=["//"])
+            hatching.set_edgecolor("0.85")
+            hatching.set_linewidth(0)
+        _draw_limits(axes, study, limits, across, up)
+        _label_lines(axes, lines)
+        if best is not None:
+            position = (best[axis] * QUANTITIES[axis].shown.factor for axis in (across, up))
+            axes.plot(*position, "o", color="white", markeredgecolor="black", markersize=8)
+        axes.set_xlabel(QUANTITIES[across].label())
+        axes.set_ylabel(QUANTITIES[up].label())
+        axes.set_title(QUANTITIES[name].label(), fontsize=10)
+    figure.suptitle(_title(study), fontsize=10, parse_math=False)
+    within = allowed(study, limits).transpose(up, across).values
+    texts = [(within, "pale: a limit is broken, or no result"), (trusted, "hatched: the model is not valid")]
+    figure.supxlabel("; ".join(words for where, words in texts if not where.all()), fontsize=8, color="0.3")
+    return figure
+
+
+def read(study: xarray.Dataset, name: str) -> xarray.DataArray:
+    """Return a quantity or axis of a study in the unit of figures."""
+    return study[name] * QUANTITIES[name].shown.factor
+
+
+def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
+    """Return the names of the two axes of a study that have more than one value."""
+    long = [str(dim) for dim, size in study.sizes.items() if size > 1]
+    if len(long) != 2:
+        raise ValueError(f"a map needs two axes of more than one value, got {', '.join(long) or 'none'}")
+    for name in long:
+        if name not in QUANTITIES:
+            raise ValueError(f"a map has axes of numbers, and {name} has names")
+    return long[0], long[1]
+
+
+def _title(study: xarray.Dataset) -> str:
+    """Describe the joint, the fixed parameters and the model of a study."""
+    fixed = [
+        _value_text(str(name), "=", float(coordinate))
+        for name, coordinate in study.coords.items()
+        if not coordinate.dims and name in QUANTITIES and numpy.issubdtype(coordinate.dtype, numpy.number)
+    ]
+    joint = json.loads(study.attrs["joint"])["name"]
+    return "; ".join([*([joint] if joint else []), *fixed, f"model {study.attrs['model']}"])
+
+
+def _value_text(name: str, sign: str, value: float) -> str:
+    """Write a quantity with a sign, a value and its unit."""
+    quantity = QUANTITIES[name]
+    return f"{quantity.title} {sign} {value * quantity.shown.factor:.4g} {quantity.shown.text}".strip()
+
+
+def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], across: str, up: str) -> None:
+    """Draw a veil over the area that each limit forbids, bounded by a dotted line with its text."""
+    x, y = read(study, across).values, read(study, up).values
+    nearest = numpy.full((len(y), len(x)), numpy.inf)
+    for limit in limits:
+        values = margin_over(study, limit, across, up)
+        size = float(numpy.nanmax(abs(values), initial=0.0, where=numpy.isfinite(values)))
+        nearest = numpy.minimum(nearest, values / (size or 1.0))
+    if numpy.nanmin(nearest) < 0:
+        axes.contourf(x, y, numpy.clip(nearest, -1.0, 1.0), levels=[-2.0, 0.0], colors="white", alpha=_VEIL)
+    for limit in limits:
+        for end in _one_sided_limits(limit):
+            values = margin_over(study, end, across, up)
+            if numpy.nanmin(values) < 0 < numpy.nanmax(values):
+                line = axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
+                _label_lines(axes, line, _limit_text(end))
+
+
+def _one_sided_limits(limit: Limit) -> list[Limit]:
+    """Split a limit into one for each finite end."""
+    ends = (replace(limit, high=numpy.inf), replace(limit, low=-numpy.inf))
+    return [end for end in ends if (end.low, end.high) != (-numpy.inf, numpy.inf)]
+
+
+def _limit_text(limit: Limit) -> str:
+    """Write a limit with one finite end."""
+    return (
+        _value_text(limit.name, "≤", limit.high) if limit.high < numpy.inf else _value_text(limit.name, "≥", limit.low)
+    )
+
+
+def _label_lines(axes: Axes, lines: ContourSet, text: str = "") -> None:
+    """Write numbers, or a text, on contour lines, legible on every colour."""
+    from matplotlib.patheffects import withStroke
+
+    fmt: Any = {float(level): text for level in lines.levels} if text else None
+    for label in axes.clabel(lines, fontsize=8, colors="black", fmt=fmt):
+        label.set_path_effects([withStroke(linewidth=2.0, foreground="white", alpha=0.8)])
+
+
+def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressure", "half_angle")) -> Figure:
+    """Draw the median of results over an axis, with bands that contain 50, 90 and 99 % of the samples.
+
+    Raises
+    ------
+    ValueError
+        A study without samples, or without exactly one more axis.
+    """
+    from matplotlib.figure import Figure
+
+    axis_names = [str(dim) for dim in study.sizes if dim != "sample"]
+    if "sample" not in study.sizes or len(axis_names) != 1:
+        raise ValueError("bands need samples and one more axis, such as the force")
+    names = [name for name in quantities if name in study.data_vars]
+    figure = Figure(figsize=(5.0 * len(names), 4.0), layout="constrained")
+    for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
+        values, x = read(study, name), read(study, axis_names[0]).values
+        for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
+            low, high = (values.quantile(end, dim="sample").values for end in ((1 - share) / 2, (1 + share) / 2))
+            axes.fill_between(x, low, high, color=shade, label=f"{100 * share:g} % of the joints", linewidth=0)
+        axes.plot(x, values.median(dim="sample").values, color="black", linewidth=1.8, label="median")
+        finish(axes, QUANTITIES[axis_names[0]].label(), QUANTITIES[name].label())
+    figure.axes[0].legend(**LEGEND)
+    return figure
+
+
+def front_figure(
+    study: xarray.Dataset, front: xarray.Dataset, minimise: tuple[str, str], limits: Sequence[Limit]
+) -> Figure:
+    """Draw every allowed design as a dot, and the Pareto front as a line.
+
+    Parameters
+    ----------
+    study, front : xarray.Dataset
+        From `study` and `pareto`.
+    minimise : tuple of two str
+    limits : sequence of Limit
+    """
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 4.6), layout="constrained")
+    axes = figure.subplots()
+    good = allowed(study, limits)
+    first, second = (read(study, name).where(good).values.ravel() for name in minimise)
+    axes.plot(first, second, ".", color="0.75", markersize=3, label="allowed")
+    best = [read(front, name).values for name in minimise]
+    axes.plot(*best, "o-", color=INK, markersize=4, linewidth=1.2, label="no other is better in both")
+    finish(axes, *(QUANTITIES[name].label() for name in minimise))
+    axes.legend(**LEGEND)
+    return figure
+
+
+@renamed_arguments(found="indices")
+def sensitivity_figure(indices: xarray.Dataset) -> Figure:
+    """Draw first and total Sobol indices of every quantity with their intervals."""
+    from matplotlib.figure import Figure
+
+    quantities, parameters = indices.quantity.values.tolist(), indices.parameter.values.tolist()
+    figure = Figure(figsize=(3.4 * len(quantities) + 1.2, 0.55 * len(parameters) + 1.8), layout="constrained")
+    rows = numpy.arange(len(parameters))
+    for axes, quantity in zip(
+        figure.subplots(1, len(quantities), squeeze=False, sharey=True).ravel(), quantities, strict=True
+    ):
+        for order, offset, colour in (("first", -0.17, BLUE), ("total", 0.17, ORANGE)):
+            part = indices.sel(quantity=quantity)
+            values, low, high = (part[f"{order}_order{end}"].values for end in ("", "_low", "_high"))
+            error = numpy.clip([values - low, high - values], 0.0, None)
+            hatch = "" if order == "first" else "//"
+            axes.barh(
+                rows + offset,
+                values,
+                0.32,
+                xerr=error,
+                color=colour,
+                hatch=hatch,
+                edgecolor="white",
+                label=f"{order} order",
+            )
+        axes.set_yticks(rows, [QUANTITIES[name].title for name in parameters])
+        axes.set_xlim(0.0, 1.05)
+        finish(axes, "share of the variance", "")
+        axes.set_title(QUANTITIES[quantity].title, fontsize=10)
+    figure.axes[0].invert_yaxis()
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    return figure

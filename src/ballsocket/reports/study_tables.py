@@ -1,0 +1,332 @@
+"""Results of studies as dictionaries for JSON and as tables in a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy
+from rich.console import Console
+from rich.table import Table
+
+from ..core.arrays import to_list
+from ..core.quantities import QUANTITIES
+from ..core.validity import Status
+from ..studies.limits import Limit, allowed, refusal
+from ..studies.parameters import PARTS_OF
+from ..studies.pieces import dims_of, pieces
+
+if TYPE_CHECKING:
+    import xarray
+
+    from ..studies.optimum import Optimum
+
+
+class End(NamedTuple):
+    """Least or largest value of a result, and the index of its point."""
+
+    value: float
+    place: int
+
+
+@dataclass
+class StudyReport:
+    """Least, largest and sampled values of a study, collected in parts: a study may exceed the memory."""
+
+    ends: dict[str, tuple[End, End]]
+    sampled: dict[str, list[numpy.ndarray]]
+    failed: dict[Status, int]
+    valid: int = 0
+
+    @classmethod
+    def of(cls, study: xarray.Dataset) -> StudyReport:
+        """Collect the values of a study."""
+        names = result_names(study)
+        nothing = (End(float("nan"), 0), End(float("nan"), 0))
+        report = cls(
+            dict.fromkeys(names, nothing),
+            {name: [] for name in names},
+            {status: 0 for status in Status if status.failed},
+        )
+        first, stride = 0, max(1, study.status.size // _MAX_SAMPLED)
+        for part in pieces(study):
+            for name in names:
+                report._add(name, part[name].values.ravel(), first, stride)
+            for status in report.failed:
+                report.failed[status] += int((part.status.values == int(status)).sum())
+            report.valid += int(part.valid.values.sum())
+            first += part.status.size
+        return report
+
+    def _add(self, name: str, values: numpy.ndarray, first: int, stride: int) -> None:
+        """Add the values of one part of a result."""
+        self.sampled[name].append(values[::stride].copy())
+        if numpy.isnan(values).all():
+            return
+        low, high = self.ends[name]
+        smallest, largest = int(numpy.nanargmin(values)), int(numpy.nanargmax(values))
+        if not values[smallest] >= low.value:
+            low = End(float(values[smallest]), first + smallest)
+        if not values[largest] <= high.value:
+            high = End(float(values[largest]), first + largest)
+        self.ends[name] = low, high
+
+
+_MAX_SAMPLED = 1_000_000
+"""Points from which a median is computed."""
+
+_MAX_LISTED = 5000
+"""Points up to which a summary contains all values."""
+
+
+def study_summary(study: xarray.Dataset) -> dict[str, Any]:
+    """Summarise a study: least, median and largest value of each result with coordinates, and few points in full."""
+    report, size = StudyReport.of(study), int(study.status.size)
+    quantities = {name: _ends_of(study, name, report) for name in report.ends}
+    return {
+        "model": study.attrs["model"],
+        "points": size,
+        "valid": report.valid == size,
+        "notes": [f"{count} of {size}: {status.sentence}" for status, count in report.failed.items() if count],
+        "quantities": quantities,
+        "values": _values(study) if size <= _MAX_LISTED else None,
+    }
+
+
+def _values(study: xarray.Dataset) -> dict[str, Any]:
+    """Return the varied parameters and the results at all points, in the order of the axes."""
+    flat = study.stack(point=dims_of(study)) if dims_of(study) else study.expand_dims("point")
+    names = [*varying_parameters(study), *result_names(study)]
+    return {name: _plain(flat[name].values) for name in names}
+
+
+def _plain(values: numpy.ndarray) -> Any:
+    """Convert an array to a list for JSON."""
+    return values.tolist() if values.dtype.kind in "OUS" else to_list(values)
+
+
+def _ends_of(study: xarray.Dataset, name: str, report: StudyReport) -> dict[str, Any]:
+    """Summarise least, median and largest value of a result."""
+    low, high = report.ends[name]
+    if numpy.isnan(low.value):
+        return {"least": None, "median": None, "largest": None}
+    ends = {
+        end: {"value": extreme.value, "at": coordinates(study, extreme.place)}
+        for end, extreme in (("least", low), ("largest", high))
+    }
+    return {**ends, "median": float(numpy.nanmedian(numpy.concatenate(report.sampled[name])))}
+
+
+def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any]:
+    """Summarise the allowed points of a map: least and largest values with coordinates.
+
+    Raises
+    ------
+    ValueError
+        No point is allowed.
+    """
+    good = allowed(study, limits)
+    if not bool(good.any()):
+        raise ValueError(refusal(study, limits, "no point of the map is allowed", "at any point of the map"))
+    quantities = {}
+    for name in result_names(study):
+        values = study[name].where(good).transpose(*dims_of(study)).values
+        ends = (int(numpy.nanargmin(values)), int(numpy.nanargmax(values)))
+        quantities[name] = [{"value": float(values.flat[end]), "at": coordinates(study, end)} for end in ends]
+    return {
+        "model": study.attrs["model"],
+        "limits": [str(limit) for limit in limits],
+        "valid": bool(study.valid.where(good, True).all()),
+        "quantities": quantities,
+    }
+
+
+def front_summary(front: xarray.Dataset) -> dict[str, Any]:
+    """Summarise a Pareto front as lists of numbers."""
+    names = [str(name) for name in (*front.coords, *front.data_vars) if front[name].dims]
+    return {"model": front.attrs["model"], "points": {name: to_list(front[name].values) for name in names}}
+
+
+def sensitivity_summary(indices: xarray.Dataset) -> dict[str, Any]:
+    """Summarise Sobol indices and elasticities by quantity and parameter."""
+    orders = ("first_order", "first_order_low", "first_order_high", "total_order", "elasticity")
+    return {
+        "samples": indices.attrs["samples"],
+        "quantities": {
+            quantity: {
+                "mean": float(indices["mean"].sel(quantity=quantity)),
+                "deviation": float(indices["deviation"].sel(quantity=quantity)),
+                "numbers": {
+                    name: {
+                        order: to_list(indices[order].sel(quantity=quantity, parameter=name).values) for order in orders
+                    }
+                    for name in indices.parameter.values.tolist()
+                },
+            }
+            for quantity in indices.quantity.values.tolist()
+        },
+    }
+
+
+def varying_parameters(study: xarray.Dataset) -> list[str]:
+    """Return the names of the parameters that vary; a material is one name."""
+    return [
+        str(name)
+        for name, variable in study.coords.items()
+        if variable.dims and (name in variable.dims or not set(variable.dims) & set(PARTS_OF))
+    ]
+
+
+def result_names(study: xarray.Dataset) -> list[str]:
+    """Return the names of the results of a study."""
+    return [str(name) for name in study.data_vars if name not in ("status", "valid")]
+
+
+def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
+    """Return the parameters at a point, by its index in the order of the dimensions."""
+    dims = dims_of(study)
+    index = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
+    values = {}
+    for name, variable in study.coords.items():
+        value = variable.isel({dim: int(index[dim]) for dim in variable.dims})
+        values[str(name)] = value.values.item()
+    return values
+
+
+def print_study(study: xarray.Dataset) -> None:
+    """Print least, median and largest value of each result, with the coordinates of the ends."""
+    shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
+    Console().print(f"{study.attrs['model']}, {shape or 'one point'}", highlight=False)
+    table = _table("quantity", "unit", "least", "median", "largest", "least at", "largest at")
+    report = StudyReport.of(study)
+    for name, (low, high) in report.ends.items():
+        if numpy.isnan(low.value):
+            table.add_row(name, _unit(name), *["no answer"] * 3, "", "")
+            continue
+        middle = float(numpy.nanmedian(numpy.concatenate(report.sampled[name])))
+        numbers = (_value_text(name, value) for value in (low.value, middle, high.value))
+        table.add_row(name, _unit(name), *numbers, _point_text(study, low.place), _point_text(study, high.place))
+    Console().print(table)
+    failed = "".join(f"; {count} {status.sentence}" for status, count in report.failed.items() if count)
+    Console().print(f"{study.status.size} points, {report.valid} of them valid{failed}", highlight=False)
+
+
+def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
+    """Print least and largest value of each result within the limits, with coordinates."""
+    heads, rows = map_rows(study, limits)
+    table = _table(*heads)
+    for row in rows:
+        table.add_row(*row)
+    Console().print(table)
+    share = float(allowed(study, limits).mean())
+    Console().print(
+        f"{100 * share:.3g} % of the map is allowed" + "".join(f", {limit}" for limit in limits), highlight=False
+    )
+
+
+def map_rows(study: xarray.Dataset, limits: Sequence[Limit]) -> tuple[list[str], list[list[str]]]:
+    """Return heads and rows of the table of a map."""
+    rows = []
+    for name, ends in map_summary(study, limits)["quantities"].items():
+        row = [name, _unit(name)]
+        for end in ends:
+            varied = {axis: end["at"][axis] for axis in varying_parameters(study)}
+            row += [_value_text(name, end["value"]), _parameter_text(varied)]
+        rows.append(row)
+    return ["quantity", "unit", "least", "at", "largest", "at"], rows
+
+
+def print_front(front: xarray.Dataset, max_rows: int = 12) -> None:
+    """Print evenly chosen designs of a Pareto front."""
+    chosen = front.isel(point=numpy.unique(numpy.linspace(0, front.sizes["point"] - 1, max_rows).round().astype(int)))
+    names = [*(str(name) for name in front.coords if front[name].dims), *result_names(front)]
+    table = _table(*(_head(name) for name in names))
+    for index in range(chosen.sizes["point"]):
+        table.add_row(*(_value_text(name, chosen[name].values[index].item()) for name in names))
+    Console().print(table)
+    Console().print(f"{front.sizes['point']} designs that no other beats in both", highlight=False)
+
+
+def print_optimum(best: Optimum) -> None:
+    """Print the best design, its active limits, and the derivatives of the objective."""
+    console = Console()
+    console.print(
+        f"{best.minimise} {_value_text(best.minimise, best.value)} {_unit(best.minimise)}",
+        style="bold",
+        highlight=False,
+    )
+    table = _table("number", "value", "unit", f"d {best.minimise} / d number")
+    for name, value in best.point.items():
+        slope = f"{best.slopes[name] * _factor(best.minimise) / _factor(name):.4g}" if name in best.slopes else "-"
+        table.add_row(name, f"{value * _factor(name):.5g}", _unit(name), slope)
+    for part, material in best.materials.items():
+        table.add_row(part, material, "", "-")
+    console.print(table)
+    if not best.valid:
+        console.print("the model is not valid there: use another model", highlight=False)
+    if best.active:
+        console.print(f"active limits: {', '.join(best.active)}", highlight=False)
+
+
+def print_sensitivity(indices: xarray.Dataset) -> None:
+    """Print first and total Sobol indices with intervals, and elasticities, by quantity."""
+    console = Console()
+    for quantity in indices.quantity.values.tolist():
+        part = indices.sel(quantity=quantity)
+        mean, deviation = (_value_text(quantity, float(part[name])) for name in ("mean", "deviation"))
+        console.print(f"{quantity}: {mean} ± {deviation} {_unit(quantity)}", style="bold", highlight=False)
+        table = _table("number", "first order", "total order", "% per %")
+        for name in part.parameter.values.tolist():
+            row = part.sel(parameter=name)
+            cells = (
+                f"{float(row[f'{order}_order']):.2f} ({float(row[f'{order}_order_low']):.2f}.."
+                f"{float(row[f'{order}_order_high']):.2f})"
+                for order in ("first", "total")
+            )
+            table.add_row(name, *cells, f"{float(row.elasticity):+.2f}")
+        console.print(table)
+
+
+def _point_text(study: xarray.Dataset, flat: int) -> str:
+    """Describe the varied parameters at a point."""
+    at = coordinates(study, flat)
+    return _parameter_text({name: at[name] for name in varying_parameters(study)})
+
+
+def _parameter_text(at: Mapping[str, Any]) -> str:
+    """Write parameters with symbol and value."""
+    return ", ".join(f"{_symbol(name)} {_value_text(name, value)}" for name, value in at.items())
+
+
+def _symbol(name: str) -> str:
+    """Return the symbol of a quantity."""
+    return QUANTITIES[name].symbol if name in QUANTITIES else name
+
+
+def _head(name: str) -> str:
+    """Return the head of a column with its unit."""
+    return QUANTITIES[name].head() if name in QUANTITIES else name
+
+
+def _unit(name: str) -> str:
+    """Return the unit of a quantity in tables."""
+    return QUANTITIES[name].shown.text
+
+
+def _factor(name: str) -> float:
+    """Return the factor to the unit of tables."""
+    return QUANTITIES[name].shown.factor
+
+
+def _value_text(name: str, value: float | str) -> str:
+    """Write a value in the unit of tables."""
+    return value if isinstance(value, str) else f"{value * _factor(name):.4g}"
+
+
+def _table(*heads: str) -> Table:
+    """Make an empty table with dim heads."""
+    table = Table(box=None, pad_edge=False, header_style="dim")
+    for head in heads:
+        table.add_column(head, overflow="fold")
+    return table

@@ -1,0 +1,176 @@
+"""Comparison of models in a terminal, and helpers for all terminal output."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from math import pi
+
+import numpy
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from ..catalogue import reference
+from ..compare import Comparison, relative_deviation
+from ..contact import Contact
+from ..contact.describe import COLUMNS, UTILISATION, Column, number_text
+from ..core.quantities import CONTACT, HEADLINE
+from .unit_systems import Units
+
+_BARS = " ▁▂▃▄▅▆▇█"
+_BARS_ASCII = " .:-=+*#@"
+_PROFILE = "profile"
+_OFF_THE_POLE = ("pole_pressure", "max_pressure_angle")
+_DROPPED_LAST = ("stiffness", "area", _PROFILE, "indentation", "force", "half_angle")
+_DROPPED = (
+    *(name for name in reversed(tuple(CONTACT)) if name not in (*_DROPPED_LAST, "max_pressure")),
+    *_DROPPED_LAST,
+)
+"""Columns that a narrow terminal omits, in this order; never the largest pressure, nor the utilisation."""
+
+_SHOWN_UTILISATION = 0.5
+"""Utilisation from which its column is shown."""
+
+
+def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Units = Units.SI) -> None:
+    """Print a comparison as a table: the exact solution first, below each other model its deviations.
+
+    Bars beside the numbers show the pressure from the pole to 90 degrees. Symbols, remarks and notes follow below.
+    """
+    terminal, ordered = console(), _exact_first(comparison)
+    print_folded(terminal, str(ordered.joint), "bold")
+    table, shown = _fitting_table(ordered, terminal, units)
+    terminal.print(table)
+    for line in (_symbols_text(ordered, shown), *remarks, *ordered.notes()):
+        print_folded(terminal, line, "dim")
+
+
+def _exact_first(comparison: Comparison) -> Comparison:
+    """Return the comparison with a valid exact contact first."""
+    exact = comparison.get(reference.name)
+    if exact is None or not exact.valid:
+        return comparison
+    return replace(comparison, contacts={reference.name: exact, **comparison.contacts})
+
+
+def _symbols_text(comparison: Comparison, columns: Sequence[Column]) -> str:
+    """Describe the symbols in the heads of the columns."""
+    symbols = ", ".join(f"{column.symbol} {column.title}" for column in columns)
+    deviating = any(comparison.deviation(name) is not None for name in comparison)
+    return f"{symbols}; Δ % from {reference.name}" if deviating else symbols
+
+
+def print_curve(contact: Contact) -> None:
+    """Print contacts at increasing loads as a table of the main quantities, and the notes."""
+    terminal = console()
+    print_folded(terminal, f"{contact.model.name} on {contact.joint}", "bold")
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
+    for column in COLUMNS:
+        if column.attribute in HEADLINE:
+            table.add_column(column.head, justify="right", no_wrap=True)
+    table.add_column("valid", no_wrap=True)
+    values = [column.values_of(contact) for column in COLUMNS if column.attribute in HEADLINE]
+    for index, valid in enumerate(contact.valid):
+        table.add_row(*(number_text(value[index], 4, "-") for value in values), "yes" if valid else "no")
+    terminal.print(table)
+    for note in contact.notes:
+        print_folded(terminal, note, "dim")
+
+
+def console() -> Console:
+    """Create a console that does not colour numbers."""
+    return Console(highlight=False)
+
+
+def print_folded(console: Console, text: str, style: str) -> None:
+    """Print a line folded between words, with continuation lines indented."""
+    folded = textwrap.fill(text, max(console.width, 20), subsequent_indent="    ", break_on_hyphens=False)
+    console.print(Text(folded, style=style), soft_wrap=True)
+
+
+def _fitting_table(comparison: Comparison, console: Console, units: Units) -> tuple[Table, list[Column]]:
+    """Return a table with as many columns as fit the width of the terminal, and these columns."""
+    unbounded = console.options.update(width=10_000)
+    bars = _BARS if console.encoding.startswith("utf") else _BARS_ASCII
+    omitted = (*_pole_columns(comparison), *_unimportant_utilisation(comparison))
+    for count in range(len(_DROPPED) + 1):
+        dropped = (*omitted, *_DROPPED[:count])
+        columns = [column for column in units.columns if column.attribute not in dropped]
+        table = _press_table(comparison, columns, "" if _PROFILE in dropped else bars)
+        if console.measure(table, options=unbounded).maximum <= console.width:
+            break
+    return table, columns
+
+
+def _pole_columns(comparison: Comparison) -> tuple[str, ...]:
+    """Return the columns to omit if every valid pressure is largest at the pole."""
+    off_pole = any(contact.valid and contact.max_pressure_angle > 0 for contact in comparison.values())
+    return () if off_pole else _OFF_THE_POLE
+
+
+def _unimportant_utilisation(comparison: Comparison) -> tuple[str, ...]:
+    """Return the utilisation column if no model comes near the limit, to be omitted."""
+    known = (contact for contact in comparison.values() if contact.utilisation_bounds[1] > _SHOWN_UTILISATION)
+    return () if any(contact.utilisation > _SHOWN_UTILISATION for contact in known) else (UTILISATION.attribute,)
+
+
+def _press_table(comparison: Comparison, columns: Sequence[Column], bars: str) -> Table:
+    """Make the table of a comparison; pressure profiles only if `bars` is not empty."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
+    table.add_column("model", no_wrap=True)
+    for column in columns:
+        table.add_column(column.symbol, justify="right", no_wrap=True)
+    if bars:
+        table.add_column(" p, 0° to 90°", no_wrap=True)
+    table.add_column("valid", justify="center", no_wrap=True)
+    table.add_row("", *(Text(column.unit, style="dim") for column in columns))
+    profiles = _profiles(comparison, bars) if bars else {}
+    for name, contact in comparison.items():
+        table.add_row(*_cells(name, contact, columns, [profiles[name]] if profiles else []))
+        if comparison.deviation(name) is not None and not contact.status.failed:
+            deviations = _percents(contact, comparison[reference.name], columns)
+            table.add_row(*(Text(text, style="dim") for text in ("  Δ %", *deviations)))
+    for name in comparison.missing:
+        gaps = [*["-"] * len(columns), *[""] * bool(bars)]
+        table.add_row(Text(name, style="dim"), *gaps, Text("no", style="red"))
+    return table
+
+
+def _percents(contact: Contact, exact: Contact, columns: Sequence[Column]) -> list[str]:
+    """Write the deviations from the exact contact in percent; empty if equal or undefined."""
+    deviations = [
+        100 * float(relative_deviation(column.values_of(contact), column.values_of(exact))) for column in columns
+    ]
+    return [
+        "" if deviation != deviation or deviation == 0 else f"{deviation:+.1f}".replace("-0.0", "+0.0")
+        for deviation in deviations
+    ]
+
+
+def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequence[str]) -> list[Text]:
+    """Return the cells of one contact."""
+    style = "" if contact.valid else "yellow"
+    numbers = [number_text(column.values_of(contact), 4, "-") for column in columns]
+    bars = [Text(f" {bar}", style=style or "cyan") for bar in profile]
+    mark = Text("yes", style="green") if contact.valid else Text("no", style="yellow")
+    return [*(Text(text, style=style) for text in (name, *numbers)), *bars, mark]
+
+
+def _profiles(comparison: Comparison, bars: str) -> dict[str, str]:
+    """Draw the pressure of every model from the pole to 90 degrees as a row of bars, to one scale."""
+    angle = numpy.linspace(0.0, pi / 2, 12)
+    pressures = {name: _pressure(contact, angle) for name, contact in comparison.items()}
+    highest = max((pressure.max() for pressure in pressures.values()), default=0.0)
+    return {name: _bars(pressure / highest if highest > 0 else 0 * angle, bars) for name, pressure in pressures.items()}
+
+
+def _pressure(contact: Contact, angle: numpy.ndarray) -> numpy.ndarray:
+    """Return the pressure (MPa) at angles (rad); zero for a failed contact."""
+    return 0 * angle if contact.status.failed else numpy.nan_to_num(contact.pressure(angle), posinf=0.0)
+
+
+def _bars(share: numpy.ndarray, bars: str) -> str:
+    """Draw shares from 0 to 1 as characters."""
+    return "".join(bars[round(float(level) * 8)] for level in numpy.clip(share, 0.0, 1.0)).rstrip()

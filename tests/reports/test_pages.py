@@ -1,0 +1,52 @@
+"""Pages from templates: every text is escaped, a missing value is an error, and Python holds no HTML."""
+
+import ast
+import re
+
+import pytest
+from jinja2 import UndefinedError
+
+from ballsocket.reports import pages
+
+from ..rooms import files_of, shown, tree_of
+
+UNSAFE = "<script>alert('&')</script>"
+SAFE = "&lt;script&gt;alert(&#39;&amp;&#39;)&lt;/script&gt;"
+
+
+@pytest.mark.parametrize(
+    "html",
+    [
+        pages.table([UNSAFE], [], ""),
+        pages.table(["head"], [[UNSAFE]], "text"),
+        pages.items([UNSAFE]),
+        pages.items([], UNSAFE),
+        pages.picture(b"", UNSAFE),
+        pages.picture(b"", "title", UNSAFE),
+        pages.render_page("page.html", UNSAFE, {}),
+        pages.render_page("page.html", "title", {"one": (UNSAFE, "")}),
+        pages.render_part("press.html", "lede", UNSAFE, "3 N", "exact", "verdict", "holds"),
+        pages.render_part("press.html", "answers", ("model",), (), UNSAFE, ()),
+    ],
+)
+def test_texts_are_escaped(html):
+    assert SAFE in html
+    assert "<script" not in html
+
+
+def test_html_of_a_section_is_not_escaped_again():
+    assert "<p>5 &lt; 6</p>" in pages.render_page("page.html", "title", {"one": ("One", "<p>5 &lt; 6</p>")})
+
+
+def test_a_missing_value_is_an_error():
+    with pytest.raises(UndefinedError):
+        pages.render_page("joint_report.html", "title", {"origin": ("Origin", None)})
+    with pytest.raises(UndefinedError, match="unknown"):
+        pages.render_page("page.html", "title", {"unknown": ("Section without HTML or block", None)})
+
+
+@pytest.mark.parametrize("path", files_of("reports"), ids=shown)
+def test_python_holds_no_html(path):
+    texts = [node for node in ast.walk(tree_of(path)) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    html = [f"{shown(path)}:{node.lineno}: {node.value[:60]!r}" for node in texts if re.search(r"</?[a-z]", node.value)]
+    assert not html, "\n".join(html)

@@ -1,0 +1,128 @@
+"""One page to send: its inputs, verdict, answers and tolerances are those of the calls."""
+
+import json
+import re
+from dataclasses import replace
+from datetime import date
+from hashlib import sha256
+from html import unescape
+
+import pytest
+
+import ballsocket as bs
+from ballsocket.files.joint_file import JointFile
+from ballsocket.reports.joint_section import gap_factor, joint_section
+from ballsocket.reports.press_report import press_report
+from ballsocket.reports.unit_systems import Units
+from ballsocket.studies import tolerance
+from ballsocket.studies.around import around
+
+from ..cli.command import run
+
+HIP = bs.joints["hip-36"]
+FILE = JointFile(joint=HIP, load={"force": 3000.0}, cup=bs.Cup(arc_of_cover=3.0))
+TWO = {"exact": bs.Exact(), "hess-forsbach": bs.HessForsbach()}
+
+
+@pytest.fixture(scope="module")
+def pages():
+    comparison = bs.compare(HIP, models=TWO, cup=FILE.cup, force=3000.0)
+    near = around(HIP, FILE.cup, FILE.load, {"clearance": tolerance(0.1, 0.03)})
+    return {units: press_report(comparison, FILE, "exact", units, near, date(2026, 1, 2)) for units in Units}, near
+
+
+def test_the_page_has_the_verdict_the_drawing_and_every_input(pages):
+    text = unescape(pages[0][Units.SI])
+    assert "<strong>11.16 MPa</strong> largest pressure under 3000 N, by the model exact" in text
+    assert "within its strength: 33 % of the yield stress of the liner" in text
+    for cell in ("36 mm", "36.2 mm", "0.2 mm", "5 mm", "171.9°", "Young's modulus 750 MPa", "2026-01-02"):
+        assert cell in text, cell
+    assert text.count("data:image/svg+xml;base64,") == 2
+    assert bs.materials["crosslinked-pe"].source in text
+
+
+def test_imperial_holds_for_every_number(pages):
+    text = unescape(pages[0][Units.IMPERIAL])
+    assert "<strong>1619 psi</strong> largest pressure under 674.4 lbf" in text
+    assert "1.417 in" in text
+    assert not re.search(r"\d (mm|MPa|N)\b", text.split("<h2 id='origin'>")[0].split("<h2 id='inputs'>")[1])
+
+
+def test_a_joint_outside_its_tolerance_is_refused():
+    """Its pressure would stand beside a band that cannot hold it."""
+    with pytest.raises(
+        ValueError, match="clearance = 0.1 mm lies outside its tolerance of 0.15 to 0.25 mm: change one"
+    ):
+        around(HIP, FILE.cup, FILE.load, {"clearance": tolerance(0.2, 0.05)})
+    with pytest.raises(ValueError, match="force = 3000 N lies outside its tolerance of 900 to 1100 N"):
+        around(HIP, FILE.cup, FILE.load, {"force": tolerance(1000.0, 100.0)})
+
+
+def test_its_checksum_is_that_of_its_inputs_and_they_are_a_joint_file(pages):
+    text = unescape(pages[0][Units.SI])
+    told = re.search(r"<pre>(.*)</pre>", text, flags=re.DOTALL)[1]
+    assert sha256(told.encode()).hexdigest() in text
+    assert json.loads(told)["joint"] == {"ball_radius": 18.0, "clearance": 0.1, "liner_thickness": 5.0}
+
+
+def test_it_loads_nothing_and_names_no_machine(pages):
+    for text in pages[0].values():
+        assert not re.search(r"(src|href)='(?!data:|#)", text)
+        assert "localhost" not in text
+        assert "/home" not in text
+
+
+def test_what_a_percent_does_is_the_slope(pages):
+    near = pages[1]
+    more = bs.Tabulated().press(HIP, force=3000.0 * 1.01).max_pressure
+    less = bs.Tabulated().press(HIP, force=3000.0 / 1.01).max_pressure
+    assert near.changes["max_pressure"]["force"] == pytest.approx((more / less - 1) / 0.02, rel=2e-2)
+
+
+def test_the_band_of_a_tolerance_holds_the_ends_of_the_clearance(pages):
+    """Of one number that scatters normally they are at 1.96 deviations, a third of 0.03 mm each."""
+    low, middle, high = pages[1].band["max_pressure"]
+    ends = [bs.Tabulated().press(replace(HIP, clearance=c), force=3e3).max_pressure for c in (0.0804, 0.1, 0.1196)]
+    assert [low, middle, high] == pytest.approx(ends, rel=2e-3)
+
+
+def test_a_clearance_is_drawn_so_wide_that_it_can_be_seen():
+    assert gap_factor(HIP) == 10.0
+    assert gap_factor(bs.Joint(ball_radius=10.0, clearance=1.0, liner_thickness=5.0, liner=bs.POM)) == 1.0
+    texts = [text.get_text() for text in joint_section(HIP, FILE.cup).axes[0].texts]
+    assert "diametral clearance 0.2 mm, drawn 10 times as wide" in texts
+    loaded = joint_section(HIP, FILE.cup, bs.HessForsbach().press(HIP, force=3000.0), Units.IMPERIAL)
+    assert {"head ⌀ 1.417 in", "674.4 lbf"} <= {text.get_text() for text in loaded.axes[0].texts}
+    assert {"head ⌀ 36 mm", "bore ⌀ 36.2 mm", "outside ⌀ 46.2 mm", "cross-linked PE, 5 mm"} <= set(texts)
+
+
+def test_the_command_writes_it_for_a_tilted_load(tmp_path):
+    words = ("--tilt", "30 deg", "--ring-width", "5 deg", "--report", str(tmp_path / "hip.html"))
+    assert run("press", "hip-36", "--force", "3 kN", *words).returncode == 0
+    text = unescape((tmp_path / "hip.html").read_text("utf-8"))
+    assert "under 3000 N, by the model sphere" in text
+    assert "<td>30°</td>" in text
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--tolerance", "clearance=0.1+-0.03 mm"), "is for the report: add --report"),
+        (("--report", "hip.pdf"), "must end in .html"),
+        (("--report", "nowhere/hip.html"), "nowhere"),
+    ],
+)
+def test_what_cannot_be_written_is_told_first(words, sentence):
+    done = run("press", "hip-36", "--force", "3 kN", *words)
+    assert done.returncode == 2
+    assert sentence in done.stderr
+
+
+@pytest.mark.long
+def test_a_ball_that_sits_above_its_first_touch_is_drawn_in_its_cup(tmp_path):
+    """An interference lifts the ball out of a hemisphere: its indentation is below 0."""
+    joint = ("--ball-radius", "10", "--interference", "0.01", "--liner-thickness", "3", "--liner", "pom")
+    words = ("--ring-width", "5 deg", "--figure", str(tmp_path / "a.png"), "--report", str(tmp_path / "a.html"))
+    assert run("press", *joint, "--force", "500 N", *words).returncode == 0
+    assert (tmp_path / "a.png").stat().st_size > 1000
+    assert "by the model sphere" in (tmp_path / "a.html").read_text("utf-8")

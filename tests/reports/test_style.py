@@ -1,0 +1,115 @@
+"""One model has one line, wherever it is drawn."""
+
+import re
+from importlib.util import find_spec
+
+import pytest
+from matplotlib.colors import to_hex, to_rgb
+
+import ballsocket as bs
+from ballsocket.catalogue import judge
+from ballsocket.compare import force_curves
+from ballsocket.paper.curves import figure_3_or_4
+from ballsocket.paper.plan import ELEMENTS, quick_plan
+from ballsocket.reports import style
+from ballsocket.reports.paper_plots import draw
+from ballsocket.reports.press_plots import press_figure
+from ballsocket.reports.style import INK, LineStyle, line_of
+
+from ..joints import HIP
+
+MODELS = [*bs.catalogue, judge.name]
+PAPERS = [*quick_plan().parts["figure_3"], judge.name]
+"""Those that the paper's figures compare."""
+
+
+def as_drawn(curve):
+    """Colour, and dashes in widths of the line, of a curve of Matplotlib."""
+    dashes = curve._unscaled_dash_pattern[1]
+    return LineStyle(INK if curve.get_color() == INK else to_hex(curve.get_color()).upper(), tuple(dashes or ()))
+
+
+def lightness(line):
+    """Of a colour in grey: CIE 1931 luminance Y."""
+    linear = [share / 12.92 if share <= 0.04045 else ((share + 0.055) / 1.055) ** 2.4 for share in to_rgb(line.colour)]
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+
+def test_every_model_has_a_line_of_its_own_and_the_exact_one_is_drawn_in_ink():
+    assert len({line_of(name) for name in MODELS}) == len(MODELS)
+    assert [name for name in MODELS if line_of(name).colour == INK] == ["exact"]
+
+
+def test_the_models_of_the_papers_figures_are_told_apart_by_colour_and_in_grey():
+    lines = [line_of(name) for name in PAPERS]
+    assert len({line.colour for line in lines}) == len({line.dash for line in lines}) == len(PAPERS)
+
+
+def test_lines_of_one_dash_differ_in_grey():
+    for name in MODELS:
+        for other in MODELS[: MODELS.index(name)]:
+            if line_of(name).dash == line_of(other).dash:
+                assert abs(lightness(line_of(name)) - lightness(line_of(other))) > 0.05, (name, other)
+
+
+def test_a_model_of_ones_own_keeps_a_line_that_no_other_has():
+    assert line_of("our liner") == LineStyle("#009E73", (4.0, 4.0))
+    given = {line_of(name) for name in MODELS if name in style._MODELS}
+    assert given.isdisjoint(line_of(f"own {number}") for number in range(200))
+
+
+@pytest.fixture(scope="module")
+def contacts():
+    return bs.compare(HIP, models={name: bs.catalogue[name] for name in PAPERS[:-1]}, force=3000.0)
+
+
+@pytest.fixture(scope="module")
+def pressed(contacts):
+    """The lines of the figure of a press, by model."""
+    left, _ = press_figure(contacts, force_curves(contacts, bs.catalogue)).axes
+    return {curve.get_label(): as_drawn(curve) for curve in left.lines}
+
+
+def test_a_curve_of_a_thin_liner_is_short(monkeypatch):
+    """A hundred loads of one would take minutes: a dozen half angles reach a little beyond the contact."""
+    joint = HIP.replace(liner_thickness=HIP.socket_radius / 40)
+    own = {name: bs.catalogue[name] for name in ("exact", "hertz")}
+    found = bs.compare(joint, models=own, force=3000.0)
+    asked = []
+    solve = bs.Exact._solve
+    monkeypatch.setattr(bs.Exact, "_solve", lambda self, *words: asked.append(words[1:]) or solve(self, *words))
+    curves = force_curves(found, own)
+    ((kind, loads),) = asked
+    assert kind == "half_angle"
+    assert len(loads) == len(curves["exact"].force) == 12
+    assert curves["exact"].force[-1] > 3000.0
+    assert len(curves["hertz"].force) > 100
+
+
+def test_the_papers_figures_draw_a_model_as_the_press_does(contacts, pressed):
+    panel = draw(figure_3_or_4(3, {name: bs.catalogue[name] for name in contacts})).axes[1]
+    assert [as_drawn(curve) for curve in panel.lines] == list(pressed.values())
+
+
+@pytest.mark.skipif(find_spec("panel") is None, reason="the explorer's extra is not installed")
+def test_the_explorer_draws_a_model_as_the_press_does(pressed):
+    from ballsocket.app.page import Page
+
+    page = Page(f"preset=hess-forsbach&shown={','.join(pressed)}")
+    page.view.show(page.screen)
+    curves = re.findall(
+        r'stroke="([^"]+)" data-name="([^"]+)" stroke-width="\S+"(?: stroke-dasharray="([^"]+)")?/>',
+        page.channel.told("#press-charts"),
+    )
+    assert {name for _, name, _ in curves} == set(pressed)
+    for colour, name, dash in curves:
+        line = pressed[name]
+        assert colour == ("var(--text)" if line.colour == INK else line.colour)
+        assert dash == " ".join(f"{2 * length:g}" for length in line.dash)
+
+
+def test_the_finite_elements_are_circles_of_their_own_colour_in_the_papers_figures(contacts):
+    # their name there is another; the exact model stands for them, whose figure is made in no time
+    (curve,) = draw(figure_3_or_4(3, {ELEMENTS: bs.Exact()})).axes[0].lines
+    assert as_drawn(curve).colour == line_of(judge.name).colour
+    assert curve.get_marker() == "o"
