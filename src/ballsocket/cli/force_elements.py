@@ -15,8 +15,8 @@ from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..io.joint_file import JointFile
 from ..problem.cup import Cup
+from ..studies.default_model import default_model
 from ..studies.file import named_model
-from ..studies.usual import usual
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,7 @@ class ElementWords:
         ValueError
             A model that has no law, and numbers that are not allowed.
         """
-        model = usual(file.joint, {}) if self.model is None else named_model(self.model)
+        model = default_model(file.joint, {}) if self.model is None else named_model(self.model)
         friction = None if self.friction is None else Friction(coefficient=self.friction)
         cup = None if file.cup == Cup() else file.cup
         try:

@@ -19,7 +19,7 @@ from ..io.joint_file import JointFile, read_aim
 from ..io.units import as_given
 from ..output.orientation_plot import orientation_figure
 from ..output.orientation_terminal import print_orientations
-from ..studies.phrases import ends_of
+from ..studies.expressions import parse_ends
 from .elements import CupWords
 from .groups import grouped
 from .off_axis import AimWords
@@ -45,7 +45,7 @@ class StandWords:
         return {name: self._angle(name) for name in ("inclination", "anteversion")}
 
     def _angle(self, name: str) -> Numbers:
-        low, high = ends_of(name, getattr(self, name), CUP[name].kind)
+        low, high = parse_ends(name, getattr(self, name), CUP[name].kind)
         with as_given({name: getattr(self, name)}):
             CUP[name].check(numpy.array([low, high]))
         return numpy.unique(numpy.linspace(min(low, high), max(low, high), self.points))

@@ -20,16 +20,16 @@ from ..output.save import check_format, save
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..studies.axes import Span
+from ..studies.default_model import check_model_domain, default_model
 from ..studies.design import grid
+from ..studies.expressions import parse_choices, parse_distribution, parse_limit, parse_range
 from ..studies.file import named_model
 from ..studies.limits import Limit
-from ..studies.optimum import optimise as find_optimum
+from ..studies.optimisation import optimise as find_optimum
 from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
-from ..studies.phrases import choice_of, limit_of, range_of, spread_of
 from ..studies.sensitivity import sensitivity as find_sensitivity
-from ..studies.task import QUANTITIES, USUAL
-from ..studies.usual import check_known, usual
+from ..studies.task import DEFAULT_QUANTITIES, QUANTITIES
 from .groups import grouped
 from .root import app, complain
 from .words import AsJson, JointWords, echo_json, given, load_of
@@ -53,7 +53,7 @@ class PressWords:
     indentation: Annotated[str | None, typer.Option(help="'40 um' in place of a force")] = None
 
     def model_for(self, file: JointFile, ends: Mapping[str, Any]) -> Model:
-        """The model by its name, or the usual one with a word where it is not that of the tables; in the file's cup.
+        """The model by its name, or the default one with a word where it is not that of the tables; in the file's cup.
 
         Raises
         ------
@@ -61,12 +61,12 @@ class PressWords:
             It has no answer for any joint between these ends.
         """
         if self.model is None:
-            model = usual(file.joint, ends)
+            model = default_model(file.joint, ends)
             if model.name == reference.name:
                 complain(f"{model.name} answers, since tabulated knows none of these joints")
         else:
             model = named_model(self.model)
-            check_known(model, file.joint, ends)
+            check_model_domain(model, file.joint, ends)
         return model.in_cup(file.cup)
 
     def load(self, file: JointFile, varied: Iterable[str]) -> dict[str, float]:
@@ -121,7 +121,7 @@ def design_map(
     _check_points(points)
     file = words.or_named(joint)
     limits = _limits(limit, file.cup)
-    ends = _once((name, (low, high)) for name, low, high in map(range_of, (x, y)))
+    ends = _once((name, (low, high)) for name, low, high in map(parse_range, (x, y)))
     load, model = press.load(file, ends), press.model_for(file, ends)
     axes = {name: Span(low, high, points or _points_of(model)) for name, (low, high) in ends.items()}
     found = bs.study(model, file.joint, grid(**axes, **load), quantities=_quantities((), limits))
@@ -152,10 +152,10 @@ def optimise(
     _check_points(points)
     file, chosen = words.or_named(joint), minimise or ["max_pressure"]
     limits = _limits(limit, file.cup)
-    lists = [choice_of(phrase) for phrase in vary]
+    lists = [parse_choices(phrase) for phrase in vary]
     among = _once(choice for choice in lists if choice is not None)
     phrases = [phrase for phrase, choice in zip(vary, lists, strict=True) if choice is None]
-    ranges = _once((name, (low, high)) for name, low, high in map(range_of, phrases))
+    ranges = _once((name, (low, high)) for name, low, high in map(parse_range, phrases))
     if form.figure is not None and len(chosen) == 1 and len(ranges) != 2:
         raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
     load, model = press.load(file, {**ranges, **among}), press.model_for(file, {**ranges, **among})
@@ -172,7 +172,7 @@ def optimise(
         return
     if len(chosen) != 1:
         raise ValueError(f"one answer or two are minimised, got {len(chosen)}")
-    best = find_optimum(model, file.joint, ranges, among=among, minimise=chosen[0], limits=limits, load=load)
+    best = find_optimum(model, file.joint, ranges, choices=among, minimise=chosen[0], limits=limits, load=load)
     form.print(
         lambda: {"version": bs.__version__, "model": model.name, **best.summary()},
         lambda: study_terminal.print_optimum(best),
@@ -205,7 +205,7 @@ def sensitivity(
     """Tell which number's scatter matters: Sobol indices with intervals, and elasticities."""
     form.check()
     file = words.or_named(joint)
-    scattered = _once(map(spread_of, spread))
+    scattered = _once(map(parse_distribution, spread))
     middle = {name: [float(each.frozen.mean())] for name, each in scattered.items()}
     load, model = press.load(file, scattered), press.model_for(file, middle)
     found = find_sensitivity(model, file.joint, scattered, count=count, load=load)
@@ -232,7 +232,7 @@ def _points_of(model: Model) -> int:
 
 def _limits(phrases: list[str] | None, cup: Cup) -> list[Limit]:
     """Limits in words; distances from the edge are those of the cup."""
-    return [replace(limit_of(phrase), cup=cup) for phrase in phrases or []]
+    return [replace(parse_limit(phrase), cup=cup) for phrase in phrases or []]
 
 
 def _once(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
@@ -253,4 +253,4 @@ def _shown(wishes: list[str]) -> list[str]:
 def _quantities(wishes: Iterable[str], limits: Iterable[Limit]) -> list[str]:
     """What is shown, wished for, or limited."""
     limited = (limit.name for limit in limits if limit.name in QUANTITIES)
-    return list(dict.fromkeys((*USUAL, *wishes, *limited)))
+    return list(dict.fromkeys((*DEFAULT_QUANTITIES, *wishes, *limited)))

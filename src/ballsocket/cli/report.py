@@ -15,8 +15,8 @@ from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..io.joint_file import JointFile
 from ..output.press_report import press_report
 from ..output.unit_systems import Units
-from ..studies.around import Around, around
-from ..studies.phrases import spread_of
+from ..studies.expressions import parse_distribution
+from ..studies.local_uncertainty import LocalUncertainty, local_uncertainty
 
 _ENDING = ".html"
 
@@ -48,11 +48,13 @@ class ReportWords:
         with write_atomically(self.report) as draft:
             draft.write_text(page, encoding="utf-8")
 
-    def _around(self, comparison: Comparison, file: JointFile) -> Around | None:
+    def _around(self, comparison: Comparison, file: JointFile) -> LocalUncertainty | None:
         """What tolerances do along the axis; none is told of a load beside it, nor of a ball that does not touch."""
         if off_axis.name in comparison or not any(float(load) > 0 for load in file.load.values()):
             return None
-        return around(file.joint, file.cup, _plain(file.load), dict(map(spread_of, self.tolerance or ())))
+        return local_uncertainty(
+            file.joint, file.cup, _plain(file.load), dict(map(parse_distribution, self.tolerance or ()))
+        )
 
 
 def _leading(comparison: Comparison) -> str:

@@ -92,7 +92,7 @@ def _shown(store: Path | None) -> Iterator[Listener]:
     def listen(reached: Reached) -> None:
         progress.start()  # not before there is something to tell
         progress.update(
-            task, description="pressing", completed=reached.done, total=reached.points, state=_state(reached)
+            task, description="pressing", completed=reached.n_done, total=reached.n_points, state=_state(reached)
         )
         last[:] = [reached]
 
@@ -101,7 +101,7 @@ def _shown(store: Path | None) -> Iterator[Listener]:
     except KeyboardInterrupt:
         _end(progress)
         if store is not None and last:
-            done = f"{last[0].done:.4g} of {last[0].points:.4g} points are kept in {store}"
+            done = f"{last[0].n_done:.4g} of {last[0].n_points:.4g} points are kept in {store}"
             complain(f"stopped; {done}: run it again to go on")
         raise
     finally:
@@ -115,5 +115,5 @@ def _end(progress: Progress) -> None:
 
 
 def _state(reached: Reached) -> str:
-    left = "" if reached.left in (0.0, inf) else f", {timedelta(seconds=ceil(reached.left))} left"
-    return f"{reached.done:.4g} of {reached.points:.4g}, {reached.rate:.3g}/s{left}"
+    left = "" if reached.seconds_left in (0.0, inf) else f", {timedelta(seconds=ceil(reached.seconds_left))} left"
+    return f"{reached.n_done:.4g} of {reached.n_points:.4g}, {reached.rate:.3g}/s{left}"

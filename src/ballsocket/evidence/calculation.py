@@ -19,7 +19,7 @@ from ..elasticity.exact.tabulated.model import Tabulated
 from ..elasticity.finite_elements.model import FiniteElement
 from ..elasticity.off_axis.model import Sphere
 from ..problem import Joint
-from ..studies.parameters import AIMS, pressable
+from ..studies.parameters import AIMS, press_arguments
 from .matrix import Case, known_errors
 from .question import Question
 
@@ -67,7 +67,7 @@ class CalculationMethod:
 
 def beside(question: Question, case: Case) -> list[CalculationMethod]:
     """A case by every method that can answer it along the axis; off the axis by the solver on finer rings too."""
-    joint, load, _ = pressable(question.file.joint, case)
+    joint, load, _ = press_arguments(question.file.joint, case)
     aim = {name: value for name, value in load.items() if name in AIMS}
     plain = {name: value for name, value in load.items() if name not in AIMS}
     methods = list(_along(question, joint, plain))
@@ -106,7 +106,7 @@ def rival(question: Question, case: Case) -> list[CalculationMethod]:
     """A case along the axis by another program's elements; none where that is not installed, or not asked for."""
     if not (question.finite_elements and shutil.which("ccx") and find_spec("skfem")):
         return []
-    joint, load, _ = pressable(question.file.joint, case)
+    joint, load, _ = press_arguments(question.file.joint, case)
     turned = ALONG if question.model.off_axis else ""
     plain = {name: value for name, value in load.items() if name not in AIMS}
     return [_calculix(f"CalculiX{turned}", FiniteElement(cup=question.file.cup, meshes=1), joint, plain)]

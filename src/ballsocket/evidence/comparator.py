@@ -11,7 +11,7 @@ import numpy
 
 from ..core.arrays import Array, to_numpy, where
 from ..problem import Joint
-from ..studies.parameters import LOADS, pressable
+from ..studies.parameters import LOADS, press_arguments
 from .matrix import Row
 from .question import ALMOST_ALL, Question
 
@@ -109,7 +109,7 @@ def reach_asked(question: Question, found: Sequence[Row]) -> Ranges:
     forces = numpy.array([row.numbers.get("force", numpy.nan) for row in found])
     spreads = {name: spread.frozen.ppf(ALMOST_ALL) for name, spread in question.tolerances.items() if name not in LOADS}
     ends = [{}, *({name: end} for name, both in spreads.items() for end in both)]
-    return reach_of((pressable(question.file.joint, {**cases, **end})[0], forces) for end in ends)
+    return reach_of((press_arguments(question.file.joint, {**cases, **end})[0], forces) for end in ends)
 
 
 def applicability(reaches: Mapping[str, Sequence[float]], asked: Ranges, tilted: bool) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from ..core.quantities import QUANTITIES, Quantity
 from ..core.validity import Status
 from ..problem.cup import UP
 from ..studies.limits import Limit
-from ..studies.parameters import PARAMETERS, pressable
+from ..studies.parameters import PARAMETERS, press_arguments
 from .question import Question
 
 ANSWERED = ("max_pressure", "half_angle", "area", "von_mises", "utilisation", "indentation", "force")
@@ -108,7 +108,7 @@ def cases(question: Question) -> list[Case]:
 def rows(question: Question, those: Sequence[Case]) -> list[Row]:
     """Some cases, answered all at once."""
     values = {name: numpy.array([case[name] for case in those]) for name in question.axes}
-    joint, load, possible = pressable(question.file.joint, values)
+    joint, load, possible = press_arguments(question.file.joint, values)
     contact = question.model.press(joint, **load)
     found = {name: _column(value, len(those)) for name, value in _numbers(question, contact, load).items()}
     bars = {name: _column(value, len(those)) for name, value in known_errors(contact).items() if name in NAMES}

@@ -16,7 +16,7 @@ from typing import Any
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.fingerprint import fingerprint
 from ..paper.plan import Piece, Plan, Results, Summary
-from ..studies.parameters import pressable
+from ..studies.parameters import press_arguments
 from . import matrix
 from .calculation import beside, largest_deviation, rival
 from .code_checks import CHECKS
@@ -208,7 +208,7 @@ def _drawn(question: Question, worst: Mapping[str, matrix.Row]) -> dict[str, Any
     row = worst.get("max_pressure")
     if row is None:
         return None
-    joint, _, _ = pressable(question.file.joint, row.case)
+    joint, _, _ = press_arguments(question.file.joint, row.case)
     return {
         "joint": joint.summary(),
         "arc_of_cover_deg": degrees(question.file.cup.arc_of_cover),

@@ -22,9 +22,9 @@ from ..io.toml import read_toml, table_of
 from ..io.units import parse
 from ..studies.design import check_values, grid
 from ..studies.distributions import Distribution, Rectangular
+from ..studies.expressions import parse_distribution, parse_limit
 from ..studies.limits import Limit
-from ..studies.parameters import AIMS, LOADS, PARAMETERS, contradiction, nominal, varied
-from ..studies.phrases import limit_of, spread_of
+from ..studies.parameters import AIMS, LOADS, PARAMETERS, check_contradictions, nominal_value, vary_joint
 from .named_files import packed_files
 
 LEVELS = ("low", "medium", "high")
@@ -215,7 +215,7 @@ def _several(name: str, value: Any) -> tuple[float, ...]:
 
 
 def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
-    contradiction(axes)
+    check_contradictions(axes)
     if not any(name in axes for name in LOADS):
         raise ValueError(f"[matrix] needs a load: {', '.join(LOADS)}")
     count = prod(map(len, axes.values()))
@@ -226,7 +226,7 @@ def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
 def _limits(given: Any) -> tuple[Limit, ...]:
     if not (isinstance(given, list) and all(isinstance(each, str) for each in given)):
         raise ValueError(f"limits = {shown(given)} must be a list of texts, such as 'max_pressure <= 20 MPa'")
-    return tuple(map(limit_of, given))
+    return tuple(map(parse_limit, given))
 
 
 def _tolerances(part: Mapping[str, Any]) -> Mapping[str, Distribution]:
@@ -253,12 +253,12 @@ def _recentred(
     """
     found = []
     for name, spread in tolerances.items():
-        stated = None if name in axes or name in LOADS else nominal(file.joint, name)
+        stated = None if name in axes or name in LOADS else nominal_value(file.joint, name)
         used = float(spread.frozen.median())
         inside = isinstance(spread, Rectangular) and stated is not None and spread.low <= stated <= spread.high
         if stated is not None and not inside and not isclose(stated, used, rel_tol=1e-9):
             found.append(Recentred(name, stated, used))
-    joint, _ = varied(file.joint, {each.name: each.used for each in found})
+    joint, _ = vary_joint(file.joint, {each.name: each.used for each in found})
     return replace(file, joint=joint), tuple(found)
 
 
@@ -282,7 +282,7 @@ ALMOST_ALL = (0.001, 0.999)
 
 
 def _scatter(name: str, value: Any) -> tuple[str, Distribution]:
-    return spread_of(f"{name} = {check_text(name, value)}")
+    return parse_distribution(f"{name} = {check_text(name, value)}")
 
 
 def _sources(part: Mapping[str, Any]) -> Mapping[str, str]:

@@ -11,10 +11,10 @@ from ..catalogue import reference
 from ..core.arrays import Numbers, to_numpy
 from ..core.quantities import QUANTITIES
 from ..studies.axes import Method
+from ..studies.default_model import default_model
 from ..studies.design import sample
-from ..studies.parameters import AIMS, LOADS, PARAMETERS, pressable
+from ..studies.parameters import AIMS, LOADS, PARAMETERS, press_arguments
 from ..studies.sensitivity import sensitivity
-from ..studies.usual import usual
 from .matrix import Case
 from .question import ALMOST_ALL, Question
 
@@ -36,12 +36,12 @@ def scattered(question: Question, case: Case) -> dict[str, Any]:
     spreads = question.tolerances
     load = {name: value for name, value in case.items() if name in LOADS and name not in spreads}
     fixed = {name: value for name, value in case.items() if name not in (*AIMS, *load, *spreads)}
-    joint, _, _ = pressable(question.file.joint, fixed)
+    joint, _, _ = press_arguments(question.file.joint, fixed)
     ends = {name: [float(spread.frozen.ppf(share)) for share in ALMOST_ALL] for name, spread in spreads.items()}
-    model = usual(joint, {name: each for name, each in ends.items() if name not in LOADS})
+    model = default_model(joint, {name: each for name, each in ends.items() if name not in LOADS})
     count = _SOLVED if model is reference else _QUICK
-    drawn = sample(count, seed=_SEED, method=Method.SOBOL, **spreads).part([slice(None)])
-    made, loads, possible = pressable(joint, {**drawn, **load})
+    drawn = sample(count, seed=_SEED, method=Method.SOBOL, **spreads).values_in([slice(None)])
+    made, loads, possible = press_arguments(joint, {**drawn, **load})
     contact = model.press(made, **loads)
     good = to_numpy(possible)
     values = {name: _known(getattr(contact, name), good, count) for name in ANSWERS}

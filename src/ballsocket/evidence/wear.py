@@ -9,7 +9,7 @@ from typing import Any
 from ..hip.config import HipFile, read_hip
 from ..hip.simulation import HipSimulation
 from ..hip.uncertainty import uncertainty
-from ..studies.parameters import LOADS, pressable
+from ..studies.parameters import LOADS, press_arguments
 from .matrix import Case
 from .question import Question
 
@@ -43,7 +43,7 @@ def _rate(question: Question, given: HipFile, case: Case) -> float | None:
 
 def _use(question: Question, given: HipFile, case: Case) -> HipSimulation:
     """The hip of the file with the joint of a case, its cup as the case turns it."""
-    joint, _, _ = pressable(question.file.joint, dict(_shape(case)))
+    joint, _, _ = press_arguments(question.file.joint, dict(_shape(case)))
     facing: dict[str, Any] = {name: case[name] for name in _FACING if name in case}
     return replace(given.use, joint=joint, cup=replace(given.use.cup, **facing))
 

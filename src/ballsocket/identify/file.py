@@ -18,8 +18,8 @@ from ..io.named_joint import PARTS, joint_in
 from ..io.toml import read_toml, table_of
 from ..io.units import parse
 from ..problem import Joint
+from ..studies.expressions import parse_ends
 from ..studies.file import named_model
-from ..studies.phrases import ends_of
 from ..studies.scatter import distribution_of
 from .columns import Gaps, parse_uncertainty, read_measured
 from .identification import identify
@@ -126,7 +126,7 @@ def _parse_prior(name: str, value: Any) -> Prior:
     """Parse the prior of an unknown: two ends of a range, or a distribution."""
     kind = FREE_NUMBERS[name].kind
     if isinstance(value, str):
-        return ends_of(name, value, kind)
+        return parse_ends(name, value, kind)
     if not isinstance(value, Mapping):
         raise ValueError(f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}")
     return distribution_of(name, value, lambda key, number: parse(key, number, kind))
@@ -146,7 +146,7 @@ def _parse_machine(name: str, table: Any) -> Machine:
 def _parse_error_size(name: str, value: Any, error: str) -> NumberOrRange:
     """Parse the size of a machine error: a number, or two ends."""
     kind = MACHINE_ERRORS[error].quantity.kind
-    return ends_of(name, value, kind) if isinstance(value, str) and ".." in value else parse(name, value, kind)
+    return parse_ends(name, value, kind) if isinstance(value, str) and ".." in value else parse(name, value, kind)
 
 
 def _parse_data(tables: Any, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:

@@ -14,7 +14,7 @@ from ..core.arrays import Array
 from ..core.quantities import PARTS
 from ..core.validity import OutsideDomainError
 from ..problem import Joint
-from ..studies.parameters import varied
+from ..studies.parameters import vary_joint
 from .measured import Measured
 from .registry import JOINT_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS
 
@@ -77,7 +77,7 @@ class ForwardModel:
         """
         columns = {name: values[:, index : index + 1] for index, name in enumerate(self.names)}
         of_joint, of_model = split_numbers(columns)
-        joint, possible = varied(self.joint, of_joint)
+        joint, possible = vary_joint(self.joint, of_joint)
         pressed = _PressedPoints(insert_numbers(self.model, of_model), joint, self._known_errors | columns)
         rows = self._compute_rows(pressed, 1 + load_perturbation)
         xp = arrays.namespace(values)

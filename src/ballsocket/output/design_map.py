@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..core.quantities import QUANTITIES
-from ..studies.limits import Limit, allowed, margin_over
+from ..studies.limits import Limit, allowed, margin_on_plane
 
 if TYPE_CHECKING:
     import xarray
@@ -113,14 +113,14 @@ def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], acr
     x, y = read(study, across).values, read(study, up).values
     nearest = numpy.full((len(y), len(x)), numpy.inf)
     for limit in limits:
-        values = margin_over(study, limit, across, up)
+        values = margin_on_plane(study, limit, across, up)
         size = float(numpy.nanmax(abs(values), initial=0.0, where=numpy.isfinite(values)))
         nearest = numpy.minimum(nearest, values / (size or 1.0))
     if numpy.nanmin(nearest) < 0:
         axes.contourf(x, y, numpy.clip(nearest, -1.0, 1.0), levels=[-2.0, 0.0], colors="white", alpha=_VEIL)
     for limit in limits:
         for end in _ends(limit):
-            values = margin_over(study, end, across, up)
+            values = margin_on_plane(study, end, across, up)
             if numpy.nanmin(values) < 0 < numpy.nanmax(values):
                 line = axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
                 _label(axes, line, _of(end))

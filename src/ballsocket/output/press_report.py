@@ -13,7 +13,7 @@ from ..core.quantities import CONTACT
 from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..io.joint_file import JointFile
-from ..studies.around import Around
+from ..studies.local_uncertainty import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from . import html, quick_plot
 from .joint_report import joint_report
@@ -27,7 +27,7 @@ def press_report(
     file: JointFile,
     leading: str,
     units: Units = Units.SI,
-    surroundings: Around | None = None,
+    surroundings: LocalUncertainty | None = None,
     day: date | None = None,
 ) -> str:
     """The page of single contacts of one joint.
@@ -41,7 +41,7 @@ def press_report(
         The name of the model that gives the verdict; the exact answer, where there is one, is best.
     units : Units
         Of every number.
-    surroundings : Around, optional
+    surroundings : LocalUncertainty, optional
         What a percent of each number and the tolerances do.
     day : date, optional
         By default today's.
@@ -66,7 +66,7 @@ def press_lede(contact: Contact, units: Units = Units.SI) -> str:
 
 
 def press_sections(
-    comparison: Comparison, units: Units = Units.SI, surroundings: Around | None = None
+    comparison: Comparison, units: Units = Units.SI, surroundings: LocalUncertainty | None = None
 ) -> dict[str, tuple[str, str]]:
     """What a press puts on a page, without its figures: by id a title and HTML."""
     return {
@@ -105,7 +105,7 @@ def _curves(comparison: Comparison, leading: Contact) -> str:
     return html.picture(html.drawn(quick_plot.plot(shown), "svg"), "pressure and force", form="svg+xml")
 
 
-def _around(found: Around | None, units: Units) -> str:
+def _around(found: LocalUncertainty | None, units: Units) -> str:
     """Elasticities, and the band of the tolerances."""
     if found is None:
         return "<p>Not asked for.</p>"

@@ -16,7 +16,7 @@ from .study_summary import StudyReport, answers, coordinates, map_summary, varyi
 if TYPE_CHECKING:
     import xarray
 
-    from ..studies.optimum import Optimum
+    from ..studies.optimisation import Optimum
 
 
 def print_study(study: xarray.Dataset) -> None:

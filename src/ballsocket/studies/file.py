@@ -19,9 +19,8 @@ from ..io.toml import read_toml, table_of
 from ..io.units import parse
 from ..problem import Joint
 from .axes import Method, Span
-from .design import Design, grid, sample
-from .parameters import PARAMETERS, PARTS_OF
-from .rows import table
+from .design import Design, grid, sample, table
+from .parameters import MATERIAL_PARTS, PARAMETERS
 from .scatter import Read, distribution_of
 
 _TOP = (
@@ -126,7 +125,7 @@ def read_engine(content: Mapping[str, Any]) -> Engine:
 
 def _design(content: Mapping[str, Any], folder: Path) -> Design:
     axes, samples, rows = (table_of(content, name) for name in ("axes", "samples", "table"))
-    check_names(axes, (*PARAMETERS, *PARTS_OF), "in [axes]")
+    check_names(axes, (*PARAMETERS, *MATERIAL_PARTS), "in [axes]")
     design = grid(**{name: _values(name, value) for name, value in axes.items()})
     if samples:
         design = _samples(samples) * design
@@ -140,7 +139,7 @@ def _design(content: Mapping[str, Any], folder: Path) -> Design:
 
 def _values(name: str, value: Any) -> Any:
     """What an axis takes: one number, several, or a span; materials by their names."""
-    if name in PARTS_OF:
+    if name in MATERIAL_PARTS:
         return [named_material(name, each) for each in (value if isinstance(value, list) else [value])]
     kind = PARAMETERS[name].kind
     if isinstance(value, list):

@@ -294,7 +294,7 @@ def test_study_has_directions_and_steps_as_axes(tmp_path):
 
 @pytest.mark.long
 def test_study_of_directions_is_independent_of_the_executor(monkeypatch):
-    monkeypatch.setattr("ballsocket.studies.run.points_a_block", lambda model: 4)
+    monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 4)
     serial = bs.study(OVAL, RIGID, **AXES)
     for engine in (Processes(workers=2), Distributed(workers=1)):
         assert bs.study(OVAL, RIGID, engine=engine, **AXES).equals(serial)

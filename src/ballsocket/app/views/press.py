@@ -19,7 +19,7 @@ from ...output import html as page
 from ...output.press_plot import press_figure
 from ...output.press_report import press_lede, press_sections
 from ...output.style import line_of
-from ...studies.around import Around, around
+from ...studies.local_uncertainty import LocalUncertainty, local_uncertainty
 from ..beside import beside
 from ..chart import swatch
 from ..controls import fields_of, tilt_of
@@ -172,7 +172,7 @@ def _rows(found: Comparison, screen: Screen) -> list[list[Any]]:
     return [[*heads, "notes"], *([*row, "; ".join(found[row[0]].notes)] for row in rows)]
 
 
-def _around(file: JointFile) -> Around | None:
+def _around(file: JointFile) -> LocalUncertainty | None:
     """What a percent of each number does; without a load nothing."""
     pressing = any(float(load) > 0 for load in file.load.values())
-    return around(file.joint, file.cup, file.load, {}) if pressing else None
+    return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None
