@@ -278,7 +278,7 @@ def test_a_disk_that_is_full_stops_with_one_sentence_and_keeps_what_is_done(stor
         write(self, task, number, answers)
 
     monkeypatch.setattr(StudyStore, "write", full)
-    with pytest.raises(OSError, match="No space left on device; 3 of 6 blocks are stored; run the study again to resume"):
+    with pytest.raises(OSError, match="No space left on device; 3 of 6 blocks are stored; run the study again"):
         presses(store)
     monkeypatch.setattr(StudyStore, "write", write)
     found, blocks = presses(store)
