@@ -14,8 +14,8 @@ from typing import Any
 import typer
 
 import ballsocket as bs
-from ballsocket.cli.answers import whole
-from ballsocket.cli.root import app
+from ballsocket.cli.json_answers import add_provenance
+from ballsocket.cli.root import app, load_commands
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.evidence.question import FILE_KEYS as OF_EVIDENCE
 from ballsocket.hip.config import FILE_KEYS as OF_A_HIP
@@ -65,7 +65,7 @@ def present() -> dict[str, Any]:
             file: {table or "top": sorted(keys) for table, keys in of.items()} for file, of in FILES.items()
         },
         "keys of JSON": {
-            "of every command": sorted(whole({}, ())),
+            "of every command": sorted(add_provenance({}, ())),
             "of an answer": sorted(answer),
             "of a joint": sorted(answer["joint"]),
             "of a contact": sorted(answer["results"][0]),
@@ -82,6 +82,7 @@ def _parameters(thing: Any) -> list[str]:
 
 
 def _commands() -> dict[str, list[str]]:
+    load_commands()
     group = typer.main.get_command(app)
     return {
         name: sorted(option for parameter in command.params for option in parameter.opts if option.startswith("--"))

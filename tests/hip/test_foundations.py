@@ -138,6 +138,23 @@ def test_smoothing_conserves_volume_and_removes_waves_of_the_grid():
     assert abs(smooth(checkerboard)[-3]).max() < 1e-9
 
 
+@pytest.mark.parametrize(("waves", "factor"), [(0, 1.0), (6, 0.75), (9, 0.5), (12, 0.25), (18, 0.0)])
+def test_smoothing_filters_waves_around_the_equator_by_one_two_one(waves, factor):
+    """[1 2 1]/4 multiplies a wave over n cells by cos²(π/n); there are 36 cells around the equator."""
+    sphere = even_grid(np.pi, radians(10.0))
+    assert sphere.meridians == 36
+    field = np.cos(waves * sphere.azimuth + (np.pi / 4 if waves == 18 else 0.0)) * np.ones((sphere.rings, 1))
+    equator = GridSmoothing(grid=sphere)(field)[sphere.rings // 2]
+    np.testing.assert_allclose(equator, factor * field[0], atol=0.012)
+
+
+def test_smoothing_removes_alternate_rings_at_the_equator():
+    sphere = even_grid(np.pi, radians(5.0))
+    rings = (-1.0) ** np.arange(sphere.rings)[:, None] * np.ones(sphere.meridians)
+    equator = GridSmoothing(grid=sphere)(rings)[sphere.rings // 2]
+    np.testing.assert_allclose(equator, 0.0, atol=5e-3)
+
+
 def test_load_levels_interpolate_every_load_of_one_direction():
     sizes = np.linspace(10.0, 3000.0, 50)
     loads = sizes[:, None] * np.array([0.0, 0.6, 0.8])

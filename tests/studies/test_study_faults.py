@@ -95,7 +95,7 @@ def test_the_store_of_another_study_is_refused_with_what_differs(store, change, 
 
 def test_the_store_of_other_code_is_refused(store, monkeypatch):
     presses(store)
-    monkeypatch.setattr("ballsocket.studies.identity.fingerprint", lambda: "9.9.9+other")
+    monkeypatch.setattr("ballsocket.studies.metadata.fingerprint", lambda: "9.9.9+other")
     with pytest.raises(ValueError, match="code is .* there and 9.9.9[+]other here"):
         presses(store)
 
@@ -120,7 +120,7 @@ def test_models_of_ones_own_are_told_apart(store):
 
 def test_a_finished_study_is_opened_on_a_full_disk(store, monkeypatch):
     presses(store)
-    monkeypatch.setattr("ballsocket.studies.room._free_disk", lambda path: 0)
+    monkeypatch.setattr("ballsocket.studies.run.available_disk_space", lambda path: 0)
     _, blocks = presses(store)
     assert blocks == 0
 

@@ -95,8 +95,8 @@ class Outcome(ABC):
         return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
 
     @cached_property
-    def _numbers(self) -> Joint:
-        """Joint with NumPy numbers, which become infinite where Python floats raise."""
+    def _numpy_joint(self) -> Joint:
+        """Joint with its numbers as NumPy arrays; divisions by zero become infinite instead of raising."""
         return self.joint.with_numbers(arrays.to_common_arrays(*self.joint.numbers())) if self._is_plain else self.joint
 
     def _match_load(self, value: Array) -> Array:

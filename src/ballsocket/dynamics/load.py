@@ -183,9 +183,9 @@ class Load(NamedTuple):
         names = ("force", "moment", "socket_force", "socket_moment", "energy", "dissipation", "indentation")
         return {
             "status": status.name.lower() if isinstance(status, ContactState) else to_list(status),
-            **{name: _plain_value(getattr(self, name)) for name in names},
-            "half_angle_deg": _plain_value(self.half_angle * degrees(1.0)),
-            "max_pressure": _plain_value(self.max_pressure),
+            **{name: _to_json_value(getattr(self, name)) for name in names},
+            "half_angle_deg": _to_json_value(self.half_angle * degrees(1.0)),
+            "max_pressure": _to_json_value(self.max_pressure),
             "notes": list(self.notes),
         }
 
@@ -218,7 +218,8 @@ _OLD_DISSIPATION.__set_name__(Load, "rubbed")
 setattr(Load, "rubbed", _OLD_DISSIPATION)  # noqa: B010 (mypy refuses to assign to a class)
 
 
-def _plain_value(value: Any) -> Any:
+def _to_json_value(value: Any) -> Any:
+    """Convert an array, or a vector of three arrays, to numbers or lists for JSON."""
     return [to_list(part) for part in value] if type(value) is tuple else to_list(value)
 
 

@@ -140,7 +140,7 @@ def _restitution_slopes(chi: float, speeds: Numbers) -> Numbers:
     """
     h, e = chi * speeds, _restitutions(chi, speeds)
     small = h < 1e-4
-    safe = numpy.where(small, 1.0, h)
+    safe = numpy.where(small, 0.5, h)
     slope = (1 / (1 + safe) - e * e / (1 - safe * e)) * (1 - safe * e) / (safe * e)
     return speeds * numpy.where(small, -2 / 3, slope)
 

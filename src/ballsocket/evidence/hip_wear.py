@@ -34,10 +34,10 @@ INPUTS = (
     "7 mm (32 mm)",
     "k = 1.066e-6 mm³/(N m) for conventional polyethylene, 2e-7 for cross-linked, each within a factor of 1.5 (one "
     "standard deviation); clearance 0.05 to 0.2 mm",
-    "simulators: the cycle by its name, a cup tilted by 30° from the load in walking, by 0° in rocking; a cup told as "
-    "at 45° and 65° by 30° and 50°, since the load of a hip leans by some 15°",
+    "simulators: the cycle by its name, a cup tilted by 30° from the load in walking, by 0° in rocking; a cup given as "
+    "45° and 65° by 30° and 50°, since the load of a hip leans by some 15°",
     "patients: ISO 14242-1 for every step, 1.5 million steps a year within a factor of 1.5, a body weight of "
-    "780 ± 130 N around the cycle's own force, a tilt of 30 ± 7°, heads of 28 mm; creep by the logarithmic "
+    "780 ± 130 N around the force of the cycle; a tilt of 30 ± 7°, heads of 28 mm; creep by the logarithmic "
     "law, not verified",
 )
 """What was put in where the sources do not tell it: nearly all of it."""

@@ -234,8 +234,8 @@ def _product(rate: Part, slope: Part) -> Part:
     return rate * slope
 
 
-def _inverse_root(a: Part) -> Part:
-    # formulas clip their arguments at the ends, where the slope of the clipped formula is 0
+def _asin_derivative(a: Part) -> Part:
+    """Compute the derivative 1/sqrt(1 - a²) of asin a; 0 at and beyond ±1, where formulas clip their arguments."""
     return where(a * a < 1.0, 1.0 / sqrt(1.0 - a * a), 0.0)
 
 
@@ -256,8 +256,8 @@ _PARTIAL_DERIVATIVES: Mapping[str, Callable[..., tuple[Part, ...]]] = {
     "tan": lambda y, a: (1.0 + y * y,),
     "tanh": lambda y, a: (1.0 - y * y,),
     "atan": lambda y, a: (1.0 / (1.0 + a * a),),
-    "asin": lambda y, a: (_inverse_root(a),),
-    "acos": lambda y, a: (-_inverse_root(a),),
+    "asin": lambda y, a: (_asin_derivative(a),),
+    "acos": lambda y, a: (-_asin_derivative(a),),
     "asinh": lambda y, a: (1.0 / sqrt(1.0 + a * a),),
     "atan2": lambda y, a, b: (b / (a * a + b * b), -a / (a * a + b * b)),
 }

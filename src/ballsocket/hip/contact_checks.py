@@ -143,7 +143,7 @@ def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
     rows = field.reshape(len(field), grid.rings, grid.meridians)
     inner, outer = rows[:, :-1], rows[:, 1:]
     fall = inner - outer
-    crossing = numpy.divide(inner, fall, out=numpy.full_like(fall, 0.5), where=(inner < 0) | (outer < 0))
+    crossing = numpy.divide(inner, fall, out=numpy.full_like(fall, 0.5), where=(inner < 0) != (outer < 0))
     low, high = numpy.where(inner > 0, 0.0, crossing), numpy.where(outer > 0, 1.0, crossing)
     pressed = (inner > 0) | (outer > 0)
     polar, step = grid.polar[:-1, None], numpy.diff(grid.polar)[:, None]

@@ -175,7 +175,7 @@ class History:
 
     @property
     def utilisation(self) -> float | None:
-        """Largest utilisation in the first cycle and at the reports; None where no yield stress is known."""
+        """Largest ratio of von Mises to yield stress in the first cycle and at the reports; None if it is unknown."""
         return largest_utilisation((*self.use.unworn_checks, *chain(*self.contact_checks)))
 
     @property

@@ -156,7 +156,7 @@ class SurfaceSliding:
 
     @cached_property
     def distances(self) -> Numbers:
-        """Sliding distances over each point in each time step, in mm: (steps, points)."""
+        """Sliding distances at each point in each time step, in mm: (steps, points)."""
         along = self.rotation_increments @ self.directions
         square = (self.rotation_increments * self.rotation_increments).sum(axis=1)[:, None]
         return self.radius * numpy.sqrt(numpy.maximum(square - along * along, 0.0))

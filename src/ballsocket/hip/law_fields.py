@@ -226,7 +226,7 @@ AnyLaw = TypeVar("AnyLaw", bound=Law)
 
 
 def law_keys(laws: Mapping[str, type[AnyLaw]]) -> tuple[str, ...]:
-    """Return the keys that files use for the fields of any of the laws, without repetitions."""
+    """Return the distinct file keys of the fields of all given laws."""
     return tuple(dict.fromkeys(part.key for law in laws.values() for part in law.law_fields()))
 
 

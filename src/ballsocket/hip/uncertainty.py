@@ -253,7 +253,10 @@ class _Response:
     table: Numbers
 
     def interpolate(self, exposures: Numbers) -> Numbers:
-        """Interpolate the results on logarithmic axes: (points, reports, results), NaN for zero wear."""
+        """Interpolate the results between exposures, on logarithmic axes; NaN for zero wear.
+
+        Their shape is (points, reports, results).
+        """
         x, nodes = numpy.log(exposures), numpy.log(self.exposures)
         with numpy.errstate(divide="ignore"):
             columns = numpy.log(self.table).reshape(len(nodes), -1).T

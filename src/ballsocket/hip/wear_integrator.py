@@ -153,10 +153,10 @@ class WearIntegrator:
         )
         worn = active.foundation.smooth(self.setup.wear.depth(self._exposure))
         work = float(self._exposure.work @ active.foundation.areas)
-        return numpy.concatenate([worn, self._ball_rate, [work]])
+        return numpy.concatenate([worn, self._ball_wear_rate, [work]])
 
     @property
-    def _ball_rate(self) -> Numbers:
+    def _ball_wear_rate(self) -> Numbers:
         """Worn depth of the ball per cycle in mm; empty for a ball without wear."""
         counterface, law = self._active.counterface, self.setup.ball_wear
         if counterface is None or law is None:

@@ -116,7 +116,7 @@ def sliding_torque(axis_angle: float = pi / 2) -> CustomObservable:
     >>> import ballsocket as bs
     >>> contact = bs.HessForsbach().press(bs.joints["hip-36"], force=3000.0)
     >>> round(sliding_torque().read(contact, friction_coefficient=0.05))
-    2923
+    2846
     """
     rule = f"the angle between axis and load is 0 to π/2 radians; {degrees_hint(axis_angle)}"
     require("axis_angle", axis_angle, 0 <= axis_angle <= pi / 2, rule)

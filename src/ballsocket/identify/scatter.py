@@ -69,8 +69,8 @@ class NormalScatter:
         """Compute the least-squares residual of a saturated value, and its derivative."""
         from scipy.special import log_ndtr
 
-        logarithm = log_ndtr(z)
-        return _censored_residual(logarithm, numpy.exp(self.constant - z * z / 2 - logarithm))
+        log_probability = log_ndtr(z)
+        return _censored_residual(log_probability, numpy.exp(self.constant - z * z / 2 - log_probability))
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
         """Draw random readings from the standard normal distribution."""
@@ -150,12 +150,12 @@ class HeavyTailed:
     told = RenamedAttribute("information")
 
 
-def _censored_residual(logarithm: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute the least-squares residual of a saturated value, and its derivative, from ln P.
+def _censored_residual(log_probability: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
+    """Compute the least-squares residual sqrt(-2 ln P) of a saturated value, and its derivative.
 
-    P is the probability of a reading above the limit. `hazard` is the derivative of ln P.
+    P is the probability of a reading above the limit, and `hazard` the derivative of ln P by the standardised residual.
     """
-    r = numpy.sqrt(-2 * numpy.minimum(logarithm, 0.0))
+    r = numpy.sqrt(-2 * numpy.minimum(log_probability, 0.0))
     return r, numpy.where(r > 1e-150, -hazard / numpy.maximum(r, 1e-150), 0.0)
 
 

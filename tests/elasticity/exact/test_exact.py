@@ -395,7 +395,7 @@ def power_law(state_error):
         indentation=d,
         force=force,
         stiffness=1.5 * force / d,
-        widening=2 * d / angle,
+        indentation_slope=2 * d / angle,
         error=np.array(state_error),
     )
 
@@ -475,3 +475,12 @@ def test_an_incompressible_liner_that_is_free_outside_has_an_answer():
     assert contact.status is bs.Status.OK
     nearly = bs.Exact().press(soft.replace(liner=bs.Material(young=1000.0, poisson=0.49999)), force=100.0)
     assert contact.indentation == pytest.approx(nearly.indentation, rel=1e-4)
+
+
+def test_zeta_values_are_those_of_scipy():
+    from scipy.special import zeta
+
+    from ballsocket.elasticity.exact import closed_forms
+
+    integers = [*range(2, 2 * closed_forms._MAX_TERMS)]
+    assert [closed_forms._zeta(s) for s in integers] == pytest.approx(zeta(integers).tolist(), rel=3e-16)

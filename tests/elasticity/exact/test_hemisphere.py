@@ -188,7 +188,7 @@ def test_tabulated_and_refined_models_estimate_the_change():
 
 
 def test_the_change_is_in_the_summary_and_names_the_next_model(tmp_path):
-    from ballsocket.cli.next_steps import next_steps
+    from ballsocket.cli.json_answers import next_steps
 
     contact = bs.Exact().press(BASE.replace(backing=(TITANIUM, layer(5.0, 500.0))), half_angle=radians(45.0))
     result = contact.summary()

@@ -180,7 +180,7 @@ def test_a_file_without_tables_is_refused_before_any_computation(content, tmp_pa
 def test_an_unwritable_file_of_tables_is_refused_before_any_computation(tmp_path):
     for place in (tmp_path, tmp_path / "none" / "tables.npz"):
         with pytest.raises(OSError, match="this is a folder|No such file"):
-            build_tables.build(place, workers=0)
+            build_tables.build_tables(place, workers=0)
 
 
 def test_builder_coordinates_invert_those_of_the_tables():

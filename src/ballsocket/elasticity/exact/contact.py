@@ -230,9 +230,9 @@ class CurveContact(ElasticContact):
         return super()._joint_von_mises(position, piece)
 
 
-def _hemisphere_changes(piece: JointContacts) -> numpy.ndarray:
-    """Compute the relative changes on a hemisphere of the contacts of one joint: (quantities, contacts)."""
-    changes = hemisphere_of(piece.state.kernel).changes(piece.state.half_angle)
+def _hemisphere_changes(contacts: JointContacts) -> numpy.ndarray:
+    """Compute the relative change of each quantity if the socket is a hemisphere: (quantities, contacts)."""
+    changes = hemisphere_of(contacts.state.kernel).changes(contacts.state.half_angle)
     return numpy.stack([changes[name] for name in CHANGES])
 
 

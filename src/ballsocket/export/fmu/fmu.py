@@ -279,7 +279,7 @@ class Fmu:
         )
 
     def write(self, path: Path) -> FmuFile:
-        """Write the FMU archive; the result names a binary that is missing.
+        """Write the FMU archive, and report a missing binary for this platform.
 
         Raises
         ------

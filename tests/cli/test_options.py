@@ -1,4 +1,4 @@
-"""Groups of options: dataclasses inside, options of a command outside."""
+"""Groups of options: dataclasses in the signature of a command, single options in its help."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from ballsocket.cli.groups import grouped
+from ballsocket.cli.options import expand_groups
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +24,7 @@ def called():
     app, calls = typer.Typer(rich_markup_mode=None), []
 
     @app.command()
-    @grouped
+    @expand_groups
     def both(
         *,
         name: Annotated[str, typer.Argument(help="Of it")],
@@ -49,11 +49,11 @@ def called():
         (("--last", "--second", "3", "it"), ("it", Pair(other=3), True)),
     ],
 )
-def test_words_of_the_shell_fill_the_group(called, words, given):
+def test_options_of_a_command_fill_the_group(called, words, given):
     assert called(*words)[1] == [given]
 
 
-def test_a_group_shows_its_options_in_its_place(called):
+def test_help_shows_the_options_of_a_group_in_its_position(called):
     shown = called("--help")[0]
     texts = (
         "What it does.",
@@ -68,7 +68,7 @@ def test_a_group_shows_its_options_in_its_place(called):
     assert places == sorted(places)
 
 
-def test_options_keep_their_own_limits(called):
+def test_options_of_a_group_have_their_limits(called):
     shown, calls = called("it", "--second", "0")
     assert "--second" in shown
     assert not calls

@@ -1,4 +1,4 @@
-"""The tools for assistants: what they take, what they refuse, and that a call is bounded."""
+"""Tools for assistants: schemas, refusals, command lines, and limits of a call."""
 
 import asyncio
 import json
@@ -10,27 +10,34 @@ from pathlib import Path
 
 import pytest
 
-from ballsocket.cli.tools.call import words_of
-from ballsocket.cli.tools.run import run as run_tool
-from ballsocket.cli.tools.schema import schema
-from ballsocket.cli.tools.table import TOOLS
+from ballsocket.cli.root import load_commands
+from ballsocket.cli.servers import LIMITED_PROGRAM
 from ballsocket.core.input_files import restriction_variables
+from ballsocket.mcp import call
+from ballsocket.mcp.run import run as run_tool
+from ballsocket.mcp.tools import TOOLS, schema
 
+from ..cli.command import run
 from ..places import EXAMPLES
-from .command import run
 
+COMMANDS = load_commands()
 PRESS = {"joint": "hip-36", "force": "3 kN"}
 
 
+def command_line(name, arguments, folder):
+    """Return the command line of a call with the commands of the program."""
+    return call.command_line(name, arguments, folder, COMMANDS)
+
+
 @pytest.mark.parametrize("name", TOOLS)
-def test_a_tool_says_what_it_takes_and_names_no_file_to_write(name):
-    properties = schema(TOOLS[name])["properties"]
+def test_a_tool_describes_its_arguments_and_offers_no_file_to_write(name):
+    properties = schema(TOOLS[name], COMMANDS)["properties"]
     assert all(each["description"] for each in properties.values())
     assert not {"figure", "out", "store", "section", "view", "vtk", "report", "scheduler"} & set(properties)
 
 
-def test_numbers_of_a_tool_have_their_units():
-    properties = schema(TOOLS["press"])["properties"]
+def test_descriptions_of_numbers_state_units():
+    properties = schema(TOOLS["press"], COMMANDS)["properties"]
     units = {"ball_radius": "[mm]", "force": "[N]", "young": "[MPa]", "half_angle": "[°]"}
     assert all(unit in properties[name]["description"] for name, unit in units.items())
 
@@ -50,19 +57,19 @@ def test_numbers_of_a_tool_have_their_units():
         ("press", {**PRESS, "joint": "/etc/passwd"}, "'/etc/passwd' lies outside the folder of this server"),
         ("optimise", PRESS, "vary is missing"),
         ("study", {}, "either a file is needed, or content: TOML about a study"),
-        ("study", {"file": "no.toml"}, "'no.toml' is no file in the folder"),
+        ("study", {"file": "no.toml"}, "'no.toml' does not exist in the folder"),
         ("study", {"content": "joint = 'hip-28'\nstore = 'x'"}, "store is not for this server"),
         ("study", {"content": "joint = 'hip-28'\n[engine]\nkind = 'dask'"}, "engine is not for this server"),
         ("study", {"content": "joint = "}, "is not TOML"),
         ("identify", {"content": "x" * 100_001}, "the content is larger than 100000 bytes"),
     ],
 )
-def test_a_call_that_is_wrong_is_told_how(name, arguments, message, tmp_path):
+def test_a_wrong_call_is_refused_with_the_reason(name, arguments, message, tmp_path):
     with pytest.raises(ValueError, match=message):
-        words_of(name, arguments, tmp_path)
+        command_line(name, arguments, tmp_path)
 
 
-def test_a_link_does_not_lead_out_of_the_folder(tmp_path):
+def test_a_link_to_a_file_outside_the_folder_is_refused(tmp_path):
     (tmp_path / "room").mkdir()
     (tmp_path / "joint.toml").write_text("[joint]", encoding="utf-8")
     try:
@@ -70,14 +77,14 @@ def test_a_link_does_not_lead_out_of_the_folder(tmp_path):
     except OSError:
         pytest.skip("no links here")
     with pytest.raises(ValueError, match="lies outside the folder"):
-        words_of("press", {"joint": "joint.toml", "force": 1}, tmp_path / "room")
+        command_line("press", {"joint": "joint.toml", "force": 1}, tmp_path / "room")
 
 
-def test_words_are_those_of_the_shell(tmp_path):
-    words = words_of("press", {**PRESS, "force": 3000.0, "model": ["hertz", "exact"]}, tmp_path)
+def test_the_command_line_of_a_call_is_that_of_a_shell(tmp_path):
+    words = command_line("press", {**PRESS, "force": 3000.0, "model": ["hertz", "exact"]}, tmp_path)
     assert words == ["press", "hip-36", "--force=3000", "--model=hertz", "--model=exact", "--json"]
-    assert words_of("press", {"joint": "--help"}, tmp_path)[1] == "./--help"
-    question = words_of("evidence", {"content": "question = 'q'"}, tmp_path)
+    assert command_line("press", {"joint": "--help"}, tmp_path)[1] == "./--help"
+    question = command_line("evidence", {"content": "question = 'q'"}, tmp_path)
     assert question[1].endswith(".toml")
     assert question[2] == f"--out={question[1].removesuffix('.toml')}-pack"
     assert [path.name for path in tmp_path.iterdir()] == [question[1]]
@@ -120,17 +127,17 @@ def room(tmp_path, secret, monkeypatch):
 def test_files_named_by_files_stay_inside_the_folder(kind, form, room, secret):
     name, content = OUTSIDE[kind]
     path = f"{PADDING}../secret" if form == "padded" else f"/{PADDING}{str(secret)[1:]}"
-    done = run(*words_of(name, {"content": content.format(path)}, room), folder=room)
+    done = run(*command_line(name, {"content": content.format(path)}, room), folder=room)
     assert (done.returncode, done.stdout) == (2, "")
     assert "lies outside the folder of this server" in done.stderr
     assert not any(word in done.stderr for word in ("777", "0.123", "12.3456", "secret head"))
 
 
-def test_files_that_are_not_toml_name_no_file_outside(room):
+def test_a_path_outside_the_folder_in_other_files_is_refused(room):
     (room / "x.txt").write_text(OUTSIDE["cycle"][1].format("../secret"), encoding="utf-8")
     question = (EXAMPLES / "evidence.toml").read_text(encoding="utf-8").split("[wear]")[0]
     content = f'{question}\n[wear]\nfile = "x.txt"\n'
-    done = run(*words_of("evidence", {"content": content}, room), folder=room)
+    done = run(*command_line("evidence", {"content": content}, room), folder=room)
     assert "lies outside the folder of this server" in done.stderr
 
 
@@ -138,27 +145,27 @@ def test_a_process_of_a_call_is_restricted(tmp_path, secret):
     room = tmp_path / "room"
     room.mkdir()
     name, content = OUTSIDE["table"]
-    words = words_of(name, {"content": content.format(f"{PADDING}../secret")}, room)
-    told = asyncio.run(run_tool(words, room, 60.0))
+    words = command_line(name, {"content": content.format(f"{PADDING}../secret")}, room)
+    told = asyncio.run(run_tool([*LIMITED_PROGRAM, *words], room, 60.0))
     assert told.answer is None
     assert "lies outside the folder of this server" in told.refusal
 
 
-def test_a_file_named_as_an_option_is_a_file(tmp_path):
+def test_a_file_named_like_an_option_is_read_as_a_file(tmp_path):
     (tmp_path / "--help.toml").write_text('joint = "hip-28"\n[axes]\nforce = 1000\n', encoding="utf-8")
-    words = words_of("study", {"file": "--help.toml"}, tmp_path)
+    words = command_line("study", {"file": "--help.toml"}, tmp_path)
     assert words[1] == "./--help.toml"
 
 
-def test_a_process_ends_with_its_parent_even_where_no_thread_runs(tmp_path):
+def test_a_busy_process_ends_with_its_parent(tmp_path):
     """The child is inside one instruction of Python, which lets no thread run, for hours."""
     busy = (
         "import os, sys; from ballsocket.core.executors.processes import exit_with_parent as leave; leave(); "
         "print(os.getpid(), file=open('child', 'w'), flush=True); 9**9**9"
     )
     parent = (
-        "import asyncio, pathlib; from ballsocket.cli.tools import run; "
-        f"run._COMMAND = ('-c', {busy!r}); asyncio.run(run.run([], pathlib.Path(), 600.0))"
+        "import asyncio, pathlib; from ballsocket.mcp import run; "
+        f"asyncio.run(run.run(['-c', {busy!r}], pathlib.Path(), 600.0))"
     )
     note = tmp_path / "child"
     with subprocess.Popen([sys.executable, "-c", parent], cwd=tmp_path) as server:
@@ -181,18 +188,18 @@ def is_running(process):
     return status.exists() and "State:\tZ" not in status.read_text(encoding="ascii")
 
 
-def test_a_call_is_bounded_and_ends(tmp_path):
-    long = words_of("sensitivity", {**PRESS, "model": "fem", "spread": ["clearance=0.05..0.15 mm"]}, tmp_path)
-    told = asyncio.run(run_tool(long, tmp_path, 0.5))
+def test_a_call_beyond_the_time_limit_is_stopped(tmp_path):
+    long = command_line("sensitivity", {**PRESS, "model": "fem", "spread": ["clearance=0.05..0.15 mm"]}, tmp_path)
+    told = asyncio.run(run_tool([*LIMITED_PROGRAM, *long], tmp_path, 0.5))
     assert (told.answer, told.refusal[:19]) == (None, "stopped after 0.5 s")
 
 
-def test_an_assistant_hears_what_the_shell_says(tmp_path):
+def test_a_tool_returns_what_the_command_prints(tmp_path):
     mcp = pytest.importorskip("mcp", reason="the extra for assistants is not installed")
-    from ballsocket.cli.tools.server import server
+    from ballsocket.mcp.server import server
 
     async def asked():
-        async with mcp.Client(server(tmp_path, 60.0)) as client:
+        async with mcp.Client(server(tmp_path, 60.0, COMMANDS, LIMITED_PROGRAM)) as client:
             listed = await client.list_tools()
             half = await client.call_tool("press", {"joint": "hip-36", "force": 1e12, "model": ["bartel"]})
             refusal = await client.call_tool("press", {"forces": 1})
@@ -207,7 +214,7 @@ def test_an_assistant_hears_what_the_shell_says(tmp_path):
     assert refusal.content[0].text.startswith("'forces' in a call of press is not known")
 
 
-def test_without_the_extra_it_is_said_what_to_install(tmp_path, monkeypatch):
+def test_a_missing_extra_is_reported_with_the_install_command(tmp_path, monkeypatch):
     monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
     done = run("serve-mcp", "--folder", str(tmp_path))
     assert (done.returncode, done.stderr) == (2, "ballsocket: mcp is not installed: pip install 'ballsocket[mcp]'\n")

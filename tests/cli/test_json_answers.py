@@ -1,4 +1,4 @@
-"""What every answer in JSON says beside its numbers, and where it sends the one who asks next."""
+"""Fields of every JSON answer, and the next steps that it suggests."""
 
 import json
 import shlex
@@ -6,7 +6,7 @@ from inspect import signature
 
 import pytest
 
-from ballsocket.cli.root import app
+from ballsocket.cli.root import load_commands
 
 from ..places import EXAMPLES
 from .command import run
@@ -43,17 +43,13 @@ def said(*words, folder=None):
     return json.loads(run(*words, "--json", folder=folder).stdout)
 
 
-def test_every_command_that_answers_in_json_is_looked_at():
-    spoken = {
-        each.name or each.callback.__name__
-        for each in app.registered_commands
-        if "as_json" in signature(each.callback).parameters
-    }
+def test_all_commands_with_json_are_tested_here_or_in_their_room():
+    spoken = {name for name, command in load_commands().items() if "as_json" in signature(command).parameters}
     assert spoken == {*ASKED, *ELSEWHERE}
 
 
 @pytest.mark.parametrize("name", ASKED)
-def test_an_answer_says_whether_it_holds_whence_and_what_next(name, tmp_path):
+def test_an_answer_has_validity_sources_and_next_steps(name, tmp_path):
     (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
     answer = said(*ASKED[name], folder=tmp_path)
     assert [each for each in FIELDS if each not in answer] == []
@@ -62,10 +58,10 @@ def test_an_answer_says_whether_it_holds_whence_and_what_next(name, tmp_path):
     for step in answer["next"]:
         command, *words = shlex.split(step["command"])
         assert (command, step["why"] != "") == ("ballsocket", True)
-        assert words[0] in {each.name or each.callback.__name__ for each in app.registered_commands}
+        assert words[0] in load_commands()
 
 
-def test_who_follows_what_is_next_comes_to_an_answer_that_holds():
+def test_the_next_step_after_an_invalid_model_gives_a_valid_result():
     answer = said("press", "hip-36", "--force", "3 kN", "--model", "hertz")
     assert not answer["valid"]
     assert any("half-space" in note for note in answer["notes"])
@@ -76,20 +72,20 @@ def test_who_follows_what_is_next_comes_to_an_answer_that_holds():
     assert 0 < better["error"]["exact"]["max_pressure"] < 1e-6
 
 
-def test_a_joint_that_was_found_is_pressed_next():
+def test_the_next_step_after_optimise_presses_the_best_joint():
     answer = said(*ASKED["optimise"])
     step = shlex.split(answer["next"][0]["command"])[1:]
     exact = next(each for each in said(*step)["results"] if each["model"] == "exact")
     assert exact["max_pressure"] == pytest.approx(answer["value"], rel=1e-3)
 
 
-def test_a_tilted_answer_is_judged_by_itself_and_not_by_the_exact_one_beside_it():
+def test_validity_of_a_tilted_load_is_that_of_sphere_not_of_exact():
     answer = said("press", "hip-36", "--force", "3 kN", "--tilt", "45 deg", "--ring-width", "6 deg")
     assert answer["valid"]
     assert not next(each["valid"] for each in answer["results"] if each["model"] == "exact")
 
 
-def test_a_curve_is_pressed_point_by_point():
+def test_the_last_point_of_a_curve_equals_a_press():
     answer = said("curve", "hip-36", "--force", "3 kN", "--points", "4", "--model", "hertz")
     assert answer["force"] == [0.0, 1000.0, 2000.0, 3000.0]
     assert answer["valid"] is all(answer["valid_at"]) is False
@@ -98,7 +94,7 @@ def test_a_curve_is_pressed_point_by_point():
     assert "Hertz 1882" in [each["text"] for each in answer["sources"]]
 
 
-def test_a_study_in_json_has_its_ends_and_all_values_of_few_points(tmp_path):
+def test_json_of_a_small_study_has_extremes_and_all_values(tmp_path):
     (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
     answer = said("study", "study.toml", folder=tmp_path)
     assert answer["values"]["force"] == [1000.0, 2000.0]
