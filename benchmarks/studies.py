@@ -39,10 +39,10 @@ def points(count: int, loads: int) -> Design:
 def direct(model: Model, design: Design, chunk: int = 1 << 14) -> None:
     """The same quantities by hand, into arrays of the same shape."""
     whole = {name: numpy.empty(design.shape, dtype=DTYPES[name]) for name in (*DEFAULT_QUANTITIES, "status", "valid")}
-    blocks = Blocks.of(design.shape, chunk)
+    blocks = Blocks.divide(design.shape, chunk)
     for number in range(len(blocks)):
         place = blocks[number]
-        values = design.part(place)
+        values = design.values_in(place)
         joint = bs.Joint(
             ball_radius=values["ball_radius"],
             clearance=values["clearance"],

@@ -96,7 +96,7 @@ def test_diameters_are_axes():
         found.max_pressure, bs.study(bs.HessForsbach(), HIP, **radii, force=2000.0).max_pressure
     )
     for name, limit in (("outer_radius", 26.0), ("ball_radius", [15.0, 18.0]), ("clearance", 0.1)):
-        np.testing.assert_allclose(Limit(name=name).of(found), limit, rtol=1e-12)
+        np.testing.assert_allclose(Limit(name=name).evaluate(found), limit, rtol=1e-12)
     with pytest.raises(ValueError, match="head_diameter and ball_radius|ball_radius and head_diameter"):
         bs.study(bs.HessForsbach(), HIP, head_diameter=[30.0], ball_radius=[15.0], force=1.0)
 
@@ -202,7 +202,7 @@ def test_a_study_has_one_order_wherever_it_is_kept_and_by_whom_it_is_computed(tm
 def test_an_outer_radius_is_that_of_the_shell():
     backed = HIP.replace(backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),))
     found = bs.study(bs.Exact(), backed, outer_radius=[26.0], force=2000.0)
-    thickness = Limit(name="liner_thickness").of(found)
+    thickness = Limit(name="liner_thickness").evaluate(found)
     np.testing.assert_allclose(thickness, 26.0 - 18.0 - 3.0)
     made = backed.replace(liner_thickness=5.0)
     assert found.max_pressure.item() == pytest.approx(bs.Exact().press(made, force=2000.0).max_pressure, rel=1e-9)
@@ -368,10 +368,10 @@ def test_what_would_be_ignored_is_refused(tmp_path):
     many = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=np.array([5.0, 6.0]), liner=bs.UHMWPE)
     with pytest.raises(ValueError, match="plain numbers"):
         bs.study(bs.HessForsbach(), many, force=[1e3, 2e3])
-    with pytest.raises(ValueError, match="two axes are called sample"):
+    with pytest.raises(ValueError, match="two axes have the name sample"):
         sample(4, clearance=tolerance(0.1, 0.05)) * sample(4, liner_poisson=Rectangular(low=0.3, high=0.4))
     with pytest.raises(
-        ValueError, match=r"clearance.* is not allowed for a radial clearance; cut the distribution off"
+        ValueError, match=r"clearance.* is not allowed for a radial clearance; truncate the distribution"
     ):
         bs.study(bs.HessForsbach(), HIP, sample(4096, clearance=Normal(mean=0.1, deviation=0.03)), force=1e3)
     for text, message in (
@@ -391,7 +391,7 @@ def test_too_many_points_are_refused_with_size_and_time(tmp_path):
     with pytest.raises(ValueError, match="on the disk of the store"):
         bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", **wide)
     many = sample(10**12, clearance=Rectangular(low=0.05, high=0.15))
-    with pytest.raises(ValueError, match="of memory for the values along its axes; take fewer"):
+    with pytest.raises(ValueError, match="of memory for the values along its axes; use fewer"):
         bs.study(bs.HessForsbach(), HIP, many, store=tmp_path / "s.zarr", force=1000.0)
     assert not (tmp_path / "s.zarr").exists()
 
@@ -456,12 +456,12 @@ def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(t
     assert here == there
 
 
-def test_progress_is_told():
+def test_progress_counts_all_points():
     told = []
     bs.study(bs.HessForsbach(), HIP, listen=told.append, **AXES)
-    assert told[0].done == 0
-    assert told[-1].done == told[-1].points == 24
-    assert told[-1].left == 0.0
+    assert told[0].n_done == 0
+    assert told[-1].n_done == told[-1].n_points == 24
+    assert told[-1].seconds_left == 0.0
 
 
 def test_files_for_other_programs(tmp_path):
