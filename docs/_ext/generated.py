@@ -1,6 +1,6 @@
 """What pages take from the package itself, written anew for each build as Markdown that they include.
 
-The paper's pieces are kept between builds by `Plan.run`; everything else takes a second.
+The paper's pieces are kept range_text builds by `Plan.run`; everything else takes a second.
 """
 
 import json
@@ -13,9 +13,9 @@ import ballsocket as bs
 from ballsocket.catalogue import listed_models
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.sources import Source, bibliography
-from ballsocket.evidence.comparator import between
+from ballsocket.evidence.applicability import range_text
 from ballsocket.evidence.comparators import PUBLISHED
-from ballsocket.evidence.validity import measure, promising
+from ballsocket.evidence.validity import measure, models_with_promise
 from ballsocket.output.accuracy_table import markdown
 from ballsocket.output.report import write_report
 from ballsocket.paper.plan import quick_plan
@@ -139,13 +139,13 @@ def _presets(presets, called="`{}`".format) -> str:
 def _validity() -> str:
     """How the models keep what they promise."""
     sizes = {"plane-layer": 300, "cosine-limit": 60_000}
-    found = [measure(model, size=sizes.get(model.name, 10_000), seed=2) for model in promising()]
+    found = [measure(model, size=sizes.get(model.name, 10_000), seed=2) for model in models_with_promise()]
     rows = [
         [
             f"[`{each.model}`](#model-{each.model})",
             each.promise,
             each.valid,
-            f"{100 * each.kept:.1f} %",
+            f"{100 * each.kept_share:.1f} %",
             ", ".join(
                 f"{bs.quantities.CONTACT[name].symbol} {100 * error:.2g} %" for name, error in each.worst.items()
             ),
@@ -211,7 +211,7 @@ def _comparator(each) -> str:
     rows += [("assumed", name, text) for name, text in each.assumed.items()]
     rows += [("**published**", name, text) for name, text in each.published.items()]
     rows += [("**ours**", name, f"{low:.3g} to {high:.3g}") for name, (low, high) in each.ours.items()]
-    reach = ", ".join(f"{name} {between(ends)}" for name, ends in each.reaches.items())
+    reach = ", ".join(f"{name} {range_text(ends)}" for name, ends in each.reaches.items())
     parts = [f"## {each.title}", _table(("", "", ""), rows), each.agreement]
     parts += [f"Over {reach}."] if reach else []
     return "\n\n".join([*parts, f"{each.kind.capitalize()}. {_linked(each.source)} (read: {each.read})."]) + "\n"

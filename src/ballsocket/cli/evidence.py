@@ -15,9 +15,10 @@ from rich.progress import Progress
 from ..core.checks import needs
 from ..core.executors.processes import Engine, Processes
 from ..core.storage.fingerprint import fingerprint
-from ..evidence.comparison import Signed, compare, signature_of
-from ..evidence.folder import WORK, check_room, digest_of, sign_pack, write
-from ..evidence.pack import Listener, count_kept, gathered, remove_kept
+from ..evidence.comparison import compare
+from ..evidence.folder import WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
+from ..evidence.pack import Listener, gather_evidence
+from ..evidence.plan import count_stored_pieces, remove_stored_pieces
 from ..evidence.question import Question, read_question
 from ..evidence.signature import PublicKey, SignatureError, public_key_of, read_private_key, read_public_key
 from ..output.evidence_page import conclusions, evidence_page
@@ -71,13 +72,13 @@ def evidence(
 
 def _gather(question: Question, out: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None) -> None:
     """Compute and write the pack of a question, signed if there is a key."""
-    check_room(out, question)
-    resumed = 0 if key is not None else count_kept(question, out / WORK)
+    check_folder(out, question)
+    resumed = 0 if key is not None else count_stored_pieces(question, out / WORK)
     with _show_progress() as progress, tempfile.TemporaryDirectory() as temporary:
         work = out / WORK if key is None else Path(temporary)
-        record = gathered(question, work, progress, engine)
+        record = gather_evidence(question, work, progress, engine)
         path = write(question, record, evidence_page, out)
-    remove_kept(out / WORK)
+    remove_stored_pieces(out / WORK)
     signed = None if key is None else Signed(public_key_of(key), None)
     if key is not None:
         sign_pack(out, key)
