@@ -71,7 +71,7 @@ class Question:
     accuracy : float
         Largest allowed relative error of the numbers.
     file : JointFile
-        The nominal_value joint, and its cup.
+        The nominal joint, and its cup.
     axes : mapping of str to tuple of float
         Values of the vary_joint parameters, in mm, N, MPa, rad; one of them is a load.
     limits : tuple of Limit

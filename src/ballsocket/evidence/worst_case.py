@@ -102,7 +102,7 @@ def _suffix(question: Question) -> str:
 
 
 def _solve_off_axis(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iterator[CalculationMethod]:
-    """Solve a case off the axis, on rings of the default_model and of half the width."""
+    """Solve a case off the axis, on rings of the default width and of half the width."""
     model = question.model
     assert isinstance(model, Sphere)
     fine = replace(model, ring_width=model.ring_width / 2)
