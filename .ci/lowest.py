@@ -18,7 +18,7 @@ TESTS = (
     "problem",
     "models/test_limits.py",
     "models/test_published.py",
-    "io",
+    "files",
     "test_words.py",
 )
 ASIDE = ("-k", "not array_libraries", "-W", "ignore::DeprecationWarning")  # what newer tools say of older ones

@@ -12,8 +12,8 @@ from math import degrees, radians
 
 import ballsocket as bs
 from ballsocket.app.screen import START, MapAxis, link_of
-from ballsocket.io.joint_file import JointFile
-from ballsocket.io.joint_toml import toml_of
+from ballsocket.files.joint_file import JointFile
+from ballsocket.files.joint_toml import toml_of
 from ballsocket.output.save import save
 from ballsocket.output.section_plot import section_figure
 from ballsocket.studies import Span, allowed, design_map, limit_of

@@ -61,12 +61,12 @@ def imported(tree):
 
 
 def test_only_the_module_of_units_calls_pint():
-    assert [name for name, tree in MODULES.items() if "pint" in imported(tree)] == ["io/units.py"]
+    assert [name for name, tree in MODULES.items() if "pint" in imported(tree)] == ["files/units.py"]
 
 
 def test_pint_evaluates_no_text():
     """No parser of expressions is called; `Unit` and `Quantity` of text would call one."""
-    calls = called(MODULES["io/units.py"])
+    calls = called(MODULES["files/units.py"])
     assert not calls & {"parse_expression", "parse_units_as_container"}
     assert {"UnitsContainer", "get_name"} <= calls
 
@@ -79,8 +79,8 @@ def test_files_that_users_name_are_opened_by_one_module():
 @pytest.mark.parametrize(
     "reader",
     [
-        "io/toml.py",
-        "io/columns.py",
+        "files/toml.py",
+        "files/columns.py",
         "elasticity/off_axis/scans.py",
         "core/storage/array_files.py",
         "elasticity/exact/tabulated/chebyshev.py",
@@ -98,5 +98,5 @@ def test_other_modules_do_not_read_files_by_names_of_users():
         "app/evidencing.py",
         "export/fmu/fmu.py",
         "core/storage/array_files.py",
-        "io/columns.py",
+        "files/columns.py",
     }  # the first two write

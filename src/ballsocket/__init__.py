@@ -9,8 +9,7 @@ Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 """
 
 from importlib import import_module
-from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from . import studies
 from .catalogue import catalogue
@@ -41,7 +40,6 @@ from .elasticity.off_axis import (
     read_scan,
 )
 from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
-from .io.joint_file import read_joint
 from .models.adhesion import AdhesiveSocket
 from .models.closed_form import ClosedForm
 from .models.foundation import (
@@ -181,10 +179,18 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "UHMWPE",
 ]
 
-if not TYPE_CHECKING:
+if TYPE_CHECKING:
+    from .files.joint_file import read_joint
+else:
 
-    def __getattr__(name: str) -> ModuleType:
-        """Import a moved module that version 1.0 offered as an attribute of the package."""
+    def __getattr__(name: str) -> Any:
+        """Import the reader of joint files on first use, or a moved module that version 1.0 offered as an attribute."""
+        if name == "read_joint":
+            return import_module(f"{__name__}.files.joint_file").read_joint
         if present_module_path(f"{__name__}.{name}") is None:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         return import_module(f"{__name__}.{name}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -8,7 +8,7 @@ from urllib.parse import parse_qs, urlsplit
 import pytest
 
 import ballsocket as bs
-from ballsocket.io.joint_file import JointFile, parse_joint
+from ballsocket.files.joint_file import JointFile, parse_joint
 
 from ..extent import some
 from ..places import EXAMPLES

@@ -8,7 +8,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.app.drawing import petals
-from ballsocket.io.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile
 
 from ..joints import HIP
 

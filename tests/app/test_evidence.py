@@ -10,8 +10,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.evidence.question import read_question
+from ballsocket.files.joint_file import JointFile
 from ballsocket.hip.config import read_hip
-from ballsocket.io.joint_file import JointFile
 
 from .asking import edits, saved, trouble
 

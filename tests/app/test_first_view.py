@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.io.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")

@@ -6,7 +6,7 @@ from functools import partial
 import pytest
 
 import ballsocket as bs
-from ballsocket.io.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup
 
 pytest.importorskip("skfem")

@@ -5,7 +5,7 @@ from html import unescape
 import pytest
 
 import ballsocket as bs
-from ballsocket.io.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile
 from ballsocket.problem import Support
 
 from .asking import edits, trouble

@@ -20,7 +20,7 @@ from ballsocket.app.files import made
 from ballsocket.app.mapping import mapped
 from ballsocket.app.page import Page
 from ballsocket.app.views.press import Press
-from ballsocket.io.joint_toml import toml_of
+from ballsocket.files.joint_toml import toml_of
 
 
 def test_a_view_that_fails_says_so_and_is_logged(monkeypatch, caplog):

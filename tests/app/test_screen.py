@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.io.joint_file import JointFile, parse_joint
-from ballsocket.io.joint_toml import toml_of
+from ballsocket.files.joint_file import JointFile, parse_joint
+from ballsocket.files.joint_toml import toml_of
 from ballsocket.problem.cup import Cup, Interface, Side
 from ballsocket.problem.presets import materials
 

@@ -5,7 +5,7 @@ import time
 import pytest
 
 import ballsocket as bs
-from ballsocket.io.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile
 
 from ..extent import some
 from .asking import saved

@@ -17,7 +17,7 @@ COMMANDS = load_commands()
 HEAVY = ("dask", "jinja2", "matplotlib", "mcp", "numba", "pandas", "panel", "pint", "scipy", "skfem", "xarray")
 ORDER = (
     *("press", "curve", "orient", "map", "optimise", "sensitivity", "study", "hip", "models", "presets", "cite"),
-    *("identify", "calibrate", "evidence", "deck", "fmu", "export", "app", "serve-mcp", "reproduce"),
+    *("identify", "calibrate", "evidence", "deck", "fmu", "export", "schema", "app", "serve-mcp", "reproduce"),
 )
 
 

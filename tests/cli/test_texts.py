@@ -11,7 +11,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.cli import design, elasticity_options, export, hip, json_answers, reproduce, root, study
 from ballsocket.cli.press_files import ReportOptions
-from ballsocket.io.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile
 
 from .command import run
 

@@ -39,9 +39,9 @@ from ballsocket.core.quantities import (
     QUANTITIES,
     STRESS_LIMITS,
 )
-from ballsocket.io.joint_file import JointFile
-from ballsocket.io.joint_toml import tables_of
-from ballsocket.io.units import parse
+from ballsocket.files.joint_file import JointFile
+from ballsocket.files.joint_toml import tables_of
+from ballsocket.files.units import parse
 from ballsocket.studies.design import check_values, grid
 from ballsocket.studies.limits import LIMITED_NAMES as LIMITED
 from ballsocket.studies.metadata import described

@@ -18,9 +18,9 @@ from ballsocket.cli.json_answers import add_provenance
 from ballsocket.cli.root import app, load_commands
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.evidence.question import FILE_KEYS as OF_EVIDENCE
+from ballsocket.files.joint_file import KEYS as OF_A_JOINT
 from ballsocket.hip.config import FILE_KEYS as OF_A_HIP
 from ballsocket.identify.file import FILE_KEYS as OF_DATA
-from ballsocket.io.joint_file import KEYS as OF_A_JOINT
 from ballsocket.studies.file import FILE_KEYS as OF_A_STUDY
 
 PROMISED = Path(__file__).with_name("promised.json")

@@ -20,7 +20,7 @@ from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.law_fit import depth_of, expression_fit, power_fit
 from ballsocket.export.validity_depth import valid_depth
-from ballsocket.io.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile
 
 from ..cli.command import run
 from ..joints import HIP

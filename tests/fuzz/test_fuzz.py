@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ballsocket.io.joint_file import joint_of, parse_joint
-from ballsocket.io.joint_toml import tables_of
+from ballsocket.files.joint_file import joint_of, parse_joint
+from ballsocket.files.joint_toml import tables_of
 
 from ..cli.command import run
 from . import flags, joint_files, study_files

@@ -17,11 +17,11 @@ from ballsocket.core.kinds import Kind
 from ballsocket.core.storage.array_files import read_arrays
 from ballsocket.elasticity.off_axis.scans import read_scan
 from ballsocket.evidence.question import read_question
+from ballsocket.files.units import parse
 from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import TableOptions, read_cycle
 from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.identify.file import read_identify
-from ballsocket.io.units import parse
 from ballsocket.mcp.call import command_line
 
 from ..cli.command import run

@@ -14,10 +14,10 @@ from ballsocket.app.gaiting import gait_of
 from ballsocket.app.in_use import Use, hip_of
 from ballsocket.app.screen import START, link_of, read_link
 from ballsocket.app.wearing import life_of
+from ballsocket.files.joint_file import JointFile
+from ballsocket.files.joint_toml import cup_table, tables_of
 from ballsocket.hip import Archard, HipSimulation, PatientVariability, iso_14242_1
 from ballsocket.hip.config import read_hip
-from ballsocket.io.joint_file import JointFile
-from ballsocket.io.joint_toml import cup_table, tables_of
 from ballsocket.studies import Normal
 
 from ..cli.command import run

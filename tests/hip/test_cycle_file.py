@@ -574,7 +574,7 @@ def test_parameters_of_simulators_have_units(words, check):
             [(CYCLE, "[[activity]]\nname = 'flexion'\nshare = 1\n")],
             "share needs cycles_per_year at the top of the file",
         ),
-        ([(CYCLE, "[[activity]]\nname = 'flexion'\nper_yaer = 1\n")], "'per_yaer' in ..activity.. is not known"),
+        ([(CYCLE, "[[activity]]\nname = 'flexion'\nper_yaer = 1\n")], "'per_yaer' in activity.0. is not known"),
         (
             [(CYCLE, "[[activity]]\nper_year = 1\n")],
             r"\[\[activity\]\] needs either a name or a file; names: iso-14242-1",

@@ -54,7 +54,7 @@ EXPLORER = """
 from ballsocket.app.in_use import hip_of, pairs_of, use_of
 from ballsocket.app.screen import Screen
 from ballsocket.app.views.wear import _fields
-from ballsocket.io.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile
 settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "exponential", "creep_time": "60"})
 assert use_of({name.partition(".")[2]: text for name, text in pairs_of(settings)}) == settings
 screen = Screen(file=JointFile(joint=bs.joints["hip-28"], load={"force": 1000.0}), use=settings)

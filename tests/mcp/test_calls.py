@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -59,6 +60,10 @@ def test_descriptions_of_numbers_state_units():
         ("study", {}, "either a file is needed, or content: TOML about a study"),
         ("study", {"file": "no.toml"}, "'no.toml' does not exist in the folder"),
         ("study", {"content": "joint = 'hip-28'\nstore = 'x'"}, "store is not for this server"),
+        ("study", {"file": 3}, "file = 3 must be text"),
+        ("study", {"content": 3}, "content = 3 must be text in TOML, or an object"),
+        ("study", {"content": {"joint": None}}, "content has null or a key that is no text"),
+        ("study", {"content": {"joint": "hip-28", "store": "x"}}, "store is not for this server"),
         ("study", {"content": "joint = 'hip-28'\n[engine]\nkind = 'dask'"}, "engine is not for this server"),
         ("study", {"content": "joint = "}, "is not TOML"),
         ("identify", {"content": "x" * 100_001}, "the content is larger than 100000 bytes"),
@@ -212,6 +217,21 @@ def test_a_tool_returns_what_the_command_prints(tmp_path):
     assert (half.is_error, f"ballsocket: {half.content[0].text}\n") == (True, shell.stderr)
     assert refusal.is_error
     assert refusal.content[0].text.startswith("'forces' in a call of press is not known")
+
+
+def test_content_may_be_an_object_that_follows_the_schema_of_the_file(tmp_path):
+    validator = pytest.importorskip("jsonschema").Draft202012Validator
+    for tool in TOOLS.values():
+        validator.check_schema(schema(tool, COMMANDS))
+    content = {"joint": "hip-28", "axes": {"force": ["1 kN", 2000], "liner": "uhmwpe"}}
+    study = validator(schema(TOOLS["study"], COMMANDS))
+    assert study.is_valid({"content": content})
+    assert study.is_valid({"content": 'joint = "hip-28"'})
+    assert not study.is_valid({"content": {**content, "axis": {"force": 1}}})
+    assert not study.is_valid({"content": {**content, "store": "x"}})
+    line = command_line("study", {"content": content}, tmp_path)
+    assert tomllib.loads((tmp_path / line[1]).read_text("utf-8")) == content
+    assert line[1:] == command_line("study", {"content": (tmp_path / line[1]).read_text("utf-8")}, tmp_path)[1:]
 
 
 def test_a_missing_extra_is_reported_with_the_install_command(tmp_path, monkeypatch):

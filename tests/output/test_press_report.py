@@ -10,7 +10,7 @@ from html import unescape
 import pytest
 
 import ballsocket as bs
-from ballsocket.io.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile
 from ballsocket.output.joint_section import joint_section
 from ballsocket.output.press_report import press_report
 from ballsocket.output.section_scale import gap_factor

@@ -10,11 +10,10 @@ from typing import Any
 from ..core.checks import check_names, check_text, shown
 from ..core.kinds import Kind
 from ..evidence.question import LEVELS, Question, read_question
+from ..files.joint_file import JointFile, JointTables
+from ..files.joint_toml import Tables, tables_of
+from ..files.units import parse
 from ..hip.cycle_registry import CYCLES
-from ..io.joint_file import JointFile
-from ..io.joint_toml import Tables, tables_of
-from ..io.named_joint import PARTS
-from ..io.units import parse
 from ..problem.cup import Cup
 from ..problem.presets import joints
 from ..studies.expressions import parse_choices
@@ -132,7 +131,7 @@ def _joint(file: JointFile) -> Tables:
     """The joint by its name where it is a preset in no cup of its own, else by its tables."""
     if file.cup == Cup() and not file.cup.oriented and joints.get(file.joint.name) == file.joint:
         return {"joint": file.joint.name}
-    return {name: table for name, table in tables_of(file).items() if name in PARTS}
+    return {name: table for name, table in tables_of(file).items() if name in JointTables.__struct_fields__}
 
 
 def _phrases(text: str) -> Iterator[str]:

@@ -10,8 +10,8 @@ from typing import Any
 
 from ..core.checks import check_names, shown
 from ..core.quantities import LOADS, STRESS_LIMITS
-from ..io.joint_file import JointFile, joint_of, read_aim
-from ..io.joint_toml import Tables, tables_of
+from ..files.joint_file import JointFile, joint_of, read_aim
+from ..files.joint_toml import Tables, tables_of
 from ..problem import Joint
 from ..problem.cup import UP
 from ..problem.presets import joints, materials

@@ -10,8 +10,8 @@ from typing import Any
 from ..core.checks import check_names, require
 from ..core.kinds import Kind, Unit
 from ..core.quantities import CUP
-from ..io.joint_file import JointFile, read_aim, read_cup
-from ..io.joint_toml import cup_table
+from ..files.joint_file import JointFile, read_aim, read_cup
+from ..files.joint_toml import cup_table
 from ..problem.cup import UP, Side
 from .fields import Field, number, segments, typed
 from .screen import Screen

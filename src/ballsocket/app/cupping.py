@@ -13,7 +13,7 @@ import numpy
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis import Orientations, Sphere, orient
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output.html import drawn
 from ..output.orientation_plot import orientation_figure
 from ..problem.cup import Cup, Side

@@ -10,7 +10,7 @@ from math import pi
 import numpy
 
 from ..contact import Contact
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output.section_scale import gap_factor, radii_of
 from . import svg
 from .pressing import profile

@@ -14,7 +14,7 @@ from typing import Any
 from ..evidence.folder import SUMS, WORK, names_of, write
 from ..evidence.pack import gather_evidence
 from ..evidence.plan import plan
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output.evidence_page import conclusions, evidence_page
 from .asked import Asked, written
 from .in_use import Use

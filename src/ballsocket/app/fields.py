@@ -9,7 +9,7 @@ from typing import Any
 
 from ..core.checks import shown
 from ..core.kinds import Kind, Unit
-from ..io.units import parse
+from ..files.units import parse
 
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
 _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")

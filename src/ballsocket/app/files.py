@@ -10,8 +10,8 @@ from io import StringIO
 from typing import Any
 
 from ..core.checks import check_names
-from ..io.joint_file import JointFile
-from ..io.joint_toml import toml_of
+from ..files.joint_file import JointFile
+from ..files.joint_toml import toml_of
 from ..output.html import picture
 from ..output.joint_report import joint_report
 from ..output.unit_systems import Units

@@ -9,7 +9,7 @@ from math import atan2, cos, degrees, isinf, pi, radians, sin
 from ..contact import Contact
 from ..core.kinds import Unit
 from ..core.quantities import Quantity
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output.section_scale import gap_factor, radii_of
 from . import svg
 from .drawing import DrawingFrame, ball, heat, layers, painted

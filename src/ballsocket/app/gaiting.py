@@ -10,12 +10,12 @@ from typing import Any
 import numpy
 
 from ..elasticity.off_axis.directions import unit_vectors
+from ..files.joint_file import JointFile
 from ..hip import Lubricant
 from ..hip.ball_wear import interpolation_at
 from ..hip.contact_checks import largest_utilisation, list_notes
 from ..hip.cycle_registry import CYCLES
 from ..hip.film import film
-from ..io.joint_file import JointFile
 from .in_use import Own, Use, hip_of
 from .running import Reached, Told
 

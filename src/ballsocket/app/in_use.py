@@ -10,8 +10,10 @@ from typing import Any
 
 from ..core.checks import check_names, require, shown
 from ..core.kinds import Kind
+from ..files.joint_file import JointFile
+from ..files.units import parse
 from ..hip import Cycle, HipSimulation, named_cycle
-from ..hip.config import parse_creep, parse_surface
+from ..hip.config import parse_creep, socket_surface
 from ..hip.creep_laws import CREEP_LAWS
 from ..hip.cycle_file import read_cycle
 from ..hip.cycle_registry import CYCLES
@@ -19,8 +21,6 @@ from ..hip.in_vivo import check_body_weight
 from ..hip.law_fields import Law, LawField
 from ..hip.wear_law import COEFFICIENT
 from ..hip.wear_laws import WEAR_LAWS, read_wear_law
-from ..io.joint_file import JointFile
-from ..io.units import parse
 
 CONTACTS = ("springs", "shell", "cup")
 LAWS = tuple(WEAR_LAWS)
@@ -235,6 +235,6 @@ def hip_of(file: JointFile, use: Use, own: Own | None = None) -> HipSimulation:
         cup=file.cup,
         cycle=own.cycle(use.body_weight) if own is not None else named_cycle(use.cycle, body_weight=weight),
         wear=read_wear_law(use.wear_table),
-        surface=parse_surface({"contact": use.contact}),
+        surface=socket_surface(use.contact),
         creep=parse_creep(use.creep_tables, float(file.joint.liner.poisson)),
     )

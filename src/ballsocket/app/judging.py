@@ -11,7 +11,7 @@ from ..contact import Contact
 from ..contact.describe import to_summary
 from ..core.validity import OutsideDomainError
 from ..elasticity.finite_elements.contact import MeshedContact
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output.html import drawn
 from ..output.section_plot import section_figure
 from .running import Reached, Told

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..core.checks import check_names, shown
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..problem import Joint, Layer, Support
 from ..problem.presets import materials
 from .fields import Field, choice, segments

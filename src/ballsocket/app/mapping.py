@@ -16,7 +16,7 @@ from ..contact import Model
 from ..core.kinds import Kind
 from ..core.quantities import PARTS, QUANTITIES, Quantity
 from ..core.validity import OutsideDomainError, check_domain
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..problem import Joint
 from ..studies.default_model import default_model, joint_of_arrays
 from ..studies.design import Span, grid

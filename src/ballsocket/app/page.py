@@ -14,7 +14,7 @@ from urllib.parse import parse_qs
 import panel as pn
 
 from ..core.checks import check_names
-from ..io.joint_file import parse_joint
+from ..files.joint_file import parse_joint
 from ..output.unit_systems import Units
 from .beside import beside
 from .channel import Channel

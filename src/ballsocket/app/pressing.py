@@ -12,7 +12,7 @@ from ..catalogue import catalogue
 from ..compare import Comparison, compare, force_curves
 from ..contact import Contact, Model
 from ..core.validity import OutsideDomainError
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..problem import Joint
 from ..problem.cup import Cup
 from .solving import heavy, solved

@@ -13,8 +13,8 @@ from ..core.checks import check_names, shown
 from ..core.deprecation import renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
-from ..io.joint_file import JointFile, joint_of
-from ..io.joint_toml import Tables, tables_of
+from ..files.joint_file import JointFile, joint_of
+from ..files.joint_toml import Tables, tables_of
 from ..output.unit_systems import Units
 from ..problem.presets import joints
 from ..studies.expressions import parse_limit, parse_range

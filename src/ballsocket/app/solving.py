@@ -13,7 +13,7 @@ import panel as pn
 from ..catalogue import catalogue
 from ..compare import is_curve_slow, press_short_curve
 from ..core.validity import OutsideDomainError
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..problem import Joint
 from ..problem.cup import Cup
 from .running import Done, Run, RunRefused, Told, looked_at

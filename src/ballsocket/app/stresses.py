@@ -9,7 +9,7 @@ from math import isinf
 import numpy
 
 from ..contact import Contact
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from . import svg
 from .drawing import DrawingFrame, heat
 

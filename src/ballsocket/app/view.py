@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..contact import Contact
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from .channel import Channel
 from .screen import Screen
 

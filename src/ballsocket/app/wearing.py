@@ -9,9 +9,9 @@ from typing import Any
 import numpy
 
 from ..elasticity.off_axis.grid import Grid
+from ..files.joint_file import JointFile
 from ..hip import HipSimulation, History, PatientVariability, population
 from ..hip.cycle_registry import CYCLES
-from ..io.joint_file import JointFile
 from ..output.hip_plots import penetration_curve
 from ..output.html import drawn
 from ..problem.cup import Cup

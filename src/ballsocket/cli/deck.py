@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from ..io.joint_file import JointFile, read_aim
+from ..files.joint_file import JointFile, read_aim
 from ..output.reference_terminal import print_rival, print_tilted_rival
 from .elasticity_options import CupOptions, MeshOptions, solve_mesh
 from .options import JointName, JointOptions, LoadOptions, expand_groups

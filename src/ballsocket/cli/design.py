@@ -11,15 +11,14 @@ import typer
 from ..catalogue import reference
 from ..contact import Model
 from ..core.checks import require
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output import study_plots, study_summary, study_terminal
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..studies.axes import Span
-from ..studies.default_model import check_model_domain, default_model
+from ..studies.default_model import check_model_domain, default_model, named_model
 from ..studies.design import grid
 from ..studies.expressions import parse_choices, parse_distribution, parse_limit, parse_range
-from ..studies.file import named_model
 from ..studies.limits import Limit
 from ..studies.optimisation import optimise as find_optimum
 from ..studies.parameters import LOADS

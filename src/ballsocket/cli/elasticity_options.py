@@ -25,8 +25,8 @@ from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Unif
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import polar_angle
 from ..elasticity.off_axis.model import Sphere
-from ..io.joint_file import JointFile, read_aim, read_cup
-from ..io.units import parse
+from ..files.joint_file import JointFile, read_aim, read_cup
+from ..files.units import parse
 from ..problem import Joint
 from ..problem.cup import Cup
 from .options import drop_missing

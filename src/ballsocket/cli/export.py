@@ -16,10 +16,9 @@ from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..export.target import ExportJob
 from ..export.targets import TARGETS
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..problem.cup import Cup
-from ..studies.default_model import default_model
-from ..studies.file import named_model
+from ..studies.default_model import default_model, named_model
 from .options import JointName, JointOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 

@@ -11,13 +11,13 @@ import typer
 
 from ..core.checks import known_name
 from ..core.kinds import Kind
+from ..files.units import parse
 from ..identify import as_constant, as_corrected_vessel, as_polynomial
 from ..identify import calibrate as fit_modulus
 from ..identify.file import read_identify
 from ..identify.modulus import FORCES, Form
 from ..identify.posterior import Posterior
 from ..identify.result import IdentificationResult
-from ..io.units import parse
 from ..output import identify_plots
 from ..output.identify_terminal import print_identified
 from ..output.reference_terminal import print_calibration, print_table_3

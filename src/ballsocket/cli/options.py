@@ -14,7 +14,7 @@ import typer
 from ..core.checks import nearest, normalise_name
 from ..core.executors.processes import Engine, Processes
 from ..core.input_files import resolve_input
-from ..io.joint_file import JointFile, joint_of, read_joint, read_load, varied
+from ..files.joint_file import JointFile, joint_of, read_joint, read_load, varied
 from ..output.save import check_format, save
 from ..problem.dimensions import LENGTHS
 from ..problem.presets import joints

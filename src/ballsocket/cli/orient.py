@@ -15,8 +15,8 @@ from ..core.quantities import CUP
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
-from ..io.joint_file import JointFile, read_aim
-from ..io.units import as_given
+from ..files.joint_file import JointFile, read_aim
+from ..files.units import as_given
 from ..output.orientation_plot import orientation_figure
 from ..output.orientation_terminal import print_orientations
 from ..studies.expressions import parse_ends

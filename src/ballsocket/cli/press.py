@@ -14,11 +14,11 @@ from ..compare import Comparison, compare, successful_contacts
 from ..contact import Model
 from ..core.checks import known_name
 from ..core.validity import Status
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output.terminal import print_curve, print_press
 from ..output.unit_systems import Units
 from ..problem.cup import UP
-from ..studies.file import named_model
+from ..studies.default_model import named_model
 from ..version import __version__
 from .elasticity_options import (
     CupOptions,

@@ -14,7 +14,7 @@ from ..compare import Comparison, successful_contacts
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..output.save import check_format, save
 from ..output.unit_systems import Units
 from ..studies.expressions import parse_distribution

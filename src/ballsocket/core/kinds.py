@@ -3,8 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
+from enum import Enum, StrEnum
 from math import degrees
+from typing import Any, Self
+
+
+class Choice(Enum):
+    """Choice between words; files may write them with capitals."""
+
+    @classmethod
+    def _missing_(cls, value: Any) -> Self | None:
+        """Find a member by its value in any spelling of capitals."""
+        word = value.lower() if isinstance(value, str) else value
+        return next((choice for choice in cls if choice.value == word), None)
 
 
 @dataclass(frozen=True)

@@ -7,19 +7,35 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import isclose, prod
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar, Self
 from unicodedata import category
 
 from ..catalogue import off_axis, reference
 from ..contact import Model
-from ..core.checks import check_text, nearest, require, shown
+from ..core.checks import check_names, check_text, require, shown
 from ..core.input_files import open_input, packed_files, record_inputs, resolve_input
+from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
+from ..files.joint_file import JointFile, JointTables
+from ..files.named_joint import joint_in
+from ..files.schema import (
+    QUANTITIES_SCHEMA,
+    QUANTITY_SCHEMA,
+    Number,
+    Parsed,
+    Table,
+    Text,
+    Value,
+    Word,
+    meaning,
+    parsed_values,
+    quantity_keys,
+    read_table,
+    with_keys,
+)
+from ..files.toml import read_toml
+from ..files.units import parse
 from ..hip.config import read_hip
-from ..io.joint_file import KEYS, JointFile, check_keys
-from ..io.named_joint import PARTS, joint_in
-from ..io.toml import read_toml, table_of
-from ..io.units import parse
 from ..studies.design import check_values, grid
 from ..studies.distributions import Distribution, Rectangular
 from ..studies.expressions import parse_distribution, parse_limit
@@ -30,18 +46,111 @@ LEVELS = ("low", "medium", "high")
 MOST = 2000
 """Cases of a matrix."""
 
-_ASIDE = ("tolerances", "sources", "friction", "wear")
-FILE_KEYS = {
-    "": ("question", "context_of_use", "finite_elements", "risk", "required", "matrix", *PARTS, *_ASIDE),
-    **{name: KEYS[name] for name in PARTS},
-    "risk": ("influence", "consequence"),
-    "required": ("accuracy", "limits"),
-    "matrix": tuple(PARAMETERS),
-    "tolerances": tuple(PARAMETERS),
-    "friction": ("coefficient",),
-    "wear": ("file",),
-}
 _PERCENT = re.compile(r"\s*([\d.]+(?:[eE][-+]?\d+)?)\s*%\s*")
+
+
+class MatrixValues(Parsed):
+    """Number, or list of different numbers."""
+
+    schema: ClassVar[Mapping[str, Any]] = QUANTITIES_SCHEMA
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> tuple[float, ...]:
+        """Convert a number or a list of numbers."""
+        numbers = value if isinstance(value, list) else [value]
+        if not numbers:
+            raise ValueError(f"[matrix] {name} is an empty list")
+        values = tuple(parse(f"{name}[{i}]", number, cls.kind) for i, number in enumerate(numbers))
+        twice = [number for i, number in enumerate(numbers) if values[i] in values[:i]]
+        if twice:
+            raise ValueError(f"[matrix] {name} has {shown(twice[0])} twice")
+        return values
+
+
+class Tolerance(Parsed):
+    """Tolerance or range, such as '0.1 +- 0.05 mm' or '0.40 .. 0.45'."""
+
+    schema: ClassVar[Mapping[str, Any]] = Text.schema
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> str:
+        """Return the text of a tolerance."""
+        return check_text(name, value)
+
+
+class Share(Value, float):
+    """Share, such as '10 %' or 0.1."""
+
+    schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a share above 0, at most 1."""
+        percent = _PERCENT.fullmatch(value) if isinstance(value, str) and len(value) < 40 else None
+        share = float(percent[1]) / 100 if percent else parse(name, value, Kind.NUMBER)
+        require(name, share, 0 < share <= 1, "above 0, at most 100 %")
+        return cls(share)
+
+
+class Level(Word):
+    """Level of a risk."""
+
+    choices = LEVELS
+
+
+class RiskTable(Table, frozen=True, kw_only=True):
+    """Risk of a wrong decision."""
+
+    influence: Annotated[Level, meaning("influence of the model on the decision")]
+    consequence: Annotated[Level, meaning("consequence of a wrong decision")]
+
+
+class RequiredTable(Table, frozen=True, kw_only=True):
+    """Requirements on the numbers."""
+
+    accuracy: Annotated[Share, meaning('largest relative error of the numbers, such as "10 %"')]
+    limits: Annotated[list[Text] | None, meaning("limits, such as 'max_pressure <= 20 MPa'")] = None
+
+
+class FrictionTable(Table, frozen=True, kw_only=True):
+    """Friction of the joint."""
+
+    coefficient: Annotated[Number | None, meaning("coefficient of friction, 0 to 2")] = None
+
+
+class WearFileTable(Table, frozen=True, kw_only=True):
+    """Wear of the joint."""
+
+    file: Annotated[Text | None, meaning("hip file whose wear belongs to the evidence")] = None
+
+
+@with_keys(quantity_keys(PARAMETERS, MatrixValues))
+class MatrixTable(Table, frozen=True, kw_only=True):
+    """Values of the matrix of cases, by parameter."""
+
+
+@with_keys(quantity_keys(PARAMETERS, Tolerance))
+class TolerancesTable(Table, frozen=True, kw_only=True):
+    """Tolerances of inputs, by parameter."""
+
+
+_QUESTION = "decision that the evidence is for, in a sentence"
+_CONTEXT = "use of the answer, and what it is not used for"
+
+
+class QuestionTable(JointTables, frozen=True, kw_only=True):
+    """Question file."""
+
+    question: Annotated[Text, meaning(_QUESTION)]
+    context_of_use: Annotated[Text, meaning(_CONTEXT)]
+    finite_elements: Annotated[bool, meaning("check of the worst cases with finite elements")] = False
+    risk: Annotated[RiskTable, meaning("risk of a wrong decision")]
+    required: Annotated[RequiredTable, meaning("requirements on the numbers")]
+    matrix: MatrixTable | None = None
+    tolerances: TolerancesTable | None = None
+    sources: Annotated[dict[str, Text] | None, meaning("sources of inputs, by name")] = None
+    friction: FrictionTable = FrictionTable()
+    wear: WearFileTable = WearFileTable()
 
 
 @dataclass(frozen=True)
@@ -89,7 +198,7 @@ class Question:
     finite_elements : bool
         True for a check of the worst cases by finite elements.
     path : Path
-        The question file.
+        The file.
     files : tuple of Path
         The question file and the files that it names, which belong to the pack.
     """
@@ -145,72 +254,37 @@ def read_question(path: str | Path) -> Question:
 
 
 def _question(content: Mapping[str, Any], path: Path) -> Question:
-    check_keys(content, "", "at the top", FILE_KEYS)
-    parts = {name: table_of(content, name) for name in ("risk", "required", "matrix", "tolerances", "friction", "wear")}
-    for name, part in parts.items():
-        check_keys(part, name, f"in [{name}]", FILE_KEYS)
-    axes = {name: _several(name, value) for name, value in parts["matrix"].items()}
+    """Create the question of a file."""
+    tables = read_table(content, QuestionTable)
+    axes = parsed_values(tables.matrix, content.get("matrix", {}))
     _check_axes(axes)
-    tolerances, given = _tolerances(parts["tolerances"]), joint_in(content, path.parent)
-    file, recentred = _recentred(given, tolerances, axes)
-    elements = content.get("finite_elements", False)
-    if not isinstance(elements, bool):
-        raise ValueError(f"finite_elements = {shown(elements)} must be true or false")
+    tolerances = _tolerances(parsed_values(tables.tolerances, content.get("tolerances", {})))
+    file, recentred = _recentred(joint_in(tables, path.parent), tolerances, axes)
     return Question(
-        text=_words(content, "question", "what is to be decided, in a sentence"),
-        context=_words(content, "context_of_use", "what the answer is used for, and for what not"),
-        influence=_level(parts["risk"], "influence", "of the model on the decision"),
-        consequence=_level(parts["risk"], "consequence", "of a wrong decision"),
-        accuracy=_accuracy(parts["required"]),
+        text=_filled("question", tables.question, _QUESTION),
+        context=_filled("context_of_use", tables.context_of_use, _CONTEXT),
+        influence=str(tables.risk.influence),
+        consequence=str(tables.risk.consequence),
+        accuracy=float(tables.required.accuracy),
         file=file,
         axes=axes,
-        limits=_limits(parts["required"].get("limits", [])),
+        limits=tuple(map(parse_limit, tables.required.limits or ())),
         tolerances=tolerances,
         recentred=recentred,
-        sources=_sources(table_of(content, "sources")),
-        friction=_friction(parts["friction"]),
-        hip=_hip(parts["wear"], path.parent),
-        finite_elements=elements,
+        sources=_sources(tables.sources or {}),
+        friction=_friction(tables.friction),
+        hip=_hip(tables.wear, path.parent),
+        finite_elements=tables.finite_elements,
         path=path,
         files=(path,),
     )
 
 
-def _words(content: Mapping[str, Any], name: str, meaning: str) -> str:
-    if name not in content:
-        raise ValueError(f"{name} is missing: {meaning}")
-    if not check_text(name, content[name]).strip():
+def _filled(name: str, text: str, meaning: str) -> str:
+    """Return a text as plain text; ValueError if it is blank."""
+    if not text.strip():
         raise ValueError(f"{name} is empty: {meaning}")
-    return str(content[name])
-
-
-def _level(part: Mapping[str, Any], name: str, meaning: str) -> str:
-    if name not in part:
-        raise ValueError(f"[risk] {name} is missing: that {meaning}, {', '.join(LEVELS)}")
-    if part[name] not in LEVELS:
-        raise ValueError(f"{name} = {shown(part[name])} is not known{nearest(part[name], LEVELS)}")
-    return str(part[name])
-
-
-def _accuracy(part: Mapping[str, Any]) -> float:
-    if "accuracy" not in part:
-        raise ValueError('[required] accuracy is missing: how far off the numbers may be, such as "10 %"')
-    given = part["accuracy"]
-    percent = _PERCENT.fullmatch(given) if isinstance(given, str) and len(given) < 40 else None
-    share = float(percent[1]) / 100 if percent else parse("accuracy", given, "number")
-    require("accuracy", share, 0 < share <= 1, "above 0, at most 100 %")
-    return share
-
-
-def _several(name: str, value: Any) -> tuple[float, ...]:
-    listed = value if isinstance(value, list) else [value]
-    if not listed:
-        raise ValueError(f"[matrix] {name} is an empty list")
-    values = tuple(parse(f"{name}[{place}]", each, PARAMETERS[name].kind) for place, each in enumerate(listed))
-    twice = [each for place, each in enumerate(listed) if values[place] in values[:place]]
-    if twice:
-        raise ValueError(f"[matrix] {name} has {shown(twice[0])} twice")
-    return values
+    return str(text)
 
 
 def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
@@ -222,15 +296,9 @@ def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
     check_values(grid(**{name: list(values) for name, values in axes.items()}))
 
 
-def _limits(given: Any) -> tuple[Limit, ...]:
-    if not (isinstance(given, list) and all(isinstance(each, str) for each in given)):
-        raise ValueError(f"limits = {shown(given)} must be a list of texts, such as 'max_pressure <= 20 MPa'")
-    return tuple(map(parse_limit, given))
-
-
-def _tolerances(part: Mapping[str, Any]) -> Mapping[str, Distribution]:
+def _tolerances(texts: Mapping[str, str]) -> Mapping[str, Distribution]:
     """Read the distributions of uncertain inputs; their ends must be possible joints and loads along the axis."""
-    spreads = dict(_scatter(name, value) for name, value in part.items())
+    spreads = dict(parse_distribution(f"{name} = {text}") for name, text in texts.items())
     for name, spread in spreads.items():
         if name in AIMS:
             raise ValueError(f"{name} in [tolerances] cannot scatter: tolerances are followed along the axis")
@@ -280,30 +348,27 @@ ALMOST_ALL = (0.001, 0.999)
 """Quantiles that count as the ends of a distribution."""
 
 
-def _scatter(name: str, value: Any) -> tuple[str, Distribution]:
-    return parse_distribution(f"{name} = {check_text(name, value)}")
+def _sources(texts: Mapping[str, str]) -> Mapping[str, str]:
+    """Return the sources of inputs as plain texts."""
+    check_names(texts, (*QUANTITIES, *JointTables.__struct_fields__), "in [sources]")
+    return {name: str(text) for name, text in texts.items()}
 
 
-def _sources(part: Mapping[str, Any]) -> Mapping[str, str]:
-    for name in part:
-        if name not in QUANTITIES and name not in PARTS and name not in LOADS:
-            raise ValueError(f"{shown(name)} in [sources] is not known{nearest(name, (*QUANTITIES, *PARTS))}")
-    return {name: check_text(name, text) for name, text in part.items()}
-
-
-def _friction(part: Mapping[str, Any]) -> float | None:
-    if "coefficient" not in part:
+def _friction(table: FrictionTable) -> float | None:
+    """Return the coefficient of friction; None if the file does not state it."""
+    if table.coefficient is None:
         return None
-    coefficient = parse("coefficient", part["coefficient"], "number")
+    coefficient = float(table.coefficient)
     require("coefficient", coefficient, 0 <= coefficient <= 2, "a coefficient of friction is 0 to 2")
     return coefficient
 
 
-def _hip(part: Mapping[str, Any], folder: Path) -> Path | None:
-    if "file" not in part:
+def _hip(table: WearFileTable, folder: Path) -> Path | None:
+    """Return the path of the hip file, which is read once as a check; None if the file names none."""
+    if table.file is None:
         return None
-    path = folder / check_text("file", part["file"])
+    path = folder / table.file
     if not resolve_input(path).is_file():
-        raise ValueError(f"[wear] file = {shown(part['file'])} is not there")
+        raise ValueError(f"[wear] file = {shown(str(table.file))} is not there")
     read_hip(path)
     return path

@@ -130,7 +130,7 @@ _CREEP_LAWS: tuple[type[CreepLaw], ...] = (
 CREEP_LAWS: Mapping[str, type[CreepLaw]] = NamedItems("creep law", {law.name: law for law in _CREEP_LAWS})
 """Registry of the creep laws by their names in files; the first one is the default."""
 
-_CONFINEMENTS: Mapping[str, Callable[[float], float]] = MappingProxyType(
+CONFINEMENTS: Mapping[str, Callable[[float], float]] = MappingProxyType(
     {"unconfined": lambda poisson: 1.0, "constrained": constrained_share}
 )
 """Functions from Poisson's ratio to the strain of the liner over that of a bar, by their names in files."""
@@ -144,9 +144,9 @@ def read_creep_law(table: Mapping[str, Any], poisson: float) -> CreepLaw:
     ValueError
         An unknown law or confinement, a missing key, a key of another law, or a value that is not allowed.
     """
-    name = known_name("confinement", table.get("confinement", "unconfined"), _CONFINEMENTS)
+    name = known_name("confinement", table.get("confinement", "unconfined"), CONFINEMENTS)
     law = select_law(table, CREEP_LAWS, "creep law")
-    return read_law(table, CREEP_LAWS, law, confinement=_CONFINEMENTS[name](poisson))
+    return read_law(table, CREEP_LAWS, law, confinement=CONFINEMENTS[name](poisson))
 
 
 __getattr__ = renamed_names(

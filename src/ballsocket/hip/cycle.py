@@ -267,11 +267,14 @@ class CycleParameter:
         Name of the argument of the function.
     kind : Kind
         Kind of quantity, which sets the allowed units.
+    meaning : str
+        Noun phrase for the reference of hip files and for editors; by default the key.
     """
 
     key: str
     argument: str
     kind: Kind
+    meaning: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,18 +11,17 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import check_names, check_text, known_name, require, shown
+from ..core.checks import check_names, known_name, require, shown
 from ..core.deprecation import renamed_arguments, renamed_names
-from ..core.kinds import Kind
-from ..io.toml import table_of
-from ..io.units import parse
+from ..files.schema import read_table as read_schema
 from ..problem.cup import Side
-from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction, check_step_count
+from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction
 from .cycle_registry import CYCLES, named_cycle
 from .cycle_tables import ANGLES, FORCES, HipColumns, combine_columns, extract_hip_columns, read_table
 from .in_vivo import check_body_weight
-from .kinematics import parse_rotation_order, rotation_matrices
+from .kinematics import rotation_matrices
 from .mix import Activity, Mix
+from .schema import ActivityTable, CycleTable, FrameName, HipTable, LoadedBody
 from .waveforms import (
     DEFAULT_CLOSURE,
     check_closed,
@@ -34,8 +33,7 @@ from .waveforms import (
 
 __getattr__ = renamed_names(__name__, {"Reading": "TableOptions"})
 
-_FRAMES = ("body", "femur", "cup")
-_BODIES = ("socket", "ball")
+_FRAMES, _BODIES = FrameName.choices, LoadedBody.choices
 _MAX_FORCE = 1e9
 """Largest allowed force in N, beyond any hip and any test machine."""
 
@@ -201,15 +199,14 @@ def _force_in_body_frame(force: PhaseFunction, angles: PhaseFunction, order: str
 
 _COMMON_KEYS = ("instants", "rotation_order", "times_body_weight")
 _TABLE_KEYS = ("side", "frame", "force_on", "from", "to", "closing", "motion")
-_PARAMETER_KEYS = dict.fromkeys(number.key for definition in CYCLES.values() for number in definition.parameters)
-KEYS = ("name", "file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS, *_PARAMETER_KEYS)
-"""Keys of [cycle]."""
-
-_COUNT_KEYS = ("per_year", "share")
-"""Further keys of [[activity]]."""
 
 
 def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
+    """Create the cycle of a hip file; see `cycle_of`."""
+    return cycle_of(read_schema(content, HipTable), folder)
+
+
+def cycle_of(tables: HipTable, folder: Path) -> Cycle | Mix:
     """Create the cycle of a hip file from its [cycle], or the mix of its [[activity]] tables.
 
     Raises
@@ -219,101 +216,95 @@ def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
     OSError
         A table cannot be read.
     """
-    weight = _parse_weight(content)
-    if "activity" not in content:
-        return _parse_table(table_of(content, "cycle"), folder, weight, "[cycle]")
-    if "cycle" in content:
+    weight = _check_weight(tables.body_weight)
+    if tables.activity is None:
+        return _create_cycle(tables.cycle or CycleTable(), folder, weight, "[cycle]")
+    if tables.cycle is not None:
         raise ValueError("the file has both [cycle] and [[activity]]: remove one of them")
-    tables = content["activity"]
-    if not isinstance(tables, list) or not all(isinstance(table, Mapping) for table in tables):
-        raise ValueError(f"activity = {shown(tables)} must be an array of tables: [[activity]] before each")
-    return Mix(activities=tuple(_parse_activity(table, folder, weight, content) for table in tables))
+    return Mix(
+        activities=tuple(_create_activity(table, folder, weight, tables.cycles_per_year) for table in tables.activity)
+    )
 
 
-def _parse_activity(
-    table: Mapping[str, Any], folder: Path, weight: float | None, content: Mapping[str, Any]
+def _create_activity(
+    table: ActivityTable, folder: Path, weight: float | None, cycles_per_year: float | None
 ) -> Activity:
-    """Create an activity from a table [[activity]] of a hip file.
-
-    A share in the table refers to `cycles_per_year` of the file.
-    """
-    check_names(table, (*KEYS, *_COUNT_KEYS), "in [[activity]]")
-    if ("per_year" in table) == ("share" in table):
+    """Create an activity from a table [[activity]] of a hip file, whose share refers to all cycles per year."""
+    if (table.per_year is None) == (table.share is None):
         raise ValueError("an [[activity]] needs either per_year (cycles a year) or share (of cycles_per_year)")
-    cycle_table = {key: value for key, value in table.items() if key not in _COUNT_KEYS}
-    cycle = _parse_table(cycle_table, folder, weight, "[[activity]]")
-    if "per_year" in table:
-        return Activity(cycle=cycle, per_year=parse("per_year", table["per_year"], Kind.NUMBER))
-    if "cycles_per_year" not in content:
+    cycle = _create_cycle(table, folder, weight, "[[activity]]")
+    if table.per_year is not None:
+        return Activity(cycle=cycle, per_year=float(table.per_year))
+    if cycles_per_year is None or table.share is None:
         raise ValueError("share needs cycles_per_year at the top of the file")
-    total = parse("cycles_per_year", content["cycles_per_year"], Kind.NUMBER)
-    return Activity(cycle=cycle, per_year=total * parse("share", table["share"], Kind.NUMBER))
+    return Activity(cycle=cycle, per_year=float(cycles_per_year) * float(table.share))
 
 
-def _parse_weight(table: Mapping[str, Any]) -> float | None:
-    """Read the body weight in N of a table; None without the key."""
-    if "body_weight" not in table:
-        return None
-    return check_body_weight(parse("body_weight", table["body_weight"], Kind.FORCE))
+def _check_weight(body_weight: float | None) -> float | None:
+    """Check a body weight in N; None without one."""
+    return None if body_weight is None else check_body_weight(float(body_weight))
 
 
-def _parse_table(table: Mapping[str, Any], folder: Path, weight: float | None, where: str) -> Cycle:
+def _create_cycle(table: CycleTable, folder: Path, weight: float | None, where: str) -> Cycle:
     """Create the cycle of one table, by name or from a file, scaled to a multiple of body weight if stated."""
-    if ("name" in table) == ("file" in table):
+    if (table.name is None) == (table.file is None):
         raise ValueError(f"{where} needs either a name or a file; names: {', '.join(CYCLES)}")
-    weight = weight if "body_weight" not in table else _parse_weight(table)
-    n_steps = check_step_count(table.get("instants", DEFAULT_STEPS), "instants")
-    order = parse_rotation_order(table.get("rotation_order", "flexion, adduction, rotation"))
-    create = _cycle_from_file if "file" in table else _cycle_by_name
-    cycle = create(table, folder, weight, where, n_steps, order)
-    if "times_body_weight" not in table:
+    weight = _check_weight(table.body_weight) or weight
+    create = _cycle_from_file if table.name is None else _cycle_by_name
+    cycle = create(table, folder, weight, where)
+    if table.times_body_weight is None:
         return cycle
     if weight is None:
         raise ValueError("times_body_weight needs a body_weight")
-    times = parse("times_body_weight", table["times_body_weight"], Kind.NUMBER)
+    times = float(table.times_body_weight)
     require("times_body_weight", times, 0 < times <= 100, "a load is above 0 and at most 100 times the body weight")
     return cycle.scaled(times * weight / cycle.largest_force)
 
 
-def _cycle_by_name(
-    table: Mapping[str, Any], folder: Path, weight: float | None, where: str, n_steps: int, order: str
-) -> Cycle:
+def _cycle_keys(table: CycleTable) -> list[str]:
+    """Return the keys of a table that describe its cycle, as the file states them."""
+    return [key for key in table.stated() if key not in ("per_year", "share")]
+
+
+def _order(table: CycleTable) -> str:
+    """Return the rotation order of a table as letters of axes."""
+    return "xyz" if table.rotation_order is None else str(table.rotation_order.value)
+
+
+def _cycle_by_name(table: CycleTable, folder: Path, weight: float | None, where: str) -> Cycle:
     """Create a named cycle with the parameters of its table."""
-    definition = CYCLES[known_name("cycle", table["name"], CYCLES)]
-    keys = [number.key for number in definition.parameters]
-    weight_key = ("body_weight",) if definition.per_body_weight or "times_body_weight" in table else ()
-    allowed = ("name", *_COMMON_KEYS, *weight_key, *keys)
-    check_names(table, allowed, f"with the name {definition.name!r} in {where}")
-    parameters = {
-        number.argument: parse(number.key, table[number.key], number.kind)
-        for number in definition.parameters
-        if number.key in table
-    }
-    return named_cycle(definition.name, n_steps, order, weight if definition.per_body_weight else None, **parameters)
+    definition = CYCLES[table.name or ""]
+    weight_key = ("body_weight",) if definition.per_body_weight or table.times_body_weight is not None else ()
+    allowed = ("name", *_COMMON_KEYS, *weight_key, *(parameter.key for parameter in definition.parameters))
+    check_names(_cycle_keys(table), allowed, f"with the name {definition.name!r} in {where}")
+    values = {parameter.argument: table.parameter(parameter.key) for parameter in definition.parameters}
+    stated = {argument: value for argument, value in values.items() if value is not None}
+    body_weight = weight if definition.per_body_weight else None
+    return named_cycle(definition.name, int(table.instants), _order(table), body_weight, **stated)
 
 
-def _cycle_from_file(
-    table: Mapping[str, Any], folder: Path, weight: float | None, where: str, n_steps: int, order: str
-) -> Cycle:
+def _cycle_from_file(table: CycleTable, folder: Path, weight: float | None, where: str) -> Cycle:
     """Read a cycle from the measured tables that a hip file names."""
-    check_names(table, ("file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS), f"with a file in {where}")
-    files = table["file"] if isinstance(table["file"], list) else [table["file"]]
-    if not files or not all(files):
-        raise ValueError(f"file = {shown(table['file'])} names no table")
-    paths = [folder / check_text("file", name) for name in files]
-    return read_cycle(paths, n_steps, order, weight, _table_options(table, weight, order))
+    allowed = ("file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS)
+    check_names(_cycle_keys(table), allowed, f"with a file in {where}")
+    if not table.file or not all(table.file):
+        raise ValueError(f"file = {shown(list(table.file or ()))} names no table")
+    paths = [folder / name for name in table.file]
+    return read_cycle(paths, int(table.instants), _order(table), weight, _table_options(table, weight))
 
 
-def _table_options(table: Mapping[str, Any], weight: float | None, order: str) -> TableOptions:
+def _table_options(table: CycleTable, weight: float | None) -> TableOptions:
     """Create the `TableOptions` for measured tables from a table of a hip file."""
-    options: dict[str, Any] = {name: check_text(name, table[name]) for name in ("frame", "force_on") if name in table}
-    if "side" in table:
-        options["side"] = Side(known_name("side", table["side"], [side.value for side in Side]))
-    for key, name in (("from", "begin"), ("to", "end"), ("closing", "closing")):
-        if key in table:
-            options[name] = parse(key, table[key], Kind.NUMBER)
-    if "motion" in table:
-        motion = CYCLES[known_name("motion", table["motion"], CYCLES)]
-        body_weight = (weight or 1.0) if motion.per_body_weight else None
-        options["motion"] = named_cycle(motion.name, DEFAULT_STEPS, order, body_weight)
-    return TableOptions(**options)
+    motion = None
+    if table.motion is not None:
+        body_weight = (weight or 1.0) if CYCLES[table.motion].per_body_weight else None
+        motion = named_cycle(table.motion, DEFAULT_STEPS, _order(table), body_weight)
+    return TableOptions(
+        side=Side.RIGHT if table.side is None else Side(table.side),
+        frame=table.frame,
+        force_on=table.force_on,
+        begin=table.begin,
+        end=table.end,
+        closing=DEFAULT_CLOSURE if table.closing is None else table.closing,
+        motion=motion,
+    )

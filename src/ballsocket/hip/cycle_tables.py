@@ -11,7 +11,7 @@ from types import MappingProxyType
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, shown
-from ..io.columns import TextTable, read_text_table, split_head
+from ..files.columns import TextTable, read_text_table, split_head
 from ..problem.cup import Side
 from .waveforms import resample
 

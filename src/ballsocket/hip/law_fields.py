@@ -12,7 +12,7 @@ from typing import Any, ClassVar, TypeVar
 
 from ..core.checks import known_name, require, shown
 from ..core.kinds import Kind
-from ..io.units import parse
+from ..files.units import parse
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -225,8 +225,9 @@ def constant_load(
     )
 
 
-_PEAK = CycleParameter(key="force", argument="peak", kind=Kind.FORCE)
-_AMPLITUDE = CycleParameter(key="amplitude", argument="amplitude", kind=Kind.ANGLE)
+_LARGEST_FORCE = "largest force of the cycle"
+_PEAK = CycleParameter(key="force", argument="peak", kind=Kind.FORCE, meaning=_LARGEST_FORCE)
+_AMPLITUDE = CycleParameter(key="amplitude", argument="amplitude", kind=Kind.ANGLE, meaning="amplitude of the rotation")
 
 SIMULATOR_CYCLES = (
     CycleDefinition(name="iso-14242-1", make=iso_14242_1, source=_ISO_NOTE),
@@ -236,9 +237,11 @@ SIMULATOR_CYCLES = (
         make=iso_14242_4,
         source=_MISMATCH_NOTE,
         parameters=(
-            CycleParameter(key="mismatch", argument="mismatch", kind=Kind.LENGTH),
-            CycleParameter(key="stiffness", argument="stiffness", kind=Kind.STIFFNESS),
-            CycleParameter(key="swing_load", argument="swing_load", kind=Kind.FORCE),
+            CycleParameter(key="mismatch", argument="mismatch", kind=Kind.LENGTH, meaning="offset of the centres"),
+            CycleParameter(
+                key="stiffness", argument="stiffness", kind=Kind.STIFFNESS, meaning="stiffness of the lateral spring"
+            ),
+            CycleParameter(key="swing_load", argument="swing_load", kind=Kind.FORCE, meaning="load in the swing phase"),
         ),
     ),
     CycleDefinition(name="flexion", make=flexion, source=_ISO_NOTE),
@@ -253,7 +256,7 @@ SIMULATOR_CYCLES = (
         name="constant-load",
         make=constant_load,
         source="analytic cycle: constant load, sinusoidal flexion",
-        parameters=(CycleParameter(key="force", argument="force", kind=Kind.FORCE), _AMPLITUDE),
+        parameters=(CycleParameter(key="force", argument="force", kind=Kind.FORCE, meaning=_LARGEST_FORCE), _AMPLITUDE),
     ),
 )
 """Cycles of simulators and their standards, with loads in N."""

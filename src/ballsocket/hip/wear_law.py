@@ -15,7 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require, shown
 from ..core.kinds import Kind
-from ..io.units import convert, parse, parse_units, split_quantity
+from ..files.units import convert, parse, parse_units, split_quantity
 from .kinematics import SurfaceSliding
 from .law_fields import Law, LawField, LawUnit
 

@@ -16,8 +16,8 @@ from ..core.arrays import Numbers
 from ..core.checks import shown
 from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, Quantity
-from ..io.columns import read_columns, split_head
-from ..io.units import parse
+from ..files.columns import read_columns, split_head
+from ..files.units import parse
 from .machine import IDEAL_MACHINE, Machine
 from .measured import MEASURED, Measured
 

@@ -5,22 +5,39 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
 import numpy
 
 from ..contact import Model
-from ..core.checks import check_names, check_text, known_name, shown
-from ..core.kinds import Kind
-from ..core.quantities import LOADS
-from ..io.joint_file import KEYS, check_keys
-from ..io.named_joint import PARTS, joint_in
-from ..io.toml import read_toml, table_of
-from ..io.units import parse
+from ..core.checks import check_names, known_name, shown
+from ..core.quantities import FIELD, LOADS, MATERIAL
+from ..files.joint_file import JointTables
+from ..files.named_joint import joint_in
+from ..files.schema import (
+    QUANTITIES_SCHEMA,
+    QUANTITY_SCHEMA,
+    Modulus,
+    Parsed,
+    Quantity,
+    Table,
+    Text,
+    Texts,
+    Word,
+    meaning,
+    parsed_values,
+    quantities_of,
+    quantity_keys,
+    read_table,
+    with_keys,
+)
+from ..files.toml import read_toml
+from ..files.units import parse
 from ..problem import Joint
+from ..studies.default_model import models
 from ..studies.expressions import parse_ends
-from ..studies.file import named_model
-from ..studies.scatter import distribution_of
+from ..studies.file import ModelName
+from ..studies.scatter import DISTRIBUTION_SCHEMA, distribution_of
 from .columns import Gaps, parse_uncertainty, read_measured
 from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
@@ -31,17 +48,149 @@ from .result import IdentificationResult
 from .scatter import HeavyTailed, NormalScatter, ScatterModel
 from .unknowns import Prior
 
-_FILE_KEYS = ("file", "quantities", "load", "gaps")
-_OBSERVABLE_KEYS = {name: observable.argument for name, observable in FILE_OBSERVABLES.items()}
-_VALUE_KEYS = ("quantity", "values", "angle", *_OBSERVABLE_KEYS.values(), "order", *LOADS)
-_COMMON_KEYS = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
-_TABLES: Mapping[str, tuple[str, ...]] = {
-    "": (*PARTS, "model", "scatter", "free", "machine", "data"),
-    "data": (*_FILE_KEYS, *_VALUE_KEYS, *_COMMON_KEYS),
-}
-FILE_KEYS = {**{name: KEYS[name] for name in PARTS}, **_TABLES}
 _QUANTITIES = {**MEASURED, **{name: observable.described for name, observable in FILE_OBSERVABLES.items()}}
 _SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
+_FILE_KEYS = ("quantities", "load", "gaps")
+"""Keys of data in a file only; other data list their values."""
+
+
+class Numbers(Parsed):
+    """Number, or list of numbers."""
+
+    schema: ClassVar[Mapping[str, Any]] = QUANTITIES_SCHEMA
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> numpy.ndarray:
+        """Convert a number or a list of numbers to an array."""
+        return numpy.array(
+            [parse(name, number, cls.kind) for number in (value if isinstance(value, list) else [value])]
+        )
+
+
+class Readings(Parsed):
+    """Number, or list of numbers, in the unit of the quantity."""
+
+    schema: ClassVar[Mapping[str, Any]] = QUANTITIES_SCHEMA
+
+
+class Uncertainty(Parsed):
+    """Number in the unit of the quantity, or percentage of each value."""
+
+    schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
+
+
+class PriorValue(Parsed):
+    """Two ends, such as '0.02..0.3 mm', or distribution `{mean, deviation}`, `{median, factor}`."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"anyOf": [{"type": "string"}, DISTRIBUTION_SCHEMA]}
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> Prior:
+        """Convert the prior of an unknown."""
+        if isinstance(value, str):
+            return parse_ends(name, value, cls.kind)
+        if not isinstance(value, Mapping):
+            raise ValueError(
+                f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}"
+            )
+        return distribution_of(name, value, lambda key, number: parse(key, number, cls.kind))
+
+
+class ErrorSize(Parsed):
+    """Number, or two ends such as '0..20 um'."""
+
+    schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> NumberOrRange:
+        """Convert the size of an error of a machine."""
+        is_range = isinstance(value, str) and ".." in value
+        return parse_ends(name, value, cls.kind) if is_range else parse(name, value, cls.kind)
+
+
+class ScatterName(Word):
+    """Scatter of data."""
+
+    choices = tuple(_SCATTER_MODELS)
+
+
+class GapsName(Word):
+    """Treatment of rows with a missing number."""
+
+    choices = tuple(gaps.value for gaps in Gaps)
+
+
+class QuantityName(Word):
+    """Name of a measured quantity."""
+
+    noun, choices = "quantity", tuple(_QUANTITIES)
+
+
+_LINER_NUMBERS, _BALL_NUMBERS = (
+    {key: FREE_NUMBERS[f"{body}_{key}"] for key in MATERIAL if f"{body}_{key}" in FREE_NUMBERS}
+    for body in ("liner", "ball")
+)
+
+
+@with_keys(quantity_keys(_LINER_NUMBERS, PriorValue))
+class FreeLinerTable(Table, frozen=True, kw_only=True):
+    """Unknowns of the liner with their priors."""
+
+
+@with_keys(quantity_keys(_BALL_NUMBERS, PriorValue))
+class FreeBallTable(Table, frozen=True, kw_only=True):
+    """Unknowns of the ball with their priors."""
+
+
+@with_keys(quantity_keys(FREE_NUMBERS, PriorValue))
+class FreeTable(Table, frozen=True, kw_only=True):
+    """Unknowns with their priors."""
+
+    liner: FreeLinerTable | None = None
+    ball: FreeBallTable | None = None
+
+
+@with_keys(quantity_keys({name: error.quantity for name, error in MACHINE_ERRORS.items()}, ErrorSize))
+class MachineTable(Table, frozen=True, kw_only=True):
+    """Errors of a machine."""
+
+    qualified: ClassVar[bool] = True
+
+
+@with_keys(
+    quantity_keys({**LOADS, "angle": FIELD["angle"]}, Numbers)
+    | {
+        observable.argument: Annotated[
+            Quantity.of(observable.kind), meaning(f"{observable.argument.replace('_', ' ')}, for data of a {name}")
+        ]
+        for name, observable in FILE_OBSERVABLES.items()
+    }
+)
+class DataTable(Table, frozen=True, kw_only=True):
+    """Set of data with its loads: columns of a file, or a quantity with its values."""
+
+    file: Annotated[Text | None, meaning("CSV or Parquet file, whose heads have units")] = None
+    quantities: Annotated[Texts | None, meaning("measured columns; all by default")] = None
+    load: Annotated[Text | None, meaning("column of the load; force by default")] = None
+    gaps: Annotated[GapsName | None, meaning("rows with a missing number; refuse by default")] = None
+    quantity: Annotated[QuantityName | None, meaning("measured quantity of the values")] = None
+    values: Annotated[Readings | None, meaning("measured values")] = None
+    order: Annotated[Numbers | None, meaning("numbers of the readings, for a drift")] = None
+    name: Annotated[Text | None, meaning("name of the data in tables and notes")] = None
+    uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the values")] = None
+    load_uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the loads")] = None
+    saturation: Annotated[Modulus | None, meaning("largest reading of a film or sensor")] = None
+    machine: Annotated[Text | None, meaning("name of the machine: [machine.NAME]")] = None
+
+
+class IdentifyTable(JointTables, frozen=True, kw_only=True):
+    """Identification file."""
+
+    model: Annotated[ModelName, meaning("name of the model")] = ModelName("tabulated")
+    scatter: Annotated[ScatterName, meaning("scatter of the data; heavy-tailed for outliers")] = ScatterName("normal")
+    free: FreeTable | None = None
+    machine: dict[str, MachineTable] | None = None
+    data: Annotated[list[DataTable] | None, meaning("sets of data")] = None
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,8 +227,7 @@ def read_identify(path: str | Path) -> IdentifyFile:
       `{median, factor}`. The names are those of the joint and of the model.
     - `[[data]]` with a `file` (CSV, heads with units), its measured `quantities`, its `load`, and `gaps` ("refuse",
       "leave-out"). Paths are relative to the folder of the TOML file.
-    - `[[data]]` with a `quantity`, `values` (one or a list) and its load. A "frequency" needs its `mass`; a
-      "friction_torque" has an `axis_angle` to the load, by default 90 degrees.
+    - `[[data]]` with a `quantity`, `values` (one or a list) and its load; a "frequency" needs its `mass`.
     - Both kinds of data have `uncertainty` ("1 um", "2 %"), `load_uncertainty`, `saturation` and `machine`.
     - `[machine.NAME]`: `compliance`, `offset` and `drift` per reading, each a number or two ends. Readings are counted
       by rows of the file, or by `order`.
@@ -96,150 +244,99 @@ def read_identify(path: str | Path) -> IdentifyFile:
 
 
 def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
-    """Parse the tables of an identification file to model, joint, data and unknowns."""
-    check_keys(content, "", "at the top", FILE_KEYS)
-    joint_file = joint_in(content, folder)
-    machines = {name: _parse_machine(name, table) for name, table in table_of(content, "machine").items()}
-    return IdentifyFile(
-        model=named_model(content.get("model", "tabulated")).in_cup(joint_file.cup),
-        joint=joint_file.joint,
-        data=_parse_data(content.get("data", []), machines, folder),
-        free=_parse_unknowns(table_of(content, "free")),
-        scatter=_SCATTER_MODELS[known_name("scatter", content.get("scatter", "normal"), _SCATTER_MODELS)],
-    )
-
-
-def _parse_unknowns(table: Mapping[str, Any]) -> dict[str, Prior]:
-    """Parse the table of unknowns.
-
-    Those of a material may have their own table, `liner.young`.
-    """
-    flat: dict[str, Any] = {}
-    for name, value in table.items():
-        is_material = name in ("liner", "ball") and isinstance(value, Mapping)
-        flat |= {f"{name}_{number}": entry for number, entry in value.items()} if is_material else {name: value}
-    check_names(flat, FREE_NUMBERS, "in [free]")
-    return {name: _parse_prior(name, value) for name, value in flat.items()}
-
-
-def _parse_prior(name: str, value: Any) -> Prior:
-    """Parse the prior of an unknown: two ends of a range, or a distribution."""
-    kind = FREE_NUMBERS[name].kind
-    if isinstance(value, str):
-        return parse_ends(name, value, kind)
-    if not isinstance(value, Mapping):
-        raise ValueError(f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}")
-    return distribution_of(name, value, lambda key, number: parse(key, number, kind))
-
-
-def _parse_machine(name: str, table: Any) -> Machine:
-    """Parse the table of a machine and its errors."""
-    if not isinstance(table, Mapping):
-        raise ValueError(f"machine.{name} = {shown(table)} must be a table: [machine.{name}]")
-    check_names(table, MACHINE_ERRORS, f"in [machine.{name}]")
-    sizes: dict[str, Any] = {
-        error: _parse_error_size(f"{name}.{error}", value, error) for error, value in table.items()
-    }
-    return Machine(name=name, **sizes)
-
-
-def _parse_error_size(name: str, value: Any, error: str) -> NumberOrRange:
-    """Parse the size of a machine error: a number, or two ends."""
-    kind = MACHINE_ERRORS[error].quantity.kind
-    return parse_ends(name, value, kind) if isinstance(value, str) and ".." in value else parse(name, value, kind)
-
-
-def _parse_data(tables: Any, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
-    """Parse all data sets of a file."""
-    if not isinstance(tables, list) or not tables or not all(isinstance(table, Mapping) for table in tables):
+    """Convert the tables of a file to model, joint, data and unknowns."""
+    tables = read_table(content, IdentifyTable)
+    joint_file = joint_in(tables, folder)
+    if not tables.data:
         raise ValueError("the file has no measurements: add [[data]] before each set")
-    return tuple(measured for table in tables for measured in _parse_data_table(table, machines, folder))
-
-
-def _parse_data_table(table: Mapping[str, Any], machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
-    """Parse the data sets of one [[data]] table."""
-    check_keys(table, "data", "in [[data]]", FILE_KEYS)
-    if ("file" in table) == ("values" in table):
-        raise ValueError("[[data]] needs either a file, or a quantity with its values")
-    machine = machines[known_name("machine", table["machine"], machines)] if "machine" in table else IDEAL_MACHINE
-    return _read_data_file(table, machine, folder) if "file" in table else (_parse_listed_values(table, machine),)
-
-
-def _read_data_file(table: Mapping[str, Any], machine: Machine, folder: Path) -> tuple[Measured, ...]:
-    """Read the data sets of a [[data]] table that names a CSV or Parquet file."""
-    check_names(table, (*_FILE_KEYS, *_COMMON_KEYS), "in [[data]] with a file")
-    listed = table.get("quantities", [])
-    quantities = [listed] if isinstance(listed, str) else listed
-    gaps = known_name("gaps", table.get("gaps", Gaps.REFUSE.value), [choice.value for choice in Gaps])
-    load = check_text("load", table.get("load", ""))
-    return read_measured(
-        folder / check_text("file", table["file"]),
-        quantities=quantities,
-        load=load,
-        uncertainty=table.get("uncertainty"),
-        load_uncertainty=_parse_load_uncertainty(table, load or "force"),
-        machine=machine,
-        gaps=Gaps(gaps),
-        **_parse_saturation(table),
-    )
-
-
-def _parse_listed_values(table: Mapping[str, Any], machine: Machine) -> Measured:
-    """Parse the data set of a [[data]] table that lists its values."""
-    check_names(table, (*_VALUE_KEYS, *_COMMON_KEYS), "in [[data]] with values")
-    for key in ("quantity", "uncertainty"):
-        if key not in table:
-            raise ValueError(f"[[data]] with values needs its {key}")
-    name = known_name("quantity", table["quantity"], _QUANTITIES)
-    values = _parse_numbers(name, table["values"], _QUANTITIES[name].kind)
-    loads: dict[str, Any] = {
-        kind: _parse_numbers(kind, table[kind], LOADS[kind].kind) for kind in LOADS if kind in table
+    machines = {
+        name: Machine(name=name, **parsed_values(table, content["machine"][name]))
+        for name, table in (tables.machine or {}).items()
     }
-    if "order" in table:
-        loads["order"] = _parse_numbers("order", table["order"], Kind.NUMBER)
-    if "angle" in table:
-        loads["angle"] = _parse_numbers("angle", table["angle"], Kind.ANGLE)
-    return Measured(
-        quantity=name,
-        values=values,
-        uncertainty=parse_uncertainty(_QUANTITIES[name], table["uncertainty"], values),
-        observable=_parse_observable(name, table),
-        load_uncertainty=_parse_load_uncertainty(table, next((kind for kind in LOADS if kind in table), "force")),
-        machine=machine,
-        name=check_text("name", table.get("name", "")),
-        **loads,
-        **_parse_saturation(table),
+    return IdentifyFile(
+        model=models[tables.model].in_cup(joint_file.cup),
+        joint=joint_file.joint,
+        data=tuple(measured for table in tables.data for measured in _parse_data_table(table, machines, folder)),
+        free=_parse_unknowns(tables.free or FreeTable(), content.get("free", {})),
+        scatter=_SCATTER_MODELS[tables.scatter],
     )
 
 
-def _parse_observable(name: str, table: Mapping[str, Any]) -> CustomObservable | None:
+def _parse_unknowns(table: FreeTable, content: Mapping[str, Any]) -> dict[str, Prior]:
+    """Return the priors of the unknowns by name; those of a material may have their own table, `liner.young`."""
+    priors, bodies = parsed_values(table, content), {"liner": table.liner, "ball": table.ball}
+    unknowns: dict[str, Prior] = {}
+    for name, numbers in content.items():
+        own = {name: priors[name]} if name in priors else parsed_values(bodies[name], numbers)
+        unknowns |= own if name in priors else {f"{name}_{number}": prior for number, prior in own.items()}
+    return unknowns
+
+
+def _parse_data_table(table: DataTable, machines: Mapping[str, Machine], folder: Path) -> tuple[Measured, ...]:
+    """Create the sets of data of one table."""
+    if (table.file is None) == (table.values is None):
+        raise ValueError("[[data]] needs either a file, or a quantity with its values")
+    machine = IDEAL_MACHINE if table.machine is None else machines[known_name("machine", table.machine, machines)]
+    common = {"machine": machine, **quantities_of(table, "saturation")}
+    both = ("name", "uncertainty", "load_uncertainty", "saturation", "machine")
+    if table.values is None:
+        check_names(table.stated(), ("file", *_FILE_KEYS, *both), "in [[data]] with a file")
+        return _read_data_file(table, common, folder)
+    own = [key for key in table.__struct_fields__ if key not in ("file", *_FILE_KEYS)]
+    check_names(table.stated(), own, "in [[data]] with values")
+    return (_parse_listed_values(table, table.values, common),)
+
+
+def _read_data_file(table: DataTable, common: Mapping[str, Any], folder: Path) -> tuple[Measured, ...]:
+    """Read the sets of data of a table that names a CSV or Parquet file."""
+    load = str(table.load or "")
+    return read_measured(
+        folder / (table.file or ""),
+        quantities=table.quantities or [],
+        load=load,
+        uncertainty=None if table.uncertainty is None else table.uncertainty.value,
+        load_uncertainty=_parse_load_uncertainty(table, load or "force"),
+        gaps=Gaps.REFUSE if table.gaps is None else Gaps(table.gaps),
+        **common,
+    )
+
+
+def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[str, Any]) -> Measured:
+    """Create the set of data of a table that lists its values."""
+    if table.quantity is None or table.uncertainty is None:
+        raise ValueError(f"[[data]] with values needs its {'quantity' if table.quantity is None else 'uncertainty'}")
+    quantity = _QUANTITIES[table.quantity]
+    values = Numbers.of(quantity.kind).parse(quantity.name, readings.value)
+    loads = parsed_values(table, dict.fromkeys((*LOADS, "order", "angle")))
+    return Measured(
+        quantity=quantity.name,
+        values=values,
+        uncertainty=parse_uncertainty(quantity, table.uncertainty.value, values),
+        observable=_parse_observable(quantity.name, table),
+        load_uncertainty=_parse_load_uncertainty(table, next((name for name in LOADS if name in loads), "force")),
+        name=str(table.name or ""),
+        **loads,
+        **common,
+    )
+
+
+def _parse_observable(name: str, table: DataTable) -> CustomObservable | None:
     """Return the custom observable of a quantity such as a frequency; None for a quantity of a contact."""
-    for quantity, argument in _OBSERVABLE_KEYS.items():
-        if argument in table and quantity != name:
-            raise ValueError(f"{argument} belongs to [[data]] of a {quantity}, not of {name}")
+    arguments = quantities_of(table, *(observable.argument for observable in FILE_OBSERVABLES.values()))
+    for quantity, observable in FILE_OBSERVABLES.items():
+        if observable.argument in arguments and quantity != name:
+            raise ValueError(f"{observable.argument} belongs to [[data]] of a {quantity}, not of {name}")
     if name not in FILE_OBSERVABLES:
         return None
     observable = FILE_OBSERVABLES[name]
-    if observable.argument in table:
-        return observable.make(parse(observable.argument, table[observable.argument], observable.kind))
-    if observable.default is None:
+    argument = arguments.get(observable.argument, observable.default)
+    if argument is None:
         raise ValueError(f"[[data]] of a {name} needs its {observable.argument}")
-    return observable.make(observable.default)
+    return observable.make(argument)
 
 
-def _parse_saturation(table: Mapping[str, Any]) -> dict[str, Any]:
-    """Parse the saturation to a keyword argument of `Measured`; empty if it is not stated."""
-    return {"saturation": parse("saturation", table["saturation"], Kind.MODULUS)} if "saturation" in table else {}
-
-
-def _parse_load_uncertainty(table: Mapping[str, Any], load: str) -> float:
-    """Parse the uncertainty of the loads; 0 by default."""
-    return (
-        parse("load_uncertainty", table["load_uncertainty"], LOADS[load].kind) if "load_uncertainty" in table else 0.0
-    )
-
-
-def _parse_numbers(name: str, value: Any, kind: str) -> numpy.ndarray:
-    """Parse a number or a list of numbers with units to an array."""
-    numbers = value if isinstance(value, list) else [value]
-    return numpy.array([parse(name, number, kind) for number in numbers])
+def _parse_load_uncertainty(table: DataTable, load: str) -> float:
+    """Return the uncertainty of the loads; 0 by default."""
+    if table.load_uncertainty is None:
+        return 0.0
+    return parse("load_uncertainty", table.load_uncertainty.value, LOADS[load].kind)

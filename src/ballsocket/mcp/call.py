@@ -10,10 +10,10 @@ from typing import Any
 
 from typer.models import ArgumentInfo
 
-from ..core.checks import check_names, known_name, shown
+from ..core.checks import check_names, known_name, needs, shown
 from ..core.input_files import AllowedFolders, resolve_path
 from ..core.storage.atomic_files import write_text
-from ..io.toml import MOST, read_toml
+from ..files.toml import MOST, read_toml
 from .tools import TOOLS, Commands, Tool, option, parameters
 
 _MAX_CHARACTERS = 300  # of a text
@@ -100,10 +100,11 @@ def _file(tool: Tool, arguments: Mapping[str, Any], folder: Path) -> Path:
     """Return the file of a call, by name or from its content. The called process checks further file names."""
     name, content = arguments.get("file"), arguments.get("content")
     if (name is None) == (content is None):
-        raise ValueError(f"either a file is needed, or content: TOML about {tool.file}")
-    if not isinstance(name if content is None else content, str):
-        raise ValueError("file and content must be text")
-    path = _stored_content(content, folder) if name is None else _existing_file(name, folder)
+        raise ValueError(f"either a file is needed, or content: TOML about {tool.file}, or an object with its tables")
+    if content is None:
+        path = _existing_file(name, folder)
+    else:
+        path = _stored_content(_toml(content) if isinstance(content, Mapping) else content, folder)
     for key in tool.forbidden:
         if key in read_toml(path, tool.file, dict):
             raise ValueError(f"{key} is not for this server: leave it out of the file")
@@ -112,14 +113,39 @@ def _file(tool: Tool, arguments: Mapping[str, Any], folder: Path) -> Path:
 
 def _existing_file(name: Any, folder: Path) -> Path:
     """Return the path of a file in the folder."""
+    if not isinstance(name, str):
+        raise ValueError(f"file = {shown(name)} must be text")
     path = folder / _checked_operand(next(_texts("file", name)), folder)
     if not path.is_file():
         raise ValueError(f"{shown(name)} does not exist in the folder of this server")
     return path
 
 
+def _toml(content: Mapping[str, Any]) -> str:
+    """Write an object as TOML.
+
+    Raises
+    ------
+    ValueError
+        A value that TOML does not have.
+    ImportError
+        The writer of TOML is not installed.
+    """
+    needs("mcp", "tomli_w")
+    import tomli_w
+
+    try:
+        return tomli_w.dumps(content)
+    except (TypeError, AttributeError) as error:
+        raise ValueError("content has null or a key that is no text: leave out keys without a value") from error
+    except RecursionError as error:
+        raise ValueError("content is nested too deeply: a file has tables of keys") from error
+
+
 def _stored_content(content: Any, folder: Path) -> Path:
     """Write content to a file of the folder that is named by its hash, and return the path."""
+    if not isinstance(content, str):
+        raise ValueError(f"content = {shown(content)} must be text in TOML, or an object")
     raw = content.encode("utf-8", errors="replace")
     if len(raw) > MOST:
         raise ValueError(f"the content is larger than {MOST} bytes")

@@ -12,7 +12,9 @@ from typing import Any, get_args, get_origin
 
 from ..catalogue import off_axis
 from ..core.quantities import QUANTITIES
+from ..files.schema_keys import json_schema
 from ..problem.dimensions import DIAMETERS
+from .file_kinds import file_table
 
 Commands = Mapping[str, Callable[..., None]]
 """Functions of the commands by name; their parameters are annotated for typer."""
@@ -126,10 +128,8 @@ TOOLS: Mapping[str, Tool] = MappingProxyType(
 OMITTED = ("as_json", "workers", "scheduler", "units")
 """Parameters that only matter in a terminal, or to the owner of the machine."""
 
-_FILE = {
-    "file": "TOML file about {}, in the folder of the server.",
-    "content": "Content of that file, if it is not in the folder.",
-}
+_FILE = "A TOML file about {}, in the folder of the server."
+_CONTENT = "Content of that file, in place of its name: text in TOML, or an object with the same tables and keys."
 
 
 def parameters(tool: Tool, commands: Commands) -> Mapping[str, Parameter]:
@@ -145,15 +145,26 @@ def _is_offered(tool: Tool, name: str, parameter: Parameter) -> bool:
 def schema(tool: Tool, commands: Commands) -> dict[str, Any]:
     """Return the JSON Schema of a tool's arguments."""
     properties = {name: _property(name, parameter) for name, parameter in parameters(tool, commands).items()}
+    definitions: dict[str, Any] = {}
     if tool.file:
-        files = {name: {"type": "string", "description": text.format(tool.file)} for name, text in _FILE.items()}
-        properties = files | properties
+        content, definitions = _content_schema(tool)
+        named = {"type": "string", "description": _FILE.format(tool.file)}
+        properties = {"file": named, "content": content, **properties}
     return {
         "type": "object",
         "properties": properties,
         "required": list(tool.required),
         "additionalProperties": False,
+        **({"$defs": definitions} if definitions else {}),
     }
+
+
+def _content_schema(tool: Tool) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the schema of the content of a tool's file, and the definitions that it refers to."""
+    file = json_schema(file_table(tool.command))
+    keys = {key: part for key, part in file["properties"].items() if key not in tool.forbidden}
+    table = {"type": "object", "properties": keys, "required": file["required"], "additionalProperties": False}
+    return {"description": _CONTENT, "anyOf": [{"type": "string"}, table]}, file["$defs"]
 
 
 def _property(name: str, parameter: Parameter) -> dict[str, Any]:

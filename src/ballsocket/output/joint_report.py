@@ -13,8 +13,8 @@ from typing import Any
 from ..contact import Contact
 from ..core.quantities import CUP, MATERIAL, STRESS_LIMITS
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..io.joint_file import JointFile
-from ..io.joint_toml import tables_of
+from ..files.joint_file import JointFile
+from ..files.joint_toml import tables_of
 from ..problem import Material
 from ..problem.cup import Cup
 from ..studies.parameters import PARAMETERS

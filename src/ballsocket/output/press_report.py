@@ -12,7 +12,7 @@ from ..contact.verdict import assess_strength
 from ..core.quantities import CONTACT
 from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..io.joint_file import JointFile
+from ..files.joint_file import JointFile
 from ..studies.local_uncertainty import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from . import html, quick_plot

@@ -6,12 +6,12 @@ Directions are those of the patient's body: x to the right, y to the front, z up
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from enum import Enum
 from math import cos, pi, sin
 
 from ..core import arrays
 from ..core.arrays import Array, is_plain_number
 from ..core.checks import check_numeric, require, shown
+from ..core.kinds import Choice
 from ..core.quantities import CUP
 
 Direction = tuple[float, float, float]
@@ -20,14 +20,14 @@ UP: Direction = (0.0, 0.0, 1.0)
 """Direction of a vertical load of the ball on a cup."""
 
 
-class Interface(Enum):
+class Interface(Choice):
     """Interface between the liner and its backing: bonded, or sliding without friction."""
 
     BONDED = "bonded"
     SLIDING = "sliding"
 
 
-class Side(Enum):
+class Side(Choice):
     """Side of the body, right or left, on which the cup lies.
 
     On the left, x points to the middle of the body.

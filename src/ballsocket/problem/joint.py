@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from enum import Enum
 from functools import reduce
 from itertools import chain
 from math import inf
@@ -12,12 +11,13 @@ from typing import Any, Unpack
 
 from ..core.arrays import Array, is_plain_number, to_list, where
 from ..core.checks import check_names, require, shown
+from ..core.kinds import Choice
 from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
 from .material import Layer, Material
 from .values import elementwise_maximum, make_unchecked, set_fields, short_text
 
 
-class Support(Enum):
+class Support(Choice):
     """Boundary condition of the outermost surface of a socket.
 
     FIXED: no displacement. FREE: no traction.

@@ -6,8 +6,9 @@
 from __future__ import annotations
 
 from math import inf
+from typing import Any
 
-from ..core.checks import NamedItems
+from ..core.checks import NamedItems, check_text, known_name, shown
 from .joint import Joint
 from .material import Material
 
@@ -151,3 +152,16 @@ _ALL_JOINTS = (
 
 joints: dict[str, Joint] = NamedItems("joint", {joint.name: joint for joint in _ALL_JOINTS})
 """Joints by name: common hips, reverse shoulders, a suspension ball joint and a tilting-pad pivot."""
+
+
+def named_material(name: str, chosen: Any) -> Material:
+    """Return a preset material by its name, regardless of capitals; `name` is that of the body in messages.
+
+    Raises
+    ------
+    ValueError
+        A name that is not known, or several names.
+    """
+    if isinstance(chosen, str) and "," in chosen:
+        raise ValueError(f"{name} material {shown(chosen)} are several, and one is needed: optimise and studies choose")
+    return materials[known_name(f"{name} material", check_text(f"{name}.material", chosen), materials)]

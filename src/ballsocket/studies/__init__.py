@@ -7,6 +7,7 @@ the parameters that matter. `design_map` and similar functions plot studies.
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from ..core.checks import nearest
@@ -17,7 +18,6 @@ from .design import Design, grid, sample, table
 from .distributions import LogNormal, Normal, Rectangular, tolerance
 from .export import export
 from .expressions import parse_limit
-from .file import read_study
 from .limits import Limit, allowed
 from .optimisation import Optimum, optimise
 from .parameters import PARAMETERS
@@ -71,12 +71,16 @@ design_map: Callable[..., Any]
 front_figure: Callable[..., Any]
 sensitivity_figure: Callable[..., Any]
 
-if not TYPE_CHECKING:  # a type checker would accept any name
+if TYPE_CHECKING:
+    from .file import read_study
+else:  # a type checker would accept any name
 
     def __getattr__(name: str) -> Any:
-        """Load a plot function on its first use."""
+        """Load a plot function, or the reader of study files, on its first use."""
         if name in _PLOTS:
             return load_plot(name)
+        if name == "read_study":  # the schema of study files takes time to load
+            return import_module(f"{__name__}.file").read_study
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}{nearest(name, __all__)}")
 
 

@@ -6,7 +6,6 @@ import warnings
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import Enum
 from functools import lru_cache
 from math import inf
 
@@ -14,6 +13,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+from ..core.kinds import Choice
 from ..core.quantities import MATERIAL, QUANTITIES
 from ..problem import Material
 from .distributions import Distribution
@@ -148,7 +148,7 @@ class MaterialAxis(Axis):
         return tuple(material.name or str(material) for material in self.materials)
 
 
-class Method(Enum):
+class Method(Choice):
     """Methods of sampling."""
 
     SOBOL = "sobol"

@@ -12,7 +12,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require, shown
-from ..io.columns import read_columns
+from ..files.columns import read_columns
 from ..problem import Material
 from .axes import (
     MAX_COUNT,

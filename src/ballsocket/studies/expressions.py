@@ -8,8 +8,8 @@ from typing import Any
 from ..core.checks import check_names, shown
 from ..core.deprecation import renamed_names
 from ..core.quantities import QUANTITIES
-from ..io.joint_file import named_material
-from ..io.units import parse
+from ..files.units import parse
+from ..problem.presets import named_material
 from .distributions import Distribution, Rectangular, tolerance
 from .limits import LIMITED_NAMES, Limit
 from .parameters import MATERIAL_PARTS, PARAMETERS

@@ -1,48 +1,153 @@
-"""A study file: TOML with units in; model, joint and design out. Strict, as joint files are."""
+"""Study files: TOML with units that describes a model, a joint and a design of cases."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, ClassVar
 
-from ..catalogue import catalogue, judge, off_axis
 from ..contact import Model
-from ..core.checks import check_names, check_text, known_name, nearest, shown
+from ..core.checks import check_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
-from ..elasticity.exact.exact_curve import ExactCurve
-from ..io.joint_file import KEYS, check_keys, named_material
-from ..io.named_joint import PARTS, joint_in
-from ..io.toml import read_toml, table_of
-from ..io.units import parse
-from ..problem import Joint
-from .axes import Method, Span
-from .design import Design, grid, sample, table
-from .parameters import MATERIAL_PARTS, PARAMETERS
-from .scatter import Read, distribution_of
-
-_TOP = (
-    "model",
-    *PARTS,
-    "axes",
-    "samples",
-    "table",
-    "quantities",
-    "store",
-    "engine",
+from ..files.joint_file import JointTables
+from ..files.named_joint import joint_in
+from ..files.schema import (
+    QUANTITIES_SCHEMA,
+    QUANTITY_SCHEMA,
+    Parsed,
+    Table,
+    Text,
+    Whole,
+    Word,
+    meaning,
+    parsed_values,
+    quantity_keys,
+    read_table,
+    with_keys,
 )
-FILE_KEYS = {"": _TOP, **{name: KEYS[name] for name in PARTS}, "axes": tuple(PARAMETERS)}
-_ENGINES = ("serial", "processes", "dask")
-_LARGEST = 1 << 53
-models: dict[str, Model] = {**catalogue, "exact-curve": ExactCurve(), judge.name: judge, off_axis.name: off_axis}
-"""By the names that files and the command line use."""
+from ..files.toml import read_toml
+from ..files.units import parse
+from ..problem import Joint
+from ..problem.presets import materials, named_material
+from .axes import Method, Span
+from .default_model import models
+from .design import Design, grid, sample, table
+from .parameters import PARAMETERS
+from .scatter import ScatteredNumber
+
+
+class ModelName(Word):
+    """Name of a model."""
+
+    noun, choices = "model", tuple(models)
+
+
+class AxisValues(Parsed):
+    """Number, list of numbers, or equal steps `{from, to, count}`."""
+
+    schema: ClassVar[Mapping[str, Any]] = {
+        "anyOf": [
+            *QUANTITIES_SCHEMA["anyOf"],
+            {
+                "type": "object",
+                "properties": {"from": QUANTITY_SCHEMA, "to": QUANTITY_SCHEMA, "count": Whole.schema},
+                "required": ["from", "to", "count"],
+                "additionalProperties": False,
+            },
+        ]
+    }
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> float | list[float] | Span:
+        """Convert the values of an axis."""
+        if isinstance(value, list):
+            return [parse(f"{name}[{i}]", number, cls.kind) for i, number in enumerate(value)]
+        if not isinstance(value, Mapping):
+            return parse(name, value, cls.kind)
+        check_names(value, ("from", "to", "count"), f"in {name}")
+        missing = [key for key in ("from", "to", "count") if key not in value]
+        if missing:
+            raise ValueError(f"{name} needs from, to and count; missing: {', '.join(missing)}")
+        low, high = (parse(f"{name}.{key}", value[key], cls.kind) for key in ("from", "to"))
+        return Span(low, high, Whole.read(f"{name}.count", value["count"]))
+
+
+class AxisMaterials(Parsed):
+    """Name of a material, or list of names."""
+
+    schema: ClassVar[Mapping[str, Any]] = {
+        "type": ["string", "array"],
+        "items": {"type": "string", "examples": list(materials)},
+    }
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> list[Any]:
+        """Convert the names of materials."""
+        return [named_material(name, material) for material in (value if isinstance(value, list) else [value])]
+
+
+class MethodName(Word):
+    """Method of sampling."""
+
+    choices = tuple(method.value for method in Method)
+
+
+class EngineKind(Word):
+    """Kind of executor."""
+
+    choices = ("serial", "processes", "dask")
+
+
+@with_keys(quantity_keys(PARAMETERS, AxisValues))
+class AxesTable(Table, frozen=True, kw_only=True):
+    """Axes of a grid: values of parameters, and materials."""
+
+    liner: Annotated[AxisMaterials | None, meaning("materials of the liner")] = None
+    ball: Annotated[AxisMaterials | None, meaning("materials of the ball")] = None
+
+
+@with_keys(quantity_keys(PARAMETERS, ScatteredNumber))
+class SamplesTable(Table, frozen=True, kw_only=True):
+    """Samples: their number, and a distribution for each parameter that varies."""
+
+    count: Annotated[Whole, meaning("number of samples")]
+    seed: Annotated[Whole, meaning("seed of the samples")] = Whole(0)
+    method: Annotated[MethodName, meaning("method of sampling")] = MethodName(Method.SOBOL.value)
+
+
+class RowsTable(Table, frozen=True, kw_only=True):
+    """Table of cases."""
+
+    path: Annotated[Text, meaning("CSV or Parquet file with a column for each parameter")]
+
+
+class EngineTable(Table, frozen=True, kw_only=True):
+    """Executor of a study."""
+
+    qualified: ClassVar[bool] = True
+
+    kind: Annotated[EngineKind, meaning("kind of executor")]
+    workers: Annotated[Whole | None, meaning("number of worker processes")] = None
+    address: Annotated[Text | None, meaning("address of a Dask scheduler")] = None
+
+
+class StudyTable(JointTables, frozen=True, kw_only=True):
+    """Study file."""
+
+    model: Annotated[ModelName, meaning("name of the model")] = ModelName("hess-forsbach")
+    axes: AxesTable | None = None
+    samples: SamplesTable | None = None
+    table: RowsTable | None = None
+    quantities: Annotated[list[Text] | None, meaning("quantities of the contact; all by default")] = None
+    store: Annotated[Text | None, meaning("folder of the results")] = None
+    engine: EngineTable = EngineTable(kind=EngineKind("serial"))
 
 
 @dataclass(frozen=True, eq=False)
 class StudyFile:
-    """What a study file says."""
+    """Contents of a study file."""
 
     model: Model
     joint: Joint
@@ -68,7 +173,7 @@ def read_study(path: str | Path) -> StudyFile:
     Raises
     ------
     ValueError
-        One sentence: what is wrong, and the nearest thing that is right.
+        One sentence: the error, and the nearest allowed name.
     OSError
         A file cannot be read.
     """
@@ -77,113 +182,48 @@ def read_study(path: str | Path) -> StudyFile:
 
 
 def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
-    check_keys(content, "", "at the top", FILE_KEYS)
-    quantities = content.get("quantities", [])
-    if not (isinstance(quantities, list) and all(isinstance(name, str) for name in quantities)):
-        raise ValueError(f"quantities = {shown(quantities)} must be a list of names")
-    given = joint_in(content, folder)
+    """Create the study of a file in a folder."""
+    tables = read_table(content, StudyTable)
+    file = joint_in(tables, folder)
     return StudyFile(
-        model=named_model(content.get("model", "hess-forsbach")).in_cup(given.cup),
-        joint=given.joint,
-        design=_design(content, folder),
-        quantities=tuple(quantities),
-        store=folder / _text("store", content["store"]) if "store" in content else None,
-        engine=read_engine(table_of(content, "engine")),
+        model=models[tables.model].in_cup(file.cup),
+        joint=file.joint,
+        design=_design(tables, content, folder),
+        quantities=tuple(map(str, tables.quantities or ())),
+        store=None if tables.store is None else folder / _filled("store", tables.store),
+        engine=_engine(tables.engine),
     )
 
 
-def named_model(name: Any) -> Model:
-    """A model by its name in the catalogue, or the finite elements.
-
-    Raises
-    ------
-    ValueError
-        A name that is not known, with the nearest one.
-    """
-    return models[known_name("model", name, models)]
-
-
-def read_engine(content: Mapping[str, Any]) -> Engine:
-    """An engine from `kind`, `workers` and `address`."""
-    check_names(content, ("kind", "workers", "address"), "in [engine]")
-    if content and "kind" not in content:
-        raise ValueError(f"[engine] needs a kind: {', '.join(_ENGINES)}")
-    kind, workers = content.get("kind", "serial"), content.get("workers")
-    if kind == "serial" and workers is not None:
+def _engine(table: EngineTable) -> Engine:
+    """Create an executor."""
+    if table.kind == "serial" and table.workers is not None:
         raise ValueError("engine kind 'serial' has no workers: 'processes' and 'dask' have")
-    if kind not in _ENGINES:
-        raise ValueError(f"engine kind {shown(kind)} is not known{nearest(kind, _ENGINES)}")
-    if workers is not None:
-        workers = _whole("workers", workers)
-    if kind == "dask":
-        address = _text("address", content["address"]) if "address" in content else None
+    if table.kind != "dask" and table.address is not None:
+        raise ValueError(f"engine kind {str(table.kind)!r} has no address: 'dask' has")
+    workers = None if table.workers is None else int(table.workers)
+    if table.kind == "dask":
+        address = None if table.address is None else _filled("address", table.address)
         return Distributed(address=address, workers=workers)
-    if "address" in content:
-        raise ValueError(f"engine kind {kind!r} has no address: 'dask' has")
-    return Processes(workers=workers) if kind == "processes" else Serial()
+    return Processes(workers=workers) if table.kind == "processes" else Serial()
 
 
-def _design(content: Mapping[str, Any], folder: Path) -> Design:
-    axes, samples, rows = (table_of(content, name) for name in ("axes", "samples", "table"))
-    check_names(axes, (*PARAMETERS, *MATERIAL_PARTS), "in [axes]")
-    design = grid(**{name: _values(name, value) for name, value in axes.items()})
-    if samples:
-        design = _samples(samples) * design
-    if rows:
-        check_names(rows, ("path",), "in [table]")
-        design = table(folder / _text("path", rows.get("path", ""))) * design
+def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Design:
+    """Create the design of a study: the product of samples, rows of a table and a grid."""
+    design = grid(**parsed_values(tables.axes, content.get("axes", {})))
+    if tables.samples is not None:
+        samples = tables.samples
+        spreads = parsed_values(samples, content["samples"])
+        design = sample(int(samples.count), seed=int(samples.seed), method=Method(samples.method), **spreads) * design
+    if tables.table is not None:
+        design = table(folder / _filled("path", tables.table.path)) * design
     if not design.names:
         raise ValueError("nothing varies: a table [axes], [samples] or [table] is needed")
     return design
 
 
-def _values(name: str, value: Any) -> Any:
-    """What an axis takes: one number, several, or a span; materials by their names."""
-    if name in MATERIAL_PARTS:
-        return [named_material(name, each) for each in (value if isinstance(value, list) else [value])]
-    kind = PARAMETERS[name].kind
-    if isinstance(value, list):
-        return [parse(f"{name}[{place}]", each, kind) for place, each in enumerate(value)]
-    if not isinstance(value, Mapping):
-        return parse(name, value, kind)
-    check_names(value, ("from", "to", "count"), f"in {name}")
-    missing = [key for key in ("from", "to", "count") if key not in value]
-    if missing:
-        raise ValueError(f"{name} needs from, to and count; missing: {', '.join(missing)}")
-    low, high = (parse(f"{name}.{key}", value[key], kind) for key in ("from", "to"))
-    return Span(low, high, _whole(f"{name}.count", value["count"]))
-
-
-def _samples(content: Mapping[str, Any]) -> Design:
-    own = ("count", "seed", "method")
-    check_names(content, (*own, *PARAMETERS), "in [samples]")
-    if "count" not in content:
-        raise ValueError("samples.count is missing")
-    method = content.get("method", Method.SOBOL.value)
-    known = [one.value for one in Method]
-    if method not in known:
-        raise ValueError(f"method {shown(method)} is not known{nearest(method, known)}")
-    scattered = {name: distribution_of(name, value, _read(name)) for name, value in content.items() if name not in own}
-    count, seed = _whole("count", content["count"]), _whole("seed", content.get("seed", 0))
-    return sample(count, seed=seed, method=Method(method), **scattered)
-
-
-def _read(name: str) -> Read:
-    kind = PARAMETERS[name].kind
-    return lambda key, value: parse(key, value, kind)
-
-
-def _whole(name: str, value: Any) -> int:
-    if isinstance(value, float) and value.is_integer():
-        return int(value)
-    if isinstance(value, bool) or not isinstance(value, int):
-        raise ValueError(f"{name} = {shown(value)} must be a whole number")
-    if not -_LARGEST < value < _LARGEST:
-        raise ValueError(f"{name} = {shown(value)} is too large a number")
-    return value
-
-
-def _text(name: str, value: Any) -> str:
-    if not check_text(name, value):
+def _filled(name: str, text: str) -> str:
+    """Return a text as plain text; ValueError if it is empty."""
+    if not text:
         raise ValueError(f"{name} is empty")
-    return value
+    return str(text)

@@ -1,19 +1,20 @@
-"""How files say that a number scatters: a small table of what its distribution needs."""
+"""Distributions in files: small tables with the numbers of a distribution."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 from ..core.checks import shown
 from ..core.kinds import Kind
-from ..io.units import as_given, parse
+from ..files.schema import QUANTITY_SCHEMA, Parsed
+from ..files.units import as_given, parse
 from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 
 Read = Callable[[str, Any], float]
-"""From the name and the text of a number to the number, by the units that it has."""
+"""Function from name and value of a number in a file to the number."""
 
-_KINDS: tuple[tuple[tuple[str, ...], Any], ...] = (
+_DISTRIBUTIONS: tuple[tuple[tuple[str, ...], Callable[..., Distribution]], ...] = (
     (("low", "high"), Rectangular),
     (("mean", "deviation"), Normal),
     (("mean", "deviation", "low"), Normal),
@@ -22,22 +23,40 @@ _KINDS: tuple[tuple[tuple[str, ...], Any], ...] = (
     (("median", "factor"), LogNormal),
     (("nominal", "plus_minus"), tolerance),
 )
+"""Keys of the tables, and the distributions that they describe."""
+
+DISTRIBUTION_SCHEMA: Mapping[str, Any] = {
+    "type": "object",
+    "properties": dict.fromkeys(dict.fromkeys(key for keys, _ in _DISTRIBUTIONS for key in keys), QUANTITY_SCHEMA),
+    "additionalProperties": False,
+}
+"""JSON schema of a distribution."""
+
+
+class ScatteredNumber(Parsed):
+    """Distribution `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`."""
+
+    schema: ClassVar[Mapping[str, Any]] = DISTRIBUTION_SCHEMA
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> Distribution:
+        """Convert a distribution."""
+        return distribution_of(name, value, lambda key, number: parse(key, number, cls.kind))
 
 
 def distribution_of(name: str, content: Any, read: Read) -> Distribution:
-    """A distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
+    """Create a distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
 
     Raises
     ------
     ValueError
         Other keys, or numbers that are not allowed.
     """
-    for keys, make in _KINDS:
+    for keys, make in _DISTRIBUTIONS:
         if isinstance(content, Mapping) and set(content) == set(keys):
             numbers = {key: _number(f"{name}.{key}", content[key], read) for key in keys}
             with as_given(content, f"{name}."):
-                made: Distribution = make(**numbers)
-                return made
+                return make(**numbers)
     raise ValueError(
         f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, "
         "{median, factor}, or {nominal, plus_minus}"
@@ -45,5 +64,5 @@ def distribution_of(name: str, content: Any, read: Read) -> Distribution:
 
 
 def _number(name: str, value: Any, read: Read) -> float:
-    """A factor has no unit, whatever it is of."""
+    """Read a number of a distribution; a factor has no unit."""
     return parse(name, value, Kind.NUMBER) if name.endswith(".factor") else read(name, value)

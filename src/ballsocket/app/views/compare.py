@@ -13,7 +13,7 @@ from ...catalogue import catalogue
 from ...compare import relative_deviation, successful_contacts
 from ...contact import Contact
 from ...core.quantities import JOINT
-from ...io.joint_file import JointFile
+from ...files.joint_file import JointFile
 from ...output.html import drawn, table
 from ...output.press_plot import press_figure
 from ...output.style import LineStyle, numbered

@@ -14,7 +14,7 @@ from ...core.checks import shown
 from ...core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ...core.validity import OutsideDomainError
 from ...elasticity.off_axis.contact import OffAxisContact
-from ...io.joint_file import JointFile
+from ...files.joint_file import JointFile
 from ...output import html as page
 from ...output.cup_plot import cup_figure
 from ..angle_map import angle_map

@@ -13,7 +13,7 @@ import panel as pn
 
 from ...core.kinds import Unit
 from ...core.quantities import QUANTITIES
-from ...io.joint_file import JointFile
+from ...files.joint_file import JointFile
 from ...output.html import drawn, table
 from ...output.study_plots import design_map
 from ...output.study_terminal import map_rows

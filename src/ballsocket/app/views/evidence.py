@@ -11,7 +11,7 @@ from typing import Any
 
 from ...core.checks import check_names, shown
 from ...evidence.matrix import title_of
-from ...io.joint_file import JointFile
+from ...files.joint_file import JointFile
 from ...output import evidence_words
 from ...output import html as page
 from ...output.evidence_words import case_text, listed, value_text

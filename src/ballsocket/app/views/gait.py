@@ -13,7 +13,7 @@ import numpy
 
 from ...core.checks import check_names
 from ...core.kinds import Kind, Unit
-from ...io.joint_file import JointFile
+from ...files.joint_file import JointFile
 from ...output import html as page
 from ...output.gait_plot import course_figure
 from ..fields import typed

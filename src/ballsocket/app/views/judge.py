@@ -12,8 +12,8 @@ import panel as pn
 
 from ...compare import relative_deviation
 from ...core.quantities import CONTACT, CUP
-from ...io.joint_file import JointFile, read_cup
-from ...io.joint_toml import cup_table
+from ...files.joint_file import JointFile, read_cup
+from ...files.joint_toml import cup_table
 from ...output.html import picture, table
 from ...problem.cup import Interface
 from ..judging import Judged, judged

@@ -14,7 +14,7 @@ from ...catalogue import catalogue, reference
 from ...compare import Comparison, successful_contacts
 from ...contact import Contact
 from ...core.quantities import BEARING, FIELD
-from ...io.joint_file import JointFile
+from ...files.joint_file import JointFile
 from ...output import html as page
 from ...output.press_plot import press_figure
 from ...output.press_report import press_lede, press_sections

@@ -10,8 +10,8 @@ from typing import Any
 from ...core.checks import check_names, shown
 from ...core.kinds import Kind, Unit
 from ...core.quantities import CONTACT
+from ...files.joint_file import JointFile
 from ...hip.law_fields import LawField
-from ...io.joint_file import JointFile
 from ...output import html as page
 from ...problem.presets import joints
 from ..fields import Field, choice, number, segments, typed

@@ -4,9 +4,9 @@ import time
 
 import pytest
 
+from ballsocket.files import units as module
+from ballsocket.files.units import LONGEST, convert, parse, parse_units
 from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
-from ballsocket.io import units as module
-from ballsocket.io.units import LONGEST, convert, parse, parse_units
 
 ENDLESS = [
     "1e-6 9^9^9^9",

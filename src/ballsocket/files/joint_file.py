@@ -1,0 +1,297 @@
+"""Joint files: TOML with units that describes a joint, its cup and its load."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from math import degrees, hypot, inf, pi
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Self
+
+from ..contact.assembly import select_and_check_load
+from ..core.checks import require, shown
+from ..core.kinds import Kind
+from ..problem import Joint, Layer, Material, Support
+from ..problem.cup import Cup, Interface, Side
+from ..problem.presets import materials, named_material
+from .schema import (
+    Angle,
+    Force,
+    Length,
+    Modulus,
+    Number,
+    Table,
+    Text,
+    Value,
+    meaning,
+    quantities_of,
+    read_table,
+    written_in,
+)
+from .toml import parse_toml, read_toml
+from .units import as_given, parse
+
+_MAX_LAYERS = 20
+"""Largest number of layers behind the liner."""
+
+
+class LengthsTable(Table, frozen=True, kw_only=True):
+    """Lengths of a joint: two of radii and clearance, and the thickness of the liner or an outer dimension."""
+
+    ball_radius: Length | None = None
+    head_diameter: Length | None = None
+    socket_radius: Length | None = None
+    clearance: Length | None = None
+    diametral_clearance: Length | None = None
+    liner_thickness: Length | None = None
+    outer_radius: Length | None = None
+    outer_diameter: Length | None = None
+    interference: Length | None = None
+    support: Annotated[Support, meaning("outermost surface behind the liner: fixed or free")] = Support.FIXED
+
+
+class MaterialName(Text):
+    """Name of a preset material."""
+
+    choices = tuple(materials)
+
+
+class MaterialTable(Table, frozen=True, kw_only=True):
+    """Material: a preset by name, numbers, or both; numbers win over those of the preset."""
+
+    qualified: ClassVar[bool] = True
+
+    material: Annotated[MaterialName | None, meaning("name of a preset material")] = None
+    young: Modulus | None = None
+    poisson: Number | None = None
+    proportional_limit: Modulus | None = None
+    yield_stress: Modulus | None = None
+    fatigue_limit: Modulus | None = None
+    allowable_pressure: Modulus | None = None
+
+
+class LayerTable(MaterialTable, frozen=True, kw_only=True):
+    """Layer behind the liner, from the liner outwards."""
+
+    thickness: Annotated[Length, meaning("thickness of the layer; inf is a massive body")]
+
+
+class CupTable(Table, frozen=True, kw_only=True):
+    """Cup: its rim, its interface with the liner, and its orientation in the body."""
+
+    arc_of_cover: Angle | None = None
+    chamfer: Length | None = None
+    inclination: Angle | None = None
+    anteversion: Angle | None = None
+    interface: Annotated[Interface | None, meaning("interface of liner and backing: bonded or sliding")] = None
+    side: Annotated[Side | None, meaning("side of the body: right or left")] = None
+
+
+class Direction(Value, tuple[float, ...]):
+    """Direction of a load: three numbers to the right, to the front and upwards."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": ["array", "string"], "minItems": 3, "maxItems": 3}
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert three numbers: a list, or a text with commas."""
+        parts = value.split(",") if isinstance(value, str) else value
+        if not isinstance(parts, list | tuple) or len(parts) != 3:
+            raise ValueError(f"{name} = {shown(value)} must be three numbers: to the right, to the front, upwards")
+        numbers = cls(parse(name, part, Kind.NUMBER) for part in parts)
+        length = hypot(*numbers)
+        require(f"length of {name}", length, 0 < length < inf, "a direction points somewhere")
+        return numbers
+
+
+class LoadTable(Table, frozen=True, kw_only=True):
+    """Load: one of force, indentation and half angle; a tilt from the cup's axis, or a direction in the body."""
+
+    force: Force | None = None
+    indentation: Length | None = None
+    half_angle: Angle | None = None
+    tilt: Angle | None = None
+    direction: Annotated[Direction | None, meaning("direction to the right, to the front and upwards")] = None
+
+
+class JointTables(Table, frozen=True, kw_only=True):
+    """Tables that describe a joint in every kind of file."""
+
+    joint: Annotated[LengthsTable | str | None, meaning("name of a preset, or path of a joint file")] = None
+    liner: MaterialTable | None = None
+    ball: MaterialTable | None = None
+    backing: list[LayerTable] | None = None
+    cup: CupTable | None = None
+
+
+class JointFileTable(JointTables, frozen=True, kw_only=True):
+    """Joint file."""
+
+    name: Annotated[Text | None, meaning("name of the joint")] = None
+    source: Annotated[Text | None, meaning("source of the numbers")] = None
+    joint: LengthsTable | None = None
+    load: LoadTable | None = None
+
+
+@dataclass(frozen=True)
+class JointFile:
+    """Contents of a joint file: a joint, its load, its cup and the direction of the load.
+
+    Attributes
+    ----------
+    joint : Joint
+    load : dict
+        Empty, or one of force (N), indentation (mm) and half_angle (rad).
+    cup : Cup
+    aim : dict
+        Direction of the load as the keyword of `Sphere.press`: empty, or one of tilt (rad) and direction.
+    """
+
+    joint: Joint
+    load: dict[str, float]
+    cup: Cup = Cup()  # noqa: RUF009 (frozen)
+    aim: dict[str, Any] = field(default_factory=dict)
+
+
+def read_joint(path: str | Path) -> JointFile:
+    """Read a joint file.
+
+    The file is TOML. The table `joint` has two of `ball_radius`, `socket_radius` and `clearance` (or `head_diameter`,
+    `diametral_clearance` in their places), and `liner_thickness` (or `outer_radius`, `outer_diameter`: of the liner, or
+    of the shell right behind it). The tables `liner` and, for a deformable ball, `ball` have a `material` by name, or
+    `young` and `poisson`, or both; numbers win. The limits `proportional_limit`, `yield_stress`, `fatigue_limit` and
+    `allowable_pressure` are optional. The table `load` has one of `force`, `indentation` and `half_angle`. The backing
+    of the liner is rigid, or an array of tables `[[backing]]` from the liner outwards, each with a `thickness` and a
+    material; `support` in the table `joint` states whether its outermost surface is "fixed" (the default) or "free".
+    The table `cup` has `arc_of_cover`, `chamfer` and `interface` ("bonded" or "sliding"), and the orientation
+    `inclination`, `anteversion` and `side` ("right" or "left"). Values are text with a unit ("16 mm", "3 kN", "1 GPa",
+    "40 deg") or bare numbers in mm, N, MPa, degrees.
+
+    Returns
+    -------
+    JointFile
+        All numbers in mm, N, MPa and rad.
+
+    Raises
+    ------
+    ValueError
+        One sentence: the error, and the nearest allowed name.
+    OSError
+        The file cannot be read.
+    """
+    return read_toml(Path(path), "joint", joint_of)
+
+
+def parse_joint(raw: bytes, title: str) -> JointFile:
+    """Convert the content of a joint file; see `read_joint`. Messages begin with `title`."""
+    return parse_toml(raw, title, "joint", joint_of)
+
+
+def joint_of(content: Mapping[str, Any]) -> JointFile:
+    """Convert the tables of a joint file, or of the command line; see `read_joint`."""
+    tables = read_table(content, JointFileTable)
+    file = describe_joint(tables, name=tables.name or "", source=tables.source or "")
+    load = tables.load or LoadTable()
+    return replace(file, load=_load_of(load), aim=_aim_of(load))
+
+
+def describe_joint(tables: JointTables, name: str = "", source: str = "") -> JointFile:
+    """Create joint and cup from the tables that describe them."""
+    lengths = tables.joint if isinstance(tables.joint, LengthsTable) else LengthsTable()
+    liner = _material("liner", tables.liner or MaterialTable())
+    ball = None if tables.ball is None else _material("ball", tables.ball)
+    layers = tables.backing or []
+    if len(layers) > _MAX_LAYERS:
+        raise ValueError(f"{len(layers)} layers are behind the liner; at most {_MAX_LAYERS} are read")
+    backing = tuple(_layer(f"backing[{number}]", layer) for number, layer in enumerate(layers))
+    numbers: Any = quantities_of(lengths)
+    with as_given(written_in(lengths)):
+        joint = Joint(
+            **numbers, liner=liner, ball=ball, backing=backing, support=lengths.support, name=name, source=source
+        )
+    return JointFile(joint, {}, cup_of(tables.cup or CupTable()))
+
+
+def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
+    """Replace lengths and materials of a joint file by those of tables as in a joint file.
+
+    Raises
+    ------
+    ValueError
+        As of `read_joint`; numbers of a ball that is rigid, without a material.
+    """
+    tables, joint = read_table(content, JointFileTable), file.joint
+    lengths = tables.joint or LengthsTable()
+    changes: dict[str, Any] = dict(quantities_of(lengths))
+    for part, material in (("liner", tables.liner), ("ball", tables.ball)):
+        if material is not None:
+            changes[part] = _material(part, material, getattr(joint, part))
+    with as_given(written_in(lengths)):
+        return replace(file, joint=joint.replace(**changes))
+
+
+def read_load(content: Mapping[str, Any]) -> dict[str, float]:
+    """Read at most one of force, indentation and half_angle, as the keyword of a press."""
+    return _load_of(read_table(content, LoadTable))
+
+
+def _load_of(table: LoadTable) -> dict[str, float]:
+    """Return the load of a table as the keyword of a press; empty without a load."""
+    load = quantities_of(table, "force", "indentation", "half_angle")
+    if len(load) > 1:
+        raise ValueError(f"one load is needed, got {', '.join(load)}")
+    with as_given(written_in(table)):
+        return dict([select_and_check_load(**load)]) if load else {}
+
+
+def read_aim(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Read at most one of tilt and direction, as the keyword of `Sphere.press`; other keys are ignored."""
+    return _aim_of(read_table({name: content[name] for name in ("tilt", "direction") if name in content}, LoadTable))
+
+
+def _aim_of(table: LoadTable) -> dict[str, Any]:
+    """Return the direction of a load as the keyword of `Sphere.press`; empty for a load along the cup's axis."""
+    if table.tilt is not None and table.direction is not None:
+        raise ValueError("either a tilt or a direction is needed, got both")
+    if table.direction is not None:
+        return {"direction": tuple(table.direction)}
+    if table.tilt is None:
+        return {}
+    tilt = float(table.tilt)
+    require("tilt", degrees(tilt), 0 <= tilt <= pi, "a tilt is 0 to 180 degrees from the cup's axis")
+    return {"tilt": tilt}
+
+
+def read_cup(content: Mapping[str, Any]) -> Cup:
+    """Read a cup; every key is optional."""
+    return cup_of(read_table(content, CupTable))
+
+
+def cup_of(table: CupTable) -> Cup:
+    """Create a cup from its table."""
+    choices = {"interface": table.interface, "side": table.side}
+    arguments: dict[str, Any] = {name: choice for name, choice in choices.items() if choice is not None}
+    arguments |= quantities_of(table, "arc_of_cover", "chamfer", "inclination", "anteversion")
+    with as_given(written_in(table)):
+        return Cup(**arguments)
+
+
+def _layer(name: str, table: LayerTable) -> Layer:
+    """Create a layer behind the liner."""
+    material = _material(name, table)
+    with as_given(written_in(table), f"{name}."):
+        return Layer(thickness=float(table.thickness), material=material)
+
+
+_ELASTIC = ("young", "poisson")
+
+
+def _material(name: str, table: MaterialTable, present: Material | None = None) -> Material:
+    """Create a material from a preset, from numbers that win over its own, or from the present material."""
+    numbers: Any = quantities_of(table, *(key for key in MaterialTable.__struct_fields__ if key != "material"))
+    preset = present if table.material is None else named_material(name, table.material)
+    missing = [key for key in _ELASTIC if key not in numbers]
+    if missing and preset is None:
+        raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
+    with as_given(written_in(table), f"{name}."):
+        return replace(preset, **numbers) if preset else Material(**numbers)

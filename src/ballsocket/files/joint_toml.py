@@ -1,0 +1,119 @@
+"""Joints as the tables of a joint file, and as its text."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..core.arrays import is_plain_number
+from ..core.checks import needs
+from ..problem import Layer, Material
+from ..problem.cup import Cup, Side
+from ..problem.presets import materials
+from .joint_file import (
+    CupTable,
+    Direction,
+    JointFile,
+    JointFileTable,
+    LayerTable,
+    LengthsTable,
+    LoadTable,
+    MaterialName,
+    MaterialTable,
+)
+from .schema import Angle, Force, Length, Modulus, Number, Text, write_table
+
+Tables = dict[str, Any]
+
+
+def tables_of(file: JointFile) -> Tables:
+    """Return the tables of a joint file, with bare numbers in mm, N, MPa, degrees; `joint_of` reads them.
+
+    Raises
+    ------
+    ValueError
+        A joint of arrays.
+    """
+    return write_table(_file_table(file))
+
+
+def toml_of(file: JointFile) -> str:
+    """Return the text of a joint file, with units.
+
+    Raises
+    ------
+    ImportError
+        The writer of TOML is not installed.
+    ValueError
+        A joint of arrays.
+    """
+    needs("app", "tomli_w")
+    import tomli_w
+
+    return tomli_w.dumps(write_table(_file_table(file), with_units=True))
+
+
+def cup_table(cup: Cup) -> Tables:
+    """Return the table `cup` of a joint file, without default angles."""
+    return write_table(_cup(cup))
+
+
+def _file_table(file: JointFile) -> JointFileTable:
+    """Return the tables of a joint file; ValueError for a joint of arrays."""
+    joint = file.joint
+    if not all(map(is_plain_number, joint.numbers())):
+        raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
+    return JointFileTable(
+        name=Text(joint.name) if joint.name else None,
+        source=Text(joint.source) if joint.source else None,
+        joint=LengthsTable(
+            ball_radius=Length(joint.ball_radius),
+            clearance=Length(joint.clearance),
+            liner_thickness=Length(joint.liner_thickness),
+            support=joint.support,
+        ),
+        liner=MaterialTable(**_material(joint.liner)),
+        ball=None if joint.ball is None else MaterialTable(**_material(joint.ball)),
+        backing=list(map(_layer, joint.backing)) or None,
+        cup=_cup(file.cup) if file.cup != Cup() or file.cup.oriented else None,
+        load=_load(file) if file.load or file.aim else None,
+    )
+
+
+def _cup(cup: Cup) -> CupTable:
+    """Return the table of a cup, without the default orientation."""
+    return CupTable(
+        arc_of_cover=Angle(cup.arc_of_cover),
+        chamfer=Length(cup.chamfer),
+        inclination=Angle(cup.inclination) if cup.oriented else None,
+        anteversion=Angle(cup.anteversion) if cup.oriented else None,
+        interface=cup.interface,
+        side=cup.side if cup.oriented or cup.side is not Side.RIGHT else None,
+    )
+
+
+def _load(file: JointFile) -> LoadTable:
+    """Return the table of a load and its direction."""
+    keys: dict[str, Any] = {
+        "force": Force,
+        "indentation": Length,
+        "half_angle": Angle,
+        "tilt": Angle,
+        "direction": Direction,
+    }
+    return LoadTable(**{key: keys[key](value) for key, value in (file.load | file.aim).items()})
+
+
+def _layer(layer: Layer) -> LayerTable:
+    """Return the table of a layer behind the liner."""
+    return LayerTable(thickness=Length(layer.thickness), **_material(layer.material))
+
+
+def _material(material: Material) -> dict[str, Any]:
+    """Return the keys of a material: the name of its preset with the numbers that differ, or all numbers."""
+    numbers = {"young": material.young, "poisson": material.poisson, **material.stress_limits}
+    values = {name: (Number if name == "poisson" else Modulus)(value) for name, value in numbers.items()}
+    for key, preset in materials.items():
+        if preset.name == material.name and set(preset.stress_limits) <= set(values):
+            changed = {name: value for name, value in values.items() if getattr(preset, name) != value}
+            return {"material": MaterialName(key), **changed}
+    return values

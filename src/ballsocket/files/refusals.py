@@ -1,0 +1,204 @@
+"""Sentences for files that their schema does not allow: table, key, value, and what is allowed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from difflib import get_close_matches
+from typing import Any
+
+import msgspec
+from msgspec import inspect
+
+from ..core.checks import nearest, shown
+from ..core.quantities import QUANTITIES
+from .schema import KEY, Table, Text, Value, read_value
+
+_PATH = re.compile(r" - at `\$(?P<path>[^`]*)`$")
+_STEP = re.compile(r"\.(?P<key>\w+)|\[(?P<index>\d+|\.\.\.)\]")
+_MAX_HINTS = 3
+"""Largest number of names or tables in a hint."""
+
+
+@dataclass(frozen=True)
+class _Place:
+    """Place in a file: the value there, its declared type, the name of the table around it and of its key."""
+
+    value: Any
+    type: inspect.Type
+    table: str = ""
+    key: str = ""
+    qualified: bool = False
+
+    @property
+    def label(self) -> str:
+        """Name of the place in messages."""
+        return f"{self.table}.{self.key}" if self.qualified and self.table else self.key
+
+
+def format_refusal(error: msgspec.ValidationError, content: Mapping[str, Any], table: type[Table], name: str) -> str:
+    """Format the sentence for what a file has and its schema does not allow; `name` is that of the table."""
+    root = place = _Place(content, inspect.type_info(table), table=name)
+    path = _PATH.search(str(error))
+    for step in _STEP.finditer(path["path"] if path else ""):
+        place = _step_into(place, step)
+    struct = struct_in(place.type)
+    if error.__cause__ is not None:
+        return str(error.__cause__).replace(KEY, place.label) + _table_hint(place, root)
+    if struct is not None and isinstance(place.value, Mapping):
+        return _unknown_or_missing_key(place, struct, root)
+    choices = choices_in(place.type)
+    allowed = f"is not allowed: {' or '.join(map(repr, choices))}" if choices else f"must be {_expected(place)}"
+    return f"{place.label} = {shown(place.value)} {allowed}{_table_hint(place, root)}"
+
+
+def _step_into(place: _Place, step: re.Match[str]) -> _Place:
+    """Return the place of a key or of an element of a list."""
+    if step["key"] is not None:
+        key, struct = step["key"], struct_in(place.type)
+        assert struct is not None
+        kind = next(field.type for field in struct.fields if field.encode_name == key)
+        qualified = issubclass(struct.cls, Table) and struct.cls.qualified
+        return _Place(place.value[key], kind, place.key or place.table, key, qualified)
+    if step["index"] == "...":
+        return _step_into_named_entry(place)
+    key = f"{place.key}[{step['index']}]"
+    listed = next(part for part in parts_of(place.type) if isinstance(part, inspect.ListType))
+    return replace(place, value=place.value[int(step["index"])], type=listed.item_type, key=key)
+
+
+def _step_into_named_entry(place: _Place) -> _Place:
+    """Return the place of the first refused entry of a table whose keys the file chooses."""
+    named = next(part for part in parts_of(place.type) if isinstance(part, inspect.DictType))
+    (kind,) = parts_of(named.value_type)
+    assert isinstance(kind, inspect.StructType | inspect.CustomType)
+    for name, value in place.value.items():
+        try:
+            msgspec.convert(value, kind.cls, dec_hook=read_value)
+        except msgspec.ValidationError:
+            return replace(place, value=value, type=kind, key=f"{place.key}.{name}")
+    raise AssertionError("one of the entries is refused")
+
+
+def parts_of(kind: inspect.Type) -> Iterator[inspect.Type]:
+    """List the members of a union without their annotations, or the type itself."""
+    if isinstance(kind, inspect.Metadata):
+        yield from parts_of(kind.type)
+    elif isinstance(kind, inspect.UnionType):
+        for member in kind.types:
+            yield from parts_of(member)
+    else:
+        yield kind
+
+
+def struct_in(kind: inspect.Type) -> inspect.StructType | None:
+    """Return the table among the types of a value; None without one."""
+    return next((part for part in parts_of(kind) if isinstance(part, inspect.StructType)), None)
+
+
+def customs_in(kind: inspect.Type) -> list[type[Value]]:
+    """List the types of values of this package among the types of a value."""
+    return [part.cls for part in parts_of(kind) if isinstance(part, inspect.CustomType)]
+
+
+def choices_in(kind: inspect.Type) -> list[str]:
+    """List the words that a key allows; empty for other keys."""
+    for part in parts_of(kind):
+        if isinstance(part, inspect.EnumType):
+            return [item.value for item in part.cls]
+    return [word for custom in customs_in(kind) if issubclass(custom, Text) for word in custom.choices]
+
+
+def tables_of(kind: inspect.Type) -> Iterator[tuple[str, inspect.StructType]]:
+    """List the tables of a file with their heads: "[liner]", "[[backing]]", "[machine.NAME]", "[free.liner]"."""
+    struct = struct_in(kind)
+    for field in struct.fields if struct else ():
+        for part in parts_of(field.type):
+            head, inner = field.encode_name, None
+            if isinstance(part, inspect.StructType):
+                inner = part
+            elif isinstance(part, inspect.DictType):
+                head, inner = f"{head}.NAME", struct_in(part.value_type)
+            elif isinstance(part, inspect.ListType):
+                head, inner = f"[{head}]", struct_in(part.item_type)
+            if inner is not None:
+                yield f"[{head}]", inner
+                yield from ((f"[{head}.{name.strip('[]')}]", table) for name, table in tables_of(inner))
+
+
+def meaning_of(key: str, kind: inspect.Type) -> str:
+    """Return the meaning of a key: its own, or that of the quantity of this name."""
+    own = (kind.extra_json_schema or {}).get("description") if isinstance(kind, inspect.Metadata) else None
+    return str(own or (QUANTITIES[key].title if key in QUANTITIES else ""))
+
+
+def _unknown_or_missing_key(place: _Place, struct: inspect.StructType, root: _Place) -> str:
+    """Format the sentence for a key that a table does not know, or lacks."""
+    keys = {field.encode_name: field for field in struct.fields}
+    table = place.key or root.table
+    for key in place.value:
+        if key not in keys:
+            where = f"in {table if '[' in table else f'[{table}]'}" if table else "at the top"
+            return f"{shown(key)} {where} is not known{_hint(key, keys, root)}"
+    missing = next(field for name, field in keys.items() if field.required and name not in place.value)
+    label = f"{table}.{missing.encode_name}" if table else missing.encode_name
+    parts = (meaning_of(missing.encode_name, missing.type), ", ".join(choices_in(missing.type)))
+    return f"{label} is missing: {'; allowed: '.join(filter(None, parts))}"
+
+
+def _hint(key: str, keys: Mapping[str, Any], root: _Place) -> str:
+    """Format a hint for an unknown key: own keys that end in it, other tables that know it, or the nearest own key."""
+    own = [name for name in keys if name.endswith(f"_{key}")]
+    if len(own) > 1:
+        return f"; did you mean {' or '.join(map(repr, own[:_MAX_HINTS]))}?"
+    heads = dict(tables_of(root.type))
+    if others := [head for head, struct in heads.items() if key in {field.encode_name for field in struct.fields}]:
+        return f"; it belongs in {' or '.join(others[:_MAX_HINTS])}"
+    if own := [head for head in heads if head.strip("[]") == key]:
+        return f"; it is a table of its own, {own[0]}"
+    return nearest(key, keys)
+
+
+def _table_hint(place: _Place, root: _Place) -> str:
+    """Format a hint for a table under the name of a key that is no table, such as [cycles] in place of [cycle]."""
+    heads = {head.strip("[]"): head for head, _ in tables_of(root.type)}
+    if not isinstance(place.value, Mapping) or place.key not in root.value or place.key in heads:
+        return ""
+    near = get_close_matches(place.key, heads, n=1)
+    return f"; did you mean {heads[near[0]]}?" if near else ""
+
+
+def _expected(place: _Place) -> str:
+    """Describe what a value must be."""
+    parts = list(parts_of(place.type))
+    texts = [text(place, part) for kind, text in _EXPECTED for part in parts if isinstance(part, kind)]
+    return " or ".join(texts) or "another kind of value"
+
+
+def expected(key: str, kind: inspect.Type) -> str:
+    """Describe what the value of a key must be."""
+    return _expected(_Place(None, kind, key=key))
+
+
+def _array(place: _Place, kind: inspect.ListType) -> str:
+    """Describe an array of tables, or a list."""
+    if struct_in(kind.item_type):
+        return f"an array of tables: [[{place.key}]] before each of them"
+    items = "texts" if any(issubclass(custom, str) for custom in customs_in(kind.item_type)) else "numbers"
+    text = meaning_of(place.key, place.type)
+    return f"a list of {items}{f': {text}' if text else ''}"
+
+
+def _table(place: _Place, kind: inspect.StructType) -> str:
+    """Describe a table."""
+    return f"a table: [[{place.key.partition('[')[0]}]]" if "[" in place.key else f"a table: [{place.key}]"
+
+
+_EXPECTED: Sequence[tuple[type[inspect.Type], Callable[[_Place, Any], str]]] = (
+    (inspect.ListType, _array),
+    (inspect.StrType, lambda place, kind: "text"),
+    (inspect.StructType, _table),
+    (inspect.DictType, lambda place, kind: f"a table: [{place.key}]"),
+    (inspect.BoolType, lambda place, kind: "true or false"),
+)

@@ -1,0 +1,347 @@
+"""Schemas of input files: each key of a table is declared once, with its type, unit and meaning.
+
+A table of a file is a subclass of `Table`, a key of the table is a field of the class:
+
+    class FilmTable(Table, frozen=True, kw_only=True):
+        ball_roughness: Annotated[Length | None, meaning("Roughness Ra of the ball")] = None
+
+The same declaration reads a file (`read_table`), refuses what it does not allow (`refusals`), writes a file
+(`write_table`), describes the file as JSON schema and lists its keys for the documentation (`schema_keys`). A key whose
+name is a quantity of `ballsocket.core.quantities` has the meaning of that quantity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from enum import Enum
+from math import degrees, inf, isinf, nextafter, radians
+from typing import Annotated, Any, ClassVar, Self, TypeVar, cast
+
+import msgspec
+
+from ..core.checks import check_text, known_name, shown
+from ..core.kinds import Kind
+from ..core.quantities import Quantity as CoreQuantity
+from .units import LONGEST, parse
+
+KEY = "\0"
+"""Placeholder for the name of a key while its value is read; `shown` never lets it through from a file."""
+
+QUANTITY_SCHEMA: Mapping[str, Any] = {
+    "type": ["number", "string"],
+    "pattern": r"^\s*[-+]?(\.?[0-9]|[iI]nf)",
+    "maxLength": LONGEST,
+}
+"""JSON schema of a number, or of a text with a unit."""
+
+QUANTITIES_SCHEMA: Mapping[str, Any] = {"anyOf": [QUANTITY_SCHEMA, {"type": "array", "items": QUANTITY_SCHEMA}]}
+"""JSON schema of a quantity, or of a list of quantities."""
+
+
+def meaning(text: str) -> msgspec.Meta:
+    """Return the annotation of a key that states its meaning."""
+    return msgspec.Meta(description=text)
+
+
+class Value:
+    """Base class of the types of values that msgspec does not read itself."""
+
+    kind: ClassVar[Kind] = Kind.NUMBER
+    """Physical kind of its numbers."""
+
+    schema: ClassVar[Mapping[str, Any]] = {}
+    """JSON schema of the accepted values."""
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a value of a file; `name` is its key for messages.
+
+        Raises
+        ------
+        ValueError
+            A value that is not allowed.
+        """
+        raise NotImplementedError
+
+    @classmethod
+    def of(cls, kind: Kind) -> type[Self]:
+        """Return the type of such values with numbers of a physical kind."""
+        return type(cls.__name__, (cls,), {"kind": kind, "__doc__": cls.__doc__})
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of the accepted values."""
+        return dict(cls.schema)
+
+
+ValueType = TypeVar("ValueType", bound=Value)
+
+
+class Parsed(Value):
+    """Base class of values that are read to an object of another class, the attribute `value`."""
+
+    def __init__(self, value: Any) -> None:
+        self.value = value
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a value of a file."""
+        return cls(cls.parse(name, value))
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> Any:
+        """Convert a value of a file to the attribute `value`; unchanged where another key determines its meaning."""
+        return value
+
+
+class Text(Value, str):
+    """Text without control characters."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": "string", "maxLength": 1000}
+    choices: ClassVar[Sequence[str]] = ()
+    """Known texts, which editors complete."""
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a text of a file."""
+        return cls(check_text(name, value))
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of the accepted texts."""
+        return choices_schema(cls.choices) if cls.choices else dict(cls.schema)
+
+
+class Word(Text):
+    """One of several words, in any spelling with capitals, blanks and hyphens."""
+
+    noun: ClassVar[str] = ""
+    """Kind of the named item in messages; by default the name of the key."""
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a word of a file to its usual spelling."""
+        return cls(known_name(cls.noun or f"{name} =", value, cls.choices))
+
+
+def choices_schema(choices: Sequence[str]) -> dict[str, Any]:
+    """Return the JSON schema of words: their usual spelling, or one with capitals, blanks or underscores."""
+    return {"type": "string", "anyOf": [{"enum": list(choices)}, {"pattern": "[A-Z_ ]"}]}
+
+
+class Texts(Value, list[str]):
+    """Text or list of texts."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": ["string", "array"], "items": {"type": "string"}}
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert one text or a list of texts of a file."""
+        return cls(check_text(name, text) for text in (value if isinstance(value, list) else [value]))
+
+
+_MAX_INTEGER = 1 << 53
+"""Largest whole number that a float represents exactly."""
+
+
+class Whole(Value, int):
+    """Whole number."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"type": "integer"}
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a whole number of a file; 4.0 is one."""
+        if isinstance(value, float) and value.is_integer():
+            value = int(value)
+        if isinstance(value, bool) or not isinstance(value, int):
+            raise ValueError(f"{name} = {shown(value)} must be a whole number")
+        if not -_MAX_INTEGER < value < _MAX_INTEGER:
+            raise ValueError(f"{name} = {shown(value)} is too large a number")
+        return cls(value)
+
+
+class Quantity(Value, float):
+    """Number in mm, N, MPa or rad, with the number or text of the file in `written`."""
+
+    schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
+    written: Any
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a number, or a text with a unit, of a file."""
+        number = cls(parse(name, value, cls.kind))
+        number.written = value
+        return number
+
+    def write(self, with_unit: bool) -> float | str:
+        """Return the number as a file has it: bare in mm, N, MPa and degrees, or as a text with its unit."""
+        number = _in_degrees(float(self)) if self.kind is Kind.ANGLE else float(self)
+        return (
+            f"{number!r} {self.kind.assumed_unit}"
+            if with_unit and self.kind.assumed_unit and not isinf(number)
+            else number
+        )
+
+
+def _in_degrees(angle: float) -> float:
+    """Return the degrees that a file reads as exactly this angle (rad), a round number if there is one."""
+    near = degrees(angle)
+    above, below = nextafter(near, inf), nextafter(near, -inf)
+    candidates = (round(near, 9), near, above, below, nextafter(above, inf), nextafter(below, -inf))
+    return next((number for number in candidates if radians(number) == angle), near)
+
+
+class Number(Quantity):
+    """Plain number without a unit."""
+
+
+class Length(Quantity):
+    """Length in mm."""
+
+    kind = Kind.LENGTH
+
+
+class Force(Quantity):
+    """Force in N."""
+
+    kind = Kind.FORCE
+
+
+class Modulus(Quantity):
+    """Modulus, stress or pressure in MPa."""
+
+    kind = Kind.MODULUS
+
+
+class Angle(Quantity):
+    """Angle in rad; a bare number of a file is in degrees."""
+
+    kind = Kind.ANGLE
+
+
+class Table(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True, omit_defaults=True):
+    """Base class of the tables of a file: keys that are not fields are refused."""
+
+    qualified: ClassVar[bool] = False
+    """True if several tables have these keys, so that messages name the table with the key: "liner.young"."""
+
+    def stated(self) -> dict[str, Any]:
+        """Return the values that are not defaults, by the keys of the file."""
+        names = zip(self.__struct_encode_fields__, self.__struct_fields__, self.__struct_defaults__, strict=True)
+        values = ((key, getattr(self, name), default) for key, name, default in names)
+        return {key: value for key, value, default in values if value is not default}
+
+
+TableType = TypeVar("TableType", bound=Table)
+
+
+def with_keys(keys: Mapping[str, Any]) -> Callable[[type[TableType]], type[TableType]]:
+    """Return a class decorator that adds optional keys to a table; `keys` has the type of their values, with a meaning.
+
+    Examples
+    --------
+    >>> @with_keys({"gap": Annotated[Length, meaning("gap of the test")]})
+    ... class TestTable(Table, frozen=True, kw_only=True):
+    ...     name: Text | None = None
+    >>> read_table({"gap": "1 cm"}, TestTable).gap
+    10.0
+    """
+    fields = [(key, _or_none(kind), None) for key, kind in keys.items()]
+
+    def decorate(table: type[TableType]) -> type[TableType]:
+        """Create a subclass of the same name with the keys."""
+        extended: Any = msgspec.defstruct(
+            table.__name__,
+            fields,
+            bases=(table,),
+            module=table.__module__,
+            namespace={"__doc__": table.__doc__},
+            frozen=True,
+            kw_only=True,
+        )
+        return cast(type[TableType], extended)
+
+    return decorate
+
+
+def _or_none(kind: Any) -> Any:
+    """Return the type of a key that may be absent, with the meaning of the type."""
+    metadata = getattr(kind, "__metadata__", ())
+    return Annotated[kind.__origin__ | None, *metadata] if metadata else kind | None
+
+
+def quantity_keys(quantities: Mapping[str, CoreQuantity], value: type[Value] = Quantity) -> dict[str, Any]:
+    """Return the types of keys for `with_keys`: one for each quantity, with its title and numbers of its kind."""
+    return {key: Annotated[value.of(quantity.kind), meaning(quantity.title)] for key, quantity in quantities.items()}
+
+
+def parsed_values(table: Table | None, content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the objects of the `Parsed` values of a table, in the order of the file's `content`; empty without one."""
+    values = {} if table is None else {name: getattr(table, name, None) for name in content}
+    return {name: value.value for name, value in values.items() if isinstance(value, Parsed)}
+
+
+def quantities_of(table: Table, *names: str) -> dict[str, float]:
+    """Return the numbers of a table that the file states, by key; all quantities without names."""
+    values = {name: getattr(table, name) for name in names or table.__struct_fields__}
+    return {name: float(value) for name, value in values.items() if isinstance(value, Quantity)}
+
+
+def written_in(table: Table) -> dict[str, Any]:
+    """Return the quantities of a table as the file writes them, by key."""
+    values = {name: getattr(table, name) for name in table.__struct_fields__}
+    return {name: value.written for name, value in values.items() if isinstance(value, Quantity)}
+
+
+def read_table(content: Mapping[str, Any], table: type[TableType], name: str = "") -> TableType:
+    """Convert the content of a file, or of one of its tables.
+
+    Parameters
+    ----------
+    content : mapping
+    table : class
+    name : str
+        Name of the table in messages, such as "machine.frame"; empty for a whole file.
+
+    Raises
+    ------
+    ValueError
+        One sentence: the table, the key, the value and what is allowed.
+    """
+    try:
+        return msgspec.convert(dict(content), table, dec_hook=read_value)
+    except msgspec.ValidationError as error:
+        from .refusals import format_refusal  # most files need no message
+
+        raise ValueError(format_refusal(error, content, table, name)) from error
+
+
+def read_value(kind: type[ValueType], value: Any) -> ValueType:
+    """Read a value of a type of this package for msgspec."""
+    return kind.read(KEY, value)
+
+
+def write_table(table: Table, with_units: bool = False) -> dict[str, Any]:
+    """Return a table as the content of a file, without defaults.
+
+    Parameters
+    ----------
+    table : Table
+    with_units : bool
+        True for texts with units, such as "16.0 mm"; otherwise numbers are bare in mm, N, MPa and degrees.
+    """
+    return {key: _write(value, with_units) for key, value in table.stated().items()}
+
+
+def _write(value: Any, with_units: bool) -> Any:
+    """Return a value of a table as a file has it."""
+    if isinstance(value, Table):
+        return write_table(value, with_units)
+    if isinstance(value, Quantity):
+        return value.write(with_units)
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, list):
+        return [_write(item, with_units) for item in value]
+    return ", ".join(map(repr, value)) if isinstance(value, tuple) else value

@@ -1,0 +1,108 @@
+"""JSON schemas of input files: valid, and in agreement with the readers by an independent validator."""
+
+import json
+import tomllib
+from functools import cache
+
+import pytest
+
+from ballsocket.mcp.file_kinds import FILE_TABLES
+
+from ..files.test_corpus import READ, REFUSED, of_kind
+from ..places import EXAMPLES
+from .command import run
+
+jsonschema = pytest.importorskip("jsonschema")
+
+KIND_OF_EXAMPLE = {
+    "evidence.toml": "evidence",
+    "hip_in_use.toml": "hip",
+    "hip_of_many.toml": "hip",
+    "measured_areas.toml": "identify",
+    "measured_joint.toml": "identify",
+}
+"""Kinds of the example files; all others are joint files."""
+
+CORPUS = {kind: kind for kind in FILE_TABLES} | {"evidence": "question"}
+"""Names of the kinds in the corpus of files."""
+
+
+@cache
+def validator(kind):
+    """Return the independent validator of a kind of file."""
+    return jsonschema.Draft202012Validator(json.loads(run("schema", kind).stdout))
+
+
+def errors(kind, text):
+    """List the errors that the validator finds in the text of a file."""
+    return [error.message for error in validator(kind).iter_errors(tomllib.loads(text))]
+
+
+@pytest.mark.parametrize("kind", FILE_TABLES)
+def test_a_schema_is_valid_and_describes_every_key(kind):
+    schema = validator(kind).schema
+    jsonschema.Draft202012Validator.check_schema(schema)
+    assert schema["title"]
+    tables = [schema, *(part for part in schema["$defs"].values() if "properties" in part and "title" in part)]
+    for table in tables:
+        assert table["title"]
+        assert table["additionalProperties"] is False
+        for key, part in table["properties"].items():
+            assert part.get("description") or "Table" in str(part), key
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)
+def test_examples_follow_the_schema_of_their_kind(path):
+    assert errors(KIND_OF_EXAMPLE.get(path.name, "joint"), path.read_text("utf-8")) == []
+
+
+@pytest.mark.parametrize("kind", FILE_TABLES)
+def test_files_that_are_read_follow_the_schema(kind):
+    for case in of_kind(READ, CORPUS[kind]):
+        assert errors(kind, case["text"]) == [], case["text"]
+
+
+@pytest.mark.parametrize("kind", FILE_TABLES)
+def test_a_schema_rejects_most_wrong_files(kind):
+    """Relations between keys, such as a negative clearance, are left to the reader."""
+    files = [case["text"] for case in of_kind(REFUSED, CORPUS[kind]) if "is not TOML" not in case["refusal"]]
+    assert sum(bool(errors(kind, text)) for text in files) > 0.65 * len(files)
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "key"),
+    [
+        ("joint", "[joint]\nball_radus = 16", "ball_radus"),
+        ("joint", "[joint]\nball_radius = true", "True"),
+        ("joint", '[joint]\nball_radius = "wide"', "wide"),
+        ("joint", '[liner]\nmaterial = "uhmwp"', "uhmwp"),
+        ("joint", "[backing]\nthickness = 3", "array"),
+        ("joint", "[[backing]]\nyoung = 3", "thickness"),
+        ("hip", '[wear]\nlaw = "archad"', "archad"),
+        ("hip", "[film]\nviscosty = 1", "viscosty"),
+        ("study", '[engine]\nkind = "process"', "process"),
+        ("study", "[axes]\nclearance = { from = 1, to = 2 }", "clearance|not valid under any"),
+        ("identify", "[machine.frame]\ncompliace = 1", "compliace"),
+        ("evidence", "[risk]\ninfluence = 'low'", "consequence"),
+    ],
+)
+def test_a_wrong_key_or_value_is_rejected(kind, text, key):
+    parts = key.split("|")
+    assert any(part in message for message in errors(kind, text) for part in parts), errors(kind, text)
+
+
+@pytest.mark.parametrize("word", ["uhmwpe", "UHMWPE", "bone_cement", "Bone Cement"])
+def test_words_are_accepted_in_every_spelling_of_the_reader(word):
+    assert errors("joint", f"[liner]\nmaterial = {word!r}") == []
+
+
+def test_the_command_says_what_kinds_there_are():
+    answer = run("schema", "hipp")
+    assert (answer.returncode, answer.stderr) == (
+        2,
+        "ballsocket: kind of file 'hipp' is not known; did you mean 'hip'?\n",
+    )
+    assert run("schema", "HIP").stdout == run("schema", "hip").stdout
+    text = run("schema", "--help").stdout
+    assert all(kind in text for kind in FILE_TABLES)
+    assert "JSON schema" in text

@@ -1,0 +1,43 @@
+"""Files written for version 1.0: read with the same numbers; those that it refused are still refused.
+
+`tests/data/make_files.py` wrote the files and what version 1.0 makes of them.
+"""
+
+import json
+from collections import Counter
+
+import pytest
+
+from ..fuzz.limits import check_sentence
+from ..places import DATA
+from .read_files import outcome
+
+CASES = json.loads((DATA / "files_of_1_0.json").read_text("utf-8"))
+READ = [case for case in CASES if "refusal" not in case]
+REFUSED = [case for case in CASES if "refusal" in case]
+KINDS = sorted({case["kind"] for case in CASES})
+
+
+def of_kind(cases, kind):
+    """Select the files of one kind."""
+    return [case for case in cases if case["kind"] == kind]
+
+
+def test_the_corpus_has_200_valid_and_400_refused_files():
+    assert len(READ) == 200
+    assert len(REFUSED) == 400
+    assert set(Counter(case["kind"] for case in READ).values()) == {40}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_files_of_1_0_are_read_with_the_same_numbers(kind):
+    for case in of_kind(READ, kind):
+        assert json.loads(json.dumps(outcome(kind, case["text"]).get("result"))) == case["result"], case["text"]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_files_that_1_0_refused_are_refused_in_one_sentence(kind):
+    for case in of_kind(REFUSED, kind):
+        refusal = outcome(kind, case["text"]).get("refusal", "")
+        assert refusal.startswith(("file.toml", "[Errno 2]")), case["text"]
+        check_sentence(refusal)
