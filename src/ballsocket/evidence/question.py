@@ -182,7 +182,7 @@ class Question:
     file : JointFile
         The nominal joint, and its cup.
     axes : mapping of str to tuple of float
-        Values of the vary_joint parameters, in mm, N, MPa, rad; one of them is a load.
+        Values of the varied parameters, in mm, N, MPa, rad; one of them is a load.
     limits : tuple of Limit
         Limits of the numbers.
     tolerances : mapping of str to Distribution

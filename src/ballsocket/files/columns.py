@@ -52,7 +52,7 @@ NumberedRow = tuple[int, Sequence[str]]
 
 
 @dataclass(frozen=True, eq=False)
-class Column:
+class NumberColumn:
     """Numbers of a column; NaN for cells without a number."""
 
     numbers: array[float] = field(default_factory=lambda: array("d"))
@@ -70,9 +70,9 @@ class Column:
         self.numbers.append(value)
 
 
-def _fill_columns(rows: Iterable[NumberedRow], width: int, decimal_mark: str = ".") -> list[Column]:
+def _fill_columns(rows: Iterable[NumberedRow], width: int, decimal_mark: str = ".") -> list[NumberColumn]:
     """Convert rows of cells to columns; missing cells at the end of a row are gaps."""
-    columns = [Column() for _ in range(width)]
+    columns = [NumberColumn() for _ in range(width)]
     for number, cells in rows:
         for index, column in enumerate(columns):
             column.append(number, cells[index] if index < len(cells) else "", decimal_mark)
@@ -180,7 +180,7 @@ class TextTable:
     ----------
     heads : tuple of str
         Heads of the columns, in the order of the file, with units from the line below them.
-    columns : tuple of Column
+    columns : tuple of NumberColumn
         Numbers of each column.
     in_degrees : bool, optional
         Unit of angles in an OpenSim header: True for degrees, False for radians, None if not stated.
@@ -189,7 +189,7 @@ class TextTable:
     """
 
     heads: tuple[str, ...]
-    columns: tuple[Column, ...]
+    columns: tuple[NumberColumn, ...]
     in_degrees: bool | None = None
     is_opensim: bool = False
 

@@ -80,7 +80,7 @@ else:  # a type checker would accept any name
         if name in _PLOTS:
             return load_plot(name)
         if name == "read_study":  # the schema of study files takes time to load
-            return import_module(f"{__name__}.file").read_study
+            return import_module("ballsocket.studies.file").read_study
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}{nearest(name, __all__)}")
 
 
