@@ -186,7 +186,7 @@ else:
     def __getattr__(name: str) -> Any:
         """Import the reader of joint files on first use, or a moved module that version 1.0 offered as an attribute."""
         if name == "read_joint":
-            return import_module(f"{__name__}.files.joint_file").read_joint
+            return import_module("ballsocket.files.joint_file").read_joint
         if present_module_path(f"{__name__}.{name}") is None:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         return import_module(f"{__name__}.{name}")

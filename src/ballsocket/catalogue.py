@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from .contact import Model
 from .contact.model_info import ModelInfo
-from .core.checks import NamedItems
+from .core.checks import NamedItems, known_name
 from .core.deprecation import renamed_names
+from .elasticity.exact.exact_curve import ExactCurve
 from .elasticity.exact.model import Exact
 from .elasticity.exact.tabulated.model import Tabulated
 from .elasticity.finite_elements.model import FiniteElement
@@ -47,7 +50,22 @@ _MODELS: tuple[Model, ...] = (
 catalogue: dict[str, Model] = NamedItems("model", {model.name: model for model in _MODELS})
 """Models that press in milliseconds or less, by the name that files and the option `--model` use."""
 
+named_models: dict[str, Model] = {**catalogue, "exact-curve": ExactCurve(), judge.name: judge, off_axis.name: off_axis}
+"""Models by the names that files and the command line use."""
+
 listed_models: dict[str, ModelInfo] = {model.name: model for model in (*_MODELS, judge, off_axis, PinInHole())}
 """Models that are listed and cited: the catalogue, the slow models, and the plane model of a pin in a hole."""
+
+
+def named_model(name: Any) -> Model:
+    """Return a model by its name.
+
+    Raises
+    ------
+    ValueError
+        A name that is not known; the message suggests the nearest one.
+    """
+    return named_models[known_name("model", name, named_models)]
+
 
 __getattr__ = renamed_names(__name__, {"theories": "listed_models"})

@@ -48,7 +48,7 @@ def test_a_schema_is_valid_and_describes_every_key(kind):
         assert table["title"]
         assert table["additionalProperties"] is False
         for key, part in table["properties"].items():
-            assert part.get("description") or "Table" in str(part), key
+            assert part.get("description") or "$ref" in str(part), key
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.stem)

@@ -126,15 +126,15 @@ def test_a_liner_with_a_yield_stress_has_no_note():
 
 def test_the_reason_depends_on_the_known_strengths():
     pressed = replace(BARE, allowable_pressure=20.0)
-    assert "yield not checked: the liner" in _note(replace(HIP, liner=pressed, ball=None))
-    note = _note(replace(HIP, liner=BARE, ball=bs.COCR))
+    assert "yield not checked: the liner" in _note_on_invalid_points(replace(HIP, liner=pressed, ball=None))
+    note = _note_on_invalid_points(replace(HIP, liner=BARE, ball=bs.COCR))
     assert note == f"{NOT_CHECKED}; the utilisation is that of the ball alone"
     failed = bs.Exact().press(replace(HIP, liner=BARE), half_angle=1.55)
     assert failed.status.failed
     assert not any("checked" in note for note in failed.notes)
 
 
-def _note(joint):
+def _note_on_invalid_points(joint):
     return bs.HessForsbach().press(joint, force=3000.0).notes[0]
 
 

@@ -12,7 +12,7 @@ import ballsocket as bs
 from ballsocket.dynamics import Damping, ForceElement, Friction
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.fmu import Fmu, write_cross_check
-from ballsocket.export.fmu.variables import in_si, reference_loads, trajectory
+from ballsocket.export.fmu.variables import reference_loads, states_in_si, trajectory
 
 from ..cli.command import run
 from ..joints import HIP
@@ -178,7 +178,7 @@ def test_the_files_of_the_cross_check_have_the_loads_of_the_element(folder):
     given, reference = table(folder / "hip3_in.csv"), table(folder / "hip3_ref.csv")
     assert (folder / "hip3_in.csv").read_text().startswith('"time","position[1]",')
     state = trajectory(ELEMENT, given["time"])
-    assert_array_equal(given["velocity[3]"], in_si(state)[:, 5])
+    assert_array_equal(given["velocity[3]"], states_in_si(state)[:, 5])
     assert_array_equal(reference["max_pressure"], reference_loads(ELEMENT, state)[:, 8])
     assert 0 < np.count_nonzero(reference["energy"]) < len(reference)  # it touches and leaves
     options = (folder / "hip3_ref.opt").read_text()
@@ -190,7 +190,7 @@ def test_reference_loads_are_in_si_units():
     load = ELEMENT((0.0, 0.01, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0))
     wanted = [*load.force, *(part / 1e3 for part in load.moment), load.energy / 1e3, load.half_angle]
     assert_allclose(reference_loads(ELEMENT, state)[0], [*wanted, 1e6 * load.max_pressure], rtol=1e-12)
-    assert_allclose(in_si(state)[0], [0.0, 1e-5, 1.2e-4, 1e-3, 0.0, 0.02, 0.0, 1.0, 2.0])
+    assert_allclose(states_in_si(state)[0], [0.0, 1e-5, 1.2e-4, 1e-3, 0.0, 0.02, 0.0, 1.0, 2.0])
 
 
 def test_the_velocity_of_the_trajectory_is_that_of_its_position():

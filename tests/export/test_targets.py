@@ -18,7 +18,7 @@ from ballsocket.cli.export import ForceElementOptions, identifier
 from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
 from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
-from ballsocket.export.law_fit import depth_of, expression_fit, power_fit
+from ballsocket.export.law_fit import expression_fit, fit_depth, power_fit
 from ballsocket.export.validity_depth import valid_depth
 from ballsocket.files.joint_file import JointFile
 
@@ -285,10 +285,12 @@ def test_the_power_law_of_exudyn_is_the_law_in_newtons_and_metres():
     program = TARGETS["exudyn"].texts(job)["hip_exudyn.py"]
     stiffness, exponent = map(float, re.search(r"STIFFNESS, EXPONENT = (\S+), (\S+)", program).groups())
     forces = DAMPED.potential(np.array([0.01, 0.05]))[1]
-    assert_allclose(stiffness * np.array([1e-5, 5e-5]) ** exponent, forces, atol=1.01 * job.power.error * forces[1])
+    assert_allclose(
+        stiffness * np.array([1e-5, 5e-5]) ** exponent, forces, atol=1.01 * job.fitted_power_law.error * forces[1]
+    )
     depth, error = re.search(r"indentation of (\S+) m: at most (\S+) % of the force", program).groups()
     assert float(depth) == 5e-5
-    assert float(error) == pytest.approx(100 * job.power.error, rel=0.05)
+    assert float(error) == pytest.approx(100 * job.fitted_power_law.error, rel=0.05)
 
 
 def test_the_expression_of_opensim_is_the_damped_law_in_metres():
@@ -306,10 +308,14 @@ def test_the_text_of_a_power_law_has_its_numbers_for_every_program():
     job = ExportJob(element=DAMPED, name="hip", depth=0.05)
     text = TARGETS["table"].texts(job)["hip_power.txt"]
     numbers = {name: float(value) for name, value in re.findall(r"^(\w+) = (\S+)$", text, re.MULTILINE)}
-    assert numbers == {"k": job.power.stiffness, "n": job.power.exponent, "clearance": pytest.approx(0.1)}
+    assert numbers == {
+        "k": job.fitted_power_law.stiffness,
+        "n": job.fitted_power_law.exponent,
+        "clearance": pytest.approx(0.1),
+    }
     depth, error = re.search(r"error up to (\S+) mm at most (\S+) % of the force", text).groups()
     assert float(depth) == 0.05
-    assert float(error) == pytest.approx(100 * job.power.error, rel=0.05)
+    assert float(error) == pytest.approx(100 * job.fitted_power_law.error, rel=0.05)
     adams, simpack = [line for line in text.splitlines() if line.startswith("-")]
     words = {"MAX": max, "DM": lambda ball, socket: 0.13, "ball": 0, "socket": 0, "x": 0.13}
     expected = -numbers["k"] * 0.03 ** numbers["n"]
@@ -365,11 +371,11 @@ def test_the_note_on_a_range_has_errors_in_percent_and_the_depth_in_micrometres(
 
 def test_the_depth_of_a_fit_is_that_of_a_load_or_the_largest_valid_one():
     force = HERTZ.model.press(HIP, indentation=0.03).force
-    assert depth_of(HERTZ, {"force": float(force)}) == pytest.approx(0.03)
-    assert depth_of(PLAIN, {}) == valid_depth(PLAIN) > 0
+    assert fit_depth(HERTZ, {"force": float(force)}) == pytest.approx(0.03)
+    assert fit_depth(PLAIN, {}) == valid_depth(PLAIN) > 0
     never = ForceElement(bs.Hertz(), HIP.replace(liner_thickness=1e-3))
     assert valid_depth(never) == 0.0
-    assert depth_of(never, {}) == never.wall == 1e-3
+    assert fit_depth(never, {}) == never.wall == 1e-3
 
 
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)

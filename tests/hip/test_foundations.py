@@ -13,7 +13,7 @@ from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
 from ballsocket.hip.film import film_thickness
 from ballsocket.hip.simulation import _halving_error, check_cycles
-from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, spring_foundation, subset_neighbours
+from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, neighbours_in_subset, spring_foundation
 
 from .test_wear import hip
 
@@ -98,7 +98,7 @@ def test_neighbours_cross_the_pole_and_end_at_the_rim():
     assert (after[-1] == cells[-1]).all()
     assert before[0, 0] == cells[0, meridians // 2]
     assert {left[3, 0], right[3, 0]} == {cells[3, 1], cells[3, -1]}
-    subset = subset_neighbours(pairs, cells[2:4].ravel())
+    subset = neighbours_in_subset(pairs, cells[2:4].ravel())
     assert (subset[0, 0].reshape(2, -1)[0] == np.arange(meridians)).all()  # outside the subset: the cell itself
     assert (subset[0, 1].reshape(2, -1)[0] == meridians + np.arange(meridians)).all()
 

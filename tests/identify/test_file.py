@@ -190,7 +190,7 @@ def test_the_frequency_of_a_mass_measures_the_stiffness(question):
         (
             'model = "tabulated"',
             'scatter = "cauchy"',
-            "data.toml: scatter = 'cauchy' is not allowed: 'heavy-tailed' or 'normal'",
+            "data.toml: scatter = 'cauchy' is not known; known: normal, heavy-tailed",
         ),
     ],
 )
@@ -334,7 +334,7 @@ def test_a_file_chooses_columns_load_and_gaps(question):
         (
             'uncertainty = "0.1 um"',
             'uncertainty = "0.1 um"\ngaps = "skip"',
-            "gaps = 'skip' is not allowed: 'leave-out' or 'refuse'",
+            "gaps = 'skip' is not known; known: refuse, leave-out",
         ),
         ('"0.02..0.3 mm"', '"0.02 mm"', "clearance = '0.02 mm' is not a range"),
     ],

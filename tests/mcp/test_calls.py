@@ -62,7 +62,7 @@ def test_descriptions_of_numbers_state_units():
         ("study", {"content": "joint = 'hip-28'\nstore = 'x'"}, "store is not for this server"),
         ("study", {"file": 3}, "file = 3 must be text"),
         ("study", {"content": 3}, "content = 3 must be text in TOML, or an object"),
-        ("study", {"content": {"joint": None}}, "content has null or a key that is no text"),
+        ("study", {"content": {"joint": None}}, "content has null or a key that is not text"),
         ("study", {"content": {"joint": "hip-28", "store": "x"}}, "store is not for this server"),
         ("study", {"content": "joint = 'hip-28'\n[engine]\nkind = 'dask'"}, "engine is not for this server"),
         ("study", {"content": "joint = "}, "is not TOML"),

@@ -11,12 +11,13 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.catalogue import named_model
 from ballsocket.studies.default_model import default_model
 from ballsocket.studies.derivatives import elasticities, finite_differences, jax_derivatives
 from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.expressions import parse_distribution, parse_limit, parse_range
-from ballsocket.studies.file import named_model, read_study
+from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, allowed, joint_dimension
 from ballsocket.studies.optimisation import optimise
 from ballsocket.studies.pareto import pareto

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..catalogue import reference
+from ..catalogue import named_model, reference
 from ..contact import Model
 from ..core.checks import require
 from ..files.joint_file import JointFile
@@ -16,7 +16,7 @@ from ..output import study_plots, study_summary, study_terminal
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..studies.axes import Span
-from ..studies.default_model import check_model_domain, default_model, named_model
+from ..studies.default_model import check_model_domain, default_model
 from ..studies.design import grid
 from ..studies.expressions import parse_choices, parse_distribution, parse_limit, parse_range
 from ..studies.limits import Limit

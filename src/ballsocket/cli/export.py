@@ -11,6 +11,7 @@ from typing import Annotated
 
 import typer
 
+from ..catalogue import named_model, usual
 from ..core.checks import known_name
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
@@ -18,7 +19,6 @@ from ..export.target import ExportJob
 from ..export.targets import TARGETS
 from ..files.joint_file import JointFile
 from ..problem.cup import Cup
-from ..studies.default_model import default_model, named_model
 from .options import JointName, JointOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 
@@ -49,7 +49,7 @@ class ForceElementOptions:
         ValueError
             The model has no force law, or a value is not allowed.
         """
-        model = default_model(file.joint, {}) if self.model is None else named_model(self.model)
+        model = usual(file.joint, {}) if self.model is None else named_model(self.model)
         friction = None if self.friction is None else Friction(coefficient=self.friction)
         cup = None if file.cup == Cup() else file.cup
         try:
@@ -80,7 +80,7 @@ def export(
     out: Annotated[Path, typer.Option(help="Output folder, also the name of the files; created if it does not exist.")],
 ) -> None:
     """Write a joint as a force element for another program."""
-    from ..export.law_fit import depth_of
+    from ..export.law_fit import fit_depth
 
     chosen = TARGETS[known_name("target", target, TARGETS)]
     existing = next(path for path in (out, *out.parents, Path()) if path.exists())
@@ -88,7 +88,7 @@ def export(
         raise ValueError(f"{str(existing)!r} is a file; a folder is needed")
     file = joint_options.read(joint)
     element = element_options.element(file)
-    job = ExportJob(element=element, name=identifier(out), depth=depth_of(element, file.load))
+    job = ExportJob(element=element, name=identifier(out), depth=fit_depth(element, file.load))
     paths, missing = chosen.write(job, out)
     echo_path(out, f": {', '.join(path.relative_to(out).as_posix() for path in paths)}")
     if missing:

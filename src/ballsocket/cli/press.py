@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy
 import typer
 
-from ..catalogue import catalogue, judge, off_axis, reference
+from ..catalogue import catalogue, judge, named_model, off_axis, reference
 from ..compare import Comparison, compare, successful_contacts
 from ..contact import Model
 from ..core.checks import known_name
@@ -18,7 +18,6 @@ from ..files.joint_file import JointFile
 from ..output.terminal import print_curve, print_press
 from ..output.unit_systems import Units
 from ..problem.cup import UP
-from ..studies.default_model import named_model
 from ..version import __version__
 from .elasticity_options import (
     CupOptions,

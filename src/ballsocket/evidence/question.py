@@ -21,18 +21,17 @@ from ..files.named_joint import joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
-    Number,
     Parsed,
+    PlainNumber,
     Table,
     Text,
     Value,
     Word,
     meaning,
-    parsed_values,
     quantity_keys,
-    read_table,
     with_keys,
 )
+from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..hip.config import read_hip
@@ -115,7 +114,7 @@ class RequiredTable(Table, frozen=True, kw_only=True):
 class FrictionTable(Table, frozen=True, kw_only=True):
     """Friction of the joint."""
 
-    coefficient: Annotated[Number | None, meaning("coefficient of friction, 0 to 2")] = None
+    coefficient: Annotated[PlainNumber | None, meaning("coefficient of friction, 0 to 2")] = None
 
 
 class WearFileTable(Table, frozen=True, kw_only=True):

@@ -14,20 +14,8 @@ from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup, Interface, Side
 from ..problem.presets import materials, named_material
-from .schema import (
-    Angle,
-    Force,
-    Length,
-    Modulus,
-    Number,
-    Table,
-    Text,
-    Value,
-    meaning,
-    quantities_of,
-    read_table,
-    written_in,
-)
+from .schema import Angle, Force, Length, PlainNumber, Stress, Table, Text, Value, meaning
+from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
 
@@ -62,12 +50,12 @@ class MaterialTable(Table, frozen=True, kw_only=True):
     qualified: ClassVar[bool] = True
 
     material: Annotated[MaterialName | None, meaning("name of a preset material")] = None
-    young: Modulus | None = None
-    poisson: Number | None = None
-    proportional_limit: Modulus | None = None
-    yield_stress: Modulus | None = None
-    fatigue_limit: Modulus | None = None
-    allowable_pressure: Modulus | None = None
+    young: Stress | None = None
+    poisson: PlainNumber | None = None
+    proportional_limit: Stress | None = None
+    yield_stress: Stress | None = None
+    fatigue_limit: Stress | None = None
+    allowable_pressure: Stress | None = None
 
 
 class LayerTable(MaterialTable, frozen=True, kw_only=True):

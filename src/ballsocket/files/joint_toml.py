@@ -20,7 +20,8 @@ from .joint_file import (
     MaterialName,
     MaterialTable,
 )
-from .schema import Angle, Force, Length, Modulus, Number, Text, write_table
+from .schema import Angle, Force, Length, PlainNumber, Stress, Text
+from .tables import write_table
 
 Tables = dict[str, Any]
 
@@ -111,7 +112,7 @@ def _layer(layer: Layer) -> LayerTable:
 def _material(material: Material) -> dict[str, Any]:
     """Return the keys of a material: the name of its preset with the numbers that differ, or all numbers."""
     numbers = {"young": material.young, "poisson": material.poisson, **material.stress_limits}
-    values = {name: (Number if name == "poisson" else Modulus)(value) for name, value in numbers.items()}
+    values = {name: (PlainNumber if name == "poisson" else Stress)(value) for name, value in numbers.items()}
     for key, preset in materials.items():
         if preset.name == material.name and set(preset.stress_limits) <= set(values):
             changed = {name: value for name, value in values.items() if getattr(preset, name) != value}

@@ -13,7 +13,6 @@ name is a quantity of `ballsocket.core.quantities` has the meaning of that quant
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from enum import Enum
 from math import degrees, inf, isinf, nextafter, radians
 from typing import Annotated, Any, ClassVar, Self, TypeVar, cast
 
@@ -21,7 +20,7 @@ import msgspec
 
 from ..core.checks import check_text, known_name, shown
 from ..core.kinds import Kind
-from ..core.quantities import Quantity as CoreQuantity
+from ..core.quantities import Quantity
 from .units import LONGEST, parse
 
 KEY = "\0"
@@ -161,7 +160,7 @@ class Whole(Value, int):
         return cls(value)
 
 
-class Quantity(Value, float):
+class QuantityValue(Value, float):
     """Number in mm, N, MPa or rad, with the number or text of the file in `written`."""
 
     schema: ClassVar[Mapping[str, Any]] = QUANTITY_SCHEMA
@@ -192,29 +191,29 @@ def _in_degrees(angle: float) -> float:
     return next((number for number in candidates if radians(number) == angle), near)
 
 
-class Number(Quantity):
+class PlainNumber(QuantityValue):
     """Plain number without a unit."""
 
 
-class Length(Quantity):
+class Length(QuantityValue):
     """Length in mm."""
 
     kind = Kind.LENGTH
 
 
-class Force(Quantity):
+class Force(QuantityValue):
     """Force in N."""
 
     kind = Kind.FORCE
 
 
-class Modulus(Quantity):
+class Stress(QuantityValue):
     """Modulus, stress or pressure in MPa."""
 
     kind = Kind.MODULUS
 
 
-class Angle(Quantity):
+class Angle(QuantityValue):
     """Angle in rad; a bare number of a file is in degrees."""
 
     kind = Kind.ANGLE
@@ -271,77 +270,11 @@ def _or_none(kind: Any) -> Any:
     return Annotated[kind.__origin__ | None, *metadata] if metadata else kind | None
 
 
-def quantity_keys(quantities: Mapping[str, CoreQuantity], value: type[Value] = Quantity) -> dict[str, Any]:
+def quantity_keys(quantities: Mapping[str, Quantity], value: type[Value] = QuantityValue) -> dict[str, Any]:
     """Return the types of keys for `with_keys`: one for each quantity, with its title and numbers of its kind."""
     return {key: Annotated[value.of(quantity.kind), meaning(quantity.title)] for key, quantity in quantities.items()}
-
-
-def parsed_values(table: Table | None, content: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the objects of the `Parsed` values of a table, in the order of the file's `content`; empty without one."""
-    values = {} if table is None else {name: getattr(table, name, None) for name in content}
-    return {name: value.value for name, value in values.items() if isinstance(value, Parsed)}
-
-
-def quantities_of(table: Table, *names: str) -> dict[str, float]:
-    """Return the numbers of a table that the file states, by key; all quantities without names."""
-    values = {name: getattr(table, name) for name in names or table.__struct_fields__}
-    return {name: float(value) for name, value in values.items() if isinstance(value, Quantity)}
-
-
-def written_in(table: Table) -> dict[str, Any]:
-    """Return the quantities of a table as the file writes them, by key."""
-    values = {name: getattr(table, name) for name in table.__struct_fields__}
-    return {name: value.written for name, value in values.items() if isinstance(value, Quantity)}
-
-
-def read_table(content: Mapping[str, Any], table: type[TableType], name: str = "") -> TableType:
-    """Convert the content of a file, or of one of its tables.
-
-    Parameters
-    ----------
-    content : mapping
-    table : class
-    name : str
-        Name of the table in messages, such as "machine.frame"; empty for a whole file.
-
-    Raises
-    ------
-    ValueError
-        One sentence: the table, the key, the value and what is allowed.
-    """
-    try:
-        return msgspec.convert(dict(content), table, dec_hook=read_value)
-    except msgspec.ValidationError as error:
-        from .refusals import format_refusal  # most files need no message
-
-        raise ValueError(format_refusal(error, content, table, name)) from error
 
 
 def read_value(kind: type[ValueType], value: Any) -> ValueType:
     """Read a value of a type of this package for msgspec."""
     return kind.read(KEY, value)
-
-
-def write_table(table: Table, with_units: bool = False) -> dict[str, Any]:
-    """Return a table as the content of a file, without defaults.
-
-    Parameters
-    ----------
-    table : Table
-    with_units : bool
-        True for texts with units, such as "16.0 mm"; otherwise numbers are bare in mm, N, MPa and degrees.
-    """
-    return {key: _write(value, with_units) for key, value in table.stated().items()}
-
-
-def _write(value: Any, with_units: bool) -> Any:
-    """Return a value of a table as a file has it."""
-    if isinstance(value, Table):
-        return write_table(value, with_units)
-    if isinstance(value, Quantity):
-        return value.write(with_units)
-    if isinstance(value, Enum):
-        return value.value
-    if isinstance(value, list):
-        return [_write(item, with_units) for item in value]
-    return ", ".join(map(repr, value)) if isinstance(value, tuple) else value

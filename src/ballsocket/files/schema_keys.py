@@ -10,7 +10,7 @@ from msgspec import inspect
 
 from ..core.quantities import QUANTITIES
 from .refusals import choices_in, customs_in, expected, meaning_of, parts_of, tables_of
-from .schema import Quantity, Table, Value, choices_schema
+from .schema import QuantityValue, Table, Value, choices_schema
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,7 @@ def _values(field: inspect.Field) -> str:
     customs = customs_in(field.type)
     if not customs:
         return expected(field.encode_name, field.type)
-    if issubclass(customs[0], Quantity):
+    if issubclass(customs[0], QuantityValue):
         return customs[0].kind.example
     return (customs[0].__doc__ or "").split(".\n")[0].rstrip(".")
 

@@ -13,15 +13,15 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_names, known_name, require, shown
 from ..core.deprecation import renamed_arguments, renamed_names
-from ..files.schema import read_table as read_schema
+from ..files.tables import read_table as read_schema
 from ..problem.cup import Side
 from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction
 from .cycle_registry import CYCLES, named_cycle
+from .cycle_schema import ActivityTable, CycleKeys, CycleTables, FrameName, LoadedPart
 from .cycle_tables import ANGLES, FORCES, HipColumns, combine_columns, extract_hip_columns, read_table
 from .in_vivo import check_body_weight
 from .kinematics import rotation_matrices
 from .mix import Activity, Mix
-from .schema import ActivityTable, CycleTable, FrameName, HipTable, LoadedBody
 from .waveforms import (
     DEFAULT_CLOSURE,
     check_closed,
@@ -33,7 +33,7 @@ from .waveforms import (
 
 __getattr__ = renamed_names(__name__, {"Reading": "TableOptions"})
 
-_FRAMES, _BODIES = FrameName.choices, LoadedBody.choices
+_FRAMES, _BODIES = FrameName.choices, LoadedPart.choices
 _MAX_FORCE = 1e9
 """Largest allowed force in N, beyond any hip and any test machine."""
 
@@ -203,10 +203,10 @@ _TABLE_KEYS = ("side", "frame", "force_on", "from", "to", "closing", "motion")
 
 def parse_cycle(content: Mapping[str, Any], folder: Path) -> Cycle | Mix:
     """Create the cycle of a hip file; see `cycle_of`."""
-    return cycle_of(read_schema(content, HipTable), folder)
+    return cycle_of(read_schema(content, CycleTables), folder)
 
 
-def cycle_of(tables: HipTable, folder: Path) -> Cycle | Mix:
+def cycle_of(tables: CycleTables, folder: Path) -> Cycle | Mix:
     """Create the cycle of a hip file from its [cycle], or the mix of its [[activity]] tables.
 
     Raises
@@ -218,7 +218,7 @@ def cycle_of(tables: HipTable, folder: Path) -> Cycle | Mix:
     """
     weight = _check_weight(tables.body_weight)
     if tables.activity is None:
-        return _create_cycle(tables.cycle or CycleTable(), folder, weight, "[cycle]")
+        return _create_cycle(tables.cycle or CycleKeys(), folder, weight, "[cycle]")
     if tables.cycle is not None:
         raise ValueError("the file has both [cycle] and [[activity]]: remove one of them")
     return Mix(
@@ -245,7 +245,7 @@ def _check_weight(body_weight: float | None) -> float | None:
     return None if body_weight is None else check_body_weight(float(body_weight))
 
 
-def _create_cycle(table: CycleTable, folder: Path, weight: float | None, where: str) -> Cycle:
+def _create_cycle(table: CycleKeys, folder: Path, weight: float | None, where: str) -> Cycle:
     """Create the cycle of one table, by name or from a file, scaled to a multiple of body weight if stated."""
     if (table.name is None) == (table.file is None):
         raise ValueError(f"{where} needs either a name or a file; names: {', '.join(CYCLES)}")
@@ -261,17 +261,17 @@ def _create_cycle(table: CycleTable, folder: Path, weight: float | None, where: 
     return cycle.scaled(times * weight / cycle.largest_force)
 
 
-def _cycle_keys(table: CycleTable) -> list[str]:
+def _cycle_keys(table: CycleKeys) -> list[str]:
     """Return the keys of a table that describe its cycle, as the file states them."""
     return [key for key in table.stated() if key not in ("per_year", "share")]
 
 
-def _order(table: CycleTable) -> str:
+def _order(table: CycleKeys) -> str:
     """Return the rotation order of a table as letters of axes."""
     return "xyz" if table.rotation_order is None else str(table.rotation_order.value)
 
 
-def _cycle_by_name(table: CycleTable, folder: Path, weight: float | None, where: str) -> Cycle:
+def _cycle_by_name(table: CycleKeys, folder: Path, weight: float | None, where: str) -> Cycle:
     """Create a named cycle with the parameters of its table."""
     definition = CYCLES[table.name or ""]
     weight_key = ("body_weight",) if definition.per_body_weight or table.times_body_weight is not None else ()
@@ -283,7 +283,7 @@ def _cycle_by_name(table: CycleTable, folder: Path, weight: float | None, where:
     return named_cycle(definition.name, int(table.instants), _order(table), body_weight, **stated)
 
 
-def _cycle_from_file(table: CycleTable, folder: Path, weight: float | None, where: str) -> Cycle:
+def _cycle_from_file(table: CycleKeys, folder: Path, weight: float | None, where: str) -> Cycle:
     """Read a cycle from the measured tables that a hip file names."""
     allowed = ("file", "body_weight", *_COMMON_KEYS, *_TABLE_KEYS)
     check_names(_cycle_keys(table), allowed, f"with a file in {where}")
@@ -293,7 +293,7 @@ def _cycle_from_file(table: CycleTable, folder: Path, weight: float | None, wher
     return read_cycle(paths, int(table.instants), _order(table), weight, _table_options(table, weight))
 
 
-def _table_options(table: CycleTable, weight: float | None) -> TableOptions:
+def _table_options(table: CycleKeys, weight: float | None) -> TableOptions:
     """Create the `TableOptions` for measured tables from a table of a hip file."""
     motion = None
     if table.motion is not None:

@@ -5,35 +5,26 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, ClassVar, Self
 
-import msgspec
-
 from ..catalogue import catalogue
 from ..core.checks import shown
-from ..files.joint_file import CupTable, JointTables
+from ..files.joint_file import CupTable
 from ..files.schema import (
     Angle,
-    Force,
     Length,
-    Number,
     Parsed,
-    Quantity,
+    PlainNumber,
     Table,
     Text,
-    Texts,
     Value,
     Word,
     meaning,
     with_keys,
 )
-from ..problem.cup import Side
 from ..studies.scatter import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
-from .cycle import DEFAULT_STEPS, check_step_count
-from .cycle_registry import CYCLES
-from .kinematics import parse_rotation_order
+from .cycle_schema import CycleTables
 from .law_fields import Law
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES
-from .waveforms import DEFAULT_CLOSURE
 from .wear_laws import BALL_COEFFICIENT, WEAR_LAWS
 
 
@@ -87,28 +78,6 @@ class SampleNumber(Value, int):
         return cls(value)
 
 
-class Steps(Value, int):
-    """Number of time steps of a cycle."""
-
-    schema: ClassVar[Mapping[str, Any]] = {"type": "integer"}
-
-    @classmethod
-    def read(cls, name: str, value: Any) -> Self:
-        """Convert a number of time steps."""
-        return cls(check_step_count(value, name))
-
-
-class RotationOrder(Parsed):
-    """Order of the three rotations, such as "flexion, adduction, rotation"."""
-
-    schema: ClassVar[Mapping[str, Any]] = {"type": ["string", "array"], "items": {"type": "string"}}
-
-    @classmethod
-    def parse(cls, name: str, value: Any) -> str:
-        """Convert an order of rotations to letters of axes."""
-        return parse_rotation_order(value)
-
-
 class LawNumber(Parsed):
     """Number of the law."""
 
@@ -119,30 +88,6 @@ class PatientNumber(Parsed):
     """Distribution `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`."""
 
     schema: ClassVar[Mapping[str, Any]] = DISTRIBUTION_SCHEMA
-
-
-class CycleName(Word):
-    """Name of a cycle."""
-
-    noun, choices = "cycle", tuple(CYCLES)
-
-
-class SideName(Word):
-    """Side of the body."""
-
-    choices = tuple(side.value for side in Side)
-
-
-class FrameName(Word):
-    """Frame of a force."""
-
-    choices = ("body", "femur", "cup")
-
-
-class LoadedBody(Word):
-    """Body that a force acts on."""
-
-    choices = ("socket", "ball")
 
 
 class WearLawName(Word):
@@ -188,51 +133,6 @@ class HipCupTable(CupTable, frozen=True, kw_only=True):
     tilt: Annotated[Angle | None, meaning("tilt from the load, in place of inclination and anteversion")] = None
 
 
-_PARAMETERS = {parameter.key: parameter for cycle in CYCLES.values() for parameter in cycle.parameters}
-
-
-@with_keys(
-    {
-        key: Annotated[Quantity.of(parameter.kind), meaning(parameter.meaning or key.replace("_", " "))]
-        for key, parameter in _PARAMETERS.items()
-    }
-)
-class CycleTable(Table, frozen=True, kw_only=True):
-    """Cycle of loads and rotations: by name with its parameters, or from tables of measurements."""
-
-    name: Annotated[CycleName | None, meaning("name of the cycle")] = None
-    file: Annotated[Texts | None, meaning("tables of measurements of one cycle, whose heads have units")] = None
-    instants: Annotated[Steps, meaning("number of time steps of a cycle")] = Steps(DEFAULT_STEPS)
-    rotation_order: Annotated[RotationOrder | None, meaning("order of the rotations; flexion first by default")] = None
-    body_weight: Annotated[Force | None, meaning("body weight, for loads in multiples of it")] = None
-    times_body_weight: Annotated[Number | None, meaning("largest load in multiples of the body weight")] = None
-    side: Annotated[SideName | None, meaning("side of the hip in the table; right by default")] = None
-    frame: Annotated[FrameName | None, meaning("frame of the force")] = None
-    force_on: Annotated[LoadedBody | None, meaning("body that the force acts on")] = None
-    begin: Annotated[Number | None, meaning("start of the cycle in the table: s, or phase 0 to 1")] = msgspec.field(
-        name="from", default=None
-    )
-    end: Annotated[Number | None, meaning("end of the cycle in the table: s, or phase 0 to 1")] = msgspec.field(
-        name="to", default=None
-    )
-    closing: Annotated[
-        Number | None, meaning(f"allowed difference of the ends over the range; {DEFAULT_CLOSURE:g} by default")
-    ] = None
-    motion: Annotated[CycleName | None, meaning("name of the cycle whose rotations are used")] = None
-
-    def parameter(self, key: str) -> float | None:
-        """Return the value of a parameter of a named cycle; None without one."""
-        value: Quantity | None = getattr(self, key)
-        return None if value is None else float(value)
-
-
-class ActivityTable(CycleTable, frozen=True, kw_only=True):
-    """Activity: a cycle and the number of its repetitions."""
-
-    per_year: Annotated[Number | None, meaning("cycles a year")] = None
-    share: Annotated[Number | None, meaning("share of cycles_per_year")] = None
-
-
 @with_keys(
     {
         **_law_keys(WEAR_LAWS),
@@ -254,16 +154,16 @@ class CreepTable(Table, frozen=True, kw_only=True):
 
     law: Annotated[CreepLawName | None, meaning("creep law")] = None
     confinement: Annotated[Confinement | None, meaning("confinement of the liner; unconfined by default")] = None
-    seconds_per_cycle: Annotated[Number | None, meaning("time in s that a cycle stands for")] = None
+    seconds_per_cycle: Annotated[PlainNumber | None, meaning("time in s that a cycle stands for")] = None
 
 
 class FilmTable(Table, frozen=True, kw_only=True):
     """Fluid film and friction."""
 
-    viscosity: Annotated[Number | None, meaning("dynamic viscosity in Pa s")] = None
+    viscosity: Annotated[PlainNumber | None, meaning("dynamic viscosity in Pa s")] = None
     ball_roughness: Annotated[Length | None, meaning("roughness Ra of the ball")] = None
     cup_roughness: Annotated[Length | None, meaning("roughness Ra of the cup")] = None
-    friction: Annotated[Number | None, meaning("coefficient of friction")] = None
+    friction: Annotated[PlainNumber | None, meaning("coefficient of friction")] = None
 
 
 @with_keys(
@@ -279,20 +179,16 @@ class UncertaintyTable(Table, frozen=True, kw_only=True):
     seed: Annotated[SampleNumber, meaning("seed of the samples")] = SampleNumber(0)
 
 
-class HipTable(JointTables, frozen=True, kw_only=True):
+class HipTable(CycleTables, frozen=True, kw_only=True):
     """Hip file."""
 
     name: Annotated[Text | None, meaning("name of the simulation")] = None
     source: Annotated[Text | None, meaning("source of the numbers")] = None
-    body_weight: Annotated[Force | None, meaning("body weight, for loads in multiples of it")] = None
     cycles: Annotated[Cycles | None, meaning("number of cycles; 5e6 by default")] = None
     report_at: Annotated[Counts | None, meaning("numbers of cycles of the reports; ten equal steps by default")] = None
-    cycles_per_year: Annotated[Number | None, meaning("cycles a year, of which activities have shares")] = None
     years: Annotated[Years | None, meaning("years of activities, in place of cycles")] = None
     report_years: Annotated[Counts | None, meaning("years of the reports; ten equal steps by default")] = None
     cup: HipCupTable | None = None
-    cycle: CycleTable | None = None
-    activity: list[ActivityTable] | None = None
     wear: WearTable = WearTable()
     creep: CreepTable | None = None
     film: FilmTable = FilmTable()

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar
 
 import numpy
 
+from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_names, known_name, shown
 from ..core.quantities import FIELD, LOADS, MATERIAL
@@ -17,24 +18,21 @@ from ..files.named_joint import joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
-    Modulus,
     Parsed,
-    Quantity,
+    QuantityValue,
+    Stress,
     Table,
     Text,
     Texts,
     Word,
     meaning,
-    parsed_values,
-    quantities_of,
     quantity_keys,
-    read_table,
     with_keys,
 )
+from ..files.tables import parsed_values, quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..problem import Joint
-from ..studies.default_model import models
 from ..studies.expressions import parse_ends
 from ..studies.file import ModelName
 from ..studies.scatter import DISTRIBUTION_SCHEMA, distribution_of
@@ -161,7 +159,7 @@ class MachineTable(Table, frozen=True, kw_only=True):
     quantity_keys({**LOADS, "angle": FIELD["angle"]}, Numbers)
     | {
         observable.argument: Annotated[
-            Quantity.of(observable.kind), meaning(f"{observable.argument.replace('_', ' ')}, for data of a {name}")
+            QuantityValue.of(observable.kind), meaning(f"{observable.argument.replace('_', ' ')}, for data of a {name}")
         ]
         for name, observable in FILE_OBSERVABLES.items()
     }
@@ -179,7 +177,7 @@ class DataTable(Table, frozen=True, kw_only=True):
     name: Annotated[Text | None, meaning("name of the data in tables and notes")] = None
     uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the values")] = None
     load_uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the loads")] = None
-    saturation: Annotated[Modulus | None, meaning("largest reading of a film or sensor")] = None
+    saturation: Annotated[Stress | None, meaning("largest reading of a film or sensor")] = None
     machine: Annotated[Text | None, meaning("name of the machine: [machine.NAME]")] = None
 
 
@@ -254,7 +252,7 @@ def _parse_file(content: Mapping[str, Any], folder: Path) -> IdentifyFile:
         for name, table in (tables.machine or {}).items()
     }
     return IdentifyFile(
-        model=models[tables.model].in_cup(joint_file.cup),
+        model=named_models[tables.model].in_cup(joint_file.cup),
         joint=joint_file.joint,
         data=tuple(measured for table in tables.data for measured in _parse_data_table(table, machines, folder)),
         free=_parse_unknowns(tables.free or FreeTable(), content.get("free", {})),

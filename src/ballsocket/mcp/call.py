@@ -137,7 +137,7 @@ def _toml(content: Mapping[str, Any]) -> str:
     try:
         return tomli_w.dumps(content)
     except (TypeError, AttributeError) as error:
-        raise ValueError("content has null or a key that is no text: leave out keys without a value") from error
+        raise ValueError("content has null or a key that is not text: leave out keys without a value") from error
     except RecursionError as error:
         raise ValueError("content is nested too deeply: a file has tables of keys") from error
 

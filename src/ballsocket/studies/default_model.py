@@ -1,13 +1,12 @@
-"""Models by name, and the default model of a study: tabulated, or exact for joints outside the tables."""
+"""Default model of a study: tabulated, or exact for joints outside the tables."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from ..catalogue import catalogue, judge, off_axis, reference
+from ..catalogue import reference
 from ..contact import Model
-from ..core.checks import known_name
 from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
 from ..elasticity.exact.tabulated.model import Tabulated
@@ -16,20 +15,6 @@ from .design import check_values, grid
 from .parameters import LOADS, press_arguments
 
 _TABULATED, _EXACT_CURVE = Tabulated(), ExactCurve()
-
-models: dict[str, Model] = {**catalogue, "exact-curve": _EXACT_CURVE, judge.name: judge, off_axis.name: off_axis}
-"""Models by the names that files and the command line use."""
-
-
-def named_model(name: Any) -> Model:
-    """Return a model by its name.
-
-    Raises
-    ------
-    ValueError
-        An unknown name; the message suggests the nearest one.
-    """
-    return models[known_name("model", name, models)]
 
 
 def default_model(joint: Joint, ranges: Mapping[str, Any]) -> Model:

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
+from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_names
+from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
 from ..files.joint_file import JointTables
@@ -22,17 +24,15 @@ from ..files.schema import (
     Whole,
     Word,
     meaning,
-    parsed_values,
     quantity_keys,
-    read_table,
     with_keys,
 )
+from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..problem import Joint
 from ..problem.presets import materials, named_material
 from .axes import Method, Span
-from .default_model import models
 from .design import Design, grid, sample, table
 from .parameters import PARAMETERS
 from .scatter import ScatteredNumber
@@ -41,7 +41,7 @@ from .scatter import ScatteredNumber
 class ModelName(Word):
     """Name of a model."""
 
-    noun, choices = "model", tuple(models)
+    noun, choices = "model", tuple(named_models)
 
 
 class AxisValues(Parsed):
@@ -186,7 +186,7 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
     tables = read_table(content, StudyTable)
     file = joint_in(tables, folder)
     return StudyFile(
-        model=models[tables.model].in_cup(file.cup),
+        model=named_models[tables.model].in_cup(file.cup),
         joint=file.joint,
         design=_design(tables, content, folder),
         quantities=tuple(map(str, tables.quantities or ())),
@@ -227,3 +227,8 @@ def _filled(name: str, text: str) -> str:
     if not text:
         raise ValueError(f"{name} is empty")
     return str(text)
+
+
+__getattr__ = renamed_names(
+    __name__, {"models": "ballsocket.catalogue.named_models", "named_model": "ballsocket.catalogue.named_model"}
+)
