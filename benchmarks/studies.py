@@ -17,9 +17,8 @@ import ballsocket as bs
 from ballsocket.contact import Model
 from ballsocket.core.executors import Distributed, Engine, Processes, Serial
 from ballsocket.core.executors.dask import local_cluster
-from ballsocket.studies.blocks import Blocks
 from ballsocket.studies.design import Design, Span, grid
-from ballsocket.studies.task import DTYPES, USUAL
+from ballsocket.studies.task import DEFAULT_QUANTITIES, DTYPES, Blocks
 
 from .report import Report, Rows
 from .timing import Spread, Work, _seconds, interleaved
@@ -39,11 +38,11 @@ def points(count: int, loads: int) -> Design:
 
 def direct(model: Model, design: Design, chunk: int = 1 << 14) -> None:
     """The same quantities by hand, into arrays of the same shape."""
-    whole = {name: numpy.empty(design.shape, dtype=DTYPES[name]) for name in (*USUAL, "status", "valid")}
-    blocks = Blocks.of(design.shape, chunk)
+    whole = {name: numpy.empty(design.shape, dtype=DTYPES[name]) for name in (*DEFAULT_QUANTITIES, "status", "valid")}
+    blocks = Blocks.divide(design.shape, chunk)
     for number in range(len(blocks)):
         place = blocks[number]
-        values = design.part(place)
+        values = design.values_in(place)
         joint = bs.Joint(
             ball_radius=values["ball_radius"],
             clearance=values["clearance"],

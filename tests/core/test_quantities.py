@@ -43,8 +43,8 @@ from ballsocket.files.joint_file import JointFile
 from ballsocket.files.joint_toml import tables_of
 from ballsocket.files.units import parse
 from ballsocket.studies.design import check_values, grid
-from ballsocket.studies.labels import described
-from ballsocket.studies.limits import NAMES as LIMITED
+from ballsocket.studies.limits import LIMITED_NAMES as LIMITED
+from ballsocket.studies.metadata import described
 from ballsocket.studies.parameters import PARAMETERS
 from ballsocket.studies.task import QUANTITIES as ANSWERS
 

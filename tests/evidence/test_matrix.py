@@ -11,7 +11,7 @@ from ballsocket.evidence import matrix
 from ballsocket.evidence.matrix import Row, check_limit, input_title, limit_text, list_cases, number, title_of
 from ballsocket.evidence.question import read_question
 from ballsocket.problem.cup import UP
-from ballsocket.studies.phrases import limit_of
+from ballsocket.studies.expressions import parse_limit
 
 from .small_pack import QUESTION_TEXT
 
@@ -23,7 +23,7 @@ def row(**numbers):
 
 
 PRESSURES = (10.0, 19.5, 21.0, math.nan)
-LIMIT = limit_of("max_pressure <= 20 MPa")
+LIMIT = parse_limit("max_pressure <= 20 MPa")
 
 
 def test_a_limit_counts_violations_missing_results_and_marginal_cases():
@@ -59,9 +59,9 @@ def test_verdict_of_a_limit(pressures, verdict):
 
 def test_a_limit_may_have_a_lower_end_or_limit_a_parameter():
     rows = [row(edge_distance=distance) for distance in (3.0, 0.5, 2.0)]
-    check = check_limit(limit_of("edge_distance >= 1 mm"), rows, accuracy=0.05)
+    check = check_limit(parse_limit("edge_distance >= 1 mm"), rows, accuracy=0.05)
     assert (check.beyond, check.row) == (1, rows[1])
-    assert check_limit(limit_of("force <= 2 N"), rows, accuracy=0.05).verdict == "kept"
+    assert check_limit(parse_limit("force <= 2 N"), rows, accuracy=0.05).verdict == "kept"
 
 
 def test_worst_row_has_the_largest_number_and_the_smallest_edge_distance():

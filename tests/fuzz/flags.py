@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 
 import ballsocket as bs
 from ballsocket.core.quantities import CONTACT
-from ballsocket.studies.limits import NAMES as LIMITED
+from ballsocket.studies.limits import LIMITED_NAMES as LIMITED
 from ballsocket.studies.parameters import PARAMETERS
 
 from . import words

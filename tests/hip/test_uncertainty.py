@@ -246,7 +246,7 @@ def test_the_command_computes_bands_and_indices(tmp_path):
         ("clearance = { low = 0.2, high = 0.1 }", "clearance.low = 0.2 is not allowed: it is finite and below high"),
         (
             "coefficient = { median = 1e-6, factor = 0.5 }",
-            "coefficient.factor = 0.5 is not allowed: that of one standard",
+            "coefficient.factor = 0.5 is not allowed: a factor of one standard",
         ),
         ("coefficient = { median = '1e-9 mm^3/(N mm)', factor = 2 }", r"1 mm\^3/\(N mm\) is 1000 mm\^3/\(N m\)"),
         ("weight = { low = 1, high = 2 }", "'weight' in .uncertainty. is not known"),

@@ -15,7 +15,7 @@ from ballsocket.reports.joint_section import gap_factor, joint_section
 from ballsocket.reports.press_report import press_report
 from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
-from ballsocket.studies.around import around
+from ballsocket.studies.local_uncertainty import local_uncertainty
 
 from ..cli.command import run
 
@@ -27,7 +27,7 @@ TWO = {"exact": bs.Exact(), "hess-forsbach": bs.HessForsbach()}
 @pytest.fixture(scope="module")
 def pages():
     comparison = bs.compare(HIP, models=TWO, cup=FILE.cup, force=3000.0)
-    near = around(HIP, FILE.cup, FILE.load, {"clearance": tolerance(0.1, 0.03)})
+    near = local_uncertainty(HIP, FILE.cup, FILE.load, {"clearance": tolerance(0.1, 0.03)})
     return {units: press_report(comparison, FILE, "exact", units, near, date(2026, 1, 2)) for units in Units}, near
 
 
@@ -53,9 +53,9 @@ def test_a_joint_outside_its_tolerance_is_refused():
     with pytest.raises(
         ValueError, match="clearance = 0.1 mm lies outside its tolerance of 0.15 to 0.25 mm: change one"
     ):
-        around(HIP, FILE.cup, FILE.load, {"clearance": tolerance(0.2, 0.05)})
+        local_uncertainty(HIP, FILE.cup, FILE.load, {"clearance": tolerance(0.2, 0.05)})
     with pytest.raises(ValueError, match="force = 3000 N lies outside its tolerance of 900 to 1100 N"):
-        around(HIP, FILE.cup, FILE.load, {"force": tolerance(1000.0, 100.0)})
+        local_uncertainty(HIP, FILE.cup, FILE.load, {"force": tolerance(1000.0, 100.0)})
 
 
 def test_its_checksum_is_that_of_its_inputs_and_they_are_a_joint_file(pages):

@@ -7,7 +7,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.reports.study_tables import print_optimum, print_study
-from ballsocket.studies.optimum import optimise
+from ballsocket.studies.optimisation import optimise
 
 HIP = bs.joints["hip-28"]
 

@@ -16,14 +16,13 @@ from hypothesis import strategies as st
 import ballsocket as bs
 from ballsocket.core.executors import Processes, Serial
 from ballsocket.core.executors.dask import Distributed
-from ballsocket.studies.blocks import Blocks
-from ballsocket.studies.design import Method, Span, grid, sample
+from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit
-from ballsocket.studies.rows import table
 from ballsocket.studies.run import read
+from ballsocket.studies.task import Blocks
 
 from ..cli.command import run
 from ..extent import either, some
@@ -97,7 +96,7 @@ def test_diameters_are_axes():
         found.max_pressure, bs.study(bs.HessForsbach(), HIP, **radii, force=2000.0).max_pressure
     )
     for name, limit in (("outer_radius", 26.0), ("ball_radius", [15.0, 18.0]), ("clearance", 0.1)):
-        np.testing.assert_allclose(Limit(name=name).of(found), limit, rtol=1e-12)
+        np.testing.assert_allclose(Limit(name=name).evaluate(found), limit, rtol=1e-12)
     with pytest.raises(ValueError, match="head_diameter and ball_radius|ball_radius and head_diameter"):
         bs.study(bs.HessForsbach(), HIP, head_diameter=[30.0], ball_radius=[15.0], force=1.0)
 
@@ -203,7 +202,7 @@ def test_a_study_has_one_order_wherever_it_is_kept_and_by_whom_it_is_computed(tm
 def test_an_outer_radius_is_that_of_the_shell():
     backed = HIP.replace(backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),))
     found = bs.study(bs.Exact(), backed, outer_radius=[26.0], force=2000.0)
-    thickness = Limit(name="liner_thickness").of(found)
+    thickness = Limit(name="liner_thickness").evaluate(found)
     np.testing.assert_allclose(thickness, 26.0 - 18.0 - 3.0)
     made = backed.replace(liner_thickness=5.0)
     assert found.max_pressure.item() == pytest.approx(bs.Exact().press(made, force=2000.0).max_pressure, rel=1e-9)
@@ -228,11 +227,11 @@ def test_a_block_outside_the_domain_is_a_status():
     most=st.integers(1, 2000),
 )
 def test_blocks_cover_every_point_once(shape, most):
-    blocks = Blocks.of(shape, most)
+    blocks = Blocks.divide(shape, most)
     seen = np.zeros(shape, dtype=int)
     for number in range(len(blocks)):
         seen[blocks[number]] += 1
-        assert blocks.points(number) <= most
+        assert blocks.n_points(number) <= most
     assert (seen == 1).all()
     with pytest.raises(IndexError):
         blocks[len(blocks)]
@@ -244,19 +243,19 @@ def test_samples_follow_their_distributions(mean, deviation, seed):
     design = sample(
         512, seed=seed, clearance=Normal(mean=mean, deviation=deviation), liner_poisson=Rectangular(low=0.3, high=0.4)
     )
-    values = design.part([slice(None)])
+    values = design.values_in([slice(None)])
     assert values["clearance"].mean() == pytest.approx(mean, abs=deviation / 20)
     assert values["clearance"].std() == pytest.approx(deviation, rel=0.05)
     assert values["liner_poisson"].min() >= 0.3
     again = sample(
         512, seed=seed, clearance=Normal(mean=mean, deviation=deviation), liner_poisson=Rectangular(low=0.3, high=0.4)
     )
-    assert (again.part([slice(None)])["clearance"] == values["clearance"]).all()
+    assert (again.values_in([slice(None)])["clearance"] == values["clearance"]).all()
 
 
 def test_a_tolerance_is_cut_off_at_its_limits():
     design = sample(4096, method=Method.LATIN_HYPERCUBE, clearance=tolerance(0.1, 0.05))
-    values = design.part([slice(None)])["clearance"]
+    values = design.values_in([slice(None)])["clearance"]
     assert 0.05 <= values.min() < 0.06
     assert 0.14 < values.max() <= 0.15
     assert values.mean() == pytest.approx(0.1, abs=1e-3)
@@ -322,18 +321,18 @@ def test_a_csv_that_is_none_is_one_sentence_at_once(content, message, tmp_path):
 
 def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, monkeypatch):
     (tmp_path / "endless.csv").symlink_to("/dev/zero")
-    with pytest.raises(ValueError, match="endless.csv is no file"):
+    with pytest.raises(ValueError, match="endless.csv is not a regular file"):
         table(tmp_path / "endless.csv")
     for content in (b"", b"PAR1" * 100, b"force\n1\n"):
         (tmp_path / "rows.parquet").write_bytes(content)
-        with pytest.raises(ValueError, match="rows.parquet is not Parquet that can be read"):
+        with pytest.raises(ValueError, match="rows.parquet is not a readable Parquet file"):
             table(tmp_path / "rows.parquet")
     import pyarrow
     from pyarrow import parquet
 
     parquet.write_table(pyarrow.table({"force": np.ones(10**6)}), tmp_path / "rows.parquet")
     (tmp_path / "rows.csv").write_text("force\n" + "1\n" * 10**5, encoding="utf-8")
-    monkeypatch.setattr("ballsocket.studies.room._free_memory", lambda: 10**6)
+    monkeypatch.setattr("ballsocket.core.memory.available_memory", lambda: 10**6)
     with pytest.raises(ValueError, match=r"1e\+06 rows of rows.parquet take about 24 MB, and there are 1 MB of memory"):
         table(tmp_path / "rows.parquet")
     with pytest.raises(ValueError, match="rows of rows.csv take about .* and there are 1 MB of memory"):
@@ -369,10 +368,10 @@ def test_what_would_be_ignored_is_refused(tmp_path):
     many = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=np.array([5.0, 6.0]), liner=bs.UHMWPE)
     with pytest.raises(ValueError, match="plain numbers"):
         bs.study(bs.HessForsbach(), many, force=[1e3, 2e3])
-    with pytest.raises(ValueError, match="two axes are called sample"):
+    with pytest.raises(ValueError, match="two axes have the name sample"):
         sample(4, clearance=tolerance(0.1, 0.05)) * sample(4, liner_poisson=Rectangular(low=0.3, high=0.4))
     with pytest.raises(
-        ValueError, match=r"clearance.* is not allowed for a radial clearance; cut the distribution off"
+        ValueError, match=r"clearance.* is not allowed for a radial clearance; truncate the distribution"
     ):
         bs.study(bs.HessForsbach(), HIP, sample(4096, clearance=Normal(mean=0.1, deviation=0.03)), force=1e3)
     for text, message in (
@@ -392,13 +391,13 @@ def test_too_many_points_are_refused_with_size_and_time(tmp_path):
     with pytest.raises(ValueError, match="on the disk of the store"):
         bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", **wide)
     many = sample(10**12, clearance=Rectangular(low=0.05, high=0.15))
-    with pytest.raises(ValueError, match="of memory for the values along its axes; take fewer"):
+    with pytest.raises(ValueError, match="of memory for the values along its axes; use fewer"):
         bs.study(bs.HessForsbach(), HIP, many, store=tmp_path / "s.zarr", force=1000.0)
     assert not (tmp_path / "s.zarr").exists()
 
 
 def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
-    monkeypatch.setattr("ballsocket.studies.run.points_a_block", lambda model: 5)
+    monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 5)
     for model in some([bs.Exact(), bs.HessForsbach()], 1):
         here = bs.study(model, HIP, **AXES)
         for engine in (Serial(), Processes(workers=2), Distributed(workers=1)):
@@ -457,12 +456,12 @@ def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(t
     assert here == there
 
 
-def test_progress_is_told():
+def test_progress_counts_all_points():
     told = []
     bs.study(bs.HessForsbach(), HIP, listen=told.append, **AXES)
-    assert told[0].done == 0
-    assert told[-1].done == told[-1].points == 24
-    assert told[-1].left == 0.0
+    assert told[0].n_done == 0
+    assert told[-1].n_done == told[-1].n_points == 24
+    assert told[-1].seconds_left == 0.0
 
 
 def test_files_for_other_programs(tmp_path):

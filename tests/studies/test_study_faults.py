@@ -19,7 +19,7 @@ AXES = {"clearance": np.linspace(0.05, 0.2, 12).tolist(), "force": [500.0, 1500.
 
 @pytest.fixture(autouse=True)
 def small_blocks(monkeypatch):
-    monkeypatch.setattr("ballsocket.studies.run.points_a_block", lambda model: 8)
+    monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 8)
 
 
 @pytest.fixture
@@ -95,7 +95,7 @@ def test_the_store_of_another_study_is_refused_with_what_differs(store, change, 
 
 def test_the_store_of_other_code_is_refused(store, monkeypatch):
     presses(store)
-    monkeypatch.setattr("ballsocket.studies.identity.fingerprint", lambda: "9.9.9+other")
+    monkeypatch.setattr("ballsocket.studies.metadata.fingerprint", lambda: "9.9.9+other")
     with pytest.raises(ValueError, match="code is .* there and 9.9.9[+]other here"):
         presses(store)
 
@@ -120,7 +120,7 @@ def test_models_of_ones_own_are_told_apart(store):
 
 def test_a_finished_study_is_opened_on_a_full_disk(store, monkeypatch):
     presses(store)
-    monkeypatch.setattr("ballsocket.studies.room._free_disk", lambda path: 0)
+    monkeypatch.setattr("ballsocket.studies.run.available_disk_space", lambda path: 0)
     _, blocks = presses(store)
     assert blocks == 0
 
@@ -160,9 +160,9 @@ def test_a_worker_of_another_version_is_refused():
     from dataclasses import replace
 
     from ballsocket.studies.design import grid
-    from ballsocket.studies.run import _task
+    from ballsocket.studies.run import _create_task
 
-    task = replace(_task(bs.HessForsbach(), HIP, None, {"force": [1000.0]}, ()), code="0.0.0+old")
+    task = replace(_create_task(bs.HessForsbach(), HIP, None, {"force": [1000.0]}, ()), code="0.0.0+old")
     with pytest.raises(ValueError, match="this worker has ballsocket .*, but the run was started by 0.0.0.old"):
         task(0)
     assert grid(force=[1.0]).size == 1
@@ -171,7 +171,7 @@ def test_a_worker_of_another_version_is_refused():
 def test_what_is_no_study_is_left_alone(store):
     store.mkdir()
     (store / "precious.txt").write_text("mine", encoding="utf-8")
-    with pytest.raises(ValueError, match="is there already and is no study"):
+    with pytest.raises(ValueError, match="exists and is not a study"):
         presses(store)
     assert (store / "precious.txt").read_text(encoding="utf-8") == "mine"
 
@@ -200,9 +200,9 @@ LABEL = b'{"zarr_format": 3, "node_type": "group", "attributes": '
 def test_a_store_whose_label_says_nothing_is_no_study(store, content):
     presses(store)
     (store / "zarr.json").write_bytes(content)
-    with pytest.raises(ValueError, match=r"s.zarr is there already and is no study$"):
+    with pytest.raises(ValueError, match=r"s.zarr exists and is not a study$"):
         presses(store)
-    with pytest.raises(ValueError, match=r"s.zarr is there already and is no study$"):
+    with pytest.raises(ValueError, match=r"s.zarr exists and is not a study$"):
         read(store)
 
 
@@ -210,7 +210,7 @@ def test_of_a_store_that_differs_in_everything_a_few_differences_are_told(store)
     presses(store)
     other = {f"{number}{'x' * 100}": "y" * 1000 for number in range(1000)}
     (store / "zarr.json").write_bytes(LABEL + f'{{"study": {json.dumps(other)}}}}}'.encode())
-    with pytest.raises(ValueError, match="holds another study: 0x+[.]{3} is y+[.]{3} there and missing here; 1x") as no:
+    with pytest.raises(ValueError, match="has another study: 0x+[.]{3} is y+[.]{3} there and missing here; 1x") as no:
         presses(store)
     assert len(str(no.value)) < 2000
 
@@ -219,15 +219,15 @@ def test_two_studies_that_begin_together_share_their_store(store, monkeypatch):
     """While one makes the store, another has made it: both have the answers."""
     from ballsocket.studies import store as module
 
-    make = module._make
+    make = module._write_group
 
     def make_slowly(path, task, asked):
         make(path, task, asked)
         if not store.exists():
-            monkeypatch.setattr(module, "_make", make)
+            monkeypatch.setattr(module, "_write_group", make)
             presses(store)
 
-    monkeypatch.setattr(module, "_make", make_slowly)
+    monkeypatch.setattr(module, "_write_group", make_slowly)
     found, blocks = presses(store)
     assert blocks == 0
     assert found.identical(presses(store)[0])
@@ -267,9 +267,9 @@ def test_a_full_disk_is_said_of_the_file_that_was_asked_for(tmp_path):
 
 
 def test_a_disk_that_is_full_stops_with_one_sentence_and_keeps_what_is_done(store, monkeypatch):
-    from ballsocket.studies.store import Store
+    from ballsocket.studies.store import StudyStore
 
-    write, written = Store.write, []
+    write, written = StudyStore.write, []
 
     def full(self, task, number, answers):
         if len(written) == 3:
@@ -277,10 +277,10 @@ def test_a_disk_that_is_full_stops_with_one_sentence_and_keeps_what_is_done(stor
         written.append(number)
         write(self, task, number, answers)
 
-    monkeypatch.setattr(Store, "write", full)
-    with pytest.raises(OSError, match="No space left on device; 3 of 6 blocks are kept; run it again to go on"):
+    monkeypatch.setattr(StudyStore, "write", full)
+    with pytest.raises(OSError, match="No space left on device; 3 of 6 blocks are stored; run the study again"):
         presses(store)
-    monkeypatch.setattr(Store, "write", write)
+    monkeypatch.setattr(StudyStore, "write", write)
     found, blocks = presses(store)
     assert blocks == 3
     assert np.array_equal(found.max_pressure.values, reference().max_pressure.values)
@@ -316,5 +316,5 @@ def test_a_read_only_store_is_one_sentence():
             assert blocks == 0
             assert again.identical(whole)
         chunks(store, CHECKSUM)[0].unlink()
-        with nobody(), pytest.raises(OSError, match="Permission denied; 5 of 6 blocks are kept"):
+        with nobody(), pytest.raises(OSError, match="Permission denied; 5 of 6 blocks are stored"):
             presses(store)

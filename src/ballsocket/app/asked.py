@@ -16,8 +16,8 @@ from ..files.units import parse
 from ..hip.cycle_registry import CYCLES
 from ..problem.cup import Cup
 from ..problem.presets import joints
+from ..studies.expressions import parse_choices
 from ..studies.parameters import PARAMETERS
-from ..studies.phrases import choice_of
 from .in_use import Use
 
 _CHOICES = {"influence": LEVELS, "consequence": LEVELS, "elements": ("no", "yes"), "wear": ("no", "yes")}
@@ -147,7 +147,7 @@ def _halves(what: str, phrase: str) -> tuple[str, str]:
 
 def _axis(phrase: str) -> tuple[str, Any]:
     """What a matrix varies: a name with one number or several."""
-    listed = choice_of(phrase)
+    listed = parse_choices(phrase)
     if listed is not None:
         name, values = listed
         check_names([name], PARAMETERS, "in the matrix")

@@ -11,7 +11,7 @@ import numpy
 
 from ..core.quantities import QUANTITIES
 from ..problem.dimensions import DIAMETERS
-from ..studies.limits import Limit, margin_over
+from ..studies.limits import Limit, margin_on_plane
 from .contours import Contours
 from .mapping import limits_of
 from .numbers import NUMBERS
@@ -36,7 +36,7 @@ def handles(found: Any, screen: Screen) -> list[Place]:
     """Where each limit of the screen can be taken hold of, in the units of a study; NaN for one beside the map."""
     across, up = screen.across.name, screen.up.name
     x, y = found[across].values, found[up].values
-    return [longest(x, y, margin_over(found, limit, across, up), 0.0) for limit in limits_of(screen)]
+    return [longest(x, y, margin_on_plane(found, limit, across, up), 0.0) for limit in limits_of(screen)]
 
 
 def moved(found: Any, screen: Screen, number: int, place: Place) -> tuple[Limit, ...]:
@@ -50,7 +50,7 @@ def moved(found: Any, screen: Screen, number: int, place: Place) -> tuple[Limit,
     limit = limits_of(screen)[number]
     across, up = screen.across, screen.up
     x, y = (min(max(at, axis.low), axis.high) for at, axis in zip(place, (across, up), strict=True))
-    field = limit.of(found) + 0.0 * found[across.name] + 0.0 * found[up.name]
+    field = limit.evaluate(found) + 0.0 * found[across.name] + 0.0 * found[up.name]
     value = float(field.interp({across.name: x, up.name: y}))
     if not isfinite(value):
         raise ValueError(f"{limit.name} has no number there: the limit stays where it was")

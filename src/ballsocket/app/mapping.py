@@ -18,11 +18,11 @@ from ..core.quantities import PARTS, QUANTITIES, Quantity
 from ..core.validity import OutsideDomainError, check_domain
 from ..files.joint_file import JointFile
 from ..problem import Joint
+from ..studies.default_model import default_model, joint_of_arrays
 from ..studies.design import Span, grid
-from ..studies.limits import Limit, allowed, margin_over
-from ..studies.parameters import LOADS, PARAMETERS, pressable
+from ..studies.limits import Limit, allowed, margin_on_plane
+from ..studies.parameters import LOADS, PARAMETERS, press_arguments
 from ..studies.run import study
-from ..studies.usual import joints_of, usual
 from .screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
 
 _POINTS = 61
@@ -42,8 +42,8 @@ def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: MapAxis, 
 
 def _asked(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
     """The model of that name; for tables that know none of the joints the one behind them, where it is quick enough."""
-    model = usual(joint, ends) if name == START.map_model else catalogue[name]
-    if model.name in QUICK or not bool(numpy.any(joints_of(joint, ends).thickness_ratio > THIN_LINER_RATIO)):
+    model = default_model(joint, ends) if name == START.map_model else catalogue[name]
+    if model.name in QUICK or not bool(numpy.any(joint_of_arrays(joint, ends).thickness_ratio > THIN_LINER_RATIO)):
         return model
     if name not in QUICK:
         raise ValueError(
@@ -83,7 +83,7 @@ def margin(found: Any, screen: Screen) -> numpy.ndarray:
     """How far inside the nearest limit each point is; far where there is none."""
     nearest = numpy.ones((found.sizes[screen.up.name], found.sizes[screen.across.name]))
     for limit in limits_of(screen):
-        values = margin_over(found, limit, screen.across.name, screen.up.name)
+        values = margin_on_plane(found, limit, screen.across.name, screen.up.name)
         nearest = numpy.minimum(nearest, values / max(float(numpy.nanmax(numpy.abs(values))), 1e-300))
     return nearest
 
@@ -150,7 +150,7 @@ def around(name: str, middle: float) -> MapAxis:
 def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
     """The joint of a point of the map, to four digits; its load, where that is an axis."""
     rounded = {name: float(f"{value:.4g}") for name, value in chosen.items()}
-    made, load, possible = pressable(file.joint, rounded)
+    made, load, possible = press_arguments(file.joint, rounded)
     if not bool(possible):
         raise ValueError("these numbers make no joint: no liner or no clearance is left")
     plain = replace(

@@ -17,9 +17,9 @@ from ..files.joint_file import JointFile, joint_of
 from ..files.joint_toml import Tables, tables_of
 from ..problem.presets import joints
 from ..reports.unit_systems import Units
+from ..studies.expressions import parse_limit, parse_range
 from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS
-from ..studies.phrases import limit_of, range_of
 from . import asked, in_use
 from .asked import FIRST, Asked
 from .in_use import WHOLE, Use
@@ -236,7 +236,7 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
     words["use"] = in_use.use_of(_part(pairs, "use"))
     words["asked"] = asked.asked_of(_part(pairs, "ask"))
-    words["limits"] = tuple(map(limit_of, pairs.get("limit", ())))
+    words["limits"] = tuple(map(parse_limit, pairs.get("limit", ())))
     joint = {name: values[0] for name, values in pairs.items() if name.split(".")[0] in _TABLES}
     others = [_part(pairs, prefix) for prefix in _PREFIXES]
     words["file"] = _joint(joint) if joint else START.file
@@ -249,7 +249,7 @@ def _part(pairs: Mapping[str, Sequence[str]], prefix: str) -> dict[str, str]:
 
 
 def _axis(phrase: str) -> MapAxis:
-    name, low, high = range_of(phrase)
+    name, low, high = parse_range(phrase)
     return MapAxis(name=name, low=low, high=high)
 
 

@@ -16,16 +16,16 @@ from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports import study_plots, study_tables
 from ..studies.axes import Span
+from ..studies.default_model import check_model_domain, default_model
 from ..studies.design import grid
+from ..studies.expressions import parse_choices, parse_distribution, parse_limit, parse_range
 from ..studies.limits import Limit
-from ..studies.optimum import optimise as find_optimum
+from ..studies.optimisation import optimise as find_optimum
 from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
-from ..studies.phrases import choice_of, limit_of, range_of, spread_of
 from ..studies.run import study
 from ..studies.sensitivity import sensitivity as find_sensitivity
-from ..studies.task import QUANTITIES, USUAL
-from ..studies.usual import check_known, usual
+from ..studies.task import DEFAULT_QUANTITIES, QUANTITIES
 from ..version import __version__
 from .options import (
     JointName,
@@ -66,12 +66,12 @@ class PressOptions:
             The requested model has no result for any of these joints.
         """
         if self.model is None:
-            model = usual(file.joint, ends)
+            model = default_model(file.joint, ends)
             if model.name == reference.name:
                 print_message(f"model {model.name} is used, since none of these joints is in the tables of tabulated")
         else:
             model = named_model(self.model)
-            check_known(model, file.joint, ends)
+            check_model_domain(model, file.joint, ends)
         return model.in_cup(file.cup)
 
     def load(self, file: JointFile, parameters: Iterable[str]) -> dict[str, float]:
@@ -109,7 +109,7 @@ def design_map(
     _check_points(points)
     file = joint_options.read(joint)
     limits = _limits(limit, file.cup)
-    ends = _unique((name, (low, high)) for name, low, high in map(range_of, (x, y)))
+    ends = _unique((name, (low, high)) for name, low, high in map(parse_range, (x, y)))
     load, model = press_options.load(file, ends), press_options.choose_model(file, ends)
     axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
     result = study(model, file.joint, grid(**axes, **load), quantities=_quantities((), limits))
@@ -147,10 +147,10 @@ def optimise(
     _check_points(points)
     file, goals = joint_options.read(joint), minimise or ["max_pressure"]
     limits = _limits(limit, file.cup)
-    lists = [choice_of(phrase) for phrase in vary]
+    lists = [parse_choices(phrase) for phrase in vary]
     choices = _unique(choice for choice in lists if choice is not None)
     phrases = [phrase for phrase, choice in zip(vary, lists, strict=True) if choice is None]
-    ranges = _unique((name, (low, high)) for name, low, high in map(range_of, phrases))
+    ranges = _unique((name, (low, high)) for name, low, high in map(parse_range, phrases))
     if output.figure is not None and len(goals) == 1 and len(ranges) != 2:
         raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
     load = press_options.load(file, {**ranges, **choices})
@@ -168,7 +168,7 @@ def optimise(
         return
     if len(goals) != 1:
         raise ValueError(f"one result or two are minimised, got {len(goals)}")
-    best = find_optimum(model, file.joint, ranges, among=choices, minimise=goals[0], limits=limits, load=load)
+    best = find_optimum(model, file.joint, ranges, choices=choices, minimise=goals[0], limits=limits, load=load)
     output.print(
         lambda: {"version": __version__, "model": model.name, **best.summary()},
         lambda: study_tables.print_optimum(best),
@@ -210,7 +210,7 @@ def sensitivity(
     """
     output.check()
     file = joint_options.read(joint)
-    distributions = _unique(map(spread_of, spread))
+    distributions = _unique(map(parse_distribution, spread))
     means = {name: [float(distribution.frozen.mean())] for name, distribution in distributions.items()}
     load, model = press_options.load(file, distributions), press_options.choose_model(file, means)
     result = find_sensitivity(model, file.joint, distributions, count=count, load=load)
@@ -237,7 +237,7 @@ def _default_points(model: Model) -> int:
 
 def _limits(phrases: list[str] | None, cup: Cup) -> list[Limit]:
     """Parse limits from text; distances from the edge are those of the cup."""
-    return [replace(limit_of(phrase), cup=cup) for phrase in phrases or []]
+    return [replace(parse_limit(phrase), cup=cup) for phrase in phrases or []]
 
 
 def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
@@ -259,4 +259,4 @@ def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
 def _quantities(goals: Iterable[str], limits: Iterable[Limit]) -> list[str]:
     """Return the results to compute: the default ones, the goals and the limited ones."""
     limited = (limit.name for limit in limits if limit.name in QUANTITIES)
-    return list(dict.fromkeys((*USUAL, *goals, *limited)))
+    return list(dict.fromkeys((*DEFAULT_QUANTITIES, *goals, *limited)))

@@ -18,7 +18,7 @@ from ..elasticity.off_axis.orientations import orient as press_orientations
 from ..files.joint_file import JointFile, read_aim
 from ..files.units import as_given
 from ..reports.orientation_results import orientation_figure, print_orientations
-from ..studies.phrases import ends_of
+from ..studies.expressions import parse_ends
 from .elasticity_options import CupOptions, DirectionOptions
 from .options import JointName, JointOptions, LoadOptions, OutputOptions, drop_missing, expand_groups
 from .root import FAILURE, app, print_message
@@ -50,7 +50,7 @@ class OrientationOptions:
 
     def _angle(self, name: str) -> Numbers:
         """Return the values of one angle in rad."""
-        low, high = ends_of(name, getattr(self, name), CUP[name].kind)
+        low, high = parse_ends(name, getattr(self, name), CUP[name].kind)
         with as_given({name: getattr(self, name)}):
             CUP[name].check(numpy.array([low, high]))
         return numpy.unique(numpy.linspace(min(low, high), max(low, high), self.points))

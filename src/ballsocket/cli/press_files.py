@@ -17,8 +17,8 @@ from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..reports.figure_files import check_format, save
 from ..reports.unit_systems import Units
-from ..studies.around import Around, around
-from ..studies.phrases import spread_of
+from ..studies.expressions import parse_distribution
+from ..studies.local_uncertainty import LocalUncertainty, local_uncertainty
 from .root import print_message
 
 _VIEW_FORMAT = ".png"
@@ -160,12 +160,12 @@ class ReportOptions:
         with write_atomically(self.report) as draft:
             draft.write_text(page, encoding="utf-8")
 
-    def _tolerance_study(self, comparison: Comparison, file: JointFile) -> Around | None:
+    def _tolerance_study(self, comparison: Comparison, file: JointFile) -> LocalUncertainty | None:
         """Compute the effect of the tolerances; None for a tilted load and for a load without contact."""
         if off_axis.name in comparison or not any(float(load) > 0 for load in file.load.values()):
             return None
         load = {name: float(value) for name, value in file.load.items()}
-        return around(file.joint, file.cup, load, dict(map(spread_of, self.tolerance or ())))
+        return local_uncertainty(file.joint, file.cup, load, dict(map(parse_distribution, self.tolerance or ())))
 
 
 def _verdict_model(comparison: Comparison) -> str:

@@ -106,7 +106,7 @@ def _progress_bar(store: Path | None) -> Iterator[Listener]:
         """Update the bar, which starts with the first finished block."""
         progress.start()
         progress.update(
-            task, description="pressing", completed=state.done, total=state.points, state=_progress_text(state)
+            task, description="pressing", completed=state.n_done, total=state.n_points, state=_progress_text(state)
         )
         latest[:] = [state]
 
@@ -115,7 +115,7 @@ def _progress_bar(store: Path | None) -> Iterator[Listener]:
     except KeyboardInterrupt:
         _stop(progress)
         if store is not None and latest:
-            stored = f"{latest[0].done:.4g} of {latest[0].points:.4g} points are stored in {store}"
+            stored = f"{latest[0].n_done:.4g} of {latest[0].n_points:.4g} points are stored in {store}"
             print_message(f"stopped; {stored}: run the command again to resume")
         raise
     finally:
@@ -130,5 +130,5 @@ def _stop(progress: Progress) -> None:
 
 def _progress_text(state: StudyProgress) -> str:
     """Return finished points, rate in points per second and remaining time as text."""
-    remaining = "" if state.left in (0.0, inf) else f", {timedelta(seconds=ceil(state.left))} left"
-    return f"{state.done:.4g} of {state.points:.4g}, {state.rate:.3g}/s{remaining}"
+    remaining = "" if state.seconds_left in (0.0, inf) else f", {timedelta(seconds=ceil(state.seconds_left))} left"
+    return f"{state.n_done:.4g} of {state.n_points:.4g}, {state.rate:.3g}/s{remaining}"

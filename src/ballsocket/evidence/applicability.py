@@ -10,7 +10,7 @@ import numpy
 
 from ..core.arrays import Array, to_numpy, where
 from ..problem import Joint
-from ..studies.parameters import LOADS, pressable
+from ..studies.parameters import LOADS, press_arguments
 from .matrix import Row
 from .question import ALMOST_ALL, Question
 
@@ -64,7 +64,9 @@ def question_ranges(question: Question, rows: Sequence[Row]) -> Ranges:
     forces = numpy.array([row.numbers.get("force", numpy.nan) for row in rows])
     ends = {name: spread.frozen.ppf(ALMOST_ALL) for name, spread in question.tolerances.items() if name not in LOADS}
     changes = [{}, *({name: end} for name, pair in ends.items() for end in pair)]
-    return similarity_ranges((pressable(question.file.joint, {**cases, **change})[0], forces) for change in changes)
+    return similarity_ranges(
+        (press_arguments(question.file.joint, {**cases, **change})[0], forces) for change in changes
+    )
 
 
 def applicability(reaches: Mapping[str, Sequence[float]], needed: Ranges, tilted: bool) -> dict[str, Any]:

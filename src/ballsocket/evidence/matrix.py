@@ -18,7 +18,7 @@ from ..core.quantities import QUANTITIES, Quantity
 from ..core.validity import Status
 from ..problem.cup import UP
 from ..studies.limits import Limit
-from ..studies.parameters import PARAMETERS, pressable
+from ..studies.parameters import PARAMETERS, press_arguments
 from .question import Question
 
 COMPUTED = ("max_pressure", "half_angle", "area", "von_mises", "utilisation", "indentation", "force")
@@ -127,7 +127,7 @@ def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
     """Compute several cases in one call."""
     count = len(cases)
     values = {name: numpy.array([case[name] for case in cases]) for name in question.axes}
-    joint, load, possible = pressable(question.file.joint, values)
+    joint, load, possible = press_arguments(question.file.joint, values)
     contact = question.model.press(joint, **load)
     numbers = {name: _column(value, count) for name, value in _contact_numbers(question, contact).items()}
     errors = {name: _column(value, count) for name, value in known_errors(contact).items() if name in NAMES}

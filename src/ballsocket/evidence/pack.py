@@ -18,7 +18,7 @@ from ..core.storage.fingerprint import fingerprint
 from ..core.storage.plan import Results
 from ..problem import Material
 from ..problem.dimensions import DIAMETERS, STORED_LENGTHS
-from ..studies.parameters import pressable
+from ..studies.parameters import press_arguments
 from .applicability import applicability, question_ranges
 from .credibility import model_risk
 from .matrix import WEAR, Row, check_limit, worst_rows
@@ -119,7 +119,7 @@ def _drawn_joint(question: Question, worst: Mapping[str, Row]) -> dict[str, Any]
     row = worst.get("max_pressure")
     if row is None:
         return None
-    joint, _, _ = pressable(question.file.joint, row.case)
+    joint, _, _ = press_arguments(question.file.joint, row.case)
     return {
         "joint": joint.summary(),
         "arc_of_cover_deg": degrees(question.file.cup.arc_of_cover),

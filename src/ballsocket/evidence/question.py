@@ -37,9 +37,9 @@ from ..files.units import parse
 from ..hip.config import read_hip
 from ..studies.design import check_values, grid
 from ..studies.distributions import Distribution, Rectangular
+from ..studies.expressions import parse_distribution, parse_limit
 from ..studies.limits import Limit
-from ..studies.parameters import AIMS, LOADS, PARAMETERS, contradiction, nominal, varied
-from ..studies.phrases import limit_of, spread_of
+from ..studies.parameters import AIMS, LOADS, PARAMETERS, check_contradictions, nominal_value, vary_joint
 
 LEVELS = ("low", "medium", "high")
 MOST = 2000
@@ -267,7 +267,7 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
         accuracy=float(tables.required.accuracy),
         file=file,
         axes=axes,
-        limits=tuple(map(limit_of, tables.required.limits or ())),
+        limits=tuple(map(parse_limit, tables.required.limits or ())),
         tolerances=tolerances,
         recentred=recentred,
         sources=_sources(tables.sources or {}),
@@ -287,7 +287,7 @@ def _filled(name: str, text: str, meaning: str) -> str:
 
 
 def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
-    contradiction(axes)
+    check_contradictions(axes)
     if not any(name in axes for name in LOADS):
         raise ValueError(f"[matrix] needs a load: {', '.join(LOADS)}")
     count = prod(map(len, axes.values()))
@@ -297,7 +297,7 @@ def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
 
 def _tolerances(texts: Mapping[str, str]) -> Mapping[str, Distribution]:
     """Read the distributions of uncertain inputs; their ends must be possible joints and loads along the axis."""
-    spreads = dict(spread_of(f"{name} = {text}") for name, text in texts.items())
+    spreads = dict(parse_distribution(f"{name} = {text}") for name, text in texts.items())
     for name, spread in spreads.items():
         if name in AIMS:
             raise ValueError(f"{name} in [tolerances] cannot scatter: tolerances are followed along the axis")
@@ -319,12 +319,12 @@ def _recentred(
     """
     recentred = []
     for name, spread in tolerances.items():
-        stated = None if name in axes or name in LOADS else nominal(file.joint, name)
+        stated = None if name in axes or name in LOADS else nominal_value(file.joint, name)
         used = float(spread.frozen.median())
         inside = isinstance(spread, Rectangular) and stated is not None and spread.low <= stated <= spread.high
         if stated is not None and not inside and not isclose(stated, used, rel_tol=1e-9):
             recentred.append(Recentred(name, stated, used))
-    joint, _ = varied(file.joint, {entry.name: entry.used for entry in recentred})
+    joint, _ = vary_joint(file.joint, {entry.name: entry.used for entry in recentred})
     return replace(file, joint=joint), tuple(recentred)
 
 

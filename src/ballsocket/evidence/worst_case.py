@@ -27,10 +27,10 @@ from ..hip.simulation import HipSimulation
 from ..hip.uncertainty import uncertainty
 from ..problem import Joint
 from ..studies.axes import Method
+from ..studies.default_model import default_model
 from ..studies.design import sample
-from ..studies.parameters import AIMS, LOADS, PARAMETERS, pressable
+from ..studies.parameters import AIMS, LOADS, PARAMETERS, press_arguments
 from ..studies.sensitivity import sensitivity
-from ..studies.usual import usual
 from .matrix import Case, known_errors
 from .question import ALMOST_ALL, Question
 
@@ -86,7 +86,7 @@ class CalculationMethod:
 
 def compare_methods(question: Question, case: Case) -> list[CalculationMethod]:
     """Solve a case by every method for a load along the axis; a tilted load also by the off-axis solver."""
-    joint, load, _ = pressable(question.file.joint, case)
+    joint, load, _ = press_arguments(question.file.joint, case)
     aligned = list(_solve_aligned(question, joint, _size(load)))
     return [*_solve_off_axis(question, joint, load), *aligned] if len(_size(load)) < len(load) else aligned
 
@@ -102,7 +102,7 @@ def _suffix(question: Question) -> str:
 
 
 def _solve_off_axis(question: Question, joint: Joint, load: Mapping[str, Any]) -> Iterator[CalculationMethod]:
-    """Solve a case off the axis, on rings of the usual and of half the width."""
+    """Solve a case off the axis, on rings of the default width and of half the width."""
     model = question.model
     assert isinstance(model, Sphere)
     fine = replace(model, ring_width=model.ring_width / 2)
@@ -143,7 +143,7 @@ def solve_with_calculix(question: Question, case: Case) -> list[CalculationMetho
     """Solve a case along the axis with CalculiX; return an empty list if it is not installed or not required."""
     if not (question.finite_elements and shutil.which("ccx") and find_spec("skfem")):
         return []
-    joint, load, _ = pressable(question.file.joint, case)
+    joint, load, _ = press_arguments(question.file.joint, case)
     model = FiniteElement(cup=question.file.cup, meshes=1)
     return [_run_calculix(f"CalculiX{_suffix(question)}", model, joint, _size(load))]
 
@@ -199,16 +199,16 @@ def propagate_tolerances(question: Question, case: Case) -> dict[str, Any]:
     spreads = question.tolerances
     load = {name: value for name, value in case.items() if name in LOADS and name not in spreads}
     fixed = {name: value for name, value in case.items() if name not in (*AIMS, *load, *spreads)}
-    joint, _, _ = pressable(question.file.joint, fixed)
+    joint, _, _ = press_arguments(question.file.joint, fixed)
     ends = {
         name: [float(spread.frozen.ppf(share)) for share in ALMOST_ALL]
         for name, spread in spreads.items()
         if name not in LOADS
     }
-    model = usual(joint, ends)
+    model = default_model(joint, ends)
     count = _EXACT_SAMPLES if model is reference else _TABULATED_SAMPLES
-    drawn = sample(count, seed=_SEED, method=Method.SOBOL, **spreads).part([slice(None)])
-    made, loads, possible = pressable(joint, {**drawn, **load})
+    drawn = sample(count, seed=_SEED, method=Method.SOBOL, **spreads).values_in([slice(None)])
+    made, loads, possible = press_arguments(joint, {**drawn, **load})
     contact = model.press(made, **loads)
     results = {name: _finite_results(getattr(contact, name), to_numpy(possible), count) for name in _BANDED}
     indices = sensitivity(model, joint, spreads, quantities=_BANDED[:2], count=count // 4, load=load).total_order
@@ -285,7 +285,7 @@ def _wear_rate(question: Question, file: HipFile, case: Case) -> float | None:
 
 def _simulation(question: Question, file: HipFile, case: Case) -> HipSimulation:
     """Create the simulation of the hip file with the joint and the cup angles of a case."""
-    joint, _, _ = pressable(question.file.joint, dict(_geometry(case)))
+    joint, _, _ = press_arguments(question.file.joint, dict(_geometry(case)))
     angles: dict[str, Any] = {name: case[name] for name in _CUP_ANGLES if name in case}
     return replace(file.use, joint=joint, cup=replace(file.use.cup, **angles))
 

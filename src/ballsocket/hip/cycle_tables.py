@@ -9,77 +9,20 @@ from math import pi
 from pathlib import Path
 from types import MappingProxyType
 
-import numpy
-
 from ..core.arrays import Numbers
 from ..core.checks import check_names, shown
-from ..core.input_files import open_input
+from ..files.columns import TextTable, read_text_table, split_head
 from ..problem.cup import Side
 from .waveforms import resample
 
-_MAX_BYTES = 10_000_000
 _MIN_ROWS, _ROW_LIMIT = 5, 100_000
-# possessive quantifiers (*+, ++) keep the matching time proportional to the length
-_HEAD = re.compile(r"\s*+\"?\s*+([A-Za-z_]++)'?\s*+(?:[\[(]([^\])]++)[\])])?\s*+\"?\s*+")
-_HEAD_WORDS = re.compile(r"[^\s\[(]++(?:\s{0,20}+[\[(][^\])]{0,60}+[\])])?")
-_TIME_HEAD = re.compile(r"\s*+\"?\s*+(time|phase|cycle)\b", re.IGNORECASE)
-_UNIT = re.compile(r"\s*+[\[(]?\s*+[A-Za-z%°]++\s*+[\])]?\s*+")
-_MAX_PREAMBLE = 100
-"""Number of lines in which the heads are searched."""
-
-_HEADER_END = "endheader"
-
-NumberedRow = tuple[int, list[str]]
-"""Number of a line in the file, and its cells."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class TextTable:
-    """Table of a file as text: column heads and rows of cells.
-
-    Attributes
-    ----------
-    title : str
-        Name of the file.
-    heads : tuple of str
-        Heads of the columns.
-    rows : tuple of (int, list of str)
-        Line number and cells of each row.
-    decimal_comma : bool
-        True if numbers have a decimal comma.
-    in_degrees : bool, optional
-        Unit of angles in an OpenSim header: True for degrees, False for radians, None if not stated.
-    is_opensim : bool
-        True for an OpenSim storage file.
-    """
-
-    title: str
-    heads: tuple[str, ...]
-    rows: tuple[NumberedRow, ...]
-    decimal_comma: bool = False
-    in_degrees: bool | None = None
-    is_opensim: bool = False
-
-    def column(self, head: str, name: str) -> Numbers:
-        """Return the numbers under a head; ValueError if a row has no finite number, with `name` in the message."""
-        index = self.heads.index(head)
-        return numpy.array([self._number(name, line, cells, index) for line, cells in self.rows])
-
-    def _number(self, name: str, line: int, cells: Sequence[str], index: int) -> float:
-        """Convert one cell to a finite number."""
-        text = cells[index].strip() if index < len(cells) else ""
-        try:
-            value = float(text.replace(",", ".") if self.decimal_comma else text)
-        except ValueError:
-            value = numpy.nan
-        if not numpy.isfinite(value):
-            content = shown(text) if text else "nothing"
-            raise ValueError(f"line {line} has {content} for {name}: each line needs a finite number in each column")
-        return value
+_NAME = re.compile(r"([A-Za-z_]++)'?")
+_HEAD_WORDS = ("time", "phase", "cycle")
+"""Words that begin a head in the line of heads."""
 
 
 def read_table(path: Path) -> TextTable:
-    """Read an OpenSim file (.mot, .sto), or columns separated by commas, semicolons, tabs or blanks.
+    """Read the table of a cycle: an OpenSim file (.mot, .sto), or columns with any separator.
 
     Raises
     ------
@@ -88,66 +31,7 @@ def read_table(path: Path) -> TextTable:
     OSError
         The file cannot be read.
     """
-    with open_input(path) as stream:
-        raw = stream.read(_MAX_BYTES + 1)
-    if len(raw) > _MAX_BYTES:
-        raise ValueError(f"the table is larger than {_MAX_BYTES} bytes")
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise ValueError(f"not text in UTF-8: {error.reason} at byte {error.start}") from error
-    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip()]
-    header_ends = [index for index, (_, line) in enumerate(lines) if line.strip().lower() == _HEADER_END]
-    if header_ends:
-        return _parse_opensim(path.name, lines[: header_ends[0]], lines[header_ends[0] + 1 :])
-    return _parse_columns(path.name, [line for line in lines if not line[1].lstrip().startswith("#")])
-
-
-def _parse_opensim(title: str, header: Sequence[tuple[int, str]], lines: Sequence[tuple[int, str]]) -> TextTable:
-    """Split the lines of an OpenSim file into heads and rows."""
-    settings = dict(_parse_setting(line) for _, line in header)
-    _check_row_count(len(lines) - 1)
-    count = settings.get("nrows", settings.get("datarows", str(len(lines) - 1)))
-    if count != str(len(lines) - 1):
-        raise ValueError(f"the header states {shown(count)} rows, but the file has {len(lines) - 1}")
-    in_degrees = {"yes": True, "no": False}.get(settings.get("indegrees", "").lower())
-    rows = tuple((number, line.split()) for number, line in lines[1:])
-    return TextTable(title=title, heads=tuple(lines[0][1].split()), rows=rows, in_degrees=in_degrees, is_opensim=True)
-
-
-def _parse_setting(line: str) -> tuple[str, str]:
-    """Split a header line into name and value: `nRows=5`, or in old files `datarows 5`."""
-    name, _, value = line.strip().partition("=" if "=" in line else " ")
-    return name.strip().lower(), value.strip()
-
-
-def _parse_columns(title: str, lines: Sequence[tuple[int, str]]) -> TextTable:
-    """Split lines of columns into a `TextTable`: heads with units, and rows below the head of time or phase."""
-    begin = next((index for index, (_, line) in enumerate(lines[:_MAX_PREAMBLE]) if _has_time_head(line)), 0)
-    below = lines[begin + 1 :]
-    _check_row_count(len(below))
-    first = lines[begin][1]
-    separator = max(",;\t", key=first.count)
-    by_blanks = separator not in first
-    heads = _HEAD_WORDS.findall(first) if by_blanks else first.split(separator)
-    rows = [(number, line.split() if by_blanks else line.split(separator)) for number, line in below]
-    units = rows[0][1]
-    if len(units) == len(heads) and all("[" not in head for head in heads) and all(map(_is_unit, units)):
-        heads = [f"{head.strip()} [{unit.strip().strip('[]()')}]" for head, unit in zip(heads, units, strict=True)]
-        rows = rows[1:]
-    decimal_comma = separator != "," and any("," in cell for cell in rows[0][1])
-    return TextTable(title=title, heads=tuple(heads), rows=tuple(rows), decimal_comma=decimal_comma)
-
-
-def _has_time_head(line: str) -> bool:
-    """Return True if a cell of the line begins with time, phase or cycle, and the line does not end with a number."""
-    cells = re.split(r"[,;\t]|\s{2,}", line)
-    return any(_TIME_HEAD.match(cell) for cell in cells) and not line.strip()[-1].isdigit()
-
-
-def _is_unit(cell: str) -> bool:
-    """Return True if a cell can be a unit, and not a missing number."""
-    return bool(_UNIT.fullmatch(cell)) and cell.strip().lower() not in ("nan", "inf")
+    return read_text_table(path, _HEAD_WORDS, _check_row_count)
 
 
 def _check_row_count(count: int) -> None:
@@ -220,7 +104,7 @@ def _convert_text_columns(table: TextTable, body_weight: float | None) -> HipCol
         factor = _unit_factor(name, unit, written, body_weight)
         if name in columns:
             raise ValueError(f"the column {name} appears twice")
-        columns[name] = factor * table.column(head, name)
+        columns[name] = factor * table.numbers(head, name)
     if orthoload and "time" in columns:
         columns.pop("phase", None)  # repeats the time
     return HipColumns(columns=columns, force_on="ball" if orthoload else None, frame="femur" if orthoload else None)
@@ -234,10 +118,11 @@ def parse_head(head: str) -> tuple[str, str | None]:
     ValueError
         The head is not a name with a unit.
     """
-    match = _HEAD.fullmatch(head)
+    name, unit = split_head(head)
+    match = _NAME.fullmatch(name)
     if match is None:
         raise ValueError(f"the head {shown(head)} is not a name with a unit, such as 'force [N]'")
-    return match[1].lower(), match[2] and match[2].strip()
+    return match[1].lower(), unit or None
 
 
 def _unit_factor(name: str, unit: str | None, written: str, body_weight: float | None) -> float:
@@ -261,14 +146,14 @@ def _unit_factor(name: str, unit: str | None, written: str, body_weight: float |
 def _convert_opensim_columns(table: TextTable, side: Side) -> HipColumns:
     """Extract angles and joint reaction of one hip from an OpenSim table; other columns are ignored."""
     letter = side.value[0]
-    columns = {"time": table.column("time", "time")} if "time" in table.heads else {}
+    columns = {"time": table.numbers("time", "time")} if "time" in table.heads else {}
     reactions: set[tuple[str, str]] = set()
     for head in table.heads:
         if (angle := _OPENSIM_ANGLE.fullmatch(head)) and angle[2] == letter:
-            columns[angle[1]] = _angle_factor(table) * table.column(head, head)
+            columns[angle[1]] = _angle_factor(table) * table.numbers(head, head)
         elif (force := _OPENSIM_REACTION.fullmatch(head)) and force[1] == letter:
             reactions.add((force[2], force[3]))
-            columns[_OPENSIM_AXES[force[4]]] = table.column(head, head)
+            columns[_OPENSIM_AXES[force[4]]] = table.numbers(head, head)
     if len(columns) < 2:
         examples = f"hip_flexion_{letter} or hip_{letter}_on_femur_..."
         raise ValueError(f"the table has no column of the {side.value} hip, such as {examples}")

@@ -12,8 +12,7 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
-from ..studies.room import check_samples
-from ..studies.sobol import sobol
+from ..studies.sensitivity import check_sample_memory, sobol_indices
 from .bands import COEFFICIENT, CONVERTED, DEFAULT_LEVEL, INFLUENCED_RESULTS, Bands, SharedCoefficient
 from .cohort import CohortRun, CohortStore, ProgressCallback, sample_patients
 from .history import History, Report
@@ -74,11 +73,11 @@ def uncertainty(
     """
     require("count", count, count >= 2 and count & (count - 1) == 0, "it must be a power of two")
     require("seed", seed, seed >= 0, "it must be at least 0")
-    check_samples(count)
+    check_sample_memory(count)
     counts = tuple(report.cycles for report in history.reports)
     simulation = _SampleSimulation(variability, counts, engine, progress)
     distributions = list(variability.distributions.values())
-    indices: Mapping[str, Numbers] | None = sobol(simulation, distributions, count, seed, DEFAULT_LEVEL)
+    indices: Mapping[str, Numbers] | None = sobol_indices(simulation, distributions, count, seed, DEFAULT_LEVEL)
     if any((result.refused != "").any() for result in simulation.results):
         indices = None
     cohort = join_results(simulation.results[:2])

@@ -16,8 +16,8 @@ from ..core.arrays import Numbers
 from ..core.checks import shown
 from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, Quantity
+from ..files.columns import read_columns, split_head
 from ..files.units import parse
-from ..studies.columns import read_columns
 from .machine import IDEAL_MACHINE, Machine
 from .measured import MEASURED, Measured
 
@@ -50,7 +50,7 @@ def parse_head(text: str) -> Head:
     ValueError
         A name that is not known; a missing unit, or the unit of another quantity.
     """
-    plain = _without_brackets(text.strip()).replace(" ", "_")
+    plain = "_".join(filter(None, split_head(text))).replace(" ", "_")
     known = [name for name in _QUANTITIES if plain == name or plain.startswith(f"{name}_")]
     if not known:
         raise ValueError(
@@ -66,14 +66,6 @@ def parse_head(text: str) -> Head:
     if not unit:
         raise ValueError(f"column {shown(text)} has no unit: use {name}_{kind.column_suffix}, or another unit")
     return Head(name, parse(f"the unit of {text}", f"1 {unit}", kind))
-
-
-def _without_brackets(head: str) -> str:
-    """Rewrite a head with a unit in brackets, "area [mm2]" to "area_mm2"."""
-    start = min((head.index(bracket) for bracket in "[(" if bracket in head), default=-1)
-    if start < 0 or head[-1] not in "])":
-        return head
-    return f"{head[:start].rstrip()}_{head[start + 1 : -1].strip()}"
 
 
 def read_measured(

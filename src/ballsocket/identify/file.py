@@ -33,8 +33,8 @@ from ..files.tables import parsed_values, quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..problem import Joint
+from ..studies.expressions import parse_ends
 from ..studies.file import ModelName
-from ..studies.phrases import ends_of
 from ..studies.scatter import DISTRIBUTION_SCHEMA, distribution_of
 from .columns import Gaps, parse_uncertainty, read_measured
 from .identification import identify
@@ -86,7 +86,7 @@ class PriorValue(Parsed):
     def parse(cls, name: str, value: Any) -> Prior:
         """Convert the prior of an unknown."""
         if isinstance(value, str):
-            return ends_of(name, value, cls.kind)
+            return parse_ends(name, value, cls.kind)
         if not isinstance(value, Mapping):
             raise ValueError(
                 f"{name} = {shown(value)} must be two ends, such as '0.02..0.3 mm', or {{mean, deviation}}"
@@ -103,7 +103,7 @@ class ErrorSize(Parsed):
     def parse(cls, name: str, value: Any) -> NumberOrRange:
         """Convert the size of an error of a machine."""
         is_range = isinstance(value, str) and ".." in value
-        return ends_of(name, value, cls.kind) if is_range else parse(name, value, cls.kind)
+        return parse_ends(name, value, cls.kind) if is_range else parse(name, value, cls.kind)
 
 
 class ScatterName(Word):

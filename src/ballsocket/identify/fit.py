@@ -13,7 +13,7 @@ from ..contact import Model
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..problem import Joint
-from ..studies.parameters import varied
+from ..studies.parameters import vary_joint
 from .estimates import Estimate
 from .forward_model import insert_model_numbers, split_joint_and_model_values
 from .information import Information
@@ -69,7 +69,7 @@ class FittedModel:
     @property
     def joint(self) -> Joint:
         """Joint, whose numbers have their best-fit values."""
-        return varied(self.misfit.forward.joint, split_joint_and_model_values(self.point)[0])[0]
+        return vary_joint(self.misfit.forward.joint, split_joint_and_model_values(self.point)[0])[0]
 
     @cached_property
     def estimates(self) -> dict[str, Estimate]:

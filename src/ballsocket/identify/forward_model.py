@@ -14,7 +14,7 @@ from ..core.arrays import Array
 from ..core.quantities import PARTS
 from ..core.validity import OutsideDomainError
 from ..problem import Joint
-from ..studies.parameters import varied
+from ..studies.parameters import vary_joint
 from .measured import Measured
 from .registry import JOINT_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS
 
@@ -77,7 +77,7 @@ class ForwardModel:
         """
         values_by_name = {name: values[:, index : index + 1] for index, name in enumerate(self.names)}
         joint_values, model_values = split_joint_and_model_values(values_by_name)
-        joint, valid_geometry = varied(self.joint, joint_values)
+        joint, valid_geometry = vary_joint(self.joint, joint_values)
         joints_at_points = _JointsAtPoints(
             insert_model_numbers(self.model, model_values), joint, self._known_errors | values_by_name
         )

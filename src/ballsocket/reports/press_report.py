@@ -12,7 +12,7 @@ from ..core.quantities import CONTACT
 from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
-from ..studies.around import Around
+from ..studies.local_uncertainty import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from . import press_plots
 from .joint_report import joint_report
@@ -29,7 +29,7 @@ def press_report(
     file: JointFile,
     leading: str,
     units: Units = Units.SI,
-    surroundings: Around | None = None,
+    surroundings: LocalUncertainty | None = None,
     day: date | None = None,
 ) -> str:
     """Return the page of single contacts of one joint as HTML.
@@ -43,7 +43,7 @@ def press_report(
         Name of the model whose contact gets the verdict; the exact one if there is one.
     units : Units
         Units of every number.
-    surroundings : Around, optional
+    surroundings : LocalUncertainty, optional
         Sensitivity of the results to each number and to the tolerances.
     day : date, optional
         Date of the page; by default today.
@@ -68,7 +68,7 @@ def press_lede(contact: Contact, units: Units = Units.SI) -> str:
 
 
 def press_sections(
-    comparison: Comparison, units: Units = Units.SI, surroundings: Around | None = None
+    comparison: Comparison, units: Units = Units.SI, surroundings: LocalUncertainty | None = None
 ) -> dict[str, tuple[str, str]]:
     """Return the sections of a press without its figures: title and HTML by id."""
     return {
@@ -107,7 +107,7 @@ def _figures(comparison: Comparison, leading: Contact) -> str:
     return render_part(_TEMPLATE, "figures", svg_address(press_plots.plot(contacts)) if drawable else None)
 
 
-def _tolerances(surroundings: Around | None, units: Units) -> str:
+def _tolerances(surroundings: LocalUncertainty | None, units: Units) -> str:
     """Return elasticities and the bands of the tolerances as HTML."""
     if surroundings is None:
         return render_part(_TEMPLATE, "tolerances", None, ())

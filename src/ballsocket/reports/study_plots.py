@@ -11,7 +11,7 @@ import numpy
 
 from ..core.deprecation import renamed_arguments
 from ..core.quantities import QUANTITIES
-from ..studies.limits import Limit, allowed, margin_over
+from ..studies.limits import Limit, allowed, margin_on_plane
 from .style import BLUE, INK, LEGEND, ORANGE, finish
 
 if TYPE_CHECKING:
@@ -119,14 +119,14 @@ def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], acr
     x, y = read(study, across).values, read(study, up).values
     nearest = numpy.full((len(y), len(x)), numpy.inf)
     for limit in limits:
-        values = margin_over(study, limit, across, up)
+        values = margin_on_plane(study, limit, across, up)
         size = float(numpy.nanmax(abs(values), initial=0.0, where=numpy.isfinite(values)))
         nearest = numpy.minimum(nearest, values / (size or 1.0))
     if numpy.nanmin(nearest) < 0:
         axes.contourf(x, y, numpy.clip(nearest, -1.0, 1.0), levels=[-2.0, 0.0], colors="white", alpha=_VEIL)
     for limit in limits:
         for end in _one_sided_limits(limit):
-            values = margin_over(study, end, across, up)
+            values = margin_on_plane(study, end, across, up)
             if numpy.nanmin(values) < 0 < numpy.nanmax(values):
                 line = axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
                 _label_lines(axes, line, _limit_text(end))

@@ -13,14 +13,14 @@ from rich.table import Table
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
 from ..core.validity import Status
-from ..studies.limits import Limit, allowed, refusal
-from ..studies.parameters import PARTS_OF
-from ..studies.pieces import dims_of, pieces
+from ..studies.export import dimension_names, iterate_chunks
+from ..studies.limits import Limit, allowed, refusal_reason
+from ..studies.parameters import MATERIAL_PARTS
 
 if TYPE_CHECKING:
     import xarray
 
-    from ..studies.optimum import Optimum
+    from ..studies.optimisation import Optimum
 
 
 class End(NamedTuple):
@@ -50,7 +50,7 @@ class StudyReport:
             {status: 0 for status in Status if status.failed},
         )
         first, stride = 0, max(1, study.status.size // _MAX_SAMPLED)
-        for part in pieces(study):
+        for part in iterate_chunks(study):
             for name in names:
                 report._add(name, part[name].values.ravel(), first, stride)
             for status in report.failed:
@@ -96,7 +96,7 @@ def study_summary(study: xarray.Dataset) -> dict[str, Any]:
 
 def _values(study: xarray.Dataset) -> dict[str, Any]:
     """Return the varied parameters and the results at all points, in the order of the axes."""
-    flat = study.stack(point=dims_of(study)) if dims_of(study) else study.expand_dims("point")
+    flat = study.stack(point=dimension_names(study)) if dimension_names(study) else study.expand_dims("point")
     names = [*varying_parameters(study), *result_names(study)]
     return {name: _plain(flat[name].values) for name in names}
 
@@ -128,10 +128,10 @@ def map_summary(study: xarray.Dataset, limits: Sequence[Limit]) -> dict[str, Any
     """
     good = allowed(study, limits)
     if not bool(good.any()):
-        raise ValueError(refusal(study, limits, "no point of the map is allowed", "at any point of the map"))
+        raise ValueError(refusal_reason(study, limits, "no point of the map is allowed", "at any point of the map"))
     quantities = {}
     for name in result_names(study):
-        values = study[name].where(good).transpose(*dims_of(study)).values
+        values = study[name].where(good).transpose(*dimension_names(study)).values
         ends = (int(numpy.nanargmin(values)), int(numpy.nanargmax(values)))
         quantities[name] = [{"value": float(values.flat[end]), "at": coordinates(study, end)} for end in ends]
     return {
@@ -174,7 +174,7 @@ def varying_parameters(study: xarray.Dataset) -> list[str]:
     return [
         str(name)
         for name, variable in study.coords.items()
-        if variable.dims and (name in variable.dims or not set(variable.dims) & set(PARTS_OF))
+        if variable.dims and (name in variable.dims or not set(variable.dims) & set(MATERIAL_PARTS))
     ]
 
 
@@ -185,7 +185,7 @@ def result_names(study: xarray.Dataset) -> list[str]:
 
 def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
     """Return the parameters at a point, by its index in the order of the dimensions."""
-    dims = dims_of(study)
+    dims = dimension_names(study)
     index = dict(zip(dims, numpy.unravel_index(flat, [study.sizes[dim] for dim in dims]), strict=True))
     values = {}
     for name, variable in study.coords.items():

@@ -1,7 +1,7 @@
-"""Questions asked of many joints: which points, what each is answered, and what follows.
+"""Studies: many joints and loads pressed with one model, and questions about them.
 
-`study` presses one joint at every point of a design; `pareto`, `optimise` and `sensitivity` ask for the best points and
-for what matters; `design_map` and its kin draw.
+`study` presses one joint at every point of a design. `pareto`, `optimise` and `sensitivity` find the best designs and
+the parameters that matter. `design_map` and similar functions plot studies.
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ from typing import TYPE_CHECKING, Any
 from ..core.checks import nearest
 from ..core.plotting import load_plot
 from .axes import Method, Span
-from .design import Design, grid, sample
+from .derivatives import elasticities
+from .design import Design, grid, sample, table
 from .distributions import LogNormal, Normal, Rectangular, tolerance
 from .export import export
+from .expressions import parse_limit
 from .limits import Limit, allowed
-from .optimum import Optimum, optimise
+from .optimisation import Optimum, optimise
 from .parameters import PARAMETERS
 from .pareto import pareto
-from .phrases import limit_of
-from .rows import table
-from .run import Progress, read, study
+from .run import Progress, study
 from .sensitivity import sensitivity
-from .slopes import elasticities
+from .store import read
 
 __all__ = [  # noqa: RUF022, grouped as they are used
-    # which points
+    # designs
     "PARAMETERS",
     "Design",
     "LogNormal",
@@ -53,13 +53,17 @@ __all__ = [  # noqa: RUF022, grouped as they are used
     "limit_of",
     "optimise",
     "pareto",
+    "parse_limit",
     "sensitivity",
-    # pictures
+    # plots
     "band_figure",
     "design_map",
     "front_figure",
     "sensitivity_figure",
 ]
+
+limit_of = parse_limit
+"""Earlier name of `parse_limit`."""
 
 _PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
 band_figure: Callable[..., Any]
@@ -69,9 +73,10 @@ sensitivity_figure: Callable[..., Any]
 
 if TYPE_CHECKING:
     from .file import read_study
-else:  # a checker of types would take any name for an offered one
+else:  # a type checker would accept any name
 
     def __getattr__(name: str) -> Any:
+        """Load a plot function, or the reader of study files, on its first use."""
         if name in _PLOTS:
             return load_plot(name)
         if name == "read_study":  # the schema of study files takes time to load
@@ -80,4 +85,5 @@ else:  # a checker of types would take any name for an offered one
 
 
 def __dir__() -> list[str]:
+    """List the names of the module, with the plot functions."""
     return sorted({*globals(), *__all__})

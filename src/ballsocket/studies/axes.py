@@ -1,4 +1,4 @@
-"""The dimensions of a study: values of a grid, equal steps, samples of distributions, rows of a table."""
+"""Axes of a study: values of a grid, equal steps, samples of distributions, rows of a table."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ from ..core.quantities import MATERIAL, QUANTITIES
 from ..problem import Material
 from .distributions import Distribution
 
-MOST = 10**15
-"""Values along an axis. There is never so much room, but as many can be counted."""
+MAX_COUNT = 10**15
+"""Largest number of values along an axis."""
 
 
 class Axis(ABC):
-    """One dimension of a study: one or more parameters that vary along it together."""
+    """Dimension of a study: one or more parameters that vary together."""
 
     name: str
 
     @property
     @abstractmethod
     def values(self) -> Mapping[str, Numbers]:
-        """By parameter, float64 of shape (length,)."""
+        """Values of each parameter, float64 of shape (length,)."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The parameters."""
+        """Names of the parameters."""
         return (self.name,)
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """What its places are called; empty where numbers say it."""
+        """Texts for the positions along the axis; empty for an axis of numbers."""
         return ()
 
     def __len__(self) -> int:
@@ -48,7 +48,7 @@ class Axis(ABC):
 
 @dataclass(frozen=True, eq=False)
 class GridAxis(Axis):
-    """One parameter at given values."""
+    """Axis of one parameter with listed values."""
 
     name: str
     column: Numbers
@@ -60,7 +60,7 @@ class GridAxis(Axis):
 
 @dataclass(frozen=True)
 class SpanAxis(Axis):
-    """One parameter at equal steps, which are not written down before they are needed."""
+    """Axis of one parameter with equal steps, computed when they are used."""
 
     name: str
     span: Span
@@ -70,27 +70,28 @@ class SpanAxis(Axis):
 
     @property
     def values(self) -> Mapping[str, Numbers]:
-        return _stepped(self)
+        return _span_values(self)
 
 
 @lru_cache(maxsize=16)
-def _stepped(axis: SpanAxis) -> Mapping[str, Numbers]:
+def _span_values(axis: SpanAxis) -> Mapping[str, Numbers]:
+    """Compute the values of an axis with equal steps."""
     return {axis.name: numpy.linspace(axis.span.low, axis.span.high, axis.span.count)}
 
 
 @dataclass(frozen=True)
 class Span:
-    """`count` numbers at equal steps from `low` to `high`.
+    """Range of `count` numbers with equal steps from `low` to `high`.
 
     Raises
     ------
     ValueError
-        Ends that are not finite, no value at all, or more than `MOST`.
+        An end that is not finite, no value, or more than `MAX_COUNT` values.
 
     Examples
     --------
     >>> from ballsocket.studies.design import grid
-    >>> grid(force=Span(500.0, 4000.0, 8)).part([slice(None)])["force"]
+    >>> grid(force=Span(500.0, 4000.0, 8)).values_in([slice(None)])["force"]
     array([ 500., 1000., 1500., 2000., 2500., 3000., 3500., 4000.])
     """
 
@@ -102,17 +103,17 @@ class Span:
         for name in ("low", "high"):
             value = getattr(self, name)
             require(name, value, abs(value) < inf, "the end of a span is finite")
-        require("count", self.count, 1 <= self.count <= MOST, "a span has at least one value, at most 1e15")
+        require("count", self.count, 1 <= self.count <= MAX_COUNT, "a span has at least one value, at most 1e15")
 
 
 @dataclass(frozen=True)
 class MaterialAxis(Axis):
-    """Materials of a part of the joint, "liner" or "ball", whose numbers vary together.
+    """Axis of materials of the "liner" or the "ball", whose properties vary together.
 
     Raises
     ------
     ValueError
-        No material at all, or the same one twice.
+        No material, or the same material twice.
     """
 
     name: str
@@ -126,29 +127,29 @@ class MaterialAxis(Axis):
                 raise ValueError(f"{self.name} has {label} twice")
 
     @property
-    def _numbers(self) -> tuple[str, ...]:
-        """What all of them have."""
-        known = all(each.yield_stress is not None for each in self.materials)
+    def _properties(self) -> tuple[str, ...]:
+        """Names of the properties that all materials have."""
+        known = all(material.yield_stress is not None for material in self.materials)
         return (*MATERIAL, *(["yield_stress"] if known else []))
 
     @property
     def names(self) -> tuple[str, ...]:
-        return tuple(f"{self.name}_{number}" for number in self._numbers)
+        return tuple(f"{self.name}_{number}" for number in self._properties)
 
     @property
     def values(self) -> Mapping[str, Numbers]:
         return {
-            f"{self.name}_{number}": numpy.array([float(getattr(each, number)) for each in self.materials])
-            for number in self._numbers
+            f"{self.name}_{number}": numpy.array([float(getattr(material, number)) for material in self.materials])
+            for number in self._properties
         }
 
     @property
     def labels(self) -> tuple[str, ...]:
-        return tuple(each.name or str(each) for each in self.materials)
+        return tuple(material.name or str(material) for material in self.materials)
 
 
 class Method(Choice):
-    """How samples fill the space."""
+    """Methods of sampling."""
 
     SOBOL = "sobol"
     LATIN_HYPERCUBE = "latin-hypercube"
@@ -156,7 +157,7 @@ class Method(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class SampleAxis(Axis):
-    """Samples of distributions, drawn anew from the seed wherever they are needed."""
+    """Axis of samples of distributions, drawn from the seed when they are used."""
 
     count: int
     distributions: tuple[tuple[str, Distribution], ...]
@@ -173,28 +174,28 @@ class SampleAxis(Axis):
 
     @property
     def values(self) -> Mapping[str, Numbers]:
-        return _drawn(self)
+        return _draw_samples(self)
 
 
 @lru_cache(maxsize=4)
-def _drawn(axis: SampleAxis) -> Mapping[str, Numbers]:
-    """Once in each process: a worker is sent the recipe, not the numbers."""
+def _draw_samples(axis: SampleAxis) -> Mapping[str, Numbers]:
+    """Draw the samples of an axis, once in each process: workers receive the seed instead of the samples."""
     from scipy.stats.qmc import LatinHypercube, Sobol
 
     engines = {Method.SOBOL: Sobol, Method.LATIN_HYPERCUBE: LatinHypercube}
     engine = engines[axis.method](len(axis.distributions), rng=axis.seed)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # of counts that are no power of two: the docstring says so
-        shares = engine.random(axis.count)
+        warnings.simplefilter("ignore", UserWarning)  # SciPy warns of counts other than powers of two
+        probabilities = engine.random(axis.count)
     return {
-        name: distribution.frozen.ppf(share)
-        for (name, distribution), share in zip(axis.distributions, shares.T, strict=True)
+        name: distribution.frozen.ppf(row)
+        for (name, distribution), row in zip(axis.distributions, probabilities.T, strict=True)
     }
 
 
 @dataclass(frozen=True, eq=False)
 class TableAxis(Axis):
-    """Rows of a table, a column a parameter."""
+    """Axis of the rows of a table with a column for each parameter."""
 
     columns: Mapping[str, Numbers]
     name: str = "row"
@@ -208,8 +209,22 @@ class TableAxis(Axis):
         return self.columns
 
 
-def column(name: str, values: Numbers, row: str = "[{}]") -> Numbers:
-    """Float64 numbers that a parameter may have."""
+def parameter_values(name: str, values: Numbers, position: str = "[{}]") -> Numbers:
+    """Convert the values of a parameter to float64, and check that they are finite or an allowed infinity.
+
+    Parameters
+    ----------
+    name : str
+        Name of the parameter.
+    values : array of shape (length,)
+    position : str
+        Text for the index of a value in a message.
+
+    Raises
+    ------
+    ValueError
+        Other shapes or types, no values, or a value that is not finite.
+    """
     if values.ndim != 1 or values.dtype.kind not in "iuf":
         raise ValueError(f"{name} must be a row of numbers, got {values.dtype} of shape {values.shape}")
     if not len(values):
@@ -221,5 +236,5 @@ def column(name: str, values: Numbers, row: str = "[{}]") -> Numbers:
     if bad.any():
         first = int(numpy.argmax(bad))
         more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
-        raise ValueError(f"{name}{row.format(first)} = {numbers[first]:g}{more} is not allowed: a finite number")
+        raise ValueError(f"{name}{position.format(first)} = {numbers[first]:g}{more} is not allowed: a finite number")
     return numbers

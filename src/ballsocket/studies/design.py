@@ -1,30 +1,43 @@
-"""Which points a study presses: products of axes, with some numbers fixed."""
+"""Designs of studies: grids, samples, tables and their products, with fixed parameters."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import prod
+from pathlib import Path
 from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require, shown
+from ..files.columns import read_columns
 from ..problem import Material
-from .axes import MOST, Axis, GridAxis, MaterialAxis, Method, SampleAxis, Span, SpanAxis, column
+from .axes import (
+    MAX_COUNT,
+    Axis,
+    GridAxis,
+    MaterialAxis,
+    Method,
+    SampleAxis,
+    Span,
+    SpanAxis,
+    TableAxis,
+    parameter_values,
+)
 from .distributions import Distribution
-from .parameters import PARAMETERS, PARTS_OF, contradiction
+from .parameters import MATERIAL_PARTS, PARAMETERS, check_contradictions
 
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """The points of a study: every combination of its axes, with some numbers fixed.
+    """Points of a study: all combinations of its axes, with fixed parameters.
 
     Raises
     ------
     ValueError
-        A parameter that is not known or varies twice, or parameters that contradict each other.
+        An unknown parameter, one that varies twice, or parameters that contradict each other.
     """
 
     axes: tuple[Axis, ...] = ()
@@ -36,138 +49,161 @@ class Design:
         for name in names:
             if names.count(name) > 1:
                 raise ValueError(f"{name} varies along two axes; one is needed")
-        contradiction(dict.fromkeys(names))
+        check_contradictions(dict.fromkeys(names))
         for dim in self.dims:
             if self.dims.count(dim) > 1:
-                raise ValueError(f"two axes are called {dim}: draw all samples, or take all rows, in one")
+                raise ValueError(f"two axes have the name {dim}: combine all samples, or all rows, in one axis")
 
     def __mul__(self, other: Design) -> Design:
-        """Every combination of both."""
-        twice = [name for name in self.fixed if name in other.fixed]
-        if twice:
-            raise ValueError(f"{twice[0]} is given twice; one is needed")
+        """Combine every point of this design with every point of another one."""
+        duplicates = [name for name in self.fixed if name in other.fixed]
+        if duplicates:
+            raise ValueError(f"{duplicates[0]} is given twice; one is needed")
         return Design(self.axes + other.axes, {**self.fixed, **other.fixed})
 
     @property
     def dims(self) -> tuple[str, ...]:
-        """Names of the dimensions."""
+        """Names of the axes."""
         return tuple(axis.name for axis in self.axes)
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Points along each dimension."""
+        """Number of points along each axis."""
         return tuple(len(axis) for axis in self.axes)
 
     @property
     def size(self) -> int:
-        """Points in all."""
+        """Total number of points."""
         return prod(self.shape)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The parameters that vary or are fixed."""
+        """Names of the varied and the fixed parameters."""
         return (*(name for axis in self.axes for name in axis.names), *self.fixed)
 
-    def part(self, place: Sequence[slice]) -> dict[str, Numbers]:
-        """The parameters in a box of points, each with as many dimensions as the study, to broadcast."""
-        found = {name: numpy.full([1] * len(self.axes), value) for name, value in self.fixed.items()}
-        for dimension, (axis, where) in enumerate(zip(self.axes, place, strict=True)):
+    def values_in(self, box: Sequence[slice]) -> dict[str, Numbers]:
+        """Return the values of all parameters in a box of points.
+
+        Parameters
+        ----------
+        box : sequence of slice
+            Range along each axis.
+
+        Returns
+        -------
+        dict of str to array
+            Arrays with one dimension per axis, which broadcast against each other.
+        """
+        arrays = {name: numpy.full([1] * len(self.axes), value) for name, value in self.fixed.items()}
+        for dimension, (axis, section) in enumerate(zip(self.axes, box, strict=True)):
             shape = [1] * len(self.axes)
             for name, values in axis.values.items():
                 shape[dimension] = -1
-                found[name] = values[where].reshape(shape)
-        return found
+                arrays[name] = values[section].reshape(shape)
+        return arrays
 
 
 def grid(**axes: Any) -> Design:
-    """Every combination of the values of named parameters.
+    """Create the design of all combinations of the values of parameters.
 
     Parameters
     ----------
-    **axes : number, Span or sequence of numbers; Material or sequence of these
-        By name of a parameter (`ballsocket.studies.parameters.PARAMETERS`), in mm, N, MPa, rad; materials by `liner`
-        or `ball`. A number, or one material, is fixed and makes no axis.
+    **axes : number, Span or sequence of numbers; Material or sequence of Material
+        Values by parameter (`ballsocket.studies.parameters.PARAMETERS`), in mm, N, MPa, rad; materials by `liner` or
+        `ball`. A single number or material is fixed and adds no axis.
 
     Raises
     ------
     ValueError
-        A name that is not known; an empty axis; a value that is not finite (only a thickness may be infinite).
+        An unknown name; an empty axis; a value that is not finite (only a thickness may be infinite).
 
     Examples
     --------
     >>> grid(ball_radius=[14.0, 16.0], force=[1000.0, 2000.0, 3000.0]).shape
     (2, 3)
     """
-    check_names(axes, (*PARAMETERS, *PARTS_OF), "among the axes")
+    check_names(axes, (*PARAMETERS, *MATERIAL_PARTS), "among the axes")
     fixed: dict[str, float] = {}
     varying = {}
     for name, value in axes.items():
         if isinstance(value, Material):
-            fixed |= {name: float(column[0]) for name, column in _axis(name, [value]).values.items()}
-        elif isinstance(value, Span) or not is_one(value):
+            fixed |= {number: float(column[0]) for number, column in _create_axis(name, [value]).values.items()}
+        elif isinstance(value, Span) or not is_number(value):
             varying[name] = value
         else:
-            fixed[name] = _fixed(name, value)
-    return Design(tuple(_axis(name, value) for name, value in varying.items()), fixed)
+            fixed[name] = _check_fixed(name, value)
+    return Design(tuple(_create_axis(name, value) for name, value in varying.items()), fixed)
 
 
 def check_values(design: Design) -> None:
-    """Raise ValueError for the first value of an axis that no joint and no load has.
+    """Check that all values of a design are in the ranges of their parameters.
 
-    Of a span only the ends are looked at, since all that lies between them is allowed with them.
+    Of a span only the ends are checked.
+
+    Raises
+    ------
+    ValueError
+        A value is not allowed; the message has the first one.
     """
     for axis in design.axes:
         ends = {axis.name: numpy.array([axis.span.low, axis.span.high])} if isinstance(axis, SpanAxis) else axis.values
         for name, values in ends.items():
-            _check_allowed(name, values, "; cut the distribution off" if isinstance(axis, SampleAxis) else "")
+            _check_allowed(name, values, "; truncate the distribution" if isinstance(axis, SampleAxis) else "")
     for name, value in design.fixed.items():
         _check_allowed(name, numpy.array([value]), "")
 
 
 def _check_allowed(name: str, values: Numbers, hint: str) -> None:
+    """Raise ValueError for the first value outside the range of a parameter."""
     bad = ~PARAMETERS[name].allows(values)
     if bad.any():
         first = int(numpy.argmax(bad))
         more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
-        what, meant = PARAMETERS[name].title, PARAMETERS[name].radian_hint(float(values[first]))
-        raise ValueError(f"{name}[{first}] = {values[first]:g}{more} is not allowed for a {what}{hint}{meant}")
+        title, degrees = PARAMETERS[name].title, PARAMETERS[name].radian_hint(float(values[first]))
+        raise ValueError(f"{name}[{first}] = {values[first]:g}{more} is not allowed for a {title}{hint}{degrees}")
 
 
-def is_one(value: Any) -> bool:
-    """Whether a value is one number."""
+def is_number(value: Any) -> bool:
+    """Check if a value is a single number."""
     return numpy.ndim(value) == 0
 
 
-def _materials(name: str, values: Any) -> tuple[Material, ...]:
-    if isinstance(values, Sequence) and all(isinstance(each, Material) for each in values):
+def _check_materials(name: str, values: Any) -> tuple[Material, ...]:
+    """Check that values are a sequence of materials, and return them as a tuple."""
+    if isinstance(values, Sequence) and all(isinstance(material, Material) for material in values):
         return tuple(values)
     raise ValueError(f"{name} must be a list of Materials, got {shown(values)}")
 
 
-def _fixed(name: str, value: Any) -> float:
-    if name in PARTS_OF:
+def _check_fixed(name: str, value: Any) -> float:
+    """Check a fixed parameter, and return it as a float."""
+    if name in MATERIAL_PARTS:
         raise ValueError(f"{name} must be a Material or a list of Materials, got {shown(value)}")
-    return float(column(name, numpy.asarray([value]))[0])
+    return float(parameter_values(name, numpy.asarray([value]))[0])
 
 
-def _axis(name: str, value: Any) -> Axis:
-    if name in PARTS_OF:
-        return MaterialAxis(name, _materials(name, value))
-    return SpanAxis(name, value) if isinstance(value, Span) else GridAxis(name, column(name, numpy.asarray(value)))
+def _create_axis(name: str, value: Any) -> Axis:
+    """Create the axis of a parameter, or of the materials of a part."""
+    if name in MATERIAL_PARTS:
+        return MaterialAxis(name, _check_materials(name, value))
+    if isinstance(value, Span):
+        return SpanAxis(name, value)
+    return GridAxis(name, parameter_values(name, numpy.asarray(value)))
 
 
 def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distributions: Distribution) -> Design:
-    """Samples of parameters that scatter independently of each other.
+    """Create a design of samples of independent parameters.
 
     Parameters
     ----------
     count : int
-        How many; a power of two fills the space most evenly with Sobol's points.
+        Number of samples; a power of two fills the space most evenly with Sobol points.
     seed : int
         The same seed gives the same samples.
     method : Method
+        Method of sampling.
     **distributions : Rectangular, Normal or LogNormal
-        By name of a parameter.
+        Distributions by parameter.
 
     Raises
     ------
@@ -180,8 +216,47 @@ def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distri
     >>> sample(8, clearance=Rectangular(low=0.05, high=0.15)).dims
     ('sample',)
     """
-    require("count", count, 1 <= count <= MOST, "at least one sample is drawn, at most 1e15")
+    require("count", count, 1 <= count <= MAX_COUNT, "at least one sample is drawn, at most 1e15")
     require("seed", seed, seed >= 0, "a seed is 0 or more")
     if not distributions:
-        raise ValueError("samples need at least one parameter that scatters")
+        raise ValueError("samples need at least one parameter with a distribution")
     return Design((SampleAxis(count=count, distributions=tuple(distributions.items()), seed=seed, method=method),))
+
+
+_COLUMN_NAMES = {quantity.column: name for name, quantity in PARAMETERS.items()}
+"""Parameters by their column heads with units, such as `ball_radius_mm`."""
+
+
+def table(path: str | Path) -> Design:
+    """Create a design from the rows of a CSV or Parquet file with a column for each parameter.
+
+    A bare name is in mm, N, MPa or rad. A name may end in its unit as in the CSV of a study: `ball_radius_mm`,
+    `force_N`, `half_angle_deg` (in degrees).
+
+    Raises
+    ------
+    ValueError
+        An unknown column, a missing value (the message has its row), content of another format, or more rows than fit
+        into the memory.
+    OSError
+        The file cannot be read.
+    """
+    path = Path(path)
+    columns = {}
+    for head, values in read_columns(path, lambda heads: _check_heads(heads, path.name)).items():
+        name = _COLUMN_NAMES.get(head, head)
+        numbers = parameter_values(name, values, position=f" in row {{}} of {path.name}")
+        columns[name] = numbers if name == head else numbers / PARAMETERS[name].written.factor
+    return Design((TableAxis(columns),))
+
+
+def _check_heads(heads: Sequence[str], title: str) -> None:
+    """Raise ValueError for a column head that is not a parameter or appears twice."""
+    names: set[str] = set()
+    for name in (_COLUMN_NAMES.get(head, head) for head in heads):
+        check_names([name], PARAMETERS, f"among the columns of {title}")
+        if name in names:
+            raise ValueError(f"{title} has {name} twice")
+        names.add(name)
+    if not names:
+        raise ValueError(f"{title} has no columns")

@@ -1,4 +1,4 @@
-"""How a number scatters: what a drawing's tolerance means."""
+"""Distributions of scattered parameters, and the tolerance of a drawing as a distribution."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ..core.kinds import Unit
 
 @dataclass(frozen=True, kw_only=True)
 class Rectangular:
-    """Anything from `low` to `high`, equally likely: uniform.
+    """Uniform distribution from `low` to `high`.
 
     Raises
     ------
     ValueError
-        Ends that are not finite, or the wrong way round.
+        An end that is not finite, or `low` not below `high`.
     """
 
     low: float
@@ -29,7 +29,7 @@ class Rectangular:
 
     @property
     def frozen(self) -> Any:
-        """The distribution of `scipy.stats`."""
+        """Distribution of `scipy.stats`."""
         from scipy.stats import uniform
 
         return uniform(self.low, self.high - self.low)
@@ -37,18 +37,19 @@ class Rectangular:
 
 @dataclass(frozen=True, kw_only=True)
 class Normal:
-    """Normal, cut off at `low` and `high` where these are given: a process with inspection.
+    """Normal distribution, truncated at `low` and `high` as by an inspection of parts.
 
     Parameters
     ----------
     mean, deviation : float
-        Of the distribution before it is cut off; the deviation is positive.
+        Mean and standard deviation before truncation; the deviation is positive.
     low, high : float
+        Ends of the truncated distribution; infinite by default.
 
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value.
+        A number is not allowed; the message has its name and value.
     """
 
     mean: float
@@ -63,7 +64,7 @@ class Normal:
 
     @property
     def frozen(self) -> Any:
-        """The distribution of `scipy.stats`."""
+        """Distribution of `scipy.stats`."""
         from scipy.stats import norm, truncnorm
 
         if (self.low, self.high) == (-inf, inf):
@@ -74,19 +75,19 @@ class Normal:
 
 @dataclass(frozen=True, kw_only=True)
 class LogNormal:
-    """A number whose logarithm is normal: it scatters by a factor, as wear coefficients do.
+    """Log-normal distribution, for numbers that scatter by a factor, such as wear coefficients.
 
     Parameters
     ----------
     median : float
-        Positive.
+        Positive median.
     factor : float
-        Of one standard deviation, above 1: 68 % lie between median / factor and median · factor.
+        Factor of one standard deviation, above 1: 68 % of the values lie between median / factor and median · factor.
 
     Raises
     ------
     ValueError
-        A number that is not allowed, named with its value.
+        A number is not allowed; the message has its name and value.
 
     Examples
     --------
@@ -99,45 +100,52 @@ class LogNormal:
 
     def __post_init__(self) -> None:
         require("median", self.median, 0 < self.median < inf, "it is positive and finite")
-        require("factor", self.factor, 1 < self.factor < inf, "that of one standard deviation is above 1, and finite")
+        require(
+            "factor", self.factor, 1 < self.factor < inf, "a factor of one standard deviation is above 1 and finite"
+        )
 
     @property
     def frozen(self) -> Any:
-        """The distribution of `scipy.stats`."""
+        """Distribution of `scipy.stats`."""
         from scipy.stats import lognorm
 
         return lognorm(log(self.factor), scale=self.median)
 
 
 Distribution = Rectangular | Normal | LogNormal
+"""Any of the distributions."""
 
-
-_ALMOST_NONE = 1e-3
+_TAIL_PROBABILITY = 1e-3
 """Tail probability at which an unbounded distribution is cut for the check of a nominal value."""
 
+_ROUNDING = 1e-9
+"""Rounding error of a nominal value relative to the ends of its distribution."""
 
-def check_nominal(name: str, nominal: float, spread: Distribution, unit: Unit) -> None:
-    """Raise ValueError for a nominal value outside the distribution of the same quantity.
 
-    Its result would lie outside the band of the distribution.
+def check_nominal(name: str, nominal: float, distribution: Distribution, unit: Unit) -> None:
+    """Check that a nominal value lies in the distribution of its quantity; otherwise its result lies outside the band.
+
+    Raises
+    ------
+    ValueError
+        The value lies outside; the message shows it in `unit`.
     """
-    bounded = all(abs(float(end)) < inf for end in spread.frozen.support())
-    shares = (0.0, 1.0) if bounded else (_ALMOST_NONE, 1 - _ALMOST_NONE)
-    low, high = (float(spread.frozen.ppf(share)) for share in shares)
+    bounded = all(abs(float(end)) < inf for end in distribution.frozen.support())
+    probabilities = (0.0, 1.0) if bounded else (_TAIL_PROBABILITY, 1 - _TAIL_PROBABILITY)
+    low, high = (float(distribution.frozen.ppf(probability)) for probability in probabilities)
     slack = _ROUNDING * max(abs(low), abs(high))
     if not low - slack <= nominal <= high + slack:
-        value, least, most = (f"{number * unit.factor:.6g}" for number in (nominal, low, high))
+        value, lowest, highest = (f"{number * unit.factor:.6g}" for number in (nominal, low, high))
         text = f" {unit.text}".rstrip()
         raise ValueError(
-            f"{name} = {value}{text} lies outside its tolerance of {least} to {most}{text}: change one of them"
+            f"{name} = {value}{text} lies outside its tolerance of {lowest} to {highest}{text}: change one of them"
         )
 
 
-_ROUNDING = 1e-9
-
-
 def tolerance(nominal: float, plus_minus: float) -> Normal:
-    """The usual reading of 0.10 ± 0.05: three standard deviations to each limit, nothing beyond.
+    """Create the truncated normal distribution of a tolerance, such as 0.10 ± 0.05 mm.
+
+    Each limit is three standard deviations from the nominal value. No value lies beyond the limits.
 
     Examples
     --------

@@ -33,9 +33,8 @@ from ..files.units import parse
 from ..problem import Joint
 from ..problem.presets import materials, named_material
 from .axes import Method, Span
-from .design import Design, grid, sample
+from .design import Design, grid, sample, table
 from .parameters import PARAMETERS
-from .rows import table
 from .scatter import ScatteredNumber
 
 

@@ -1,4 +1,4 @@
-"""What a design may be: limits on its dimensions and on what a load does to it."""
+"""Limits on the dimensions and the contact quantities of a design."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..core.checks import check_names, degrees_hint, require
+from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, JOINT
 from ..core.validity import Status
@@ -22,30 +23,41 @@ from .task import EDGE_DISTANCE, QUANTITIES
 if TYPE_CHECKING:
     import xarray
 
-_ANGLES = tuple(name for name, each in {**PARAMETERS, **CONTACT}.items() if each.kind is Kind.ANGLE)
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "NAMES": "LIMITED_NAMES",
+        "dimension": "joint_dimension",
+        "margin_on_plane": "margin_on_plane",
+        "refusal": "refusal_reason",
+    },
+)
 
-NAMES = (*PARAMETERS, *QUANTITIES, EDGE_DISTANCE)
+_ANGLES = tuple(name for name, quantity in {**PARAMETERS, **CONTACT}.items() if quantity.kind is Kind.ANGLE)
+
+LIMITED_NAMES = (*PARAMETERS, *QUANTITIES, EDGE_DISTANCE)
+"""Names of parameters and quantities that can have a limit."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Limit:
-    """A closed range of a dimension, an answer, or the `edge_distance`.
+    """Closed range of a parameter, a contact quantity, or the `edge_distance`.
 
     Parameters
     ----------
     name : str
-        A parameter of a study, a quantity of a contact, or "edge_distance".
+        Parameter of a study, quantity of a contact, or "edge_distance".
     low, high : float
-        In mm, N, MPa, rad.
+        Ends of the range in mm, N, MPa, rad.
     cup : Cup
-        Whose rim the edge distance is taken to. `Cup()`, the default, is half a sphere that opens straight down.
+        Cup from whose rim the edge distance is measured. The default `Cup()` is a hemisphere that opens downwards.
     direction : tuple of float
-        Of the force on that cup, upwards by default; of any length.
+        Direction of the force on that cup, upwards by default; of any length.
 
     Raises
     ------
     ValueError
-        A name that is not known, or an empty range.
+        An unknown name, or an empty range.
     """
 
     name: str
@@ -55,7 +67,7 @@ class Limit:
     direction: Direction = UP
 
     def __post_init__(self) -> None:
-        check_names([self.name], NAMES, "among what can be limited")
+        check_names([self.name], LIMITED_NAMES, "among what can be limited")
         if self.name in _ANGLES:
             for end in (self.low, self.high):
                 good = (abs(end) <= pi) | (abs(end) == inf)
@@ -64,15 +76,17 @@ class Limit:
             self.name, self.low, self.low <= self.high, f"the lower limit is not above the upper one, {self.high:g}"
         )
 
-    def of(self, study: xarray.Dataset) -> Any:
-        """The quantity at every point."""
+    def evaluate(self, study: xarray.Dataset) -> Any:
+        """Compute the limited quantity at every point of a study, in mm, N, MPa or rad."""
         if self.name == EDGE_DISTANCE and EDGE_DISTANCE not in study.data_vars:
-            return self.cup.edge_distance(dimension(study, "socket_radius"), study.half_angle, self.direction)
-        return study[self.name] if self.name in study.data_vars else dimension(study, self.name)
+            return self.cup.edge_distance(joint_dimension(study, "socket_radius"), study.half_angle, self.direction)
+        return study[self.name] if self.name in study.data_vars else joint_dimension(study, self.name)
+
+    of = RenamedAttribute("evaluate")
 
     def margin(self, study: xarray.Dataset) -> Any:
-        """How far inside the range, negative outside."""
-        value = self.of(study)
+        """Compute the distance to the nearer end of the range at every point; negative outside the range."""
+        value = self.evaluate(study)
         below = value - self.low if self.low > -inf else inf + 0.0 * numpy.isnan(value)
         above = self.high - value if self.high < inf else inf + 0.0 * numpy.isnan(value)
         return numpy.minimum(below, above)
@@ -83,19 +97,19 @@ class Limit:
         return f"{self.name} ≤ {self.high:g}" if self.low == -inf else f"{self.low:g} ≤ {self.name} ≤ {self.high:g}"
 
 
-def dimension(study: xarray.Dataset, name: str) -> Any:
-    """A dimension or modulus of the joints of a study: an axis, a fixed number, or what follows from others.
+def joint_dimension(study: xarray.Dataset, name: str) -> Any:
+    """Return a dimension (mm) or material property of the joints of a study: varied, fixed, or derived from others.
 
     Raises
     ------
     ValueError
-        The joint has no such number: a rigid ball has no modulus.
+        The joint has no such number, such as the modulus of a rigid ball.
     """
     if name in study.coords:
         return study[name]
     joint = json.loads(study.attrs["joint"])
     if name in JOINT:
-        return getattr(_lengths(study, joint), name)
+        return getattr(_derive_dimensions(study, joint), name)
     part, _, number = name.rpartition("_")
     value = joint.get(name) if name in joint else (joint.get(part) or {}).get(number)
     if value is None:
@@ -105,50 +119,57 @@ def dimension(study: xarray.Dataset, name: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class _LengthDimensions(Dimensions):
-    """Dimensions of the joints of a study, each a number or labelled along axes."""
+    """Dimensions of the joints of a study in mm, each a number or a labelled array."""
 
     ball_radius: Any
     clearance: Any
     liner_thickness: Any
-    behind: float
+    shell_thickness: float
 
     @property
     def shell(self) -> float:
-        return self.behind
+        return self.shell_thickness
 
 
-def _lengths(study: xarray.Dataset, joint: Mapping[str, Any]) -> _LengthDimensions:
-    given = {str(name): study[name] for name in study.coords if name in JOINT}
+def _derive_dimensions(study: xarray.Dataset, joint: Mapping[str, Any]) -> _LengthDimensions:
+    """Derive the dimensions of the joints of a study from its coordinates and the summary of its joint."""
+    varied = {str(name): study[name] for name in study.coords if name in JOINT}
     thickness = float(joint["backing"][0]["thickness"]) if joint["backing"] else inf
     shell = thickness if thickness < inf else 0.0
-    return _LengthDimensions(
-        **derive_lengths(given, {name: float(joint[name]) for name in STORED_LENGTHS}, shell), behind=shell
-    )
+    lengths = derive_lengths(varied, {name: float(joint[name]) for name in STORED_LENGTHS}, shell)
+    return _LengthDimensions(**lengths, shell_thickness=shell)
 
 
-def margin_over(study: xarray.Dataset, limit: Limit, across: str, up: str) -> numpy.ndarray:
-    """The margin of a limit at every point of a plane, whatever it depends on: an array (up, across)."""
-    spread = limit.margin(study) + 0.0 * study[across] + 0.0 * study[up]
-    values: numpy.ndarray = spread.transpose(up, across).values
+def margin_on_plane(study: xarray.Dataset, limit: Limit, x_axis: str, y_axis: str) -> numpy.ndarray:
+    """Compute the margin of a limit on the plane of two axes of a study, an array of shape (y, x)."""
+    margin = limit.margin(study) + 0.0 * study[x_axis] + 0.0 * study[y_axis]
+    values: numpy.ndarray = margin.transpose(y_axis, x_axis).values
     return values
 
 
 def allowed(study: xarray.Dataset, limits: Iterable[Limit]) -> xarray.DataArray:
-    """Where a study has an answer and every limit holds."""
+    """Mark the points of a study that have a result and meet every limit; a bool array."""
     first = next(iter(study.data_vars))
-    good = study[first].notnull()
+    mask = study[first].notnull()
     for limit in limits:
-        good = good & (limit.margin(study) >= 0)
-    return good
+        mask = mask & (limit.margin(study) >= 0)
+    return mask
 
 
-def refusal(study: xarray.Dataset, limits: Iterable[Limit], nobody: str, anywhere: str) -> str:
-    """Why no point of a study is allowed: limits, or a model without an answer.
+def refusal_reason(study: xarray.Dataset, limits: Iterable[Limit], refused: str, place: str) -> str:
+    """Describe the reason why no point of a study is allowed: limits, or a model without a result.
 
-    `nobody` says so ("no point is allowed"), `anywhere` of what ("at any point").
+    Parameters
+    ----------
+    study : xarray.Dataset
+    limits : iterable of Limit
+    refused : str
+        Beginning of the sentence for limits, such as "no point is allowed".
+    place : str
+        End of the sentence for a model without a result, such as "at any point".
     """
     model = study.attrs["model"]
     if bool(allowed(study, ()).any()):
-        return f"{nobody} by {' and '.join(map(str, limits))}, as {model} answers"
+        return f"{refused} by {' and '.join(map(str, limits))}, according to {model}"
     numbers, counts = numpy.unique(study.status.values, return_counts=True)
-    return f"{model} has no answer {anywhere}: {Status(int(numbers[counts.argmax()])).sentence}"
+    return f"{model} has no answer {place}: {Status(int(numbers[counts.argmax()])).sentence}"

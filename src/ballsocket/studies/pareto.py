@@ -1,4 +1,4 @@
-"""Two wishes at once: the designs of which none is better in both."""
+"""Pareto front: designs for which no other design is better in both of two quantities."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy
 
 from ..core.checks import check_names
-from .limits import Limit, allowed, refusal
+from .limits import Limit, allowed, refusal_reason
 
 if TYPE_CHECKING:
     import xarray
@@ -17,36 +17,37 @@ if TYPE_CHECKING:
 def pareto(
     study: xarray.Dataset, minimise: tuple[str, str] = ("area", "max_pressure"), limits: Iterable[Limit] = ()
 ) -> xarray.Dataset:
-    """The points of a study that are allowed and that no other allowed point beats in both quantities.
+    """Select the allowed points of a study for which no other allowed point is better in both quantities.
 
     Parameters
     ----------
     study : xarray.Dataset
-        From `study`.
+        Result of `study`.
     minimise : tuple of two str
-        Answers of the study. The paper's pair: a small contact area for little wear, a low peak pressure for strength.
+        Quantities of the study. By default a small contact area for little wear, and a low peak pressure for strength.
     limits : iterable of Limit
+        Limits that each point must meet.
 
     Returns
     -------
     xarray.Dataset
-        Along `point`, by the first quantity.
+        Points along the dimension `point`, in the order of the first quantity.
 
     Raises
     ------
     ValueError
-        A quantity that the study does not have; no point that is allowed.
+        A quantity that the study does not have; no allowed point.
     """
-    check_names(minimise, [str(name) for name in study.data_vars], "among the study's answers")
+    check_names(minimise, [str(name) for name in study.data_vars], "among the quantities of the study")
     limits = tuple(limits)
     good = allowed(study, limits)
-    flat = study.stack(point=list(study.sizes), create_index=False)
-    kept = good.stack(point=list(good.dims), create_index=False).values if good.dims else numpy.array([bool(good)])
-    if not kept.any():
-        raise ValueError(refusal(study, limits, "no point is allowed", "at any point"))
-    flat = flat.isel(point=numpy.flatnonzero(kept))
-    first, second = (flat[name].values for name in minimise)
+    points = study.stack(point=list(study.sizes), create_index=False)
+    mask = good.stack(point=list(good.dims), create_index=False).values if good.dims else numpy.array([bool(good)])
+    if not mask.any():
+        raise ValueError(refusal_reason(study, limits, "no point is allowed", "at any point"))
+    points = points.isel(point=numpy.flatnonzero(mask))
+    first, second = (points[name].values for name in minimise)
     order = numpy.lexsort((second, first))
-    best = numpy.minimum.accumulate(second[order])
-    better = numpy.append(True, second[order][1:] < best[:-1])
-    return flat.isel(point=order[better])
+    lowest = numpy.minimum.accumulate(second[order])
+    better = numpy.append(True, second[order][1:] < lowest[:-1])
+    return points.isel(point=order[better])

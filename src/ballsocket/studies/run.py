@@ -1,4 +1,4 @@
-"""A study: one joint varied along named axes, pressed by any model."""
+"""Run of a study: one joint with varied parameters, pressed with any model."""
 
 from __future__ import annotations
 
@@ -15,44 +15,63 @@ from ..catalogue import catalogue
 from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core.checks import check_names, needs, shown
+from ..core.deprecation import renamed_fields
 from ..core.executors.processes import Engine, Serial
+from ..core.memory import available_disk_space, available_memory, size_text
 from ..core.storage.pieces import PieceRun
 from ..problem import Joint
-from .blocks import Blocks
-from .design import Design, check_values, grid, is_one
-from .labels import arranged, dataset
+from .design import Design, check_values, grid, is_number
+from .metadata import make_dataset
 from .parameters import LOADS, check_aims
-from .room import check_room
-from .store import BlockStore, Store
-from .task import DTYPES, EDGE_DISTANCE, QUANTITIES, USUAL, Task, points_a_block
+from .store import BlockStore, StudyStore, read
+from .task import DEFAULT_QUANTITIES, DTYPES, EDGE_DISTANCE, QUANTITIES, Blocks, Task, points_per_block
 
 if TYPE_CHECKING:
     import xarray
 
-_HERE = Serial()
+__all__ = ["Listener", "Progress", "read", "study"]
+
+_SERIAL = Serial()
+
+_COPIES = 3
+"""Copies of the values along an axis in memory: as drawn, as scaled, as labels."""
 
 
+@renamed_fields(done="n_done", points="n_points", found="n_stored", left="seconds_left")
 @dataclass(frozen=True)
 class Progress:
-    """How far a study is: points that are done, points in all, those found done at the start, seconds since then."""
+    """Progress of a study.
 
-    done: int
-    points: int
-    found: int
+    Attributes
+    ----------
+    n_done : int
+        Number of points with a result.
+    n_points : int
+        Total number of points.
+    n_stored : int
+        Number of points with a stored result at the start.
+    seconds : float
+        Time since the start in s.
+    """
+
+    n_done: int
+    n_points: int
+    n_stored: int
     seconds: float
 
     @property
     def rate(self) -> float:
-        """Points a second since the start."""
-        return (self.done - self.found) / self.seconds if self.seconds > 0 else 0.0
+        """Points per second since the start."""
+        return (self.n_done - self.n_stored) / self.seconds if self.seconds > 0 else 0.0
 
     @property
-    def left(self) -> float:
-        """Seconds that are left at this rate."""
-        return (self.points - self.done) / self.rate if self.rate > 0 else float("inf")
+    def seconds_left(self) -> float:
+        """Remaining time in s at this rate; infinite before the first block."""
+        return (self.n_points - self.n_done) / self.rate if self.rate > 0 else float("inf")
 
 
 Listener = Callable[[Progress], None]
+"""Function that is called with the progress of a study."""
 
 
 def study(
@@ -62,7 +81,7 @@ def study(
     *,
     quantities: Iterable[str] = (),
     store: str | Path | None = None,
-    engine: Engine = _HERE,
+    engine: Engine = _SERIAL,
     listen: Listener = lambda progress: None,
     **axes: Any,
 ) -> xarray.Dataset:
@@ -71,87 +90,66 @@ def study(
     Parameters
     ----------
     model : Model
-        Anything that can press.
+        Any model.
     joint : Joint
-        Plain numbers; those that the design names are replaced.
+        Joint of plain numbers; the design replaces those that it names.
     design : Design, optional
-        From `grid`, `sample`, `table`, or products of these.
+        Result of `grid`, `sample`, `table`, or a product of these.
     quantities : iterable of str
-        What is answered (names of a `Contact`): by default indentation, half angle, peak pressure, area, and the force
-        where it is not given. `status` and `valid` always come along.
+        Quantities of a `Contact`. By default indentation, half angle, peak pressure, area, and the force unless it is
+        the load. `status` and `valid` are always included.
     store : path, optional
-        A folder for a Zarr group. What lies there of the same study is not computed anew.
+        Folder for a Zarr group. Blocks of the same study in this folder are not computed again.
     engine : Engine
-        Who computes: `Serial()`, `Processes()`, `Distributed()`. The numbers are the same bit for bit.
+        Executor: `Serial()`, `Processes()`, `Distributed()`. The results are bit-identical.
     listen : callable
-        Told the `Progress` after every block.
+        Function that is called with the `Progress` after every block.
     **axes : number or sequence of numbers
-        A grid, in place of or besides a design: parameters by name (`PARAMETERS`) in mm, N, MPa, rad.
+        A grid, in place of a design or in addition: parameters by name (`PARAMETERS`) in mm, N, MPa, rad.
 
     Returns
     -------
     xarray.Dataset
-        Dimensions are the axes, by name; `sample` or `row` for samples and tables. Units, names and sources are in
-        `attrs`. A point without an answer is NaN with a status, one whose numbers make no joint has `NO_JOINT`. With a
-        store the numbers are read from there when they are asked for.
+        Arrays along the axes by name; `sample` or `row` for samples and tables. Units, names and publications are in
+        `attrs`. A point without a result is NaN with a status; an impossible joint has the status `NO_JOINT`. With a
+        store, the numbers are read when they are used.
 
     Raises
     ------
     ValueError
-        A name that is not known, a number that is not allowed, no load or two, a store of another study, more points
-        than there is room for.
+        An unknown name, a number that is not allowed, no load or two, a store of another study, or more points than
+        fit into the memory or on the disk.
     OSError
-        The store cannot be written; what is done is kept.
+        The store cannot be written; stored blocks remain.
 
     Examples
     --------
     >>> import ballsocket as bs
     >>> hip = bs.joints["hess-forsbach"]
-    >>> found = bs.study(bs.HessForsbach(), hip, clearance=[0.05, 0.1, 0.2], force=[1000.0, 3000.0])
-    >>> found.max_pressure.sel(clearance=0.1, force=3000.0).item().__round__(2)
+    >>> pressed = bs.study(bs.HessForsbach(), hip, clearance=[0.05, 0.1, 0.2], force=[1000.0, 3000.0])
+    >>> pressed.max_pressure.sel(clearance=0.1, force=3000.0).item().__round__(2)
     11.27
     """
     needs("study", "xarray", "zarr")
-    _check(model, joint, design)
+    _check_types(model, joint, design)
     if not callable(getattr(engine, "run", None)) or isinstance(engine, type):
         raise TypeError(f"engine must be an Engine, such as Serial() or Processes(workers=2), got {shown(engine)}")
-    task = _task(model, joint, design, axes, tuple(quantities))
-    kept = None if store is None else Store(Path(store).absolute())
-    if kept is None or not kept.path.exists():
-        check_room(task, None if kept is None else kept.path)
+    task = _create_task(model, joint, design, axes, tuple(quantities))
+    study_store = None if store is None else StudyStore(Path(store).absolute())
+    if study_store is None or not study_store.path.exists():
+        _check_space(task, None if study_store is None else study_store.path)
     check_values(task.design)
-    if kept is None:
-        return dataset(task, _in_memory(task, engine, listen))
-    kept.prepare(task)
-    run = PieceRun(task, range(len(task.blocks)), BlockStore(task, kept))
-    check_room(task, kept.path, sum(map(task.blocks.points, run.missing)))
-    _into(kept, task, run, engine, listen)
-    return read(kept.path)
+    if study_store is None:
+        return make_dataset(task, _compute_in_memory(task, engine, listen))
+    study_store.prepare(task)
+    run = PieceRun(task, range(len(task.blocks)), BlockStore(task, study_store))
+    _check_space(task, study_store.path, sum(map(task.blocks.n_points, run.missing)))
+    _compute_into_store(study_store, task, run, engine, listen)
+    return read(study_store.path)
 
 
-def read(path: str | Path) -> xarray.Dataset:
-    """A stored study, whose numbers are read when they are asked for.
-
-    Raises
-    ------
-    OSError
-        There is no such store.
-    ValueError
-        What is there is no study.
-    """
-    import xarray
-
-    if Path(path).exists():
-        Store(Path(path)).study()
-    try:
-        found = xarray.open_dataset(path, engine="zarr", consolidated=False, chunks=None)
-    except UnicodeError as error:
-        raise ValueError(f"{path} is a damaged store: {error}; run its study again to mend it") from error
-    return arranged(found[[name for name in DTYPES if name in found.data_vars]])
-
-
-def _check(model: Any, joint: Any, design: Any) -> None:
-    """Raise TypeError for what is something else."""
+def _check_types(model: Any, joint: Any, design: Any) -> None:
+    """Raise TypeError for arguments of another type."""
     if not isinstance(model, Model):
         hint = f"; bs.catalogue[{model!r}] is one" if isinstance(model, str) and model in catalogue else ""
         raise TypeError(f"model must be a Model, got {shown(model)}{hint}")
@@ -160,7 +158,10 @@ def _check(model: Any, joint: Any, design: Any) -> None:
         raise TypeError(f"design must be a Design, from grid, sample or table, got {shown(design)}; loads have names")
 
 
-def _task(model: Model, joint: Joint, design: Design | None, axes: dict[str, Any], quantities: tuple[str, ...]) -> Task:
+def _create_task(
+    model: Model, joint: Joint, design: Design | None, axes: dict[str, Any], quantities: tuple[str, ...]
+) -> Task:
+    """Create the task of a study; raise ValueError for names and numbers that are not allowed."""
     points = grid(**axes) if design is None else design * grid(**axes)
     loads = [name for name in LOADS if name in points.names]
     if not loads:
@@ -168,43 +169,83 @@ def _task(model: Model, joint: Joint, design: Design | None, axes: dict[str, Any
     check_aims(model, points.names)
     known = (*QUANTITIES, EDGE_DISTANCE) if model.off_axis else QUANTITIES
     check_names(quantities, known, "among the quantities")
-    if not all(is_one(number) for number in (*joint.numbers(), *model.parameters)):
-        raise ValueError("joint and model of a study have plain numbers: what varies is an axis")
-    wanted = quantities or tuple(name for name in ("force", *USUAL) if name not in loads)
-    chosen = tuple(dict.fromkeys(name for name in wanted if name not in loads))
-    return Task(model, joint, points, chosen, Blocks.of(points.shape, points_a_block(model)))
+    if not all(is_number(number) for number in (*joint.numbers(), *model.parameters)):
+        raise ValueError("joint and model of a study have plain numbers: use an axis for a number that varies")
+    names = quantities or tuple(name for name in ("force", *DEFAULT_QUANTITIES) if name not in loads)
+    computed = tuple(dict.fromkeys(name for name in names if name not in loads))
+    return Task(model, joint, points, computed, Blocks.divide(points.shape, points_per_block(model)))
 
 
-def _in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.ndarray]:
-    whole = {name: numpy.empty(task.design.shape, dtype=DTYPES[name]) for name in task.variables}
+def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> None:
+    """Check that the results of a study fit into the memory, or on the disk of its store at `path`.
+
+    `n_points` is the number of points to compute, all points by default.
+
+    Raises
+    ------
+    ValueError
+        The space is too small; the message has the size and the computing time.
+    """
+    count = task.design.size if n_points is None else n_points
+    results = count * sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
+    values = 8 * sum(len(axis) * len(axis.names) for axis in task.design.axes)
+    duration = _duration_text(count * task.model.seconds_a_press / 3600)
+
+    def check(size: int, free: int, hint: str) -> None:
+        """Raise ValueError if the free space is smaller than a size in bytes."""
+        if size > free:
+            raise ValueError(
+                f"{count:.3g} points take about {size_text(size)} and {duration} on one core, and there are "
+                f"{size_text(free)} {hint}"
+            )
+
+    if path is None:
+        check(results + _COPIES * values, available_memory(), "of memory; use a store, or fewer points")
+        return
+    check(_COPIES * values, available_memory(), "of memory for the values along its axes; use fewer")
+    labels = values if n_points is None else 0
+    check(results + labels, available_disk_space(path), "on the disk of the store")
+
+
+def _duration_text(hours: float) -> str:
+    """Format a duration in hours, with seconds or minutes if it is short."""
+    if hours < 1 / 60:
+        return f"{3600 * hours:.2g} s"
+    return f"{60 * hours:.2g} minutes" if hours < 1 else f"{hours:.3g} hours"
+
+
+def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.ndarray]:
+    """Compute all blocks of a study, and return its arrays by name."""
+    arrays = {name: numpy.empty(task.design.shape, dtype=DTYPES[name]) for name in task.variables}
     numbers = range(len(task.blocks))
-    for number, answers in _told(engine.run(task, numbers), task, numbers, listen):
-        for name, values in answers.items():
-            whole[name][task.blocks[number]] = values
-    return whole
+    for number, results in _report_progress(engine.run(task, numbers), task, numbers, listen):
+        for name, values in results.items():
+            arrays[name][task.blocks[number]] = values
+    return arrays
 
 
-def _into(store: Store, task: Task, run: PieceRun, engine: Engine, listen: Listener) -> None:
-    done = len(run.stored)
+def _compute_into_store(store: StudyStore, task: Task, run: PieceRun, engine: Engine, listen: Listener) -> None:
+    """Compute and store the missing blocks of a study; raise OSError if a block cannot be written."""
+    n_stored = len(run.stored)
     try:
-        for _ in _told(run.compute_missing(engine), task, run.missing, listen):
-            done += 1
+        for _ in _report_progress(run.compute_missing(engine), task, run.missing, listen):
+            n_stored += 1
     except ConnectionError:
         raise
     except OSError as error:
-        kept = f"{done} of {len(task.blocks)} blocks are kept; run it again to go on"
-        raise OSError(error.errno, f"{error.strerror or error}; {kept}", str(store.path)) from error
+        state = f"{n_stored} of {len(task.blocks)} blocks are stored; run the study again to resume"
+        raise OSError(error.errno, f"{error.strerror or error}; {state}", str(store.path)) from error
 
 
-def _told(
-    answers: Iterable[tuple[int, Any]], task: Task, numbers: Iterable[int], listen: Listener
+def _report_progress(
+    results: Iterable[tuple[int, Any]], task: Task, numbers: Iterable[int], listen: Listener
 ) -> Iterable[tuple[int, Any]]:
-    """Passes answers on, and tells how far the study is."""
-    points = prod(task.design.shape)
-    found = done = points - sum(task.blocks.points(number) for number in numbers)
+    """Yield the results of blocks, and call `listen` with the progress after each block."""
+    n_points = prod(task.design.shape)
+    n_stored = n_done = n_points - sum(task.blocks.n_points(number) for number in numbers)
     start = time.perf_counter()
-    listen(Progress(done, points, found, 0.0))
-    for number, answer in answers:
-        yield number, answer
-        done += task.blocks.points(number)
-        listen(Progress(done, points, found, time.perf_counter() - start))
+    listen(Progress(n_done, n_points, n_stored, 0.0))
+    for number, result in results:
+        yield number, result
+        n_done += task.blocks.n_points(number)
+        listen(Progress(n_done, n_points, n_stored, time.perf_counter() - start))

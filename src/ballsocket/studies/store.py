@@ -1,4 +1,4 @@
-"""A study on disk: a Zarr group that xarray reads, written block by block, each block with its checksum."""
+"""Store of a study: a Zarr group that xarray reads, written in blocks with checksums."""
 
 from __future__ import annotations
 
@@ -9,105 +9,144 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import gettempdir
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs
+from ..core.deprecation import renamed_names
 from ..core.storage.atomic_files import make_draft_folder, write_atomically
 from ..core.storage.pieces import PieceStore
-from .identity import differences, identity
-from .labels import attributes, coordinates, described
+from .metadata import (
+    list_differences,
+    order_coordinates,
+    parameter_coordinates,
+    study_attributes,
+    study_identity,
+    variable_attributes,
+)
 from .task import DTYPES, Task
 
+if TYPE_CHECKING:
+    import xarray
+
+__getattr__ = renamed_names(__name__, {"Store": "StudyStore"})
+
 CHECKSUM = "block_checksum"
-"""An array with a number for each block: its checksum, or -1 as long as the block is not there."""
+"""Array with the checksum of each block, or -1 for a missing block."""
 
 NOT_COMPUTED = -1
-"""The status of a point whose block is not there yet."""
+"""Status of the points of a missing block."""
 
-_STUDY = "study"
-"""The attribute that says which study this is."""
+_IDENTITY = "study"
+"""Attribute with the identity of the study."""
 
-_LABEL, _LONGEST = "zarr.json", 10_000_000
-"""The file with the attributes, and the bytes that it may have."""
+_LABEL_FILE = "zarr.json"
+"""File with the attributes of the group."""
 
-_TOLD = 8  # differences
-_NO_FILE = (FileNotFoundError, NotADirectoryError, IsADirectoryError)
+_MAX_LABEL_BYTES = 10_000_000
+"""Largest size in bytes of the file with the attributes."""
+
+_MAX_DIFFERENCES = 8
+"""Number of differences in a message."""
+
+_MISSING_FILE_ERRORS = (FileNotFoundError, NotADirectoryError, IsADirectoryError)
+
+
+def read(path: str | Path) -> xarray.Dataset:
+    """Open a stored study; its numbers are read when they are used.
+
+    Raises
+    ------
+    OSError
+        The store does not exist.
+    ValueError
+        The path is not a study.
+    """
+    import xarray
+
+    if Path(path).exists():
+        StudyStore(Path(path)).read_identity()
+    try:
+        dataset = xarray.open_dataset(path, engine="zarr", consolidated=False, chunks=None)
+    except UnicodeError as error:
+        raise ValueError(f"{path} is a damaged store: {error}; run its study again to repair it") from error
+    return order_coordinates(dataset[[name for name in DTYPES if name in dataset.data_vars]])
 
 
 @dataclass(frozen=True)
-class Store:
-    """The Zarr group of one study."""
+class StudyStore:
+    """Zarr group of one study."""
 
     path: Path
 
     def prepare(self, task: Task) -> None:
-        """Make the group, with labels and without answers, unless it is there already.
+        """Create the group with labels and without results, or check that it has the study of a task.
 
         Raises
         ------
         ValueError
-            There is another study, another version's, or something else.
+            The path has another study, a study of another version, or something else.
         OSError
-            It cannot be written.
+            The path is not writable.
         """
         needs("study", "zarr")
-        asked = json.loads(json.dumps(identity(task)))
+        requested = json.loads(json.dumps(study_identity(task)))
         if not self.path.exists():
             self.path.parent.mkdir(parents=True, exist_ok=True)
-            if self._made(task, asked):
+            if self._create(task, requested):
                 return
-        kept = self.study()
-        if kept == asked:
-            self._label(task, asked)
+        stored = self.read_identity()
+        if stored == requested:
+            self._repair_labels(task, requested)
         else:
-            apart = "; ".join(differences(kept, asked)[:_TOLD])
-            raise ValueError(f"{self.path} holds another study: {apart}. Choose another folder, or remove this one")
+            differences = "; ".join(list_differences(stored, requested)[:_MAX_DIFFERENCES])
+            raise ValueError(f"{self.path} has another study: {differences}. Choose another folder, or remove this one")
 
-    def _made(self, task: Task, asked: Mapping[str, Any]) -> bool:
-        """Make the group; false where another process was quicker, and nothing is made."""
+    def _create(self, task: Task, identity: Mapping[str, Any]) -> bool:
+        """Create the group; return False if another process created it first."""
         try:
             with write_atomically(self.path) as draft:
-                _make(draft, task, asked)
+                _write_group(draft, task, identity)
         except OSError:
             if not self.path.exists():
                 raise
             return False
         return True
 
-    def _label(self, task: Task, asked: Mapping[str, Any]) -> None:
-        """Put every label, which is all that a store without answers has, where it is damaged or gone."""
-        with make_draft_folder(Path(gettempdir()) / self.path.name) as folder:  # where the store is may be read-only
+    def _repair_labels(self, task: Task, identity: Mapping[str, Any]) -> None:
+        """Write damaged or missing labels again; they are all files of a group without results."""
+        # a temporary folder, since the store may be read-only
+        with make_draft_folder(Path(gettempdir()) / self.path.name) as folder:
             draft = folder / self.path.name
-            _make(draft, task, asked)
-            for fresh in draft.rglob("*"):
-                here = self.path / fresh.relative_to(draft)
-                if fresh.is_file() and not (here.is_file() and filecmp.cmp(fresh, here, shallow=False)):
-                    here.parent.mkdir(parents=True, exist_ok=True)
-                    shutil.copyfile(fresh, here)
+            _write_group(draft, task, identity)
+            for label in draft.rglob("*"):
+                target = self.path / label.relative_to(draft)
+                if label.is_file() and not (target.is_file() and filecmp.cmp(label, target, shallow=False)):
+                    target.parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copyfile(label, target)
 
-    def study(self) -> Mapping[str, Any]:
-        """Which study it is.
+    def read_identity(self) -> Mapping[str, Any]:
+        """Read the identity of the stored study.
 
         Raises
         ------
         ValueError
-            It is no study.
+            The path is not a study.
         """
         try:
-            with (self.path / _LABEL).open("rb") as stream:
-                found = json.loads(stream.read(_LONGEST))["attributes"][_STUDY]
-        except (*_NO_FILE, ValueError, LookupError, TypeError, RecursionError) as error:
-            raise ValueError(f"{self.path} is there already and is no study") from error
-        if not isinstance(found, Mapping):
-            raise ValueError(f"{self.path} is there already and is no study")
-        return found
+            with (self.path / _LABEL_FILE).open("rb") as stream:
+                identity = json.loads(stream.read(_MAX_LABEL_BYTES))["attributes"][_IDENTITY]
+        except (*_MISSING_FILE_ERRORS, ValueError, LookupError, TypeError, RecursionError) as error:
+            raise ValueError(f"{self.path} exists and is not a study") from error
+        if not isinstance(identity, Mapping):
+            raise ValueError(f"{self.path} exists and is not a study")
+        return identity
 
     def intact_blocks(self, task: Task, numbers: Sequence[int]) -> list[int]:
-        """Return the numbers of those blocks that are stored and have their checksum."""
+        """Return the numbers of those blocks that are stored with a correct checksum."""
         import zarr
 
         group = zarr.open_group(self.path, mode="r")
@@ -118,23 +157,23 @@ class Store:
         return [
             number
             for number in numbers
-            if checksums[number] >= 0 and checksums[number] == _checksum_of(group, task, number)
+            if checksums[number] >= 0 and checksums[number] == _stored_checksum(group, task, number)
         ]
 
-    def write(self, task: Task, number: int, answers: Mapping[str, Numbers]) -> None:
-        """Write a block, and last its checksum.
+    def write(self, task: Task, number: int, results: Mapping[str, Numbers]) -> None:
+        """Write the results of a block, and last its checksum.
 
         Raises
         ------
         OSError
-            It cannot be written: the disk is full, or the store is read-only.
+            The store is not writable or the disk is full.
         """
         import zarr
 
         group = zarr.open_group(self.path, mode="r+")
-        for name, values in answers.items():
+        for name, values in results.items():
             group[name][task.blocks[number]] = values  # type: ignore[index]
-        group[CHECKSUM][number] = _checksum(answers, task)  # type: ignore[index]
+        group[CHECKSUM][number] = _checksum(results, task)  # type: ignore[index]
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +181,7 @@ class BlockStore(PieceStore):
     """Store of the blocks of a study in its Zarr group, from which xarray reads them."""
 
     task: Task
-    store: Store
+    store: StudyStore
 
     def load(self, numbers: Sequence[int]) -> dict[int, None]:
         """Return the numbers of the intact blocks, without their values."""
@@ -159,18 +198,19 @@ class BlockStore(PieceStore):
         self.store.write(self.task, number, result)
 
 
-def _make(path: Path, task: Task, study: Mapping[str, Any]) -> None:
+def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
+    """Create the Zarr group of a study with its coordinates and empty arrays."""
     import zarr
     from zarr.codecs import BloscCodec
 
-    quick: Any = BloscCodec(cname="lz4", clevel=1, shuffle="shuffle")
-    attrs: Any = {**attributes(task), _STUDY: study, "coordinates": " ".join(task.design.names)}
-    group = zarr.create_group(path, attributes=attrs)
-    for name, (dims, values) in coordinates(task.design).items():
-        made = group.create_array(
-            name, shape=values.shape, dtype=values.dtype, dimension_names=dims, attributes=described(name)
+    codec: Any = BloscCodec(cname="lz4", clevel=1, shuffle="shuffle")
+    attributes: Any = {**study_attributes(task), _IDENTITY: identity, "coordinates": " ".join(task.design.names)}
+    group = zarr.create_group(path, attributes=attributes)
+    for name, (dims, values) in parameter_coordinates(task.design).items():
+        coordinate = group.create_array(
+            name, shape=values.shape, dtype=values.dtype, dimension_names=dims, attributes=variable_attributes(name)
         )
-        made[...] = values
+        coordinate[...] = values
     for name in task.variables:
         dtype = numpy.dtype(DTYPES[name])
         group.create_array(
@@ -180,24 +220,25 @@ def _make(path: Path, task: Task, study: Mapping[str, Any]) -> None:
             dtype=dtype,
             fill_value=numpy.nan if dtype.kind == "f" else NOT_COMPUTED if name == "status" else 0,
             dimension_names=task.design.dims,
-            compressors=quick,
-            attributes=described(name),
+            compressors=codec,
+            attributes=variable_attributes(name),
         )
     group.create_array(
         CHECKSUM, shape=(len(task.blocks),), chunks=(1,), dtype="int64", fill_value=-1, dimension_names=("block",)
     )
 
 
-def _checksum_of(group: Any, task: Task, number: int) -> int | None:
-    """Checksum of what lies there; None where it cannot be read."""
+def _stored_checksum(group: Any, task: Task, number: int) -> int | None:
+    """Compute the checksum of a stored block; None if the block is not readable."""
     try:
         return _checksum({name: group[name][task.blocks[number]] for name in task.variables}, task)
-    except Exception:  # whatever a damaged file makes of its decoder: the block is computed anew
+    except Exception:  # a damaged file can raise any error in its decoder; the block is computed again
         return None
 
 
-def _checksum(answers: Mapping[str, Numbers], task: Task) -> int:
-    total = 0
+def _checksum(results: Mapping[str, Numbers], task: Task) -> int:
+    """Compute the checksum of the results of a block."""
+    checksum = 0
     for name in task.variables:
-        total = crc32(numpy.ascontiguousarray(answers[name]).view(numpy.uint8).data, total)
-    return total
+        checksum = crc32(numpy.ascontiguousarray(results[name]).view(numpy.uint8).data, checksum)
+    return checksum

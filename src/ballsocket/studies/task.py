@@ -1,9 +1,10 @@
-"""One block of a study: from its place among the axes to arrays of answers."""
+"""Computation of a study in blocks of points."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import ceil, prod
 from typing import Any
 
 import numpy
@@ -11,40 +12,102 @@ import numpy
 from ..contact import Model
 from ..contact.describe import COLUMNS
 from ..core.arrays import Numbers
+from ..core.deprecation import renamed_names
 from ..core.quantities import BEARING
 from ..core.storage.fingerprint import check_worker_code, fingerprint
 from ..core.validity import OutsideDomainError, Status
 from ..problem import Joint
-from .blocks import Blocks
 from .design import Design
-from .parameters import pressable
+from .parameters import press_arguments
+
+__getattr__ = renamed_names(__name__, {"USUAL": "DEFAULT_QUANTITIES", "points_a_block": "points_per_block"})
 
 QUANTITIES = (*(column.attribute for column in COLUMNS), *BEARING)
-"""What a study can answer; `status` and `valid` come with every study."""
+"""Quantities that a study can have; `status` and `valid` are in every study."""
 
 EDGE_DISTANCE = "edge_distance"
-"""What a study can answer besides, of a model that presses off the axis."""
+"""Further quantity of models for loads off the axis."""
 
-USUAL = ("indentation", "half_angle", "max_pressure", "area")
-"""What it answers unless told otherwise, with the force where that is not given."""
+DEFAULT_QUANTITIES = ("indentation", "half_angle", "max_pressure", "area")
+"""Quantities of a study by default, with the force unless it is the load."""
 
 DTYPES: dict[str, Any] = {
     **dict.fromkeys((*QUANTITIES, EDGE_DISTANCE), numpy.float64),
     "status": numpy.int8,
     "valid": numpy.bool_,
 }
+"""Types of the arrays of a study."""
 
-_CACHED = 1 << 14  # points: a block's intermediate numbers stay in the processor's cache
-_SECONDS, _MOST = 0.5, 1 << 20
-"""A block takes about so long, and has at most so many points."""
+_POINTS_PER_PRESS = 1 << 14
+"""Number of points that one press computes, so that intermediate arrays stay in the processor's cache."""
+
+_BLOCK_SECONDS = 0.5
+"""Intended computing time of a block in s."""
+
+_MAX_BLOCK_POINTS = 1 << 20
+"""Largest number of points of a block."""
+
+
+@dataclass(frozen=True)
+class Blocks:
+    """Division of a box of points into smaller boxes of equal size, except the last one along each dimension.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Number of points along each dimension of the box.
+    size : tuple of int
+        Number of points along each dimension of a block.
+    """
+
+    shape: tuple[int, ...]
+    size: tuple[int, ...]
+
+    @classmethod
+    def divide(cls, shape: tuple[int, ...], max_points: int) -> Blocks:
+        """Divide a box into blocks of at most `max_points` points, complete along the last dimensions.
+
+        A block has at least one point.
+        """
+        sizes = []
+        remaining = max(1, max_points)
+        for length in reversed(shape):
+            size = max(1, min(length, remaining))
+            sizes.append(_even_size(length, size))
+            remaining //= size
+        return cls(shape, tuple(reversed(sizes)))
+
+    @property
+    def counts(self) -> tuple[int, ...]:
+        """Number of blocks along each dimension."""
+        return tuple(ceil(length / size) for length, size in zip(self.shape, self.size, strict=True))
+
+    def __len__(self) -> int:
+        return prod(self.counts)
+
+    def __getitem__(self, number: int) -> tuple[slice, ...]:
+        """Return the box of a block: the range of its points along each dimension."""
+        if not 0 <= number < len(self):
+            raise IndexError(number)
+        position = numpy.unravel_index(number, self.counts)
+        return tuple(
+            slice(int(index) * size, min((int(index) + 1) * size, length))
+            for index, size, length in zip(position, self.size, self.shape, strict=True)
+        )
+
+    def n_points(self, number: int) -> int:
+        """Return the number of points of a block."""
+        return prod(section.stop - section.start for section in self[number])
+
+
+def _even_size(length: int, max_size: int) -> int:
+    """Return the block length, at most `max_size`, that divides a length most evenly."""
+    return ceil(length / ceil(length / max_size)) if length else 1
 
 
 @dataclass(frozen=True, eq=False)
 class Task:
-    """A model, a joint and the points at which it is pressed; called with a block's number it computes the block.
-
-    `variables` are the quantities with `status` and `valid`.
-    """
+    """Model, joint and points of a study; a call with the number of a block computes this block."""
 
     model: Model
     joint: Joint
@@ -55,52 +118,54 @@ class Task:
 
     @property
     def variables(self) -> tuple[str, ...]:
+        """Names of the computed arrays: the quantities, `status` and `valid`."""
         return (*self.quantities, "status", "valid")
 
     def __call__(self, number: int) -> dict[str, Numbers]:
-        """The variables of one block, each of the block's shape.
+        """Compute the variables of one block, each of the block's shape.
 
         Raises
         ------
         ValueError
-            Another version of this package than that which asks.
+            This process has another version of the package than the process that started the study.
         """
         check_worker_code(self.code)
-        place = self.blocks[number]
-        shape = tuple(part.stop - part.start for part in place)
-        whole = {name: numpy.empty(shape, dtype=DTYPES[name]) for name in self.variables}
-        inner = Blocks.of(shape, _CACHED)
-        values = self.design.part(place)
-        for each in range(len(inner)):
-            here = inner[each]
-            answers = self._answers({name: _at(value, here) for name, value in values.items()})
-            for name, answer in answers.items():
-                whole[name][here] = answer
-        return whole
+        box = self.blocks[number]
+        shape = tuple(section.stop - section.start for section in box)
+        results = {name: numpy.empty(shape, dtype=DTYPES[name]) for name in self.variables}
+        presses = Blocks.divide(shape, _POINTS_PER_PRESS)
+        values = self.design.values_in(box)
+        for press_number in range(len(presses)):
+            section = presses[press_number]
+            computed = self._press({name: _select_section(value, section) for name, value in values.items()})
+            for name, result in computed.items():
+                results[name][section] = result
+        return results
 
-    def _answers(self, values: Mapping[str, Numbers]) -> Mapping[str, Any]:
-        joint, load, made = pressable(self.joint, values)
-        possible = numpy.asarray(made)
+    def _press(self, values: Mapping[str, Numbers]) -> Mapping[str, Any]:
+        """Press the joint at parameter values that broadcast, and return the variables by name."""
+        joint, load, is_joint = press_arguments(self.joint, values)
+        possible = numpy.asarray(is_joint)
         try:
             contact = self.model.press(joint, **load)
         except OutsideDomainError:
             status = numpy.where(possible, int(Status.OUTSIDE_DOMAIN), int(Status.NO_JOINT))
             return {**dict.fromkeys(self.quantities, numpy.nan), "status": status, "valid": False}
-        answers = {name: getattr(contact, name) for name in self.variables}
+        results = {name: getattr(contact, name) for name in self.variables}
         if possible.all():
-            return answers
+            return results
         for name in self.quantities:
-            answers[name] = numpy.where(possible, answers[name], numpy.nan)
-        answers["status"] = numpy.where(possible, answers["status"], int(Status.NO_JOINT))
-        answers["valid"] = answers["valid"] & possible
-        return answers
+            results[name] = numpy.where(possible, results[name], numpy.nan)
+        results["status"] = numpy.where(possible, results["status"], int(Status.NO_JOINT))
+        results["valid"] = results["valid"] & possible
+        return results
 
 
-def _at(value: Numbers, place: tuple[slice, ...]) -> Numbers:
-    """Part of an array that broadcasts: whole along dimensions of one."""
-    return value[tuple(part if length > 1 else slice(None) for part, length in zip(place, value.shape, strict=True))]
+def _select_section(value: Numbers, section: tuple[slice, ...]) -> Numbers:
+    """Select a section of an array that broadcasts; dimensions of length one stay complete."""
+    return value[tuple(part if length > 1 else slice(None) for part, length in zip(section, value.shape, strict=True))]
 
 
-def points_a_block(model: Model) -> int:
-    """So many that a block takes about half a second."""
-    return int(min(_MOST, max(1.0, _SECONDS / model.seconds_a_press)))
+def points_per_block(model: Model) -> int:
+    """Return the number of points of a block that takes about half a second."""
+    return int(min(_MAX_BLOCK_POINTS, max(1.0, _BLOCK_SECONDS / model.seconds_a_press)))

@@ -264,11 +264,11 @@ def test_study_has_orientations_as_axes():
     assert (np.diff(study.edge_distance, axis=0) < 0).all()
     tilts = bs.study(model, RIGID, tilt=np.radians([0.0, 40.0]), force=2000.0, quantities=["max_pressure"])
     assert tilts.sizes == {"tilt": 2}
-    with pytest.raises(ValueError, match="a tilt is needed besides"):
+    with pytest.raises(ValueError, match="a tilt is needed too"):
         bs.study(model, RIGID, azimuth=[0.0, 0.5], force=2000.0)
-    with pytest.raises(ValueError, match="take sphere"):
+    with pytest.raises(ValueError, match="use sphere"):
         bs.study(bs.Exact(), RIGID, tilt=[0.0, 0.5], force=2000.0)
-    with pytest.raises(ValueError, match="one too many"):
+    with pytest.raises(ValueError, match="tilt and the orientation of the cup"):
         bs.study(model, RIGID, tilt=[0.0, 0.5], inclination=[0.1, 0.2], force=2000.0)
 
 
@@ -294,7 +294,7 @@ def test_study_has_directions_and_steps_as_axes(tmp_path):
 
 @pytest.mark.long
 def test_study_of_directions_is_independent_of_the_executor(monkeypatch):
-    monkeypatch.setattr("ballsocket.studies.run.points_a_block", lambda model: 4)
+    monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 4)
     serial = bs.study(OVAL, RIGID, **AXES)
     for engine in (Processes(workers=2), Distributed(workers=1)):
         assert bs.study(OVAL, RIGID, engine=engine, **AXES).equals(serial)

@@ -19,8 +19,8 @@ from ...reports.pages import table
 from ...reports.study_plots import design_map
 from ...reports.study_tables import map_rows
 from ...reports.unit_systems import Units
+from ...studies.expressions import parse_limit, parse_range
 from ...studies.parameters import PARAMETERS
-from ...studies.phrases import limit_of, range_of
 from ..beside import beside
 from ..limit_lines import Place, moved, sold
 from ..look import PALETTES
@@ -131,7 +131,7 @@ class DesignMap:
     def _range(self, which: str, event: Any) -> None:
         name = getattr(self._screen, which).name
         try:
-            _, low, high = range_of(_with_unit(f"{name}={event.new}", name, self._screen.reading))
+            _, low, high = parse_range(_with_unit(f"{name}={event.new}", name, self._screen.reading))
             axis = MapAxis(name=name, low=low, high=high)
         except ValueError as error:
             self._refuse(error)
@@ -141,7 +141,7 @@ class DesignMap:
     def _limited(self, event: Any) -> None:
         try:
             phrases = [phrase.strip() for phrase in event.new.split(",") if phrase.strip()]
-            limits = tuple(limit_of(_limit_with_unit(phrase, self._screen.reading)) for phrase in phrases)
+            limits = tuple(parse_limit(_limit_with_unit(phrase, self._screen.reading)) for phrase in phrases)
         except ValueError as error:
             self._refuse(error)
             return

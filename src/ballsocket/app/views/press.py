@@ -19,7 +19,7 @@ from ...reports.figure_files import figure_bytes
 from ...reports.press_plots import press_figure
 from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
-from ...studies.around import Around, around
+from ...studies.local_uncertainty import LocalUncertainty, local_uncertainty
 from ..beside import beside
 from ..chart import swatch
 from ..controls import fields_of, tilt_of
@@ -172,7 +172,7 @@ def _rows(found: Comparison, screen: Screen) -> list[list[Any]]:
     return [[*heads, "notes"], *([*row, "; ".join(found[row[0]].notes)] for row in rows)]
 
 
-def _around(file: JointFile) -> Around | None:
+def _around(file: JointFile) -> LocalUncertainty | None:
     """What a percent of each number does; without a load nothing."""
     pressing = any(float(load) > 0 for load in file.load.values())
-    return around(file.joint, file.cup, file.load, {}) if pressing else None
+    return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None

@@ -1,0 +1,137 @@
+"""Short texts of command options and links: ranges, lists, limits and tolerances of named parameters."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from ..core.checks import check_names, shown
+from ..core.deprecation import renamed_names
+from ..core.quantities import QUANTITIES
+from ..files.units import parse
+from ..problem.presets import named_material
+from .distributions import Distribution, Rectangular, tolerance
+from .limits import LIMITED_NAMES, Limit
+from .parameters import MATERIAL_PARTS, PARAMETERS
+
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "range_of": "parse_range",
+        "ends_of": "parse_ends",
+        "choice_of": "parse_choices",
+        "spread_of": "parse_distribution",
+        "limit_of": "parse_limit",
+    },
+)
+
+_MAX_CHARACTERS = 200
+"""Largest length of a text; matching a longer one could take seconds."""
+
+
+def parse_range(text: str) -> tuple[str, float, float]:
+    """Parse a name and the two ends of its range, as in "ball_radius=11..23 mm".
+
+    Returns
+    -------
+    name : str
+    low, high : float
+        In mm, N, MPa, rad.
+
+    Raises
+    ------
+    ValueError
+        Another form, or an unknown name.
+    """
+    match = _match(r"\s*(\w+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*", text)
+    if match is None:
+        raise ValueError(f"{shown(text)} is not a range, such as 'ball_radius=11..23 mm'")
+    name, low, high = match.groups()
+    check_names([name], PARAMETERS, "among what can vary")
+    kind = PARAMETERS[name].kind
+    return name, parse(name, _add_unit(low, high), kind), parse(name, high, kind)
+
+
+def parse_ends(name: str, text: str, kind: str) -> tuple[float, float]:
+    """Parse the two ends of a range of a kind of quantity, as in "30..60 deg", in mm, N, MPa or rad.
+
+    Raises
+    ------
+    ValueError
+        Another form; the message has the `name`.
+    """
+    match = _match(r"\s*(.+?)\s*\.\.\s*(.+?)\s*", text)
+    if match is None:
+        raise ValueError(f"{name} = {shown(text)} is not a range, such as '30..60 deg'")
+    low, high = match.groups()
+    return parse(name, _add_unit(low, high), kind), parse(name, high, kind)
+
+
+def parse_choices(text: str) -> tuple[str, list[Any]] | None:
+    """Parse a name and a list, as in "head_diameter=28, 32, 36 mm" or "liner=uhmwpe,pom"; None for another form.
+
+    Raises
+    ------
+    ValueError
+        An unknown name or material, or text that is not a number.
+    """
+    match = _match(r"\s*(\w+)\s*=\s*([^=]+?)\s*", text)
+    if match is None or ".." in text:
+        return None
+    name, listed = match.groups()
+    items = [item.strip() for item in listed.split(",")]
+    if name in MATERIAL_PARTS:
+        return name, [named_material(name, item) for item in items]
+    if len(items) == 1:
+        return None
+    check_names([name], PARAMETERS, "among what can vary")
+    return name, [parse(name, _add_unit(item, items[-1]), PARAMETERS[name].kind) for item in items]
+
+
+def parse_distribution(text: str) -> tuple[str, Distribution]:
+    """Parse a name and its distribution: "clearance=0.10+-0.05 mm" (tolerance), "liner_poisson=0.38..0.46" (uniform).
+
+    Raises
+    ------
+    ValueError
+        Another form, or an unknown name.
+    """
+    match = _match(r"\s*(\w+)\s*=\s*(.+?)\s*(?:\+-|\+/-|±)\s*(.+?)\s*", text)
+    if match is None:
+        name, low, high = parse_range(text)
+        return name, Rectangular(low=low, high=high)
+    name, nominal, plus_minus = match.groups()
+    check_names([name], PARAMETERS, "among what can scatter")
+    kind = PARAMETERS[name].kind
+    return name, tolerance(parse(name, _add_unit(nominal, plus_minus), kind), parse(name, plus_minus, kind))
+
+
+def parse_limit(text: str) -> Limit:
+    """Parse a limit, as in "outer_radius<=26 mm" or "edge_distance>=5 mm"; < is read as <=, since limits include ends.
+
+    Raises
+    ------
+    ValueError
+        Another form, or an unknown name.
+    """
+    match = _match(r"\s*(\w+)\s*(<=|>=|≤|≥|<|>|==?)\s*(.+?)\s*", text)
+    if match is None:
+        raise ValueError(f"{shown(text)} is not a limit, such as 'outer_radius<=26 mm'")
+    name, sign, end = match.groups()
+    if "=" in (sign, sign[:1]):
+        raise ValueError(f"{shown(text)} is not a limit: it needs <= or >=, such as 'outer_radius<=26 mm'")
+    check_names([name], LIMITED_NAMES, "among what can be limited")
+    value = parse(name, end, QUANTITIES[name].kind)
+    return Limit(name=name, high=value) if sign[0] in "<≤" else Limit(name=name, low=value)
+
+
+def _match(pattern: str, text: str) -> re.Match[str] | None:
+    """Match a complete text of limited length; None if it does not match or is too long."""
+    return re.fullmatch(pattern, text) if len(text) <= _MAX_CHARACTERS else None
+
+
+def _add_unit(number: str, last: str) -> str:
+    """Return a number with the unit of the last number if it has no unit."""
+    unit = re.fullmatch(r"[-+\d.eE]+\s*(.*)", last)
+    bare = re.fullmatch(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?", number)
+    return f"{number} {unit.group(1)}".strip() if unit and bare else number

@@ -1,0 +1,210 @@
+"""Metadata of a study: labels with units and sources, and the identity that distinguishes stored studies."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from hashlib import sha256
+from itertools import chain
+from types import FunctionType
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.quantities import QUANTITIES
+from ..core.storage.fingerprint import fingerprint
+from ..core.validity import Status
+from .axes import Axis, SampleAxis
+from .design import Design
+from .parameters import MATERIAL_PARTS
+from .task import Task
+
+if TYPE_CHECKING:
+    import xarray
+
+
+_PARAMETERS = "parameters"
+"""Attribute with the names of varied and fixed parameters, in the order of the design."""
+
+_LABELS = "labels"
+"""Attribute with the names of materials by axis, as JSON."""
+
+_MAX_LISTED_VALUES = 40
+"""Number of values above which an axis is described by its ends and a digest."""
+
+_MAX_VALUE_CHARACTERS = 60
+"""Characters of a value in a message."""
+
+
+def variable_attributes(name: str) -> dict[str, Any]:
+    """Return the attributes of a variable or axis by the CF conventions."""
+    if name == "status":
+        return {
+            "long_name": "how the press ended",
+            "flag_values": [-1, *(int(status) for status in Status)],
+            "flag_meanings": " ".join(["not_computed", *(status.name.lower() for status in Status)]),
+        }
+    if name == "valid":
+        return {"long_name": "joint and answer lie where the model can be trusted"}
+    if name in MATERIAL_PARTS:
+        return {"long_name": f"material of the {name}"}
+    quantity = QUANTITIES[name]
+    return {"long_name": quantity.title, "symbol": quantity.symbol, "units": quantity.unit}
+
+
+def study_attributes(task: Task) -> dict[str, Any]:
+    """Return the attributes of a study: title, model, joint, design, publications and version."""
+    labels = {axis.name: axis.labels for axis in task.design.axes if axis.labels}
+    return {
+        "title": f"{task.model.title}, pressed at {task.design.size} points",
+        "model": task.model.name,
+        "joint": json.dumps(task.joint.summary(), ensure_ascii=False),
+        "references": "; ".join(map(str, dict.fromkeys(task.model.sources))),
+        "design": json.dumps(describe_axes(task.design)),
+        "source": f"ballsocket {fingerprint()}",
+        _PARAMETERS: " ".join(_parameter_order(task.design)),
+        "Conventions": "CF-1.10",
+        **({_LABELS: json.dumps(labels, ensure_ascii=False)} if labels else {}),
+    }
+
+
+def parameter_coordinates(design: Design) -> dict[str, tuple[tuple[str, ...], Numbers]]:
+    """Return dimensions and values of each varied or fixed parameter."""
+    varying = {name: ((axis.name,), values) for axis in design.axes for name, values in axis.values.items()}
+    fixed: dict[str, tuple[tuple[str, ...], Numbers]] = {
+        name: ((), numpy.asarray(value)) for name, value in design.fixed.items()
+    }
+    return {**varying, **fixed}
+
+
+def make_dataset(task: Task, results: dict[str, Numbers]) -> xarray.Dataset:
+    """Create the labelled dataset of a study from arrays of its shape."""
+    import xarray
+
+    coordinates = parameter_coordinates(task.design).items()
+    return order_coordinates(
+        xarray.Dataset(
+            {name: (task.design.dims, values, variable_attributes(name)) for name, values in results.items()},
+            coords={name: (dims, values, variable_attributes(name)) for name, (dims, values) in coordinates},
+            attrs=study_attributes(task),
+        )
+    )
+
+
+def order_coordinates(study: xarray.Dataset) -> xarray.Dataset:
+    """Return a study with its parameters in the order of the design, and with the names of materials."""
+    import xarray
+
+    labels = json.loads(study.attrs.get(_LABELS, "{}"))
+    named = {axis: (axis, numpy.array(names), variable_attributes(axis)) for axis, names in labels.items()}
+    coords = {**{str(name): coordinate.variable for name, coordinate in study.coords.items()}, **named}
+    order = (name for name in study.attrs.get(_PARAMETERS, "").split() if name in coords)
+    results = {name: array.variable for name, array in study.data_vars.items()}
+    ordered = {name: coords[name] for name in dict.fromkeys((*order, *coords))}
+    return xarray.Dataset(results, coords=ordered, attrs=study.attrs)
+
+
+def _parameter_order(design: Design) -> tuple[str, ...]:
+    """Return the names of all parameters; the name of a material axis comes before its properties."""
+    axes = ((*([axis.name] if axis.labels else []), *axis.names) for axis in design.axes)
+    return (*chain.from_iterable(axes), *design.fixed)
+
+
+def study_identity(task: Task) -> dict[str, Any]:
+    """Describe a study as data for JSON; equal descriptions have equal results."""
+    return {
+        "code": fingerprint(),
+        "model": _as_plain_data(task.model),
+        "joint": _as_plain_data(task.joint),
+        "axes": describe_axes(task.design),
+        "fixed": dict(task.design.fixed),
+        "quantities": list(task.quantities),
+        "block": list(task.blocks.size),
+    }
+
+
+def describe_axes(design: Design) -> dict[str, Any]:
+    """Describe the axes of a design as data for JSON: values, or seed and distributions of samples."""
+    return {axis.name: _describe_axis(axis) for axis in design.axes}
+
+
+def _describe_axis(axis: Axis) -> Any:
+    """Describe one axis as data for JSON."""
+    if isinstance(axis, SampleAxis):
+        return _as_plain_data(axis)
+    return {name: _describe_array(values) for name, values in axis.values.items()}
+
+
+def _as_plain_data(value: Any) -> Any:
+    """Convert a value to data for JSON: dataclasses and functions by name, long arrays by digest."""
+    if is_dataclass(value) and not isinstance(value, type):
+        values = {field.name: _as_plain_data(getattr(value, field.name)) for field in fields(value)}
+        return {"kind": _qualified_name(type(value)), **values}
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, numpy.ndarray | numpy.generic):
+        return _describe_array(numpy.asarray(value))
+    if isinstance(value, Mapping):
+        return {str(key): _as_plain_data(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_as_plain_data(item) for item in value]
+    if isinstance(value, float):
+        return value if numpy.isfinite(value) else str(value)
+    if value is None or isinstance(value, str | int):
+        return value
+    if isinstance(value, type):
+        return _qualified_name(value)
+    if isinstance(value, FunctionType):
+        return _describe_function(value)
+    raise ValueError(f"a store cannot distinguish {value!r} from other values: make it a dataclass or a function")
+
+
+def _qualified_name(item: Any) -> str:
+    """Return the full name of a class or function."""
+    return f"{item.__module__}.{item.__qualname__}"
+
+
+def _describe_function(function: FunctionType) -> Any:
+    """Describe a function of this package by its name, another one also by its code, closure and defaults."""
+    if function.__module__.startswith("ballsocket.") and function.__closure__ is None:
+        return _qualified_name(function)
+    code = function.__code__
+    constants = [str(constant) for constant in code.co_consts]
+    return {
+        "name": _qualified_name(function),
+        "code": sha256(repr((code.co_code, code.co_names, constants)).encode()).hexdigest(),
+        "encloses": [_as_plain_data(cell.cell_contents) for cell in function.__closure__ or ()],
+        "defaults": _as_plain_data(function.__defaults__),
+    }
+
+
+def _describe_array(values: numpy.ndarray) -> Any:
+    """Return the values of a short array, or count, ends and digest of a long one."""
+    if values.size <= _MAX_LISTED_VALUES:
+        return _as_plain_data(values.tolist())
+    digest = sha256(numpy.ascontiguousarray(values).tobytes()).hexdigest()
+    return {"count": values.size, "first": float(values.flat[0]), "last": float(values.flat[-1]), "digest": digest}
+
+
+def list_differences(stored: Mapping[str, Any], requested: Mapping[str, Any], path: str = "") -> list[str]:
+    """List the differences of two identities, one text for each."""
+    texts = []
+    for name in dict.fromkeys((*stored, *requested)):
+        key, old, new = _shorten(name), stored.get(name), requested.get(name)
+        if isinstance(old, Mapping) and isinstance(new, Mapping):
+            texts += list_differences(old, new, f"{path}{key}.")
+        elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
+            by_index = [{f"{key}[{index}]": value for index, value in enumerate(values)} for values in (old, new)]
+            texts += list_differences(by_index[0], by_index[1], path)[:1]
+        elif old != new:
+            texts.append(f"{path}{key} is {_shorten(old)} there and {_shorten(new)} here")
+    return texts
+
+
+def _shorten(value: Any) -> str:
+    """Format a value with limited length."""
+    text = "missing" if value is None else str(value)
+    return text if len(text) <= _MAX_VALUE_CHARACTERS else f"{text[: _MAX_VALUE_CHARACTERS - 3]}..."
