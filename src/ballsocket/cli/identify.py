@@ -15,7 +15,6 @@ from ..files.units import parse
 from ..identify import as_constant, as_corrected_vessel, as_polynomial
 from ..identify import calibrate as fit_modulus
 from ..identify.file import read_identify
-from ..identify.modulus import FORCES, Form
 from ..identify.posterior import Posterior
 from ..identify.result import IdentificationResult
 from ..paper.table_3 import refit_table_3
@@ -23,6 +22,7 @@ from ..reports import identify_results
 from ..reports.figure_files import check_format, save
 from ..reports.identify_results import print_identified
 from ..reports.reference_terminal import print_calibration, print_table_3
+from ..studies.calibration import FORCES, Form
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, named_joint

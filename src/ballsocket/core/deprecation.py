@@ -150,6 +150,7 @@ MOVED = {
     **{f"ballsocket.paper.claims.{name}": "ballsocket.paper.claims" for name in ("agreement", "design", "modulus")},
     "ballsocket.paper.claims.finding": "ballsocket.paper.claims.evaluation",
     "ballsocket.identify.answers": "ballsocket.identify.forward_model",
+    "ballsocket.identify.modulus": "ballsocket.studies.calibration",
     "ballsocket.identify.oscillation": "ballsocket.identify.observables",
     "ballsocket.identify.parameters": "ballsocket.identify.identification",
     "ballsocket.identify.profile": "ballsocket.identify.bands",

@@ -5,6 +5,7 @@
 
 import sys
 
+from ..studies.calibration import Calibration, as_constant, as_corrected_vessel, as_polynomial, calibrate
 from . import observables
 from .estimates import Estimate, Product
 from .identification import identify
@@ -13,7 +14,6 @@ from .machine import Machine
 from .machine_errors import MachineError
 from .measured import MEASURED, Measured
 from .model_numbers import ModelNumber
-from .modulus import Calibration, as_constant, as_corrected_vessel, as_polynomial, calibrate
 from .observables import CustomObservable, oscillation, sliding_torque
 from .registry import MACHINE_ERRORS, MODEL_NUMBERS, OBSERVABLE_NUMBERS
 from .result import IdentificationResult

@@ -10,11 +10,11 @@ import numpy
 
 from ..contact import Model
 from ..core.arrays import Array
-from ..identify.modulus import Calibration, as_polynomial, calibrate
 from ..models.modulus import polynomial
 from ..models.table_3 import table_3
 from ..problem import Joint, Material
 from ..problem.presets import STEEL
+from ..studies.calibration import Calibration, as_polynomial, calibrate
 
 RATIOS = numpy.array([0.73, 1.0, 1.35, 1.8, 2.3, 2.8, 3.4, 4.1, 4.9, 5.8, 6.7, 7.7])
 """Ratios R2/L over which Table 3 is refitted."""

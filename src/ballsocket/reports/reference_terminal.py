@@ -11,9 +11,9 @@ from rich.text import Text
 
 from ..contact.describe import number_text
 from ..core.quantities import CONTACT
-from ..identify.modulus import Calibration
 from ..paper.table_3 import RATIOS
 from ..paper.table_3 import TableColumn as TableColumn
+from ..studies.calibration import Calibration
 from .terminal import console, print_folded
 
 if TYPE_CHECKING:

@@ -14,9 +14,9 @@ from ...core.sources import Source
 from ...elasticity.exact.contact import ElasticContact
 from ...elasticity.exact.model import Exact
 from ...elasticity.finite_elements.model import FiniteElement
-from ...identify.modulus import max_relative_error
 from ...problem import Joint, Material
 from ...problem.presets import COCR, CROSSLINKED_PE, STEEL, UHMWPE
+from ...studies.calibration import max_relative_error
 from .evaluation import BY_EVALUATION, EXACTLY, ZERO, Claim, Computed, Evaluation, percent
 
 SOURCES = (Source("jin1999"), Source("plank2007"))

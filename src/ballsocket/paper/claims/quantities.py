@@ -13,10 +13,10 @@ from ...core.arrays import Numbers
 from ...elasticity.finite_elements.contact import MeshedContact
 from ...elasticity.finite_elements.model import FiniteElement
 from ...elasticity.finite_elements.spacing import Element, Uniform
-from ...identify.modulus import max_relative_error
 from ...models.foundation import Bartel, BondedLayer, HessForsbach, Vessel
 from ...models.half_space import Hertz
 from ...models.modulus import bonded_layer, spherical_vessel
+from ...studies.calibration import max_relative_error
 from .. import cases
 from ..table_3 import RATIOS, refit_table_3
 from .evaluation import Computed, Evaluation, percent, quantity_title

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify.modulus import max_relative_error
 from ballsocket.paper.table_3 import RATIOS, refit_table_3
+from ballsocket.studies.calibration import max_relative_error
 
 from ..cli.command import run
 from ..joints import HIP
