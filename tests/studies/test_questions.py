@@ -346,7 +346,7 @@ def test_a_study_file_says_all(tmp_path):
         ('model = "hess-forsbach"', 'model = ["a"]', r"model \['a'\] is not known; known: exact"),
         ('model = "hess-forsbach"', "model = {}", "model {} is not known"),
         ("[axes]", "[engine]\nkind = 'dask'\naddress = 5\n[axes]", "address = 5 must be text"),
-        ("[axes]", "[engine]\nkind = ['dask']\n[axes]", r"engine kind \['dask'\] is not known; did you mean 'dask'"),
+        ("[axes]", "[engine]\nkind = ['dask']\n[axes]", r"engine.kind = \['dask'\] is not known; did you mean 'dask'"),
         ("[axes]", "[engine]\nkind = 'processes'\nworkers = 1e9\n[axes]", "workers = 1000000000 is not allowed"),
         ("seed = 3", "seed = 0x" + "f" * 9000, "seed = .{1,60} is too large a number"),
         ("count = 8", "count = 0x" + "f" * 9000, "count = .{1,60} is too large a number"),
