@@ -381,5 +381,5 @@ def export(results: Results, folder: Path) -> None:
                 add_program(results, f"{name}/{kind}/{path}", text)
             results.add(f"{name}/{kind}/note", target.note(job) or "none")
     for kind in ("springs", "curve", "exact"):
-        power = Job(element=elements()[kind], name="hip", depth=0.08).power
+        power = Job(element=elements()[kind], name="hip", depth=0.08).fitted_power_law
         results.add_attributes(f"power/{kind}", power, "stiffness exponent depth error")

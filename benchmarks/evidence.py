@@ -7,7 +7,7 @@ from pathlib import Path
 from time import perf_counter
 
 from ballsocket.core.executors.processes import Processes
-from ballsocket.evidence.pack import gathered
+from ballsocket.evidence.pack import gather_evidence
 from ballsocket.evidence.question import read_question
 
 from .report import Report, Rows
@@ -45,6 +45,6 @@ def measure() -> Report:
             question = read_question(path)
             for state in ("", ", all kept"):
                 start = perf_counter()
-                gathered(question, Path(folder), engine=Processes())
+                gather_evidence(question, Path(folder), engine=Processes())
                 rows.add(f"{name}{state}", f"{perf_counter() - start:.3g}")
     return Report([rows], ["The aims are 30 s and 180 s. One run each; processes are started anew."])

@@ -59,7 +59,7 @@ def _march() -> Callable[..., None]:
     @numba.njit(error_model="numpy")
     def ask(joint, position, velocity, spin):  # type: ignore[no-untyped-def]
         potential, given = joint
-        place = formulas.centre_of(position[0], position[1], position[2], given.clearance)
+        place = formulas.ball_centre_at(position[0], position[1], position[2], given.clearance)
         contact = formulas.elastic_contact(potential, place, given)
         fx, fy, fz, mx, my, mz = formulas.force_and_moment(place, contact, velocity, spin, given)
         lost = formulas.dissipation(place, contact, velocity, spin, given)

@@ -25,6 +25,7 @@ extensions = [
     "mathml",
     "offline",
     "palettes",
+    "rooms",
     "used",
 ]
 exclude_patterns = ["_build", "_generated", "inventories/README.md", "paper/paper.md"]

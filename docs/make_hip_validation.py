@@ -8,8 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from ballsocket.evidence.hip_wear import INPUTS, Predicted, Ratio, patients, ratios, simulators
-from ballsocket.evidence.published_wear import PUBLISHED
+from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, Predicted, Ratio, patients, ratios, simulators
 from ballsocket.output.style import BLUE, VERMILLION, finish
 
 DOCS = Path(__file__).parent
@@ -20,9 +19,9 @@ PAGE = DOCS / "explanation" / "hip_validation.md"
 def ratio_table(found: Iterable[Ratio]) -> str:
     rows = []
     for each in found:
-        one, other = PUBLISHED[each.one], PUBLISHED[each.other]
+        one, other = PUBLISHED[each.numerator], PUBLISHED[each.denominator]
         area = "" if each.area is None else f"{each.area:.2f}"
-        what = f"{one.what}, over {other.what}"
+        what = f"{one.description}, over {other.description}"
         rows.append((what, f"{one.value / other.value:.2f}", f"{each.archard:.2f}", area, one.source))
     return _table(("measured over measured", "measured", "Archard", "area law", "source"), rows)
 
@@ -34,7 +33,7 @@ def band_table(found: Iterable[Predicted]) -> str:
         spread = f" ({told.spread})" if told.spread else ""
         rows.append(
             (
-                told.what,
+                told.description,
                 f"{told}{spread} {_UNITS.get(told.unit, told.unit)}",
                 _short(each.median),
                 f"{_short(each.low)} to {_short(each.high)}",
@@ -66,8 +65,10 @@ def figure(panels: dict[str, list[Predicted]]) -> Figure:
             told = PUBLISHED[each.name]
             axes.plot([each.low, each.high], [row, row], color=BLUE, linewidth=7, alpha=0.3, solid_capstyle="butt")
             axes.plot(each.median, row, "|", color=BLUE, markersize=12)
-            axes.errorbar(told.value, row, xerr=told.off or None, fmt="o", color=VERMILLION, markersize=5, capsize=3)
-        axes.set_yticks(range(len(found)), [PUBLISHED[each.name].what for each in found], fontsize=8)
+            axes.errorbar(
+                told.value, row, xerr=told.half_width or None, fmt="o", color=VERMILLION, markersize=5, capsize=3
+            )
+        axes.set_yticks(range(len(found)), [PUBLISHED[each.name].description for each in found], fontsize=8)
         axes.invert_yaxis()
         axes.set_xlim(left=0)
         finish(axes, title, "")

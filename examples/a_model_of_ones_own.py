@@ -1,8 +1,9 @@
 """
-A foundation modulus of one's own
-=================================
+A custom foundation modulus
+===========================
 
-Say a finite-element study of one's own liner gave K R2/E = 1.02 + 1.25 (R2/L) + 0.10 (R2/L)². What does that change?
+A finite-element study of a liner gave K R2/E = 1.02 + 1.25 (R2/L) + 0.10 (R2/L)². How does this stiffness change the
+contact of a hip?
 """
 
 from pathlib import Path
@@ -25,7 +26,7 @@ for name, contact in contacts.items():
     print(f"{name:>13}: K {stiffness:6.1f} MPa/mm, p0 {pressure:5.2f} MPa, valid {contact.valid}")
 
 # %%
-# A model of one's own is drawn, compared and cited like the others.
+# A custom model is drawn, compared and cited like the others.
 
 curves = {name: model.press(hip, indentation=np.linspace(0.0, 0.08, 60)) for name, model in models.items()}
 save(press_figure(contacts, curves), Path("a_model_of_ones_own.png"))

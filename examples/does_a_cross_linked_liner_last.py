@@ -1,13 +1,13 @@
 """
-Does a cross-linked liner last longer?
-======================================
+Wear of a cross-linked and a conventional liner
+===============================================
 
-Yes, about five times as long, and the first radiographs do not show it: in three months both balls sink in by 0.13 to
-0.15 mm, which is creep. Then the conventional liner goes on at 0.07 mm a year, and the cross-linked one, of a fifth
-of the wear factor, at 0.015 mm.
+A cross-linked liner lasts about five times as long, but the first radiographs do not show it. In three months both
+balls move into the liner by 0.13 to 0.15 mm, mostly by creep. Then the conventional liner continues with 0.07 mm a
+year. The cross-linked one, with a fifth of the wear factor, continues with 0.015 mm.
 
-Creep follows a logarithmic law whose coefficients are not verified, and the wear factors are typical ones: the
-picture, not the digits, is the answer. A head of 28 mm, a million cycles a year, walking as simulators do it.
+Creep follows a logarithmic law whose coefficients are not verified, and the wear factors are typical values. So the
+trend is the result, not the digits. The head has 28 mm, the patient walks a million cycles a year, as in simulators.
 """
 
 from math import radians

@@ -1,13 +1,14 @@
 """
-When does a worn ball joint begin to rattle?
-============================================
+Rattle of a worn ball joint
+===========================
 
-A suspension's ball joint is spring-loaded when it is new. What happens when wear has taken the spring's force?
+The ball joint of a suspension is preloaded by a spring when it is new. Wear takes the force of the spring. What
+happens then?
 
-A steel ball of 27 mm in a socket of acetal, with 3 kg of hub behind it, is shaken by 400 N at 25 Hz. As long as its
-spring presses with more than that the ball stays where it is. A worn spring lets it go, it crosses its clearance and
-strikes the other side: the force of these blows is several times that of the shaking, and grows with the clearance. The
-force element is made of the joint's geometry and material alone; energy is balanced to rounding by its own steps.
+A steel ball of 27 mm in a socket of acetal carries a hub of 3 kg. A force of 400 N shakes it at 25 Hz. The ball stays
+in place while the spring presses with more than 400 N. With a worn spring the ball crosses its clearance and strikes
+the other side. The force of these impacts is several times the shaking force, and grows with the clearance. The force
+element needs the geometry and the materials alone. Its time steps balance the energy to rounding.
 """
 
 from math import pi, sin

@@ -2,9 +2,9 @@
 From the explorer to a joint file
 =================================
 
-A shell of 52 mm and a load of 3 kN: which head and which liner, and what does 0.05 mm of clearance cost? In the
-explorer (``ballsocket app``) that is two minutes of looking: open the design map, write the limits under it, click.
-Here is the same walk step by step, with the links that open each view and the numbers that stand on it.
+A shell of 52 mm and a load of 3 kN: which head and which liner fit, and what does 0.05 mm of clearance change? In the
+explorer (``ballsocket app``) this takes two minutes: open the design map, write the limits under it, and click. This
+page repeats it step by step, with the link that opens each view and the numbers of that view.
 """
 
 from dataclasses import replace
@@ -60,8 +60,8 @@ for clearance in (0.05, 0.10, 0.15):
     print(f"{clearance:.2f} mm: {contact.max_pressure:.2f} MPa, half angle {degrees(contact.half_angle):.1f}°")
 
 # %%
-# **The judge.** A cup is no whole shell: with a rim 5° short of the equator and a chamfer, finite elements say what
-# that changes.
+# **The judge.** A real cup ends at a rim. Finite elements compute the change for a rim 5° short of the equator with a
+# chamfer.
 
 cup = bs.Cup(arc_of_cover=radians(170.0), chamfer=1.0)
 contact = bs.FiniteElement(cup=cup).press(chosen, force=3000.0)

@@ -1,9 +1,9 @@
 """
-The exact answer, and the inside of the liner
-=============================================
+The exact solution, and stresses inside the liner
+=================================================
 
-A hip engineer's question: the paper's model says 11.3 MPa at 3 kN. Can I trust it, and where is the plastic stressed
-most?
+The paper's model predicts 11.3 MPa for a hip at 3 kN. How large is its error, and where is the stress in the liner
+largest?
 """
 
 import numpy as np
@@ -70,7 +70,7 @@ softer = bs.Exact().press(backed, force=3000.0)
 print(f"on bone: d {softer.indentation:.4f} mm instead of {exact.indentation:.4f} mm, p0 {softer.max_pressure:.2f} MPa")
 
 # %%
-# A stiffness for one's own multibody model, with the error it makes.
+# A stiffness for a multibody model, with its error.
 
 fit = bs.calibrate(hip)
 print(f"K = {fit.modulus(hip):.1f} MPa/mm; force off by at most {fit.error['force']:.1%} between 1 and 3 kN")

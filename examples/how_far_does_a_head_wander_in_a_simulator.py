@@ -1,15 +1,15 @@
 """
-How far does a head wander in a simulator?
-==========================================
+Motion of a head in a hip simulator
+===================================
 
-A simulator of wear pushes a cup against a head that its motors turn. The cup's holder is free to find its own place
-across the load. Where does the head go, when the cup stands steeply, and what do load and motors pay for?
+A wear simulator pushes a cup against a head that its motors turn. The holder of the cup can move across the load. How
+far does the head move in a steep cup, and where does the work of load and motors go?
 
-A station under the cycle of ISO 14242-1 (1 Hz, 300 to 3000 N): a holder of 4 kg with a metal-backed cup of 36 mm,
-which slides on its guides with a little viscous drag. Friction alone makes the head climb up its cup, back and forth.
-In a cup at 30° the load is far from the rim; one at 70° has its contact cut by the rim, which pushes the head aside
-until what is left of the contact pushes straight up. What load and motors put in is what friction, liner and guides
-take, and what is stored.
+One station runs the cycle of ISO 14242-1 (1 Hz, 300 to 3000 N). Its holder of 4 kg carries a metal-backed cup of 36
+mm, and slides on guides with a little viscous drag. Friction alone makes the head climb up its cup, back and forth.
+In a cup at 30° the load is far from the rim. In a cup at 70° the rim cuts the contact and pushes the head aside,
+until the rest of the contact pushes straight up. Friction, liner and guides dissipate the work of load and motors,
+except for what is stored.
 """
 
 from math import radians

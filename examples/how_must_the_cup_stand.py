@@ -1,13 +1,13 @@
 """
-How must the cup stand?
+Map of cup orientations
 =======================
 
 Distance to the rim and largest pressure over inclination and anteversion.
 
-In single-leg stance the load of a hip leans to the middle of the body, and the cup opens to the side. How steep may it
-stand until the contact reaches its rim? With a 32 mm head and 170° of cover, at 15° of anteversion: 49°. Every
-orientation is pressed by full elasticity in the cup as it is built, whose rings do not know how it stands: a map of
-seventy takes a second.
+In single-leg stance the load of a hip leans to the middle of the body, and the cup opens to the side. How steep can
+the cup be until the contact reaches its rim? The result is 49° for a 32 mm head and 170° of cover, at 15° of
+anteversion. Every orientation is pressed with full elasticity in a cup with its rim. The compliance of its rings does
+not depend on the orientation, so a map of seventy orientations takes a second.
 """
 
 from dataclasses import replace

@@ -1,12 +1,12 @@
 """
-How round must a bore be?
-=========================
+Largest pressure in a bore out of round
+=======================================
 
-What wear, waviness, a press fit and a scan's deviations do to the largest pressure.
+The effect of wear, waviness, a press fit and the deviations of a scan on the largest pressure.
 
-A head of 36 mm in polyethylene with 100 µm of clearance, 2.5 kN, 20° from the cup's axis. To 5 %, waves must be no
-higher than 5 µm. What the head itself has worn into the bore lowers the largest pressure, by a sixth after 50 µm; the
-oval that a press fit makes of the bore does so too, by 6 % at most where the diameter has lost 60 µm.
+A head of 36 mm is pressed into polyethylene with 100 µm of clearance by 2.5 kN, 20° from the cup's axis. Waves of 5 µm
+change the largest pressure by 5 %. A bore worn in by the head has a lower largest pressure, by a sixth after 50 µm.
+The oval of a press fit lowers it too, by at most 6 % for a diameter that is smaller by 60 µm.
 """
 
 from dataclasses import replace

@@ -1,14 +1,14 @@
 """
-How steep may a cup stand?
-==========================
+Wear at different cup inclinations
+==================================
 
-From 35° to 65° of inclination the worn volume is the same within 1 %, since every step slides as far under the same
-load. What changes is the room to the rim: 8 mm at 35°, 2 mm at 55°, none at 65°, where the contact reaches the rim in
-a third of the step from the first day on; the wear is spread less evenly, and a fifth deeper. What an edge does to a
-liner is in no law of wear.
+The worn volume is the same within 1 % from 35° to 65° of inclination, since the sliding distance under the load is
+the same. The distance to the rim changes: 8 mm at 35°, 2 mm at 55°, none at 65°. At 65° the contact reaches the rim
+in a third of the step from the first day on. The wear is then less even, and a fifth deeper. No wear law includes the
+damage that an edge does to a liner.
 
-Walking as simulators do it, on a 36 mm head in a liner of 6 mm; the load leans by 15° to the middle, as that of a hip
-does, so that it meets a cup of 45° at 30° from its axis. Archard's law, two million steps.
+The example is walking as in simulators, with a 36 mm head in a liner of 6 mm. The load leans by 15° to the middle, as
+in a hip, so that it meets a cup of 45° at 30° from its axis. The wear law is Archard's, over two million steps.
 """
 
 from dataclasses import replace

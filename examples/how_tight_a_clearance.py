@@ -1,12 +1,12 @@
 """
-How tight a clearance?
-======================
+Effect of a clearance tolerance on the largest pressure
+=======================================================
 
-What does a clearance tolerance of ±0.05 mm do to the peak pressure of a 32 mm head, beside the scatter of the liner's
-material?
+How much does a clearance tolerance of ±0.05 mm change the peak pressure of a 32 mm head, compared with the scatter
+of the liner's material?
 
-Samples of the tolerances times a row of loads are one study. The bands hold half, nine tenths and nearly all of the
-joints; Sobol's indices say which number they come from.
+Samples of the tolerances times a row of loads are one study. The bands contain half, nine tenths and nearly all of the
+joints. Sobol indices show which number causes them.
 """
 
 import ballsocket as bs

@@ -36,6 +36,6 @@ curves = {name: bs.catalogue[name].press(hip, indentation=np.linspace(0.0, 0.12,
 save(press_figure({name: answers[name] for name in names}, curves), Path("press_a_hip.png"))
 
 # %%
-# What the literature asks to be cited.
+# The publications to cite.
 
 print(bs.cite(contact))

@@ -1,12 +1,12 @@
 """
-What can a press tell?
-======================
+Clearance and modulus from contact areas
+========================================
 
-A hip was pressed, and its contact areas were taken from a film. Which clearance and modulus has it, and can the areas
-tell?
+A hip was pressed, and its contact areas were measured with a film. Can clearance and modulus be identified from the
+areas?
 
-They cannot: areas and pressures depend on clearance times modulus. The identification reports that neither is
-identifiable, gives the product with its band, and names the measurement that separates the two. The data are synthetic:
+They cannot, because areas and pressures depend on clearance times modulus. The identification reports that neither is
+identifiable, gives the product with its band, and names the measurement that separates the two. The data are synthetic,
 drawn from a model for a joint with a clearance of 0.1 mm and a liner of 1000 MPa.
 """
 

@@ -1,13 +1,13 @@
 """
-What clearance lasts twenty years?
-==================================
+Wear over twenty years for different clearances
+===============================================
 
-Any from 0.05 to 0.2 mm, if wear alone decides: the widest loses 6 % less of a cross-linked liner than the tightest,
-and its ball sinks in 0.03 mm deeper. New, its pressure is nearly twice as large; but a bore wears in to its ball, and
-after some years all of them press alike.
+Any clearance from 0.05 to 0.2 mm lasts twenty years if wear alone decides. With the widest clearance a cross-linked
+liner loses 6 % less volume than with the tightest, and its ball moves in 0.03 mm deeper. In a new liner the pressure of
+the widest is nearly twice as large. But the bore wears in, and after some years all pressures are alike.
 
 The patient weighs 80 kg, walks 1.2 million cycles of the hip a year, climbs 30 000 steps, and stands up 20 000 times.
-The peaks are those of instrumented hips; courses and motions are assumed, and so is the wear factor.
+The peak loads are those of instrumented hips. The loads over time, the motions and the wear factor are assumed.
 """
 
 from math import radians

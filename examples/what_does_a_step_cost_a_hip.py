@@ -1,14 +1,14 @@
 """
-What does a step cost a hip?
-============================
+Friction moment and heat in a hip during a step
+===============================================
 
-The head of a hip turns in its cup under three times the body's weight. How large is the moment of friction, and the
-heat?
+The head of a hip turns in its cup under three times the body weight. How large are the friction moment and the heat?
 
-A cycle of walking as simulators of wear do it (ISO 14242-1): 20 kg of leg hang on the head, which is pushed by the
-load of the cycle and turned as the leg turns. The force element says force and moment at each instant; the work that
-the load and the turning put in is what friction and damping take, and what is stored. The moment is that of the
-pressure of the contact, and with a head of 36 mm it is larger than with one of 28, in proportion to the radius.
+The cycle is walking as in wear simulators (ISO 14242-1). A leg of 20 kg hangs on the head. The load of the cycle
+pushes the head, and the rotation of the leg turns it. The force element computes force and moment at each instant.
+Friction and damping dissipate the work of load and rotation, except for what is stored. The friction moment follows
+from the pressure of the contact. With a head of 36 mm it is larger than with one of 28 mm, in proportion to the
+radius.
 """
 
 from math import radians

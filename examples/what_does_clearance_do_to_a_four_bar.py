@@ -1,18 +1,20 @@
 """
-What does clearance do to a spatial four-bar?
-=============================================
+Spatial four-bar with clearance in a ball joint
+===============================================
 
-A crank, a coupler and a rocker whose axes cross in space fall from rest. The ball joint between coupler and rocker has
-clearance. Do other programs see the same motion, and where does the energy go?
+A crank, a coupler and a rocker whose axes cross in space fall from rest. The ball joint between coupler and rocker
+has clearance. Do other programs compute the same motion, and where does the energy go?
 
-The ball of 20 mm has a socket of acetal, 0.2 mm wider all round; the ball joint at the crank is ideal. The element is
-made of the joint's geometry and material. The same law, exported to Exudyn and put into Exudyn's own model of the
-mechanism, goes the same way until the steps there, of second order, tell. Exudyn's own hollow sphere, with the k and n
-that come nearest to the law and a restitution of 0.8, swings within a milliradian of it, but rattles in another way:
-what it loses goes by the speed of each impact, and goes on where the other has come to rest.
+The ball of 20 mm has a socket of acetal, 0.2 mm wider all round. The ball joint at the crank is ideal. The element
+needs the geometry and the material of the joint alone. The same law, exported to Exudyn and used in Exudyn's model of
+the mechanism, gives the same motion until the errors of the steps there, of second order, become visible.
 
-Both answers of Exudyn were kept (``benchmarks/four_bar.py`` builds them). Compiled, the element and this mechanism take
-30 ms for a second of it in steps of 40 µs (``python -m benchmarks four-bar``).
+Exudyn's hollow sphere uses the nearest k and n and a restitution of 0.8. Its swing agrees within a milliradian, but
+it rattles in another way. Its loss depends on the speed of each impact, and it still rattles when the other is at
+rest.
+
+Both results of Exudyn are stored (``benchmarks/four_bar.py`` computes them). Compiled, the element and this mechanism
+take 30 ms for one second of motion in steps of 40 µs (``python -m benchmarks four-bar``).
 """
 
 from math import cos, hypot, sin
@@ -50,8 +52,9 @@ def plus(a, k, b):
 def at_joint(y):
     """Position, velocity and spin of the ball in the socket, and the ball's arm about the rocker's pivot.
 
-    The state is the angle of the crank and its rate, the coupler's direction, its rate and the spin about it, the angle
-    of the rocker and its rate, and what was lost. A whole sphere is the same in all axes: they are those of the ground.
+    The state is the angle of the crank and its rate, the direction of the coupler, its rate and the spin about it. Then
+    follow the angle of the rocker, its rate, and the lost energy. A full sphere is the same in all axes: the axes are
+    those of the ground.
     """
     a, b, r = CRANK[0], COUPLER[0], ROCKER[0]
     along, turn = (y[2], y[3], y[4]), (y[5], y[6], y[7])
@@ -65,7 +68,7 @@ def at_joint(y):
 
 
 def rates(ask, joint, y):
-    """How the state changes; `ask(joint, position, velocity, spin)` says force, moment and what is lost."""
+    """Return the rates of the state; `ask(joint, position, velocity, spin)` returns force, moment and lost power."""
     (a, m), (b, M), (r, n) = CRANK, COUPLER, ROCKER
     u, turn = (y[2], y[3], y[4]), (y[5], y[6], y[7])
     position, velocity, spin, arm = at_joint(y)

@@ -1,13 +1,15 @@
 """
-What does clearance do to a pendulum?
-=====================================
+Pendulum on a ball joint with clearance
+=======================================
 
-A pendulum hangs from a ball in a socket that is wider than it. Where does the ball sit, and what does friction take?
+A pendulum hangs from a ball in a socket that is wider than the ball. Where is the ball, and how much energy does
+friction take?
 
-A bob of 2 kg swings on a rod of 200 mm from a steel ball of 20 mm in a socket lined with UHMWPE, half a millimetre
-wider all round. Without friction the joint has no moment at all, and the contact lies where the rod points, but for the
-little that the bob's own inertia asks for. With friction the ball rolls up the socket until friction gives way, and
-slides then at a steady angle, on the other side on the way back. The swing loses what friction takes, nothing else.
+A bob of 2 kg swings on a rod of 200 mm. The rod hangs from a steel ball of 20 mm in a socket lined with UHMWPE, half
+a millimetre wider all round. Without friction the joint has no moment, and the contact lies in the direction of the
+rod, except for a small effect of the bob's inertia. With friction the ball rolls up the socket until it slides. It
+then slides at a constant angle, on the other side on the way back. The swing loses the work of friction and nothing
+else.
 """
 
 from math import cos, radians, sin

@@ -1,16 +1,16 @@
 """
-What does elasticity change in wear?
-====================================
+Wear with springs and with an elastic liner
+===========================================
 
-Next to nothing in volume and depth: a liner of full elasticity, as a closed shell or as the real cup, loses the
-volume that springs lose within 0.2 %, from the first steps to five million, and is as deep within 1.1 % from a
-million on. New, depths differ by up to 4 % where the liner is nearly incompressible, since there the pressures do;
-but what is worn away is what the load rubs off, and a worn bore fits.
+Elasticity changes volume and depth by almost nothing. A liner of full elasticity, as a closed shell or as the real
+cup, loses the same volume as springs within 0.2 %, from the first steps to five million. The depths agree within 1.1
+% from a million steps on. In a new liner the depths differ by up to 4 % if the liner is nearly incompressible, since
+the pressures differ. Later the load determines the wear, and the worn bore fits the ball.
 
-What springs do not have is a ridge of pressure along the end of the worn patch, where a bore that is worn to the
-ball's form meets one that is not: with a wide clearance, or near to a rim, it is up to a third above their largest
-pressure, and hardly less in finer rings. The numbers are of minutes of work; they are kept beside this page, with
-what made them.
+Springs have no ridge of pressure along the end of the worn patch, where the worn bore meets the unworn one. With a
+wide clearance, or near a rim, this ridge is up to a third above the largest pressure of springs. It is hardly lower
+in finer rings. The numbers take minutes to compute; they are stored beside this page, with the script that computes
+them.
 """
 
 import json

@@ -1,12 +1,12 @@
 """
-When does the rim of a cup matter?
-==================================
+Effect of the rim on the contact
+================================
 
-Finite elements with a rim against a socket that is a whole sphere.
+Finite elements with a rim are compared with a socket that is a full sphere.
 
-The exact solution takes the liner for a closed sphere. A real one ends at its rim, where it can give way. Up to which
-contact may that be forgotten? Both answers come from the same elements, at the same force, for a steel ball on liners
-of several thicknesses, soft or nearly incompressible.
+The exact solution assumes a closed sphere of liner. A real liner ends at its rim, where it can move sideways. Up to
+which size of contact is the difference negligible? Both results come from the same elements, at the same force. The
+joint is a steel ball on liners of several thicknesses, soft or nearly incompressible.
 """
 
 import numpy as np

@@ -1,12 +1,12 @@
 """
-Which head and liner for a 52 mm shell?
-=======================================
+Head and liner for a 52 mm shell
+================================
 
-A shell of 52 mm leaves 26 mm for head radius, clearance and liner. A larger head spreads the load, a thinner liner
-stiffens it: where is the peak pressure least, and what does a smaller contact area cost?
+A shell of 52 mm leaves 26 mm for head radius, clearance and liner. A larger head distributes the load, a thinner
+liner is stiffer. Which head has the smallest peak pressure, and how does a smaller contact area affect it?
 
-The limits are what a designer would set: no liner below 4 mm, and 10 mm of arc between the edge of the contact and
-the rim under a vertical load, in a cup that opens 20° to the side.
+The limits are those of a designer. The liner has at least 4 mm. Between the edge of the contact and the rim there are
+at least 10 mm of arc under a vertical load, in a cup that opens 20° to the side.
 """
 
 from math import radians
@@ -35,8 +35,8 @@ study = bs.study(
 save(design_map(study, limits, best=best.point), "which_head_for_a_shell.png")
 
 # %%
-# Little wear asks for a small contact area, strength for a low peak pressure. No head serves both; these are the ones
-# that no other beats in both.
+# A small contact area reduces wear, a low peak pressure increases the strength. No head is best in both. These heads
+# are those that no other head exceeds in both.
 
 wishes = ("area", "max_pressure")
 front = pareto(study, wishes, limits)

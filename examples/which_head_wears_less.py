@@ -1,12 +1,12 @@
 """
-Does a head of 36 mm wear more than one of 28 mm?
-=================================================
+Wear of 28 mm and 36 mm heads
+=============================
 
-By volume yes, a quarter more, since every step slides further under the same load; by depth no, its ball sinks in a
-fifth less, since the wear is spread over a larger contact.
+A head of 36 mm wears a quarter more volume than one of 28 mm, because every step slides further under the same load.
+Its depth is a fifth less, because the wear is distributed over a larger contact.
 
-Heads of 22.2, 28, 32 and 36 mm in cups of one outer size, five million steps as simulators do them, by Archard's law
-for conventional polyethylene.
+The heads have 22.2, 28, 32 and 36 mm, in cups of one outer size. The run has five million simulator steps, with
+Archard's law for conventional polyethylene.
 """
 
 from math import radians

@@ -5,6 +5,7 @@ import re
 import shlex
 import shutil
 from importlib.util import find_spec
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -16,7 +17,8 @@ from .cli.command import run
 from .places import ROOT
 
 DOCS = ROOT / "docs"
-PAGES = sorted(path for path in (DOCS / "index.md", *DOCS.glob("[ehrst]*/*.md")) if "```" in path.read_text("utf-8"))
+FILES = (ROOT / "README.md", DOCS / "index.md", *DOCS.glob("[ehrst]*/*.md"))
+PAGES = sorted(path for path in FILES if "```" in path.read_text("utf-8"))
 FLAGS = doctest.NORMALIZE_WHITESPACE | doctest.ELLIPSIS
 
 
@@ -107,3 +109,21 @@ def test_a_figure_has_a_light_and_a_dark_palette(monkeypatch):
     assert np.allclose(over_white(on_light(drawn)), drawn)
     on_black = on_dark(drawn)[..., :3] * on_dark(drawn)[..., 3:]
     assert np.allclose(on_black[0, :4], [black, white, (0.4, 0.4, 0.4), blue])
+
+
+def test_the_picture_of_the_rooms_has_every_floor_and_the_data_flow(monkeypatch, tmp_path):
+    """The names in the picture are the rooms of the package in their order, then the steps from a joint to a figure."""
+    monkeypatch.syspath_prepend(DOCS / "_ext")
+    import rooms
+
+    levels, steps = rooms.floors(), rooms.data_flow()
+    assert {room for level in levels for room in level} == {
+        path.stem for path in rooms.PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").is_file()
+    } - {"__init__", "__main__", "version"}
+    assert [step.title for step in steps] == ["joint", "model", "contact", "study", "figure"]
+    rooms.write_pictures(tmp_path)
+    for theme in rooms.THEMES:
+        tree = ElementTree.parse(tmp_path / f"rooms.{theme}.svg")
+        texts = tree.iter("{http://www.w3.org/2000/svg}text")
+        names = [element.text for element in texts if element.get("font-weight") == "600"]
+        assert names == [*(room for level in levels for room in level), *(step.title for step in steps)]

@@ -1,6 +1,6 @@
 """What pages take from the package itself, written anew for each build as Markdown that they include.
 
-The paper's pieces are kept between builds by `Plan.run`; everything else takes a second.
+The paper's pieces are kept range_text builds by `Plan.run`; everything else takes a second.
 """
 
 import json
@@ -13,9 +13,9 @@ import ballsocket as bs
 from ballsocket.catalogue import listed_models
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.sources import Source, bibliography
-from ballsocket.evidence.comparator import between
+from ballsocket.evidence.applicability import range_text
 from ballsocket.evidence.comparators import PUBLISHED
-from ballsocket.evidence.validity import measure, promising
+from ballsocket.evidence.validity import measure, models_with_promise
 from ballsocket.output.accuracy_table import markdown
 from ballsocket.output.report import write_report
 from ballsocket.paper.plan import quick_plan
@@ -74,9 +74,9 @@ def _model(model) -> str:
     cited = "; ".join(f"[{source}](#ref-{source.key})" for source in dict.fromkeys(model.sources))
     title = model.title[0].upper() + model.title[1:] + "."
     promised = "" if model.promise is None else f" ({model.promise})"
-    parts = [f"(model-{model.name})=\n## `{model.name}`", title, f"**Trusted for**{promised}", "\n".join(where)]
+    parts = [f"(model-{model.name})=\n## `{model.name}`", title, f"**Valid for**{promised}", "\n".join(where)]
     if formula:
-        parts += ["**Has a formula for**", "\n".join(formula)]
+        parts += ["**Solution exists for**", "\n".join(formula)]
     return "\n\n".join([*parts, f"**From** {cited}"]) + "\n"
 
 
@@ -102,7 +102,7 @@ def _degrees(angle: float) -> int:
 
 def _off(answers, name: str) -> str:
     if name not in answers or answers[name].status.failed:
-        return "no answer"
+        return "no solution"
     contact = answers[name]
     percent = 100 * (contact.max_pressure / answers["exact"].max_pressure - 1)
     text = f"{percent:+.{1 if abs(percent) < 10 else 0}f}\u202f%"
@@ -139,28 +139,28 @@ def _presets(presets, called="`{}`".format) -> str:
 def _validity() -> str:
     """How the models keep what they promise."""
     sizes = {"plane-layer": 300, "cosine-limit": 60_000}
-    found = [measure(model, size=sizes.get(model.name, 10_000), seed=2) for model in promising()]
+    found = [measure(model, size=sizes.get(model.name, 10_000), seed=2) for model in models_with_promise()]
     rows = [
         [
             f"[`{each.model}`](#model-{each.model})",
             each.promise,
             each.valid,
-            f"{100 * each.kept:.1f} %",
+            f"{100 * each.kept_share:.1f} %",
             ", ".join(
                 f"{bs.quantities.CONTACT[name].symbol} {100 * error:.2g} %" for name, error in each.worst.items()
             ),
         ]
         for each in found
     ]
-    return _table(("model", "promise", "valid points", "keep it", "worst"), rows)
+    return _table(("model", "promise", "valid points", "within the promise", "worst"), rows)
 
 
 def _statuses() -> str:
     rows = [
-        (f"`{status.name}`", int(status), status.sentence, "missing (NaN)" if status.failed else "there")
+        (f"`{status.name}`", int(status), status.sentence, "missing (NaN)" if status.failed else "available")
         for status in bs.Status
     ]
-    return _table(("status", "code", "what it says", "the numbers"), rows)
+    return _table(("status", "code", "meaning", "numbers"), rows)
 
 
 _ACCENTS = {r"{\ss}": "ß", r"{\"u}": "ü", r"{\"o}": "ö", r"{\'e}": "é", r"\&": "&", "--": "–"}
@@ -211,7 +211,7 @@ def _comparator(each) -> str:
     rows += [("assumed", name, text) for name, text in each.assumed.items()]
     rows += [("**published**", name, text) for name, text in each.published.items()]
     rows += [("**ours**", name, f"{low:.3g} to {high:.3g}") for name, (low, high) in each.ours.items()]
-    reach = ", ".join(f"{name} {between(ends)}" for name, ends in each.reaches.items())
+    reach = ", ".join(f"{name} {range_text(ends)}" for name, ends in each.reaches.items())
     parts = [f"## {each.title}", _table(("", "", ""), rows), each.agreement]
     parts += [f"Over {reach}."] if reach else []
     return "\n\n".join([*parts, f"{each.kind.capitalize()}. {_linked(each.source)} (read: {each.read})."]) + "\n"
@@ -221,9 +221,9 @@ def _comparator(each) -> str:
 
 
 def _commands() -> str:
-    from ballsocket.cli.root import app
+    from ballsocket.cli.root import load_commands
 
-    names = sorted(command.name or command.callback.__name__.replace("_", "-") for command in app.registered_commands)
+    names = sorted(load_commands())
     return "\n".join(f"## {name}\n\n```text\n{_help(name)}\n```\n" for name in names)
 
 
@@ -260,7 +260,7 @@ def _claims(findings) -> str:
         verdict = f"<span class='{_CLASSES[finding['verdict']]}'>{finding['text']}</span>"
         numbers = "<br>".join(_number(name, value) for name, value in finding["numbers"].items())
         rows.append((said, verdict + why, f"<small>{numbers}</small>"))
-    return _table(("what is said", "verdict", "what we find"), rows)
+    return _table(("statement", "verdict", "our result"), rows)
 
 
 def _number(name: str, value: float) -> str:

@@ -1,4 +1,4 @@
-"""The command: what it prints, what it refuses, how it ends."""
+"""The program on joints: tables, JSON, error messages and exit statuses."""
 
 import json
 import re
@@ -13,7 +13,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket import cli
-from ballsocket.cli.words import echo_json
+from ballsocket.cli.json_answers import echo_json
 
 from ..places import EXAMPLES
 from .command import run, run_process
@@ -41,7 +41,7 @@ def test_a_process_prints_what_a_call_prints(words, encoding):
 
 
 @pytest.mark.parametrize("words", [("presets",), ("models",), ("cite",), ("press", EXAMPLE, "--json")], ids=" ".join)
-def test_who_reads_no_further_ends_it_quietly(words):
+def test_a_closed_reader_ends_the_program_without_a_message(words):
     command = [sys.executable, "-m", "ballsocket", *words]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8") as process:
         process.stdout.close()  # before anything is written, as `head` does after a line
@@ -49,7 +49,7 @@ def test_who_reads_no_further_ends_it_quietly(words):
         assert process.wait() == 141
 
 
-def test_a_disk_that_is_full_is_one_line():
+def test_a_full_disk_is_reported_in_one_line():
     full = Path("/dev/full")
     if not full.exists():
         pytest.skip("there is no such device here")
@@ -60,7 +60,7 @@ def test_a_disk_that_is_full_is_one_line():
     assert (done.returncode, done.stderr) == (2, "ballsocket: output: No space left on device\n")
 
 
-def test_misuse_is_misuse_where_nothing_can_be_written():
+def test_the_status_of_a_wrong_command_does_not_depend_on_stderr():
     full = Path("/dev/full")
     if not full.exists():
         pytest.skip("there is no such device here")
@@ -69,14 +69,14 @@ def test_misuse_is_misuse_where_nothing_can_be_written():
     assert (done.returncode, done.stdout) == (2, b"")
 
 
-def test_a_terminal_of_unknown_width_shows_the_table():
+def test_the_table_of_an_unknown_width_is_that_of_80_columns():
     usual, unknown = (run("press", "hip-28", "--force", "1000", columns=columns) for columns in (80, 0))
     assert unknown.returncode == 0
     assert unknown.stdout == usual.stdout
 
 
 @pytest.mark.parametrize("force", ["1e308", "-1e308", "1.1e9"])
-def test_a_force_that_no_hip_bears_is_refused_in_one_line(force, tmp_path):
+def test_a_force_above_1e9_newton_is_refused_in_one_line(force, tmp_path):
     rows = "\n".join(f"{i / 10},{force if i else 1000},{i * (10 - i)}" for i in range(11))
     (tmp_path / "cycle.csv").write_text(f"time [s],force [N],flexion [deg]\n{rows}\n", encoding="ascii")
     (tmp_path / "hip.toml").write_text(
@@ -97,7 +97,7 @@ def test_an_infinite_result_is_a_failure_in_one_line(monkeypatch, capsys):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
-def test_a_process_that_is_asked_to_end_cleans_up(tmp_path):
+def test_a_terminated_process_removes_its_unfinished_files(tmp_path):
     study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 1_000_000}\n"
     (tmp_path / "s.toml").write_text(study, encoding="utf-8")
     process = subprocess.Popen(
@@ -115,7 +115,7 @@ def test_a_process_that_is_asked_to_end_cleans_up(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
 
 
-def test_names_of_files_are_shown_as_any_terminal_can(tmp_path):
+def test_control_characters_in_file_names_are_escaped(tmp_path):
     done = run("press", "a\x1b[31m.toml", folder=tmp_path)
     assert done.stderr.startswith(r"ballsocket: 'a\x1b[31m.toml' is neither a file nor a preset")
     (tmp_path / "a\x1b[31m.toml").write_text("joint = 3", encoding="utf-8")
@@ -126,7 +126,7 @@ def test_names_of_files_are_shown_as_any_terminal_can(tmp_path):
     assert done.stdout.endswith("\na\\x1b[31m.csv\n")
 
 
-def test_a_refusal_is_one_line_of_bearable_length(tmp_path):
+def test_an_error_message_is_one_line_below_700_characters(tmp_path):
     """Whatever is repeated in it, and whatever was about to be shown."""
     done = run("press", "hip-28", "x" * 3000)
     assert done.returncode == 2
@@ -139,7 +139,7 @@ def test_a_refusal_is_one_line_of_bearable_length(tmp_path):
     assert done.stderr == "ballsocket: no/where.npz: No such file or directory\n"
 
 
-def test_a_few_samples_say_nothing_beside_their_answer():
+def test_two_samples_print_no_warning():
     """Two samples that are one have no interval; that is no warning to a user."""
     words = (
         "hip-22",
@@ -156,7 +156,7 @@ def test_a_few_samples_say_nothing_beside_their_answer():
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_press_a_file():
+def test_press_prints_the_table_of_a_file():
     done = run("press", EXAMPLE)
     assert done.returncode == 0
     assert done.stderr == ""
@@ -165,7 +165,7 @@ def test_press_a_file():
 
 
 @pytest.mark.parametrize("columns", [40, 50, 60, 80, 100, 160])
-def test_the_table_fits_the_terminal(columns):
+def test_the_table_is_not_wider_than_the_terminal(columns):
     done = run("press", EXAMPLE, "--all", columns=columns)
     lines = done.stdout.split("\n")
     assert max(map(len, lines)) <= columns
@@ -177,7 +177,7 @@ def test_the_table_fits_the_terminal(columns):
 
 
 @pytest.mark.parametrize("words", [("models",), ("presets",)])
-def test_the_lists_fit_the_terminal(words):
+def test_lists_are_not_wider_than_the_terminal(words):
     for columns in (40, 80):
         lines = run(*words, columns=columns).stdout.split("\n")
         assert max(map(len, lines)) <= columns
@@ -185,7 +185,7 @@ def test_the_lists_fit_the_terminal(words):
     assert ("kinematics" in narrow) or ("clearance" in narrow)
 
 
-def test_a_terminal_without_greek_gets_ascii():
+def test_a_terminal_without_greek_letters_shows_ascii():
     done = run("press", EXAMPLE, "--all", encoding="ascii")
     assert done.returncode == 0
     assert "#" in done.stdout
@@ -198,14 +198,14 @@ def test_a_terminal_without_greek_gets_ascii():
     assert "is not a force" in refused.stderr
 
 
-def test_a_massive_socket_is_called_so():
+def test_an_infinite_thickness_is_shown_as_massive():
     done = run("press", "tilting-pad-pivot", "--force", "3 kN", "--model", "hertz")
     assert "massive" in done.stdout
     assert "inf mm" not in done.stdout
 
 
 @pytest.mark.parametrize("load", ["--force=-0", "--indentation=-0.0", "--half-angle=-0"])
-def test_minus_nothing_is_nothing(load):
+def test_a_load_of_minus_zero_is_zero(load):
     assert "-0" not in re.sub(r"hip-28", "", run("press", "hip-28", load, "--model", "hertz").stdout)
     answer = json.loads(run("press", "hip-28", load, "--model", "hertz", "--json").stdout)
     said = answer.pop("next")
@@ -213,7 +213,7 @@ def test_minus_nothing_is_nothing(load):
     assert all(load in step["command"] for step in said if "press" in step["command"])
 
 
-def test_json():
+def test_json_has_the_joint_and_a_result_per_model():
     done = run("press", EXAMPLE, "--model", "hess-forsbach", "--model", "bartel", "--json")
     answer = json.loads(done.stdout)
     assert list(answer) == ["version", "joint", "results", "valid", "error", "notes", "sources", "next"]
@@ -245,7 +245,7 @@ def test_json():
     assert paper["notes"] == []
 
 
-def test_json_of_a_massive_socket_is_json():
+def test_json_writes_an_infinite_thickness_as_text():
     done = run("press", "tilting-pad-pivot", "--force", "3 kN", "--all", "--json")
     answer = json.loads(done.stdout)
     assert done.returncode == 0
@@ -256,7 +256,7 @@ def test_json_of_a_massive_socket_is_json():
     assert "infinite thickness" in missing["notes"][0]
 
 
-def test_the_joint_in_words():
+def test_a_joint_is_built_from_options():
     done = run("press", *NUMBERS, "--json")
     joint = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
     expected = bs.HessForsbach().press(joint, force=3000.0).indentation
@@ -273,13 +273,13 @@ def test_the_joint_in_words():
         ("--force=1kN", "force", 1e3),
     ],
 )
-def test_loads_with_units_go_before_the_files(load, name, value):
+def test_a_load_option_replaces_the_load_of_the_file(load, name, value):
     done = run("press", EXAMPLE, load, "--json")
     assert json.loads(done.stdout)["results"][0][name] == pytest.approx(value, rel=1e-12)
 
 
 @pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
-def test_figure(tmp_path, ending):
+def test_press_writes_a_figure_in_each_format(tmp_path, ending):
     path = tmp_path / f"press.{ending}"
     done = run("press", EXAMPLE, "--all", "--figure", str(path))
     assert done.returncode == 0
@@ -312,7 +312,7 @@ def test_figure(tmp_path, ending):
             ["press", EXAMPLE, "--figure", "/no/such/folder/a.png"],
             "cannot write a.png: '/no/such/folder' is not a folder",
         ),
-        (["press", "no/joint.toml"], "'no/joint.toml' is no file: there is no folder 'no'"),
+        (["press", "no/joint.toml"], "'no/joint.toml' does not exist: there is no folder 'no'"),
         (["map", EXAMPLE, "--figure", "no/a.png"], "cannot write a.png: 'no' is not a folder"),
         (["study", EXAMPLE, "--out", "no/a.csv"], "cannot write a.csv: 'no' is not a folder"),
         (["press", EXAMPLE, "--model", "fem", "--vtk", "no/a.vtu"], "cannot write a.vtu: 'no' is not a folder"),
@@ -340,13 +340,13 @@ def test_figure(tmp_path, ending):
             ["press", *NUMBERS[:8], "--poisson", "0.5", "--force", "1", "--model", "bonded-layer"],
             "bonded-layer has no answer for ν = 0.5: the modulus is unbounded",
         ),
-        (["evidence"], "either a question file is needed, or --check with a folder of evidence"),
+        (["evidence"], "a question file is needed, or --check with the folder of a pack"),
         (["evidence", "--check", "."], "holds no pack of evidence: checksums.txt is missing"),
         (["pres"], "No such command 'pres'"),
         (["cite", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
     ],
 )
-def test_misuse_is_one_line_that_says_what_to_change(words, message):
+def test_wrong_input_is_reported_in_one_line_with_the_remedy(words, message):
     done = run(*words)
     assert done.returncode == 2
     assert message in done.stderr
@@ -361,20 +361,20 @@ def pressed(*words):
     return answer["joint"], [result["max_pressure"] for result in answer["results"]]
 
 
-def test_a_file_of_an_editor_that_marks_its_bytes(tmp_path):
+def test_a_byte_order_mark_is_ignored(tmp_path):
     (tmp_path / "joint.toml").write_bytes(b"\xef\xbb\xbf" + Path(EXAMPLE).read_bytes())
     assert pressed(str(tmp_path / "joint.toml")) == pressed(EXAMPLE)
 
 
 @pytest.mark.parametrize("command", ["press", "study"])
-def test_an_empty_file_is_told_so(tmp_path, command):
+def test_an_empty_file_is_reported_as_empty(tmp_path, command):
     (tmp_path / "it.toml").write_text("# nothing yet\n", encoding="utf-8")
     kind = {"press": "joint", "study": "study"}[command]
     said = f"ballsocket: it.toml is empty: a {kind} file has tables, such as [joint]\n"
     assert run(command, str(tmp_path / "it.toml")).stderr == said
 
 
-def test_what_is_not_known_says_where_to_look():
+def test_an_unknown_option_is_reported_with_where_options_are_listed():
     unknown = run("sensitivity", "hip-36", "--vary", "clearance=0.1..0.2 mm")
     assert (unknown.returncode, unknown.stderr) == (
         2,
@@ -385,7 +385,7 @@ def test_what_is_not_known_says_where_to_look():
     assert "'uhmwpe,pom' are several, and one is needed: optimise and studies choose" in several.stderr
 
 
-def test_help_begins_with_what_is_asked_first():
+def test_help_lists_press_first_and_hides_build_tables():
     text = run("-h").stdout
     assert text == run("--help").stdout
     commands = re.findall(r"^  ([a-z-]+) ", text.partition("Commands:")[2], flags=re.MULTILINE)
@@ -395,7 +395,7 @@ def test_help_begins_with_what_is_asked_first():
     assert "±" in run("sensitivity", "-h").stdout
 
 
-def test_one_model_in_full():
+def test_models_describes_one_model_in_full():
     text = run("models", "Hess Forsbach").stdout
     assert text.startswith("hess-forsbach: radial springs")
     assert "fitted at 1 to 3 kN" in text
@@ -409,7 +409,7 @@ def test_one_model_in_full():
     assert run("models", "hess").stderr == "ballsocket: model 'hess' is not known; did you mean 'hess-forsbach'?\n"
 
 
-def test_one_preset_in_full():
+def test_presets_describes_one_preset_in_full():
     text = run("presets", "hip-36").stdout
     for words in (
         "head diameter         36 mm",
@@ -426,12 +426,12 @@ def test_one_preset_in_full():
 
 
 @pytest.mark.parametrize("model", ["Exact", "EXACT", " exact"])
-def test_names_in_any_spelling(model):
+def test_names_of_models_ignore_case_and_separators(model):
     answer = json.loads(run("press", "Hip_36", "--model", model, "--force", "1 kN", "--json").stdout)
     assert [result["model"] for result in answer["results"]] == ["exact"]
 
 
-def test_a_joint_is_given_by_its_diameters():
+def test_a_joint_is_defined_by_its_diameters():
     joint, pressures = pressed(
         *("--head-diameter", "36 mm", "--diametral-clearance", "0.2 mm", "--outer-diameter", "48 mm"),
         *("--liner", "crosslinked-pe", "--ball", "alumina"),
@@ -440,7 +440,7 @@ def test_a_joint_is_given_by_its_diameters():
     assert pressures == pressed("hip-36", "--liner-thickness", "5.9")[1]
 
 
-def test_a_preset_is_varied():
+def test_options_replace_values_of_a_preset():
     joint, pressures = pressed("hip-36", "--liner", "uhmwpe", "--head-diameter", "32 mm")
     made = bs.joints["hip-36"].replace(liner=bs.UHMWPE, head_diameter=32.0)
     assert joint == made.summary()
@@ -449,12 +449,12 @@ def test_a_preset_is_varied():
     assert stiffer["liner"] == {**bs.joints["hip-36"].liner.summary(), "young": 2000.0}
 
 
-def test_a_file_is_varied():
+def test_options_replace_values_of_a_file():
     joint, _ = pressed(EXAMPLE, "--poisson", "0.45", "--liner", "pom")
     assert joint["liner"] == {**bs.POM.summary(), "poisson": 0.45}  # as in a file: numbers win over the material's
 
 
-def test_a_file_with_a_mistake(tmp_path):
+def test_a_mistake_in_a_file_is_reported_with_its_name(tmp_path):
     path = tmp_path / "joint.toml"
     path.write_text(Path(EXAMPLE).read_text().replace("clearance", "clearence"))
     done = run("press", str(path))
@@ -465,7 +465,7 @@ def test_a_file_with_a_mistake(tmp_path):
 UNREACHED = "the model does not reach this load"
 
 
-def test_a_model_without_an_answer_beside_others_is_a_note(tmp_path):
+def test_a_model_without_a_result_among_others_is_a_note(tmp_path):
     words = ["press", EXAMPLE, "--force", "1e12", "--model", "bartel", "--model", "hess-forsbach"]
     done = run(*words, "--figure", str(tmp_path / "a.svg"))
     assert (done.returncode, done.stderr) == (0, "")
@@ -476,14 +476,14 @@ def test_a_model_without_an_answer_beside_others_is_a_note(tmp_path):
     assert notes["bartel"] == [UNREACHED]
 
 
-def test_every_model_at_a_half_angle_is_done():
+def test_all_models_solve_for_a_half_angle():
     done = run("press", "hip-28", "--half-angle", "30", "--all")
     assert (done.returncode, done.stderr) == (0, "")
     assert f"cosine-limit: {UNREACHED}" in done.stdout
 
 
 @pytest.mark.parametrize("form", [[], ["--json"]])
-def test_no_answer_at_all_is_3_and_no_figure(form, tmp_path):
+def test_no_result_at_all_gives_status_3_and_no_figure(form, tmp_path):
     path = tmp_path / "a.png"
     done = run("press", EXAMPLE, "--force", "1e12", "--model", "bartel", "--figure", str(path), *form)
     assert done.returncode == 3
@@ -492,7 +492,7 @@ def test_no_answer_at_all_is_3_and_no_figure(form, tmp_path):
     assert not path.exists()
 
 
-def test_an_iteration_that_did_not_converge_is_3(monkeypatch, capsys):
+def test_an_iteration_without_convergence_gives_status_3(monkeypatch, capsys):
     def unsettled(*_, **load):
         contact = bs.HessForsbach().press(bs.joints["hip-28"], **load)
         return replace(contact, indentation=float("nan"), status=bs.Status.NOT_CONVERGED)
@@ -506,19 +506,19 @@ def test_an_iteration_that_did_not_converge_is_3(monkeypatch, capsys):
     assert "no convergence of unsettled" in capsys.readouterr().err
 
 
-def test_numbers_beyond_floating_point_are_no_crash():
+def test_numbers_near_the_float_limit_are_reported_in_one_line():
     numbers = ["--ball-radius", "1e308", "--clearance", "0.1", "--liner-thickness", "6", "--liner", "uhmwpe"]
     done = run("press", *numbers, "--force", "1")
     assert done.returncode in (0, 3)
     assert "Traceback" not in done.stderr
 
 
-def test_a_figure_of_no_load_warns_of_nothing(tmp_path):
+def test_a_figure_of_zero_load_prints_no_warning(tmp_path):
     done = run("press", "hip-28", "--force", "0", "--figure", str(tmp_path / "a.png"))
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_models_presets_cite_version_help():
+def test_lists_references_version_and_help_are_printed():
     catalogue = run("models", columns=140)
     for name in (*bs.catalogue, "pin-in-hole"):
         assert name in catalogue.stdout
@@ -534,7 +534,7 @@ def test_models_presets_cite_version_help():
         assert "Usage" in run(*words).stdout
 
 
-def test_a_closed_pipe_is_no_crash():
+def test_a_closed_pipe_prints_no_traceback():
     command = f"{sys.executable} -m ballsocket models | {sys.executable} -c pass"
     done = subprocess.run(command, shell=True, capture_output=True, encoding="utf-8", timeout=60, check=False)
     assert "Traceback" not in done.stderr
@@ -556,7 +556,7 @@ def test_press_by_finite_elements_shows_mesh_time_and_error_bars():
     assert answer["mesh"]["elements"] > 1000
 
 
-def test_press_by_finite_elements_with_a_cup_of_its_own(tmp_path):
+def test_cup_options_and_vtk_files_of_the_finite_elements(tmp_path):
     file = tmp_path / "cup.toml"
     file.write_text(Path(EXAMPLE).read_text(encoding="utf-8") + '\n[cup]\narc_of_cover = "100 deg"\nchamfer = "1 mm"\n')
     files = ("--section", str(tmp_path / "cup.png"), "--vtk", str(tmp_path / "cup.vtu"))
@@ -597,14 +597,14 @@ def test_press_by_finite_elements_with_a_cup_of_its_own(tmp_path):
         ),
     ],
 )
-def test_the_finite_elements_refuse_in_one_sentence(words, message):
+def test_wrong_options_of_the_finite_elements_are_refused_in_one_sentence(words, message):
     done = run("press", EXAMPLE, *words)
     assert done.returncode == 2
     assert message in done.stderr
     assert done.stderr.count("\n") == 1
 
 
-def test_deck_writes_the_model_for_other_programs(tmp_path):
+def test_deck_writes_input_files_and_expected_results(tmp_path):
     done = run("deck", EXAMPLE, "--out", str(tmp_path), "--steps", "2", "--force", "1 kN")
     assert done.returncode == 0
     assert re.search(r"ballsocket\.inp: \d+ elements, 2 steps", done.stdout.replace("\n", ""))
@@ -620,7 +620,7 @@ def test_deck_writes_the_model_for_other_programs(tmp_path):
         assert message in wrong.stderr
 
 
-def test_the_exact_answer_leads_and_every_number_below_is_marked():
+def test_the_exact_result_is_first_and_deviations_follow():
     lines = run("press", "hess-forsbach", "--force", "3 kN").stdout.splitlines()
     names = [line.split()[0] for line in lines if line.startswith(("exact", "hess-forsbach ", "  Δ"))]
     assert names == ["exact", "hess-forsbach", "Δ"]
@@ -631,12 +631,12 @@ def test_the_exact_answer_leads_and_every_number_below_is_marked():
     assert "Δ % from exact" in said
 
 
-def test_the_exact_answer_does_not_lead_where_it_is_not_to_be_trusted():
+def test_an_invalid_exact_result_is_not_first():
     shown = run("press", str(EXAMPLES / "tilted_hip.toml")).stdout
     assert shown.index("\nsphere ") < shown.index("\nexact ")
 
 
-def test_numbers_are_shown_in_inches_and_pounds():
+def test_imperial_units_show_inches_and_pounds():
     words = ("press", "hess-forsbach", "--force", "3 kN", "--model", "exact")
     shown = run(*words, "--units", "Imperial").stdout.splitlines()
     heads, units, numbers = (line.split() for line in shown[-5:-2])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.cli import off_axis
+from ballsocket.cli import elasticity_options
 
 from ..places import EXAMPLES
 from .command import run
@@ -43,7 +43,7 @@ def answered(*words):
     return {result["model"]: result for result in json.loads(done.stdout)["results"]}
 
 
-def test_a_tilt_asks_sphere():
+def test_a_tilt_selects_the_model_sphere():
     sphere = answered(*NUMBERS, "--model", "sphere", "--tilt", "45", "--indentation", "0.04")["sphere"]
     assert set(sphere) >= KEYS
     assert sphere["status"] == "OK"
@@ -55,7 +55,7 @@ def test_a_tilt_asks_sphere():
     assert "sphere" in answered(*NUMBERS, *COARSE, "--tilt", "45 deg", "--force", "1kN")
 
 
-def test_so_does_an_interference():
+def test_an_interference_selects_the_model_sphere():
     results = answered(
         "suspension-ball-joint", "--interference", "0.02", *COARSE, "--arc-of-cover", "300", "--force", "1kN"
     )
@@ -63,11 +63,11 @@ def test_so_does_an_interference():
 
 
 @pytest.mark.parametrize(("distance", "loaded"), [(0.02, True), (-0.02, True), (0.02, False)])
-def test_nothing_is_minus_nothing(distance, loaded):
-    assert "-0.0" not in off_axis._rim(SimpleNamespace(edge_distance=distance, edge_loaded=loaded))
+def test_a_distance_of_minus_zero_is_shown_as_zero(distance, loaded):
+    assert "-0.0" not in elasticity_options._rim_text(SimpleNamespace(edge_distance=distance, edge_loaded=loaded))
 
 
-def test_a_file_says_where_the_load_points_and_the_words_win():
+def test_direction_options_replace_the_direction_of_the_file():
     path = str(EXAMPLES / "tilted_hip.toml")
     inside, over = (answered(path, *COARSE, *more)["sphere"] for more in ((), ("--tilt", "75 deg")))
     direction = np.array(bs.read_joint(path).aim["direction"])
@@ -78,7 +78,7 @@ def test_a_file_says_where_the_load_points_and_the_words_win():
     assert over["edge_distance"] < 0 < inside["edge_distance"]
 
 
-def test_a_cup_that_is_said_to_open_straight_down_has_its_load_in_the_body(tmp_path):
+def test_a_cup_that_opens_downwards_has_its_load_in_the_body(tmp_path):
     """An explicit inclination of 0 is an orientation; without one nothing is known of the body."""
     plain = (EXAMPLES / "hip.toml").read_text()
     given, path = [], tmp_path / "hip.toml"
@@ -89,7 +89,7 @@ def test_a_cup_that_is_said_to_open_straight_down_has_its_load_in_the_body(tmp_p
     assert given[1] is None
 
 
-def test_models_that_know_no_rim_are_not_trusted_near_it():
+def test_models_without_a_rim_are_invalid_near_it():
     results = answered("hip-36", *COARSE, "--force", "3kN", "--tilt", "60", "--model", "sphere", "--model", "refined")
     assert results["sphere"]["valid"]
     assert not results["refined"]["valid"]
@@ -103,26 +103,26 @@ def test_models_that_know_no_rim_are_not_trusted_near_it():
         (("--direction", "1,0"), "three numbers"),
         (("--direction", "0,0,0"), "points somewhere"),
         (("--tilt", "10", "--direction", "0,0,1"), "both"),
-        (("--tilt", "10", "--model", "fem"), "ask --model sphere"),
+        (("--tilt", "10", "--model", "fem"), "use --model sphere"),
         (("--tilt", "10", "--ring-width", "20 deg"), "0.5 to 6 degrees"),
         (("--ring-width", "2 deg"), "--ring-width is for contact on the sphere: add --model sphere"),
     ],
 )
-def test_what_makes_no_sense_is_refused_in_a_sentence(words, said):
+def test_contradictory_options_are_refused_in_a_sentence(words, said):
     done = run("press", "hip-36", "--force", "3kN", *words)
     assert done.returncode == 2
     assert said in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
 
 
-def test_a_load_out_of_the_bore_says_where_it_ends():
+def test_a_load_out_of_the_bore_gives_status_3_and_its_tilt():
     done = run("press", "hip-36", "--force", "3kN", "--tilt", "120", *COARSE)
     assert done.returncode == 3
     assert "dislocated" in done.stdout
     assert "120.0°" in done.stdout
 
 
-def test_the_terminal_says_where_the_contact_lies():
+def test_the_terminal_shows_the_position_of_the_contact():
     path = str(EXAMPLES / "tilted_hip.toml")
     inside, over, dug = (
         run("press", path, *COARSE, *words, columns=200).stdout
@@ -135,7 +135,7 @@ def test_the_terminal_says_where_the_contact_lies():
     assert "mm at the rim, pressure unbounded there; rings of 4°" in dug
 
 
-def test_figures_and_files_of_a_tilted_load(tmp_path):
+def test_a_tilted_load_writes_figures_and_vtk_files(tmp_path):
     import meshio
 
     cup, vtk, both = (tmp_path / name for name in ("cup.svg", "cup.vtu", "both.svg"))
@@ -157,14 +157,14 @@ def test_figures_and_files_of_a_tilted_load(tmp_path):
         (("--view", "a.svg", "--tilt", "20"), "must end in .png"),
     ],
 )
-def test_files_that_nobody_fills_are_refused(words, said, tmp_path):
+def test_files_of_models_that_do_not_run_are_refused(words, said, tmp_path):
     done = run("press", "hip-36", "--force", "3kN", *words, folder=tmp_path)
     assert done.returncode == 2
     assert said in done.stderr
     assert not list(tmp_path.iterdir())
 
 
-def test_orientations_of_a_cup(tmp_path):
+def test_orient_maps_edge_distance_and_pressure(tmp_path):
     path, figure = str(EXAMPLES / "tilted_hip.toml"), tmp_path / "map.svg"
     words = ("orient", path, *COARSE, "--points", "3", "--inclination", "30..60", "--figure", str(figure))
     told = run(*words)
@@ -191,7 +191,7 @@ def test_orientations_of_a_cup(tmp_path):
         (("--ring-width", "20 deg"), "0.5 to 6 degrees"),
     ],
 )
-def test_orientations_that_no_cup_has_are_refused(words, said):
+def test_orientations_outside_the_range_are_refused(words, said):
     done = run("orient", "hip-36", "--force", "3kN", "--points", "2", *words)
     assert done.returncode == 2
     assert said in done.stderr

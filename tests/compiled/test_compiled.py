@@ -14,8 +14,11 @@ pytest.importorskip("numba")
 import numba
 
 from ballsocket.compiled import Compiled, compiled_law
-from ballsocket.compiled.kernels import _angle_polynomial
+from ballsocket.compiled.kernels import _angle_polynomial, _evaluate_table_functions
+from ballsocket.contact.roots import increasing_root
 from ballsocket.core.deprecation import RenamedAttribute
+from ballsocket.elasticity.exact.tabulated.chebyshev import angle_root
+from ballsocket.elasticity.exact.tabulated.formulas import CurveCoefficients
 from ballsocket.models.kinematics import angle_of
 
 KINEMATICS = (bs.linear_kinematics, bs.exact_kinematics, bs.cosine_kinematics)
@@ -85,6 +88,21 @@ def test_angle_polynomial_is_accurate_to_rounding():
         assert _angle_polynomial(float(versine)) == pytest.approx(angle_of(versine), rel=6e-16, abs=0)
 
 
+@pytest.mark.parametrize("angle", [0.05, 0.6, 1.4])
+def test_functions_of_a_table_are_chebyshev_series_with_their_slopes(angle):
+    functions = np.random.default_rng(6).normal(size=(3, 7))
+    curve = CurveCoefficients(2.5, functions, functions)
+
+    def series(angle):
+        return np.polynomial.chebyshev.chebval(2 * angle_root(angle, 2.5) - 1, functions.T)
+
+    step = 1e-5
+    slopes = (series(angle * np.exp(step)) - series(angle * np.exp(-step))) / (2 * step)
+    values = _evaluate_table_functions(angle, curve)
+    np.testing.assert_allclose([value for value, _ in values], series(angle), rtol=1e-12)
+    np.testing.assert_allclose([slope for _, slope in values], slopes, rtol=1e-7, atol=1e-8)
+
+
 def liners(size: int, ball: bs.Material | None = None) -> bs.Joint:
     """Bonded liners of hips, each its own, some of them beyond what is tabulated."""
     rng = np.random.default_rng(5)
@@ -103,6 +121,7 @@ def liners(size: int, ball: bs.Material | None = None) -> bs.Joint:
 def test_compiled_solved_models_agree_to_eleven_digits(model, ball):
     fast, joint = Compiled(model=model), liners(3_000, ball)
     force = np.random.default_rng(1).uniform(-1.0, 1.0, 3_000).clip(0.0) * 1e5  # a half of them without load
+    force[:4] = 1e-6, 0.01, 0.5, 2.0
     by_force = model.press(joint, force=force)
     depth = np.where(np.isnan(by_force.indentation), 50.0, by_force.indentation)
     assert set(np.unique(by_force.status)) >= {bs.Status.OK, bs.Status.NOT_REACHED}
@@ -188,3 +207,26 @@ def test_strengths_of_materials_count_in_the_shape_of_a_compiled_press():
     one, other = (model.press(joint, force=force) for model in (Compiled(model=bs.HessForsbach()), bs.HessForsbach()))
     assert one.utilisation.shape == one.force.shape == (2, 3)
     np.testing.assert_allclose(one.utilisation, other.utilisation, rtol=1e-12)
+
+
+@numba.njit
+def cubic(x):  # type: ignore[no-untyped-def]
+    return x * x * x, 3.0 * x * x
+
+
+@numba.njit
+def without_slope(x):  # type: ignore[no-untyped-def]
+    return x, 0.0
+
+
+@numba.njit
+def compiled_roots():  # type: ignore[no-untyped-def]
+    return increasing_root(cubic, 5.0, 0.0, 4.0, 4.0), increasing_root(without_slope, 0.0, 0.0, 1.0, 1.0)
+
+
+def test_compiled_root_finder_stops_after_the_steps_and_at_the_tolerance_of_python():
+    """Without a slope each of the 60 steps halves the bracket."""
+    root, bisected = compiled_roots()
+    assert root == pytest.approx(5.0 ** (1 / 3), rel=1e-14)
+    assert root == increasing_root(cubic, 5.0, 0.0, 4.0, 4.0)
+    assert bisected == increasing_root(without_slope, 0.0, 0.0, 1.0, 1.0) == 2.0**-60

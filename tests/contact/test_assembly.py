@@ -109,6 +109,16 @@ def test_joints_are_solved_once_with_all_of_their_loads():
     assert joint_at(replace(HIP, clearance=np.array([[0.1], [0.3]])), (2, 5), 7).clearance == 0.3
 
 
+def test_each_of_many_joints_has_its_own_solution():
+    clearance = np.array([[0.3, 0.1, 0.2, 0.4], [0.1, 0.4, 0.3, 0.2]])
+    load = np.array([[1.0], [2.0]])
+    solution = solve_per_joint(bs.Exact(), replace(HIP, clearance=clearance), load, doubled, np.array(0.0))
+    np.testing.assert_allclose(solution.force, clearance * load, rtol=1e-14)
+    profile = solution.pressure(np.array([0.5, 2.0]).reshape(2, 1, 1))
+    np.testing.assert_allclose(profile, np.array([0.5, 2.0]).reshape(2, 1, 1) * clearance * load, rtol=1e-14)
+    np.testing.assert_allclose(solution.pressure(clearance), clearance * clearance * load, rtol=1e-14)
+
+
 def test_unreached_loads_and_joints_outside_the_domain_are_nan():
     joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=np.array([0.3, 0.5, 0.3])))
     solution = solve_per_joint(bs.Exact(), joint, np.array([1.0, 1.0, 200.0]), doubled, np.array(0.0))
@@ -176,6 +186,8 @@ def test_one_contact_is_printed_with_six_digits_and_many_with_five():
     assert "utilisation" not in repr(
         MODEL.press(replace(HIP, liner=HIP.liner.without_strengths(), ball=None), force=1.0)
     )
+    stressed = repr(MODEL.press(HIP, force=3000.0)).splitlines()  # 0.336924 times the yield stress
+    assert next(line for line in stressed if "utilisation" in line).split()[1:] == ["0.337"]
     table = MODEL.press(HIP, force=force)._repr_html_()
     assert "<td style='text-align:left'>half angle</td>" in table
     assert "<b>hess-forsbach</b>" in table

@@ -29,7 +29,7 @@ def test_a_smooth_law_is_reproduced():
 def test_a_law_is_zero_without_contact_and_nan_beyond_its_end():
     law = fit_curve_law(lambda d: np.where(d < 0.5, d, np.nan), 1e-4, 2.0)
     assert law.deepest == pytest.approx(0.5, rel=3e-6)
-    assert law.deepest < 0.5
+    assert law.deepest < 0.5 * (1 - 0.9e-6)  # presses so near to the end may fail
     assert law(0.0) == law(-1.0) == (0.0, 0.0)
     assert all(map(math.isnan, law(0.5)))
     assert all(map(math.isnan, law(math.nan)))

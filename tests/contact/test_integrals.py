@@ -63,6 +63,19 @@ def test_friction_torque_has_the_shape_of_contact_and_coefficient():
     assert CONTACT.friction_torque(0.0) == 0.0
     with pytest.raises(ValueError, match="axis_angle = 90 is not allowed: it is in radians; 90 degrees are 1.571"):
         CONTACT.friction_torque(0.1, 90.0)
+    for angle in (-6.3, 6.3):
+        with pytest.raises(ValueError, match="axis_angle = -?6.3 is not allowed"):
+            CONTACT.friction_torque(0.1, angle)
+    for coefficient in (-0.1, np.inf, np.nan):
+        with pytest.raises(ValueError, match="a coefficient of friction is 0 or more and finite"):
+            CONTACT.friction_torque(coefficient)
+
+
+def test_friction_torque_is_the_same_after_half_and_full_turns_of_the_axis():
+    torque = CONTACT.friction_torque(0.1, 0.7)
+    for angle in (-0.7, pi - 0.7, pi + 0.7, 2 * pi - 0.7, 0.7 - 2 * pi):
+        assert CONTACT.friction_torque(0.1, angle) == pytest.approx(torque, rel=1e-12)
+    assert CONTACT.friction_torque(0.1, 2 * pi) == pytest.approx(CONTACT.friction_torque(0.1, 0.0), rel=1e-12)
 
 
 @MODELS
@@ -106,6 +119,12 @@ def test_areas_of_caps():
     angle = np.array([0.0, 0.3, 1.2])
     contact = bs.HessForsbach().press(HIP, half_angle=angle)
     np.testing.assert_allclose(contact.area, 2 * pi * 17.9**2 * (1 - np.cos(angle)), rtol=1e-12)
+
+
+def test_area_is_at_most_that_of_the_ball():
+    deep = bs.Hertz().press(HIP, indentation=0.1 * 18.0 * 4.0**2 / 17.9)
+    assert deep.half_angle == pytest.approx(4.0, rel=1e-12)
+    assert deep.area == pytest.approx(4 * pi * 17.9**2, rel=1e-12)
 
 
 def test_ratios_of_lengths():

@@ -14,15 +14,16 @@ import ballsocket as bs
 from ballsocket.output import accuracy_table
 from ballsocket.paper.accuracy import accuracies, paper_joints
 
-from ..places import ROOT
+from ..places import CONTRIBUTING, ROOT
 
-FILE = re.search(r"^```python\n(.*?)^```$", (ROOT / "CONTRIBUTING.md").read_text("utf-8"), re.MULTILINE | re.DOTALL)[1]
+PAGE = (CONTRIBUTING / "model.md").read_text("utf-8")
+FILE = re.search(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)[1]
 CONTRACT = ("catalogue", "evidence", "models/test_limits.py", "contact/test_models.py")
 
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
-    """Copy the package into a folder and add the model of CONTRIBUTING."""
+    """Copy the package into a folder and add the model of the page."""
     folder = tmp_path_factory.mktemp("added")
     added = folder / "ballsocket"
     shutil.copytree(Path(bs.__file__).parent, added, ignore=shutil.ignore_patterns("__pycache__"))

@@ -75,8 +75,8 @@ def test_stresses_of_a_soft_backed_socket_are_solved_only_near_yield(monkeypatch
     cement = bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)
     soft = HIP.replace(backing=(cement, bs.Layer(thickness=4.0, material=bs.CANCELLOUS_BONE)))
     forces = np.array([300.0, 1000.0, 3000.0, 9000.0, 30000.0])
-    known, looks, peak = bs.Exact().press(soft, force=forces), [], subsurface.peak
-    monkeypatch.setattr(subsurface, "peak", lambda *arguments: looks.append(1) or peak(*arguments))
+    known, looks, peak = bs.Exact().press(soft, force=forces), [], subsurface.find_peak_stress
+    monkeypatch.setattr(subsurface, "find_peak_stress", lambda *arguments: looks.append(1) or peak(*arguments))
     assert bs.Exact().press(soft, force=forces[:3]).valid.all()
     assert not looks
     least, most = known.von_mises_bounds
@@ -126,15 +126,15 @@ def test_a_liner_with_a_yield_stress_has_no_note():
 
 def test_the_reason_depends_on_the_known_strengths():
     pressed = replace(BARE, allowable_pressure=20.0)
-    assert "yield not checked: the liner" in _note(replace(HIP, liner=pressed, ball=None))
-    note = _note(replace(HIP, liner=BARE, ball=bs.COCR))
+    assert "yield not checked: the liner" in _note_on_invalid_points(replace(HIP, liner=pressed, ball=None))
+    note = _note_on_invalid_points(replace(HIP, liner=BARE, ball=bs.COCR))
     assert note == f"{NOT_CHECKED}; the utilisation is that of the ball alone"
     failed = bs.Exact().press(replace(HIP, liner=BARE), half_angle=1.55)
     assert failed.status.failed
     assert not any("checked" in note for note in failed.notes)
 
 
-def _note(joint):
+def _note_on_invalid_points(joint):
     return bs.HessForsbach().press(joint, force=3000.0).notes[0]
 
 

@@ -28,6 +28,8 @@ def test_variables_of_the_fit():
     reach = 4.0 * np.sin(1.0)
     assert (angle, width, poisson) == pytest.approx((np.sin(0.5), reach / (1 + reach), 0.3))
     assert strength.fit_variables(1.6, -0.2, 4.0) == pytest.approx(strength.fit_variables(np.radians(85.0), 0.0, 4.0))
+    assert strength.fit_variables(0.0, 0.0, 4.0) == strength.fit_variables(-0.1, -0.5, 4.0) == (0.0, 0.0, 0.0)
+    assert strength.fit_variables(1.0, 0.5, 4.0)[2] == 0.5
     assert len(strength.FIT_EXPONENTS) == len(set(strength.FIT_EXPONENTS)) == 20
     assert all(sum(exponents) <= 3 for exponents in strength.FIT_EXPONENTS)
 

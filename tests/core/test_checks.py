@@ -97,6 +97,8 @@ def test_missing_modules_are_named_with_their_extra():
         (7, "; known: force, max-pressure, stiffness"),
         ("qqqqq", "; known: force, max-pressure, stiffness"),
         ("stffne", "; did you mean 'stiffness'?"),
+        ("fxxxce", "; did you mean 'force'?"),  # 6 of 11 letters are shared
+        ("fxxxxxce", "; known: force, max-pressure, stiffness"),  # 6 of 13
     ],
 )
 def test_unknown_names_get_the_most_similar_one(name, hint):

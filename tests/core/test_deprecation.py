@@ -109,6 +109,22 @@ def test_a_renamed_field_is_accepted_and_read_with_a_warning():
         assert replace(note, told="tight").text == "tight"
 
 
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda: renamed_names(__name__, {"Socket": "Cup"})("Socket"),
+        lambda: Cup().old,
+        lambda: work(listen=1),
+        lambda: Note(told="loose"),
+    ],
+    ids=["name", "attribute", "argument", "field"],
+)
+def test_a_warning_points_to_the_line_that_uses_the_old_name(use):
+    with pytest.warns(DeprecationWarning, match="is deprecated: use") as caught:
+        use()
+    assert [(warning.filename, warning.lineno) for warning in caught] == [(__file__, use.__code__.co_firstlineno)]
+
+
 def test_old_names_of_a_range_and_a_machine_warn():
     limit, machine = Range(quantity="half_angle", high=1.0), Machine(offset=(0.0, 0.1))
     with pytest.warns(DeprecationWarning, match=r"Range.of is deprecated: use quantity_of"):

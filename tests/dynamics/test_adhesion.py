@@ -63,6 +63,20 @@ def test_force_of_an_attached_ball_is_the_derivative_of_the_energy():
     assert single.indentation == pytest.approx(-0.5 * STRETCH)
 
 
+def test_energy_is_zero_at_separation_and_negative_at_first_touch():
+    energy = at(np.array([-STRETCH * (1 - 1e-9), 0.0, 0.05]), True).energy
+    assert energy[0] == pytest.approx(0.0, abs=1e-9 * energy[2])
+    assert energy[1] < 0 < energy[2]
+
+
+def test_wall_of_an_adhesive_joint_is_measured_from_first_touch():
+    assert pytest.approx(HIP.liner_thickness, rel=1e-12) == ELEMENT.wall
+    assert at(np.array([0.999, 1.001]) * HIP.liner_thickness, True).status.tolist() == [
+        ContactState.CONTACT,
+        ContactState.THROUGH_WALL,
+    ]
+
+
 def test_damping_does_not_generate_energy_in_tension():
     element = bs.ForceElement(STICKY, HIP, damping=Damping(hysteresis=0.05, time=1e-3))
     random = np.random.default_rng(1)

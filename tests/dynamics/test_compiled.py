@@ -9,23 +9,77 @@ from ballsocket.dynamics import simulate
 from ..joints import HIP
 from .test_element import LOSSY, states
 
-pytest.importorskip("numba")
+numba = pytest.importorskip("numba")
+
+
+@pytest.fixture
+def interpreted(monkeypatch):
+    """Run the loops of the module in Python, without the time of their compilation."""
+    from ballsocket.dynamics import compiled
+
+    cached_loops = [value for value in vars(compiled).values() if hasattr(value, "cache_clear")]
+    monkeypatch.setattr(numba.config, "DISABLE_JIT", True)
+    for loop in cached_loops:
+        loop.cache_clear()
+    yield
+    for loop in cached_loops:
+        loop.cache_clear()
+
+
+def check_loads(element, count):
+    from ballsocket.dynamics.compiled import CompiledElement
+
+    force, moment, energy, tangent = CompiledElement(element).loads(*states(count))
+    load = element(*states(count))
+    np.testing.assert_allclose(force, load.force, atol=1e-9 * np.abs(load.force).max())
+    np.testing.assert_allclose(moment, load.moment, atol=1e-9 * np.abs(load.moment).max())
+    np.testing.assert_allclose(energy, load.energy, rtol=1e-8, atol=1e-12)
+    six = [load.tangent[:, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))]
+    np.testing.assert_allclose(tangent, np.stack(six, axis=1), atol=1e-8 * np.abs(load.tangent).max())
+
+
+@pytest.mark.parametrize("cup", [None, bs.Cup()], ids=["sphere", "cup"])
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz(), bs.Tabulated()], ids=lambda model: model.name)
+def test_interpreted_loops_have_the_loads_of_the_element_in_every_block(model, cup, interpreted):
+    check_loads(bs.ForceElement(model, HIP, cup=cup, smoothing=0.01, **LOSSY), 600)
+
+
+def test_interpreted_steps_equal_those_of_the_element(interpreted):
+    from ballsocket.dynamics.compiled import CompiledElement
+
+    element = bs.ForceElement(bs.HessForsbach(), HIP, **LOSSY)
+    throw = {"mass": 1.0, "position": (0.01, 0.02, 0.09), "velocity": (10.0, 50.0, 200.0), "step": 2e-5}
+    plain, fast = (simulate(kind(element), duration=5e-4, **throw) for kind in (lambda e: e, CompiledElement))
+    assert plain.energy.max() > 0.0
+    np.testing.assert_array_equal(fast.position, plain.position)
+
+
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz(), bs.Tabulated()], ids=lambda model: model.name)
+def test_potential_of_a_compiled_element_is_that_of_the_element(model, interpreted):
+    from ballsocket.dynamics.compiled import CompiledElement
+
+    element = bs.ForceElement(model, HIP)
+    potential = CompiledElement(element).potential
+    for depth in (1e-7, 1e-3, 0.05, 0.5):
+        assert potential(depth) == pytest.approx(element.potential(depth), rel=1e-8)
+
+
+def test_loads_at_a_single_state_are_those_of_the_element():
+    from ballsocket.dynamics.compiled import loads_at
+
+    element = bs.ForceElement(bs.HessForsbach(), HIP, **LOSSY)
+    state = (0.02, 0.03, 0.12), (1.0, 20.0, -30.0), (0.5, 1.0, 2.0)
+    force, moment, energy, tangent = loads_at(element.potential, element.constants, *state)
+    load = element(*state)
+    assert (force, moment, energy) == (load.force, load.moment, load.energy)
+    assert tangent == tuple(load.tangent[i][j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
 def test_compiled_loads_equal_those_of_the_element(model):
-    from ballsocket.dynamics.compiled import CompiledElement
-
     for cup in (None, bs.Cup()):
-        element = bs.ForceElement(model, HIP, cup=cup, **LOSSY)
-        force, moment, energy, tangent = CompiledElement(element).loads(*states(500))
-        load = element(*states(500))
-        np.testing.assert_allclose(force, load.force, atol=1e-9 * np.abs(load.force).max())
-        np.testing.assert_allclose(moment, load.moment, atol=1e-9 * np.abs(load.moment).max())
-        np.testing.assert_allclose(energy, load.energy, rtol=1e-8, atol=1e-12)
-        six = [load.tangent[:, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))]
-        np.testing.assert_allclose(tangent, np.stack(six, axis=1), atol=1e-8 * np.abs(load.tangent).max())
+        check_loads(bs.ForceElement(model, HIP, cup=cup, **LOSSY), 500)
 
 
 @pytest.mark.long

@@ -11,6 +11,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction
+from ballsocket.dynamics.potential import CurvePotential, energy_curve
 
 from ..extent import either
 from ..joints import HIP
@@ -259,6 +260,117 @@ def test_validity_warning_is_logged_once(caplog):
             element(np.array([[0.0, 0.0, C + depth]]))
     (message,) = caplog.messages
     assert message.startswith("hertz at an indentation of 0.05 mm: outside ε")
+
+
+@pytest.mark.parametrize("position", [(0.0, 0.0, C + 0.05), np.array([[0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05]])])
+def test_validity_warning_is_logged_for_numbers_and_for_arrays(position, caplog):
+    with caplog.at_level(logging.WARNING, logger="ballsocket.dynamics"):
+        bs.ForceElement(bs.Hertz(), HIP)(position)
+    (message,) = caplog.messages
+    assert message.startswith("hertz at an indentation of 0.05 mm")
+
+
+def test_half_angle_of_springs_has_its_cosine_down_to_a_millionth_of_the_clearance():
+    """ε is acos[c/(c + d)], and the largest pressure K d."""
+    element = bs.ForceElement(bs.HessForsbach(), HIP)
+    for depth in (1e-7, 1e-6, 1e-3, 0.05, 1.0):
+        versine = depth / (C + depth)
+        assert 2 * np.sin(element.half_angle(depth) / 2) ** 2 == pytest.approx(versine, rel=1e-8)
+        assert element.max_pressure(depth) == pytest.approx(bs.hess_forsbach(HIP) * depth, rel=1e-8)
+    assert element.half_angle(0.0) == element.max_pressure(-1.0) == 0.0
+    assert element.half_angle(np.array([-1.0, 0.0, 0.05])).tolist()[:2] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("state", "message"),
+    [
+        ((np.zeros((5, 2)),), r"position .*x, y, z \(mm\)"),
+        ((np.zeros((5, 3)), np.zeros((5, 2))), r"velocity .*x, y, z \(mm/s\)"),
+        ((np.zeros((5, 3)), np.zeros((5, 3)), np.zeros(4)), r"spin .*x, y, z \(rad/s\)"),
+    ],
+)
+def test_arrays_without_three_components_are_rejected(state, message):
+    with pytest.raises(ValueError, match=message):
+        bs.ForceElement(bs.HessForsbach(), HIP)(*state)
+
+
+def test_contact_beyond_the_wall_is_a_status_and_no_warning(caplog):
+    element = bs.ForceElement(bs.Hertz(), HIP)
+    with caplog.at_level(logging.WARNING, logger="ballsocket.dynamics"):
+        assert element((0.0, 0.0, C + 1.01 * element.wall)).status is ContactState.THROUGH_WALL
+        assert element((0.0, 0.0, C + 0.99 * element.wall)).status is ContactState.CONTACT
+    assert len(caplog.messages) == 1
+
+
+def test_wall_is_the_liner_thickness_or_the_range_of_the_model():
+    assert bs.ForceElement(bs.HessForsbach(), HIP).wall == HIP.liner_thickness
+    thick = replace(HIP, liner_thickness=100.0)
+    assert bs.ForceElement(bs.HessForsbach(), thick).wall == HIP.socket_radius
+    tabulated = bs.ForceElement(bs.Tabulated(), HIP)
+    assert tabulated.wall == min(HIP.liner_thickness, tabulated.potential.deepest)
+
+
+def test_largest_smoothing_is_the_clearance():
+    element = bs.ForceElement(bs.Hertz(), HIP, smoothing=C)
+    assert element((0.0, 0.0, 1e-3)).force[2] < 0
+    assert element((0.0, 0.0, 0.0)).force == (0.0, 0.0, 0.0)
+    with pytest.raises(ValueError, match="smoothing"):
+        bs.ForceElement(bs.Hertz(), HIP, smoothing=1.001 * C)
+
+
+def test_smoothed_damping_matrix_is_the_derivative_over_the_speeds_where_the_ball_sticks_or_leaves():
+    """The smoothed separation of the contact is differentiable at every speed."""
+    element = bs.ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.01, time=2e-4), smoothing=0.02)
+    step = 1e-4
+    for speed in (-200.0, -95.0, -82.0, -70.0, 0.0, 50.0):
+        load = element((0.0, 0.0, C + 0.05), (3.0, 0.0, speed))
+        for axis in range(3):
+            ends = []
+            for sign in (1, -1):
+                velocity = np.array([3.0, 0.0, speed])
+                velocity[axis] += sign * step
+                ends.append(element((0.0, 0.0, C + 0.05), tuple(velocity.tolist())).force)
+            slope = -np.subtract(*ends) / (2 * step)
+            np.testing.assert_allclose(load.damping_matrix[:3, axis], slope, atol=2e-6 * 0.01 * 1e3)
+
+
+def test_normal_force_of_a_leaving_ball_is_zero_and_never_tensile():
+    element = bs.ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.01))
+    still = element((0.0, 0.0, C + 0.05)).force[2]
+    for speed, share in ((-50.0, 0.5), (-100.0, 0.0), (-150.0, 0.0), (100.0, 2.0)):
+        assert element((0.0, 0.0, C + 0.05), (0.0, 0.0, speed)).force[2] == pytest.approx(share * still, abs=1e-9)
+
+
+def test_retarded_liner_drags_a_contact_that_moves_along_the_socket():
+    """The power is τ F v²/e for a speed v across the load at a distance e of the centres."""
+    element = bs.ForceElement(bs.HessForsbach(), HIP, damping=Damping(time=2e-4))
+    load = element((0.0, 0.0, C + 0.05), (30.0, 0.0, 0.0))
+    drag = 2e-4 * -load.force[2] * 30.0 / (C + 0.05)
+    assert load.force[0] == pytest.approx(-drag, rel=1e-12)
+    assert load.dissipation == pytest.approx(30.0 * drag, rel=1e-12)
+    pressed = element((0.0, 0.0, C + 0.05), (0.0, 0.0, 30.0))
+    assert pressed.dissipation == pytest.approx(2e-4 * load.tangent[2][2] * 30.0**2, rel=1e-12)
+
+
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz(), bs.Tabulated()], ids=lambda model: model.name)
+def test_potential_of_a_number_equals_that_of_an_array_at_all_depths(model):
+    potential = bs.ForceElement(model, HIP).potential
+    depths = np.array([1e-9, 1e-7, 2e-7, 1e-5, 3e-3, 0.05, 1.0, 6.0])
+    columns = np.array([potential(depth) for depth in depths.tolist()]).T
+    np.testing.assert_allclose(columns, potential(depths), rtol=1e-11)
+
+
+def test_curve_of_the_energy_integrates_a_power_law_from_its_first_indentation():
+    """For F = d^1.5 the energy is d^2.5/2.5 and the stiffness 1.5 d^0.5, also below the curve."""
+    curve = CurvePotential(curve=energy_curve(lambda d: (d**1.5, 1.5 * d**0.5), 1e-3, 1.0))
+    for depth in (1e-5, 0.9e-3, 1e-3, 1.1e-3, 0.02, 0.7, 1.0):
+        assert curve(depth) == pytest.approx((depth**2.5 / 2.5, depth**1.5, 1.5 * depth**0.5), rel=1e-8)
+        arrays = [float(part[0]) for part in curve(np.array([depth]))]
+        assert arrays == pytest.approx((depth**2.5 / 2.5, depth**1.5, 1.5 * depth**0.5), rel=1e-8)
+    assert curve(0.0) == curve(-0.1) == (0.0, 0.0, 0.0)
+    assert np.isnan(curve(1.0001)).all()
+    assert np.isnan(curve(nan)).all()
+    assert np.isnan(curve(np.array([1.0001, nan]))).all()
 
 
 def test_jax_derivatives_of_the_energy_equal_force_and_tangent():

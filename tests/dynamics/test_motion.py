@@ -84,6 +84,21 @@ def test_orbit_in_a_cup_conserves_angular_momentum_about_the_dome_axis():
     assert motion.angular_drift < 1e-13
 
 
+def test_drifts_are_relative_to_the_largest_energy_and_angular_momentum():
+    """A ball of 1 kg at 0.1 mm with 200 mm/s has 20 mJ, and m r v = 2e-5 N mm s."""
+    thrown = {"mass": 1.0, "position": (0.05, 0.0, 0.0), "velocity": (0.0, 200.0, 0.0), "duration": 1e-5, "step": 1e-5}
+    motion = simulate(FREE, **thrown)
+    wrong = replace(
+        motion, velocity=np.array([[0.0, 200.0, 0.0], [0.0, 202.0, 0.0]]), position=motion.position * 0 + 0.05
+    )
+    assert wrong.drift == pytest.approx((202.0**2 - 200.0**2) / 202.0**2, rel=1e-9)
+    # L = m r x v is (-0.05 v, 0, 0.05 v) with r = (0.05, 0.05, 0.05): it changes by 1 % along itself
+    reach = 0.05 * np.sqrt(3) * 202.0
+    assert wrong.angular_drift == pytest.approx(0.05 * np.sqrt(2) * 2.0 / reach, rel=1e-9)
+    still = replace(motion, velocity=0 * motion.velocity)
+    assert still.angular_drift == 0.0
+
+
 def test_angular_drift_is_none_with_friction():
     assert simulate(LOSSY, duration=1e-3, **THROW).angular_drift is None
     bristles = replace(FREE, friction=Bristles(coefficient=0.1))
@@ -191,6 +206,28 @@ def test_exact_relation_satisfies_its_equation():
         assert h * (1 + e) == pytest.approx(log1p(h) - log1p(-h * e), rel=1e-12)
 
 
+def test_series_of_a_small_damping_continues_the_exact_relation():
+    below, above = restitution_of(0.9999999e-4), restitution_of(1.0000001e-4)
+    assert below - above == pytest.approx(2 / 3 * 2e-11, abs=3e-12)
+
+
+def test_perfect_rebound_needs_no_damping():
+    for relation in relations.relations:
+        assert relation.damping(1.0) == 0.0
+        assert damping_from_restitution(relation, 1.0, 1e-3) == Damping(sources=relation.sources)
+    assert restitution_of(0.0) == 1.0
+    for number in (-1e-9, np.inf):
+        with pytest.raises(ValueError, match="damping = .* is not allowed"):
+            restitution_of(number)
+
+
+def test_published_relations_have_their_numbers_at_one_half():
+    expected = {"Hunt & Crossley": 0.75, "Lankarani & Nikravesh": 0.5625, "Gonthier": 1.5, "Flores": 1.6}
+    numbers = {relation.name: relation.damping(0.5) for relation in relations.relations}
+    assert expected.items() <= numbers.items()
+    assert damping_from_restitution(relations.flores, 0.5, 200.0).hysteresis == pytest.approx(0.008)
+
+
 @pytest.mark.parametrize("step", [2e-5, 2e-6, 2e-7])
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)
 def test_resting_ball_conserves_energy_at_short_steps(model, step):
@@ -236,7 +273,87 @@ def test_motion_ends_where_the_ball_leaves_the_cup(friction):
     element = replace(FREE, cup=bs.Cup(), friction=friction)
     motion = simulate(element, duration=0.01, **{**THROW, "velocity": (0.0, 0.0, -300.0)})
     assert "has left the cup over its rim" in motion.end_reason
+    assert float(motion.end_reason.split()[1]) == pytest.approx(motion.time[-1], abs=1.01 * 2e-5)
     assert len(motion.time) == pytest.approx(HIP.clearance / 300.0 / 2e-5, abs=2)
+
+
+def test_free_flight_is_uniform_and_falls_under_the_pull():
+    """Without contact 1 kg under 9.80665 N falls by g t²/2, and its spin stays."""
+    thrown = {"mass": 1.0, "position": (0.0, 0.01, -0.04), "velocity": (1.0, -2.0, 3.0), "spin": (1.0, -2.0, 3.0)}
+    motion = simulate(FREE, pull=(0.0, 0.0, 9.80665), duration=5e-3, step=1e-3, **thrown)
+    t = motion.time
+    np.testing.assert_allclose(t, np.arange(6) * 1e-3, rtol=1e-12)
+    np.testing.assert_allclose(motion.position[:, 2], -0.04 + 3.0 * t + 9806.65 * t**2 / 2, rtol=1e-12)
+    np.testing.assert_allclose(motion.velocity, np.stack([1 + 0 * t, -2 + 0 * t, 3 + 9806.65 * t], axis=1))
+    np.testing.assert_allclose(motion.spin, np.tile([1.0, -2.0, 3.0], (6, 1)))
+    assert not motion.dissipated_energy.any()
+    assert motion.bounces == 0
+    np.testing.assert_allclose(motion.work, 9.80665 * (motion.position[:, 2] + 0.04), atol=1e-15)
+    expected = np.cross(motion.position, motion.velocity) * 1e-3
+    np.testing.assert_allclose(motion.angular_momentum, expected)
+    np.testing.assert_allclose(motion.pull_moment, expected - expected[0], atol=1e-16)
+
+
+def test_pull_of_a_step_is_that_at_its_midpoint():
+    """The impulse of a pull that grows linearly is exact by the midpoint rule: v = a t²/2."""
+    motion = simulate(FREE, mass=2.0, position=(0, 0, 0), pull=lambda t: (t, 0.0, 0.0), duration=0.05, step=0.01)
+    np.testing.assert_allclose(motion.velocity[:, 0], 1e3 / 2.0 * motion.time**2 / 2, rtol=1e-12)
+
+
+def test_kinetic_energy_is_that_of_a_solid_ball():
+    """0.5 kg at 0.3 m/s has 22.5 mJ; a solid ball of 17.9 mm has 0.4 m R²."""
+    motion = simulate(
+        FREE, mass=0.5, position=(0, 0, 0), velocity=(0, 0, 300.0), spin=(0, 10.0, 0), duration=1e-5, step=1e-5
+    )
+    assert motion.inertia == pytest.approx(0.4 * 0.5 * 17.9**2)
+    assert motion.kinetic_energy[0] == pytest.approx(22.5 + 0.5 * 1e-3 * 0.4 * 0.5 * 17.9**2 * 100.0)
+    heavy = simulate(FREE, mass=0.5, inertia=7.0, position=(0, 0, 0), spin=(0, 10.0, 0), duration=1e-5, step=1e-5)
+    assert heavy.kinetic_energy[0] == pytest.approx(0.5 * 1e-3 * 7.0 * 100.0)
+
+
+def test_summary_of_a_motion_has_its_ends_and_extremes():
+    motion = simulate(LOSSY, duration=2e-3, **THROW)
+    summary = motion.summary()
+    assert summary["duration"] == pytest.approx(2e-3)
+    assert summary["steps"] == 100
+    assert summary["deepest"] == motion.indentation.max() > 0
+    assert summary["largest_force"] == np.linalg.norm(motion.load.force, axis=1).max()
+    assert summary["stored"] + summary["kinetic"] + summary["lost"] == pytest.approx(motion.total_energy[0], rel=1e-12)
+    crossings = np.sum((motion.indentation[:-1] > 0) & (motion.indentation[1:] <= 0))
+    assert summary["bounces"] == crossings > 0
+
+
+@pytest.mark.parametrize(("duration", "step", "steps"), [(1e-3, 1e-4, 10), (1.05e-3, 1e-4, 11), (1e-5, 1e-3, 1)])
+def test_steps_are_shortened_to_fill_the_duration(duration, step, steps):
+    motion = simulate(FREE, mass=1.0, position=(0, 0, 0), velocity=(1.0, 0, 0), duration=duration, step=step)
+    assert len(motion.time) == steps + 1
+    assert motion.time[-1] == pytest.approx(duration, rel=1e-12)
+    assert motion.position[-1, 0] == pytest.approx(duration, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "friction", [Friction(coefficient=0.5, transition_speed=1.0), Friction(coefficient=0, viscous=1)]
+)
+def test_steps_with_friction_stiffer_than_inertia_converge(friction):
+    """Friction resists a change of the speed more than inertia does."""
+    element = replace(FREE, friction=friction, damping=Damping(hysteresis=0.01, time=1e-3))
+    thrown = {"mass": 0.1, "position": (0.0, 0.02, HIP.clearance + 0.03), "duration": 2e-3, "step": 1e-4}
+    motion = simulate(element, velocity=(30.0, -20.0, 5.0), spin=(3.0, 2.0, -4.0), pull=(0, 0, 800.0), **thrown)
+    assert motion.end_reason == ""
+    assert motion.drift < 1e-10
+    assert (np.diff(motion.dissipated_energy) >= 0).all()
+
+
+def test_friction_at_the_pole_turns_a_sliding_ball_until_it_rolls():
+    """The impulse j of friction has the lever R; without slip at the pole the ball has v = R ω."""
+    element = replace(FREE, friction=Friction(coefficient=0.2, transition_speed=0.1))
+    deep = HIP.clearance + FREE.model.press(HIP, force=900.0).indentation
+    thrown = {"mass": 1.0, "position": (0.0, 0.0, deep), "velocity": (0.0, 2.0, 0.0), "duration": 1e-4, "step": 2e-6}
+    motion = simulate(element, pull=(0.0, 0.0, 900.0), spin=(0.5, 0.0, 0.0), **thrown)
+    impulse = motion.mass * (motion.velocity[1, 1] - 2.0)
+    assert impulse == pytest.approx(0.2 * 900.0 * 2e-6 * 1e3, rel=0.03)
+    assert motion.inertia * (motion.spin[1, 0] - 0.5) == pytest.approx(-HIP.ball_radius * impulse, rel=5e-3)
+    assert motion.velocity[-1, 1] == pytest.approx(HIP.ball_radius * motion.spin[-1, 0], rel=5e-3)
 
 
 def test_restitution_decreases_with_the_impact_speed():

@@ -60,10 +60,52 @@ def test_times_of_impacts_recover_the_damping():
     assert "from 6 restitutions" in str(estimate)
 
 
+@pytest.mark.parametrize("chi", [1e-9, 4e-3, 0.1])
+def test_standard_error_is_the_uncertainty_over_the_slope_of_the_restitution(chi):
+    """∂e/∂χ is the derivative of the exact relation; for a small χ v it is -2 v/3."""
+    restitution, step = restitution_of(chi * 50.0), 1e-3 * chi
+    slope = (restitution_of((chi + step) * 50.0) - restitution_of((chi - step) * 50.0)) / (2 * step)
+    estimate = from_restitution(speed=[50.0], restitution=[restitution], uncertainty=0.01)
+    assert estimate.error == pytest.approx(0.01 / abs(slope), rel=1e-4)
+    assert estimate.noise == 0.01
+    if chi == 1e-9:
+        assert estimate.error == pytest.approx(0.01 / (2 * 50.0 / 3), rel=1e-6)
+
+
+def test_scatter_has_one_degree_of_freedom_less_than_measurements():
+    measured = RESTITUTIONS[:3] * np.array([1.01, 0.99, 1.0])
+    estimate = from_restitution(speed=SPEEDS[:3], restitution=measured)
+    assert 2 * estimate.noise**2 == pytest.approx(np.sum(estimate.residuals**2), rel=1e-12)
+    assert estimate.noise > 0
+
+
+def test_perfect_rebound_has_no_damping():
+    assert from_restitution(speed=[100.0, 200.0], restitution=[1.0, 1.0]).damping.hysteresis == 0.0
+
+
+def test_three_impacts_are_one_restitution():
+    estimate = from_bounces(times=[0.0, 0.2, 0.38], uncertainty=0.01)
+    assert estimate.restitution == pytest.approx([0.9])
+    assert estimate.speed == pytest.approx([980.665])
+    moon = from_bounces(times=[0.0, 0.2, 0.38], gravity=1620.0, uncertainty=0.01)
+    assert moon.speed == pytest.approx([162.0])
+
+
 def test_invalid_measurements_are_rejected():
     assert np.isnan(from_restitution(speed=[100.0], restitution=[0.8]).error)
     with pytest.raises(ValueError, match=r"restitution\[0\] = 1.2 is not allowed"):
         from_restitution(speed=[100.0], restitution=[1.2])
+    for speed, restitution in ([], []), ([1.0, 2.0], [0.5]), ([[1.0]], [[0.5]]):
+        with pytest.raises(ValueError, match="rows of equal length"):
+            from_restitution(speed=speed, restitution=restitution)
+    for speed in (0.0, np.inf):
+        with pytest.raises(ValueError, match=r"speed\[0\] = "):
+            from_restitution(speed=[speed], restitution=[0.5])
+    for number in (0.0, np.inf, -0.1):
+        with pytest.raises(ValueError, match="uncertainty = "):
+            from_restitution(speed=[100.0], restitution=[0.5], uncertainty=number)
+    with pytest.raises(ValueError, match=r"restitution\[0\] = 0 is not allowed"):
+        from_restitution(speed=[100.0], restitution=[0.0])
     with pytest.raises(ValueError, match="the number of times = 2 is not allowed"):
         from_bounces(times=[0.0, 1.0])
     with pytest.raises(ValueError, match="times must increase"):

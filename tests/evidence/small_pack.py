@@ -6,7 +6,7 @@ from pathlib import Path
 from tempfile import mkdtemp
 
 from ballsocket.evidence.folder import write
-from ballsocket.evidence.pack import gathered
+from ballsocket.evidence.pack import gather_evidence
 from ballsocket.evidence.question import read_question
 from ballsocket.output.evidence_page import evidence_page
 
@@ -41,7 +41,7 @@ def small_pack():
     folder = Path(mkdtemp(prefix="ballsocket-test-"))
     (folder / "asked.toml").write_text(QUESTION_TEXT, encoding="utf-8")
     question = read_question(folder / "asked.toml")
-    record = gathered(question, folder / "data")
+    record = gather_evidence(question, folder / "data")
     write(question, record, page, folder / "out")
     return question, record, folder
 

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.xdist_group("evidence")
 @pytest.fixture
 def run(pack, monkeypatch):
     """Run the command in this process; its question is computed once for all tests."""
-    monkeypatch.setattr(comparison, "gathered", lambda *arguments: copy.deepcopy(pack[1]))
+    monkeypatch.setattr(comparison, "gather_evidence", lambda *arguments: copy.deepcopy(pack[1]))
     monkeypatch.setattr(command, "evidence_page", page)
     return lambda *words: CliRunner().invoke(app, ["evidence", *map(str, words)])
 
@@ -40,12 +40,13 @@ def key(tmp_path):
     return path
 
 
-def test_a_stopped_run_is_resumed_and_reported_and_leaves_only_the_pack(pack, run, tmp_path):
+def test_a_stopped_run_is_resumed_and_leaves_only_the_pack(pack, run, tmp_path):
     out = tmp_path / "new"
     shutil.copytree(pack[2] / "data", out / "data")
     result = run(pack[2] / "asked.toml", "--out", out)
     assert result.exit_code == 0
-    assert "results were read from an earlier, stopped run and not computed" in result.stdout
+    stored = len(list((pack[2] / "data").rglob("*.json")))
+    assert f"{stored} results were read from an earlier, stopped run and not computed" in result.stdout
     assert sorted(path.name for path in out.iterdir()) == sorted([PAGE, RECORD, SUMS, "question.toml"])
     for name in (PAGE, RECORD, SUMS):
         assert (out / name).read_bytes() == (pack[2] / "out" / name).read_bytes()  # the same bytes, drawn again
@@ -60,7 +61,7 @@ def test_a_folder_with_other_files_is_refused(pack, run, tmp_path):
     assert "holds other files ('notes.txt'): a pack needs an empty folder" in str(result.exception)
 
 
-def test_a_checked_pack_is_signed_and_the_signature_verified(pack, run, key, tmp_path):
+def test_a_checked_pack_is_signed_and_its_signature_verified(pack, run, key, tmp_path):
     out = shutil.copytree(pack[2] / "out", tmp_path / "out")
     assert "not signed: author, question and date are not confirmed" in run("--check", out).stdout
     assert "checksums.txt.sig is missing" in run("--check", out, "--verify", f"{key}.pub").stdout
@@ -103,5 +104,6 @@ def test_a_signed_pack_is_computed_in_one_run(pack, key, tmp_path):
     matrix.write_text(json.dumps(piece), "utf-8")
     result = CliRunner().invoke(app, ["evidence", str(pack[2] / "asked.toml"), "--out", str(out), "--sign", str(key)])
     assert result.exit_code == 0
+    assert "were read from an earlier" not in result.output
     assert (out / RECORD).read_bytes() == (pack[2] / "out" / RECORD).read_bytes()
     assert (out / SIGNATURE).exists()

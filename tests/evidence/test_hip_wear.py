@@ -1,9 +1,15 @@
-"""Wear that was published beside what the laws say of it: the page has what they give, and every source."""
+"""Published wear and its predictions: the page has the computed ratios and bands, and every source."""
 
+import math
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
-from ballsocket.evidence.hip_wear import INPUTS, patients, ratios, simulators
-from ballsocket.evidence.published_wear import PUBLISHED
+from ballsocket.evidence import hip_wear
+from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, make_hip, patients, ratios, simulators
+from ballsocket.hip.simulator_cycles import iso_14242_1
+from ballsocket.hip.variability import RESULT_UNITS
 
 from ..places import ROOT
 
@@ -11,33 +17,127 @@ PAGE = (ROOT / "docs" / "explanation" / "hip_validation.md").read_text(encoding=
 
 
 def row_of(name):
-    told = PUBLISHED[name]
-    found = [line for line in PAGE.splitlines() if line.startswith(f"| {told.what} |") and told.source in line]
-    return next(line for line in found if f"| {told.value:g} " in line)
+    row = PUBLISHED[name]
+    lines = [line for line in PAGE.splitlines() if line.startswith(f"| {row.description} |") and row.source in line]
+    return next(line for line in lines if f"| {row.value:g} " in line)
 
 
-def test_the_page_has_the_ratios_that_the_laws_give():
-    found = {each.one: each for each in ratios()}
-    for each in found.values():
-        one, other = PUBLISHED[each.one], PUBLISHED[each.other]
-        told = f"| {one.what}, over {other.what} | {one.value / other.value:.2f} | {each.archard:.2f} |"
-        assert told in PAGE
-    assert found["clarke-28"].archard < 1.39 < found["clarke-28"].area
-    assert found["clarke-28"].archard == pytest.approx(1.24, abs=5e-3)
-    assert found["clarke-28"].area == pytest.approx(1.56, abs=5e-3)
+def test_page_has_the_ratios_of_the_laws():
+    predicted = {ratio.numerator: ratio for ratio in ratios()}
+    for ratio in predicted.values():
+        over, under = PUBLISHED[ratio.numerator], PUBLISHED[ratio.denominator]
+        measured = over.value / under.value
+        assert f"| {over.description}, over {under.description} | {measured:.2f} | {ratio.archard:.2f} |" in PAGE
+    assert predicted["clarke-28"].archard < 1.39 < predicted["clarke-28"].area
+    assert predicted["clarke-28"].archard == pytest.approx(1.24, abs=5e-3)
+    assert predicted["clarke-28"].area == pytest.approx(1.56, abs=5e-3)
 
 
-def test_every_number_and_every_input_stands_on_the_page_with_its_source():
-    assert all(each in PAGE for each in INPUTS)
-    assert all(each.source in PAGE or "Saikko" in each.source for each in PUBLISHED.values())
+def test_page_has_every_input_and_every_source():
+    assert all(text in PAGE for text in INPUTS)
+    assert all(row.source in PAGE or "Saikko" in row.source for row in PUBLISHED.values())
+
+
+def test_published_numbers_are_written_with_their_half_width():
+    assert str(PUBLISHED["ali-45"]) == "12.8 ± 3.8"
+    assert str(PUBLISHED["clarke-22"]) == "23"
+
+
+def test_hip_has_the_stated_head_liner_and_tilt():
+    hip = make_hip(36.0, iso_14242_1(), 50.0)
+    assert (hip.joint.ball_radius, hip.joint.liner_thickness) == (18.0, 6.0)
+    assert math.degrees(hip.cup.inclination) == pytest.approx(50.0)
+    assert hip.wear.coefficient == pytest.approx(1.066e-6)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("predictions", "few", "off"), [(simulators, 16, 0.15), (patients, 4, 0.4)])
-def test_the_page_has_the_bands_that_the_laws_give(predictions, few, off):
-    for each in predictions(few):
-        middle, band = row_of(each.name).split("|")[3:5]
-        low, high = map(float, band.split(" to "))
+@pytest.mark.parametrize(("predictions", "count", "tolerance"), [(simulators, 16, 0.15), (patients, 4, 0.4)])
+def test_page_has_the_bands_of_the_laws(predictions, count, tolerance):
+    for band in predictions(count):
+        middle, interval = row_of(band.name).split("|")[3:5]
+        low, high = map(float, interval.split(" to "))
         assert low < float(middle) < high
-        assert each.median == pytest.approx(float(middle), rel=off)
-        assert low * 0.9 <= each.low < each.high <= high * 1.1
+        assert band.median == pytest.approx(float(middle), rel=tolerance)
+        assert low * 0.9 <= band.low < band.high <= high * 1.1
+
+
+@pytest.fixture
+def simulated(monkeypatch):
+    """Replace the simulation of patients by a table of known numbers; return the arguments of its calls."""
+    calls = []
+
+    def population(variability, counts, patients):
+        calls.append(SimpleNamespace(hip=variability.use, spreads=variability.distributions, counts=counts, n=patients))
+        table = np.zeros((101, len(counts), len(RESULT_UNITS)))
+        ranks = np.arange(101.0)
+        for name, slope in (("volume", 2.0), ("penetration", 3.0)):
+            table[:, :, list(RESULT_UNITS).index(name)] = (
+                slope * ranks[:, None] * np.array([1.0, 3.0, 7.0, 19.0][: len(counts)])
+            )
+        return None, SimpleNamespace(cohort=SimpleNamespace(table=table))
+
+    monkeypatch.setattr(hip_wear, "population", population)
+    return calls
+
+
+def test_simulator_rates_are_volumes_per_million_cycles_between_one_and_three(simulated):
+    bands = {band.name: band for band in simulators(5)}
+    assert list(bands) == ["clarke-22", "clarke-28", "ali-45", "ali-65", "ali-45-off", "ali-65-off"]
+    for band in bands.values():
+        assert (band.low, band.median, band.high) == pytest.approx((5.0, 100.0, 195.0))
+    heads = [2 * call.hip.joint.ball_radius for call in simulated]
+    assert heads == pytest.approx([22.225, 28.0, 36.0, 36.0, 36.0, 36.0])
+    tilts = [math.degrees(call.hip.cup.inclination) for call in simulated]
+    assert tilts == pytest.approx([0.0, 0.0, 30.0, 50.0, 30.0, 50.0])
+    assert [call.hip.wear.coefficient for call in simulated] == pytest.approx([1.066e-6] * 2 + [2e-7] * 4)
+    for call in simulated:
+        assert (call.counts, call.n) == ([1e6, 3e6], 5)
+        assert (call.spreads["clearance"].low, call.spreads["clearance"].high) == (0.05, 0.2)
+        assert call.spreads["coefficient"].median == call.hip.wear.coefficient
+        assert call.spreads["coefficient"].factor == 1.5
+    assert len({call.hip.cycle.name for call in simulated}) == 3
+    assert [call.hip.joint.liner_thickness for call in simulated] == [10.9, 8.0, 6.0, 6.0, 6.0, 6.0]
+
+
+def test_patient_rates_are_penetrations_and_volumes_per_year(simulated):
+    medians = {band.name: band.median for band in patients(7)}
+    assert medians == pytest.approx(
+        {
+            "rsa-bedding": 150.0,
+            "rsa-rate": 150.0 * 18 / 9.75,
+            "teeter": 150.0 * 18 / 9.75,
+            "rsa-bedding-linked": 150.0,
+            "rsa-rate-linked": 150.0 * 18 / 9.75,
+            "mccalden-linked": 150.0,
+            "callary": 150.0 * 18 / 9.75,
+            "lachiewicz": 150.0 * 18 / 9.75,
+            "lachiewicz-volume": 100.0 * 7 / 5,
+        }
+    )
+    for call, k in zip(simulated, (1.066e-6, 2e-7), strict=True):
+        assert call.counts == [3.75e5, 1.5e6, 7.5e6, 1.5e7]
+        assert (call.n, call.hip.joint.ball_radius) == (7, 14.0)
+        assert call.hip.seconds_per_cycle == pytest.approx(21.0384)
+        spreads = call.spreads
+        assert (spreads["coefficient"].median, spreads["coefficient"].factor) == (k, 1.5)
+        assert (spreads["cycles_per_year"].median, spreads["cycles_per_year"].factor) == (1.5e6, 1.5)
+        weight, tilt = spreads["body_weight"], spreads["tilt"]
+        assert (weight.mean, weight.deviation, weight.low, weight.high) == (780.0, 130.0, 400.0, 1400.0)
+        degrees = [math.degrees(angle) for angle in (tilt.mean, tilt.deviation, tilt.low, tilt.high)]
+        assert degrees == pytest.approx([30.0, 7.0, 0.0, 60.0])
+
+
+def test_published_numbers_are_on_the_page_in_the_table_of_bands_or_ratios():
+    for row in PUBLISHED.values():
+        assert row.value > 0
+        assert (row.half_width > 0) == bool(row.spread)
+        if "Saikko" not in row.source:
+            assert row.description in PAGE
+    assert {row.read for row in PUBLISHED.values()} == {"abstract", "second hand"}
+
+
+def test_joints_of_the_hips_are_the_stated_inputs():
+    hip = make_hip(28.0, iso_14242_1())
+    assert (hip.joint.clearance, hip.joint.liner.young, hip.joint.liner.poisson) == (0.1, 1000.0, 0.4)
+    assert math.degrees(hip.cup.inclination) == pytest.approx(30.0)
+    assert {d: make_hip(d, iso_14242_1()).joint.liner_thickness for d in (22.225, 32.0)} == {22.225: 10.9, 32.0: 7.0}

@@ -41,6 +41,24 @@ def test_the_platform_of_a_library_is_read_from_its_header(header, name, ending)
     assert (str(platform), platform.library_ending, platform.bits) == (name, ending, 64)
 
 
+@pytest.mark.parametrize(("processor", "bits"), [("x86", 32), ("x86_64", 64), ("aarch64", 64), ("riscv", 64)])
+def test_the_bits_of_a_platform_are_those_of_its_processor(processor, bits):
+    assert Platform(system="linux", processor=processor).bits == bits
+    assert library_platform(elf(0x03)).bits == 32
+
+
+def test_numbers_in_headers_are_little_endian_and_at_their_places():
+    """e_machine of ELF has byte 18, cputype of Mach-O byte 4, Machine of PE the fourth byte after its start."""
+    assert str(library_platform(b"\x7fELF" + bytes(14) + b"\xb7\x00" + b"\xff" * 9)) == "aarch64-linux"
+    mach_o = b"\xcf\xfa\xed\xfe\x07\x00\x00\x01" + b"\xff" * 9
+    assert str(library_platform(mach_o)) == "x86_64-darwin"
+    far = b"MZ".ljust(0x3C, b"\xff") + (0x1F0).to_bytes(4, "little")
+    far = far.ljust(0x1F0, b"\xff") + b"PE\0\0\x4c\x01\xff\xff"
+    assert str(library_platform(far)) == "x86-windows"
+    with pytest.raises(ValueError, match="its first bytes are 7f454c47, not those"):
+        library_platform(b"\x7fELG" + bytes(99))
+
+
 @pytest.mark.parametrize(("header", "message"), [(b"#!/b", "not those of ELF"), (elf(0x1234), "number 0x1234")])
 def test_a_file_of_another_format_is_refused(header, message):
     with pytest.raises(ValueError, match=message):
@@ -81,6 +99,44 @@ def test_a_library_for_another_platform_is_not_left_for_a_program_of_this_machin
     _, missing = TARGETS["drake"].write(job, tmp_path / "hip")
     assert f"builds for x86_64-windows, not for this machine, {THIS_PLATFORM}; the sources are written" in missing
     assert not (tmp_path / "hip" / job.template_context["library"]).exists()
+
+
+@pytest.fixture
+def failing_compiler(tmp_path, monkeypatch):
+    """A function that sets a compiler that prints lines and fails."""
+
+    def set_compiler(*lines):
+        script = tmp_path / "failing-gcc"
+        script.write_text("\n".join(["#!/bin/sh", *(f"echo '{line}' >&2" for line in lines), "exit 3"]))
+        script.chmod(0o755)
+        monkeypatch.setenv("CC", str(script))
+
+    return set_compiler
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ((), "failing-gcc ended with 3: it printed no message"),
+        (("note: first", "note: second"), "failing-gcc ended with 3: note: first"),
+        (("note: first", "one.c: error: second", "error: third"), "failing-gcc ended with 3: one.c: error: second"),
+    ],
+)
+def test_the_first_error_of_a_failing_compiler_is_reported(lines, message, failing_compiler, tmp_path):
+    failing_compiler(*lines)
+    with pytest.raises(NoCompiler, match=message):
+        compile_library(["one.c"], tmp_path / "one.so", tmp_path)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+def test_a_compiler_that_cannot_be_run_is_named(tmp_path, monkeypatch):
+    file = tmp_path / "no-program"
+    file.write_bytes(b"\x7fELF, but nothing else")
+    file.chmod(0o755)
+    monkeypatch.setenv("CC", str(file))
+    with pytest.raises(NoCompiler, match=f"the compiler {file} could not be run"):
+        compile_library(["one.c"], tmp_path / "one.so", tmp_path)
 
 
 @pytest.mark.skipif(shutil.which("true") is None, reason="there is no command that writes nothing")

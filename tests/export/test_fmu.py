@@ -12,7 +12,7 @@ import ballsocket as bs
 from ballsocket.dynamics import Damping, ForceElement, Friction
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.fmu import Fmu, write_cross_check
-from ballsocket.export.fmu.variables import in_si, reference_loads, trajectory
+from ballsocket.export.fmu.variables import reference_loads, states_in_si, trajectory
 
 from ..cli.command import run
 from ..joints import HIP
@@ -60,6 +60,17 @@ def test_an_archive_contains_sources_and_a_binary(version, folder):
 
 
 @pytest.mark.parametrize("version", VERSIONS)
+def test_files_of_an_archive_are_readable_have_one_date_and_the_order_of_their_names(version, folder):
+    with zipfile.ZipFile(folder / f"hip{version}.fmu") as archive:
+        entries = archive.infolist()
+    assert [entry.filename for entry in entries] == sorted(entry.filename for entry in entries)
+    for entry in entries:
+        assert entry.date_time == (1980, 1, 1, 0, 0, 0)
+        assert (entry.create_system, entry.external_attr >> 16) == (3, 0o644)  # files of Unix
+        assert entry.compress_type == zipfile.ZIP_DEFLATED
+
+
+@pytest.mark.parametrize("version", VERSIONS)
 def test_a_missing_compiler_is_reported_and_the_sources_are_written(version, tmp_path, monkeypatch):
     monkeypatch.setenv("CC", "no-such-compiler")
     done = run("fmu", str(EXAMPLES / "hip.toml"), "--out", str(tmp_path / "my-hip.fmu"), "--fmi", str(version))
@@ -87,15 +98,99 @@ def test_variables_have_units_and_parameters_can_be_tuned(folder):
         assert (friction.get("causality"), friction.get("variability")) == ("parameter", "tunable")
 
 
+def test_both_kinds_of_an_fmu_of_version_2_list_their_sources(folder):
+    root = description(folder / "hip2.fmu")
+    for kind in ("ModelExchange", "CoSimulation"):
+        (sources,) = root.find(kind).iter("SourceFiles")
+        assert {each.get("name") for each in sources} == {"hip.c", "fmi2.c"}
+        assert root.find(kind).get("modelIdentifier") == "hip"
+
+
+def test_the_build_description_of_version_3_lists_the_sources(folder):
+    with zipfile.ZipFile(folder / "hip3.fmu") as archive:
+        root = fromstring(archive.read("sources/buildDescription.xml"))
+    assert {each.get("name") for each in root.iter("SourceFile")} == {"hip.c", "fmi3.c"}
+    with zipfile.ZipFile(folder / "hip2.fmu") as archive:
+        assert "sources/buildDescription.xml" not in archive.namelist()
+
+
+@pytest.mark.parametrize(("version", "tag", "key"), [(2, "Unknown", "index"), (3, "Output", "valueReference")])
+def test_loads_depend_on_the_state_and_the_contact_on_the_position(version, tag, key, folder):
+    root = description(folder / f"hip{version}.fmu")
+    variables = root.find("ModelVariables")
+    kind = "ScalarVariable" if version == 2 else "Float64"
+    names = {each.get("valueReference"): each.get("name") for each in variables.iter(kind)}
+    if version == 2:  # an index is the place in the list, from 1
+        names = {str(place): each.get("name") for place, each in enumerate(variables, 1)}
+    outputs = root.find("ModelStructure/Outputs") if version == 2 else root.find("ModelStructure")
+    dependencies = {names[each.get(key)]: each.get("dependencies") for each in outputs.iter(tag)}
+    state = {f"{name}[{axis}]" for name in ("position", "velocity", "spin") for axis in (1, 2, 3)}
+    for output, numbers in dependencies.items():
+        position_only = output in ("energy", "half_angle", "max_pressure")
+        expected = {name for name in state if name.startswith("position")} if position_only else state
+        assert {names[number] for number in numbers.split()} == expected
+    loads = {f"{name}[{axis}]" for name in ("force", "moment") for axis in (1, 2, 3)}
+    assert set(dependencies) == loads | {"energy", "half_angle", "max_pressure"}
+    assert [int(each.get("valueReference")) for each in variables if each.get("name") != "time"] == list(range(1, 26))
+
+
+def test_units_are_powers_of_the_base_units_and_starts_are_in_si(folder):
+    """1 N = kg m/s², 1 Pa = kg/(m s²), 1 J = kg m²/s²; a hysteresis of 0.004 s/mm is 4 s/m."""
+    root = description(folder / "hip3.fmu")
+    units = {each.get("name"): each.find("BaseUnit").attrib for each in root.find("UnitDefinitions")}
+    assert units["N"] == {"kg": "1", "m": "1", "s": "-2"}
+    assert units["Pa"] == {"kg": "1", "m": "-1", "s": "-2"}
+    assert units["J"] == units["N.m"] == {"kg": "1", "m": "2", "s": "-2"}
+    starts = {each.get("name"): each.get("start") for each in root.find("ModelVariables")}
+    assert float(starts["hysteresis"]) == pytest.approx(4.0)
+    assert float(starts["friction_coefficient"]) == 0.05
+    assert float(starts["transition_speed"]) == pytest.approx(1e-4)
+    assert starts["position[1]"] == "0.0"
+    assert starts["force[1]"] is None
+
+
+@pytest.mark.parametrize("clearance", [0.1, 0.01])
+def test_the_trajectory_reaches_from_one_hundredth_of_the_clearance_apart_to_three_in_contact(clearance):
+    element = ForceElement(bs.HessForsbach(), HIP.replace(clearance=clearance))
+    state = trajectory(element, np.linspace(0.0, 0.1, 101))
+    depth = np.linalg.norm(state[:, :3], axis=1) - clearance
+    assert_allclose((depth.min(), depth.max()), (-0.01 * clearance, 0.03 * clearance), rtol=1e-9)
+    assert_allclose(state[0], state[-1], atol=1e-9)  # a period
+    assert_allclose(np.arctan2(state[:, 0], state[:, 2]).max(), 0.3, rtol=1e-9)
+    assert_allclose(state[:, 8], 1.0)
+    assert_allclose(state[25, 6:], (0.0, 2.0, 1.0), atol=1e-12)
+
+
+def test_the_cross_check_covers_the_suggested_experiment(folder):
+    for version in VERSIONS:
+        experiment = description(folder / f"hip{version}.fmu").find("DefaultExperiment")
+        time = table(folder / f"hip{version}_in.csv")["time"]
+        assert float(experiment.get("stopTime")) == time[-1] == 0.1
+        assert_allclose(np.diff(time), float(experiment.get("stepSize")), rtol=1e-9)
+        assert (folder / f"hip{version}_ref.opt").read_text().splitlines()[:3] == [
+            "StartTime, 0",
+            "StopTime, 0.1",
+            "StepSize, 0.001",
+        ]
+
+
 def test_the_files_of_the_cross_check_have_the_loads_of_the_element(folder):
     given, reference = table(folder / "hip3_in.csv"), table(folder / "hip3_ref.csv")
     assert (folder / "hip3_in.csv").read_text().startswith('"time","position[1]",')
     state = trajectory(ELEMENT, given["time"])
-    assert_array_equal(given["velocity[3]"], in_si(state)[:, 5])
+    assert_array_equal(given["velocity[3]"], states_in_si(state)[:, 5])
     assert_array_equal(reference["max_pressure"], reference_loads(ELEMENT, state)[:, 8])
     assert 0 < np.count_nonzero(reference["energy"]) < len(reference)  # it touches and leaves
     options = (folder / "hip3_ref.opt").read_text()
     assert [line.split(",")[0] for line in options.splitlines()] == ["StartTime", "StopTime", "StepSize", "RelTol"]
+
+
+def test_reference_loads_are_in_si_units():
+    state = np.array([[0.0, 0.01, 0.12, 1.0, 0.0, 20.0, 0.0, 1.0, 2.0]])
+    load = ELEMENT((0.0, 0.01, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0))
+    wanted = [*load.force, *(part / 1e3 for part in load.moment), load.energy / 1e3, load.half_angle]
+    assert_allclose(reference_loads(ELEMENT, state)[0], [*wanted, 1e6 * load.max_pressure], rtol=1e-12)
+    assert_allclose(states_in_si(state)[0], [0.0, 1e-5, 1.2e-4, 1e-3, 0.0, 0.02, 0.0, 1.0, 2.0])
 
 
 def test_the_velocity_of_the_trajectory_is_that_of_its_position():
@@ -196,6 +291,7 @@ def test_a_host_receives_the_load_and_its_slopes(host):
     assert_allclose(
         (force, moment, pressure), (load.force[2], 1e-3 * load.moment[0], 1e6 * load.max_pressure), rtol=1e-12
     )
+    assert host.messages == []  # the contact is valid
     status, slope = host.directional("force[3]", "position[2]")
     assert status == GOOD
     step = 1e-8

@@ -13,10 +13,10 @@ import pytest
 
 import ballsocket as bs
 
-from ..places import ROOT
+from ..places import CONTRIBUTING
 
-SECTION = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("## A new export target")[2]
-FILE = re.search(r"^```python\n(.*?)^```$", SECTION, re.MULTILINE | re.DOTALL)[1]
+PAGE = (CONTRIBUTING / "export_target.md").read_text("utf-8")
+FILE = re.search(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)[1]
 LINES = {
     "from .tunable": "from .octave import OCTAVE\n",
     '        Target(\n            name="table"': "        OCTAVE,\n",
@@ -25,7 +25,7 @@ LINES = {
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory):
-    """Copy the package and add the target of CONTRIBUTING."""
+    """Copy the package and add the target of the page."""
     folder = tmp_path_factory.mktemp("target")
     copy = folder / "ballsocket"
     shutil.copytree(Path(bs.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))

@@ -1,6 +1,7 @@
 """Export targets: consistent files, and one bounce in every installed program."""
 
 import ctypes
+import re
 import sys
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from math import exp, pi, sqrt
@@ -13,11 +14,11 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 import ballsocket as bs
-from ballsocket.cli.force_elements import ElementWords, identifier
+from ballsocket.cli.export import ForceElementOptions, identifier
 from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
 from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
-from ballsocket.export.law_fit import expression_fit, power_fit
+from ballsocket.export.law_fit import expression_fit, fit_depth, power_fit
 from ballsocket.export.validity_depth import valid_depth
 from ballsocket.files.joint_file import JointFile
 
@@ -28,6 +29,7 @@ from .library import needs_compiler
 
 PLAIN = ForceElement(bs.HessForsbach(), HIP)
 DAMPED = ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.004))
+HERTZ = ForceElement(bs.Hertz(), HIP)
 TABULATED = ForceElement(bs.Tabulated(), HIP, damping=DAMPED.damping)
 LOSSY = ForceElement(bs.HessForsbach(), HIP, damping=DAMPED.damping, friction=Friction(coefficient=0.05))
 STATE = (1e-5, 0.0, 1.2e-4), (0.001, 0.0, 0.02), (0.0, 1.0, 2.0)
@@ -186,7 +188,7 @@ def test_missing_folders_are_created_with_their_parents(tmp_path):
 
 def test_a_cup_in_a_file_has_a_rim_and_a_file_without_a_cup_has_none():
     cup = bs.Cup(arc_of_cover=2.6)
-    words = ElementWords(friction=0.1, restitution=0.8, impact_speed=100.0)
+    words = ForceElementOptions(friction=0.1, restitution=0.8, impact_speed=100.0)
     element = words.element(JointFile(HIP, {}, cup))
     assert (element.cup, element.constants.rim) == (cup, 1.3)
     assert element.constants.sliding == 0.1
@@ -209,6 +211,48 @@ def test_every_target_writes_a_joint_without_a_load_and_reports_a_missing_compil
         fromstring(path.read_bytes())
 
 
+@pytest.fixture
+def recording_compiler(tmp_path, monkeypatch):
+    """A compiler that writes the header of this Python as a library, and a file with its arguments."""
+    if sys.platform == "win32":
+        pytest.skip("Windows does not run scripts as programs")
+    script, log = tmp_path / "recording-gcc", tmp_path / "arguments.txt"
+    script.write_text(
+        f"#!{sys.executable}\nimport sys\n"
+        f"open({str(log)!r}, 'a').write(' '.join(sys.argv[1:]) + '\\n')\n"
+        f"open(sys.argv[sys.argv.index('-o') + 1], 'wb').write(open(sys.executable, 'rb').read(4096))\n"
+    )
+    script.chmod(0o755)
+    monkeypatch.setenv("CC", str(script))
+    return log
+
+
+@pytest.mark.parametrize("library", [f"libmujoco{LIBRARY_ENDING}.9", None])
+def test_the_plugin_is_compiled_with_the_headers_and_the_library_of_mujoco(
+    library, recording_compiler, tmp_path, monkeypatch
+):
+    package = tmp_path / "site" / "mujoco"
+    package.mkdir(parents=True)
+    (package / "__init__.py").touch()
+    if library:
+        (package / library).touch()
+    monkeypatch.syspath_prepend(str(tmp_path / "site"))
+    paths, missing = written("mujoco", PLAIN, tmp_path / "hip", name="hip")
+    assert missing == ""
+    assert all(path.exists() for path in paths)
+    plain, plugin = recording_compiler.read_text().splitlines()
+    assert plain.split("-o ")[0].endswith(" hip.c ")
+    sources = f"hip.c hip_mujoco.c {package / library}" if library else "hip.c hip_mujoco.c"
+    assert f"-isystem {package / 'include'} -Wl,-rpath,{package} {sources} -o _hip_plugin{LIBRARY_ENDING} -lm" in plugin
+
+
+def test_a_plugin_without_mujoco_is_a_note_and_its_source_is_written(recording_compiler, tmp_path, monkeypatch):
+    monkeypatch.setattr("ballsocket.export.targets.find_spec", lambda name: None)
+    missing = written("mujoco", PLAIN, tmp_path / "hip", name="hip")[1]
+    assert missing == "the plug-in is not compiled: mujoco, whose headers it needs, is not installed"
+    assert (tmp_path / "hip" / "hip_mujoco.c").exists()
+
+
 def test_features_that_a_target_cannot_represent_are_reported(tmp_path):
     element = ForceElement(bs.HessForsbach(), HIP, damping=Damping(time=1e-4), friction=LOSSY.friction, cup=bs.Cup())
     lost = "friction and the retardation time of the liner and the rim of the cup: omitted"
@@ -216,6 +260,131 @@ def test_features_that_a_target_cannot_represent_are_reported(tmp_path):
         wanted = f"{target} cannot represent {lost}" if target in ("opensim", "table") else ""
         assert written(target, element, tmp_path, name="lost")[1] == wanted
     assert written("opensim", DAMPED, tmp_path)[1] == written("table", PLAIN, tmp_path)[1] == ""
+
+
+def test_files_of_other_programs_have_the_radii_in_metres_and_the_inertia_of_a_solid_ball(tmp_path):
+    """A ball of 17.9 mm and 1 kg has 0.4 m R² = 1.28e-4 kg m²."""
+    for target in ("mujoco", "opensim", "exudyn"):
+        folder = tmp_path / target
+        folder.mkdir()
+        for name, text in TARGETS[target].texts(ExportJob(element=DAMPED, name="hip", depth=0.05)).items():
+            (folder / name).write_text(text)
+    scene = fromstring((tmp_path / "mujoco" / "hip.xml").read_bytes())
+    assert float(scene.find(".//geom").get("size")) == pytest.approx(0.0179)
+    model = fromstring((tmp_path / "opensim" / "hip.osim").read_bytes())
+    inertia = [float(number) for number in model.find(".//inertia").text.split()]
+    assert inertia == pytest.approx([0.4 * 0.0179**2] * 3 + [0.0] * 3)
+    assert float(model.find(".//mass").text) == 1.0
+    program = (tmp_path / "exudyn" / "hip_exudyn.py").read_text()
+    ball, socket = re.search(r"BALL_RADIUS, SOCKET_RADIUS = (\S+), (\S+)", program).groups()
+    assert (float(ball), float(socket)) == pytest.approx((0.0179, 0.018))
+
+
+def test_the_power_law_of_exudyn_is_the_law_in_newtons_and_metres():
+    job = ExportJob(element=DAMPED, name="hip", depth=0.05)
+    program = TARGETS["exudyn"].texts(job)["hip_exudyn.py"]
+    stiffness, exponent = map(float, re.search(r"STIFFNESS, EXPONENT = (\S+), (\S+)", program).groups())
+    forces = DAMPED.potential(np.array([0.01, 0.05]))[1]
+    assert_allclose(
+        stiffness * np.array([1e-5, 5e-5]) ** exponent, forces, atol=1.01 * job.fitted_power_law.error * forces[1]
+    )
+    depth, error = re.search(r"indentation of (\S+) m: at most (\S+) % of the force", program).groups()
+    assert float(depth) == 5e-5
+    assert float(error) == pytest.approx(100 * job.fitted_power_law.error, rel=0.05)
+
+
+def test_the_expression_of_opensim_is_the_damped_law_in_metres():
+    text = TARGETS["opensim"].texts(ExportJob(element=DAMPED, name="hip", depth=0.05))["hip.osim"]
+    expression = fromstring(text.encode()).find(".//expression").text
+    force = eval(expression.replace("^", "**"), {"max": max, "min": min, "d": 1.3e-4, "ddot": 0.02})
+    assert_allclose(force, -DAMPED((0.0, 0.0, 0.13), (0.0, 0.0, 20.0)).force[2], rtol=1e-12)
+    accuracy = float(re.search(r"Accuracy: within (\S+) % of the law", text)[1])
+    assert accuracy <= 1e-10
+    plain = TARGETS["opensim"].texts(ExportJob(element=PLAIN, name="hip", depth=0.05))["hip.osim"]
+    assert "ddot" not in plain
+
+
+def test_the_text_of_a_power_law_has_its_numbers_for_every_program():
+    job = ExportJob(element=DAMPED, name="hip", depth=0.05)
+    text = TARGETS["table"].texts(job)["hip_power.txt"]
+    numbers = {name: float(value) for name, value in re.findall(r"^(\w+) = (\S+)$", text, re.MULTILINE)}
+    assert numbers == {
+        "k": job.fitted_power_law.stiffness,
+        "n": job.fitted_power_law.exponent,
+        "clearance": pytest.approx(0.1),
+    }
+    depth, error = re.search(r"error up to (\S+) mm at most (\S+) % of the force", text).groups()
+    assert float(depth) == 0.05
+    assert float(error) == pytest.approx(100 * job.fitted_power_law.error, rel=0.05)
+    adams, simpack = [line for line in text.splitlines() if line.startswith("-")]
+    words = {"MAX": max, "DM": lambda ball, socket: 0.13, "ball": 0, "socket": 0, "x": 0.13}
+    expected = -numbers["k"] * 0.03 ** numbers["n"]
+    assert eval(adams, words) == eval(simpack.replace("^", "**"), words) == pytest.approx(expected)
+
+
+def test_a_table_of_the_law_begins_without_contact_and_ends_at_its_depth():
+    text = TARGETS["table"].texts(ExportJob(element=PLAIN, name="hip", depth=0.05))["hip_law.csv"]
+    rows = np.genfromtxt(text.splitlines(), delimiter=",", names=True, deletechars="")
+    assert len(rows) == 201
+    assert_allclose((rows["indentation_mm"][0], rows["indentation_mm"][-1]), (0.0, 0.05))
+    contact = PLAIN.model.press(HIP, indentation=rows["indentation_mm"][1:])
+    for column, values in {
+        "force_N": contact.force,
+        "stiffness_N/mm": contact.stiffness,
+        "energy_N_mm": contact.energy,
+        "half_angle_deg": np.degrees(contact.half_angle),
+        "max_pressure_MPa": contact.max_pressure,
+    }.items():
+        assert rows[column][0] == 0.0
+        assert_allclose(rows[column][1:], values, rtol=1e-8)
+
+
+def test_a_power_law_with_a_small_stiffness_is_found():
+    """The search for k is relative to the force: it holds for newtons and for micronewtons."""
+    soft = ForceElement(bs.Hertz(), HIP.replace(liner=bs.Material(young=1e-6, poisson=0.4)))
+    stiff = ForceElement(bs.Hertz(), HIP.replace(liner=bs.Material(young=1.0, poisson=0.4)))
+    fits = [power_fit(element, 0.02) for element in (soft, stiff)]
+    for fit, element in zip(fits, (soft, stiff), strict=True):
+        assert fit.exponent == pytest.approx(1.5, abs=1e-6)
+        assert fit.error < 1e-6
+        assert_allclose(fit.stiffness * 0.02**fit.exponent, element.potential(np.array([0.02]))[1][0], rtol=1e-6)
+    assert fits[0].stiffness == pytest.approx(1e-6 * fits[1].stiffness, rel=1e-3)
+
+
+def test_an_expression_covers_a_socket_without_clearance():
+    """Without clearance the length of the fit is a thousandth of the socket radius."""
+    element = ForceElement(bs.Bartel(), HIP.replace(clearance=0.0))
+    fit = expression_fit(element, 0.05)
+    assert (fit.clearance, fit.length) == (0.0, pytest.approx(1e-6 * element.joint.socket_radius))
+    assert fit.error < 1e-6
+    depths = np.array([1e-3, 0.05]) * 1e3 * fit.depth
+    assert_allclose(fit(1e-3 * depths), element.potential(depths)[1], rtol=2 * fit.error + 1e-9)
+
+
+def test_the_note_on_a_range_has_errors_in_percent_and_the_depth_in_micrometres():
+    fit = expression_fit(TABULATED, 0.05)
+    error, depth, beyond = re.search(r"within (\S+) % .* up to (\S+) um .* law, (\S+) % off", fit.range_note).groups()
+    assert float(error) == pytest.approx(100 * fit.error, rel=0.5)
+    assert float(depth) == pytest.approx(1e6 * fit.depth, rel=1e-3)
+    assert float(beyond) == pytest.approx(100 * fit.error_beyond, rel=0.5)
+
+
+def test_the_depth_of_a_fit_is_that_of_a_load_or_the_largest_valid_one():
+    force = HERTZ.model.press(HIP, indentation=0.03).force
+    assert fit_depth(HERTZ, {"force": float(force)}) == pytest.approx(0.03)
+    assert fit_depth(PLAIN, {}) == valid_depth(PLAIN) > 0
+    never = ForceElement(bs.Hertz(), HIP.replace(liner_thickness=1e-3))
+    assert valid_depth(never) == 0.0
+    assert fit_depth(never, {}) == never.wall == 1e-3
+
+
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)
+def test_a_model_is_valid_up_to_the_valid_depth_and_not_much_deeper(model):
+    """The depths of a search are 5.5 % apart: 128 steps for a factor of a thousand."""
+    element = ForceElement(model, HIP)
+    depth = valid_depth(element)
+    assert model.press(HIP, indentation=depth).valid
+    assert not model.press(HIP, indentation=1.056 * depth).valid
 
 
 @pytest.mark.parametrize(

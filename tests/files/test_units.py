@@ -4,6 +4,7 @@ import time
 
 import pytest
 
+from ballsocket.files import units as module
 from ballsocket.files.units import LONGEST, convert, parse, parse_units
 from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
 
@@ -83,3 +84,20 @@ def test_units_that_do_not_convert_are_refused(unit):
 def test_a_coefficient_of_four_hundred_digits_is_too_large():
     with pytest.raises(ValueError, match="coefficient = 1000.* is too large a number"):
         wear_factor("coefficient", 10**400)
+
+
+@pytest.mark.parametrize("units", module._COMMON_FACTORS)
+def test_factors_of_common_units_are_those_of_pint(units, monkeypatch):
+    """Common units are converted without importing pint; the numbers are the same to the last bit."""
+    source, target = ({name: power} for name, power in units)
+    numbers = [0.1, 3.0, 7 / 3, 1e-9, 12345.678, *(k / 10 for k in range(100))]
+    direct = [convert(number, source, target) for number in numbers]
+    monkeypatch.setattr(module, "_COMMON_FACTORS", {})
+    assert [convert(number, source, target) for number in numbers] == direct
+
+
+@pytest.mark.parametrize("text", module._COMMON_UNITS)
+def test_names_of_common_units_are_those_of_pint(text, monkeypatch):
+    name = parse_units(text)
+    monkeypatch.setattr(module, "_COMMON_UNITS", {})
+    assert parse_units(text) == name

@@ -12,7 +12,6 @@ from hypothesis import event, given
 from hypothesis import strategies as st
 
 from ballsocket.cli import root
-from ballsocket.cli.tools.call import words_of
 from ballsocket.core.input_files import restriction_variables
 from ballsocket.core.kinds import Kind
 from ballsocket.core.storage.array_files import read_arrays
@@ -23,6 +22,7 @@ from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import TableOptions, read_cycle
 from ballsocket.hip.wear_law import wear_factor, wear_per_energy, wear_per_slide
 from ballsocket.identify.file import read_identify
+from ballsocket.mcp.call import command_line
 
 from ..cli.command import run
 from ..places import EXAMPLES
@@ -245,7 +245,7 @@ def test_calls_of_assistants(fresh, call, runs):
         if content is not None:
             arguments = {**arguments, "content": content.decode("utf-8", "replace")}
         with refused_in_a_sentence():
-            words = words_of(name, arguments, folder)
+            words = command_line(name, arguments, folder, root.load_commands())
             assert all(isinstance(word, str) for word in words)
             assert not any(Path(word).is_absolute() or word.startswith("..") for word in words)
             if runs or words[0] not in ("press", "models", "curve"):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ballsocket.hip.bands import Bands, SharedCoefficient
-from ballsocket.hip.uncertainty import _Response
+from ballsocket.hip.uncertainty import _NominalResponse
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
@@ -211,10 +211,10 @@ def test_old_names_of_the_bands_warn():
 def test_the_response_to_the_coefficient_follows_a_power_law_exactly():
     exposures = np.geomspace(1e-8, 1e-6, 5)
     table = np.stack([exposures**0.5, 3 * exposures], axis=-1)[:, None, :]
-    response = _Response(exposures=exposures, table=table)
+    response = _NominalResponse(exposures=exposures, table=table)
     points = np.array([1e-8, 3.3e-8, 7e-7])
     np.testing.assert_allclose(response.interpolate(points)[:, 0, 0], points**0.5, rtol=1e-12)
     np.testing.assert_allclose(response.interpolate(points)[:, 0, 1], 3 * points, rtol=1e-12)
-    unworn = _Response(exposures=exposures, table=0 * table)
+    unworn = _NominalResponse(exposures=exposures, table=0 * table)
     assert np.isnan(unworn.interpolate(points)).all()
     assert K > 0

@@ -56,7 +56,7 @@ def fake(monkeypatch, calls):
         calls.append(number)
         return np.full((1, len(RESULT_UNITS)), float(number)), np.ones((2, 2)), ""
 
-    monkeypatch.setattr(CohortRun, "_simulate", simulate)
+    monkeypatch.setattr(CohortRun, "_simulate_patient", simulate)
 
 
 # samples and pieces

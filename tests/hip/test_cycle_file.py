@@ -509,7 +509,9 @@ def test_body_weight_is_that_of_the_cycle_or_of_the_file():
 def test_loads_are_scaled_to_a_multiple_of_body_weight(name):
     cycle = parsed(name=name, body_weight="800 N", times_body_weight=2.5)
     assert cycle.largest_force == pytest.approx(2000.0, rel=1e-6)
-    assert parsed(name=name, body_weight="800 N", times_body_weight=100).largest_force == pytest.approx(8e4, rel=1e-6)
+    for times, force in ((0.005, 4.0), (0.5, 400.0), (100, 8e4)):
+        scaled = parsed(name=name, body_weight="800 N", times_body_weight=times)
+        assert scaled.largest_force == pytest.approx(force, rel=1e-6)
     for times in (0, -1, 101):
         with pytest.raises(
             ValueError, match=r"times_body_weight = .* is not allowed: a load is above 0 and at most 100"

@@ -1,6 +1,7 @@
 """Hip file and command: results, and inputs that are refused."""
 
 import json
+from math import acos, degrees
 
 import pytest
 
@@ -22,6 +23,28 @@ def write_edited_file(path, *changes, text=TEXT):
     file = path / "hip.toml"
     file.write_text(text, encoding="utf-8")
     return file
+
+
+def test_a_file_without_counts_runs_five_million_cycles_with_ten_equal_reports(tmp_path):
+    counts = "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n"
+    file = read_hip(write_edited_file(tmp_path, (counts, "")))
+    assert file.cycles == 5e6
+    assert file.report_at == pytest.approx([5e5 * number for number in range(1, 11)])
+    short = read_hip(write_edited_file(tmp_path, (counts, "cycles = 1e4\n")))
+    assert short.report_at == pytest.approx([1e3 * number for number in range(1, 11)])
+
+
+@pytest.mark.parametrize(
+    ("tilt", "allowed"), [("0 deg", True), ("89 deg", True), ("90.1 deg", False), ("-1 deg", False)]
+)
+def test_a_cup_is_tilted_from_the_load_by_up_to_90_degrees(tilt, allowed, tmp_path):
+    file = write_edited_file(tmp_path, ('tilt = "30 deg"', f'tilt = "{tilt}"'))
+    if allowed:
+        dome = read_hip(file).use.placed.dome
+        assert degrees(acos(dome[2])) == pytest.approx(float(tilt.split()[0]), abs=1e-5)
+    else:
+        with pytest.raises(ValueError, match="a cup's tilt from the load is 0 to 90 degrees"):
+            read_hip(file)
 
 
 def test_command_prints_json():

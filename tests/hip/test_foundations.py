@@ -13,7 +13,7 @@ from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
 from ballsocket.hip.film import film_thickness
 from ballsocket.hip.simulation import _halving_error, check_cycles
-from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, spring_foundation, subset_neighbours
+from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, neighbours_in_subset, spring_foundation
 
 from .test_wear import hip
 
@@ -98,7 +98,7 @@ def test_neighbours_cross_the_pole_and_end_at_the_rim():
     assert (after[-1] == cells[-1]).all()
     assert before[0, 0] == cells[0, meridians // 2]
     assert {left[3, 0], right[3, 0]} == {cells[3, 1], cells[3, -1]}
-    subset = subset_neighbours(pairs, cells[2:4].ravel())
+    subset = neighbours_in_subset(pairs, cells[2:4].ravel())
     assert (subset[0, 0].reshape(2, -1)[0] == np.arange(meridians)).all()  # outside the subset: the cell itself
     assert (subset[0, 1].reshape(2, -1)[0] == meridians + np.arange(meridians)).all()
 
@@ -136,6 +136,23 @@ def test_smoothing_conserves_volume_and_removes_waves_of_the_grid():
     assert smooth(np.ones_like(field)) == pytest.approx(1.0)
     checkerboard = (-1.0) ** np.arange(CELLS.meridians) * np.ones((CELLS.rings, 1))
     assert abs(smooth(checkerboard)[-3]).max() < 1e-9
+
+
+@pytest.mark.parametrize(("waves", "factor"), [(0, 1.0), (6, 0.75), (9, 0.5), (12, 0.25), (18, 0.0)])
+def test_smoothing_filters_waves_around_the_equator_by_one_two_one(waves, factor):
+    """[1 2 1]/4 multiplies a wave over n cells by cos²(π/n); there are 36 cells around the equator."""
+    sphere = even_grid(np.pi, radians(10.0))
+    assert sphere.meridians == 36
+    field = np.cos(waves * sphere.azimuth + (np.pi / 4 if waves == 18 else 0.0)) * np.ones((sphere.rings, 1))
+    equator = GridSmoothing(grid=sphere)(field)[sphere.rings // 2]
+    np.testing.assert_allclose(equator, factor * field[0], atol=0.012)
+
+
+def test_smoothing_removes_alternate_rings_at_the_equator():
+    sphere = even_grid(np.pi, radians(5.0))
+    rings = (-1.0) ** np.arange(sphere.rings)[:, None] * np.ones(sphere.meridians)
+    equator = GridSmoothing(grid=sphere)(rings)[sphere.rings // 2]
+    np.testing.assert_allclose(equator, 0.0, atol=5e-3)
 
 
 def test_load_levels_interpolate_every_load_of_one_direction():

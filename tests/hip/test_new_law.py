@@ -1,4 +1,4 @@
-"""New wear laws and creep laws, as CONTRIBUTING describes them, in a copy of the package."""
+"""New wear laws and creep laws, as docs/contributing describes them, in a copy of the package."""
 
 import json
 import os
@@ -13,9 +13,8 @@ import pytest
 
 import ballsocket as bs
 
-from ..places import ROOT
+from ..places import CONTRIBUTING
 
-CONTRIBUTING = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
 HIP = """
 joint = "hip-28"
 cycles = 1e4
@@ -66,10 +65,10 @@ assert (hidden["wear.threshold"], hidden["wear.creep_time"], hidden["wear.circul
 """
 
 
-def example(heading):
-    """Return the first Python block of a section of CONTRIBUTING."""
-    section = CONTRIBUTING.split(f"## {heading}\n")[1].split("\n## ")[0]
-    return re.search(r"^```python\n(.*?)^```$", section, re.MULTILINE | re.DOTALL)[1]
+def example(page):
+    """Return the Python block of a page."""
+    text = (CONTRIBUTING / f"{page}.md").read_text("utf-8")
+    return re.search(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)[1]
 
 
 @pytest.fixture(scope="module")
@@ -78,11 +77,11 @@ def package(tmp_path_factory):
     folder = tmp_path_factory.mktemp("laws")
     copy = folder / "ballsocket"
     shutil.copytree(Path(bs.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))
-    for heading, module, law, registry, last in (
-        ("A new wear law", "threshold_wear", "ThresholdWear", "wear_laws", "    CrossShear,\n)"),
-        ("A new creep law", "exponential_creep", "ExponentialCreep", "creep_laws", "    KelvinVoigtChain,\n)"),
+    for page, module, law, registry, last in (
+        ("wear_law", "threshold_wear", "ThresholdWear", "wear_laws", "    CrossShear,\n)"),
+        ("creep_law", "exponential_creep", "ExponentialCreep", "creep_laws", "    KelvinVoigtChain,\n)"),
     ):
-        code = example(heading)
+        code = example(page)
         assert code.count("\n") <= 21
         (copy / "hip" / f"{module}.py").write_text(code, "utf-8")
         text = (copy / "hip" / f"{registry}.py").read_text("utf-8")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.hip import (
     Activity,
     Archard,
@@ -135,6 +136,19 @@ def test_half_angles_of_round_patches():
         assert half_angles(use.grid, use.reach, (field > 0) * 1.0)[0] == pytest.approx(angle, abs=3e-2)
 
 
+def test_half_angles_of_caps_about_the_pole_are_exact_on_fine_rings():
+    """Linear interpolation between rings of 1° errs by the square of a ring; a full bore ends at its reach."""
+    grid = even_grid(np.pi / 2, np.radians(1.0))
+    polar = np.repeat(grid.polar, grid.meridians)
+    angles = np.array([0.1, 0.5, 1.0, 1.5, 1.55])
+    fields = np.cos(polar) - np.cos(angles)[:, None]
+    np.testing.assert_allclose(half_angles(grid, np.pi / 2, fields), angles, atol=3e-4)
+    ends = half_angles(grid, np.pi / 2, np.stack([0 * polar + 1.0, 0 * polar - 1.0, 1.2 - polar]))
+    np.testing.assert_allclose(ends, [np.pi / 2, 0.0, 1.2], atol=1e-12)
+    half = np.where(np.tile(np.cos(grid.azimuth), grid.rings) > 0, 1.2 - polar, -1.0)
+    assert 1 - np.cos(half_angles(grid, np.pi / 2, half[None])[0]) == pytest.approx((1 - np.cos(1.2)) / 2, rel=0.02)
+
+
 def test_a_run_without_a_yield_stress_has_no_utilisation():
     joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=0.4))
     history = use_of(joint, iso_14242_1(12)).after(1e4)
@@ -146,6 +160,13 @@ def test_a_run_without_contact_has_no_check():
     history = use_of(HIP, constant_load(8, force=0.0)).after(1e4)
     assert history.use.unworn_checks == ()
     assert history.valid
+    assert (history.error.blocks, history.error.volume, history.error.depth) == (0.0, 0.0, 0.0)
+    summary = history.summary()
+    zeros = ("pressure_slide_integral_Nm", "cross_shear_mean", "crossing_angle_mean_deg")
+    assert [summary["cycle"][name] for name in zeros] == [0.0, 0.0, 0.0]
+    assert summary["cycle"]["peaks"] == {"force_N": 0.0, "max_pressure_MPa": 0.0, "speed_mm_s": 0.0}
+    assert summary["initial"] == {"wear_mm3_per_Mc": 0.0, "depth_mm_per_Mc": 0.0}
+    assert (summary["cycle"]["edge"], summary["film"]) == (None, {})
 
 
 def test_the_command_reports_validity(tmp_path):

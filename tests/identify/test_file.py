@@ -307,6 +307,12 @@ def test_a_file_states_scatter_priors_and_options(question):
     np.testing.assert_allclose(area.uncertainty, 0.01 * area.values)
 
 
+def test_loads_without_a_stated_uncertainty_are_exact(question):
+    assert "load_uncertainty" not in question.read_text("utf-8")
+    for data in read_identify(question).data:
+        assert not data.load_uncertainty.any()
+
+
 def test_a_file_chooses_columns_load_and_gaps(question):
     csv(question.parent, "force_N,indentation_um,area_mm2\n100,20,200\n200,,300\n300,30,400\n")
     text = question.read_text("utf-8").replace('machine = "frame"', 'gaps = "leave-out"\nquantities = "area"', 1)

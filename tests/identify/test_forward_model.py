@@ -229,6 +229,17 @@ def test_a_lower_bound_far_below_the_result_has_no_information():
     np.testing.assert_allclose(linear.fisher_information(linear.transform.to_theta(TRUTH)), 2 / np.pi * full, rtol=1e-9)
 
 
+@pytest.mark.parametrize("z", [-1.5, -0.3, 0.6])
+@pytest.mark.parametrize("scatter", [NormalScatter(), HeavyTailed()], ids=["normal", "heavy-tailed"])
+def test_the_information_of_lower_bounds_is_the_curvature_of_the_cost(scatter, z):
+    linear = linear_misfit(saturation=-10.0, scatter=scatter)
+    object.__setattr__(linear, "value", MATRIX @ TRUTH - 0.02 * z)
+    theta, h = linear.transform.to_theta(TRUTH), 2e-3
+    above, below = (linear.costs(theta + side * h * np.eye(2)) for side in (1, -1))
+    curvature = (above - 2 * linear.costs(theta[None]) + below) / h**2
+    np.testing.assert_allclose(np.diag(linear.fisher_information(theta)), np.maximum(curvature, 0.0), rtol=1e-3)
+
+
 def test_the_log_posterior_is_prior_plus_likelihood_within_the_ranges():
     problem = misfit(*DATA)
     residuals = problem.residuals(problem.forward.results_at(TRANSFORM.to_values(THETA)))

@@ -77,7 +77,7 @@ def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
     from ballsocket.identify.jax_derivatives import by_tracing
 
     misfit = bs.identify(MODEL, JOINT, torques(), RANGE).misfit
-    theta = misfit.transform.theta([0.06])
+    theta = misfit.transform.to_theta([0.06])
     for traced, differences in zip(
         by_tracing(misfit.forward, misfit.transform, theta),
         by_differences(misfit.forward, misfit.transform, theta),
@@ -123,7 +123,7 @@ def test_file_and_command_identify_the_coefficient(tmp_path, axis, angle):
     values = MODEL.press(JOINT, force=np.array([1e3, 2e3, 3e3])).friction_torque(0.06, angle)
     text = ", ".join(f'"{value / 1e3:.9f} N m"' for value in values)
     (tmp_path / "friction.toml").write_text(FILE.format(values=text, axis=axis), "utf-8")
-    result = read_identify(tmp_path / "friction.toml").identified()
+    result = read_identify(tmp_path / "friction.toml").identify_unknowns()
     assert result.point["friction_coefficient"] == pytest.approx(0.06, rel=1e-6)
     done = run("identify", "friction.toml", "--json", folder=tmp_path)
     assert done.returncode == 0, done.stderr

@@ -20,7 +20,7 @@ from ballsocket.identify.file import read_identify
 from ballsocket.problem.cup import Cup
 from ballsocket.studies import Normal
 
-from ..places import ROOT
+from ..places import CONTRIBUTING, ROOT
 
 JOINT = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
 FORCE = np.linspace(0.5, 40.0, 12)
@@ -129,9 +129,9 @@ def test_the_how_to_names_every_registered_unknown():
     assert all(f"`{name}`" in text for name in (*MODEL_NUMBERS, *OBSERVABLE_NUMBERS, *MACHINE_ERRORS))
 
 
-SECTION = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("## A new unknown")[2].partition("\n## ")[0]
-FILES = re.findall(r"^```python\n(.*?)^```$", SECTION, re.MULTILINE | re.DOTALL)
-PATHS = re.findall(r"`src/ballsocket/identify/(\w+)\.py`", SECTION)[:2]
+PAGE = (CONTRIBUTING / "unknown.md").read_text("utf-8")
+FILES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+PATHS = re.findall(r"`src/ballsocket/identify/(\w+)\.py`", PAGE)[:2]
 
 SCRIPT = """
 import json, sys
@@ -168,7 +168,7 @@ main()
 
 @pytest.fixture(scope="module")
 def outputs(tmp_path_factory):
-    """Lines that a script prints in a copy of the package with the two files of CONTRIBUTING."""
+    """Lines that a script prints in a copy of the package with the two files of the page."""
     folder = tmp_path_factory.mktemp("unknown")
     room = folder / "ballsocket" / "identify"
     ignored = shutil.ignore_patterns("__pycache__")

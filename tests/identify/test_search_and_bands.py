@@ -18,7 +18,7 @@ from ballsocket.identify.information import (
     ProfileEnd,
 )
 from ballsocket.identify.misfit import FitResult
-from ballsocket.identify.search import find_best_fit, minimise
+from ballsocket.identify.search import find_best_fit, minimise_misfit
 from ballsocket.identify.unknowns import ParameterTransform, Unknown
 from ballsocket.studies import Normal, Rectangular
 
@@ -56,7 +56,7 @@ def test_the_search_stays_within_the_ranges():
     misfit = linear_misfit(unknowns=(unknown(NAMES[0], low=0.15, high=0.4), unknown(NAMES[1])))
     best = find_best_fit(misfit, seed=0)
     assert misfit.transform.to_values(best.theta)[0] == pytest.approx(0.15)
-    assert minimise(misfit, misfit.transform.high).theta == pytest.approx(best.theta, abs=1e-6)
+    assert minimise_misfit(misfit, misfit.transform.high).theta == pytest.approx(best.theta, abs=1e-6)
 
 
 def test_two_valleys_of_equal_depth_are_rivals():

@@ -8,6 +8,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.models import table_3
+from ballsocket.models.closed_form import ClosedForm
 from ballsocket.models.kinematics import angle_of, versine_of
 
 from ..joints import HIP
@@ -166,6 +167,8 @@ def test_numbers_outside_their_range_are_refused(make, message):
 
 def test_constants_at_the_end_of_their_range_are_accepted():
     assert bs.corrected_vessel(0.01, 0.0, 0.0).constants == (0.01, 0.0, 0.0)
+    assert bs.corrected_vessel(1.0, 0.0, -0.95).constants == (1.0, 0.0, -0.95)  # below 0 only beyond κ = 1
+    assert bs.corrected_vessel(0.5, -1.9, 1.9).constants == (0.5, -1.9, 1.9)  # least at κ = 1/2, where it is 0.025
     assert bs.polynomial(0.0, 0.0, 1.0).constants == (0.0, 0.0, 1.0)
     assert bs.AdhesiveSocket(work_of_adhesion=0.0).work_of_adhesion == 0.0
     assert bs.Steuermann(exponent=1).exponent == 1
@@ -250,3 +253,107 @@ def test_validity_ends_where_stated():
                 assert bool(limit.holds(contacts[0])), (name, limit)
                 assert not bool(limit.holds(contacts[1])), (name, limit)
                 assert not contacts[1].valid
+
+
+@pytest.mark.parametrize("name", ["hess-forsbach", "bartel", "hertz", "liu-reconstruction", "adhesive", "refined"])
+def test_largest_pressure_of_most_models_is_exactly_at_the_pole(name):
+    contact = bs.catalogue[name].press(HIP, indentation=0.03)
+    assert contact.max_pressure_angle == 0.0
+    assert contact.max_pressure == pytest.approx(contact.pole_pressure, rel=1e-12)
+
+
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz(), bs.LiuReconstruction()], ids=lambda model: model.name)
+def test_common_inversion_finds_the_indentation_of_the_closed_one(model):
+    joint = HIP.with_floats()
+    forces = [1e-9, 1e-3, 0.5, 30.0, 3000.0, 1e6]
+    for force in forces:
+        assert ClosedForm.indentation(model, joint, force) == pytest.approx(model.indentation(joint, force), rel=1e-10)
+    assert ClosedForm.indentation(model, joint, 0.0) == 0.0
+    together = ClosedForm.indentation(model, joint, np.array([0.0, *forces]))
+    np.testing.assert_allclose(together[1:], model.indentation(joint, np.array(forces)), rtol=1e-10)
+    assert together[0] == 0.0
+
+
+@pytest.mark.parametrize("name", ["hess-forsbach", "bartel", "hertz", "liu-reconstruction", "adhesive"])
+def test_law_of_a_closed_form_is_zero_without_contact_and_that_of_a_press_in_contact(name):
+    law = bs.catalogue[name].law(HIP)
+    assert law(-1e-12) == law(-2.0) == (0.0, 0.0)
+    for depth in (1e-3, 0.5):
+        contact = bs.catalogue[name].press(HIP, indentation=depth)
+        assert law(depth) == pytest.approx((contact.force, contact.stiffness), rel=1e-12)
+
+
+def test_half_space_fails_exactly_beyond_a_quarter_turn():
+    radius = HIP.ball_radius * HIP.socket_radius / HIP.clearance
+    for angle, status in ((1.2, bs.Status.OK), (1.570, bs.Status.OK), (1.572, bs.Status.BEYOND_EQUATOR)):
+        contact = bs.Hertz().press(HIP, indentation=(angle * HIP.socket_radius) ** 2 / radius)
+        assert contact.half_angle == pytest.approx(angle, rel=1e-12)
+        assert contact.status is status
+
+
+def test_no_indentation_has_a_half_angle_below_that_of_the_adhering_patch():
+    """At d = 0 the patch of cos ε = 1 - η adheres; a smaller one belongs to a ball that is pulled."""
+    model = bs.AdhesiveSocket(work_of_adhesion=1e-3)
+    patch = np.arccos(1 - model.adhesion_number(HIP))
+    assert model.press(HIP, indentation=0.0).half_angle == pytest.approx(patch, rel=1e-9)
+    contact = model.press(HIP, half_angle=patch * np.array([0.99, 1.01]))
+    np.testing.assert_array_equal(contact.status, [bs.Status.NOT_REACHED, bs.Status.OK])
+    assert contact.indentation[1] > 0
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_monotone_slopes_are_those_of_scipy(seed):
+    """Of rough data too, whose slopes at the ends are limited."""
+    from scipy.interpolate import PchipInterpolator
+
+    random = np.random.default_rng(seed)
+    knots, values = np.cumsum(random.uniform(0.1, 2.0, 6)), random.normal(size=(30, 6))
+    expected = PchipInterpolator(knots, values, axis=1).derivative()(knots)
+    np.testing.assert_allclose(table_3._monotone_slopes(knots, values), expected, rtol=1e-12, atol=1e-13)
+
+
+@pytest.mark.parametrize(("share", "holds"), [(0.98, True), (1.02, False)])
+def test_nearly_incompressible_liner_limits_the_contact_width(share, holds):
+    """(ν - 0.43) a/L is at most 0.04: at ν = 0.48 a contact of 0.8 liner thicknesses."""
+    joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=0.48), liner_thickness=12.0)
+    contact = bs.HessForsbach().press(joint, half_angle=np.arcsin(share * 0.8 * 12.0 / 18.0))
+    assert contact.width_ratio == pytest.approx(share * 0.8, rel=1e-12)
+    assert any("(ν - 0.43) a/L" in note for note in contact.notes) is not holds
+
+
+def test_compressible_liner_does_not_limit_the_contact_width():
+    joint = replace(HIP, liner=bs.Material(young=1000.0, poisson=0.4), liner_thickness=3.0)
+    contact = bs.HessForsbach().press(joint, half_angle=1.2)
+    assert contact.width_ratio > 5.0
+    assert not any("(ν - 0.43) a/L" in note for note in contact.notes)
+
+
+def test_pressure_of_a_pin_is_even_and_ends_at_its_edge():
+    joint = bs.Joint(ball_radius=10.0, clearance=0.02, liner_thickness=np.inf, liner=bs.STEEL, ball=bs.STEEL)
+    contact = bs.PinInHole().press(joint, line_load=500.0)
+    angle = np.linspace(0.0, 0.999, 7) * contact.half_angle
+    np.testing.assert_allclose(contact.pressure(-angle), contact.pressure(angle), rtol=1e-14)
+    assert np.all(np.diff(contact.pressure(angle)) < 0)
+    np.testing.assert_array_equal(contact.pressure(np.array([1.001 * contact.half_angle, 2.0, np.pi, -3.0])), 0.0)
+
+
+def test_text_of_a_pin_has_load_half_angle_in_degrees_and_pressure():
+    joint = bs.Joint(ball_radius=10.0, clearance=0.02, liner_thickness=np.inf, liner=bs.STEEL, ball=bs.STEEL)
+    contact = bs.PinInHole().press(joint, half_angle=np.radians(30.0))
+    first, *lines = repr(contact).splitlines()
+    assert first.startswith("pin-in-hole on R1 10 mm")
+    numbers = {line.split()[0]: (float(line.split()[1]), line.split()[2]) for line in lines[:3]}
+    assert numbers["line_load"] == (pytest.approx(contact.line_load), "N/mm")
+    assert numbers["half_angle"] == (pytest.approx(30.0), "deg")
+    assert numbers["max_pressure"] == (pytest.approx(contact.max_pressure), "MPa")
+
+
+def test_blocks_of_contacts_of_a_plane_layer_do_not_change_their_results(monkeypatch):
+    depths = np.array([[0.004, 0.02, 0.05], [0.001, 0.01, 0.03]])
+    together = bs.PlaneLayer().press(HIP, indentation=depths)
+    force, energy = together.force, together.energy
+    monkeypatch.setattr("ballsocket.models.plane_layer._BLOCK", 8000)
+    apart = bs.PlaneLayer().press(HIP, indentation=depths)
+    np.testing.assert_allclose(apart.force, force, rtol=1e-10)
+    np.testing.assert_allclose(apart.energy, energy, rtol=1e-10)
+    np.testing.assert_allclose(apart.pressure(0.1), together.pressure(0.1), rtol=1e-10)

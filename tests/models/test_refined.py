@@ -9,6 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.models.liner_compliance import liner_coefficients, log_compliance, log_compliance_any_wave
+from ballsocket.models.refined import RefinedSolution
 from ballsocket.models.refined_state import NUMBERS
 
 from ..joints import HIP, random_joint
@@ -199,6 +200,30 @@ def test_joints_and_loads_outside_the_domain_have_no_result():
     assert np.isnan(far.energy)
     assert MODEL.press(HIP, half_angle=1.5).status is bs.Status.NOT_REACHED
     assert MODEL.press(HIP, indentation=1e5).status is bs.Status.NOT_REACHED
+
+
+@pytest.mark.parametrize(("coefficient", "position"), [(0.3, 0.0), (0.5, 0.0), (0.8, 0.25), (2.0, 0.5)])
+def test_largest_pressure_of_a_full_profile_lies_on_a_ring(coefficient, position):
+    """sqrt(1 - y)(1 + β y) is largest at y = (2β - 1)/(3β) for β above 1/2, which no fit has reached."""
+    solution = RefinedSolution(joint=HIP, edge=0.9)
+    vars(solution)["_shape_coefficient"] = coefficient
+    angles = np.linspace(0.0, 0.9, 20_001)
+    profile = solution.pressure(angles)
+    assert solution.max_pressure == pytest.approx(profile.max(), rel=1e-8)
+    assert solution.max_pressure_angle == pytest.approx(angles[profile.argmax()], abs=5e-5)
+    assert np.sin(solution.max_pressure_angle / 2) ** 2 / np.sin(0.45) ** 2 == pytest.approx(position, abs=1e-12)
+
+
+def test_foundation_modulus_is_infinite_without_load_and_missing_without_a_solution():
+    contact = MODEL.press(HIP, force=np.array([0.0, 3000.0, 1e9]))
+    assert contact.foundation_modulus[0] == np.inf
+    assert contact.foundation_modulus[1] == pytest.approx(contact.pole_pressure[1] / contact.indentation[1], rel=1e-12)
+    assert np.isnan(contact.foundation_modulus[2])
+
+
+def test_largest_half_angle_is_85_degrees():
+    contact = MODEL.press(joint_of(0.4, 2.0), half_angle=np.radians([84.9, 85.1]))
+    np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.NOT_REACHED])
 
 
 def test_validity_is_the_box_of_the_fit():

@@ -24,7 +24,7 @@ def report(tmp_path_factory):
     pieces = quick_plan().parts
     results = {
         "about": ["By the exact solution."],
-        "claims": [claims.judged(claim, EXACT).summary() for claim in claims.CLAIMS[:6]],
+        "claims": [claims.judge(claim, EXACT).summary() for claim in claims.CLAIMS[:6]],
         "elsewhere": [pieces["elsewhere"]["half_angles_of_jin"]()],
         "table_3": [pieces["table_3"]["exact 0.4"]()],
         "figure_3": [curves.figure_3_or_4(3, {name: model}).summary() for name, model in FEW.items()],

@@ -89,6 +89,31 @@ def test_replaced_lengths_keep_the_others():
     assert both["ball_radius"] == 17.9  # without the digits of rounding
 
 
+@pytest.mark.parametrize(
+    ("ball", "socket", "clearance"),
+    [(17.9, 18.0, 0.1), (9.7, 9.9, 0.2), (179.9, 180.0, 0.1), (0.8, 0.9, 0.1), (0.01, 0.03, 0.02), (0.3, 0.4, 0.1)],
+)
+def test_difference_of_two_radii_has_their_digits(ball, socket, clearance):
+    """Rounding errors of the difference, as in 0.9 - 0.8 = 0.09999999999999998, are removed at every size."""
+    assert derive_lengths({"ball_radius": ball, "socket_radius": socket}, {"liner_thickness": 5.0}, 0.0) == {
+        "ball_radius": ball,
+        "clearance": clearance,
+        "liner_thickness": 5.0,
+    }
+    thin = derive_lengths({"ball_radius": 1234.5, "socket_radius": 1234.50000001, "liner_thickness": 5.0}, {}, 0.0)
+    assert thin["clearance"] == pytest.approx(1e-8, rel=1e-4)
+
+
+def test_lengths_of_arrays_are_derived_element_by_element():
+    socket, ball = np.array([17.25, 18.0]), np.array([[17.0], [16.5]])
+    joint = bs.Joint(socket_radius=socket, ball_radius=ball, outer_radius=23.0, liner=bs.UHMWPE)
+    np.testing.assert_allclose(joint.clearance, [[0.25, 1.0], [0.75, 1.5]], rtol=1e-13)
+    np.testing.assert_allclose(joint.liner_thickness, [5.75, 5.0], rtol=1e-13)
+    smaller = bs.Joint(socket_radius=socket, clearance=0.25, liner_thickness=5.0, liner=bs.UHMWPE)
+    np.testing.assert_allclose(smaller.ball_radius, [17.0, 17.75], rtol=1e-13)
+    np.testing.assert_allclose(smaller.outer_radius, [22.25, 23.0], rtol=1e-13)
+
+
 def test_an_interference_is_a_negative_clearance_of_at_most_a_tenth_of_the_radius():
     joint = bs.Joint(ball_radius=17.0, interference=0.05, liner_thickness=5.5, liner=bs.UHMWPE)
     assert joint.clearance == -0.05

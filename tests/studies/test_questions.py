@@ -383,7 +383,7 @@ def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_p
     ranges = ("--x", "ball_radius=12..16 mm", "--y", "liner_thickness=4..6 mm", "--points", "3")
     found = command(tmp_path, "map", backed, *ranges, "--json")
     assert json.loads(found.stdout)["model"] == "exact"
-    assert "exact answers, since tabulated knows none of these joints" in found.stderr
+    assert "model exact is used, since none of these joints is in the tables of tabulated" in found.stderr
     limited = command(tmp_path, "map", backed, *ranges, "--limit", "max_pressure<=1")
     assert "no point of the map is allowed by max_pressure ≤ 1, as exact answers" in limited.stderr
     named = command(tmp_path, "map", backed, *ranges, "--model", "tabulated")

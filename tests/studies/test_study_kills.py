@@ -173,7 +173,7 @@ def test_control_c_leaves_a_store_that_resumes(tmp_path):
     os.killpg(process.pid, signal.SIGINT)
     _, said = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
-    assert "points are kept in s.zarr: run it again to go on" in " ".join(said.split())
+    assert "points are stored in s.zarr: run the command again to resume" in " ".join(said.split())
     before = done_blocks(tmp_path / "s.zarr")
     assert before >= 1
     assert started(tmp_path).wait() == 0

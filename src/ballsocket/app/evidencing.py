@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from ..evidence.folder import SUMS, WORK, names_of, write
-from ..evidence.pack import gathered, plan
+from ..evidence.pack import gather_evidence
+from ..evidence.plan import plan
 from ..files.joint_file import JointFile
 from ..output.evidence_page import conclusions, evidence_page
 from .asked import Asked, written
@@ -64,7 +65,7 @@ def packed(asked: Asked, file: JointFile, use: Use, folder: str, told: Told) -> 
         done.append(name)
         told(Reached(share=min(0.95, len(done) / pieces), words=f"done: {name}"))
 
-    record = gathered(question, place / WORK, heard)
+    record = gather_evidence(question, place / WORK, heard)
     write(question, record, evidence_page, place)
     return Packed(conclusions=tuple(conclusions(record)), record=record, content=_zipped(place, names_of(question)))
 

@@ -13,7 +13,7 @@ from ..elasticity.off_axis.directions import unit_vectors
 from ..files.joint_file import JointFile
 from ..hip import Lubricant
 from ..hip.ball_wear import interpolation_at
-from ..hip.contact_checks import largest_utilisation, list_notes
+from ..hip.contact_checks import largest_utilisation, list_check_notes
 from ..hip.cycle_registry import CYCLES
 from ..hip.film import film
 from .in_use import Own, Use, hip_of
@@ -129,7 +129,7 @@ def gaited(file: JointFile, use: Use, own: Own | None, told: Told) -> Gaited:
             **found.summary(),
             "edge": None if worst is None else worst.summary(),
         },
-        notes=(*hip.notes, *list_notes([("in the first cycle", checks)])),
+        notes=(*hip.notes, *list_check_notes([("in the first cycle", checks)])),
     )
 
 

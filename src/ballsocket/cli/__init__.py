@@ -1,5 +1,34 @@
-"""Commands of the shell; the module of a command is imported when the command is used."""
+"""Command line of ballsocket: the table of its commands, each of which is imported when it is called."""
 
-from .root import main
+from .root import CommandEntry, add_commands, main
+
+add_commands(  # in the order in which `ballsocket --help` lists them
+    {
+        "press": CommandEntry("ballsocket.cli.press", "Press a ball into its socket under one load."),
+        "curve": CommandEntry("ballsocket.cli.press", "Press a joint in equal steps from zero to a load."),
+        "orient": CommandEntry("ballsocket.cli.orient", "Map edge distance and peak pressure over cup orientations."),
+        "map": CommandEntry("ballsocket.cli.design", "Map the contact over two parameters of a joint."),
+        "optimise": CommandEntry("ballsocket.cli.design", "Find the best joint within limits, for one goal or two."),
+        "sensitivity": CommandEntry("ballsocket.cli.design", "Compute which parameter's scatter matters most."),
+        "study": CommandEntry("ballsocket.cli.study", "Press a joint at every point of a study file."),
+        "hip": CommandEntry("ballsocket.cli.hip", "Simulate wear of a hip over millions of gait cycles."),
+        "models": CommandEntry("ballsocket.cli.lists", "List contact models with their ranges and sources."),
+        "presets": CommandEntry("ballsocket.cli.lists", "List materials and joints by name, with their sources."),
+        "cite": CommandEntry("ballsocket.cli.lists", "Print the BibTeX references of models."),
+        "identify": CommandEntry("ballsocket.cli.identify", "Identify parameters of a joint from measurements."),
+        "calibrate": CommandEntry("ballsocket.cli.identify", "Fit a foundation modulus to the exact solution."),
+        "build-tables": CommandEntry(
+            "ballsocket.cli.identify", "Build the tables of the model `tabulated`.", hidden=True
+        ),
+        "evidence": CommandEntry("ballsocket.cli.evidence", "Write or check an evidence pack for a computed number."),
+        "deck": CommandEntry("ballsocket.cli.deck", "Write a finite-element input file for CalculiX or Abaqus."),
+        "fmu": CommandEntry("ballsocket.cli.export", "Write a joint as a functional mock-up unit (FMI)."),
+        "export": CommandEntry("ballsocket.cli.export", "Write a joint as a force element for another program."),
+        "schema": CommandEntry("ballsocket.cli.schema", "Print the JSON schema of a kind of input file."),
+        "app": CommandEntry("ballsocket.cli.servers", "Open the explorer, an interactive page, in a browser."),
+        "serve-mcp": CommandEntry("ballsocket.cli.servers", "Offer the commands to AI assistants (MCP)."),
+        "reproduce": CommandEntry("ballsocket.cli.reproduce", "Recompute the results of Heß & Forsbach 2021."),
+    }
+)
 
 __all__ = ["main"]

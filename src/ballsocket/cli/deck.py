@@ -1,4 +1,4 @@
-"""`deck`: the finite-element model of a joint as an input file for CalculiX or Abaqus."""
+"""Command `deck`: the finite-element model of a joint as an input file for CalculiX or Abaqus."""
 
 from __future__ import annotations
 
@@ -11,35 +11,48 @@ import typer
 
 from ..files.joint_file import JointFile, read_aim
 from ..output.reference_terminal import print_rival, print_tilted_rival
-from .elements import CupWords, MeshWords, timed
-from .groups import grouped
+from .elasticity_options import CupOptions, MeshOptions, solve_mesh
+from .options import JointName, JointOptions, LoadOptions, expand_groups
 from .root import app, echo_path
-from .words import JointWords, LoadWords
+
+_TILTED_ELEMENT_ANGLE = 6.0  # degrees of the bore per element, by default
 
 
 @app.command()
-@grouped
+@expand_groups
 def deck(
     *,
-    joint: Annotated[str | None, typer.Argument(help="A joint file (TOML), or the name of a preset.")] = None,
-    words: JointWords,
-    out: Annotated[Path, typer.Option(help="The folder to write into; made if it is not there.")],
-    load: LoadWords,
-    steps: Annotated[int, typer.Option(min=1, max=1000, help="Equal indentations up to the load's.")] = 8,
+    joint: JointName = None,
+    joint_options: JointOptions,
+    out: Annotated[Path, typer.Option(help="Output folder; created if it does not exist.")],
+    load_options: LoadOptions,
+    steps: Annotated[
+        int, typer.Option(min=1, max=1000, help="Number of equal indentation steps up to that of the load.")
+    ] = 8,
     scale: Annotated[
-        float, typer.Option(help="Of clearance and indentation; 1 has contact on the deformed shape.")
+        float,
+        typer.Option(
+            help="Factor on clearance and indentation; small: contact on the undeformed shape, 1: on the deformed."
+        ),
     ] = 1e-3,
-    tilt: Annotated[str | None, typer.Option(help="'45 deg' from the cup's axis: a deck of three dimensions.")] = None,
-    cup: CupWords,
-    mesh: MeshWords,
-    run: Annotated[bool, typer.Option("--run", help="Run ccx on it, and show its answer beside ours.")] = False,
+    tilt: Annotated[
+        str | None, typer.Option(help="Angle between load and cup axis: '45 deg'. Writes a three-dimensional model.")
+    ] = None,
+    cup: CupOptions,
+    mesh: MeshOptions,
+    run: Annotated[bool, typer.Option("--run", help="Run CalculiX (ccx), and compare its results with ours.")] = False,
 ) -> None:
-    """Write the finite-element model of a joint as an input file for CalculiX or Abaqus, with the numbers to expect."""
-    file = words.or_named(joint)
+    """Write a finite-element input file for CalculiX or Abaqus.
+
+    The folder also gets the results to expect.
+    """
+    file = joint_options.read(joint)
+    load = load_options.read(file)
     if tilt is not None:
-        _tilted(replace(file, cup=cup.on(file.cup)), load.or_of(file), read_aim({"tilt": tilt})["tilt"], out, mesh, run)
+        angle = read_aim({"tilt": tilt})["tilt"]
+        _write_tilted(replace(file, cup=cup.apply_to(file.cup)), load, angle, out, mesh, run)
         return
-    contact, _ = timed(mesh.model(cup.on(file.cup), meshes=1), file.joint, load.or_of(file))
+    contact, _ = solve_mesh(mesh.model(cup.apply_to(file.cup), meshes=1), file.joint, load)
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))
     from ..elasticity.finite_elements.decks.calculix import run as run_ccx
@@ -51,14 +64,16 @@ def deck(
         print_rival(made.expected, run_ccx(out))
 
 
-def _tilted(file: JointFile, load: dict[str, float], tilt: float, out: Path, mesh: MeshWords, run: bool) -> None:
-    """A deck of a ball that is displaced at a tilt."""
+def _write_tilted(
+    file: JointFile, load: dict[str, float], tilt: float, out: Path, mesh: MeshOptions, run: bool
+) -> None:
+    """Write the input file of a ball that is displaced at a tilt in rad."""
     from ..elasticity.off_axis.deck import TiltedDeck
     from ..elasticity.off_axis.deck import run as run_ccx
 
     if "indentation" not in load:
         raise ValueError("a tilted deck displaces the ball: give an indentation")
-    size = mesh.size or radians(_WIDE) * float(file.joint.socket_radius)
+    size = mesh.size or radians(_TILTED_ELEMENT_ANGLE) * float(file.joint.socket_radius)
     made = TiltedDeck(
         joint=replace(file.joint, ball=None),
         cup=file.cup,
@@ -69,6 +84,3 @@ def _tilted(file: JointFile, load: dict[str, float], tilt: float, out: Path, mes
     echo_path(made.write(out), f": {made.ball.last_number} nodes, rigid ball")
     if run:
         print_tilted_rival(made.expected["force_vector"], run_ccx(out)["force_vector"])
-
-
-_WIDE = 6.0  # degrees

@@ -1,4 +1,4 @@
-"""`evidence`: why a computed number may be trusted, as a folder that can be handed in."""
+"""Command `evidence`: evidence packs, folders that document and check a computed number."""
 
 from __future__ import annotations
 
@@ -12,19 +12,20 @@ import typer
 from rich.console import Console
 from rich.progress import Progress
 
-import ballsocket as bs
-
 from ..core.checks import needs
 from ..core.executors.processes import Engine, Processes
 from ..core.storage.fingerprint import fingerprint
-from ..evidence.comparison import Signed, compare, signature_of
-from ..evidence.folder import WORK, check_room, digest_of, sign_pack, write
-from ..evidence.pack import Listener, count_kept, gathered, remove_kept
+from ..evidence.comparison import compare
+from ..evidence.folder import WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
+from ..evidence.pack import Listener, gather_evidence
+from ..evidence.plan import count_stored_pieces, remove_stored_pieces
 from ..evidence.question import Question, read_question
 from ..evidence.signature import PublicKey, SignatureError, public_key_of, read_private_key, read_public_key
 from ..output.evidence_page import conclusions, evidence_page
+from ..version import __version__
+from .json_answers import echo_json
+from .options import AsJson
 from .root import FAILURE, app, echo_path
-from .words import AsJson, echo_json
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
@@ -32,29 +33,31 @@ if TYPE_CHECKING:
 
 @app.command()
 def evidence(
-    question: Annotated[Path | None, typer.Argument(help="A question file (TOML).")] = None,
-    out: Annotated[Path, typer.Option(help="The folder to write into; made if it is not there.")] = Path("evidence"),
+    question: Annotated[Path | None, typer.Argument(help="Question file (TOML).")] = None,
+    out: Annotated[Path, typer.Option(help="Output folder; created if it does not exist.")] = Path("evidence"),
     check: Annotated[
-        Path | None, typer.Option(help="A folder of evidence: compute all of it again, and say what differs.")
+        Path | None, typer.Option(help="Folder of an evidence pack: compute everything again and list the differences.")
     ] = None,
     sign: Annotated[
-        Path | None, typer.Option(help="Ed25519 private key of OpenSSH that signs the checksums of the pack.")
+        Path | None, typer.Option(help="File of an OpenSSH private key (Ed25519) that signs the checksums of the pack.")
     ] = None,
     verify: Annotated[
-        Path | None, typer.Option(help="With --check: public key that the signature of the pack must match.")
+        Path | None,
+        typer.Option(help="With --check: public key file that must match the signature of the pack."),
     ] = None,
     as_json: AsJson = False,
-    workers: Annotated[int | None, typer.Option(help="Processes at work; as many as there are cores.")] = None,
+    workers: Annotated[int | None, typer.Option(help="Number of worker processes. Default: number of cores.")] = None,
 ) -> None:
-    """Gather the evidence for a question, verified, compared and with its uncertainty, as one page and JSON.
+    """Write or check an evidence pack for a computed number.
 
-    A stopped run is resumed. A signed pack is computed in one run.
+    The pack is a page and JSON with verification, comparison with published results, and uncertainty. The same command
+    resumes a stopped run; a signed pack is computed in one run.
 
-    Exit status: 0 done, 2 misuse, 3 a pack that differs from the computation or has an invalid signature.
+    Exit status: 0 success, 2 wrong input, 3 the pack differs from the computation or has an invalid signature.
     """
     needs("study", "xarray")
     if (question is None) == (check is None):
-        raise ValueError("either a question file is needed, or --check with a folder of evidence")
+        raise ValueError("a question file is needed, or --check with the folder of a pack")
     if verify is not None and check is None:
         raise ValueError("--verify needs --check with the folder that is signed")
     if verify is not None and sign is not None:
@@ -68,13 +71,14 @@ def evidence(
 
 
 def _gather(question: Question, out: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None) -> None:
-    check_room(out, question)
-    resumed = 0 if key is not None else count_kept(question, out / WORK)
-    with _progress() as listen, tempfile.TemporaryDirectory() as temporary:
+    """Compute and write the pack of a question, signed if there is a key."""
+    check_folder(out, question)
+    resumed = 0 if key is not None else count_stored_pieces(question, out / WORK)
+    with _show_progress() as progress, tempfile.TemporaryDirectory() as temporary:
         work = out / WORK if key is None else Path(temporary)
-        record = gathered(question, work, listen, engine)
+        record = gather_evidence(question, work, progress, engine)
         path = write(question, record, evidence_page, out)
-    remove_kept(out / WORK)
+    remove_stored_pieces(out / WORK)
     signed = None if key is None else Signed(public_key_of(key), None)
     if key is not None:
         sign_pack(out, key)
@@ -97,8 +101,9 @@ _RESUMED = "{} results were read from an earlier, stopped run and not computed: 
 def _check(
     folder: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None, expected: PublicKey | None
 ) -> None:
-    with _progress() as listen:
-        comparison = compare(folder, evidence_page, listen, engine)
+    """Compute a pack again, print the differences and its signature, and sign it if it is equal and there is a key."""
+    with _show_progress() as progress:
+        comparison = compare(folder, evidence_page, progress, engine)
     signed, defect = (None, "") if key is not None else _signature(folder, expected, comparison.sums)
     good = not comparison.differences and not defect
     if key is not None and good:
@@ -107,7 +112,7 @@ def _check(
     if as_json:
         echo_json(
             {
-                "version": bs.__version__,
+                "version": __version__,
                 "valid": good,
                 "made_by": comparison.made_by,
                 "compared": comparison.count,
@@ -137,6 +142,7 @@ def _signature(folder: Path, expected: PublicKey | None, sums: bytes) -> tuple[S
 
 
 def _describe_signature(signed: Signed | None, defect: str, signed_now: bool) -> str:
+    """Return the state of a signature as text."""
     if defect:
         return f"signature: {defect}"
     if signed is None:
@@ -151,8 +157,8 @@ def _describe_signature(signed: Signed | None, defect: str, signed_now: bool) ->
 
 
 @contextmanager
-def _progress() -> Iterator[Listener]:
-    """Show a progress line on a terminal."""
+def _show_progress() -> Iterator[Listener]:
+    """Show a progress line if stderr is a terminal."""
     console = Console(stderr=True)
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("gathering", total=None)

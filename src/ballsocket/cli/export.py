@@ -1,44 +1,149 @@
-"""`export`: a joint in the words of another program."""
+"""Commands `export` and `fmu`: a joint as a force element for other programs."""
 
 from __future__ import annotations
 
+import keyword
+import re
+import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from ..catalogue import named_model, usual
 from ..core.checks import known_name
+from ..core.storage.atomic_files import check_parent_folder
+from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..export.target import ExportJob
 from ..export.targets import TARGETS
-from .force_elements import ElementWords, identifier
-from .groups import grouped
-from .root import app, complain, echo_path
-from .words import JointWords
+from ..files.joint_file import JointFile
+from ..problem.cup import Cup
+from .options import JointName, JointOptions, ModelName, expand_groups
+from .root import app, echo_path, print_message
+
+
+@dataclass(frozen=True, kw_only=True)
+class ForceElementOptions:
+    """Options of a force element, in addition to its joint."""
+
+    model: ModelName = None
+    hysteresis: Annotated[
+        float | None,
+        typer.Option(help="Damping factor in s/mm: damping force / (contact force * speed). Default: no damping."),
+    ] = None
+    restitution: Annotated[
+        float | None,
+        typer.Option(help="Coefficient of restitution, 0 to 1, with --impact-speed. Not with --hysteresis."),
+    ] = None
+    impact_speed: Annotated[
+        float | None, typer.Option(help="Impact speed in mm/s at which the restitution was measured.")
+    ] = None
+    friction: Annotated[float | None, typer.Option(help="Coefficient of friction. Default: no friction.")] = None
+
+    def element(self, file: JointFile) -> ForceElement:
+        """Return the force element of a joint file; it has a rim unless the cup is a plain hemisphere.
+
+        Raises
+        ------
+        ValueError
+            The model has no force law, or a value is not allowed.
+        """
+        model = usual(file.joint, {}) if self.model is None else named_model(self.model)
+        friction = None if self.friction is None else Friction(coefficient=self.friction)
+        cup = None if file.cup == Cup() else file.cup
+        try:
+            return ForceElement(model, file.joint, damping=self._damping(), friction=friction, cup=cup)
+        except TypeError as error:  # the model has no force law
+            raise ValueError(str(error)) from error
+
+    def _damping(self) -> Damping | None:
+        """Return the damping of the options; None without damping."""
+        impact = (self.restitution, self.impact_speed)
+        if impact == (None, None):
+            return None if self.hysteresis is None else Damping(hysteresis=self.hysteresis)
+        if self.hysteresis is not None:
+            raise ValueError("a hysteresis and a restitution are given; one is needed")
+        if None in impact:
+            raise ValueError("a restitution and the speed of its impact belong together: --restitution --impact-speed")
+        return Restitution(restitution=self.restitution, impact_speed=self.impact_speed)
 
 
 @app.command()
-@grouped
+@expand_groups
 def export(
     *,
     target: Annotated[str, typer.Argument(help=f"Program: {', '.join(TARGETS)}.")],
-    joint: Annotated[str | None, typer.Argument(help="A joint file (TOML), or the name of a preset.")] = None,
-    words: JointWords,
-    element: ElementWords,
-    out: Annotated[
-        Path, typer.Option(help="Output folder. Its name is also that of the files. Missing folders are created.")
-    ],
+    joint: JointName = None,
+    joint_options: JointOptions,
+    element_options: ForceElementOptions,
+    out: Annotated[Path, typer.Option(help="Output folder, also the name of the files; created if it does not exist.")],
 ) -> None:
-    """Write a joint as a force element for another program, with what that needs around it."""
-    from ..export.law_fit import depth_of
+    """Write a joint as a force element for another program."""
+    from ..export.law_fit import fit_depth
 
     chosen = TARGETS[known_name("target", target, TARGETS)]
-    nearest = next(path for path in (out, *out.parents, Path()) if path.exists())
-    if not nearest.is_dir():
-        raise ValueError(f"{str(nearest)!r} is a file; a folder is needed")
-    file = words.or_named(joint)
-    made = element.element(file)
-    job = ExportJob(element=made, name=identifier(out), depth=depth_of(made, file.load))
+    existing = next(path for path in (out, *out.parents, Path()) if path.exists())
+    if not existing.is_dir():
+        raise ValueError(f"{str(existing)!r} is a file; a folder is needed")
+    file = joint_options.read(joint)
+    element = element_options.element(file)
+    job = ExportJob(element=element, name=identifier(out), depth=fit_depth(element, file.load))
     paths, missing = chosen.write(job, out)
     echo_path(out, f": {', '.join(path.relative_to(out).as_posix() for path in paths)}")
     if missing:
-        complain(missing)
+        print_message(missing)
+
+
+@app.command()
+@expand_groups
+def fmu(
+    *,
+    joint: JointName = None,
+    joint_options: JointOptions,
+    element_options: ForceElementOptions,
+    out: Annotated[Path, typer.Option(help="File to write (.fmu); files of the FMI cross-check are put beside it.")],
+    fmi: Annotated[int, typer.Option(help="Version of the FMI standard: 2 or 3.")] = 3,
+) -> None:
+    """Write a joint as a functional mock-up unit (FMI).
+
+    The unit contains the C sources, and a binary for this machine if there is a compiler.
+    """
+    from ..export.fmu import Fmu, write_cross_check
+
+    path = checked_path(out, ".fmu")
+    unit = Fmu(element=element_options.element(joint_options.read(joint)), name=identifier(path), version=fmi)
+    written = unit.write(path)
+    echo_path(written.path)
+    for extra_path in write_cross_check(unit.element, path):
+        echo_path(extra_path)
+    if written.missing:
+        print_message(written.missing)
+
+
+def checked_path(out: Path, ending: str) -> Path:
+    """Return a path that can be written and has the required ending.
+
+    Raises
+    ------
+    ValueError
+        Another ending, or a missing folder.
+    """
+    if out.suffix.lower() != ending:
+        raise ValueError(f"out {str(out)!r} must end in {ending}")
+    check_parent_folder(out)
+    return out
+
+
+def identifier(path: Path) -> str:
+    """Return the name of a file as an identifier: letters, digits and _, and no keyword of C, Python or Modelica."""
+    name = re.sub(r"[^A-Za-z0-9_]", "_", path.stem)[:40]
+    return name if name[:1].isalpha() and name not in _RESERVED else f"joint_{name}"[:40]
+
+
+_MODELICA = "algorithm block connect constant discrete each encapsulated end equation external function initial inner"
+_MORE_MODELICA = (
+    "input loop model Modelica outer output package parameter partial record redeclare then type when within"
+)
+_PROGRAMS = "exudyn mujoco numpy opensim pydrake assert errno float limits stdio stdlib string"
+_RESERVED = {*keyword.kwlist, *sys.stdlib_module_names, *f"{_MODELICA} {_MORE_MODELICA} {_PROGRAMS}".split()}

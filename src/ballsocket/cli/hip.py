@@ -1,4 +1,4 @@
-"""`hip`: a hip in use over millions of cycles, of one patient or of many."""
+"""Command `hip`: wear of a hip over millions of gait cycles, for one patient or a cohort."""
 
 from __future__ import annotations
 
@@ -11,8 +11,6 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-import ballsocket as bs
-
 from ..core.executors.processes import Engine, Serial
 from ..hip.bands import Bands
 from ..hip.cohort import cohort_store, write_csv
@@ -22,103 +20,117 @@ from ..hip.uncertainty import population, uncertainty
 from ..output.hip_bands import print_bands, print_notes
 from ..output.hip_report import check_page, write_hip_report
 from ..output.hip_terminal import print_hip
-from .engine import Scheduler, Workers, engine_of
+from ..version import __version__
+from .json_answers import echo_json
+from .options import AsJson, Scheduler, Workers, choose_executor
 from .root import FAILURE, app, echo_path
-from .words import AsJson, echo_json
 
 
 @app.command()
 def hip(
-    file: Annotated[Path, typer.Argument(help="A file about a hip in use (TOML).")],
+    file: Annotated[Path, typer.Argument(help="Hip file (TOML): joint, gait cycle, wear law.")],
     as_json: AsJson = False,
-    report: Annotated[Path | None, typer.Option(help="Also write a page with figures (.html).")] = None,
+    report: Annotated[Path | None, typer.Option(help="Write a report with figures to this file (.html).")] = None,
     store: Annotated[
-        Path | None, typer.Option(help="A folder to keep the run in: one that was stopped goes on from there.")
+        Path | None, typer.Option(help="Folder that stores the run; the same command resumes a stopped run.")
     ] = None,
     patients: Annotated[
-        int | None, typer.Option(help="Wear so many patients' hips, who differ as the file's [uncertainty] says.")
+        int | None, typer.Option(help="Number of patients of a cohort that differ by the [uncertainty] of the file.")
     ] = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
 ) -> None:
-    """Wear a hip over millions of cycles of load and motion, as its file tells.
+    """Simulate wear of a hip over millions of gait cycles.
 
-    Exit status: 0 done, 2 misuse, 3 a contact that did not balance its load.
+    Exit status: 0 success, 2 wrong input, 3 a contact does not balance its load.
     """
     if report is not None:
         check_page(report)
-    given, engine = read_hip(file), engine_of(workers, scheduler, Serial())
+    hip_file, engine = read_hip(file), choose_executor(workers, scheduler, Serial())
     if patients is not None:
         if report is not None:
             raise ValueError("a report shows one hip: leave out --report or --patients")
-        _many(given, patients, engine, store, as_json)
+        _simulate_cohort(hip_file, patients, engine, store, as_json)
         return
-    history = _worn(given, store)
-    bands = _bands(given, history, engine)
+    history = _simulate(hip_file, store)
+    bands = _uncertainty_bands(hip_file, history, engine)
     if as_json:
-        _echo(history, bands)
+        _echo_history(history, bands)
     else:
         print_hip(history)
         if bands is not None:
             print_bands(bands)
-    if report is not None:  # last: what was computed is told, should the page not be written
+    if report is not None:  # last: if the page cannot be written, the result is already printed
         write_hip_report(history, report, bands)
     if not history.converged:
         typer.echo("ballsocket: a contact did not balance its load (see the notes)", err=True)
         raise typer.Exit(FAILURE)
 
 
-def _worn(given: HipFile, store: Path | None) -> History:
-    with _bar("wearing", given.cycles, "cycles") as listen:
-        return given.use.after(given.cycles, given.report_at, progress=listen, lubricant=given.lubricant, store=store)
+def _simulate(hip_file: HipFile, store: Path | None) -> History:
+    """Simulate the hip of a file with a progress bar."""
+    with _progress_bar("wearing", hip_file.cycles, "cycles") as progress:
+        return hip_file.use.after(
+            hip_file.cycles, hip_file.report_at, progress=progress, lubricant=hip_file.lubricant, store=store
+        )
 
 
-def _bands(given: HipFile, history: History, engine: Engine) -> Bands | None:
-    """How sure it is, where the file says what scatters."""
-    said = given.uncertain
-    if said is None:
+def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> Bands | None:
+    """Compute uncertainty bands of a simulation; None if the file has no uncertainty."""
+    scatter = hip_file.uncertain
+    if scatter is None:
         return None
-    patients = said.count * (len(said.variability.distributions) + 2)
-    with _bar("other patients", patients, "patients") as listen:
-        return uncertainty(said.variability, history, count=said.count, seed=said.seed, engine=engine, progress=listen)
+    patients = scatter.count * (len(scatter.variability.distributions) + 2)
+    with _progress_bar("other patients", patients, "patients") as progress:
+        return uncertainty(
+            scatter.variability, history, count=scatter.count, seed=scatter.seed, engine=engine, progress=progress
+        )
 
 
-def _echo(history: History, bands: Bands | None) -> None:
+def _echo_history(history: History, bands: Bands | None) -> None:
+    """Print a simulation and its bands as JSON."""
     valid = history.valid and (bands is None or bands.valid)
-    answer = {"version": bs.__version__, "valid": valid, **history.summary()}
+    answer = {"version": __version__, "valid": valid, **history.summary()}
     if bands is not None:
         answer |= bands.summary()
         answer["notes"] = [*answer["notes"], *bands.notes]
     echo_json(answer)
 
 
-def _many(given: HipFile, patients: int, engine: Engine, store: Path | None, as_json: bool) -> None:
-    said = given.uncertain
-    if said is None:
-        raise ValueError("--patients needs a table [uncertainty] that says what differs between them")
-    counts = tuple(sorted({*given.report_at, given.cycles}))
-    where = None if store is None else cohort_store(store, said.variability, counts, said.seed)
-    with _bar("patients", patients, "patients") as listen:
-        lives, bands = population(
-            said.variability, counts, patients=patients, seed=said.seed, engine=engine, store=where, progress=listen
+def _simulate_cohort(hip_file: HipFile, patients: int, engine: Engine, store: Path | None, as_json: bool) -> None:
+    """Simulate and print a patient cohort; with a store, also write a table of the patients."""
+    scatter = hip_file.uncertain
+    if scatter is None:
+        raise ValueError("--patients needs a table [uncertainty] in the file: the scatter between patients")
+    counts = tuple(sorted({*hip_file.report_at, hip_file.cycles}))
+    folder = None if store is None else cohort_store(store, scatter.variability, counts, scatter.seed)
+    with _progress_bar("patients", patients, "patients") as progress:
+        cohort, bands = population(
+            scatter.variability,
+            counts,
+            patients=patients,
+            seed=scatter.seed,
+            engine=engine,
+            store=folder,
+            progress=progress,
         )
     if as_json:
         notes = [*bands.nominal_notes, *bands.notes]
-        echo_json({"version": bs.__version__, "valid": bands.valid, **bands.summary(), "notes": notes})
+        echo_json({"version": __version__, "valid": bands.valid, **bands.summary(), "notes": notes})
     else:
         print_bands(bands)
         print_notes(bands.nominal_notes)
     if store is not None:
-        path = write_csv(store / "patients.csv", lives, bands.cohort)
+        path = write_csv(store / "patients.csv", cohort, bands.cohort)
         if not as_json:
             echo_path(path)
 
 
 @contextmanager
-def _bar(what: str, total: float, unit: str) -> Iterator[Callable[[float], None]]:
-    """A bar where somebody looks."""
+def _progress_bar(task_name: str, total: float, unit: str) -> Iterator[Callable[[float], None]]:
+    """Show a progress bar if stderr is a terminal."""
     columns = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed:,.0f} " + unit)
     console = Console(stderr=True)
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as progress:
-        task = progress.add_task(what, total=total)
-        yield lambda done: progress.update(task, completed=done)
+        task = progress.add_task(task_name, total=total)
+        yield lambda completed: progress.update(task, completed=completed)

@@ -1,69 +1,150 @@
-"""`identify`: from measurements to the numbers of a joint."""
+"""Commands `identify`, `calibrate` and `build-tables`: parameters fitted to measurements or to the exact solution."""
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy
 import typer
 
-import ballsocket as bs
-
+from ..core.checks import known_name
+from ..core.kinds import Kind
+from ..files.units import parse
+from ..identify import as_constant, as_corrected_vessel, as_polynomial
+from ..identify import calibrate as fit_modulus
 from ..identify.file import read_identify
+from ..identify.modulus import FORCES, Form
 from ..identify.posterior import Posterior
 from ..identify.result import IdentificationResult
 from ..output import identify_plots
 from ..output.identify_terminal import print_identified
+from ..output.reference_terminal import print_calibration, print_table_3
 from ..output.save import check_format, save
-from .root import FAILURE, app
-from .words import AsJson, echo_json
+from ..paper.table_3 import refit_table_3
+from ..version import __version__
+from .json_answers import echo_json
+from .options import AsJson, named_joint
+from .root import FAILURE, app, echo_path
 
-_PICTURE = "(.png, .svg, .pdf)"
+_FORMATS = "(.png, .svg, .pdf)"
+_FORMS: dict[str, Form] = {
+    "constant": as_constant,
+    "polynomial": as_polynomial,
+    "corrected-vessel": as_corrected_vessel,
+}
 
 
 @app.command()
 def identify(
-    file: Annotated[Path, typer.Argument(help="A file about measurements (TOML).")],
+    file: Annotated[Path, typer.Argument(help="Measurement file (TOML): joint, free parameters, data.")],
     samples: Annotated[
-        int | None, typer.Option(help="So many samples of the posterior by Markov chains, 4000 say; none without.")
+        int | None, typer.Option(help="Number of posterior samples by Markov chains, such as 4000. Default: none.")
     ] = None,
-    figure: Annotated[Path | None, typer.Option(help=f"Write the fit with its residuals {_PICTURE}.")] = None,
+    figure: Annotated[
+        Path | None, typer.Option(help=f"Write a figure of the fit with its residuals {_FORMATS}.")
+    ] = None,
     corner: Annotated[
-        Path | None, typer.Option(help=f"Write how the unknowns depend on each other {_PICTURE}.")
+        Path | None, typer.Option(help=f"Write a figure of the correlations between parameters {_FORMATS}.")
     ] = None,
-    experiment: Annotated[Path | None, typer.Option(help=f"Write what to measure next {_PICTURE}.")] = None,
+    experiment: Annotated[
+        Path | None, typer.Option(help=f"Write a figure of the most informative next measurement {_FORMATS}.")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Identify clearance, modulus, ... of a joint from measurements, with bands, and name the unidentifiable ones.
+    """Identify parameters of a joint from measurements.
 
-    Exit status: 0 done, 2 misuse, 3 the search did not converge.
+    The table shows each parameter with its uncertainty and names the parameters that are not identifiable.
+
+    Exit status: 0 success, 2 wrong input, 3 the search did not converge.
     """
     for path in (figure, corner, experiment):
         if path is not None:
             check_format(path)
-    found = read_identify(file).identify_unknowns()
-    drawn = None if samples is None else found.posterior(samples)
+    result = read_identify(file).identify_unknowns()
+    posterior = None if samples is None else result.posterior(samples)
     if as_json:
-        echo_json(_summary(found, drawn))
+        echo_json(_summary(result, posterior))
     else:
-        print_identified(found, drawn)
+        print_identified(result, posterior)
     if figure is not None:
-        save(identify_plots.fit_figure(found), figure)
+        save(identify_plots.fit_figure(result), figure)
     if corner is not None:
-        save(identify_plots.corner_figure(found, drawn), corner)
+        save(identify_plots.corner_figure(result, posterior), corner)
     if experiment is not None:
-        save(identify_plots.experiment_figure(found.next), experiment)
-    if not found.best.converged:
+        save(identify_plots.experiment_figure(result.next), experiment)
+    if not result.best.converged:
         typer.echo("ballsocket: the search did not converge (see the notes)", err=True)
         raise typer.Exit(FAILURE)
 
 
-def _summary(found: IdentificationResult, drawn: Posterior | None) -> dict[str, Any]:
-    posterior = None if drawn is None else drawn.summary()
+def _summary(result: IdentificationResult, posterior: Posterior | None) -> dict[str, Any]:
+    """Return an identification as a dictionary for JSON."""
     return {
-        "version": bs.__version__,
-        "joint": found.joint.summary(),
-        **found.summary(),
-        "posterior": posterior,
-        "experiment": found.next.summary(),
+        "version": __version__,
+        "joint": result.joint.summary(),
+        **result.summary(),
+        "posterior": None if posterior is None else posterior.summary(),
+        "experiment": result.next.summary(),
     }
+
+
+@app.command()
+def calibrate(
+    joint: Annotated[
+        str | None, typer.Argument(help="Joint file (TOML), or name of a preset. Default: the joints of Table 3.")
+    ] = None,
+    force: Annotated[
+        list[str] | None, typer.Option(help="Load of the fit: '2 kN'. Repeat for several. Default: 1, 2 and 3 kN.")
+    ] = None,
+    thickness: Annotated[
+        list[str] | None, typer.Option(help="Liner thickness: '5 mm'. Repeat for a family. Default: that of the joint.")
+    ] = None,
+    form: Annotated[
+        str, typer.Option(help="Formula of the modulus: constant, polynomial (Eq. 18) or corrected-vessel.")
+    ] = "constant",
+    as_json: AsJson = False,
+) -> None:
+    """Fit a foundation modulus to the exact solution.
+
+    Without a joint, it repeats Table 3 of Heß & Forsbach 2021.
+    """
+    if joint is None:
+        if force or thickness or form != "constant":
+            raise ValueError("--force, --thickness and --form need a joint; without a joint Table 3 is fitted")
+        columns = refit_table_3()
+        if as_json:
+            echo_json({"version": __version__, "table_3": [column.summary() for column in columns]})
+        else:
+            print_table_3(columns)
+        return
+    form = known_name("form", form, _FORMS)
+    fitted_joint = named_joint(joint).joint
+    if thickness:
+        lengths = [parse("thickness", text, Kind.LENGTH) for text in thickness]
+        fitted_joint = dataclasses.replace(fitted_joint, liner_thickness=numpy.array(lengths))
+    loads = [parse("force", text, Kind.FORCE) for text in force or []] or FORCES
+    fit = fit_modulus(fitted_joint, force=loads, form=_FORMS[form])
+    if as_json:
+        echo_json({"version": __version__, "joint": fitted_joint.summary(), **fit.summary()})
+    else:
+        print_calibration(fit)
+
+
+@app.command(hidden=True)  # for developers of the tables
+def build_tables(
+    out: Annotated[Path | None, typer.Option(help="File to write. Default: the file of the package.")] = None,
+    points: Annotated[int, typer.Option(min=1, help="Number of random contacts that check the tables.")] = 10_000,
+    workers: Annotated[int, typer.Option(min=1, help="Number of worker processes.")] = 2,
+    check: Annotated[bool, typer.Option("--check", help="Check the existing tables and build none.")] = False,
+) -> None:
+    """Build the tables of the model `tabulated`.
+
+    It takes two minutes and prints the accuracy of the tables.
+    """
+    from ..elasticity.exact.tabulated import build as builder
+
+    path = builder.SHIPPED if out is None else out
+    run = builder.check if check else builder.build_tables
+    echo_path(path, f": {run(path, points=points, workers=workers)}")

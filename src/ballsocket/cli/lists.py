@@ -1,4 +1,4 @@
-"""`models`, `presets` and `cite`: what there is, and where it comes from."""
+"""Commands `models`, `presets` and `cite`: lists of what the package contains, with sources."""
 
 from __future__ import annotations
 
@@ -7,27 +7,29 @@ from typing import Annotated
 
 import typer
 
-import ballsocket as bs
-
 from ..catalogue import listed_models
 from ..core.checks import known_name
+from ..core.sources import cite as bibtex_of
 from ..output.list_summary import model_summary, preset_summary
 from ..output.list_terminal import print_model, print_models, print_preset, print_presets
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
+from ..version import __version__
+from .json_answers import echo_json
+from .options import AsJson
 from .root import app
-from .words import AsJson, echo_json
-
-ModelName = Annotated[str | None, typer.Argument(help="One of them, in full.")]
-PresetName = Annotated[str | None, typer.Argument(help="A joint or material, in full.")]
 
 
 @app.command()
-def models(name: ModelName = None, *, as_json: AsJson = False) -> None:
-    """The catalogue: every model, where it can be trusted, and where it comes from."""
+def models(
+    name: Annotated[str | None, typer.Argument(help="Name of one model, for all details. Default: all.")] = None,
+    *,
+    as_json: AsJson = False,
+) -> None:
+    """List contact models with their ranges and sources."""
     chosen = list(listed_models.values()) if name is None else [listed_models[known_name("model", name, listed_models)]]
     if as_json:
-        echo_json({"version": bs.__version__, "models": list(map(model_summary, chosen))})
+        echo_json({"version": __version__, "models": list(map(model_summary, chosen))})
     elif name is None:
         print_models(chosen)
     else:
@@ -35,17 +37,23 @@ def models(name: ModelName = None, *, as_json: AsJson = False) -> None:
 
 
 @app.command()
-def presets(name: PresetName = None, *, as_json: AsJson = False) -> None:
-    """Materials and joints by name, with the sources of their numbers."""
+def presets(
+    name: Annotated[
+        str | None, typer.Argument(help="Name of one joint or material, for all details. Default: all.")
+    ] = None,
+    *,
+    as_json: AsJson = False,
+) -> None:
+    """List materials and joints by name, with their sources."""
     known = [*materials, *joints]
     names = known if name is None else [known_name("preset", name, known)]
     if as_json:
         kinds: dict[str, Mapping[str, Material | Joint]] = {"materials": materials, "joints": joints}
         listed = {
-            kind: {each: preset_summary(thing) for each, thing in things.items() if each in names}
-            for kind, things in kinds.items()
+            kind: {key: preset_summary(preset) for key, preset in presets_of_kind.items() if key in names}
+            for kind, presets_of_kind in kinds.items()
         }
-        echo_json({"version": bs.__version__, **listed})
+        echo_json({"version": __version__, **listed})
     elif name is None:
         print_presets()
     else:
@@ -54,8 +62,8 @@ def presets(name: PresetName = None, *, as_json: AsJson = False) -> None:
 
 @app.command()
 def cite(
-    names: Annotated[list[str] | None, typer.Argument(help="Models by name; all of them if none is given.")] = None,
+    names: Annotated[list[str] | None, typer.Argument(help="Names of models. Default: all models.")] = None,
 ) -> None:
-    """BibTeX of what a model is made of."""
+    """Print the BibTeX references of models."""
     chosen = [known_name("model", name, listed_models) for name in names or listed_models]
-    typer.echo(bs.cite(*(listed_models[name] for name in chosen)))
+    typer.echo(bibtex_of(*(listed_models[name] for name in chosen)))

@@ -1,4 +1,4 @@
-"""`press`: one joint, one load, models side by side."""
+"""Commands `press` and `curve`: one joint under one load or under increasing loads."""
 
 from __future__ import annotations
 
@@ -6,136 +6,200 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
+import numpy
 import typer
 
-import ballsocket as bs
-
-from ..catalogue import judge, off_axis, reference
-from ..compare import Comparison, successful_contacts
+from ..catalogue import catalogue, judge, named_model, off_axis, reference
+from ..compare import Comparison, compare, successful_contacts
 from ..contact import Model
 from ..core.checks import known_name
 from ..core.validity import Status
 from ..files.joint_file import JointFile
-from ..output import terminal
+from ..output.terminal import print_curve, print_press
 from ..output.unit_systems import Units
 from ..problem.cup import UP
-from . import elements
-from .files import Files
-from .groups import grouped
-from .off_axis import AimWords, Watched, aimed, along, remark
-from .report import ReportWords
-from .root import FAILURE, app, complain
-from .words import AsJson, JointWords, LoadWords, echo_json
+from ..version import __version__
+from .elasticity_options import (
+    CupOptions,
+    DirectionOptions,
+    MeshOptions,
+    TimedModel,
+    mesh_remark,
+    refuse_mesh_options,
+    solve_mesh,
+    sphere_in_cup,
+    sphere_remark,
+    tilted_cup,
+)
+from .json_answers import echo_json
+from .options import AsJson, JointName, JointOptions, LoadOptions, expand_groups
+from .press_files import FigureOptions, ReportOptions
+from .root import FAILURE, app, print_message
 
 DEFAULT_MODEL = "hess-forsbach"
 
 
 @dataclass(frozen=True, kw_only=True)
-class ModelWords:
-    """The models that are asked."""
+class ModelOptions:
+    """Options of the models that press a joint."""
 
-    model: Annotated[list[str] | None, typer.Option(help="A model's name; repeat for more.")] = None
-    every: Annotated[bool, typer.Option("--all", help="Every model of the catalogue.")] = False
+    model: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Name of a model (see `ballsocket models`), fem or sphere. "
+            f"Repeat for several. Default: {DEFAULT_MODEL}."
+        ),
+    ] = None
+    every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
 
     @property
     def names(self) -> list[str]:
-        """Those that are named, as the catalogue has them."""
-        return [known_name("model", name, (*bs.catalogue, judge.name, off_axis.name)) for name in self.model or ()]
+        """Names of the requested models, as in the catalogue."""
+        return [known_name("model", name, (*catalogue, judge.name, off_axis.name)) for name in self.model or ()]
 
     @property
-    def judged(self) -> bool:
-        """Whether the finite elements are among them."""
+    def has_finite_elements(self) -> bool:
+        """True if the finite elements are requested."""
         return judge.name in self.names
 
-    def chosen(self, default: str) -> dict[str, Model]:
-        """The models by their names, the default where none is asked for."""
+    def models(self, default: str) -> dict[str, Model]:
+        """Return the requested models by name, or the default one."""
         if self.every:
-            return dict(bs.catalogue)
-        asked = {judge.name: judge, off_axis.name: off_axis}
-        return {name: asked.get(name) or bs.catalogue[name] for name in self.names or [default]}
+            return dict(catalogue)
+        elastic = {judge.name: judge, off_axis.name: off_axis}
+        return {name: elastic.get(name) or catalogue[name] for name in self.names or [default]}
 
 
 @app.command()
-@grouped
+@expand_groups
 def press(
     *,
-    joint: Annotated[str | None, typer.Argument(help="A joint file (TOML), or the name of a preset.")] = None,
-    words: JointWords,
-    load: LoadWords,
-    models: ModelWords,
-    units: Annotated[Units, typer.Option(case_sensitive=False, help="Of the table; JSON has mm, N, MPa.")] = Units.SI,
+    joint: JointName = None,
+    joint_options: JointOptions,
+    load_options: LoadOptions,
+    model_options: ModelOptions,
+    units: Annotated[
+        Units, typer.Option(case_sensitive=False, help="Units of the table; JSON is always in mm, N, MPa.")
+    ] = Units.SI,
     as_json: AsJson = False,
-    files: Files,
-    page: ReportWords,
-    aim: AimWords,
-    cup: elements.CupWords,
-    mesh: Annotated[elements.MeshWords, "fem"],
-    meshes: Annotated[int | None, typer.Option(min=1, max=2, help="fem: 1 gives no error bars")] = None,
+    files: FigureOptions,
+    report: ReportOptions,
+    direction_options: DirectionOptions,
+    cup_options: CupOptions,
+    mesh: Annotated[MeshOptions, "fem"],
+    meshes: Annotated[
+        int | None, typer.Option(min=1, max=2, help="fem: number of meshes; 1 gives no error estimate. Default: 2.")
+    ] = None,
 ) -> None:
-    """Press a ball into its socket and see what models make of it, beside the exact answer.
+    """Press a ball into its socket under one load.
 
-    The finite elements (--model fem) also answer for rims, chamfers and liners that slide; sphere for loads that are
-    tilted against the cup's axis (--tilt, --direction).
+    The table compares the chosen models with the exact solution. The finite elements (--model fem) also include rims,
+    chamfers and sliding liners. The model sphere solves loads at an angle to the cup's axis (--tilt, --direction).
 
-    Exit status: 0 done, 2 misuse, 3 an iteration that did not converge, or no answer from any model.
+    Exit status: 0 success, 2 wrong input, 3 an iteration did not converge or no model has a result.
     """
-    if not models.judged:
-        elements.refuse({**vars(mesh), "meshes": meshes})
+    if not model_options.has_finite_elements:
+        refuse_mesh_options({**vars(mesh), "meshes": meshes})
     files.check()
-    page.check()
-    file = words.or_named(joint)
-    at = load.or_of(file)
-    toward, remarks = aim.or_of(file), []
-    around = aimed(cup.on(file.cup), toward)
-    asks_sphere = toward or around.tilt(UP) > 0 or file.joint.clearance < 0
-    chosen = models.chosen(off_axis.name if asks_sphere else DEFAULT_MODEL)
-    if models.judged and toward:
-        raise ValueError("fem presses along the cup's own axis; for a tilt or a direction ask --model sphere")
-    files.check_models(chosen)
-    if off_axis.name not in chosen:
-        aim.refuse()
-    if off_axis.name in chosen:
-        watched: Any = Watched(along(aim.model(), around, toward))
-        chosen[off_axis.name] = watched
-    if models.judged:
-        fem = mesh.model(around, meshes or 2)
-        chosen[judge.name] = fem
-        remarks.append(elements.remark(*elements.timed(fem, file.joint, at)))
-    comparison = _compared(replace(file, cup=around), at, chosen)
+    report.check()
+    file = joint_options.read(joint)
+    load = load_options.read(file)
+    direction, remarks = direction_options.read(file), []
+    cup = tilted_cup(cup_options.apply_to(file.cup), direction)
+    needs_sphere = direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
+    models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
+    if model_options.has_finite_elements and direction:
+        raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
+    files.check_models(models)
+    if off_axis.name not in models:
+        direction_options.refuse()
+    if off_axis.name in models:
+        timed: Any = TimedModel(sphere_in_cup(direction_options.model(), cup, direction))
+        models[off_axis.name] = timed
+    if model_options.has_finite_elements:
+        fem = mesh.model(cup, meshes or 2)
+        models[judge.name] = fem
+        remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
+    comparison = _compare(replace(file, cup=cup), load, models)
     if off_axis.name in comparison:
-        remarks.append(remark(comparison[off_axis.name], watched.seconds))
-    files.write(comparison, next(iter(chosen)))
-    page.write(comparison, replace(file, cup=around, load=at, aim=toward), units)
+        remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds))
+    files.write(comparison, next(iter(models)))
+    report.write(comparison, replace(file, cup=cup, load=load, aim=direction), units)
     if as_json:
         echo_json(comparison.summary())
     else:
-        terminal.print_press(comparison, remarks, units)
-    _end(comparison, chosen)
+        print_press(comparison, remarks, units)
+    _exit_on_failure(comparison, models)
 
 
-def _compared(file: JointFile, load: Mapping[str, float], chosen: Mapping[str, Model]) -> Comparison:
-    """The chosen models beside the exact answer, if any of them has an answer for such a joint."""
-    comparison = bs.compare(file.joint, models={**chosen, reference.name: reference}, cup=file.cup, **load)
-    if not set(comparison) & set(chosen):
-        raise ValueError("; ".join(why for name, why in comparison.missing.items() if name in chosen))
+def _compare(file: JointFile, load: Mapping[str, float], models: Mapping[str, Model]) -> Comparison:
+    """Press a joint by the models and the exact one.
+
+    Raises
+    ------
+    ValueError
+        None of the models has a result for such a joint.
+    """
+    comparison = compare(file.joint, models={**models, reference.name: reference}, cup=file.cup, **load)
+    if not set(comparison) & set(models):
+        raise ValueError("; ".join(reason for name, reason in comparison.missing.items() if name in models))
     return comparison
 
 
-def _end(comparison: Comparison, chosen: Iterable[str]) -> None:
-    """Leave with a sentence and an exit status where the answer is a failure as a whole."""
-    failure = _failure(comparison, chosen)
+def _exit_on_failure(comparison: Comparison, models: Iterable[str]) -> None:
+    """Exit with a message and a status if there is no result or no convergence."""
+    failure = _failure(comparison, models)
     if failure:
-        complain(failure)
+        print_message(failure)
         raise typer.Exit(FAILURE)
 
 
-def _failure(comparison: Comparison, chosen: Iterable[str]) -> str:
-    """What went wrong as a whole, or an empty text: a model without an answer is a note while another one has one."""
-    unsettled = [name for name, contact in comparison.items() if contact.status == Status.NOT_CONVERGED]
-    if unsettled:
-        return f"no convergence of {', '.join(unsettled)} (see the notes)"
+def _failure(comparison: Comparison, models: Iterable[str]) -> str:
+    """Return the message of a failed comparison; empty if one of the models has a result and all converged."""
+    unconverged = [name for name, contact in comparison.items() if contact.status == Status.NOT_CONVERGED]
+    if unconverged:
+        return f"no convergence of {', '.join(unconverged)} (see the notes)"
     return (
         ""
-        if set(successful_contacts(comparison)) & set(chosen)
-        else f"no answer from {', '.join(chosen)} (see the notes)"
+        if set(successful_contacts(comparison)) & set(models)
+        else f"no answer from {', '.join(models)} (see the notes)"
     )
+
+
+@app.command()
+@expand_groups
+def curve(
+    *,
+    joint: JointName = None,
+    joint_options: JointOptions,
+    load_options: LoadOptions,
+    model: Annotated[str, typer.Option(help="Name of a model, see `ballsocket models`.")] = "exact",
+    points: Annotated[
+        int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
+    ] = 21,
+    cup: CupOptions,
+    as_json: AsJson = False,
+) -> None:
+    """Press a joint in equal steps from zero to a load.
+
+    The table shows force, indentation, stiffness, pressure and area of one model at each step.
+
+    Exit status: 0 success, 2 wrong input, 3 no result at any load.
+    """
+    file, named = joint_options.read(joint), named_model(model)
+    fractions = numpy.linspace(0.0, 1.0, points)
+    steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
+    contact = named.in_cup(cup.apply_to(file.cup)).press(file.joint, **steps)
+    if as_json:
+        echo_json({"version": __version__, "joint": file.joint.summary(), **_curve_summary(contact)})
+    else:
+        print_curve(contact)
+    if not numpy.isfinite(contact.indentation[1:]).any():
+        print_message(f"no answer from {named.name} at any load (see the notes)")
+        raise typer.Exit(FAILURE)
+
+
+def _curve_summary(contact: Any) -> dict[str, Any]:
+    """Return the values of a curve as lists; `valid` is true if every point is valid."""
+    summary = contact.summary()
+    return {**summary, "valid": all(summary["valid"]), "valid_at": summary["valid"]}

@@ -1,4 +1,4 @@
-"""`reproduce`: the whole paper, from the geometry up."""
+"""Command `reproduce`: all results of Heß & Forsbach 2021, computed again."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from .root import app, echo_path
 
 @app.command()
 def reproduce(
-    out: Annotated[Path, typer.Option(help="The folder to write into; made if it is not there.")] = Path("reproduced"),
-    quick: Annotated[bool, typer.Option("--quick", help="The exact solution alone, without finite elements.")] = False,
-    workers: Annotated[int | None, typer.Option(help="Processes at work; as many as there are cores.")] = None,
+    out: Annotated[Path, typer.Option(help="Output folder; created if it does not exist.")] = Path("reproduced"),
+    quick: Annotated[bool, typer.Option("--quick", help="Only the exact solution, without finite elements.")] = False,
+    workers: Annotated[int | None, typer.Option(help="Number of worker processes. Default: number of cores.")] = None,
 ) -> None:
-    """Compute every table, figure and claim of Heß & Forsbach 2021 again, and write a report with a verdict on each.
+    """Recompute the results of Heß & Forsbach 2021.
 
-    What is finished is kept: a run that was stopped goes on where it was.
+    The report shows every table, figure and claim of the paper with a verdict. The same command resumes a stopped run.
     """
     if not quick:
         needs("fem", "skfem", "meshio", "psutil")
@@ -33,8 +33,8 @@ def reproduce(
     plan = quick_plan() if quick else full_plan()
     with Progress(console=Console(stderr=True)) as progress:
         task = progress.add_task("reproducing", total=len(plan))
-        listen = partial(progress.update, task, advance=1)
-        results = plan.results(out / "data", lambda name: listen(description=name), engine)
-        listen(advance=0, description="drawing")
+        advance = partial(progress.update, task, advance=1)
+        results = plan.results(out / "data", lambda name: advance(description=name), engine)
+        advance(advance=0, description="drawing")
         report = write_report(results, out, engine)
     echo_path(report)

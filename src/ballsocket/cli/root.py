@@ -1,4 +1,4 @@
-"""The command `ballsocket`: its one application, its exit statuses, and what happens to errors."""
+"""The program `ballsocket`: its application, commands imported on demand, exit statuses and error messages."""
 
 from __future__ import annotations
 
@@ -8,74 +8,25 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from importlib import import_module
 from io import TextIOWrapper
 from pathlib import Path
-from types import MappingProxyType
-from typing import Annotated, Any, TextIO
+from typing import Annotated, Any, ClassVar, TextIO
 
 import numpy
 import typer
-from typer.models import CommandInfo
+from typer.core import TyperCommand, TyperGroup
 
-import ballsocket as bs
+from ..version import __version__
 
-_MODULES: Mapping[str, tuple[str, ...]] = MappingProxyType(
-    {
-        **{name: (name,) for name in ("press", "curve", "orient")},
-        "questions": ("map", "optimise", "sensitivity"),
-        **{name: (name,) for name in ("study", "hip")},
-        "lists": ("models", "presets", "cite"),
-        "identify": ("identify",),
-        "fit": ("calibrate", "build-tables"),
-        **{name: (name,) for name in ("evidence", "deck", "fmu", "export", "schema", "app")},
-        "serve_mcp": ("serve-mcp",),
-        "reproduce": ("reproduce",),
-    }
-)
-"""Modules of this package with their commands, in the order of `--help`."""
-
-
-class _Commands(typer.Typer):
-    """Application that imports the modules of its commands on first use."""
-
-    _needed: tuple[str, ...] = tuple(_MODULES)
-
-    def need(self, word: str) -> None:
-        """Import the module of one command only; all modules for any other word."""
-        modules = tuple(module for module, commands in _MODULES.items() if word in commands)
-        self._needed = modules or tuple(_MODULES)
-
-    @property
-    def registered_commands(self) -> list[CommandInfo]:
-        """Commands of the needed modules."""
-        needed, self._needed = self._needed, ()
-        for module in needed:
-            import_module(f"ballsocket.cli.{module}")
-        return self._commands
-
-    @registered_commands.setter
-    def registered_commands(self, commands: list[CommandInfo]) -> None:
-        self._commands = commands
-
-
-app = _Commands(
-    name="ballsocket",
-    help="Contact of a ball in a socket of nearly its own radius. Units are mm, N, MPa, degrees unless text says so.",
-    no_args_is_help=False,
-    add_completion=False,
-    rich_markup_mode=None,
-    pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
-UsageError: Any = typer.BadParameter.__base__  # typer brings a click of its own, and does not export this
-DONE, MISUSE, FAILURE = 0, 2, 3
-STOPPED, NOBODY_READS = 130, 141  # as a shell says it of the signals
-_LONGEST = 600  # characters of a message
-_IN_ASCII = {
+UsageError: Any = typer.BadParameter.__base__  # typer contains a copy of click and does not export this class
+SUCCESS, MISUSE, FAILURE = 0, 2, 3
+INTERRUPTED, BROKEN_PIPE = 130, 141  # 128 + number of the signal, like in a shell
+_MAX_MESSAGE_LENGTH = 600  # characters
+_ASCII_REPLACEMENTS = {
     "≤": "<=",
     "≥": ">=",
     "±": "+-",
@@ -90,43 +41,120 @@ _IN_ASCII = {
 }
 
 
-def _version(wanted: bool) -> None:
-    if wanted:
-        typer.echo(f"ballsocket {bs.__version__}")
+@dataclass(frozen=True)
+class CommandEntry:
+    """A command before it is imported: its module and its line in the list of commands."""
+
+    module: str
+    summary: str
+    hidden: bool = False
+
+
+_ENTRIES: dict[str, CommandEntry] = {}
+"""Entries of the commands by name, in the order of the help."""
+
+
+def add_commands(entries: Mapping[str, CommandEntry]) -> None:
+    """Add commands to the program without importing them."""
+    _ENTRIES.update(entries)
+
+
+class Placeholder(TyperCommand):
+    """A command that is listed but not imported yet."""
+
+
+class CommandGroup(TyperGroup):
+    """Commands of the program; each one is imported when it is called."""
+
+    program: ClassVar[typer.Typer]
+
+    def __init__(self, **attributes: Any) -> None:
+        super().__init__(**attributes)
+        imported = dict(self.commands)
+        self.commands = {
+            name: imported.get(name) or Placeholder(name=name, help=entry.summary, hidden=entry.hidden)
+            for name, entry in _ENTRIES.items()
+        }
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Return a command by its name, imported if necessary, with the arguments that follow it."""
+        name = args[0]
+        if isinstance(self.commands.get(name), Placeholder):
+            import_module(_ENTRIES[name].module)
+            imported: Any = typer.main.get_command(self.program)
+            self.commands[name] = imported.commands[name]
+        return super().resolve_command(ctx, args)
+
+
+app = typer.Typer(
+    name="ballsocket",
+    cls=CommandGroup,
+    help="Contact of a ball in a socket of nearly its own radius. A number without a unit is in mm, N, MPa or degrees.",
+    no_args_is_help=False,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+CommandGroup.program = app
+
+
+def load_commands() -> dict[str, Callable[..., None]]:
+    """Import all commands, and return their functions by name in the order of the help."""
+    for entry in _ENTRIES.values():
+        import_module(entry.module)
+    functions: dict[str, Any] = {
+        _command_name(info): info.callback for info in CommandGroup.program.registered_commands
+    }
+    return {name: functions[name] for name in _ENTRIES}
+
+
+def _command_name(info: Any) -> str:
+    """Return the name of a registered command: a stated one, or that of its function."""
+    return info.name or info.callback.__name__.replace("_", "-")
+
+
+def _print_version(requested: bool) -> None:
+    """Print the version and exit if the option is used."""
+    if requested:
+        typer.echo(f"ballsocket {__version__}")
         raise typer.Exit()
 
 
 @app.callback(invoke_without_command=True)
 def root(
     context: typer.Context,
-    version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="Print it.")] = False,
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
 ) -> None:
-    """Contact of a ball in a socket of nearly its own radius."""
+    """Print the list of commands if none is called."""
     if context.invoked_subcommand is None:
         typer.echo(context.get_help())
 
 
-def _degrade(error: UnicodeError) -> tuple[str, int]:
-    """What stands for characters that the terminal's encoding lacks."""
+def _replace_by_ascii(error: UnicodeError) -> tuple[str, int]:
+    """Return ASCII text for characters that cannot be encoded, and the position after them."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return "".join(_IN_ASCII.get(char, "?") for char in error.object[error.start : error.end]), error.end
+    return "".join(_ASCII_REPLACEMENTS.get(char, "?") for char in error.object[error.start : error.end]), error.end
 
 
-def _write_in_any_encoding() -> None:
-    codecs.register_error("degrade", _degrade)
+def _allow_any_encoding() -> None:
+    """Write ASCII text for characters that the encoding of an output stream lacks."""
+    codecs.register_error("degrade", _replace_by_ascii)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors="degrade")
 
 
 def main() -> None:
-    """The command `ballsocket`: one line on stderr for misuse, no tracebacks for what a user can mend."""
-    _write_in_any_encoding()
+    """Run the program; print errors that the user can correct as one line on stderr."""
+    _allow_any_encoding()
     if os.environ.get("COLUMNS", "").strip() == "0":  # width 0 means an unknown width
         del os.environ["COLUMNS"]
-    with _cleaning_up_when_ended(), _without_warnings():
-        sys.exit(_status())
+    with _exit_on_sigterm(), _without_warnings():
+        sys.exit(_run())
 
 
 @contextmanager
@@ -137,97 +165,98 @@ def _without_warnings() -> Iterator[None]:
         yield
 
 
-def _status() -> int:
-    """Do what is asked; the exit status."""
+def _run() -> int:
+    """Run the command of the command line, and return the exit status."""
     status = MISUSE
     try:
-        app.need(sys.argv[1] if len(sys.argv) > 1 else "")
-        done = app(standalone_mode=False) or DONE
+        result = app(standalone_mode=False) or SUCCESS
         _flush()
-        return int(done)
-    except SystemExit as ended:
-        if isinstance(ended.__context__, BrokenPipeError):  # rich ends at once, as if it were an error
-            return NOBODY_READS
+        return int(result)
+    except SystemExit as stop:
+        if isinstance(stop.__context__, BrokenPipeError):  # rich exits with an error status
+            return BROKEN_PIPE
         raise
     except BrokenPipeError:
-        _write_no_more()
-        return NOBODY_READS
+        _discard_output()
+        return BROKEN_PIPE
     except typer.Abort:
-        return STOPPED
+        return INTERRUPTED
     except UsageError as error:
-        message = _said(error)
+        message = _usage_message(error)
     except OSError as error:
         if error.filename is None:
-            _write_no_more()  # what is still to be written would fail again at the very end
+            _discard_output()  # the remaining output would fail again when Python exits
         message = f"{error.filename or 'output'}: {error.strerror or error}"
     except ValueError as error:
         message = str(error)
     except ImportError as error:
         message = str(error)
-    except RuntimeError as error:  # a process that was lost too often
+    except RuntimeError as error:  # a worker process died several times
         message, status = str(error), FAILURE
     except (ArithmeticError, MemoryError) as error:
-        message, status = f"these numbers are too large or too small to calculate with ({error})", FAILURE
-    complain(message)
+        message, status = f"the numbers are too large or too small to compute with ({error})", FAILURE
+    print_message(message)
     return status
 
 
-def _said(error: Any) -> str:
-    """What is wrong with a command line; where an option is not known, and none is like it, who lists them."""
+def _usage_message(error: Any) -> str:
+    """Return the message of a wrong command line; for an unknown option with no similar one, add where to look."""
     message: str = error.format_message()
     if not hasattr(error, "option_name") or error.ctx is None or set(error.possibilities or ()) - {"--help"}:
         return message
     return f"No such option: {error.option_name}; ballsocket {error.ctx.info_name} -h lists them"
 
 
-def complain(message: str) -> None:
-    """Print one line on stderr, if anything can be written there."""
+def print_message(message: str) -> None:
+    """Print one line on stderr if stderr can be written to."""
     try:
         print(f"ballsocket: {_one_line(message)}", file=sys.stderr, flush=True)
     except OSError:
-        _write_no_more(sys.stderr)
+        _discard_output(sys.stderr)
 
 
 def _one_line(message: str) -> str:
-    """A text as any terminal can show it, whatever the names in it are, and how long."""
+    """Return a text as one printable line of limited length."""
     text = " ".join(message.split())
-    if len(text) > _LONGEST:
-        text = f"{text[: _LONGEST // 2]} ... {text[-_LONGEST // 4 :]}"
-    return _printable(text)
+    if len(text) > _MAX_MESSAGE_LENGTH:
+        text = f"{text[: _MAX_MESSAGE_LENGTH // 2]} ... {text[-_MAX_MESSAGE_LENGTH // 4 :]}"
+    return _escape(text)
 
 
-def _printable(text: str) -> str:
+def _escape(text: str) -> str:
+    """Escape the characters of a text that are not printable."""
     return "".join(char if char.isprintable() else ascii(char)[1:-1] for char in text)
 
 
 def echo_path(path: Path, more: str = "") -> None:
-    """Tell where something was written, as any terminal can show it."""
-    typer.echo(_printable(f"{path}{more}"))
+    """Print the path of a written file or folder, with escapes for characters that are not printable."""
+    typer.echo(_escape(f"{path}{more}"))
 
 
 def _flush() -> None:
-    """What is still to be written is written while there is somebody to hear that it cannot be."""
+    """Write buffered output now, so that an error in writing is still reported."""
     for stream in (sys.stdout, sys.stderr):
         if stream is not None:
             stream.flush()
 
 
-def _write_no_more(stream: TextIO | None = None) -> None:
-    """Nobody reads what is written: not even at the end of the process is there anything to flush."""
+def _discard_output(stream: TextIO | None = None) -> None:
+    """Redirect a stream to the null device, so that buffered output causes no error when Python exits."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), (stream or sys.stdout).fileno())
 
 
 @contextmanager
-def _cleaning_up_when_ended() -> Iterator[None]:
-    """A process that is asked to end leaves no half-written folders behind."""
+def _exit_on_sigterm() -> Iterator[None]:
+    """Exit through Python on SIGTERM, so that temporary folders are removed."""
 
-    def end(number: int, frame: Any) -> None:
+    def exit_with_status(number: int, frame: Any) -> None:
+        """Exit with the status that a shell gives to a signal."""
         sys.exit(128 + number)
 
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGTERM, end)
+    before = signal.signal(signal.SIGTERM, exit_with_status)
     try:
         yield
     finally:

@@ -1,4 +1,4 @@
-"""`study`: a study file is run, resumed, and put into a file for other programs."""
+"""Command `study`: press a joint at every point of a study file, with a store that can be resumed."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-import ballsocket as bs
-
 from ..output import study_plots, study_summary, study_terminal
 from ..output.save import check_format, save
 from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
 from ..studies.run import Listener
-from ..studies.run import Progress as Reached
-from .engine import Scheduler, Workers, engine_of
-from .root import app, complain, echo_path
-from .words import AsJson, echo_json
+from ..studies.run import Progress as StudyProgress
+from ..studies.run import study as run_study
+from ..version import __version__
+from .json_answers import echo_json
+from .options import AsJson, Scheduler, Workers, choose_executor
+from .root import app, echo_path, print_message
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -31,89 +31,104 @@ if TYPE_CHECKING:
 
 @app.command()
 def study(
-    file: Annotated[Path, typer.Argument(help="A study file (TOML).")],
-    store: Annotated[Path | None, typer.Option(help="The folder of the store, in place of the file's.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Also write all numbers as NetCDF (.nc) or CSV (.csv).")] = None,
+    file: Annotated[Path, typer.Argument(help="Study file (TOML).")],
+    store: Annotated[
+        Path | None, typer.Option(help="Folder that stores the results. Default: the store of the file.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Write all values to this file: NetCDF (.nc) or CSV (.csv).")] = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
     figure: Annotated[
-        Path | None, typer.Option(help="A map of two axes, or bands of samples over one (.png, .svg, .pdf).")
+        Path | None,
+        typer.Option(help="Write a figure (.png, .svg, .pdf): a map over two axes, or bands of samples over one axis."),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Press a joint at every point of a study file, into a store that can be resumed."""
+    """Press a joint at every point of a study file.
+
+    With a store, the same command resumes a stopped study.
+    """
     if out is not None:
         check_suffix(out)
-    given = read_study(file)
-    draw = None if figure is None else _drawing(given, figure)
-    kept = store or given.store
-    with _shown(kept) as listen:
-        found = bs.study(
-            given.model,
-            given.joint,
-            given.design,
-            quantities=given.quantities,
-            store=kept,
-            engine=engine_of(workers, scheduler, given.engine),
-            listen=listen,
+    study_file = read_study(file)
+    draw = None if figure is None else _choose_plot(study_file, figure)
+    folder = store or study_file.store
+    with _progress_bar(folder) as progress:
+        result = run_study(
+            study_file.model,
+            study_file.joint,
+            study_file.design,
+            quantities=study_file.quantities,
+            store=folder,
+            engine=choose_executor(workers, scheduler, study_file.engine),
+            listen=progress,
         )
     if as_json:
-        echo_json({"version": bs.__version__, "joint": given.joint.summary(), **study_summary.study_summary(found)})
+        summary = study_summary.study_summary(result)
+        echo_json({"version": __version__, "joint": study_file.joint.summary(), **summary})
     else:
-        study_terminal.print_study(found)
+        study_terminal.print_study(result)
     if out is not None:
-        export(found, out)
+        export(result, out)
     if draw is not None and figure is not None:
-        save(draw(found), figure)
-    for path in () if as_json else (kept, out, figure):
+        save(draw(result), figure)
+    for path in () if as_json else (folder, out, figure):
         if path is not None:
             echo_path(path)
 
 
-def _drawing(given: StudyFile, path: Path) -> Callable[[Any], Figure]:
-    """How the study is drawn, asked before it is run."""
+def _choose_plot(study_file: StudyFile, path: Path) -> Callable[[Any], Figure]:
+    """Return the plot of a study, before it runs.
+
+    Raises
+    ------
+    ValueError
+        Another file format, or a study without two axes.
+    """
     check_format(path)
-    long = [axis.name for axis in given.design.axes if len(axis) > 1]
-    if len(long) != 2:
-        raise ValueError(f"a figure needs two axes, or samples and an axis; this study has {', '.join(long) or 'none'}")
-    return study_plots.band_figure if "sample" in long else study_plots.design_map
+    axes = [axis.name for axis in study_file.design.axes if len(axis) > 1]
+    if len(axes) != 2:
+        raise ValueError(f"a figure needs two axes, or samples and an axis; this study has {', '.join(axes) or 'none'}")
+    return study_plots.band_figure if "sample" in axes else study_plots.design_map
 
 
 @contextmanager
-def _shown(store: Path | None) -> Iterator[Listener]:
-    """A bar with the rate and the remaining time; after Ctrl-C, what is kept."""
+def _progress_bar(store: Path | None) -> Iterator[Listener]:
+    """Show a progress bar with rate and remaining time; after Ctrl-C, print the number of stored points."""
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[state]}"))
     progress = Progress(*columns, console=Console(stderr=True))
-    task = progress.add_task("looking at what is there", total=None, state="")
-    last: list[Reached] = []
+    task = progress.add_task("reading the store", total=None, state="")
+    latest: list[StudyProgress] = []
     if store is not None and store.exists():
         progress.start()
 
-    def listen(reached: Reached) -> None:
-        progress.start()  # not before there is something to tell
+    def update(state: StudyProgress) -> None:
+        """Update the bar, which starts with the first finished block."""
+        progress.start()
         progress.update(
-            task, description="pressing", completed=reached.done, total=reached.points, state=_state(reached)
+            task, description="pressing", completed=state.done, total=state.points, state=_progress_text(state)
         )
-        last[:] = [reached]
+        latest[:] = [state]
 
     try:
-        yield listen
+        yield update
     except KeyboardInterrupt:
-        _end(progress)
-        if store is not None and last:
-            done = f"{last[0].done:.4g} of {last[0].points:.4g} points are kept in {store}"
-            complain(f"stopped; {done}: run it again to go on")
+        _stop(progress)
+        if store is not None and latest:
+            stored = f"{latest[0].done:.4g} of {latest[0].points:.4g} points are stored in {store}"
+            print_message(f"stopped; {stored}: run the command again to resume")
         raise
     finally:
-        _end(progress)
+        _stop(progress)
 
 
-def _end(progress: Progress) -> None:
-    """One that never began would leave an empty line."""
+def _stop(progress: Progress) -> None:
+    """Stop a progress bar that started; one that never started would print an empty line."""
     if progress.live.is_started:
         progress.stop()
 
 
-def _state(reached: Reached) -> str:
-    left = "" if reached.left in (0.0, inf) else f", {timedelta(seconds=ceil(reached.left))} left"
-    return f"{reached.done:.4g} of {reached.points:.4g}, {reached.rate:.3g}/s{left}"
+def _progress_text(state: StudyProgress) -> str:
+    """Return finished points, rate in points per second and remaining time as text."""
+    remaining = "" if state.left in (0.0, inf) else f", {timedelta(seconds=ceil(state.left))} left"
+    return f"{state.done:.4g} of {state.points:.4g}, {state.rate:.3g}/s{remaining}"

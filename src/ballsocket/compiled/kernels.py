@@ -185,17 +185,17 @@ def _tabulated_kernel(kind: str) -> Any:
 @overload(formulas.evaluate, strict=False)
 def _overload_evaluate(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
     if rows.count == 1:
-        return lambda angle, curve, rows: _evaluate_functions(angle, curve)[:1]
+        return lambda angle, curve, rows: _evaluate_table_functions(angle, curve)[:1]
     if rows.count == 2:
-        return lambda angle, curve, rows: _evaluate_functions(angle, curve)[:2]
-    return lambda angle, curve, rows: _evaluate_functions(angle, curve)
+        return lambda angle, curve, rows: _evaluate_table_functions(angle, curve)[:2]
+    return lambda angle, curve, rows: _evaluate_table_functions(angle, curve)
 
 
 @inline_formula
-def _evaluate_functions(angle, curve):  # type: ignore[no-untyped-def]
-    """Compute the three tabulated functions of a half angle and their slopes by ln ε, as Chebyshev series.
+def _evaluate_table_functions(angle, curve):  # type: ignore[no-untyped-def]
+    """Evaluate the tabulated opening, force and pole pressure, and their slopes by ln ε, at a half angle.
 
-    The recurrences are T_k+1 = 2x T_k - T_k-1 and T_k' = k U_k-1.
+    They are Chebyshev series. The recurrences are T_k+1 = 2x T_k - T_k-1 and T_k' = k U_k-1.
     """
     root = chebyshev.angle_root(angle, curve.ratio)
     x = 2 * root - 1

@@ -35,7 +35,8 @@ class CompiledLaw:
     Attributes
     ----------
     function : numba function
-        Function of an indentation, followed by the numbers, that returns force and stiffness.
+        Function of an indentation, followed by the numbers, that returns force and stiffness. That of a
+        `CompiledElement` returns energy, force and stiffness.
     numbers : tuple
         Numbers of the joint.
 
@@ -59,9 +60,8 @@ class CompiledLaw:
     function: Any
     numbers: tuple[Any, ...]
 
-    def __call__(self, indentation: float) -> tuple[float, float]:
-        force, stiffness = self.function(indentation, *self.numbers)
-        return force, stiffness
+    def __call__(self, indentation: float) -> Any:
+        return self.function(indentation, *self.numbers)
 
 
 def compiled_law(law: ForceLaw) -> CompiledLaw:

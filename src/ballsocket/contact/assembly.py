@@ -58,7 +58,7 @@ def select_and_check_load(**loads: Array | None) -> tuple[str, Array]:
 
 
 def broadcast_load(load: Array, strengths: tuple[Array, ...]) -> Array:
-    """Broadcast a load to the common shape with the strengths of the materials.
+    """Broadcast a load to the common shape of the load and the strengths of the joint's materials.
 
     Stresses can then be compared with the strengths point by point.
     """
@@ -68,7 +68,7 @@ def broadcast_load(load: Array, strengths: tuple[Array, ...]) -> Array:
 
 
 def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Joint, Array]:
-    """Convert the numbers of a joint and a load to arrays of one library and dtype.
+    """Convert the numbers of a joint and a load to arrays of one library and data type.
 
     The `parameters` of a model count for the choice of the library; they are not returned.
 
@@ -80,9 +80,9 @@ def as_arrays(joint: Joint, load: Array, *parameters: Array) -> tuple[bool, Join
         The joint and the load of arrays.
     """
     numbers = (*joint.numbers(), load)
-    plain = all(arrays.is_plain_number(number) for number in (*numbers, *parameters))
+    all_plain = all(arrays.is_plain_number(number) for number in (*numbers, *parameters))
     joint_numbers = arrays.to_common_arrays(*numbers, *parameters)[: len(numbers)]
-    return plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
+    return all_plain, joint.with_numbers(joint_numbers[:-1]), joint_numbers[-1]
 
 
 _BY_SEVERITY = (
@@ -107,7 +107,7 @@ def make_contact(
     result: SolverResult,
     plain: bool,
 ) -> Contact:
-    """Assemble a contact of arrays: determine the status, and set failed points to NaN.
+    """Build a `Contact` of arrays from a solver's result: determine the status, and set failed points to NaN.
 
     Parameters
     ----------
@@ -125,11 +125,11 @@ def make_contact(
         True if the contact must consist of Python numbers.
     """
     xp = arrays.namespace(load)
-    shape = (load, result.force, result.indentation, *joint.numbers())
-    F = arrays.broadcast(load if kind == "force" else result.force, *shape)
-    d = arrays.broadcast(load if kind == "indentation" else result.indentation, *shape)
-    reached = arrays.isfinite(result.force) & arrays.isfinite(result.indentation)
-    failures = {**result.failures, Status.NOT_REACHED: ~reached, Status.OUTSIDE_DOMAIN: ~points}
+    operands = (load, result.force, result.indentation, *joint.numbers())
+    F = arrays.broadcast(load if kind == "force" else result.force, *operands)
+    d = arrays.broadcast(load if kind == "indentation" else result.indentation, *operands)
+    reachable = arrays.isfinite(result.force) & arrays.isfinite(result.indentation)
+    failures = {**result.failures, Status.NOT_REACHED: ~reachable, Status.OUTSIDE_DOMAIN: ~points}
     status = xp.zeros_like(xp.astype(F > 0, xp.int8))
     for code in _BY_SEVERITY:
         if code in failures:
@@ -144,17 +144,22 @@ def make_contact(
 def make_scalar_contact(
     model: ModelInfo, contact_type: type[Contact], joint: Joint, kind: str, load: float, result: SolverResult
 ) -> Contact:
-    """Assemble a contact of Python numbers: determine the status, and set a failed result to NaN.
+    """Build a `Contact` of Python numbers from a solver's result; set the numbers of a failed result to NaN.
 
     The joint is inside the domain of the model. See `make_contact`.
     """
-    F, d, status = result.force, result.indentation, Status.OK
-    failures = {**result.failures, Status.NOT_REACHED: not (arrays.isfinite(F) and arrays.isfinite(d))}
+    contact_force, contact_indentation, status = result.force, result.indentation, Status.OK
+    failures = {
+        **result.failures,
+        Status.NOT_REACHED: not (arrays.isfinite(contact_force) and arrays.isfinite(contact_indentation)),
+    }
     for code in _BY_SEVERITY:
         if failures.get(code):
             status = code
     if status.failed:
-        F, d = numpy.nan, numpy.nan
+        contact_force, contact_indentation = numpy.nan, numpy.nan
     if kind != "half_angle":
-        F, d = (load, d) if kind == "force" else (F, load)
-    return contact_type(model=model, laws=result.laws, joint=joint, force=F, indentation=d, status=status)
+        contact_force, contact_indentation = (load, contact_indentation) if kind == "force" else (contact_force, load)
+    return contact_type(
+        model=model, laws=result.laws, joint=joint, force=contact_force, indentation=contact_indentation, status=status
+    )

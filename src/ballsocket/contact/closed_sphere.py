@@ -1,4 +1,4 @@
-"""Estimated difference between a closed sphere (the exact solution) and a hemisphere with a free rim and half a ball.
+"""Estimated difference between a closed sphere (the exact solution) and a hemisphere with a free rim.
 
 The formulas hold for a liner on a rigid backing. They are fitted to the estimate of `Exact` (`contact.hemisphere`) and
 are 0.7 to 1.3 times that estimate for nine of ten joints. `tabulated` and `refined` use them; `exact` computes the
@@ -42,26 +42,28 @@ def polynomial_variables(half_angle: Array, poisson: Array, thickness_ratio: Arr
 
 
 def polynomial_exponents(degree: int) -> tuple[tuple[int, int, int], ...]:
-    """List the exponents of the three variables in each term of a polynomial of given degree."""
+    """List the exponents (i, j, k) of the three variables in each term of a polynomial of given degree."""
     orders = range(degree + 1)
     return tuple((i, j, k) for i in orders for j in orders for k in orders if i + j + k <= degree)
 
 
 @cache
-def _read_coefficients(name: str) -> tuple[float, ...]:
-    """Read the coefficients of a fitted polynomial from the data of the package."""
-    table = tomllib.loads((files("ballsocket") / "data" / "hemisphere.toml").read_text(encoding="utf-8"))
-    return tuple(table[name])
+def _read_polynomial_coefficients(polynomial_name: str) -> tuple[float, ...]:
+    """Read the coefficients of a fitted polynomial by its name from the data file of the package."""
+    coefficient_table = tomllib.loads((files("ballsocket") / "data" / "hemisphere.toml").read_text(encoding="utf-8"))
+    return tuple(coefficient_table[polynomial_name])
 
 
-def _evaluate_fit(name: str, degree: int, contact: Any) -> Array:
-    """Evaluate a fitted polynomial, the logarithm of a relative change, for a contact."""
+def _evaluate_fitted_polynomial(polynomial_name: str, degree: int, contact: Any) -> Array:
+    """Evaluate the fitted relative change of a contact: the exponential of a polynomial."""
     joint = contact.joint
     x, y, z = polynomial_variables(contact.half_angle, joint.liner.poisson, joint.thickness_ratio)
     return exp(
         sum(
-            number * x**i * y**j * z**k
-            for number, (i, j, k) in zip(_read_coefficients(name), polynomial_exponents(degree), strict=True)
+            coefficient * x**i * y**j * z**k
+            for coefficient, (i, j, k) in zip(
+                _read_polynomial_coefficients(polynomial_name), polynomial_exponents(degree), strict=True
+            )
         )
     )
 
@@ -71,7 +73,9 @@ def hemisphere_indentation_change(contact: Any) -> Array:
 
     The force is the same.
     """
-    return _evaluate_fit("indentation", 5, contact) + contact.joint.modulus_ratio * _evaluate_fit("ball", 4, contact)
+    return _evaluate_fitted_polynomial(
+        "indentation", 5, contact
+    ) + contact.joint.modulus_ratio * _evaluate_fitted_polynomial("ball", 4, contact)
 
 
 def max_hemisphere_change(contact: Any) -> Array:
@@ -79,8 +83,8 @@ def max_hemisphere_change(contact: Any) -> Array:
 
     It is the largest of the changes of indentation, half angle, largest pressure and stiffness at the same force.
     """
-    ball = BALL_FACTOR * contact.joint.modulus_ratio * _evaluate_fit("ball", 4, contact)
-    return _evaluate_fit("largest", 5, contact) + ball
+    ball = BALL_FACTOR * contact.joint.modulus_ratio * _evaluate_fitted_polynomial("ball", 4, contact)
+    return _evaluate_fitted_polynomial("largest", 5, contact) + ball
 
 
 LIKE_HEMISPHERE = Range(

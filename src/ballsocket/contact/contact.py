@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Laws(Protocol):
-    """Protocol of the quantities of a contact beyond force and indentation.
+    """Interface of the formulas or the solution of a contact: quantities beyond force and indentation.
 
     Closed forms bound to the joint, and numerical solutions, have these attributes.
     """
@@ -51,19 +51,19 @@ class Laws(Protocol):
     def pressure(self, angle: Array) -> Array: ...
 
 
-def _law_property(name: str) -> Any:
+def _quantity_property(name: str) -> Any:
     """Make a cached property of `Contact` that evaluates one quantity of its laws."""
 
-    def compute(self: Contact) -> Array:
-        """Compute the quantity of the contact."""
-        return self._evaluate(law)
+    def compute_quantity(self: Contact) -> Array:
+        """Compute the quantity and set failed points to NaN."""
+        return self._evaluate(read_quantity)
 
-    law = attrgetter(name)
+    read_quantity = attrgetter(name)
 
     quantity = QUANTITIES[name]
-    compute.__doc__ = f"{quantity.input_label(Unit(''))} in {quantity.unit}. {quantity.meaning}"
-    compute.__name__ = name
-    return cached_property(compute)
+    compute_quantity.__doc__ = f"{quantity.input_label(Unit(''))} in {quantity.unit}. {quantity.meaning}"
+    compute_quantity.__name__ = name
+    return cached_property(compute_quantity)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -93,18 +93,18 @@ class Contact(Outcome):
     force: Array
     indentation: Array
 
-    half_angle = _law_property("half_angle")
-    max_pressure = _law_property("max_pressure")
-    max_pressure_angle = _law_property("max_pressure_angle")
-    pole_pressure = _law_property("pole_pressure")
-    stiffness = _law_property("stiffness")
-    energy = _law_property("energy")
-    foundation_modulus = _law_property("foundation_modulus")
-    pressure_integral = _law_property("pressure_integral")
+    half_angle = _quantity_property("half_angle")
+    max_pressure = _quantity_property("max_pressure")
+    max_pressure_angle = _quantity_property("max_pressure_angle")
+    pole_pressure = _quantity_property("pole_pressure")
+    stiffness = _quantity_property("stiffness")
+    energy = _quantity_property("energy")
+    foundation_modulus = _quantity_property("foundation_modulus")
+    pressure_integral = _quantity_property("pressure_integral")
 
     @property
     def _load(self) -> Array:
-        """Load of the contact: its indentation in mm."""
+        """Load of the contact, here its indentation in mm."""
         return self.indentation
 
     @cached_property
@@ -131,14 +131,14 @@ class Contact(Outcome):
 
     @renamed_arguments(asked="mask")
     def utilisation_at(self, mask: Array) -> Array:
-        """Compute the utilisation at the points of a mask; the others may be NaN.
+        """Compute the ratio of von Mises to yield stress at the points of a mask; other points may be NaN.
 
         Models that solve for the stresses skip the other points.
         """
         return self.utilisation
 
     def _compute_utilisation(self, von_mises: Array) -> Array:
-        """Compute the utilisation from the largest von Mises stress in the liner in MPa."""
+        """Compute the ratio of von Mises to yield stress from the von Mises stress of the liner in MPa."""
         return self._match_load(strength.utilisation(self.joint, von_mises, self.max_pressure))
 
     @property
@@ -151,7 +151,7 @@ class Contact(Outcome):
 
     @property
     def utilisation_bounds(self) -> tuple[Array, Array]:
-        """Lower and upper bound of the utilisation.
+        """Lower and upper bound of the ratio of largest von Mises stress to yield stress.
 
         No stresses are solved for.
         """
@@ -169,8 +169,8 @@ class Contact(Outcome):
         return strength.von_mises_ratio(self.half_angle, liner.poisson, self.joint.thickness_ratio) * self.max_pressure
 
     @property
-    def _limits(self) -> tuple[Range, ...]:
-        """Ranges that a valid contact satisfies."""
+    def _validity_ranges(self) -> tuple[Range, ...]:
+        """Ranges of quantities in which a contact is valid, with the elastic limit if a strength is known."""
         return (*self.model.validity, _ELASTIC) if self.joint.strengths() else self.model.validity
 
     @property
@@ -180,18 +180,20 @@ class Contact(Outcome):
             [self.utilisation_note] if self.utilisation_note and arrays.all_true(self._failed) is not True else []
         )
         compared = (
-            note for good, text in strength.strength_remarks(self) for note in self._note(good | self._failed, text)
+            note
+            for acceptable, text in strength.strength_remarks(self)
+            for note in self._note_on_invalid_points(acceptable | self._failed, text)
         )
         return (*super().notes, *unchecked, *compared)
 
     @property
     def utilisation_note(self) -> str:
-        """Reason why the utilisation excludes the liner; empty if the liner has a yield stress."""
+        """Reason why the strength of the liner is not checked; empty if the liner has a yield stress."""
         return strength.unchecked_strength_reason(self.joint)
 
     @cached_property
     def area(self) -> Array:
-        """Contact area on the ball in mm², A = 2π R1² (1 - cos ε), Eq. (19)."""
+        """Contact area on the ball in mm², A = 2π R1² (1 - cos ε), Eq. (19), with ball radius R1 and half angle ε."""
         half_sine = arrays.sin(arrays.clip(self.half_angle, 0.0, pi) / 2)
         with numpy.errstate(all="ignore"):
             return self._match_load(4 * pi * self.joint.ball_radius * self.joint.ball_radius * half_sine * half_sine)
@@ -209,7 +211,7 @@ class Contact(Outcome):
 
     @property
     def width_ratio(self) -> Array:
-        """Ratio of contact radius to liner thickness, R2 sin ε / L."""
+        """Ratio of contact radius to liner thickness, R2 sin ε / L (R2 socket radius, ε half angle)."""
         return arrays.sin(self.half_angle) * self.joint.thickness_ratio
 
     @property
@@ -304,38 +306,43 @@ class Contact(Outcome):
         require("coefficient", coefficient, (coefficient >= 0) & (coefficient < inf), allowed)
         require("axis_angle", axis_angle, abs(axis_angle) <= 2 * pi, f"it is in radians; {degrees_hint(axis_angle)}")
 
-        def ring(x: float) -> Array:
-            """Compute the integrand of the torque on the ring at a fraction x of the half angle."""
-            angle = self.half_angle * sin(pi / 2 * x)  # removes the square root singularity at the edge
-            width = self.half_angle * (pi / 2 * cos(pi / 2 * x))
+        def ring_torque(fraction: float) -> Array:
+            """Compute the friction torque density of the ring at a fraction x of the half angle."""
+            angle = self.half_angle * sin(pi / 2 * fraction)  # removes the square root singularity at the edge
+            width = self.half_angle * (pi / 2 * cos(pi / 2 * fraction))
             arc = angle if self.model.planar else arrays.sin(angle)
-            return self.pressure(angle) * _mean_lever(angle, axis_angle) * arc * width
+            return self.pressure(angle) * _mean_friction_lever(angle, axis_angle) * arc * width
 
-        R2 = self.joint.socket_radius
-        lever = coefficient * self.joint.ball_radius
-        return self._match_load(lever * 2 * pi * R2 * R2 * arrays.integral(ring, 24))
+        socket_radius = self.joint.socket_radius
+        friction_lever = coefficient * self.joint.ball_radius
+        return self._match_load(
+            friction_lever * 2 * pi * socket_radius * socket_radius * arrays.integral(ring_torque, 24)
+        )
 
-    def _evaluate(self, law: Callable[[Laws], Array]) -> Array:
-        """Evaluate one quantity of the laws, and set failed points to NaN.
+    def _evaluate(self, read_quantity: Callable[[Laws], Array]) -> Array:
+        """Evaluate one quantity from the formulas or the solution of the contact; set failed points to NaN.
 
         NumPy numbers replace Python floats where these raise ArithmeticError.
         """
 
-        def value() -> Array:
-            """Evaluate the quantity, with NumPy numbers if Python floats raise."""
+        def evaluate_quantity() -> Array:
+            """Evaluate the quantity; use NumPy numbers if Python floats raise ArithmeticError."""
             try:
-                return law(self.laws)
+                return read_quantity(self.laws)
             except ArithmeticError:
-                return law(self.model.numpy_laws(self.joint, self.indentation))
+                return read_quantity(self.model.numpy_laws(self.joint, self.indentation))
 
-        return self._mask_failed(value)
+        return self._mask_failed(evaluate_quantity)
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary for JSON in N, mm, MPa and degrees; arrays become lists, missing numbers None."""
+        """Return the contact as a dictionary for JSON in N, mm, MPa and degrees; missing numbers become None.
+
+        Arrays become lists.
+        """
         return describe.to_summary(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the dictionary for JSON of `summary()`."""
+        """Return the contact as a dictionary for JSON, equal to `summary()`."""
         return self.summary()
 
     def to_frame(self) -> pandas.DataFrame:
@@ -377,15 +384,18 @@ _UNIT_TOLERANCE = 1e-10
 """Tolerance of the square of (x² + y² + z² - 1) of a unit vector."""
 
 
-def _mean_lever(angle: Array, axis_angle: float) -> Array:
-    """Compute the mean lever arm of friction, over the ball radius, on the circle at a polar angle.
+def _mean_friction_lever(angle: Array, axis_angle: float) -> Array:
+    """Compute the mean lever arm of friction, divided by the ball radius, on the circle at a polar angle in rad.
 
     It is the mean sine of the angle between radius and axis of rotation.
     """
     azimuths = [pi * (k + 0.5) / 64 for k in range(64)]
-    polar, across = arrays.cos(angle) * float(numpy.cos(axis_angle)), arrays.sin(angle) * float(numpy.sin(axis_angle))
+    axial_part, transverse_part = (
+        arrays.cos(angle) * float(numpy.cos(axis_angle)),
+        arrays.sin(angle) * float(numpy.sin(axis_angle)),
+    )
     sines = [
-        arrays.sqrt(arrays.clip(1 - (polar + across * float(numpy.cos(azimuth))) ** 2, 0.0, 1.0))
+        arrays.sqrt(arrays.clip(1 - (axial_part + transverse_part * float(numpy.cos(azimuth))) ** 2, 0.0, 1.0))
         for azimuth in azimuths
     ]
     return arrays.weighted_sum(sines, [1 / 64] * 64)

@@ -34,27 +34,27 @@ class Column:
 
     @property
     def name(self) -> str:
-        """Key of the quantity in JSON."""
+        """Key of the quantity in JSON, such as "max_pressure"."""
         return self.quantity.key
 
     @property
     def attribute(self) -> str:
-        """Attribute name of the quantity in `Contact`."""
+        """Name of the `Contact` attribute that has the quantity."""
         return self.quantity.name
 
     @property
     def symbol(self) -> str:
-        """Symbol of the quantity."""
+        """Symbol of the quantity, such as "pmax"."""
         return self.quantity.symbol
 
     @property
     def title(self) -> str:
-        """Title of the quantity."""
+        """Name of the quantity in words."""
         return self.quantity.title
 
     @property
     def unit(self) -> str:
-        """Text of the unit."""
+        """Unit of the column as text, such as "MPa"."""
         return self.reading.text
 
     @property
@@ -64,16 +64,16 @@ class Column:
 
     @property
     def head(self) -> str:
-        """Column head of symbol and unit, such as "pmax [MPa]"."""
+        """Heading of the column: symbol and unit, such as "pmax [MPa]"."""
         return self.quantity.head(self.reading)
 
     @property
     def label(self) -> str:
-        """Axis label of title, symbol and unit."""
+        """Axis label of a plot: title, symbol and unit of the quantity."""
         return self.quantity.label(self.reading)
 
     def values_of(self, contact: Any) -> Array:
-        """Return the values of the quantity in a contact, in the unit of the column.
+        """Return the values of the quantity in a contact, converted to the unit of the column.
 
         -0 becomes 0.
         """
@@ -139,7 +139,7 @@ def to_html(contact: Any) -> str:
 
 
 def count_text(valid: Array) -> str:
-    """Format a mask as "yes" or "no" for one point, and as "3 of 5" for several."""
+    """Format a mask of valid points: "yes" or "no" for one point, such as "3 of 5" for several."""
     mask = arrays.to_numpy(valid)
     return ("yes" if mask.item() else "no") if mask.size == 1 else f"{int(mask.sum())} of {mask.size}"
 
@@ -155,17 +155,17 @@ def number_text(value: Array, digits: int, gap: str) -> str:
 
 
 def _format_rows(contact: Any) -> list[tuple[str, str, str]]:
-    """Format name, number and unit of each printed quantity of a contact."""
-    digits = 6 if arrays.to_numpy(contact.indentation).size == 1 else 5
+    """Format the printed quantities of a contact as rows of name, number and unit."""
+    digit_count = 6 if arrays.to_numpy(contact.indentation).size == 1 else 5
     rows = [
-        (column.attribute, number_text(column.values_of(contact), digits, "no answer"), column.unit)
+        (column.attribute, number_text(column.values_of(contact), digit_count, "no answer"), column.unit)
         for column in COLUMNS
     ]
     return [*rows, *_format_utilisation_row(contact), ("valid", count_text(contact.valid), "")]
 
 
 def _format_utilisation_row(contact: Any) -> list[tuple[str, str, str]]:
-    """Format the row of the utilisation; an empty list if it is unknown, or for many contacts."""
+    """Format the row of the ratio of von Mises to yield stress; [] if unknown, or for many contacts."""
     if arrays.to_numpy(contact.indentation).size != 1 or not contact.joint.strengths():
         return []
     value = UTILISATION.values_of(contact)

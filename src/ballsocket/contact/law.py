@@ -18,7 +18,7 @@ PolynomialPieces = Sequence[Sequence[float]]
 
 
 class ForceLaw(Protocol):
-    """Protocol of the function `model.law(joint)`: force and stiffness from the indentation.
+    """Interface of the function `model.law(joint)`: force and stiffness from the indentation.
 
     Parameters
     ----------
@@ -59,34 +59,34 @@ class CurveLaw:
     pieces: Numbers
 
     @cached_property
-    def _numbers(self) -> tuple[float, float, float, float, PolynomialPieces]:
-        """Attributes as plain numbers and tuples, for fast evaluation."""
-        rows = tuple(map(tuple, self.pieces.tolist()))
-        return self.shallowest, self.deepest, self.first, self.density, rows
+    def _plain_attributes(self) -> tuple[float, float, float, float, PolynomialPieces]:
+        """Attributes of the curve as Python floats and tuples, for fast evaluation."""
+        coefficient_rows = tuple(map(tuple, self.pieces.tolist()))
+        return self.shallowest, self.deepest, self.first, self.density, coefficient_rows
 
     def __call__(self, indentation: float) -> tuple[float, float]:
-        return force_and_tangent(indentation, *self._numbers)
+        return force_and_tangent(indentation, *self._plain_attributes)
 
 
 def force_and_tangent(
     indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float]:
-    """Compute force in N and tangent stiffness in N/mm from the attributes of a `CurveLaw`."""
+    """Evaluate a fitted `CurveLaw` at an indentation in mm: force in N and tangent stiffness in N/mm."""
     if indentation <= 0.0:
         return 0.0, 0.0
     if not indentation <= deepest:
         return math.nan, math.nan
-    along = (math.log(max(indentation, shallowest)) - first) * density
-    number = min(max(int(along), 0), len(pieces) - 1)
-    coordinate = 2.0 * (along - number) - 1.0
-    value, slope = 0.0, 0.0
-    for coefficient in pieces[number]:
-        slope = slope * coordinate + value
-        value = value * coordinate + coefficient
-    force, power = math.exp(value), 2.0 * density * slope
+    piece_position = (math.log(max(indentation, shallowest)) - first) * density
+    piece_index = min(max(int(piece_position), 0), len(pieces) - 1)
+    coordinate = 2.0 * (piece_position - piece_index) - 1.0
+    log_force, log_force_slope = 0.0, 0.0
+    for coefficient in pieces[piece_index]:
+        log_force_slope = log_force_slope * coordinate + log_force
+        log_force = log_force * coordinate + coefficient
+    force, exponent = math.exp(log_force), 2.0 * density * log_force_slope
     if indentation < shallowest:
-        force *= (indentation / shallowest) ** power
-    return force, power * force / indentation
+        force *= (indentation / shallowest) ** exponent
+    return force, exponent * force / indentation
 
 
 def finite_or_nan(force: float, stiffness: float) -> tuple[float, float]:
@@ -108,7 +108,7 @@ _END_TOLERANCE = 1e-6
 
 
 def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepest: float) -> CurveLaw:
-    """Fit a `CurveLaw` to computed forces; add pieces until ln F has converged.
+    """Fit a `CurveLaw` to computed forces; increase the number of pieces until ln F has converged (F in N).
 
     Parameters
     ----------
@@ -122,22 +122,22 @@ def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepes
     TypeError
         A load at the shallowest indentation that is not above 0.
     """
-    end = _deepest_indentation(force, shallowest, deepest)
-    for count in _PIECE_COUNTS:
-        series = _chebyshev_pieces(force, shallowest, end, count)
-        if numpy.max(abs(series[:, -1])) <= _SERIES_TOLERANCE:
+    last_indentation = _deepest_indentation(force, shallowest, deepest)
+    for piece_count in _PIECE_COUNTS:
+        chebyshev_coefficients = _chebyshev_coefficients(force, shallowest, last_indentation, piece_count)
+        if numpy.max(abs(chebyshev_coefficients[:, -1])) <= _SERIES_TOLERANCE:
             break
     return CurveLaw(
         shallowest=shallowest,
-        deepest=end,
+        deepest=last_indentation,
         first=math.log(shallowest),
-        density=count / math.log(end / shallowest),
-        pieces=numpy.ascontiguousarray((series @ _chebyshev_to_powers())[:, ::-1]),
+        density=piece_count / math.log(last_indentation / shallowest),
+        pieces=numpy.ascontiguousarray((chebyshev_coefficients @ _chebyshev_to_power_matrix())[:, ::-1]),
     )
 
 
 def _deepest_indentation(force: Callable[[Numbers], Numbers], low: float, high: float) -> float:
-    """Find the deepest indentation in mm with a finite force, by refining a grid.
+    """Find the deepest indentation in mm with a finite force, by repeated refinement of a grid.
 
     It is reduced by a relative tolerance of 1e-6.
     """
@@ -145,31 +145,31 @@ def _deepest_indentation(force: Callable[[Numbers], Numbers], low: float, high: 
         raise TypeError(f"no force law: the load at an indentation of {low:.3g} mm must be above 0 N")
     while high / low > 1 + _END_TOLERANCE:
         depths = numpy.geomspace(low, high, 17)
-        last = max(numpy.flatnonzero(numpy.isfinite(force(depths))), default=0)
-        if last == 16:
+        last_finite = max(numpy.flatnonzero(numpy.isfinite(force(depths))), default=0)
+        if last_finite == 16:
             return high
-        low, high = float(depths[last]), float(depths[last + 1])
+        low, high = float(depths[last_finite]), float(depths[last_finite + 1])
     return low * (1 - _END_TOLERANCE)
 
 
-def _chebyshev_pieces(force: Callable[[Numbers], Numbers], low: float, high: float, count: int) -> Numbers:
-    """Compute the Chebyshev coefficients (pieces, terms) of ln F over ln d.
+def _chebyshev_coefficients(force: Callable[[Numbers], Numbers], low: float, high: float, piece_count: int) -> Numbers:
+    """Compute the Chebyshev coefficients (pieces, terms) of ln F over ln d, force F in N, indentation d in mm.
 
     Adjacent pieces are continuous.
     """
     nodes = -numpy.cos(math.pi * numpy.arange(_DEGREE + 1) / _DEGREE)
-    along = (numpy.arange(count)[:, None] + (1 + nodes[:-1]) / 2).ravel() / count
-    depths = low * numpy.exp(math.log(high / low) * numpy.append(along, 1.0))
+    piece_positions = (numpy.arange(piece_count)[:, None] + (1 + nodes[:-1]) / 2).ravel() / piece_count
+    depths = low * numpy.exp(math.log(high / low) * numpy.append(piece_positions, 1.0))
     depths[-1] = high
-    logs = numpy.log(force(depths))
-    inside, ends = logs[:-1].reshape(count, _DEGREE), logs[_DEGREE::_DEGREE, None]
-    values = numpy.concatenate([inside, ends], axis=1)
+    log_forces = numpy.log(force(depths))
+    interior_values, end_values = log_forces[:-1].reshape(piece_count, _DEGREE), log_forces[_DEGREE::_DEGREE, None]
+    values = numpy.concatenate([interior_values, end_values], axis=1)
     return numpy.linalg.solve(numpy.polynomial.chebyshev.chebvander(nodes, _DEGREE), values.T).T
 
 
 @cache
-def _chebyshev_to_powers() -> Numbers:
-    """Compute the matrix that converts Chebyshev coefficients to coefficients of powers of x."""
+def _chebyshev_to_power_matrix() -> Numbers:
+    """Compute the matrix that converts coefficients of Chebyshev polynomials to those of powers of x."""
     matrix = numpy.zeros((_DEGREE + 1, _DEGREE + 1))
     for term in range(_DEGREE + 1):
         matrix[term, : term + 1] = numpy.polynomial.chebyshev.cheb2poly(numpy.eye(term + 1)[term])

@@ -114,33 +114,33 @@ class Model(ModelInfo):
         check_joint(joint)
         kind, value = select_and_check_load(force=force, indentation=indentation, half_angle=half_angle)
         value = broadcast_load(value, joint.strengths())
-        if self._can_press_floats(joint, value):
+        if self._can_press_with_floats(joint, value):
             try:
-                return self._press_floats(joint, kind, float(value))
+                return self._press_with_floats(joint, kind, float(value))
             except ArithmeticError:
                 pass  # where Python floats raise, NumPy numbers become infinite or NaN
-        plain, array_joint, load = as_arrays(joint, value, *self.parameters)
+        is_plain, array_joint, load = as_arrays(joint, value, *self.parameters)
         points = check_domain((*self.fits, *self.domain), array_joint, self.name)
         with numpy.errstate(all="ignore"):  # a failed point gets a status, not a warning
             result = self._solve(array_joint, kind, load)
-            own_joint = joint if plain else array_joint
-            return make_contact(self, self.contact_type, own_joint, kind, load, points, result, plain)
+            contact_joint = joint if is_plain else array_joint
+            return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, is_plain)
 
-    def _can_press_floats(self, joint: Joint, load: Array) -> bool:
+    def _can_press_with_floats(self, joint: Joint, load: Array) -> bool:
         """Check if joint, load and parameters are plain numbers and the model accepts Python floats."""
         plain_parameters = (type(number) in (float, int) for number in self.parameters)
-        plain = all(map(arrays.is_plain_number, (*joint.numbers(), load)))
-        return self.accepts_floats and plain and all(plain_parameters)
+        all_numbers_plain = all(map(arrays.is_plain_number, (*joint.numbers(), load)))
+        return self.accepts_floats and all_numbers_plain and all(plain_parameters)
 
-    def _press_floats(self, joint: Joint, kind: str, load: float) -> Contact:
-        """Compute the contact of a joint of plain numbers with Python floats instead of arrays."""
+    def _press_with_floats(self, joint: Joint, kind: str, load: float) -> Contact:
+        """Compute the contact of a joint of Python floats, which is faster than arrays."""
         float_joint = joint.with_floats()
         check_domain((*self.fits, *self.domain), float_joint, self.name)
         result = self._solve(float_joint, kind, load)
         return make_scalar_contact(self, self.contact_type, joint, kind, load, result)
 
     def numpy_laws(self, joint: Joint, indentation: Array) -> Laws:
-        """Compute the laws of a contact with NumPy numbers.
+        """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.
 
         These become infinite or NaN where Python floats raise ArithmeticError.
         """
@@ -150,7 +150,7 @@ class Model(ModelInfo):
 
     @abstractmethod
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        """Solve the contact under one kind of load ("force", "indentation" or "half_angle").
+        """Solve the contact of a joint under a load of one kind ("force", "indentation" or "half_angle").
 
         All numbers are arrays.
 
@@ -158,7 +158,7 @@ class Model(ModelInfo):
         """
 
     def law(self, joint: Joint) -> ForceLaw:
-        """Return a fast function of the indentation for force and tangent stiffness, for time integration.
+        """Return a fast function of the indentation in mm: force in N and stiffness in N/mm, for time integration.
 
         Parameters
         ----------
@@ -188,23 +188,23 @@ class Model(ModelInfo):
         return self._law(float_joint)
 
     def _law(self, joint: Joint) -> ForceLaw:
-        """Return the force law of a joint of floats inside the domain."""
+        """Return the force law (force and stiffness over indentation) of a joint of floats inside the domain."""
         return self.curve(joint)
 
     def curve(self, joint: Joint) -> CurveLaw:
-        """Fit a force law to computed contacts, up to an indentation of one socket radius."""
+        """Fit the force over the indentation by a `CurveLaw`, up to an indentation of one socket radius."""
         shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
         return fit_curve_law(lambda d: self.press(joint, indentation=d).force, shallowest, joint.socket_radius)
 
     def in_cup(self, cup: Cup) -> Model:
-        """Return this model for a joint in a cup.
+        """Return a model for this joint in a cup with a rim.
 
         By default, its validity then ends near the rim (`RimLimited`).
         """
         return self if cup == Cup() else RimLimited(model=self, cup=cup)
 
     def force_vector(self, joint: Joint, displacement: Array) -> Array:
-        """Compute the force vector in N on the ball from the displacement of its centre.
+        """Compute the force vector in N on the ball from the displacement of its centre in mm.
 
         Parameters
         ----------
@@ -225,29 +225,31 @@ class Model(ModelInfo):
         displacement = check_vectors("displacement", displacement, "x, y, z (mm)")
         require("displacement", displacement, arrays.isfinite(displacement), "a displacement (mm) is finite")
         xp = arrays.namespace(displacement)
-        square = xp.sum(displacement * displacement, axis=-1)
-        length = arrays.sqrt(arrays.safe_divisor(square))
+        squared_length = xp.sum(displacement * displacement, axis=-1)
+        length = arrays.sqrt(arrays.safe_divisor(squared_length))
         depth = length - joint.clearance
-        touching = (square > 0) & (depth > 0)
+        touching = (squared_length > 0) & (depth > 0)
         force = where(touching, self.press(joint, indentation=where(touching, depth, 0.0)).force, 0.0)
         return -displacement * (force / length)[..., None]
 
 
-def _declared_names(base: type) -> set[str]:
-    """Collect the public properties and class variables that a class and its bases declare."""
+def _declared_attribute_names(base: type) -> set[str]:
+    """Collect the names of all public properties and class variables of a class and its bases."""
     names = {name for cls in base.__mro__ for name in vars(cls).get("__annotations__", {})}
     return names | {name for cls in base.__mro__ for name, value in vars(cls).items() if isinstance(value, property)}
 
 
 _Delegation: Any = type(
-    "_Delegation", (), {name: property(attrgetter(f"model.{name}")) for name in _declared_names(Model) - {"off_axis"}}
+    "_Delegation",
+    (),
+    {name: property(attrgetter(f"model.{name}")) for name in _declared_attribute_names(Model) - {"off_axis"}},
 )
 """Class whose properties read every declared attribute of a model from `self.model`."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ModelWrapper(_Delegation, Model):
-    """Base class of models around another model.
+    """Base class of models that wrap another model.
 
     Delegates every attribute it does not override to the wrapped model.
 
@@ -264,13 +266,13 @@ class ModelWrapper(_Delegation, Model):
         return self.model._solve(joint, kind, load)
 
     def _law(self, joint: Joint) -> ForceLaw:
-        """Return the force law of the wrapped model."""
+        """Return the force law (force and stiffness over indentation) of the wrapped model."""
         return self.model._law(joint)
 
 
 @dataclass(frozen=True, kw_only=True)
 class RimLimited(ModelWrapper):
-    """Full-sphere model in a cup: equal results, but validity ends before the rim.
+    """Model of a full sphere, used in a cup: its contact is valid only at a distance from the rim.
 
     Parameters
     ----------
@@ -284,20 +286,20 @@ class RimLimited(ModelWrapper):
 
     @property
     def validity(self) -> tuple[Range, ...]:
-        """Validity of the wrapped model, limited to bonded liners and contacts away from the rim.
+        """Ranges of validity of the wrapped model, plus a bonded liner and a minimum distance from the rim.
 
         The rim must be one liner thickness or more away.
         """
-        rim = Range(
+        rim_range = Range(
             quantity=partial(_relative_rim_distance, self.cup), symbol="distance to the rim over L", low=1.0, why=_RIM
         )
-        sliding = NeverValid(
+        sliding_liner = NeverValid(
             why="the liner slides on its backing, but this model takes it as bonded: use fem or sphere"
         )
-        return (*self.model.validity, rim, *((sliding,) if self.cup.interface is Interface.SLIDING else ()))
+        return (*self.model.validity, rim_range, *((sliding_liner,) if self.cup.interface is Interface.SLIDING else ()))
 
     def in_cup(self, cup: Cup) -> Model:
-        """Return the wrapped model for a joint in another cup."""
+        """Return the wrapped model for another cup."""
         return self.model.in_cup(cup)
 
 
@@ -305,7 +307,7 @@ _RIM = "the model takes the socket as a full sphere; near the rim, which is soft
 
 
 def _relative_rim_distance(cup: Cup, contact: Contact) -> Array:
-    """Compute the distance from contact edge to rim over the liner thickness.
+    """Compute the distance from contact edge to rim, divided by the liner thickness.
 
     R2 replaces a larger thickness.
 

@@ -54,20 +54,20 @@ class ModelInfo(ABC):
     @property
     @abstractmethod
     def validity(self) -> tuple[Range, ...]:
-        """Closed ranges in which a result is valid."""
+        """Ranges of contact quantities in which a result is valid."""
 
     @property
     def promise(self) -> Promise | None:
-        """Measured largest difference from the elastic solution; None if it was not measured."""
+        """Largest measured relative difference from the elastic solution; None if it was not measured."""
         return None
 
     @property
     def remarks(self) -> tuple[Remark, ...]:
-        """Ranges outside of which a valid result gets a note."""
+        """Ranges of contact quantities outside of which a valid result gets a note."""
         return ()
 
     def numpy_laws(self, joint: Joint, indentation: Array) -> Any:
-        """Compute the laws of a contact with NumPy numbers.
+        """Solve a contact at an indentation in mm with NumPy numbers, and return its formulas or solution.
 
         These become infinite or NaN where Python floats raise ArithmeticError.
         """

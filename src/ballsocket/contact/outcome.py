@@ -36,7 +36,7 @@ class Outcome(ABC):
     @property
     @abstractmethod
     def _load(self) -> Array:
-        """Load of the result, whose shape and array library all quantities have.
+        """Load of the result; all quantities of the result have its shape and array library.
 
         A single contact has a float.
         """
@@ -44,15 +44,15 @@ class Outcome(ABC):
     @cached_property
     def valid(self) -> Array:
         """Mask of the valid points: joint and result lie inside the model's validity."""
-        inside = self.status == int(Status.OK)
-        for limit in self._limits:
-            inside = inside & limit.holds(self)
-        inside = arrays.broadcast(inside, self._load) if hasattr(inside, "shape") else inside
-        return bool(inside) if self._is_plain else inside
+        valid_mask = self.status == int(Status.OK)
+        for limit in self._validity_ranges:
+            valid_mask = valid_mask & limit.holds(self)
+        valid_mask = arrays.broadcast(valid_mask, self._load) if hasattr(valid_mask, "shape") else valid_mask
+        return bool(valid_mask) if self._is_plain else valid_mask
 
     @property
-    def _limits(self) -> tuple[Range, ...]:
-        """Ranges that a valid result satisfies."""
+    def _validity_ranges(self) -> tuple[Range, ...]:
+        """Ranges of quantities in which a result is valid."""
         return self.model.validity
 
     @property
@@ -61,17 +61,17 @@ class Outcome(ABC):
         notes = []
         for status in list(Status)[1:]:
             reason = f": {self.model.reach}" if status == Status.NOT_REACHED and self.model.reach else ""
-            notes += self._note(self.status != int(status), status.sentence + reason)
+            notes += self._note_on_invalid_points(self.status != int(status), status.sentence + reason)
         for limit in (*self.model.validity, *self.model.remarks):
-            notes += self._note(limit.holds(self) | self._failed, limit.sentence)
+            notes += self._note_on_invalid_points(limit.holds(self) | self._failed, limit.sentence)
         return tuple(notes)
 
-    def _note(self, good: Array, sentence: str) -> list[str]:
-        """List a note with the number of affected points, where `good` is false; [] if there are none."""
-        if arrays.all_true(good) is not False:
+    def _note_on_invalid_points(self, valid: Array, sentence: str) -> list[str]:
+        """Return a note with the number of points where the mask `valid` is false; [] if there are none."""
+        if arrays.all_true(valid) is not False:
             return []
-        good = arrays.to_numpy(good)
-        return [sentence if good.size == 1 else f"{int((~good).sum())} of {good.size}: {sentence}"]
+        valid = arrays.to_numpy(valid)
+        return [sentence if valid.size == 1 else f"{int((~valid).sum())} of {valid.size}: {sentence}"]
 
     @property
     def _failed(self) -> Array:
@@ -80,27 +80,27 @@ class Outcome(ABC):
 
     @property
     def _is_plain(self) -> bool:
-        """True if the result consists of Python numbers."""
+        """True if the numbers of the result are Python numbers, not arrays."""
         return isinstance(self._load, float)
 
-    def _mask_failed(self, law: Callable[[], Array]) -> Array:
-        """Evaluate a function, and replace its values at failed points by NaN."""
+    def _mask_failed(self, compute_quantity: Callable[[], Array]) -> Array:
+        """Compute a quantity by a function, and replace its values at failed points by NaN."""
         with numpy.errstate(all="ignore"):  # a failed point has a status, not a warning
-            value = law()
-            return self._match_load(arrays.where(self._failed, numpy.nan, value) if self._some_failed else value)
+            value = compute_quantity()
+            return self._match_load(arrays.where(self._failed, numpy.nan, value) if self._has_failed_points else value)
 
     @cached_property
-    def _some_failed(self) -> bool:
-        """True if at least one point failed, or if the status is traced."""
+    def _has_failed_points(self) -> bool:
+        """True if at least one point failed, or if JAX traces the status."""
         return self.status.failed if self._is_plain else arrays.all_true(arrays.logical_not(self._failed)) is not True
 
     @cached_property
-    def _numbers(self) -> Joint:
-        """Joint with NumPy numbers, which become infinite where Python floats raise."""
+    def _numpy_joint(self) -> Joint:
+        """Joint whose numbers are NumPy arrays, so that a division by zero gives infinity instead of an error."""
         return self.joint.with_numbers(arrays.to_common_arrays(*self.joint.numbers())) if self._is_plain else self.joint
 
     def _match_load(self, value: Array) -> Array:
-        """Convert a value to the type and the shape of the load: a float for plain numbers."""
+        """Convert values to the type and the shape of the load; a load of one number gives a float."""
         if type(value) is float:
             return value
         if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:

@@ -21,7 +21,7 @@ _INTERVAL_POSITIONS = numpy.linspace(0.0, 1.0, 9)
 def find_peak_pressure(
     pressure: Callable[[numpy.ndarray], numpy.ndarray], pole: numpy.ndarray, edge: numpy.ndarray, noise: float
 ) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """Find the largest pressure of each contact in MPa and its polar angle in rad.
+    """Find the largest pressure in MPa of each contact, and the polar angle of this pressure in rad.
 
     Parameters
     ----------
@@ -38,23 +38,31 @@ def find_peak_pressure(
         Largest pressure in MPa and its angle in rad.
     """
     values = numpy.vstack([pole, pressure(edge * _PROFILE_POSITIONS[1:-1, None]), 0.0 * edge])
-    best = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
-    off = (best > 0) & (values.max(axis=0, initial=-inf, where=numpy.isfinite(values)) > pole * (1 + noise))
-    if not off.any():
+    largest_index = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
+    peak_off_pole = (largest_index > 0) & (
+        values.max(axis=0, initial=-inf, where=numpy.isfinite(values)) > pole * (1 + noise)
+    )
+    if not peak_off_pole.any():
         return pole, 0.0 * edge
-    low, high = (edge * _PROFILE_POSITIONS[numpy.clip(best + step, 0, len(_PROFILE_POSITIONS) - 1)] for step in (-1, 1))
+    low, high = (
+        edge * _PROFILE_POSITIONS[numpy.clip(largest_index + neighbour, 0, len(_PROFILE_POSITIONS) - 1)]
+        for neighbour in (-1, 1)
+    )
     contacts = numpy.arange(len(edge))
     for _ in range(_REFINEMENTS):
         angles = low + (high - low) * _INTERVAL_POSITIONS[:, None]
         values = pressure(angles)
-        best = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
-        angle, largest = angles[best, contacts], values[best, contacts]
-        low, high = (angles[numpy.clip(best + step, 0, len(_INTERVAL_POSITIONS) - 1), contacts] for step in (-1, 1))
-    return numpy.where(off, largest, pole), numpy.where(off, angle, 0.0)
+        largest_index = numpy.nan_to_num(values, nan=-inf).argmax(axis=0)
+        angle, largest = angles[largest_index, contacts], values[largest_index, contacts]
+        low, high = (
+            angles[numpy.clip(largest_index + neighbour, 0, len(_INTERVAL_POSITIONS) - 1), contacts]
+            for neighbour in (-1, 1)
+        )
+    return numpy.where(peak_off_pole, largest, pole), numpy.where(peak_off_pole, angle, 0.0)
 
 
 class PeakPressure(ABC):
-    """Mixin of solved contacts that adds the largest pressure and its angle."""
+    """Mixin class of solved contacts that adds the largest pressure and its polar angle."""
 
     @property
     @abstractmethod
@@ -68,5 +76,5 @@ class PeakPressure(ABC):
 
     @property
     def max_pressure_angle(self) -> numpy.ndarray:
-        """Polar angle of the largest pressure of each contact in rad."""
+        """Polar angle in rad of the largest pressure of each contact."""
         return self.largest[1]

@@ -57,8 +57,8 @@ class JointContacts:
     reached: numpy.ndarray
     error: dict[str, numpy.ndarray]
 
-    def expand(self, values: numpy.ndarray) -> numpy.ndarray:
-        """Expand values of the touching contacts to all loads.
+    def expand_to_all_loads(self, values: numpy.ndarray) -> numpy.ndarray:
+        """Expand values of the touching contacts (..., touching) to all loads (..., loads).
 
         Loads of 0 get 0, and loads without a solution NaN.
         """
@@ -72,7 +72,7 @@ Solve = Callable[..., JointContacts]
 
 
 def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *parameters: Array) -> CombinedSolution:
-    """Solve an array of joints and loads, one distinct joint at a time with all of its loads.
+    """Solve the contacts of arrays of joints and loads: one solution for each distinct joint, with all its loads.
 
     Parameters
     ----------
@@ -91,22 +91,22 @@ def solve_per_joint(model: Model, joint: Joint, load: Array, solve: Solve, *para
         Traced numbers without a value (inside `jax.jit`, `jax.grad`).
     """
     joint = joint.without_strengths()
-    numbers = [_to_concrete(model, number) for number in joint.numbers()]
-    varying = [_to_concrete(model, value) for value in (load, *parameters)]
-    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, *varying)))
-    loads = [numpy.broadcast_to(value, shape).ravel().astype(float) for value in varying]
-    pieces = []
-    for column, indices in _distinct_joints(numbers, shape):
-        single_joint = joint.with_numbers(column)
+    numbers = [_to_concrete_array(model, number) for number in joint.numbers()]
+    load_arrays = [_to_concrete_array(model, value) for value in (load, *parameters)]
+    common_shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*numbers, *load_arrays)))
+    loads = [numpy.broadcast_to(value, common_shape).ravel().astype(float) for value in load_arrays]
+    joint_contacts = []
+    for joint_numbers, indices in _distinct_joints(numbers, common_shape):
+        single_joint = joint.with_numbers(joint_numbers)
         if indices.size and all(limit.strictly_holds(SimpleNamespace(joint=single_joint)) for limit in model.domain):
-            pieces.append((indices, solve(single_joint, *(values[indices] for values in loads))))
-    return CombinedSolution(like=load, shape=shape, pieces=tuple(pieces))
+            joint_contacts.append((indices, solve(single_joint, *(values[indices] for values in loads))))
+    return CombinedSolution(like=load, shape=common_shape, pieces=tuple(joint_contacts))
 
 
 def _distinct_joints(
     numbers: list[numpy.ndarray], shape: tuple[int, ...]
 ) -> Iterator[tuple[list[float], numpy.ndarray]]:
-    """Find the distinct joints in broadcast arrays: yield their numbers and flat indices."""
+    """Yield each distinct joint of broadcast arrays: its numbers and the flat indices of its points."""
     if all(number.size == 1 for number in numbers):
         yield [float(number.item()) for number in numbers], numpy.arange(prod(shape))
         return
@@ -114,17 +114,17 @@ def _distinct_joints(
     joints, inverse = numpy.unique(table, axis=1, return_inverse=True)
     order = numpy.argsort(inverse.ravel(), kind="stable")
     ends = numpy.cumsum(numpy.bincount(inverse.ravel(), minlength=joints.shape[1]))
-    for column, indices in zip(joints.T, numpy.split(order, ends[:-1]), strict=False):
-        yield column.tolist(), indices
+    for joint_numbers, indices in zip(joints.T, numpy.split(order, ends[:-1]), strict=False):
+        yield joint_numbers.tolist(), indices
 
 
 def joint_at(joint: Joint, shape: tuple[int, ...], index: int) -> Joint:
-    """Return the joint of plain numbers at one flat index of a joint of arrays."""
+    """Return the joint of plain numbers at one flat index of a joint whose numbers are arrays."""
     broadcast = (numpy.broadcast_to(arrays.to_numpy(number), shape) for number in joint.numbers())
     return joint.with_numbers([float(number.flat[index]) for number in broadcast])
 
 
-def _to_concrete(model: Model, number: Array) -> numpy.ndarray:
+def _to_concrete_array(model: Model, number: Array) -> numpy.ndarray:
     """Convert a number or array to NumPy; raise TypeError if JAX traces it."""
     values = arrays.concrete_values(number)
     if values is None:
@@ -132,15 +132,15 @@ def _to_concrete(model: Model, number: Array) -> numpy.ndarray:
     return values
 
 
-def _combined_property(name: str) -> Any:
-    """Make a cached property that combines one quantity of all joints."""
+def _quantity_of_all_joints(quantity_name: str) -> Any:
+    """Make a cached property: the values of one quantity in all joints, as one array."""
 
-    def combine(self: CombinedSolution) -> Array:
-        """Combine the quantity of all joints."""
-        return self.combine(lambda piece: getattr(piece.state, name))
+    def combine_quantity(self: CombinedSolution) -> Array:
+        """Return the values of the quantity in all joints as one array."""
+        return self.combine(lambda contacts: getattr(contacts.state, quantity_name))
 
-    combine.__name__ = name
-    return cached_property(combine)
+    combine_quantity.__name__ = quantity_name
+    return cached_property(combine_quantity)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -164,55 +164,57 @@ class CombinedSolution:
     pieces: tuple[tuple[numpy.ndarray, JointContacts], ...]
 
     def combine(self, quantity: Callable[[JointContacts], numpy.ndarray], rows: tuple[int, ...] = ()) -> Array:
-        """Combine a quantity of all joints to an array (*rows, *shape); NaN without a solution."""
-        return self._match_load_array(self._combine_joints(lambda indices, piece: quantity(piece), prod(rows)), rows)
+        """Combine a quantity of all joints to one array (*rows, *shape); NaN at points without a solution."""
+        return self._match_load_array(
+            self._combine_to_numpy_array(lambda indices, contacts: quantity(contacts), prod(rows)), rows
+        )
 
     def combine_by_index(self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray]) -> Array:
-        """Combine a quantity that depends on the flat indices of the points."""
-        return self._match_load_array(self._combine_joints(quantity))
+        """Combine a quantity that is a function of the flat indices of the points to one array."""
+        return self._match_load_array(self._combine_to_numpy_array(quantity))
 
-    def _combine_joints(
-        self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], rows: int = 1
+    def _combine_to_numpy_array(
+        self, quantity: Callable[[numpy.ndarray, JointContacts], numpy.ndarray], row_count: int = 1
     ) -> numpy.ndarray:
-        """Combine a quantity of all joints to a NumPy array (rows, points); NaN without a solution."""
-        combined = numpy.full((rows, prod(self.shape)), numpy.nan)
-        for indices, piece in self.pieces:
-            combined[:, indices] = piece.expand(quantity(indices, piece))
+        """Put the values of a quantity in all joints into one NumPy array (rows, points)."""
+        combined = numpy.full((row_count, prod(self.shape)), numpy.nan)
+        for indices, contacts in self.pieces:
+            combined[:, indices] = contacts.expand_to_all_loads(quantity(indices, contacts))
         return combined
 
-    def _match_load_array(self, values: numpy.ndarray, shape: tuple[int, ...] = ()) -> Array:
-        """Convert NumPy values to the shape, library, dtype and device of the load."""
-        values = values.reshape((*shape, *self.shape))
+    def _match_load_array(self, values: numpy.ndarray, leading_shape: tuple[int, ...] = ()) -> Array:
+        """Convert NumPy values to the shape, library, data type and device of the load."""
+        values = values.reshape((*leading_shape, *self.shape))
         xp = arrays.namespace(self.like)
         return xp.asarray(values, dtype=self.like.dtype, device=arrays.device(self.like))
 
-    def _combine_error(self, name: str) -> Array:
-        """Combine the estimated relative error of one quantity."""
-        return self.combine(lambda piece: piece.error[name])
+    def _combine_relative_error(self, name: str) -> Array:
+        """Combine the estimated relative error of one quantity of all joints to one array."""
+        return self.combine(lambda contacts: contacts.error[name])
 
     @property
     def max_error(self) -> Array:
-        """Largest estimated relative error of all quantities, point by point."""
-        return self.combine(lambda piece: numpy.max(list(piece.error.values()), axis=0))
+        """Largest estimated relative error of all quantities at each point."""
+        return self.combine(lambda contacts: numpy.max(list(contacts.error.values()), axis=0))
 
     @property
     def error(self) -> dict[str, Array]:
-        """Estimated relative error of each quantity, by name."""
-        return {name: self._combine_error(name) for name in QUANTITIES}
+        """Estimated relative errors, one array for each quantity name."""
+        return {name: self._combine_relative_error(name) for name in QUANTITIES}
 
-    force = _combined_property("force")
-    indentation = _combined_property("indentation")
-    half_angle = _combined_property("half_angle")
-    max_pressure = _combined_property("max_pressure")
-    max_pressure_angle = _combined_property("max_pressure_angle")
-    pole_pressure = _combined_property("pole_pressure")
-    stiffness = _combined_property("stiffness")
-    energy = _combined_property("energy")
-    pressure_integral = _combined_property("pressure_integral")
+    force = _quantity_of_all_joints("force")
+    indentation = _quantity_of_all_joints("indentation")
+    half_angle = _quantity_of_all_joints("half_angle")
+    max_pressure = _quantity_of_all_joints("max_pressure")
+    max_pressure_angle = _quantity_of_all_joints("max_pressure_angle")
+    pole_pressure = _quantity_of_all_joints("pole_pressure")
+    stiffness = _quantity_of_all_joints("stiffness")
+    energy = _quantity_of_all_joints("energy")
+    pressure_integral = _quantity_of_all_joints("pressure_integral")
 
     @property
     def foundation_modulus(self) -> Array:
-        """Foundation modulus K = p0/d in MPa/mm; infinite at zero indentation."""
+        """Foundation modulus K = p0/d in MPa/mm (pole pressure p0, indentation d); infinite for d = 0."""
         d = self.indentation
         return arrays.where(d == 0, inf, self.pole_pressure / arrays.safe_divisor(d))
 
@@ -223,15 +225,15 @@ class CombinedSolution:
         """
         angles = arrays.to_numpy(angle)
         shape = numpy.broadcast_shapes(angles.shape, self.shape)
-        front = shape[: len(shape) - len(self.shape)]
-        rows = numpy.broadcast_to(angles, (*front, *self.shape)).reshape(prod(front), prod(self.shape))
+        angle_shape = shape[: len(shape) - len(self.shape)]
+        rows = numpy.broadcast_to(angles, (*angle_shape, *self.shape)).reshape(prod(angle_shape), prod(self.shape))
 
-        def pressure(indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+        def joint_pressure(indices: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
             """Compute the contact pressure in MPa of one joint at its angles."""
-            values: numpy.ndarray = piece.state.pressure(rows[:, indices[piece.touching]])
-            return values
+            pressures: numpy.ndarray = contacts.state.pressure(rows[:, indices[contacts.touching]])
+            return pressures
 
-        return self._match_load_array(self._combine_joints(pressure, rows=len(rows)), front)
+        return self._match_load_array(self._combine_to_numpy_array(joint_pressure, row_count=len(rows)), angle_shape)
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
@@ -244,7 +246,7 @@ class SolvedContact(Contact):
 
     @cached_property
     def error(self) -> dict[str, Array]:
-        """Estimated relative error of each quantity, by name."""
+        """Estimated relative errors, one array for each quantity name."""
         return {name: self._match_load(error) for name, error in self.laws.error.items()}
 
     @property
@@ -259,23 +261,23 @@ class SolvedContact(Contact):
 
     @renamed_arguments(asked="mask")
     def utilisation_at(self, mask: Array) -> Array:
-        """Compute the utilisation at the points of a mask; NaN at the other points."""
+        """Compute the ratio of von Mises to yield stress at the points of a mask; NaN at the other points."""
         flat_mask = numpy.broadcast_to(arrays.to_numpy(mask), self.laws.shape).ravel()
 
-        def masked_von_mises(indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+        def masked_von_mises(indices: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
             """Compute the largest von Mises stress in MPa of one joint; NaN outside the mask."""
-            masked = replace(piece, reached=piece.reached & flat_mask[indices][piece.touching])
-            return self._joint_von_mises(indices, masked)
+            masked_contacts = replace(contacts, reached=contacts.reached & flat_mask[indices][contacts.touching])
+            return self._joint_von_mises(indices, masked_contacts)
 
         return self._compute_utilisation(self._match_load(self.laws.combine_by_index(masked_von_mises)))
 
     @abstractmethod
-    def _joint_von_mises(self, indices: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+    def _joint_von_mises(self, indices: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
         """Compute the largest von Mises stress in MPa in the liner of one joint, for its touching contacts."""
 
     @property
     def single_state(self) -> Any:
-        """Solution of a single contact that touches.
+        """Solved state of a single contact; the ball must touch the socket.
 
         Raises
         ------
@@ -284,14 +286,14 @@ class SolvedContact(Contact):
         """
         if prod(self.laws.shape) != 1:
             raise ValueError(f"{self._inside} are for one contact, got the shape {self.laws.shape}: press one load")
-        pieces = self.laws.pieces
-        if self._all_points_failed or not pieces or not pieces[0][1].touching.all():
+        joint_contacts = self.laws.pieces
+        if self._all_points_failed or not joint_contacts or not joint_contacts[0][1].touching.all():
             raise ValueError(f"{self._inside} need a contact under load, or preloaded")
-        return pieces[0][1].state
+        return joint_contacts[0][1].state
 
     @property
     def _all_points_failed(self) -> bool:
-        """True if no point has a result."""
+        """True if no point of the contact has a result."""
         return bool(arrays.to_numpy(self._failed).all())
 
     def summary(self) -> dict[str, Any]:

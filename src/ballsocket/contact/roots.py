@@ -25,7 +25,7 @@ def increasing_root(
     steps: int = 60,
     tolerance: float = 1e-8,
 ) -> Array:
-    """Solve law(x) = target for an increasing function of arrays in a bracket, by Newton's method.
+    """Solve law(x) = target for x, element by element, by Newton's method within brackets.
 
     Each element has its own bracket [low, high].
 
@@ -55,11 +55,11 @@ def increasing_root(
     if type(start) is float:
         return scalar_increasing_root(law, target, low, high, start, arguments, steps, tolerance)
 
-    def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
-        """Compute one bracketed Newton step of all elements."""
+    def newton_step(state: tuple[Array, ...]) -> tuple[Array, ...]:
+        """Advance all elements by one bracketed Newton step."""
         return bracketed_newton_step(law, target, arguments, tolerance, *state[:-1])
 
-    x = _iterate(step, (start, low, high, start < high, start == start), steps)
+    x = _iterate_until_converged(newton_step, (start, low, high, start < high, start == start), steps)
     if namespace(x) is numpy:
         return x
     x = stop_gradient(x)
@@ -79,7 +79,7 @@ def scalar_increasing_root(
     steps: int,
     tolerance: float,
 ) -> float:
-    """Solve law(x) = target for an increasing function of one number, by bracketed Newton steps."""
+    """Solve law(x) = target for one number x, by Newton's method within a bracket."""
     x, fresh = start, start < high
     for _ in range(steps):
         value, slope = law(x, *arguments)
@@ -91,8 +91,8 @@ def scalar_increasing_root(
         next_x = x - (value - target) / slope if slope > 0 else math.nan
         if not low <= next_x <= high:
             next_x = high if fresh and next_x > high else low + (high - low) / 2
-        step, x = abs(next_x - x), next_x
-        if step <= tolerance * abs(x):
+        step_size, x = abs(next_x - x), next_x
+        if step_size <= tolerance * abs(x):
             break
     return x
 
@@ -107,7 +107,7 @@ def bracketed_newton_step(
     high: Array,
     fresh: Array,
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute one Newton step within a bracket, and narrow the bracket.
+    """Compute one Newton step of x towards law(x) = target within a bracket, and narrow the bracket.
 
     A step out of the bracket is replaced by the middle of the bracket, or by its upper end while that is `fresh`, that
     is, not yet evaluated.
@@ -121,24 +121,26 @@ def bracketed_newton_step(
     low = where(value <= target, x, low)
     high = where(value >= target, x, high)
     fresh = fresh & (x < high)
-    newton = x - (value - target) / safe_divisor(slope)
-    safe = (slope > 0) & (newton >= low) & (newton <= high)
-    fallback = where(fresh & (newton > high), high, low + (high - low) / 2)
-    next_x = where(safe, newton, fallback)
+    newton_x = x - (value - target) / safe_divisor(slope)
+    newton_in_bracket = (slope > 0) & (newton_x >= low) & (newton_x <= high)
+    fallback_x = where(fresh & (newton_x > high), high, low + (high - low) / 2)
+    next_x = where(newton_in_bracket, newton_x, fallback_x)
     return next_x, low, high, fresh, abs(next_x - x) > tolerance * abs(next_x)
 
 
-def _iterate(step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], times: int) -> Array:
-    """Iterate a step until all elements have converged; return the first item of the state.
+def _iterate_until_converged(
+    iteration_step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], max_steps: int
+) -> Array:
+    """Repeat an iteration step until all elements have converged; return the first item of the state.
 
     The last item of the state is the mask of unconverged elements.
     """
     if all_true(state[-1]) is None and array_api_compat.is_jax_array(state[0]):
         import jax  # compile one loop instead of unrolling the steps
 
-        return jax.lax.fori_loop(0, times, lambda _, current: step(current), state)[0]
-    for _ in range(times):
-        state = step(state)
+        return jax.lax.fori_loop(0, max_steps, lambda _, current: iteration_step(current), state)[0]
+    for _ in range(max_steps):
+        state = iteration_step(state)
         if all_true(logical_not(state[-1])):
             break
     return state[0]

@@ -44,7 +44,9 @@ _BALL_UNCHECKED = "strength of the ball not checked: it has no yield stress, and
 
 
 def fit_variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> tuple[Array, Array, Array]:
-    """Compute the variables of the fitted stress ratio: sin(ε/2), a/(L + a) and ν.
+    """Compute the variables of the fitted stress ratio: sin(ε/2), a/(L + a) and Poisson's ratio ν.
+
+    ε is the half angle in rad, L the liner thickness and a the contact radius.
 
     a = R2 sin ε.
     """
@@ -54,10 +56,10 @@ def fit_variables(half_angle: Array, poisson: Array, thickness_ratio: Array) -> 
 
 
 @cache
-def _read_terms() -> tuple[tuple[float, int, int, int], ...]:
-    """Read coefficients and exponents of the fitted stress ratio."""
+def _read_polynomial_terms() -> tuple[tuple[float, int, int, int], ...]:
+    """Read the coefficients and exponents of the fitted stress ratio from the data file of the package."""
     table = tomllib.loads((files("ballsocket") / "data" / "von_mises.toml").read_text(encoding="utf-8"))
-    return tuple((number, *powers) for number, *powers in table["terms"])
+    return tuple((coefficient, *powers) for coefficient, *powers in table["terms"])
 
 
 def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -> Array:
@@ -76,11 +78,17 @@ def von_mises_ratio(half_angle: Array, poisson: Array, thickness_ratio: Array) -
         R2/L.
     """
     x, y, nu = fit_variables(half_angle, poisson, thickness_ratio)
-    return clip(sum(number * x**i * y**j * nu**k for number, i, j, k in _read_terms()), _MIN_RATIO, _MAX_RATIO)
+    return clip(
+        sum(coefficient * x**i * y**j * nu**k for coefficient, i, j, k in _read_polynomial_terms()),
+        _MIN_RATIO,
+        _MAX_RATIO,
+    )
 
 
 def ball_stress_ratio(poisson: Array) -> Array:
-    """Compute the ratio of largest von Mises stress to largest pressure in a ball, within 2 %.
+    """Compute the ratio of largest von Mises stress to largest pressure in a ball with a Poisson's ratio.
+
+    The error is at most 2 %.
 
     The ball is a half-space under the pressure of Hertz (Johnson 1985, section 4.2).
     """
@@ -99,7 +107,7 @@ def von_mises_bounds(contact: Any, von_mises: Array) -> tuple[Array, Array]:
 
 
 def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
-    """Compute the ratio of von Mises stress to yield stress, the larger of liner and ball.
+    """Compute the ratio of largest von Mises stress to yield stress, for liner or ball, whichever is larger.
 
     Parameters
     ----------
@@ -114,10 +122,10 @@ def utilisation(joint: Joint, von_mises: Array, pressure: Array) -> Array:
     float or array
         NaN if neither material has a yield stress.
     """
-    parts = ((joint.liner, von_mises, 1.0), (joint.ball, pressure, joint_ball_stress_ratio(joint)))
+    stressed_parts = ((joint.liner, von_mises, 1.0), (joint.ball, pressure, joint_ball_stress_ratio(joint)))
     ratios = [
-        stress * factor / material.yield_stress
-        for material, stress, factor in parts
+        stress * stress_ratio / material.yield_stress
+        for material, stress, stress_ratio in stressed_parts
         if material is not None and material.yield_stress is not None
     ]
     return reduce(elementwise_maximum, ratios) if ratios else nan * von_mises  # von_mises may be infinite
@@ -130,7 +138,7 @@ def joint_ball_stress_ratio(joint: Joint) -> Array:
 
 @dataclass(frozen=True, kw_only=True)
 class ElasticLimit(Range):
-    """Range of utilisations for which linear elasticity is valid.
+    """Range of the ratio of von Mises to yield stress in which linear elasticity is valid.
 
     Contacts without a yield stress count as inside.
     """
@@ -140,7 +148,7 @@ class ElasticLimit(Range):
     why: str = "the material yields, so that linear elasticity is invalid"
 
     def holds(self, contact: Any) -> Array:
-        """Return a mask of the contacts below the elastic limit.
+        """Return a mask of the contacts whose ratio of von Mises to yield stress is below the limit.
 
         The stresses are solved for only where their bounds do not decide.
         """
@@ -152,78 +160,92 @@ class ElasticLimit(Range):
 
 
 def unchecked_strength_reason(joint: Joint) -> str:
-    """Explain why the strength of the liner is not checked; empty if it has a yield stress."""
+    """Explain why the strength of the liner is not checked; empty if the liner has a yield stress."""
     liner, ball = joint.liner, joint.ball
     if liner.yield_stress is not None:
         return ""
-    checked = "yield" if liner.strengths else "strength"
+    missing_check = "yield" if liner.strengths else "strength"
     ball_note = "" if ball is None or ball.yield_stress is None else "; the utilisation is that of the ball alone"
-    return f"{checked} not checked: the liner has no yield stress{ball_note}"
+    return f"{missing_check} not checked: the liner has no yield stress{ball_note}"
 
 
 def strength_remarks(contact: Any) -> Iterator[tuple[Array, str]]:
-    """Yield a mask of points and a note for each material limit; the note is for points where the mask is false."""
+    """Yield a mask and a note for each strength limit; the note applies to points where the mask is false."""
     joint, pressure = contact.joint, contact.max_pressure
     if joint.liner.proportional_limit is not None:
         yield from _linearity_remarks("liner", joint.liner, _estimate_von_mises(contact))
     if joint.liner.strengths:
-        yield from _limit_remarks(
+        yield from _exceeded_strength_remarks(
             "liner", joint.liner, contact.von_mises_bounds[1], lambda: contact.von_mises, pressure
         )
     if joint.ball is not None:
         stress = joint_ball_stress_ratio(joint) * pressure
         if joint.ball.proportional_limit is not None:
             yield from _linearity_remarks("ball", joint.ball, stress)
-        yield from _limit_remarks("ball", joint.ball, stress, lambda: stress, pressure)
+        yield from _exceeded_strength_remarks("ball", joint.ball, stress, lambda: stress, pressure)
         if not joint.ball.strengths:
             yield logical_not(stress > _SAFE_STRAIN * joint.ball.young), _BALL_UNCHECKED
 
 
 def _estimate_von_mises(contact: Any) -> Array:
-    """Estimate the largest von Mises stress in the liner in MPa; solve for it only without an estimate."""
+    """Estimate the largest von Mises stress in the liner in MPa as the mean of its bounds.
+
+    The stress is solved for only where a bound is infinite.
+    """
     low, high = contact.von_mises_bounds
-    middle = (low + high) / 2
-    return middle if all_true(isfinite(middle) | is_missing(contact.status)) is not False else contact.von_mises
+    mean_of_bounds = (low + high) / 2
+    return (
+        mean_of_bounds
+        if all_true(isfinite(mean_of_bounds) | is_missing(contact.status)) is not False
+        else contact.von_mises
+    )
 
 
-def _limit_remarks(
+def _exceeded_strength_remarks(
     body: str, material: Material, upper_bound: Array, von_mises: Callable[[], Array], pressure: Array
 ) -> Iterator[tuple[Array, str]]:
-    """Yield mask and note for each exceeded strength of a material.
+    """Yield a mask of acceptable points and a note for each strength of a material that is exceeded.
 
     Its von Mises stress is at most `upper_bound`.
     """
     for name, strength in material.strengths.items():
-        by_pressure = name == "allowable_pressure"
-        if all_true(logical_not((pressure if by_pressure else upper_bound) > strength)):
+        is_pressure_limit = name == "allowable_pressure"
+        if all_true(logical_not((pressure if is_pressure_limit else upper_bound) > strength)):
             continue
-        ratio = (pressure if by_pressure else von_mises()) / strength
-        stress = "pressure" if by_pressure else "von Mises stress"
+        ratio = (pressure if is_pressure_limit else von_mises()) / strength
+        stress = "pressure" if is_pressure_limit else "von Mises stress"
         limit = f": a linear result is valid up to {MAX_ELASTIC_UTILISATION:g} times" if name == "yield_stress" else ""
-        yield logical_not(ratio > 1), f"{stress} {_ratio_text(ratio)} the {STRENGTH[name].title} of the {body}{limit}"
+        yield (
+            logical_not(ratio > 1),
+            f"{stress} {_stress_ratio_text(ratio)} the {STRENGTH[name].title} of the {body}{limit}",
+        )
 
 
 def _linearity_remarks(body: str, material: Material, stress: Array) -> Iterator[tuple[Array, str]]:
-    """Yield mask and note for points between the proportional limit and the yield stress of a material."""
+    """Yield a mask and a note for stresses above the proportional limit and up to the yield stress."""
     limit: Array = material.proportional_limit
-    yields = material.yield_stress
-    good = logical_not(stress > limit) if yields is None else logical_not((stress > limit) & (stress <= yields))
-    if all_true(good) is not False:
+    yield_stress = material.yield_stress
+    linear = (
+        logical_not(stress > limit)
+        if yield_stress is None
+        else logical_not((stress > limit) & (stress <= yield_stress))
+    )
+    if all_true(linear) is not False:
         return
-    times = _ratio_text(where(good, nan, stress / limit))
+    ratio_text = _stress_ratio_text(where(linear, nan, stress / limit))
     title = LINEARITY["proportional_limit"].title
-    yield good, f"estimated von Mises stress {times} the {title} of the {body}: {_SOFTER}"
+    yield linear, f"estimated von Mises stress {ratio_text} the {title} of the {body}: {_SOFTER}"
 
 
 _SOFTER = "its secant modulus is below E, so d and ε are larger and pmax is smaller"
 
 
-def _ratio_text(ratio: Array) -> str:
-    """Format a ratio above 1, such as "2.5 times", or "up to 2.5 times" for an array."""
-    listed = to_numpy(ratio)
-    digits = f"{numpy.nanmax(listed, initial=0.0):.2g}"
-    largest = f"{'1.0' if digits == '1' else digits} times"
-    return largest if listed.size == 1 else f"up to {largest}"
+def _stress_ratio_text(ratio: Array) -> str:
+    """Format a ratio of stress to strength, such as "2.5 times"; "up to 2.5 times" for an array."""
+    ratios = to_numpy(ratio)
+    digits_text = f"{numpy.nanmax(ratios, initial=0.0):.2g}"
+    largest = f"{'1.0' if digits_text == '1' else digits_text} times"
+    return largest if ratios.size == 1 else f"up to {largest}"
 
 
 __getattr__ = renamed_names(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, kw_only=True)
 class StrengthUse:
-    """Stress of a contact compared with one strength of the liner or the ball.
+    """Comparison of a contact's stress with one strength of the liner or the ball.
 
     Attributes
     ----------
@@ -45,21 +45,25 @@ class StrengthUse:
 
 
 def strength_uses(contact: Contact) -> tuple[StrengthUse, ...]:
-    """Compare a single contact with all strengths of its materials, the highest ratio first."""
+    """Compare the stresses of a single contact with all strengths of its materials, in descending order of ratio."""
     return strength_uses_at(contact, contact.von_mises if contact.joint.liner.strengths else 0.0)
 
 
 def strength_uses_at(contact: Contact, von_mises: float) -> tuple[StrengthUse, ...]:
-    """Compare a contact with all strengths, for a known von Mises stress in the liner in MPa."""
+    """Compare a contact's stresses with all strengths, for a given von Mises stress of the liner in MPa."""
     joint, pressure = contact.joint, float(contact.max_pressure)
-    uses = list(_material_uses("liner", joint.liner, pressure, von_mises))
+    uses = list(_compare_with_material_strengths("liner", joint.liner, pressure, von_mises))
     if joint.ball is not None:
-        uses += _material_uses("ball", joint.ball, pressure, joint_ball_stress_ratio(joint) * pressure)
+        uses += _compare_with_material_strengths(
+            "ball", joint.ball, pressure, joint_ball_stress_ratio(joint) * pressure
+        )
     return tuple(sorted(uses, key=lambda use: -use.ratio))
 
 
-def _material_uses(body: str, material: Material, pressure: float, von_mises: float) -> Iterator[StrengthUse]:
-    """Yield the comparison with each strength of one material."""
+def _compare_with_material_strengths(
+    body: str, material: Material, pressure: float, von_mises: float
+) -> Iterator[StrengthUse]:
+    """Yield the comparison of stress with strength for each strength of one material."""
     for name, strength in material.strengths.items():
         stress = pressure if name == "allowable_pressure" else von_mises
         yield StrengthUse(part=body, strength=name, stress=float(stress), allowed=float(strength))
@@ -82,7 +86,7 @@ class StrengthVerdict:
 
 
 def assess_strength(contact: Contact) -> StrengthVerdict:
-    """Assess if a single contact stays below the strengths of its materials.
+    """Decide if the stresses of a single contact are below the strengths of its materials.
 
     There is no verdict (None) on an invalid result, nor if the strength of the liner is unknown.
     """

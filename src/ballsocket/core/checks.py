@@ -28,10 +28,10 @@ _PREVIEW_LENGTH = 40
 """Number of characters of a longer value in a message."""
 
 
-def require(name: str, value: Array, good: Array, allowed: str) -> None:
+def require(name: str, value: Array, valid: Array, allowed: str) -> None:
     """Check that all elements of a value are allowed; raise ValueError otherwise.
 
-    The message has the first element for which `good` is false.
+    The message has the first element for which `valid` is false.
 
     Traced values (inside `jax.jit`) are not checked.
 
@@ -40,35 +40,35 @@ def require(name: str, value: Array, good: Array, allowed: str) -> None:
     name : str
         Name of the value in the message.
     value : number or array
-    good : bool or array of bool
+    valid : bool or array of bool
         Mask of the allowed elements.
     allowed : str
         Description of the allowed values.
     """
-    if all_true(good) is not False:
+    if all_true(valid) is not False:
         return
-    raise ValueError(f"{name}{_format_invalid_element(value, good)} is not allowed: {allowed}")
+    raise ValueError(f"{name}{_format_invalid_element(value, valid)} is not allowed: {allowed}")
 
 
-def first_invalid(value: Array, good: Array) -> float:
-    """Return the first element of `value` that is not allowed, where `good` is false."""
+def first_invalid(value: Array, valid: Array) -> float:
+    """Return the first element of `value` where `valid` is false."""
     if not _shape(value):
         return value
-    return float(namespace(value).reshape(value, (-1,))[_find_first_false(good)[0]])
+    return float(namespace(value).reshape(value, (-1,))[_find_first_false(valid)[0]])
 
 
-def _format_invalid_element(value: Array, good: Array) -> str:
+def _format_invalid_element(value: Array, valid: Array) -> str:
     """Format index and value of the first invalid element for a message, with the number of further ones."""
     shape = _shape(value)
     if not shape:
         return f" = {shown(value) if isinstance(value, int) else format(float(value), 'g')}"
-    first, count = _find_first_false(good)
+    first, count = _find_first_false(valid)
     index, remainder = [], first
     for size in reversed(shape):
         index.append(remainder % size)
         remainder //= size
     further = f" (and {count - 1} more)" if count > 1 else ""
-    return f"[{', '.join(map(str, reversed(index)))}] = {first_invalid(value, good):g}{further}"
+    return f"[{', '.join(map(str, reversed(index)))}] = {first_invalid(value, valid):g}{further}"
 
 
 def _shape(value: Array) -> tuple[int, ...]:
@@ -76,10 +76,10 @@ def _shape(value: Array) -> tuple[int, ...]:
     return tuple(getattr(value, "shape", ()))
 
 
-def _find_first_false(good: Array) -> tuple[int, int]:
+def _find_first_false(valid: Array) -> tuple[int, int]:
     """Find the flat index of the first false element, and count the false elements."""
-    xp = namespace(good)
-    bad = ~xp.reshape(good, (-1,))
+    xp = namespace(valid)
+    bad = ~xp.reshape(valid, (-1,))
     return int(xp.argmax(xp.astype(bad, xp.int32))), int(xp.sum(xp.astype(bad, xp.int32)))
 
 

@@ -106,6 +106,15 @@ MOVED = {
     "ballsocket.hip.sliding": "ballsocket.hip.kinematics",
     **{f"ballsocket.hip.{name}": "ballsocket.hip.rim" for name in ("edge", "separation")},
     "ballsocket.hip.chebyshev": "ballsocket.core.runge_kutta_chebyshev",
+    **{f"ballsocket.evidence.{name}": "ballsocket.evidence.worst_case" for name in ("calculation", "scatter", "wear")},
+    "ballsocket.evidence.comparator": "ballsocket.evidence.comparators",
+    "ballsocket.evidence.element_checks": "ballsocket.evidence.code_checks",
+    "ballsocket.evidence.inputs": "ballsocket.evidence.pack",
+    "ballsocket.evidence.named_files": "ballsocket.core.input_files",
+    "ballsocket.evidence.published_wear": "ballsocket.evidence.hip_wear",
+    "ballsocket.evidence.terms": "ballsocket.evidence.matrix",
+    **{f"ballsocket.paper.claims.{name}": "ballsocket.paper.claims" for name in ("agreement", "design", "modulus")},
+    "ballsocket.paper.claims.finding": "ballsocket.paper.claims.evaluation",
     "ballsocket.identify.answers": "ballsocket.identify.forward_model",
     "ballsocket.identify.oscillation": "ballsocket.identify.observables",
     "ballsocket.identify.parameters": "ballsocket.identify.identification",
@@ -121,6 +130,18 @@ MOVED = {
     "ballsocket.dynamics.sticking": "ballsocket.dynamics.potential",
     "ballsocket.dynamics.watch": "ballsocket.dynamics.validity_monitor",
     "ballsocket.dynamics.side_curves": "ballsocket.dynamics.element",
+    **{f"ballsocket.cli.{name}": "ballsocket.cli.json_answers" for name in ("answers", "next_steps")},
+    **{f"ballsocket.cli.{name}": "ballsocket.cli.options" for name in ("engine", "groups", "words")},
+    **{f"ballsocket.cli.{name}": "ballsocket.cli.elasticity_options" for name in ("elements", "off_axis")},
+    **{f"ballsocket.cli.{name}": "ballsocket.cli.press_files" for name in ("files", "report")},
+    **{f"ballsocket.cli.{name}": "ballsocket.cli.export" for name in ("fmu", "force_elements")},
+    **{f"ballsocket.cli.{name}": "ballsocket.cli.servers" for name in ("app", "serve_mcp")},
+    "ballsocket.cli.curve": "ballsocket.cli.press",
+    "ballsocket.cli.fit": "ballsocket.cli.identify",
+    "ballsocket.cli.questions": "ballsocket.cli.design",
+    "ballsocket.cli.tools": "ballsocket.mcp",
+    "ballsocket.cli.tools.limited": "ballsocket.cli.limited",
+    **{f"ballsocket.cli.tools.{name}": "ballsocket.mcp.tools" for name in ("schema", "table")},
     "ballsocket.export.recording": "ballsocket.export.c_element",
     "ballsocket.export.slopes": "ballsocket.export.recorder",
     "ballsocket.export.tables": "ballsocket.export.targets",
@@ -188,7 +209,7 @@ def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
     `names` maps each old name to the present one, in the same module or with the path of another.
     """
 
-    def find(name: str) -> Any:
+    def resolve(name: str) -> Any:
         """Return a function or class by its old name, with a warning."""
         if name not in names:
             raise AttributeError(f"module {module!r} has no attribute {name!r}")
@@ -196,7 +217,7 @@ def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
         path, _, attribute = names[name].rpartition(".")
         return getattr(import_module(path or module), attribute)
 
-    return find
+    return resolve
 
 
 class RenamedAttribute:

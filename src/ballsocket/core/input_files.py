@@ -17,6 +17,7 @@ from typing import BinaryIO
 
 from .checks import shown
 
+_MAX_FILES = 50
 _VARIABLE = "BALLSOCKET_INPUT_FOLDERS"
 _opened: ContextVar[list[Path] | None] = ContextVar("opened_inputs", default=None)
 
@@ -110,3 +111,20 @@ def resolve_path(path: Path) -> Path:
         return path.resolve()
     except (OSError, RuntimeError) as error:  # a circle of links, a name that is too long
         raise ValueError(f"{shown(str(path))} cannot be resolved: {error}") from error
+
+
+def packed_files(main: Path, opened: Iterable[Path]) -> tuple[Path, ...]:
+    """Check the files that an input file opened, and return them with the input file first.
+
+    Raises
+    ------
+    ValueError
+        A file outside the folder of the input file; too many files.
+    """
+    files = tuple(dict.fromkeys((main, *opened)))
+    for path in files:
+        if not path.is_relative_to(main.parent) or ".." in path.relative_to(main.parent).parts:
+            raise ValueError(f"{shown(str(path))} lies outside the folder of {main.name}: put it beside that file")
+    if len(files) > _MAX_FILES:
+        raise ValueError(f"{main.name} names {len(files) - 1} files: at most {_MAX_FILES - 1} are allowed")
+    return files

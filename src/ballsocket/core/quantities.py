@@ -157,9 +157,9 @@ class Quantity:
             A value that is neither a number nor an array of numbers.
         """
         number = check_numeric(self.name, value)
-        good = self.allows(number)
-        if all_true(good) is False:
-            require(self.name, number, good, self.allowed + self.radian_hint(first_invalid(number, good)))
+        valid = self.allows(number)
+        if all_true(valid) is False:
+            require(self.name, number, valid, self.allowed + self.radian_hint(first_invalid(number, valid)))
         return number
 
     def radian_hint(self, value: float) -> str:

@@ -40,7 +40,7 @@ class Status(IntEnum):
 
     @property
     def failed(self) -> bool:
-        """True if the press failed: its results are NaN."""
+        """True if the calculation failed; its results are then NaN."""
         return self in _FAILED
 
 

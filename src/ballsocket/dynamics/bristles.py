@@ -7,7 +7,13 @@ from typing import ClassVar
 
 from ..core.arrays import Array, safe_divisor, sqrt, where
 from ..core.sources import Source
-from .friction import CoulombCoefficients, effective_slip, friction_coefficient, rolling_slip_ratio, set_checked_number
+from .friction import (
+    CoulombCoefficients,
+    check_and_store_number,
+    effective_slip,
+    friction_coefficient,
+    rolling_slip_ratio,
+)
 from .reaction import BallCentre, Sliding, versine
 
 Deflections = tuple[Array, Array, Array, Array]
@@ -70,44 +76,56 @@ class Bristles(CoulombCoefficients):
 
     def __post_init__(self) -> None:
         for name in ("coefficient", "damping", "viscous"):
-            set_checked_number(
+            check_and_store_number(
                 self, name, 0.0, "friction must be at least 0 and finite; negative friction would generate energy"
             )
         for name in ("stiffness", "stribeck_speed", "release"):
-            set_checked_number(self, name, 5e-324, "it must be above 0 and finite")
+            check_and_store_number(self, name, 5e-324, "it must be above 0 and finite")
         self.check_static()
 
 
 def bristle_forces(
     centre: BallCentre, slip: Sliding, deflection: Deflections, bristles: Bristles
 ) -> tuple[Deflections, Deflections, Array]:
-    """Compute the friction of bristles, the rate of their deflections, and the dissipated power.
+    """Compute friction force, deflection rates and dissipated power of bristles, per unit of normal force.
+
+    Friction force and power are divided by the normal force.
 
     Friction and power are divided by the normal force.
 
     The friction has three components across the load and one about it, a moment divided by the lever ρ.
     """
-    g = slip.x + slip.bx, slip.y + slip.by, slip.z + slip.bz, sqrt(slip.lever_squared) * slip.spin
-    zx, zy, zz, zr = deflection
-    normal_part = zx * centre.x + zy * centre.y + zz * centre.z
-    z = zx - normal_part * centre.x, zy - normal_part * centre.y, zz - normal_part * centre.z, zr
-    speed, slopes, least_slope = _effective_slip_speed(g, centre)
-    mu = safe_divisor(
+    slip_components = slip.x + slip.bx, slip.y + slip.by, slip.z + slip.bz, sqrt(slip.lever_squared) * slip.spin
+    deflection_x, deflection_y, deflection_z, deflection_arc = deflection
+    normal_part = deflection_x * centre.x + deflection_y * centre.y + deflection_z * centre.z
+    tangential_deflection = (
+        deflection_x - normal_part * centre.x,
+        deflection_y - normal_part * centre.y,
+        deflection_z - normal_part * centre.z,
+        deflection_arc,
+    )
+    speed, slopes, least_slope = _effective_slip_speed(slip_components, centre)
+    friction_coefficient_at_speed = safe_divisor(
         friction_coefficient(speed, bristles.coefficient, bristles.breakaway_coefficient, bristles.stribeck_speed)
     )
-    decay = bristles.stiffness * speed / mu
-    damping = bristles.damping / (1.0 + bristles.damping * speed / (4.0 * mu * least_slope))
-    losses = tuple(decay * bend / share for bend, share in zip(z, slopes, strict=True))
-    rate = tuple(slip_rate - loss for slip_rate, loss in zip(g, losses, strict=True))
-    states = zip(z, rate, g, strict=True)
+    decay = bristles.stiffness * speed / friction_coefficient_at_speed
+    damping = bristles.damping / (1.0 + bristles.damping * speed / (4.0 * friction_coefficient_at_speed * least_slope))
+    losses = tuple(decay * bend / slope for bend, slope in zip(tangential_deflection, slopes, strict=True))
+    deflection_rates = tuple(slip_rate - loss for slip_rate, loss in zip(slip_components, losses, strict=True))
+    states = zip(tangential_deflection, deflection_rates, slip_components, strict=True)
     force = tuple(
         bristles.stiffness * bend + damping * change + bristles.viscous * slip_rate
         for bend, change, slip_rate in states
     )
-    dissipated = bristles.stiffness * _dot(losses, z) + damping * _dot(rate, g) + bristles.viscous * _dot(g, g)
+    dissipated = (
+        bristles.stiffness * _dot_product(losses, tangential_deflection)
+        + damping * _dot_product(deflection_rates, slip_components)
+        + bristles.viscous * _dot_product(slip_components, slip_components)
+    )
     touching = slip.normal > 0.0
     released_rate = tuple(
-        where(touching, change, -bend / bristles.release) for change, bend in zip(rate, deflection, strict=True)
+        where(touching, change, -bend / bristles.release)
+        for change, bend in zip(deflection_rates, deflection, strict=True)
     )
     return force, released_rate, dissipated
 
@@ -117,20 +135,34 @@ _TRANSITION_SPEED_SQUARED = 1e-30
 
 
 def _effective_slip_speed(slip: Deflections, centre: BallCentre) -> tuple[Array, Deflections, Array]:
-    """Compute the effective slip speed of the patch, its slopes, and the smallest slope.
+    """Compute the effective slip speed of the patch in mm/s, its derivatives, and the smallest derivative.
 
     The slopes are derivatives by half the squares of the slip components.
     """
-    gx, gy, gz, gr = slip
-    m = versine(centre)
-    across, kappa = gx * gx + gy * gy + gz * gz, rolling_slip_ratio(m)
-    share = kappa * kappa
-    square, by_slip, by_tilt, by_spin, _ = effective_slip(
-        across, share * across, gr * gr, 0.0, _TRANSITION_SPEED_SQUARED, share, m
+    slip_x, slip_y, slip_z, slip_arc = slip
+    patch_versine = versine(centre)
+    squared_slip, slip_ratio = slip_x * slip_x + slip_y * slip_y + slip_z * slip_z, rolling_slip_ratio(patch_versine)
+    squared_slip_ratio = slip_ratio * slip_ratio
+    squared_speed, by_slip, by_tilt, by_spin, _ = effective_slip(
+        squared_slip,
+        squared_slip_ratio * squared_slip,
+        slip_arc * slip_arc,
+        0.0,
+        _TRANSITION_SPEED_SQUARED,
+        squared_slip_ratio,
+        patch_versine,
     )
-    push = by_slip + share * by_tilt
-    return sqrt(square), (push, push, push, by_spin), where(push < by_spin, push, by_spin)
+    by_slip_and_tilt = by_slip + squared_slip_ratio * by_tilt
+    return (
+        sqrt(squared_speed),
+        (by_slip_and_tilt, by_slip_and_tilt, by_slip_and_tilt, by_spin),
+        where(by_slip_and_tilt < by_spin, by_slip_and_tilt, by_spin),
+    )
 
 
-def _dot(first: Deflections, second: Deflections) -> Array:
-    return sum((a * b for a, b in zip(first[1:], second[1:], strict=True)), first[0] * second[0])
+def _dot_product(first_deflection: Deflections, second_deflection: Deflections) -> Array:
+    """Compute the dot product of two deflections."""
+    return sum(
+        (a * b for a, b in zip(first_deflection[1:], second_deflection[1:], strict=True)),
+        first_deflection[0] * second_deflection[0],
+    )

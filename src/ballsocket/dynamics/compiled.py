@@ -70,7 +70,7 @@ class CompiledElement:
             )
 
     def __call__(self, position: Any, velocity: Any = (0.0, 0.0, 0.0), spin: Any = (0.0, 0.0, 0.0)) -> Load:
-        """Compute the load at a state by the Python element, see `ForceElement`."""
+        """Compute the load at a state of the ball by the `ForceElement`."""
         return self.element(position, velocity, spin)
 
     @property
@@ -80,16 +80,16 @@ class CompiledElement:
 
     @cached_property
     def potential(self) -> CompiledLaw:
-        """Compiled function of the indentation that returns energy, force and stiffness."""
+        """Compiled function of the indentation in mm: energy in N mm, force in N and stiffness in N/mm."""
         return compiled_potential(self.element)
 
     @property
     def march(self) -> Any:
-        """Compiled loop over the time steps of `simulate`."""
-        return _march()
+        """Compiled function that advances a ball over all time steps of `simulate`."""
+        return _compiled_march()
 
     def loads(self, position: Numbers, velocity: Numbers, spin: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-        """Compute force and moment on the ball, energy, and tangent stiffness of an array of states.
+        """Compute force and moment on the ball, energy and tangent stiffness for an array of states.
 
         The components of the tangent stiffness are xx, yy, zz, xy, yz, zx.
 
@@ -103,62 +103,69 @@ class CompiledElement:
         arrays (states, 3), (states, 3), (states,), (states, 6)
         """
         state = [numpy.ascontiguousarray(values, dtype=float) for values in (position, velocity, spin)]
-        count = len(position)
-        outputs = numpy.empty((count, 3)), numpy.empty((count, 3)), numpy.empty(count), numpy.empty((count, 6))
-        _batch()(self.potential, self.constants, *state, *outputs)
+        state_count = len(position)
+        outputs = (
+            numpy.empty((state_count, 3)),
+            numpy.empty((state_count, 3)),
+            numpy.empty(state_count),
+            numpy.empty((state_count, 6)),
+        )
+        _compiled_batch_loop()(self.potential, self.constants, *state, *outputs)
         return outputs
 
 
 def compiled_potential(element: ForceElement) -> CompiledLaw:
-    """Return the compiled energy, force and stiffness of an element over the indentation."""
+    """Return a compiled function of the indentation: elastic energy, force and stiffness of an element."""
     energy_law = element.potential
     if isinstance(energy_law, SpringPotential):
         springs = energy_law.springs
-        numbers: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
-        return CompiledLaw(function=_springs(springs.kinematics), numbers=numbers)
+        spring_constants: tuple[Any, ...] = springs.socket_radius, springs.clearance, springs.modulus
+        return CompiledLaw(function=_compiled_spring_potential(springs.kinematics), numbers=spring_constants)
     curve = (
         energy_law.curve
         if isinstance(energy_law, CurvePotential)
-        else _energy_curve(element.joint, element.model.law(element.joint))
+        else _fit_energy_curve(element.joint, element.model.law(element.joint))
     )
     ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return CompiledLaw(function=_compiled_slopes(), numbers=(*ends, curve.pieces))
+    return CompiledLaw(function=_compiled_curve_potential(), numbers=(*ends, curve.pieces))
 
 
-def _energy_curve(joint: Joint, law: ForceLaw) -> Any:
+def _fit_energy_curve(joint: Joint, law: ForceLaw) -> Any:
+    """Fit the elastic energy of a joint with a force law by a curve over the indentation."""
     return energy_curve(law, 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius)
 
 
 @cache
-def _springs(motion: Kinematics) -> Any:
-    """Return the compiled energy, force and stiffness of radial springs with one kinematics."""
+def _compiled_spring_potential(motion: Kinematics) -> Any:
+    """Compile the energy, force and stiffness of radial springs as one function of the indentation."""
     energy, force, stiffness = jit_formula(motion.energy), jit_formula(motion.force), jit_formula(motion.stiffness)
 
     @njit(error_model="numpy")
-    def slopes(indentation, R2, c, K):  # type: ignore[no-untyped-def]
+    def energy_force_stiffness(indentation, R2, c, K):  # type: ignore[no-untyped-def]
         return energy(R2, c, K, indentation), force(R2, c, K, indentation), stiffness(R2, c, K, indentation)
 
-    return slopes
+    return energy_force_stiffness
 
 
 @cache
-def _compiled_slopes() -> Any:
+def _compiled_curve_potential() -> Any:
+    """Compile the function that evaluates a fitted energy curve: energy, force and stiffness."""
     return njit(error_model="numpy", fastmath={"contract"})(potential.energy_derivatives_of_number)
 
 
 def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no-untyped-def]
-    """Compute force, moment, energy and tangent stiffness of one state, in compiled functions.
+    """Compute force, moment, energy and tangent stiffness at one state of the ball, in compiled functions.
 
     The components of the tangent stiffness are xx, yy, zz, xy, yz, zx.
     """
-    centre = reaction.centre_of(position[0], position[1], position[2], constants.clearance)
+    centre = reaction.ball_centre_at(position[0], position[1], position[2], constants.clearance)
     return load_from_contact(centre, reaction.elastic_contact(potential, centre, constants), velocity, spin, constants)
 
 
 def load_from_contact(centre, contact, velocity, spin, constants):  # type: ignore[no-untyped-def]
-    """Compute force, moment, energy and tangent stiffness from the elastic contact of a state."""
+    """Compute force, moment, energy and tangent stiffness from the elastic contact and the motion of the ball."""
     fx, fy, fz, mx, my, mz = reaction.force_and_moment(centre, contact, velocity, spin, constants)
-    return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent(centre, contact, constants)
+    return (fx, fy, fz), (mx, my, mz), contact.energy, reaction.tangent_stiffness(centre, contact, constants)
 
 
 _BLOCK_SIZE = 256
@@ -166,23 +173,23 @@ _BLOCK_SIZE = 256
 
 
 @cache
-def _batch() -> Any:
-    """Return the compiled loop over an array of states."""
+def _compiled_batch_loop() -> Any:
+    """Compile the loop over an array of states."""
 
     @njit(error_model="numpy", fastmath={"contract"})
-    def run(potential, constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
+    def compute_batch(potential, constants, position, velocity, spin, force, moment, energy, tangent):  # type: ignore[no-untyped-def]
         """Compute force, moment, energy and tangent stiffness of each state, in blocks."""
         block = numpy.empty((_BLOCK_SIZE, 3))
         for first in range(0, len(energy), _BLOCK_SIZE):
             last = min(first + _BLOCK_SIZE, len(energy))
             for i in range(first, last):
-                centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                U, F, k = potential(reaction.ramp(centre.indentation, constants.smoothing)[0])
+                centre = reaction.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                U, F, k = potential(reaction.smooth_ramp(centre.indentation, constants.smoothing)[0])
                 block[i - first, 0], block[i - first, 1], block[i - first, 2] = U, F, k
             for i in range(first, last):
-                centre = reaction.centre_of(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                centre = reaction.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
                 slopes = block[i - first, 0], block[i - first, 1], block[i - first, 2]
-                rounded = reaction.ramp(centre.indentation, constants.smoothing)
+                rounded = reaction.smooth_ramp(centre.indentation, constants.smoothing)
                 contact = reaction.elastic_from_slopes(centre, rounded, slopes, constants)
                 v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
                 w = spin[i, 0], spin[i, 1], spin[i, 2]
@@ -191,27 +198,28 @@ def _batch() -> Any:
                 moment[i, 0], moment[i, 1], moment[i, 2] = m
                 tangent[i, 0], tangent[i, 1], tangent[i, 2], tangent[i, 3], tangent[i, 4], tangent[i, 5] = J
 
-    return run
+    return compute_batch
 
 
 @cache
-def _march() -> Any:
+def _compiled_march() -> Any:
+    """Compile the loop over the time steps."""
     return njit(error_model="numpy")(stepping.march)
 
 
 for _formula in (
     kinematics.linear_energy,
     kinematics.circular_energy,
-    reaction.ramp,
-    reaction.ramp_value,
-    reaction._rounded,
+    reaction.smooth_ramp,
+    reaction.smooth_ramp_value,
+    reaction._corner_polynomial,
     reaction.rim_share,
     friction.widening_factor,
     friction.drill_lever,
     friction.friction_coefficient,
     friction.rolling_slip_ratio,
     friction.effective_slip,
-    reaction.centre_of,
+    reaction.ball_centre_at,
     reaction.elastic_contact,
     reaction.elastic_at_rim,
     reaction.dome_angle,
@@ -220,13 +228,13 @@ for _formula in (
     reaction.versine,
     reaction.force_and_moment,
     reaction.dissipation,
-    reaction.tangent,
+    reaction.tangent_stiffness,
     stepping.end_state,
     stepping.surface_speed,
     stepping.mean_contact,
     stepping.step_residual,
     stepping.newton_correction,
-    stepping.advance,
+    stepping.advance_one_step,
     loads_at,
 ):
     jit_formula(_formula)

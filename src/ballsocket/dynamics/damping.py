@@ -49,20 +49,21 @@ class Damping:
     sources: tuple[Source, ...] = ()
 
     def __post_init__(self) -> None:
-        _store_checked(
+        _check_and_store_number(
             self, "hysteresis", "damping must be at least 0 and finite; negative damping would generate energy"
         )
-        _store_checked(self, "time", "a retardation time (s) must be at least 0 and finite")
+        _check_and_store_number(self, "time", "a retardation time (s) must be at least 0 and finite")
 
     def restitution(self, speed: float) -> float:
-        """Compute the coefficient of restitution at an impact speed in mm/s from the hysteresis χ alone.
+        """Compute the coefficient of restitution at an impact speed in mm/s, for the hysteresis χ without τ.
 
         It does not depend on the force law F(d).
         """
         return restitution_of(self.hysteresis * speed)
 
 
-def _store_checked(damping: Damping, name: str, allowed: str) -> None:
+def _check_and_store_number(damping: Damping, name: str, allowed: str) -> None:
+    """Check a field of a `Damping` against its limits, and store it as a float."""
     value = check_number(name, getattr(damping, name))
     require(name, value, 0.0 <= value < math.inf, allowed)
     object.__setattr__(damping, name, value)
@@ -92,12 +93,12 @@ def damping_from_restitution(relation: Relation, restitution: float, impact_spee
 
 
 def _damping_constructor(relation: Relation) -> Callable[..., Damping]:
-    """Make the function that computes damping from a coefficient of restitution by one relation."""
+    """Make a function that computes damping from a coefficient of restitution by a published relation."""
 
-    def damping(*, restitution: float, impact_speed: float) -> Damping:
+    def compute_damping(*, restitution: float, impact_speed: float) -> Damping:
         return damping_from_restitution(relation, restitution, impact_speed)
 
-    damping.__doc__ = f"""Compute the damping for a coefficient of restitution by the relation of {relation.name}.
+    compute_damping.__doc__ = f"""Compute damping from a coefficient of restitution by the relation of {relation.name}.
 
     Parameters
     ----------
@@ -111,7 +112,7 @@ def _damping_constructor(relation: Relation) -> Callable[..., Damping]:
     Damping
         χ = h/v with {relation.law}.
     """
-    return damping
+    return compute_damping
 
 
 HuntCrossley = _damping_constructor(relations.hunt_crossley)

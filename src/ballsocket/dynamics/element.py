@@ -21,15 +21,15 @@ from ..problem.cup import Cup
 from .bristles import Bristles
 from .damping import Damping
 from .friction import Friction
-from .load import Load, apply_bristles
-from .matrices import vector
+from .load import Load, add_bristle_loads
+from .matrices import join_vector
 from .potential import Potential, adhesion_potential, energy_derivatives_of_array, potential_of
 from .reaction import (
     NO_CONTACT,
     BallCentre,
     Constants,
     Vector,
-    centre_of,
+    ball_centre_at,
     elastic_contact,
     force_and_moment,
     remove_tension_damping,
@@ -98,14 +98,15 @@ class ForceElement:
             if not (isinstance(value, kind) or (value is None and name != "model")):
                 raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(value)}")
         smoothing = check_number("smoothing", self.smoothing)
-        potential = self._potential()
+        potential = self._elastic_energy()
         clearance = float(self.joint.clearance)
         valid = 0.0 <= smoothing <= clearance
         require("smoothing", smoothing, valid, f"it must be between 0 and the clearance, {clearance:g} mm")
         object.__setattr__(self, "potential", potential)
-        object.__setattr__(self, "constants", self._constants(smoothing))
+        object.__setattr__(self, "constants", self._collect_constants(smoothing))
 
-    def _potential(self) -> Potential:
+    def _elastic_energy(self) -> Potential:
+        """Return the elastic energy of model and joint over the indentation."""
         if not isinstance(self.model, AdhesiveSocket):
             return potential_of(self.model, self.joint)
         if self.friction or self.cup or self.smoothing:
@@ -114,7 +115,7 @@ class ForceElement:
 
     @cached_property
     def stretch(self) -> float:
-        """Stretch u_c in mm at which an adhesive ball separates; 0 for other models."""
+        """Stretch u_c in mm of a spring at which an adhesive ball separates; 0 for other models."""
         return getattr(self.potential, "stretch", 0.0)
 
     @property
@@ -126,7 +127,7 @@ class ForceElement:
 
     remembers = RenamedAttribute("internal_state")
 
-    def _constants(self, smoothing: float) -> Constants:
+    def _collect_constants(self, smoothing: float) -> Constants:
         """Collect the constants of joint, damping, friction and cup."""
         joint, cup = self.joint.with_floats(), self.cup
         damping = self.damping or Damping()
@@ -156,7 +157,7 @@ class ForceElement:
         deflection: Any = _ZERO_DEFLECTION,
         attached: Any = False,
     ) -> Load:
-        """Compute force, moment and energy at a state of the ball, in axes fixed to the socket.
+        """Compute force, moment and energy at a state of the ball, with axes fixed to the socket.
 
         Parameters
         ----------
@@ -184,43 +185,43 @@ class ForceElement:
         if not isinstance(self.friction, Bristles):
             return load
         with numpy.errstate(all="ignore"):
-            return apply_bristles(load, self.friction, deflection)
+            return add_bristle_loads(load, self.friction, deflection)
 
     def _load_of_numbers(self, position: Vector, velocity: Vector, spin: Vector, attached: bool) -> Load:
-        """Compute the load at a single state of plain numbers."""
+        """Compute the load at one state, given as tuples of plain numbers."""
         constants = self.constants
-        centre = centre_of(*position, constants.clearance)
-        sticks = self.stretch > 0.0
-        if sticks:
-            centre = self._attached_centre(centre, attached)
+        centre = ball_centre_at(*position, constants.clearance)
+        is_adhesive = self.stretch > 0.0
+        if is_adhesive:
+            centre = self._centre_if_attached(centre, attached)
         if centre.indentation <= -constants.smoothing and centre.distance > 0.0:
             return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, NO_CONTACT, position, velocity, spin)
-        if centre.indentation > self._monitor.limit:
-            self._monitor.check(centre.indentation)
+        if centre.indentation > self._validity_monitor.limit:
+            self._validity_monitor.check(centre.indentation)
         contact = elastic_contact(self.potential, centre, constants)
-        if sticks:
+        if is_adhesive:
             contact = remove_tension_damping(contact)
         fx, fy, fz, mx, my, mz = force_and_moment(centre, contact, velocity, spin, constants)
         return Load((fx, fy, fz), (mx, my, mz), contact.energy, self, centre, contact, position, velocity, spin)
 
     def _load_of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
-        """Compute the loads at an array of states."""
+        """Compute the loads at many states, given as arrays (..., 3)."""
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
         position = check_vectors("position", position, axes[0])
         states = [_as_array_like(position, value) for value in (position, velocity, spin)]
         r, v, w = (_split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
         with numpy.errstate(all="ignore"):  # states without a result have a status
-            centre = self._attached_centre(centre_of(*r, self.constants.clearance), attached)
-            self._monitor.check_array(centre.indentation)
+            centre = self._centre_if_attached(ball_centre_at(*r, self.constants.clearance), attached)
+            self._validity_monitor.check_array(centre.indentation)
             contact = elastic_contact(self.potential, centre, self.constants)
             contact = remove_tension_damping(contact) if self.stretch > 0.0 else contact
             loads = force_and_moment(centre, contact, v, w, self.constants)
-        force, moment = vector(object, *loads[:3]), vector(object, *loads[3:])
+        force, moment = join_vector(object, *loads[:3]), join_vector(object, *loads[3:])
         return Load(force, moment, contact.energy, self, centre, contact, r, v, w)
 
-    def _attached_centre(self, centre: BallCentre, attached: Any) -> BallCentre:
-        """Return the ball centre, moved out of contact where an adhesive ball is not attached.
+    def _centre_if_attached(self, centre: BallCentre, attached: Any) -> BallCentre:
+        """Return the ball centre; an adhesive ball that is not attached gets a negative indentation.
 
         Before first touch an adhesive ball has no contact unless it is attached.
         """
@@ -231,29 +232,32 @@ class ForceElement:
 
     @property
     def wall(self) -> float:
-        """Largest indentation in mm that the wall thickness and the model allow."""
+        """Largest indentation in mm that the wall thickness and the model's range allow."""
         return self.constants.wall - self.stretch
 
     @cached_property
-    def _monitor(self) -> ValidityMonitor:
+    def _validity_monitor(self) -> ValidityMonitor:
+        """Monitor that logs a warning when an indentation leaves the validity of the model."""
         return ValidityMonitor(model=self.model, joint=self.joint.with_floats(), wall=self.wall)
 
     @cached_property
     def curves(self) -> tuple[CurveLaw, CurveLaw]:
-        """Curves of the half angle (rad) and the largest pressure (MPa) over the indentation, in logarithms."""
-        return _curve_of(self.model, self.joint, "half_angle"), _curve_of(self.model, self.joint, "max_pressure")
+        """Fitted curves of half angle (rad) and largest pressure (MPa) over the indentation (mm)."""
+        return _fit_quantity_curve(self.model, self.joint, "half_angle"), _fit_quantity_curve(
+            self.model, self.joint, "max_pressure"
+        )
 
     def half_angle(self, indentation: Array) -> Array:
-        """Compute the half angle in rad at an indentation in mm; 0 without contact."""
+        """Compute the half angle of the contact in rad at an indentation in mm; 0 without contact."""
         return _evaluate_curve(self.curves[0], indentation)
 
     def max_pressure(self, indentation: Array) -> Array:
-        """Compute the largest pressure in MPa at an indentation in mm; 0 without contact."""
+        """Compute the largest contact pressure in MPa at an indentation in mm; 0 without contact."""
         return _evaluate_curve(self.curves[1], indentation)
 
 
 def components(value: Any, name: str = "a state") -> Vector:
-    """Convert a vector to three floats; raise ValueError for anything but three real numbers."""
+    """Convert a vector to three numbers; raise ValueError for anything but three real numbers."""
     try:
         x, y, z = value
         if isinstance(x + y + z, complex):
@@ -268,7 +272,7 @@ def components(value: Any, name: str = "a state") -> Vector:
 
 
 def _as_array_like(position: Any, value: Any) -> Any:
-    """Convert a tuple or list to an array of the same library as the position."""
+    """Convert a tuple or list to an array of the position's library and data type."""
     if type(value) not in _SEQUENCES:
         return value
     like = to_common_arrays(position)[0]
@@ -276,11 +280,12 @@ def _as_array_like(position: Any, value: Any) -> Any:
 
 
 def _split_components(value: Any) -> Vector:
+    """Split an array (..., 3) into its three components."""
     return value[..., 0], value[..., 1], value[..., 2]
 
 
-def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
-    """Fit a curve to a contact quantity over the indentation, up to the socket radius."""
+def _fit_quantity_curve(model: Model, joint: Joint, quantity: str) -> CurveLaw:
+    """Fit a curve to a contact quantity over the indentation, from almost 0 to the socket radius."""
     joint = joint.with_floats()
     shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
     return fit_curve_law(
@@ -289,7 +294,7 @@ def _curve_of(model: Model, joint: Joint, quantity: str) -> CurveLaw:
 
 
 def _evaluate_curve(curve: CurveLaw, indentation: Array) -> Array:
-    """Evaluate a curve at indentations in mm: 0 without contact, NaN beyond its end."""
+    """Evaluate a fitted curve at indentations in mm; 0 without contact, NaN beyond the end of the curve."""
     if type(indentation) is float:
         return curve(indentation)[0]
     ends = curve.shallowest, curve.deepest, curve.first, curve.density

@@ -23,16 +23,16 @@ class CoulombCoefficients:
 
     @property
     def breakaway_coefficient(self) -> float:
-        """Coefficient of friction at the onset of sliding, by default that of sliding."""
+        """Coefficient of friction at the onset of sliding; equals the sliding one by default."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient
 
     static = RenamedAttribute("breakaway_coefficient")
 
     def check_static(self) -> None:
-        """Raise ValueError if the static coefficient is below the sliding coefficient."""
+        """Check that the static coefficient of friction is not below the sliding one; ValueError otherwise."""
         if self.static_coefficient is not None:
             allowed = "static friction must be at least the sliding friction"
-            set_checked_number(self, "static_coefficient", self.coefficient, allowed)
+            check_and_store_number(self, "static_coefficient", self.coefficient, allowed)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,23 +81,23 @@ class Friction(CoulombCoefficients):
 
     def __post_init__(self) -> None:
         for name in ("coefficient", "viscous"):
-            set_checked_number(
+            check_and_store_number(
                 self, name, 0.0, "friction must be at least 0 and finite; negative friction would generate energy"
             )
         for name in ("transition_speed", "stribeck_speed"):
-            set_checked_number(self, name, 5e-324, "a speed (mm/s) must be above 0 and finite")
+            check_and_store_number(self, name, 5e-324, "a speed (mm/s) must be above 0 and finite")
         self.check_static()
 
 
-def set_checked_number(friction: object, name: str, least: float, allowed: str) -> None:
-    """Check a number of a frozen dataclass, and store it as a float."""
-    value = check_number(name, getattr(friction, name))
-    require(name, value, least <= value < math.inf, allowed)
-    object.__setattr__(friction, name, value)
+def check_and_store_number(instance: object, name: str, low: float, allowed: str) -> None:
+    """Check a number of a frozen dataclass against its limits, and store it as a float."""
+    value = check_number(name, getattr(instance, name))
+    require(name, value, low <= value < math.inf, allowed)
+    object.__setattr__(instance, name, value)
 
 
 def widening_factor(versine: Array) -> Array:
-    """Compute the friction of an extended patch relative to that of a point contact.
+    """Compute the ratio of the friction of an extended contact patch to that of a point contact.
 
     The factor is the ratio of ∫ p |a x n| dA to the force.
 
@@ -109,7 +109,7 @@ def widening_factor(versine: Array) -> Array:
 
 
 def drill_lever(versine: Array) -> Array:
-    """Compute the lever of the drilling moment relative to the patch radius R2 sin ε.
+    """Compute the lever arm of the drilling moment (about the load axis), divided by the patch radius R2 sin ε.
 
     ρ is ∫ p R2 sin φ dA over the force and the widening factor, 8/15 of R2 sin ε for a small contact. The polynomial
     fits radial springs within 1e-5.
@@ -119,9 +119,9 @@ def drill_lever(versine: Array) -> Array:
 
 
 def friction_coefficient(speed: Array, sliding: Array, static: Array, stribeck_speed: Array) -> Array:
-    """Compute the coefficient of friction μ at a slip speed in mm/s, with the Stribeck effect."""
-    share = speed / stribeck_speed
-    return sliding + (static - sliding) * exp(-share * share)
+    """Compute the coefficient of friction μ at a slip speed in mm/s, including the Stribeck effect."""
+    speed_ratio = speed / stribeck_speed
+    return sliding + (static - sliding) * exp(-speed_ratio * speed_ratio)
 
 
 def rolling_slip_ratio(versine: Array) -> Array:
@@ -151,7 +151,7 @@ ROLL_FIT = (0.40882, 0.62470)
 def effective_slip(
     slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, tilt_squared: Array, versine: Array
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute the squared effective slip speed q² of the patch in (mm/s)², with its slopes by X, Y, Z and P.
+    """Compute the squared effective slip speed q² of the patch in (mm/s)², and its partial derivatives.
 
     X = |S|², Y = κ²|D|², Z = (ρ ω_n)² and P = κ S·D are in (mm/s)².
 
@@ -169,25 +169,28 @@ def effective_slip(
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
     a, t, eta, lam_z = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, (l0 + l1 * m) * z
     G = x + theta * y + scale * transition_squared
-    along, turned = a * x + b * z, t * x + n * z
-    over, roll = 1.0 / (G * (G + eta * z) + lam_z * z), g / (1.0 + (zeta - 1.0) * z)
-    inner = x * along + p * turned
-    ratio, rolling = z * inner * over, roll * y * z
-    fall = ratio * (2.0 * G + eta * z) * over
-    push = rolling * roll / g
+    axial_sum, turning_sum = a * x + b * z, t * x + n * z
+    inverse_denominator, roll = 1.0 / (G * (G + eta * z) + lam_z * z), g / (1.0 + (zeta - 1.0) * z)
+    numerator = x * axial_sum + p * turning_sum
+    ratio, rolling = z * numerator * inverse_denominator, roll * y * z
+    denominator_slope = ratio * (2.0 * G + eta * z) * inverse_denominator
+    rolling_slope = rolling * roll / g
     return (
         total * (1.0 - ratio - rolling) - tilt_squared * slip,
-        1.0 - tilt_squared - z * (along + a * x + t * p) * over + fall + push,
-        1.0 + theta * fall - roll * z + push,
-        1.0 - (inner + z * (b * x + n * p) - ratio * (eta * G + 2.0 * lam_z)) * over - roll * y + zeta * push,
-        -z * turned * over,
+        1.0 - tilt_squared - z * (axial_sum + a * x + t * p) * inverse_denominator + denominator_slope + rolling_slope,
+        1.0 + theta * denominator_slope - roll * z + rolling_slope,
+        1.0
+        - (numerator + z * (b * x + n * p) - ratio * (eta * G + 2.0 * lam_z)) * inverse_denominator
+        - roll * y
+        + zeta * rolling_slope,
+        -z * turning_sum * inverse_denominator,
     )
 
 
 def effective_slip_bends(
     slip: Array, tilt: Array, spin: Array, mixed: Array, transition_squared: Array, versine: Array
 ) -> dict[tuple[int, int], Array]:
-    """Compute the second derivatives of the squared effective slip speed q² by X, Y, Z and P.
+    """Compute the second partial derivatives of the squared effective slip speed q² by X, Y, Z and P.
 
     The keys number X, Y, Z and P from 0 to 3; see `effective_slip`.
     """
@@ -196,28 +199,34 @@ def effective_slip_bends(
     x, y, z, p = scale * slip, scale * tilt, scale * spin, scale * mixed
     a, t, eta, lam = a0 + m * (a1 + m * a2), t0 + m * (t1 + m * t2), e0 + e1 * m, l0 + l1 * m
     G = x + theta * y + scale * transition_squared
-    over, out, none = 1.0 / (G * (G + eta * z) + lam * z * z), 1.0 / (1.0 + (zeta - 1.0) * z), 0.0 * x
+    inverse_denominator, inverse_roll_denominator, zero = (
+        1.0 / (G * (G + eta * z) + lam * z * z),
+        1.0 / (1.0 + (zeta - 1.0) * z),
+        0.0 * x,
+    )
     # N/d with N = z [x (α x + β z) + p (τ x + ν z)]
-    ratio = z * (x * (a * x + b * z) + p * (t * x + n * z)) * over
+    ratio = z * (x * (a * x + b * z) + p * (t * x + n * z)) * inverse_denominator
     top = (
         z * (2.0 * a * x + b * z + t * p),
-        none,
+        zero,
         x * (a * x + 2.0 * b * z) + p * (t * x + 2.0 * n * z),
         z * (t * x + n * z),
     )
-    low = 2.0 * G + eta * z, theta * (2.0 * G + eta * z), eta * G + 2.0 * lam * z, none
-    first = [(up - ratio * down) * over for up, down in zip(top, low, strict=True)]
+    low = 2.0 * G + eta * z, theta * (2.0 * G + eta * z), eta * G + 2.0 * lam * z, zero
+    first = [(up - ratio * down) * inverse_denominator for up, down in zip(top, low, strict=True)]
     tops = {(0, 0): 2.0 * a * z, (0, 2): 2.0 * (a * x + b * z) + t * p, (0, 3): t * z, (2, 3): t * x + 2.0 * n * z}
     tops |= {(2, 2): 2.0 * (b * x + n * p)}
     lows = {(0, 0): 2.0, (0, 1): 2.0 * theta, (1, 1): 2.0 * theta * theta, (0, 2): eta, (1, 2): theta * eta}
     lows |= {(2, 2): 2.0 * lam}
     # γ y z/o with o = x + y + ζ z + v0²
-    roll, edge = g * y * z * out, (1.0, 1.0, zeta, 0.0)
-    rolled = [(g * part - roll * down) * out for part, down in zip((none, z, y, none), edge, strict=True)]
+    roll, edge = g * y * z * inverse_roll_denominator, (1.0, 1.0, zeta, 0.0)
+    rolled = [
+        (g * part - roll * down) * inverse_roll_denominator for part, down in zip((zero, z, y, zero), edge, strict=True)
+    ]
     bends = {}
     for i in range(4):
         for j in range(i, 4):
-            bend = tops.get((i, j), none) - ratio * lows.get((i, j), 0.0) - first[i] * low[j] - first[j] * low[i]
+            bend = tops.get((i, j), zero) - ratio * lows.get((i, j), 0.0) - first[i] * low[j] - first[j] * low[i]
             tilted = (g if (i, j) == (1, 2) else 0.0) - rolled[i] * edge[j] - rolled[j] * edge[i]
-            bends[i, j] = -scale * (bend * over + tilted * out)
+            bends[i, j] = -scale * (bend * inverse_denominator + tilted * inverse_roll_denominator)
     return bends

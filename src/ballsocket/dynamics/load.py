@@ -16,7 +16,7 @@ from ..core.checks import shown
 from ..core.deprecation import RenamedAttribute
 from . import reaction as formulas
 from .bristles import Bristles, Deflections, bristle_forces
-from .matrices import damping_matrix, matrix, vector
+from .matrices import damping_matrix, join_matrix, join_vector
 from .reaction import BallCentre, Constants, Elastic, Vector, normal_force, sliding_state
 
 
@@ -32,12 +32,12 @@ class ContactState(IntEnum):
 
     @property
     def sentence(self) -> str:
-        """Description of the state as a sentence."""
+        """Description of the contact state in words, such as "no contact"."""
         return _SENTENCES[self]
 
     @property
     def failed(self) -> bool:
-        """True for a state without a load: the program must repeat the last step with a smaller size."""
+        """True for a state without a valid load; repeat the last time step with a smaller size."""
         return self >= ContactState.THROUGH_WALL
 
 
@@ -68,17 +68,17 @@ class LoadedElement(Protocol):
     def max_pressure(self, indentation: Array) -> Array: ...
 
 
-def _without_warnings(formula: Callable[[Load], Any]) -> Callable[[Load], Any]:
-    """Suppress NumPy's floating-point warnings in a property; its status reports missing results."""
+def _without_warnings(compute_property: Callable[[Load], Any]) -> Callable[[Load], Any]:
+    """Wrap a property of `Load` so that NumPy gives no floating-point warnings."""
 
-    @wraps(formula)
-    def evaluate(load: Load) -> Any:
+    @wraps(compute_property)
+    def compute_without_warnings(load: Load) -> Any:
         if type(load.force) is tuple:
-            return formula(load)
+            return compute_property(load)
         with numpy.errstate(all="ignore"):
-            return formula(load)
+            return compute_property(load)
 
-    return evaluate
+    return compute_without_warnings
 
 
 class Load(NamedTuple):
@@ -113,15 +113,15 @@ class Load(NamedTuple):
     @property
     def socket_force(self) -> Any:
         """Force on the socket in N."""
-        return self._packer(*(-part for part in self._split(self.force)))
+        return self._join_components(*(-part for part in self._split_vector(self.force)))
 
     @property
     @_without_warnings
     def socket_moment(self) -> Any:
         """Moment on the socket about its centre in N mm: -M - r x F."""
-        (fx, fy, fz), (mx, my, mz) = self._split(self.force), self._split(self.moment)
+        (fx, fy, fz), (mx, my, mz) = self._split_vector(self.force), self._split_vector(self.moment)
         x, y, z = self.position
-        return self._packer(-mx - y * fz + z * fy, -my - z * fx + x * fz, -mz - x * fy + y * fx)
+        return self._join_components(-mx - y * fz + z * fy, -my - z * fx + x * fz, -mz - x * fy + y * fx)
 
     @property
     def indentation(self) -> Array:
@@ -130,7 +130,7 @@ class Load(NamedTuple):
 
     @property
     def attached(self) -> Array:
-        """True for a ball in contact; pass it as `attached` for the next state of an adhesive socket."""
+        """True if the ball is in contact; pass this value to the next call for an adhesive socket."""
         return self.centre.indentation > 0.0
 
     @property
@@ -149,13 +149,14 @@ class Load(NamedTuple):
     def tangent(self) -> Any:
         """Tangent stiffness ∂²U/∂r² in N/mm, a symmetric matrix (3, 3)."""
         if type(self.force) is tuple:
-            return self._rows
+            return self._tangent_rows
         with numpy.errstate(all="ignore"):
-            return matrix(self._rows)
+            return join_matrix(self._tangent_rows)
 
     @property
-    def _rows(self) -> Any:
-        xx, yy, zz, xy, yz, zx = formulas.tangent(self.centre, self.contact, self.element.constants)
+    def _tangent_rows(self) -> Any:
+        """Rows of the tangent stiffness matrix in N/mm, as tuples of components."""
+        xx, yy, zz, xy, yz, zx = formulas.tangent_stiffness(self.centre, self.contact, self.element.constants)
         return (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
 
     @property
@@ -174,8 +175,8 @@ class Load(NamedTuple):
     @property
     @_without_warnings
     def status(self) -> ContactState | Array:
-        """State of the contact: a `ContactState`, or an array of its codes."""
-        return status_of(self.centre, self.contact, self._is_finite, self.element.constants)
+        """State of the contact (free, contact, at the rim, ...): a `ContactState`, or an array of its codes."""
+        return contact_state_of(self.centre, self.contact, self._is_finite_state, self.element.constants)
 
     def summary(self) -> dict[str, Any]:
         """Return the load as a dictionary for JSON, in N, mm, N mm, MPa and degrees; missing numbers are None."""
@@ -183,30 +184,35 @@ class Load(NamedTuple):
         names = ("force", "moment", "socket_force", "socket_moment", "energy", "dissipation", "indentation")
         return {
             "status": status.name.lower() if isinstance(status, ContactState) else to_list(status),
-            **{name: _plain_value(getattr(self, name)) for name in names},
-            "half_angle_deg": _plain_value(self.half_angle * degrees(1.0)),
-            "max_pressure": _plain_value(self.max_pressure),
+            **{name: _to_json_value(getattr(self, name)) for name in names},
+            "half_angle_deg": _to_json_value(self.half_angle * degrees(1.0)),
+            "max_pressure": _to_json_value(self.max_pressure),
             "notes": list(self.notes),
         }
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences on contacts at the rim and on failed states, with their positions."""
-        return describe_states(self)
+        """Sentences on states with contact at the rim or without a load, with their positions."""
+        return describe_contact_states(self)
 
     @property
-    def _is_finite(self) -> Array:
-        rates = self.deflection_rate
-        bristle_forces = rates if type(rates) is tuple else (rates[..., axis] for axis in range(4))
-        state = *self.position, *self.velocity, *self.spin, *bristle_forces
+    def _is_finite_state(self) -> Array:
+        """True if all numbers of the state are finite and small enough to square."""
+        deflection_rates = self.deflection_rate
+        rate_components = (
+            deflection_rates if type(deflection_rates) is tuple else (deflection_rates[..., axis] for axis in range(4))
+        )
+        state = *self.position, *self.velocity, *self.spin, *rate_components
         return arrays.isfinite(OVERFLOW_GUARD * sum((part * part for part in state), 0.0))
 
     @property
-    def _packer(self) -> Any:
-        return partial(vector, type(self.force))
+    def _join_components(self) -> Any:
+        """Function that joins three components to a vector of the same type as the force."""
+        return partial(join_vector, type(self.force))
 
     @staticmethod
-    def _split(packed: Any) -> Vector:
+    def _split_vector(packed: Any) -> Vector:
+        """Split a vector into its three components."""
         x, y, z = packed if type(packed) is tuple else (packed[..., axis] for axis in range(3))
         return x, y, z
 
@@ -218,26 +224,29 @@ _OLD_DISSIPATION.__set_name__(Load, "rubbed")
 setattr(Load, "rubbed", _OLD_DISSIPATION)  # noqa: B010 (mypy refuses to assign to a class)
 
 
-def _plain_value(value: Any) -> Any:
+def _to_json_value(value: Any) -> Any:
+    """Convert an array, or a vector of three arrays, to numbers or lists for JSON."""
     return [to_list(part) for part in value] if type(value) is tuple else to_list(value)
 
 
-def status_of(centre: BallCentre, contact: Elastic, is_finite: Array, constants: Constants) -> ContactState | Array:
-    """Determine the state of the contact: a `ContactState`, or an array of its codes.
+def contact_state_of(
+    centre: BallCentre, contact: Elastic, is_finite: Array, constants: Constants
+) -> ContactState | Array:
+    """Determine the state of the contact (free, contact, at the rim, ...), as `ContactState` or array of codes.
 
     `is_finite` is False for states that are not finite.
     """
-    d, s = centre.indentation, contact.rim_margin
+    d, rim_margin = centre.indentation, contact.rim_margin
     none = 0.0 * where(is_finite, d, 0.0)
     touching = d > -constants.smoothing
     code = where(touching, none + 1.0, none)
-    code = where(touching & (s < 1.0), none + float(ContactState.AT_RIM), code)
+    code = where(touching & (rim_margin < 1.0), none + float(ContactState.AT_RIM), code)
     code = where(
         (d > constants.wall) | (touching & (contact.normal != contact.normal)),
         none + float(ContactState.THROUGH_WALL),
         code,
     )
-    code = where(touching & (s <= -1.0), none + float(ContactState.OVER_RIM), code)
+    code = where(touching & (rim_margin <= -1.0), none + float(ContactState.OVER_RIM), code)
     code = where(is_finite, code, none + float(ContactState.NO_NUMBER))
     if type(code) is float:
         return ContactState(int(code))
@@ -245,44 +254,48 @@ def status_of(centre: BallCentre, contact: Elastic, is_finite: Array, constants:
     return xp.astype(code, xp.int8)
 
 
-def describe_states(load: Load) -> tuple[str, ...]:
-    """Describe the reported states of the contact, each with the position of its first occurrence."""
+def describe_contact_states(load: Load) -> tuple[str, ...]:
+    """Describe contacts at the rim and states without a load in sentences, with their first positions."""
     codes = numpy.atleast_1d(arrays.to_numpy(load.status)).ravel()
     return tuple(_describe_state(load, codes, state) for state in list(ContactState)[2:] if (codes == state).any())
 
 
 def _describe_state(load: Load, codes: Numbers, state: ContactState) -> str:
-    numbers = numpy.flatnonzero(codes == state)
-    x, y, z, d = (_number_at(part, codes, numbers[0]) for part in (*load.position, load.indentation))
-    count_text = "" if codes.size == 1 else f"{len(numbers)} of {codes.size}: "
+    """Describe the contacts in one reported state, with the position of the first of them."""
+    indices = numpy.flatnonzero(codes == state)
+    x, y, z, d = (_value_at_index(part, codes, indices[0]) for part in (*load.position, load.indentation))
+    count_text = "" if codes.size == 1 else f"{len(indices)} of {codes.size}: "
     values = f"r = ({x:.6g}, {y:.6g}, {z:.6g}) mm, d = {d:.6g} mm"
     return f"{count_text}{state.sentence}; {values}, the limit is {load.element.wall:.6g} mm"
 
 
-def _number_at(part: Array, codes: Numbers, number: int) -> float:
-    return float(numpy.broadcast_to(arrays.to_numpy(part), codes.shape).ravel()[number])
+def _value_at_index(values: Array, codes: Numbers, index: int) -> float:
+    """Return one number of a broadcast array by its flat index."""
+    return float(numpy.broadcast_to(arrays.to_numpy(values), codes.shape).ravel()[index])
 
 
-def apply_bristles(load: Load, bristles: Bristles, deflection: Any) -> Load:
-    """Add force, moment and dissipated power of the bristles to a load without friction."""
+def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
+    """Add friction force, moment and dissipated power of bristles to a load, and return the sum."""
     centre, constants = load.centre, load.element.constants
     speed = sum(rate * component for rate, component in zip(load.velocity, centre[1:4], strict=True))
     slip = sliding_state(centre, normal_force(load.contact, speed, constants), load.velocity, load.spin, constants)
-    force, rate, dissipated = bristle_forces(centre, slip, _four_deflections(load, deflection), bristles)
-    N, R1, n = slip.normal, constants.ball_radius, centre[1:4]
-    rubbing = [-N * part for part in force[:3]]
-    drill = -N * sqrt(slip.lever_squared) * force[3]
-    lever_force = _cross(n, rubbing)
+    force, rate, dissipated = bristle_forces(centre, slip, _split_deflections(load, deflection), bristles)
+    N, R1, direction = slip.normal, constants.ball_radius, centre[1:4]
+    friction_force = [-N * part for part in force[:3]]
+    drilling_moment = -N * sqrt(slip.lever_squared) * force[3]
+    lever_force = _cross_product(direction, friction_force)
     kind = type(load.force)
     return load._replace(
-        force=vector(kind, *(a + b for a, b in zip(_components(load.force), rubbing, strict=True))),
-        moment=vector(kind, *(R1 * a + drill * component for a, component in zip(lever_force, n, strict=True))),
-        deflection_rate=vector(kind, *rate),
+        force=join_vector(kind, *(a + b for a, b in zip(_vector_components(load.force), friction_force, strict=True))),
+        moment=join_vector(
+            kind, *(R1 * a + drilling_moment * component for a, component in zip(lever_force, direction, strict=True))
+        ),
+        deflection_rate=join_vector(kind, *rate),
         bristle_dissipation=N * dissipated,
     )
 
 
-def _four_deflections(load: Load, deflection: Any) -> Deflections:
+def _split_deflections(load: Load, deflection: Any) -> Deflections:
     """Split bristle deflections into four components; raise ValueError for another number."""
     if type(load.force) is not tuple and type(deflection) in (tuple, list):
         deflection = numpy.asarray(deflection, dtype=float)
@@ -294,9 +307,11 @@ def _four_deflections(load: Load, deflection: Any) -> Deflections:
     return a, b, c, d
 
 
-def _components(packed: Any) -> Any:
+def _vector_components(packed: Any) -> Any:
+    """Return the three components of a vector."""
     return packed if type(packed) is tuple else [packed[..., axis] for axis in range(3)]
 
 
-def _cross(a: Any, b: Any) -> Any:
+def _cross_product(a: Any, b: Any) -> Any:
+    """Compute the cross product of two vectors of three components."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]

@@ -73,7 +73,7 @@ class Motion:
 
     @cached_property
     def load(self) -> Load:
-        """Contact load at each time."""
+        """Contact load at each time, computed from the states of the ball."""
         return self.element(self.position, self.velocity, self.spin, self.deflection, self.attached)
 
     @cached_property
@@ -85,7 +85,7 @@ class Motion:
 
     @cached_property
     def total_energy(self) -> Numbers:
-        """Balance of energies in N mm: (steps,), constant to rounding.
+        """Total energy in N mm at each time (steps,), constant to rounding: the check of the balance.
 
         It is the elastic, kinetic and dissipated energy minus the work of the pull.
         """
@@ -93,7 +93,7 @@ class Motion:
 
     @property
     def drift(self) -> float:
-        """Largest change of the total energy, relative to the largest kinetic or elastic energy."""
+        """Largest change of the total energy over time, divided by the largest kinetic or elastic energy."""
         with numpy.errstate(all="ignore"):
             return float(
                 numpy.max(abs(self.total_energy - self.total_energy[0]))
@@ -107,7 +107,7 @@ class Motion:
 
     @property
     def angular_drift(self) -> float | None:
-        """Largest relative error of the angular momentum; 0 but for rounding.
+        """Largest relative error of the balance of angular momentum; only rounding differs from 0.
 
         It is the largest change of the angular momentum less `pull_moment`, over the largest product m r v.
 
@@ -119,17 +119,17 @@ class Motion:
             return None
         balance = self.angular_momentum - self.pull_moment
         change = numpy.linalg.norm(balance - balance[0], axis=1) if cup is None else (balance - balance[0]) @ cup.dome
-        reach = numpy.linalg.norm(self.position, axis=1) * numpy.linalg.norm(self.velocity, axis=1)
-        largest = TONNE * self.mass * float(reach.max())
+        momentum_arm = numpy.linalg.norm(self.position, axis=1) * numpy.linalg.norm(self.velocity, axis=1)
+        largest = TONNE * self.mass * float(momentum_arm.max())
         return float(abs(change).max()) / largest if largest > 0.0 else 0.0
 
     @cached_property
     def indentation(self) -> Numbers:
-        """Indentation in mm: (steps,); negative values are the distance to first touch."""
+        """Indentation in mm at each time (steps,); negative values are the distance to first touch."""
         return numpy.linalg.norm(self.position, axis=1) - float(self.element.joint.clearance)
 
     def summary(self) -> dict[str, Any]:
-        """Return the results of the motion as a dictionary for JSON, in s, mm, N and N mm."""
+        """Return the main results of the motion as a dictionary for JSON, in s, mm, N and N mm."""
         force = numpy.linalg.norm(self.load.force, axis=1)
         ends = {
             "stored": self.energy,

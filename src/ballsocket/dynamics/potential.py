@@ -74,43 +74,45 @@ class CurvePotential:
 
     @property
     def deepest(self) -> float:
+        """Largest indentation in mm of the fitted curve."""
         return self.curve.deepest
 
     @cached_property
-    def _pieces(self) -> PolynomialPieces:
+    def _coefficient_rows(self) -> PolynomialPieces:
+        """Coefficients of the curve as tuples of floats, for fast evaluation."""
         return tuple(map(tuple, self.curve.pieces.tolist()))
 
     def __call__(self, indentation: Array) -> Slopes:
         curve = self.curve
         ends = curve.shallowest, curve.deepest, curve.first, curve.density
         if type(indentation) is float:
-            return energy_derivatives_of_number(indentation, *ends, self._pieces)
+            return energy_derivatives_of_number(indentation, *ends, self._coefficient_rows)
         return energy_derivatives_of_array(indentation, *ends, curve.pieces)
 
 
 def energy_derivatives_of_number(
     indentation: float, shallowest: float, deepest: float, first: float, density: float, pieces: PolynomialPieces
 ) -> tuple[float, float, float]:
-    """Evaluate the curve of a `CurvePotential` at one indentation in mm: energy, force and stiffness."""
+    """Evaluate a fitted energy curve at one indentation in mm: energy, force and stiffness."""
     if indentation <= 0.0:
         return 0.0, 0.0, 0.0
     if not indentation <= deepest:
         return math.nan, math.nan, math.nan
-    along = (math.log(max(indentation, shallowest)) - first) * density
-    number = min(max(int(along), 0), len(pieces) - 1)
-    coordinate = 2.0 * (along - number) - 1.0
-    value, slope, bend = 0.0, 0.0, 0.0
-    for coefficient in pieces[number]:
-        bend = bend * coordinate + slope
-        slope = slope * coordinate + value
-        value = value * coordinate + coefficient
-    power, curvature = 2.0 * density * slope, 8.0 * density * density * bend
-    energy = math.exp(value)
+    piece_position = (math.log(max(indentation, shallowest)) - first) * density
+    piece_index = min(max(int(piece_position), 0), len(pieces) - 1)
+    coordinate = 2.0 * (piece_position - piece_index) - 1.0
+    log_energy, log_energy_slope, log_energy_bend = 0.0, 0.0, 0.0
+    for coefficient in pieces[piece_index]:
+        log_energy_bend = log_energy_bend * coordinate + log_energy_slope
+        log_energy_slope = log_energy_slope * coordinate + log_energy
+        log_energy = log_energy * coordinate + coefficient
+    exponent, curvature = 2.0 * density * log_energy_slope, 8.0 * density * density * log_energy_bend
+    energy = math.exp(log_energy)
     if indentation < shallowest:
-        energy, curvature = energy * (indentation / shallowest) ** power, 0.0
-    over = 1.0 / indentation
-    force = energy * over * power
-    return energy, force, (force * (power - 1.0) + energy * over * curvature) * over
+        energy, curvature = energy * (indentation / shallowest) ** exponent, 0.0
+    inverse_indentation = 1.0 / indentation
+    force = energy * inverse_indentation * exponent
+    return energy, force, (force * (exponent - 1.0) + energy * inverse_indentation * curvature) * inverse_indentation
 
 
 _MIN_INDENTATION = 1e-150
@@ -120,30 +122,34 @@ _MIN_INDENTATION = 1e-150
 def energy_derivatives_of_array(
     indentation: Array, shallowest: float, deepest: float, first: float, density: float, pieces: Numbers
 ) -> Slopes:
-    """Evaluate the curve of a `CurvePotential` at an array of indentations: energy, force and stiffness."""
+    """Evaluate a fitted energy curve at an array of indentations in mm: energy, force and stiffness."""
     xp = arrays.namespace(indentation)
-    rows = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
+    coefficient_table = xp.asarray(pieces, dtype=indentation.dtype, device=arrays.device(indentation))
     d = where(indentation == indentation, clip(indentation, _MIN_INDENTATION, deepest), deepest)
-    along = (log(clip(d, shallowest, deepest)) - first) * density
-    number = xp.astype(clip(xp.floor(arrays.stop_gradient(along)), 0.0, rows.shape[0] - 1.0), xp.int64)
-    coordinate = 2.0 * (along - xp.astype(number, d.dtype)) - 1.0
-    flat = xp.reshape(number, (-1,))
-    value, slope, bend = 0.0 * coordinate, 0.0 * coordinate, 0.0 * coordinate
-    for term in range(rows.shape[1]):
-        bend = bend * coordinate + slope
-        slope = slope * coordinate + value
-        value = value * coordinate + xp.reshape(xp.take(rows[:, term], flat), tuple(d.shape))
-    power, curvature = 2.0 * density * slope, 8.0 * density * density * bend
+    piece_position = (log(clip(d, shallowest, deepest)) - first) * density
+    piece_index = xp.astype(
+        clip(xp.floor(arrays.stop_gradient(piece_position)), 0.0, coefficient_table.shape[0] - 1.0), xp.int64
+    )
+    coordinate = 2.0 * (piece_position - xp.astype(piece_index, d.dtype)) - 1.0
+    flat_indices = xp.reshape(piece_index, (-1,))
+    log_energy, log_energy_slope, log_energy_bend = 0.0 * coordinate, 0.0 * coordinate, 0.0 * coordinate
+    for term in range(coefficient_table.shape[1]):
+        log_energy_bend = log_energy_bend * coordinate + log_energy_slope
+        log_energy_slope = log_energy_slope * coordinate + log_energy
+        log_energy = log_energy * coordinate + xp.reshape(
+            xp.take(coefficient_table[:, term], flat_indices), tuple(d.shape)
+        )
+    exponent, curvature = 2.0 * density * log_energy_slope, 8.0 * density * density * log_energy_bend
     below = d < shallowest
-    energy = exp(value + where(below, power * log(where(below, d, shallowest) / shallowest), 0.0))
-    force = energy / d * power
-    stiffness = force / d * (power - 1.0) + where(below, 0.0, energy / d / d * curvature)
+    energy = exp(log_energy + where(below, exponent * log(where(below, d, shallowest) / shallowest), 0.0))
+    force = energy / d * exponent
+    stiffness = force / d * (exponent - 1.0) + where(below, 0.0, energy / d / d * curvature)
     inside = indentation <= deepest
     return where(inside, energy, math.nan), where(inside, force, math.nan), where(inside, stiffness, math.nan)
 
 
 def potential_of(model: Model, joint: Joint) -> Potential:
-    """Return the elastic energy of a joint for a model with a force law.
+    """Return the elastic energy of a joint as a function of the indentation, for a model with a force law.
 
     Raises
     ------
@@ -155,32 +161,35 @@ def potential_of(model: Model, joint: Joint) -> Potential:
         return SpringPotential(springs=law)
     if isinstance(law, ClosedLaw):
         return FormulaPotential(model=law.model, joint=law.joint)
-    return CurvePotential(curve=energy_curve(law, *_ends(law, joint)))
+    return CurvePotential(curve=energy_curve(law, *_curve_ends(law, joint)))
 
 
-def _ends(law: ForceLaw, joint: Joint) -> tuple[float, float]:
+def _curve_ends(law: ForceLaw, joint: Joint) -> tuple[float, float]:
+    """Return the smallest and the largest indentation in mm of a curve for a force law."""
     if isinstance(law, CurveLaw):
         return law.shallowest, law.deepest
     return 1e-6 * (joint.clearance or joint.socket_radius), joint.socket_radius
 
 
 def energy_curve(law: ForceLaw, shallowest: float, deepest: float) -> CurveLaw:
-    """Integrate a force law over the indentation, and fit the energy by a curve of ln U over ln d."""
+    """Integrate a force law over the indentation to the elastic energy, and fit the energy by a curve."""
     return fit_curve_law(lambda depths: _integrate_force(law, depths, shallowest), shallowest, deepest)
 
 
 def _integrate_force(law: ForceLaw, depths: Numbers, shallowest: float) -> Numbers:
-    """Integrate the force law up to increasing indentations, to the elastic energies in N mm.
+    """Integrate a force law up to each of some increasing indentations in mm: elastic energies in N mm.
 
     Up to the first indentation it is a power law; beyond, Gauss points over ln d.
     """
     force, stiffness = law(shallowest)
     initial_work = force * shallowest / (1.0 + stiffness * shallowest / force)
-    logs = numpy.log(numpy.concatenate([[shallowest], depths]))
+    log_depths = numpy.log(numpy.concatenate([[shallowest], depths]))
     nodes, weights = map(numpy.array, arrays.gauss_legendre(_GAUSS_NODES))
-    points = numpy.exp(logs[:-1, None] + numpy.diff(logs)[:, None] * nodes)
-    forces = numpy.array([law(float(depth))[0] for depth in points.ravel()]).reshape(points.shape)
-    return initial_work + numpy.cumsum(numpy.diff(logs) * ((forces * points) @ weights))
+    gauss_indentations = numpy.exp(log_depths[:-1, None] + numpy.diff(log_depths)[:, None] * nodes)
+    forces = numpy.array([law(float(depth))[0] for depth in gauss_indentations.ravel()]).reshape(
+        gauss_indentations.shape
+    )
+    return initial_work + numpy.cumsum(numpy.diff(log_depths) * ((forces * gauss_indentations) @ weights))
 
 
 _GAUSS_NODES = 16
@@ -189,7 +198,7 @@ _GAUSS_NODES = 16
 
 @dataclass(frozen=True, kw_only=True)
 class AdhesionPotential:
-    """Elastic energy of an adhesive socket over d + u_c, 0 where the last spring detaches.
+    """Elastic energy of an adhesive socket as a function of d + u_c, zero at the separation of the ball.
 
     That is at the distance u_c before first touch.
 
@@ -207,6 +216,7 @@ class AdhesionPotential:
 
     @cached_property
     def _separation_energy(self) -> float:
+        """Elastic energy of the adhesive joint in N mm at the separation of the ball."""
         return float(self.model.energy(self.joint, -self.stretch))
 
     def __call__(self, indentation: Array) -> Slopes:
@@ -219,7 +229,7 @@ class AdhesionPotential:
 
 
 def adhesion_potential(model: AdhesiveSocket, joint: Joint) -> AdhesionPotential:
-    """Return the elastic energy of an adhesive joint, from the separation of the ball on.
+    """Return the elastic energy of an adhesive joint, measured from the separation of the ball.
 
     Raises
     ------
@@ -227,12 +237,12 @@ def adhesion_potential(model: AdhesiveSocket, joint: Joint) -> AdhesionPotential
         An adhesion number η = u_c/c of 1 or more: the hemisphere sticks as a unit and never separates gradually.
     """
     model.law(joint)  # raises for arrays and for joints outside the domain
-    checked = joint.with_floats()
-    eta = float(model.adhesion_number(checked))
+    float_joint = joint.with_floats()
+    adhesion_number = float(model.adhesion_number(float_joint))
     require(
         "the adhesion number",
-        eta,
-        eta < 1.0,
+        adhesion_number,
+        adhesion_number < 1.0,
         "it must be below 1; otherwise the entire hemisphere sticks, and the rim determines the separation",
     )
-    return AdhesionPotential(model=model, joint=checked, deepest=checked.socket_radius)
+    return AdhesionPotential(model=model, joint=float_joint, deepest=float_joint.socket_radius)

@@ -84,26 +84,35 @@ NO_CONTACT = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
 """Elastic contact of a ball that does not touch the socket."""
 
 
-def centre_of(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
-    """Compute distance, direction and indentation of the ball centre."""
+def ball_centre_at(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
+    """Compute distance, direction and indentation of the ball centre from its coordinates in mm."""
     distance = sqrt(x * x + y * y + z * z)
-    over = 1.0 / safe_divisor(distance)
-    return BallCentre(distance, x * over, y * over, z * over, distance - clearance, over)
+    inverse_distance = 1.0 / safe_divisor(distance)
+    return BallCentre(
+        distance,
+        x * inverse_distance,
+        y * inverse_distance,
+        z * inverse_distance,
+        distance - clearance,
+        inverse_distance,
+    )
 
 
 def elastic_contact(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
-    """Compute the elastic contact at a position, with a first touch smoothed over ± `smoothing`."""
-    rounded = ramp(centre.indentation, constants.smoothing)
-    return elastic_from_slopes(centre, rounded, potential(rounded[0]), constants)
+    """Compute the elastic contact at a position of the ball, with the first touch smoothed over ± `smoothing`."""
+    smoothed_depth = smooth_ramp(centre.indentation, constants.smoothing)
+    return elastic_from_slopes(centre, smoothed_depth, potential(smoothed_depth[0]), constants)
 
 
-def elastic_from_slopes(centre: BallCentre, rounded: Vector, slopes: Vector, constants: Constants) -> Elastic:
-    """Compute the elastic contact from energy, force and stiffness at the smoothed indentation."""
+def elastic_from_slopes(
+    centre: BallCentre, smoothed_depth: Vector, energy_derivatives: Vector, constants: Constants
+) -> Elastic:
+    """Compute the elastic contact from energy, force and stiffness at the smoothed indentation of a position."""
     d = centre.indentation
-    depth, slope, bend = rounded
-    energy, force, stiffness = slopes
-    missing = where(d > constants.wall, nan, 0.0 * d)
-    energy, force, stiffness = energy + missing, force + missing, stiffness + missing
+    depth, slope, bend = smoothed_depth
+    energy, force, stiffness = energy_derivatives
+    nan_beyond_wall = where(d > constants.wall, nan, 0.0 * d)
+    energy, force, stiffness = energy + nan_beyond_wall, force + nan_beyond_wall, stiffness + nan_beyond_wall
     if constants.rim > 0.0:
         return elastic_at_rim(centre, depth, slope, bend, energy, force, stiffness, constants)
     zero, normal = 0.0 * energy, force * slope
@@ -114,72 +123,77 @@ def elastic_from_slopes(centre: BallCentre, rounded: Vector, slopes: Vector, con
 def elastic_at_rim(
     centre: BallCentre, depth: Array, slope: Array, bend: Array, U: Array, F: Array, k: Array, constants: Constants
 ) -> Elastic:
-    """Compute the elastic contact in a cup, whose rim cuts part of the contact.
+    """Compute the elastic contact in a cup whose rim cuts off part of the contact.
 
     The energy is U W(s) with s = (rim - γ)/ε and cos ε = c/(c + d).
     """
-    lean, across, ax, ay, az = dome_angle(centre, constants)
-    gamma = atan2(across, lean)
+    dome_cosine, dome_sine, ax, ay, az = dome_angle(centre, constants)
+    gamma = atan2(dome_sine, dome_cosine)
     touching = depth > 0.0
     # ε = acos(c/g), g = c + d: ε' = c/(g w), ε'' = -c (2 g² - c²)/(g² w³), w = sqrt(g² - c²)
     c, g = constants.clearance, safe_divisor(constants.clearance + depth)
     w = where(touching, sqrt(where(touching, depth * (g + c), 1.0)), 1.0)
     epsilon = where(touching, atan2(w, c + 0.0 * w), 1.0)
-    first, second = c / (g * w), -c * (2.0 * g * g - c * c) / (g * g * w * w * w)
-    s = (constants.rim - gamma) / epsilon
-    W, W1, W2 = rim_share(s)
-    U, F, k = where(s > -1.0, U, 0.0), where(s > -1.0, F, 0.0), where(s > -1.0, k, 0.0)
-    s1, s2 = -s * first / epsilon, s * (2.0 * first * first / epsilon - second) / epsilon
+    epsilon_slope, epsilon_bend = c / (g * w), -c * (2.0 * g * g - c * c) / (g * g * w * w * w)
+    rim_ratio = (constants.rim - gamma) / epsilon
+    W, W1, W2 = rim_share(rim_ratio)
+    U, F, k = where(rim_ratio > -1.0, U, 0.0), where(rim_ratio > -1.0, F, 0.0), where(rim_ratio > -1.0, k, 0.0)
+    s1, s2 = (
+        -rim_ratio * epsilon_slope / epsilon,
+        rim_ratio * (2.0 * epsilon_slope * epsilon_slope / epsilon - epsilon_bend) / epsilon,
+    )
     # derivatives of U W(s) over the depth and γ; s decreases by 1/ε per γ
     by_depth = F * W + U * W1 * s1
-    by_both = (U * W1 * first / epsilon - F * W1 - U * W2 * s1) / epsilon
+    by_both = (U * W1 * epsilon_slope / epsilon - F * W1 - U * W2 * s1) / epsilon
     by_angle = -U * W1 / epsilon
-    over, nearer = 1.0 / safe_divisor(across), centre.inverse_distance
+    inverse_sine, inverse_distance = 1.0 / safe_divisor(dome_sine), centre.inverse_distance
     return Elastic(
         energy=U * W,
         normal=by_depth * slope,
         stiffness=(k * W + 2.0 * F * W1 * s1 + U * (W2 * s1 * s1 + W1 * s2)) * slope * slope + by_depth * bend,
         damped_force=F * W * slope,
         damped_stiffness=W * (k * slope * slope + F * bend),
-        rim_margin=s,
-        polar=-by_angle * nearer,
-        mixed=(by_both * slope - by_angle * nearer) * nearer,
-        along=U * W2 * (nearer * nearer / (epsilon * epsilon)),
-        around=by_angle * lean * over * nearer * nearer,
-        px=ax * over,
-        py=ay * over,
-        pz=az * over,
+        rim_margin=rim_ratio,
+        polar=-by_angle * inverse_distance,
+        mixed=(by_both * slope - by_angle * inverse_distance) * inverse_distance,
+        along=U * W2 * (inverse_distance * inverse_distance / (epsilon * epsilon)),
+        around=by_angle * dome_cosine * inverse_sine * inverse_distance * inverse_distance,
+        px=ax * inverse_sine,
+        py=ay * inverse_sine,
+        pz=az * inverse_sine,
     )
 
 
 def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute cosine, sine and direction of the angle γ from the dome axis to the ball.
+    """Compute cosine and sine of the angle γ from the dome axis to the ball, and sin γ times its direction.
 
     The last three results are sin γ times the direction of increasing γ.
     """
-    lean = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
+    dome_cosine = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
     ax, ay, az = (
-        lean * centre.x - constants.dome_x,
-        lean * centre.y - constants.dome_y,
-        lean * centre.z - constants.dome_z,
+        dome_cosine * centre.x - constants.dome_x,
+        dome_cosine * centre.y - constants.dome_y,
+        dome_cosine * centre.z - constants.dome_z,
     )
-    return lean, sqrt(ax * ax + ay * ay + az * az), ax, ay, az
+    return dome_cosine, sqrt(ax * ax + ay * ay + az * az), ax, ay, az
 
 
 def normal_force(elastic: Elastic, speed: Array, constants: Constants) -> Array:
-    """Compute the damped normal force F + (χ F + τ k) ḋ towards the socket centre in N; damping causes no tension."""
-    lossy = constants.hysteresis * elastic.damped_force + constants.time * elastic.damped_stiffness
-    force = elastic.normal + lossy * speed
+    """Compute the damped normal force F + (χ F + τ k) ḋ in N on the ball, without tension by damping."""
+    damping_rate = constants.hysteresis * elastic.damped_force + constants.time * elastic.damped_stiffness
+    force = elastic.normal + damping_rate * speed
     if constants.smoothing > 0.0:
-        return ramp_value(force, SMOOTHING_SHARE * elastic.damped_force)
-    least = where(elastic.normal < 0.0, elastic.normal, 0.0)  # negative for an adhesive ball
-    return where(force < least, least, force)  # keeps NaN
+        return smooth_ramp_value(force, SMOOTHING_SHARE * elastic.damped_force)
+    lower_limit = where(elastic.normal < 0.0, elastic.normal, 0.0)  # negative for an adhesive ball
+    return where(force < lower_limit, lower_limit, force)  # keeps NaN
 
 
 def remove_tension_damping(contact: Elastic) -> Elastic:
-    """Remove the damping of a contact in tension, where it would generate energy."""
-    pressing = clip(contact.damped_force, 0.0, float("inf"))
-    return contact._replace(damped_force=pressing, damped_stiffness=clip(contact.damped_stiffness, 0.0, float("inf")))
+    """Remove the damping of a contact in tension, because it would generate energy there."""
+    compressive_force = clip(contact.damped_force, 0.0, float("inf"))
+    return contact._replace(
+        damped_force=compressive_force, damped_stiffness=clip(contact.damped_stiffness, 0.0, float("inf"))
+    )
 
 
 SMOOTHING_SHARE = 0.1
@@ -213,31 +227,47 @@ class Sliding(NamedTuple):
 
 
 def sliding_state(centre: BallCentre, force: Array, velocity: Vector, spin: Vector, constants: Constants) -> Sliding:
-    """Compute the slip of the ball on the contact patch and the rate of friction."""
+    """Compute the slip of the ball on the contact patch in mm/s, and the rate of its friction."""
     (vx, vy, vz), (wx, wy, wz), R1 = velocity, spin, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
     speed, turning = vx * nx + vy * ny + vz * nz, wx * nx + wy * ny + wz * nz
     ax, ay, az = vx - speed * nx, vy - speed * ny, vz - speed * nz
     bx, by, bz = R1 * (wy * nz - wz * ny), R1 * (wz * nx - wx * nz), R1 * (wx * ny - wy * nx)
-    m = versine(centre)
-    lever, kappa = constants.socket_radius * friction.drill_lever(m), friction.rolling_slip_ratio(m)
-    squared, share = lever * lever * m * (2.0 - m), kappa * kappa
-    aa, bb, cross = ax * ax + ay * ay + az * az, bx * bx + by * by + bz * bz, 2.0 * (ax * bx + ay * by + az * bz)
-    both, transition_squared = aa + bb, constants.transition_speed * constants.transition_speed
-    drilled, twisted = squared * turning * turning, kappa * (aa - bb)
-    q2, slope, tilt, drill, twist = friction.effective_slip(
-        both + cross, share * (both - cross), drilled, twisted, transition_squared, share, m
+    patch_versine = versine(centre)
+    lever, kappa = (
+        constants.socket_radius * friction.drill_lever(patch_versine),
+        friction.rolling_slip_ratio(patch_versine),
     )
-    q, tilt, twist = sqrt(q2), share * tilt, kappa * twist
+    squared, squared_kappa = lever * lever * patch_versine * (2.0 - patch_versine), kappa * kappa
+    squared_velocity, squared_rotation, cross = (
+        ax * ax + ay * ay + az * az,
+        bx * bx + by * by + bz * bz,
+        2.0 * (ax * bx + ay * by + az * bz),
+    )
+    squared_sum, transition_squared = (
+        squared_velocity + squared_rotation,
+        constants.transition_speed * constants.transition_speed,
+    )
+    squared_drill_speed, mixed_product = squared * turning * turning, kappa * (squared_velocity - squared_rotation)
+    q2, by_slip, by_tilt, by_drill, by_mixed = friction.effective_slip(
+        squared_sum + cross,
+        squared_kappa * (squared_sum - cross),
+        squared_drill_speed,
+        mixed_product,
+        transition_squared,
+        squared_kappa,
+        patch_versine,
+    )
+    q, by_tilt, by_mixed = sqrt(q2), squared_kappa * by_tilt, kappa * by_mixed
     mu = friction.friction_coefficient(q, constants.sliding, constants.static, constants.stribeck_speed)
-    N = force * friction.widening_factor(m)
-    rate, mean = N * (mu / q + constants.viscous), slope + tilt
-    push, rotation = mean + twist, mean - twist
-    return Sliding(ax, ay, az, bx, by, bz, turning, squared, N, rate, q, push, slope - tilt, rotation, drill)
+    N = force * friction.widening_factor(patch_versine)
+    rate, mean_slope = N * (mu / q + constants.viscous), by_slip + by_tilt
+    push, rotation = mean_slope + by_mixed, mean_slope - by_mixed
+    return Sliding(ax, ay, az, bx, by, bz, turning, squared, N, rate, q, push, by_slip - by_tilt, rotation, by_drill)
 
 
 def versine(centre: BallCentre) -> Array:
-    """Compute the versine 1 - cos ε = d/e of the overlap of ball and socket; 0 without contact.
+    """Compute the versine d/e = 1 - cos ε of the half angle ε, from indentation d and distance e of the centres.
 
     e is the distance of the centres.
     """
@@ -276,27 +306,27 @@ def force_and_moment(
 
 
 def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Array:
-    """Compute the power in N mm/s dissipated by damping, liner and friction."""
+    """Compute the power in N mm/s that damping, liner and friction dissipate."""
     vx, vy, vz = velocity
     speed = vx * centre.x + vy * centre.y + vz * centre.z
     normal = normal_force(contact, speed, constants)
     slip = sliding_state(centre, normal, velocity, spin, constants)
     drag = constants.time * contact.damped_force * centre.inverse_distance
-    aa = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z
-    cross = slip.x * slip.bx + slip.y * slip.by + slip.z * slip.bz
-    bb = slip.bx * slip.bx + slip.by * slip.by + slip.bz * slip.bz
-    friction_power = slip.push * aa + 2.0 * slip.mixed * cross + slip.rotation * bb
+    squared_velocity = slip.x * slip.x + slip.y * slip.y + slip.z * slip.z
+    mixed_product = slip.x * slip.bx + slip.y * slip.by + slip.z * slip.bz
+    squared_rotation = slip.bx * slip.bx + slip.by * slip.by + slip.bz * slip.bz
+    friction_power = slip.push * squared_velocity + 2.0 * slip.mixed * mixed_product + slip.rotation * squared_rotation
     friction_power = friction_power + slip.drill * slip.lever_squared * slip.spin * slip.spin
-    return (normal - contact.normal) * speed + drag * aa + slip.rate * friction_power
+    return (normal - contact.normal) * speed + drag * squared_velocity + slip.rate * friction_power
 
 
-def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple[Array, ...]:
-    """Compute the components xx, yy, zz, xy, yz, zx of the tangent stiffness ∂²U/∂r² in N/mm."""
+def tangent_stiffness(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple[Array, ...]:
+    """Compute the tangent stiffness ∂²U/∂r² in N/mm: components xx, yy, zz, xy, yz, zx."""
     nx, ny, nz, px, py, pz = centre.x, centre.y, centre.z, contact.px, contact.py, contact.pz
     # where the centres coincide, without clearance, the stiffness is isotropic
-    across = where(centre.distance > 0.0, contact.normal * centre.inverse_distance, contact.stiffness)
-    radial = contact.stiffness - across
-    xx, yy, zz = across + radial * nx * nx, across + radial * ny * ny, across + radial * nz * nz
+    tangential = where(centre.distance > 0.0, contact.normal * centre.inverse_distance, contact.stiffness)
+    radial = contact.stiffness - tangential
+    xx, yy, zz = tangential + radial * nx * nx, tangential + radial * ny * ny, tangential + radial * nz * nz
     xy, yz, zx = radial * nx * ny, radial * ny * nz, radial * nz * nx
     if constants.rim > 0.0:
         A, B = contact.mixed, contact.around
@@ -310,37 +340,48 @@ def tangent(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple
     return xx, yy, zz, xy, yz, zx
 
 
-def ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
-    """Compute a smoothed max(y, 0) and its two derivatives; a polynomial replaces the corner at ± `width`."""
+def smooth_ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
+    """Compute max(y, 0) with a smooth corner within ± `width`, and its first and second derivative."""
     if width == 0.0:
         zero = 0.0 * y
         return where(y > 0.0, y, zero), where(y >= 0.0, zero + 1.0, zero), zero
     t = clip((y + width) / (2.0 * width), 0.0, 1.0)
     bend = 15.0 * t * t * (1.0 - t) * (1.0 - t) / width
-    return where(y >= width, y, 2.0 * width * _rounded(t)), t * t * t * (10.0 - 15.0 * t + 6.0 * t * t), bend
+    return where(y >= width, y, 2.0 * width * _corner_polynomial(t)), t * t * t * (10.0 - 15.0 * t + 6.0 * t * t), bend
 
 
-def ramp_value(y: Array, width: Array) -> Array:
-    """Compute a smoothed max(y, 0) like `ramp`, for a width that may be an array and 0."""
+def smooth_ramp_value(y: Array, width: Array) -> Array:
+    """Compute max(y, 0) with a smooth corner within ± `width`; the width may be an array."""
     span = where(width > 0.0, width, 1.0)
     t = clip((y + width) / (2.0 * span), 0.0, 1.0)
-    return where(y >= width, y, 2.0 * width * _rounded(t))
+    return where(y >= width, y, 2.0 * width * _corner_polynomial(t))
 
 
-def _rounded(t: Array) -> Array:
+def _corner_polynomial(t: Array) -> Array:
     # ∫ (10 t³ - 15 t⁴ + 6 t⁵) dt
+    """Compute the polynomial ∫ (10 t³ - 15 t⁴ + 6 t⁵) dt of the smooth corner."""
     return t * t * t * t * (2.5 - 3.0 * t + t * t)
 
 
-def rim_share(centre: Array) -> tuple[Array, Array, Array]:
-    """Compute the fraction W(s) of the contact energy inside a straight rim, with its two derivatives.
+def rim_share(rim_distance: Array) -> tuple[Array, Array, Array]:
+    """Compute the fraction W of the contact energy inside a straight rim, with its first and second derivative.
 
     s is the distance of the rim from the patch centre over the half angle. W is 1 for s >= 1, and 0 for s <= -1. It is
     the marginal of (1 - x² - y²)² over a disc, the energy density of radial springs under a small patch.
     """
-    s = clip(centre, -1.0, 1.0)
-    square = clip(1.0 - s * s, 0.0, 1.0)
-    root = sqrt(square)
-    W = 0.5 + (atan2(s, root) + s * root * (33.0 + s * s * (8.0 * s * s - 26.0)) / 15.0) / pi
-    slope = 16.0 / (5.0 * pi) * square * square * root
-    return clip(W, 0.0, 1.0), slope, -16.0 / pi * s * square * root
+    clipped_distance = clip(rim_distance, -1.0, 1.0)
+    one_minus_square = clip(1.0 - clipped_distance * clipped_distance, 0.0, 1.0)
+    root = sqrt(one_minus_square)
+    W = (
+        0.5
+        + (
+            atan2(clipped_distance, root)
+            + clipped_distance
+            * root
+            * (33.0 + clipped_distance * clipped_distance * (8.0 * clipped_distance * clipped_distance - 26.0))
+            / 15.0
+        )
+        / pi
+    )
+    slope = 16.0 / (5.0 * pi) * one_minus_square * one_minus_square * root
+    return clip(W, 0.0, 1.0), slope, -16.0 / pi * clipped_distance * one_minus_square * root

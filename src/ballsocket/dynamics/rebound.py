@@ -42,14 +42,14 @@ class DampingEstimate:
     @property
     def residuals(self) -> Numbers:
         """Measured minus fitted coefficients of restitution."""
-        return self.restitution - _restitutions(self.damping.hysteresis, self.speed)
+        return self.restitution - _restitutions_at(self.damping.hysteresis, self.speed)
 
     def __str__(self) -> str:
         return f"χ = {self.damping.hysteresis:.4g} ± {self.error:.2g} s/mm from {len(self.speed)} restitutions"
 
 
 def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None = None) -> DampingEstimate:
-    """Fit damping to measured coefficients of restitution, by the exact relation for any contact law.
+    """Fit damping to coefficients of restitution measured at several impact speeds in mm/s.
 
     Parameters
     ----------
@@ -87,21 +87,23 @@ def from_restitution(*, speed: Any, restitution: Any, uncertainty: float | None 
     if uncertainty is not None:
         valid = 0.0 < check_number("uncertainty", uncertainty) < inf
         require("uncertainty", uncertainty, valid, "a standard deviation must be above 0 and finite")
-    chi = _fit_hysteresis(speeds, restitutions)
-    slope = _restitution_slopes(chi, speeds)
-    freedom = len(speeds) - 1
+    hysteresis = _fit_hysteresis(speeds, restitutions)
+    restitution_slopes = _restitution_slopes(hysteresis, speeds)
+    degrees_of_freedom = len(speeds) - 1
     scatter = (
-        float(numpy.sqrt(numpy.sum((restitutions - _restitutions(chi, speeds)) ** 2) / freedom)) if freedom else nan
+        float(numpy.sqrt(numpy.sum((restitutions - _restitutions_at(hysteresis, speeds)) ** 2) / degrees_of_freedom))
+        if degrees_of_freedom
+        else nan
     )
     noise = scatter if uncertainty is None else float(uncertainty)
-    error = noise / float(numpy.sqrt(numpy.sum(slope**2)))
+    error = noise / float(numpy.sqrt(numpy.sum(restitution_slopes**2)))
     return DampingEstimate(
-        damping=Damping(hysteresis=chi), error=error, noise=noise, speed=speeds, restitution=restitutions
+        damping=Damping(hysteresis=hysteresis), error=error, noise=noise, speed=speeds, restitution=restitutions
     )
 
 
 def from_bounces(*, times: Any, gravity: float = GRAVITY, uncertainty: float | None = None) -> DampingEstimate:
-    """Fit damping to the touchdown times of a ball that bounces under its weight.
+    """Fit damping to the touchdown times in s of a ball that bounces under its weight.
 
     The duration Δt of a flight gives the speed at both its ends, v = g Δt/2. The ratio of two successive speeds is the
     coefficient of restitution of the bounce between them.
@@ -120,38 +122,38 @@ def from_bounces(*, times: Any, gravity: float = GRAVITY, uncertainty: float | N
     ValueError
         Fewer than three times; times that do not increase, or flights that do not become shorter.
     """
-    instants = numpy.asarray(times, dtype=float)
-    require("the number of times", instants.size, instants.size >= 3, "at least three are needed")
-    flights = numpy.diff(instants)
-    require("a flight", flights, flights > 0, "times must increase")
-    speed = check_number("gravity", gravity) * flights / 2
+    touchdown_times = numpy.asarray(times, dtype=float)
+    require("the number of times", touchdown_times.size, touchdown_times.size >= 3, "at least three are needed")
+    flight_durations = numpy.diff(touchdown_times)
+    require("a flight", flight_durations, flight_durations > 0, "times must increase")
+    speed = check_number("gravity", gravity) * flight_durations / 2
     return from_restitution(speed=speed[:-1], restitution=speed[1:] / speed[:-1], uncertainty=uncertainty)
 
 
-def _restitutions(chi: float, speeds: Numbers) -> Numbers:
-    """Compute the coefficients of restitution at impact speeds in mm/s for a hysteresis χ in s/mm."""
+def _restitutions_at(chi: float, speeds: Numbers) -> Numbers:
+    """Compute the coefficients of restitution at impact speeds in mm/s, for a hysteresis χ in s/mm."""
     return numpy.array([restitution_of(chi * speed) for speed in speeds.tolist()])
 
 
 def _restitution_slopes(chi: float, speeds: Numbers) -> Numbers:
-    """Compute the derivatives ∂e/∂χ of the coefficients of restitution at impact speeds.
+    """Compute the derivatives ∂e/∂χ of the coefficients of restitution e with respect to the hysteresis χ.
 
     They follow from h (1 + e) = ln[(1 + h)/(1 - h e)].
     """
-    h, e = chi * speeds, _restitutions(chi, speeds)
+    h, e = chi * speeds, _restitutions_at(chi, speeds)
     small = h < 1e-4
-    safe = numpy.where(small, 1.0, h)
-    slope = (1 / (1 + safe) - e * e / (1 - safe * e)) * (1 - safe * e) / (safe * e)
+    nonzero_h = numpy.where(small, 0.5, h)
+    slope = (1 / (1 + nonzero_h) - e * e / (1 - nonzero_h * e)) * (1 - nonzero_h * e) / (nonzero_h * e)
     return speeds * numpy.where(small, -2 / 3, slope)
 
 
 def _fit_hysteresis(speeds: Numbers, restitutions: Numbers) -> float:
-    """Fit the hysteresis χ in s/mm by Gauss-Newton iterations, started at the relation of Hunt & Crossley."""
+    """Fit the hysteresis χ in s/mm to coefficients of restitution by Gauss-Newton iterations."""
     chi = float(numpy.median(1.5 * (1 - restitutions) / speeds))
     for _ in range(50):
         slope = _restitution_slopes(chi, speeds)
-        step = float(numpy.sum(slope * (restitutions - _restitutions(chi, speeds))) / numpy.sum(slope**2))
-        updated = max(chi + step, chi / 4)
+        newton_step = float(numpy.sum(slope * (restitutions - _restitutions_at(chi, speeds))) / numpy.sum(slope**2))
+        updated = max(chi + newton_step, chi / 4)
         change, chi = abs(updated - chi), updated
         if change <= 1e-12 * chi:
             break

@@ -39,7 +39,7 @@ class Relation:
     sources: tuple[Source, ...] = ()
 
     def damping(self, restitution: float) -> float:
-        """Compute the dimensionless damping h = χ v for a coefficient of restitution.
+        """Compute the dimensionless damping h = χ v (hysteresis times impact speed) from a restitution.
 
         Raises
         ------
@@ -55,7 +55,7 @@ class Relation:
 
 
 def restitution_of(damping: float) -> float:
-    """Compute the exact coefficient of restitution e for a dimensionless damping h = χ v.
+    """Compute the exact coefficient of restitution e from the dimensionless damping h = χ v.
 
     It holds for any contact law.
 
@@ -77,12 +77,12 @@ def restitution_of(damping: float) -> float:
         middle = (low + high) / 2
         if not low < middle < high:
             break
-        low, high = (middle, high) if _exit_balance(damping, middle) > 0 else (low, middle)
+        low, high = (middle, high) if _impact_energy_balance(damping, middle) > 0 else (low, middle)
     return low
 
 
-def _exit_balance(h: float, e: float) -> float:
-    """Compute the energy balance ∫ x/(1 + x) dx from -h e to h of an impact.
+def _impact_energy_balance(h: float, e: float) -> float:
+    """Compute the energy balance of an impact, ∫ x/(1 + x) dx from -h e to h (h damping, e restitution).
 
     It is positive for an e below the exact coefficient.
     """
@@ -90,7 +90,7 @@ def _exit_balance(h: float, e: float) -> float:
 
 
 def _exact_damping(e: float) -> float:
-    """Solve for the dimensionless damping h of a coefficient of restitution e by bisection."""
+    """Compute the dimensionless damping h of a coefficient of restitution e by bisection."""
     if e == 1.0:
         return 0.0
     low, high = 0.0, 1.0 / e

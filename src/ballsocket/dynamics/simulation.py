@@ -62,23 +62,23 @@ def simulate(
     TypeError
         An element of another type.
     """
-    plain = getattr(element, "element", element)
-    if not isinstance(plain, ForceElement):
+    force_element = getattr(element, "element", element)
+    if not isinstance(force_element, ForceElement):
         raise TypeError(f"element must be a ForceElement, got {shown(element)}")
-    checked_mass = _check_inertia("mass", mass)
+    checked_mass = _check_mass_or_inertia("mass", mass)
     solid_ball = 0.4 * checked_mass * element.constants.ball_radius**2
-    checked_inertia = solid_ball if inertia is None else _check_inertia("inertia", inertia)
-    duration = _check_positive("duration", duration)
-    steps = duration / _check_positive("step", step)
+    checked_inertia = solid_ball if inertia is None else _check_mass_or_inertia("inertia", inertia)
+    duration = _check_positive_number("duration", duration)
+    steps = duration / _check_positive_number("step", step)
     require("the number of steps", steps, steps <= _MAX_STEPS, f"at most {_MAX_STEPS:g}")
-    count = max(int(numpy.ceil(steps - 1e-9)), 1)
+    step_count = max(int(numpy.ceil(steps - 1e-9)), 1)
     initial = BallState(*components(position), *components(velocity), *components(spin))
     problem = _InitialValueProblem(
-        element, plain, checked_mass, checked_inertia, initial, pull, duration / count, count
+        element, force_element, checked_mass, checked_inertia, initial, pull, duration / step_count, step_count
     )
-    if ContactState(plain(initial[:3], initial[3:6], initial[6:]).status).failed:
-        return problem.failed_motion()
-    return problem.advance_with_contact_state() if plain.internal_state else problem.advance()
+    if ContactState(force_element(initial[:3], initial[3:6], initial[6:]).status).failed:
+        return problem.motion_without_steps()
+    return problem.simulate_with_contact_state() if force_element.internal_state else problem.simulate_by_energy_steps()
 
 
 _MAX_STEPS = 1e8
@@ -90,7 +90,7 @@ class _InitialValueProblem:
     """Initial value problem of a ball: initial state, pull, and `count` time steps of `step` seconds."""
 
     element: Any
-    plain: ForceElement
+    force_element: ForceElement
     mass: float
     inertia: float
     initial: BallState
@@ -98,55 +98,75 @@ class _InitialValueProblem:
     step: float
     count: int
 
-    def failed_motion(self) -> Motion:
-        """Return the motion without a step, for an initial state that has no load."""
+    def motion_without_steps(self) -> Motion:
+        """Return a motion that ends at the initial state, because this state has no load."""
         states, none = numpy.array([self.initial]), numpy.zeros(1)
-        return self._motion(
+        return self._build_motion(
             states,
-            self.plain(states[:, :3]),
+            self.force_element(states[:, :3]),
             dissipated_energy=none,
             work=none,
-            end_reason=_failure_note(self.plain, states[0]),
+            end_reason=_failure_note(self.force_element, states[0]),
         )
 
-    def advance(self) -> Motion:
-        """Simulate by energy-momentum steps."""
-        h, count, constants = self.step, self.count, (self.element.potential, self.element.constants)
-        states, dissipated = numpy.zeros((count + 1, 9)), numpy.zeros(count + 1)
-        pulls = _pulls(self.pull, h * (numpy.arange(count) + 0.5))
-        plain = isinstance(self.element, ForceElement)
-        march, rows = (stepping.march, pulls.tolist()) if plain else (self.element.march, pulls)
-        converged = march(
-            *constants, self.initial, TONNE * self.mass, TONNE * self.inertia, rows, h, states, dissipated
+    def simulate_by_energy_steps(self) -> Motion:
+        """Simulate the motion by energy-momentum steps."""
+        step, step_count, potential_and_constants = (
+            self.step,
+            self.count,
+            (self.element.potential, self.element.constants),
         )
-        end_reason = "" if converged == count else _failure_note(self.plain, states[converged + 1], converged * h, h)
+        states, dissipated = numpy.zeros((step_count + 1, 9)), numpy.zeros(step_count + 1)
+        pulls = _pull_forces_at(self.pull, step * (numpy.arange(step_count) + 0.5))
+        is_uncompiled = isinstance(self.element, ForceElement)
+        march, pull_rows = (stepping.march, pulls.tolist()) if is_uncompiled else (self.element.march, pulls)
+        converged = march(
+            *potential_and_constants,
+            self.initial,
+            TONNE * self.mass,
+            TONNE * self.inertia,
+            pull_rows,
+            step,
+            states,
+            dissipated,
+        )
+        end_reason = (
+            ""
+            if converged == step_count
+            else _failure_note(self.force_element, states[converged + 1], converged * step, step)
+        )
         states, dissipated, pulls = states[: converged + 1], dissipated[: converged + 1], pulls[:converged]
         position = states[:, :3]
         work = numpy.cumsum(numpy.sum(pulls * numpy.diff(position, axis=0), axis=1))
-        moment = numpy.cumsum(h / 2 * numpy.cross(position[:-1] + position[1:], pulls), axis=0)
+        moment = numpy.cumsum(step / 2 * numpy.cross(position[:-1] + position[1:], pulls), axis=0)
         sums = {"work": numpy.append(0.0, work), "pull_moment": numpy.vstack([numpy.zeros(3), moment])}
-        return self._motion(states, self.plain(position), dissipated_energy=dissipated, end_reason=end_reason, **sums)
+        return self._build_motion(
+            states, self.force_element(position), dissipated_energy=dissipated, end_reason=end_reason, **sums
+        )
 
-    def advance_with_contact_state(self) -> Motion:
-        """Simulate a contact with bristles or adhesion by LSODA."""
+    def simulate_with_contact_state(self) -> Motion:
+        """Simulate the motion with bristles or adhesion by the integrator LSODA."""
         ball = StatefulIntegrator(
-            element=self.plain, mass=TONNE * self.mass, inertia=TONNE * self.inertia, pull=pull_function(self.pull)
+            element=self.force_element,
+            mass=TONNE * self.mass,
+            inertia=TONNE * self.inertia,
+            pull=pull_function(self.pull),
         )
         results = ball.integrate(self.initial, self.step * numpy.arange(self.count + 1), self.step)
-        load = self.plain(results.states[:, :3], attached=results.attached)
+        load = self.force_element(results.states[:, :3], attached=results.attached)
         end_reason = ""
         if results.failure is not None:
             notes = "; ".join(results.failure.notes) or "the integration failed"
             end_reason = f"after {self.step * (len(results.states) - 1):g} s: {notes}"
         contact_state = {"deflection": results.deflection, "attached": results.attached, "end_reason": end_reason}
-        return self._motion(
+        return self._build_motion(
             results.states, load, dissipated_energy=results.dissipated, work=results.work, **contact_state
         )
 
-    def _motion(self, states: Numbers, load: Load, **results: Any) -> Motion:
-        """Make the motion from states (steps, 9), the contact load, and further results."""
+    def _build_motion(self, states: Numbers, load: Load, **results: Any) -> Motion:
+        """Build a `Motion` from states (steps, 9), the contact load, and other results."""
         return Motion(
-            element=self.plain,
+            element=self.force_element,
             mass=self.mass,
             inertia=self.inertia,
             time=self.step * numpy.arange(len(states)),
@@ -158,15 +178,15 @@ class _InitialValueProblem:
         )
 
 
-def _pulls(pull: Any, time: Numbers) -> Numbers:
-    """Evaluate the pull in N at the given times: (times, 3)."""
+def _pull_forces_at(pull: Any, time: Numbers) -> Numbers:
+    """Evaluate the pull on the ball in N at some times in s: (times, 3)."""
     if callable(pull):
         return numpy.array([components(pull(instant), "a pull") for instant in time.tolist()])
     return numpy.tile(numpy.array(components(pull, "a pull")), (len(time), 1))
 
 
 def _failure_note(element: ForceElement, state: Numbers, time: float = 0.0, step: float = 0.0) -> str:
-    """Describe the reason for the early end of a motion, with its time and state."""
+    """Describe the reason for the early end of a motion, with time and state of the ball."""
     x, y, z, *rates = state.tolist()
     notes = element((x, y, z), rates[:3], rates[3:]).notes
     return f"after {time:g} s: {'; '.join(notes) or f'a step of {step:g} s did not converge'}"
@@ -176,14 +196,16 @@ _MASS_RANGE = (1e-100, 1e100)
 """Range of masses and moments of inertia whose products are neither zero nor infinite."""
 
 
-def _check_inertia(name: str, value: Any) -> float:
-    number = check_number(name, value)
+def _check_mass_or_inertia(name: str, value: Any) -> float:
+    """Check that a mass or moment of inertia lies in the allowed range, and return it."""
+    checked = check_number(name, value)
     low, high = _MASS_RANGE
-    require(name, number, low <= number <= high, f"{name} must be between {low:g} and {high:g}")
-    return number
+    require(name, checked, low <= checked <= high, f"{name} must be between {low:g} and {high:g}")
+    return checked
 
 
-def _check_positive(name: str, value: Any) -> float:
-    number = check_number(name, value)
-    require(name, number, 0.0 < number < inf, "it must be above 0 and finite")
-    return number
+def _check_positive_number(name: str, value: Any) -> float:
+    """Check that a number is above 0 and finite, and return it."""
+    checked = check_number(name, value)
+    require(name, checked, 0.0 < checked < inf, "it must be above 0 and finite")
+    return checked

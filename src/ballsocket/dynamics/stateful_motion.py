@@ -53,7 +53,7 @@ class StatefulIntegrator:
     pull: Callable[[float], Vector]
 
     def integrate(self, initial: Any, times: Numbers, step: float) -> StatefulTrajectory:
-        """Integrate the motion from an initial state, with steps of at most `step` seconds.
+        """Integrate the motion of a ball from an initial state, with steps of at most `step` seconds.
 
         `times` increase; the initial state is that at the first time.
         """
@@ -61,50 +61,57 @@ class StatefulIntegrator:
         state[:9] = initial
         states, attachments, failure = [state], [self._is_touching(state)], None
         try:
-            for reached, attached in self._segments(state, times, step):
-                states.append(reached)
+            for next_state, attached in self._iterate_states(state, times, step):
+                states.append(next_state)
                 attachments.append(attached)
         except _NoLoad as error:
             failure = error.load
-        rows = numpy.array(states)
+        state_array = numpy.array(states)
         return StatefulTrajectory(
-            rows[:, :9], rows[:, 9:13], numpy.array(attachments), rows[:, 13], rows[:, 14], failure
+            state_array[:, :9],
+            state_array[:, 9:13],
+            numpy.array(attachments),
+            state_array[:, 13],
+            state_array[:, 14],
+            failure,
         )
 
-    def _segments(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
-        """Yield the state at each time after the first; the solver restarts at each attachment or separation."""
+    def _iterate_states(self, state: Numbers, times: Numbers, step: float) -> Iterator[tuple[Numbers, bool]]:
+        """Yield the state at each time after the first; restart the solver at attachment or separation."""
         from scipy.integrate import LSODA
 
-        time, attached, change = float(times[0]), self._is_touching(state), 0.0
+        time, attached, switch_time = float(times[0]), self._is_touching(state), 0.0
         options = {"max_step": step, "rtol": _TOLERANCE, "atol": _TOLERANCE}
         while time < times[-1]:
-            solver = LSODA(self._rates(attached), time, state, float(times[-1]), **options)
+            solver = LSODA(self._equations_of_motion(attached), time, state, float(times[-1]), **options)
             while solver.status == "running":
                 solver.step()
                 if solver.status == "failed":
-                    raise _NoLoad(self._load(solver.y, attached))
-                path = solver.dense_output()
-                change = self._switch_time(path, attached)
-                for time in times[slice(*numpy.searchsorted(times, (path.t_old, min(path.t, change)), "right"))]:
-                    yield path(time), attached
+                    raise _NoLoad(self._load_at(solver.y, attached))
+                interpolant = solver.dense_output()
+                switch_time = self._switch_time(interpolant, attached)
+                for time in times[
+                    slice(*numpy.searchsorted(times, (interpolant.t_old, min(interpolant.t, switch_time)), "right"))
+                ]:
+                    yield interpolant(time), attached
                 time = solver.t
-                if change < inf:
-                    time, state, attached = change, path(change), not attached
+                if switch_time < inf:
+                    time, state, attached = switch_time, interpolant(switch_time), not attached
                     break
-            if attached and change < inf:  # the jump of the energy is dissipated
-                state[13] -= self._load(state, attached).energy
+            if attached and switch_time < inf:  # the jump of the energy is dissipated
+                state[13] -= self._load_at(state, attached).energy
 
-    def _rates(self, attached: bool) -> Callable[[float, Numbers], list[float]]:
-        """Make the right-hand side of the equations of motion."""
+    def _equations_of_motion(self, attached: bool) -> Callable[[float, Numbers], list[float]]:
+        """Make the right-hand side of the equations of motion, for an attached or a separate ball."""
 
-        def rates(time: float, state: Numbers) -> list[float]:
+        def time_derivatives(time: float, state: Numbers) -> list[float]:
             """Compute the time derivatives of the unknowns; raise `_NoLoad` at a state without a load."""
-            load, pull = self._load(state, attached), self.pull(time)
+            load, pull = self._load_at(state, attached), self.pull(time)
             if load.force[0] != load.force[0] or load.contact.rim_margin <= -1.0:
                 raise _NoLoad(load)
             acceleration = [(a + b) / self.mass for a, b in zip(load.force, pull, strict=True)]
             angular_acceleration = [a / self.inertia for a in load.moment]
-            work = _dot(pull, load.velocity)
+            work = _dot_product(pull, load.velocity)
             return [
                 *load.velocity,
                 *acceleration,
@@ -114,36 +121,39 @@ class StatefulIntegrator:
                 work,
             ]
 
-        return rates
+        return time_derivatives
 
-    def _load(self, state: Numbers, attached: bool) -> Load:
+    def _load_at(self, state: Numbers, attached: bool) -> Load:
+        """Compute the load at a state of the integrator."""
         s = state.tolist()
         return self.element(s[:3], s[3:6], s[6:9], s[9:13], attached)
 
     def _is_touching(self, state: Numbers) -> bool:
-        return bool(self._depth(state) >= 0.0)
+        """Check if the ball touches the socket."""
+        return bool(self._indentation_at(state) >= 0.0)
 
-    def _depth(self, state: Numbers) -> float:
+    def _indentation_at(self, state: Numbers) -> float:
+        """Compute the indentation in mm at a state of the integrator; negative without contact."""
         return float(numpy.linalg.norm(state[:3])) - float(self.element.joint.clearance)
 
-    def _switch_time(self, path: Any, attached: bool) -> float:
-        """Return the time in a step at which an adhesive ball attaches or separates; infinity if it does not."""
+    def _switch_time(self, interpolant: Any, attached: bool) -> float:
+        """Find the time in a step at which an adhesive ball attaches or separates; infinity if none."""
         from scipy.optimize import brentq
 
         stretch = self.element.stretch
         if stretch == 0.0:
             return inf
 
-        def distance(time: float) -> float:
-            return self._depth(path(time)) + (stretch if attached else 0.0)
+        def switch_distance(time: float) -> float:
+            return self._indentation_at(interpolant(time)) + (stretch if attached else 0.0)
 
-        before, after = distance(path.t_old), distance(path.t)
-        changes = before > 0.0 >= after if attached else before < 0.0 <= after
-        return float(brentq(distance, path.t_old, path.t, xtol=1e-15)) if changes else inf
+        start_distance, end_distance = switch_distance(interpolant.t_old), switch_distance(interpolant.t)
+        state_changes = start_distance > 0.0 >= end_distance if attached else start_distance < 0.0 <= end_distance
+        return float(brentq(switch_distance, interpolant.t_old, interpolant.t, xtol=1e-15)) if state_changes else inf
 
 
 def pull_function(pull: Any) -> Callable[[float], Vector]:
-    """Return the pull in N as a function of the time in s."""
+    """Return the pull on the ball in N as a function of the time in s."""
     if callable(pull):
         return lambda time: components(pull(time), "a pull")
     constant = components(pull, "a pull")
@@ -151,13 +161,14 @@ def pull_function(pull: Any) -> Callable[[float], Vector]:
 
 
 def _dissipated_power(load: Load) -> float:
-    """Compute the power in N mm/s of all loads that are not elastic; it includes the rate of energy in bristles."""
+    """Compute the power in N mm/s of all loads that are not elastic."""
     contact, centre = load.contact, load.centre
-    speed = _dot(load.velocity, (centre.x, centre.y, centre.z))
-    polar_speed = _dot(load.velocity, (contact.px, contact.py, contact.pz))
+    speed = _dot_product(load.velocity, (centre.x, centre.y, centre.z))
+    polar_speed = _dot_product(load.velocity, (contact.px, contact.py, contact.pz))
     elastic_power = contact.normal * speed - contact.polar * polar_speed
-    return -(_dot(load.force, load.velocity) + elastic_power + _dot(load.moment, load.spin))
+    return -(_dot_product(load.force, load.velocity) + elastic_power + _dot_product(load.moment, load.spin))
 
 
-def _dot(a: Any, b: Any) -> float:
+def _dot_product(a: Any, b: Any) -> float:
+    """Compute the dot product of two vectors."""
     return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])

@@ -17,7 +17,7 @@ from .reaction import (
     Constants,
     Elastic,
     Vector,
-    centre_of,
+    ball_centre_at,
     dissipation,
     dome_angle,
     elastic_contact,
@@ -55,16 +55,16 @@ class StepResult(NamedTuple):
     converged: bool
 
 
-def advance(  # type: ignore[no-untyped-def]
+def advance_one_step(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pull: Vector, h: float
 ) -> StepResult:
-    """Advance the state of a ball by a time step of h seconds.
+    """Advance the state of a ball by one time step of h seconds.
 
     `mass` is in t (N s²/mm), `inertia` in t mm², and `pull` is a constant force in N. The unknowns are velocity and
     spin at the midpoint of the step. Each iteration solves for them with constant stiffness and rate of friction.
     """
     mass_rate, inertia_rate = 2.0 * mass / h, 2.0 * inertia / h
-    initial = centre_of(ball.x, ball.y, ball.z, constants.clearance)
+    initial = ball_centre_at(ball.x, ball.y, ball.z, constants.clearance)
     midpoint = Midpoint(
         ball.vx + pull[0] / mass_rate,
         ball.vy + pull[1] / mass_rate,
@@ -75,27 +75,40 @@ def advance(  # type: ignore[no-untyped-def]
     )
     if initial.indentation + h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z)) < -constants.smoothing:
         return StepResult(end_state(ball, midpoint, h), 0.0, True)
-    start = elastic_contact(potential, initial, constants)
-    push = start.normal / mass_rate
+    start_contact = elastic_contact(potential, initial, constants)
+    normal_push = start_contact.normal / mass_rate
     ax, ay, az, bx, by, bz = midpoint
-    midpoint = Midpoint(ax - push * initial.x, ay - push * initial.y, az - push * initial.z, bx, by, bz)
-    size, best, change = 1e-300, 1e300, 1e300
+    midpoint = Midpoint(
+        ax - normal_push * initial.x, ay - normal_push * initial.y, az - normal_push * initial.z, bx, by, bz
+    )
+    speed_scale, smallest_change, change = 1e-300, 1e300, 1e300
     for _ in range(MAX_ITERATIONS):
         residual = step_residual(
-            potential, constants, ball, midpoint, initial.distance, start.energy, mass_rate, inertia_rate, pull, h
+            potential,
+            constants,
+            ball,
+            midpoint,
+            initial.distance,
+            start_contact.energy,
+            mass_rate,
+            inertia_rate,
+            pull,
+            h,
         )
-        after, change = newton_correction(residual, midpoint, constants, mass_rate, inertia_rate, h)
+        corrected, change = newton_correction(residual, midpoint, constants, mass_rate, inertia_rate, h)
         if not isfinite(change):
             break
-        midpoint = after
-        size = max(size, surface_speed(midpoint, constants) + residual.force / mass_rate)
-        if change <= _RELATIVE_TOLERANCE * size or (change <= _ROUNDING_TOLERANCE * size and change >= 0.5 * best):
+        midpoint = corrected
+        speed_scale = max(speed_scale, surface_speed(midpoint, constants) + residual.force / mass_rate)
+        if change <= _RELATIVE_TOLERANCE * speed_scale or (
+            change <= _ROUNDING_TOLERANCE * speed_scale and change >= 0.5 * smallest_change
+        ):
             break
-        best = min(best, change)
+        smallest_change = min(smallest_change, change)
     ax, ay, az, bx, by, bz = midpoint
     dissipated = h * dissipation(residual.centre, residual.contact, (ax, ay, az), (bx, by, bz), constants)
     return StepResult(
-        end_state(ball, midpoint, h), dissipated, residual.in_cup and change <= _ROUNDING_TOLERANCE * size
+        end_state(ball, midpoint, h), dissipated, residual.in_cup and change <= _ROUNDING_TOLERANCE * speed_scale
     )
 
 
@@ -163,7 +176,7 @@ class StepResidual(NamedTuple):
 
 
 def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
-    """Compute the state of the ball after a time step from velocity and spin at the midpoint."""
+    """Compute the state of the ball after a time step from its velocity and spin at the midpoint."""
     ax, ay, az, bx, by, bz = midpoint
     return BallState(
         ball.x + h * ax, ball.y + h * ay, ball.z + h * az,
@@ -173,7 +186,7 @@ def end_state(ball: BallState, midpoint: Midpoint, h: float) -> BallState:
 
 
 def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
-    """Compute a bound of the surface speed of the ball in mm/s, from translation and rotation."""
+    """Compute an upper bound of the surface speed of the ball in mm/s, from velocity and spin."""
     turning = abs(midpoint.wx) + abs(midpoint.wy) + abs(midpoint.wz)
     return abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z) + constants.ball_radius * turning
 
@@ -181,7 +194,7 @@ def surface_speed(midpoint: Midpoint, constants: Constants) -> float:
 def mean_contact(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, midpoint: Midpoint, distance: float, h: float
 ) -> MeanContact:
-    """Compute the elastic contact at the mean position of a time step.
+    """Compute the elastic contact at the mean position of the ball in a time step.
 
     `distance` is the distance of the centres at the start.
 
@@ -189,27 +202,38 @@ def mean_contact(  # type: ignore[no-untyped-def]
     the differences of the invariants, also for a step that hardly changes them.
     """
     ax, ay, az = midpoint.x, midpoint.y, midpoint.z
-    half = centre_of(ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, constants.clearance)
-    end = centre_of(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, constants.clearance)
-    mean = 0.5 * (distance + end.distance)
-    nx, ny, nz, over = half.x, half.y, half.z, 1.0 / safe_divisor(mean)
-    shortening, depth = half.distance * over, mean - constants.clearance
-    centre = BallCentre(mean, nx, ny, nz, depth, over)
+    midpoint_centre = ball_centre_at(
+        ball.x + 0.5 * h * ax, ball.y + 0.5 * h * ay, ball.z + 0.5 * h * az, constants.clearance
+    )
+    end = ball_centre_at(ball.x + h * ax, ball.y + h * ay, ball.z + h * az, constants.clearance)
+    mean_distance = 0.5 * (distance + end.distance)
+    nx, ny, nz, inverse_distance = (
+        midpoint_centre.x,
+        midpoint_centre.y,
+        midpoint_centre.z,
+        1.0 / safe_divisor(mean_distance),
+    )
+    shortening, depth = midpoint_centre.distance * inverse_distance, mean_distance - constants.clearance
+    centre = BallCentre(mean_distance, nx, ny, nz, depth, inverse_distance)
     if constants.rim == 0.0:
         contact = elastic_contact(potential, centre, constants)
         return MeanContact(centre, end, contact, shortening, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    cosine, sine, px, py, pz = dome_angle(half, constants)
+    cosine, sine, px, py, pz = dome_angle(midpoint_centre, constants)
     lean, across = shortening * cosine, 1.0 / safe_divisor(sine)
-    level = sqrt(max(1.0 - lean * lean, 0.0))
-    stretch, steep = level * across, 1.0 / safe_divisor(level)
+    mean_sine = sqrt(max(1.0 - lean * lean, 0.0))
+    sine_ratio, inverse_sine = mean_sine * across, 1.0 / safe_divisor(mean_sine)
     gx, gy, gz = constants.dome_x, constants.dome_y, constants.dome_z
     kx, ky, kz = lean * gx, lean * gy, lean * gz
-    kx, ky, kz = kx + stretch * (nx - cosine * gx), ky + stretch * (ny - cosine * gy), kz + stretch * (nz - cosine * gz)
-    contact = elastic_contact(potential, BallCentre(mean, kx, ky, kz, depth, over), constants)
+    kx, ky, kz = (
+        kx + sine_ratio * (nx - cosine * gx),
+        ky + sine_ratio * (ny - cosine * gy),
+        kz + sine_ratio * (nz - cosine * gz),
+    )
+    contact = elastic_contact(potential, BallCentre(mean_distance, kx, ky, kz, depth, inverse_distance), constants)
     tilt = lean * shortening
     return MeanContact(
         centre, end, contact, shortening,
-        (tilt * nx - gx) * steep, (tilt * ny - gy) * steep, (tilt * nz - gz) * steep,
+        (tilt * nx - gx) * inverse_sine, (tilt * ny - gy) * inverse_sine, (tilt * nz - gz) * inverse_sine,
         px * across, py * across, pz * across,
     )  # fmt: skip
 
@@ -220,13 +244,13 @@ def step_residual(  # type: ignore[no-untyped-def]
     ball: BallState,
     midpoint: Midpoint,
     distance: float,
-    before: float,
+    start_energy: float,
     mass_rate: float,
     inertia_rate: float,
     pull: Vector,
     h: float,
 ) -> StepResidual:
-    """Compute the residual of the equations of motion at a trial midpoint of a time step.
+    """Compute the residual force and moment of the equations of motion at a trial midpoint of a time step.
 
     It is the inertia minus the discrete gradient of the energy, damping, friction and pull.
     """
@@ -234,25 +258,34 @@ def step_residual(  # type: ignore[no-untyped-def]
     mean = mean_contact(potential, constants, ball, midpoint, distance, h)
     centre, end, contact = mean.centre, mean.end, mean.contact
     fx, fy, fz, mx, my, mz = force_and_moment(centre, contact, (ax, ay, az), (bx, by, bz), constants)
-    after = elastic_contact(potential, end, constants)
+    end_contact = elastic_contact(potential, end, constants)
     nx, ny, nz = centre.x, centre.y, centre.z
     speed = ax * nx + ay * ny + az * nz
     normal, polar = mean.shortening * contact.normal, contact.polar
-    fall, square, drift = normal * speed, speed * speed, 0.0
+    mean_power, square, tangential_speed = normal * speed, speed * speed, 0.0
     if constants.rim > 0.0:
-        fall = fall - polar * (ax * mean.qx + ay * mean.qy + az * mean.qz)
-        drift = ax * mean.ux + ay * mean.uy + az * mean.uz
-        square = square + drift * drift
-    path, depth = h * sqrt(square), abs(centre.indentation)
-    certainty = path * path * path / safe_divisor(path * path * path + _MIN_PATH_RATIO * depth * depth * depth)
-    along = certainty * ((after.energy - before) / h - fall) / safe_divisor(square)
-    inward = normal - contact.normal + along * speed  # in addition to the normal force of the reaction
-    fx, fy, fz = fx - inward * nx, fy - inward * ny, fz - inward * nz
+        mean_power = mean_power - polar * (ax * mean.qx + ay * mean.qy + az * mean.qz)
+        tangential_speed = ax * mean.ux + ay * mean.uy + az * mean.uz
+        square = square + tangential_speed * tangential_speed
+    path_length, depth = h * sqrt(square), abs(centre.indentation)
+    quotient_weight = (
+        path_length
+        * path_length
+        * path_length
+        / safe_divisor(path_length * path_length * path_length + _MIN_PATH_RATIO * depth * depth * depth)
+    )
+    gradient_correction = (
+        quotient_weight * ((end_contact.energy - start_energy) / h - mean_power) / safe_divisor(square)
+    )
+    force_correction = (
+        normal - contact.normal + gradient_correction * speed
+    )  # in addition to the normal force of the reaction
+    fx, fy, fz = fx - force_correction * nx, fy - force_correction * ny, fz - force_correction * nz
     if constants.rim > 0.0:
-        aside = along * drift
-        fx = fx + polar * (mean.qx - contact.px) - aside * mean.ux
-        fy = fy + polar * (mean.qy - contact.py) - aside * mean.uy
-        fz = fz + polar * (mean.qz - contact.pz) - aside * mean.uz
+        tangential_correction = gradient_correction * tangential_speed
+        fx = fx + polar * (mean.qx - contact.px) - tangential_correction * mean.ux
+        fy = fy + polar * (mean.qy - contact.py) - tangential_correction * mean.uy
+        fz = fz + polar * (mean.qz - contact.pz) - tangential_correction * mean.uz
     return StepResidual(
         mass_rate * (ax - ball.vx) - fx - pull[0],
         mass_rate * (ay - ball.vy) - fy - pull[1],
@@ -263,7 +296,7 @@ def step_residual(  # type: ignore[no-untyped-def]
         centre,
         contact,
         abs(fx) + abs(fy) + abs(fz),
-        after.rim_margin > -1.0 or end.indentation <= -constants.smoothing,
+        end_contact.rim_margin > -1.0 or end.indentation <= -constants.smoothing,
     )
 
 
@@ -275,7 +308,7 @@ def newton_correction(
     inertia_rate: float,
     h: float,
 ) -> tuple[Midpoint, float]:
-    """Solve the linearised equations of a time step for a new midpoint; also return its change in mm/s.
+    """Solve the linearised equations of a time step for a new midpoint; return it and its change in mm/s.
 
     The stiffness and the rate of friction are constant in this solution.
     """
@@ -288,23 +321,31 @@ def newton_correction(
         slip = sliding_state(centre, normal_force(contact, speed, constants), velocity, spin, constants)
         push, mixed, rotation = slip.rate * slip.push, slip.rate * slip.mixed, slip.rate * slip.rotation
         drill = slip.rate * slip.drill * slip.lever_squared
-    lossy = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
-    across = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.inverse_distance
+    damping_rate = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
+    tangential_stiffness = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.inverse_distance
     outward = residual.x * nx + residual.y * ny + residual.z * nz
     turning = residual.wx * nx + residual.wy * ny + residual.wz * nz
-    dn = -outward / (mass_rate + lossy + 0.5 * h * abs(contact.stiffness))
+    dn = -outward / (mass_rate + damping_rate + 0.5 * h * abs(contact.stiffness))
     dw = -turning / (inertia_rate + drill)
     # friction couples the velocity across the load with u = ω x n
-    A, B, C = mass_rate + push + across, inertia_rate + rotation * R1 * R1, mixed * R1
-    over = 1.0 / (A * B - C * C)
+    A, B, C = mass_rate + push + tangential_stiffness, inertia_rate + rotation * R1 * R1, mixed * R1
+    inverse_determinant = 1.0 / (A * B - C * C)
     tx, ty, tz = residual.x - outward * nx, residual.y - outward * ny, residual.z - outward * nz
     ux = residual.wy * nz - residual.wz * ny
     uy = residual.wz * nx - residual.wx * nz
     uz = residual.wx * ny - residual.wy * nx
-    dx, dy, dz = (C * ux - B * tx) * over, (C * uy - B * ty) * over, (C * uz - B * tz) * over
-    ex, ey, ez = (C * tx - A * ux) * over, (C * ty - A * uy) * over, (C * tz - A * uz) * over
+    dx, dy, dz = (
+        (C * ux - B * tx) * inverse_determinant,
+        (C * uy - B * ty) * inverse_determinant,
+        (C * uz - B * tz) * inverse_determinant,
+    )
+    ex, ey, ez = (
+        (C * tx - A * ux) * inverse_determinant,
+        (C * ty - A * uy) * inverse_determinant,
+        (C * tz - A * uz) * inverse_determinant,
+    )
     change = abs(dx) + abs(dy) + abs(dz) + abs(dn) + R1 * (abs(ex) + abs(ey) + abs(ez) + abs(dw))
-    after = Midpoint(
+    new_midpoint = Midpoint(
         midpoint.x + dx + dn * nx,
         midpoint.y + dy + dn * ny,
         midpoint.z + dz + dn * nz,
@@ -312,26 +353,26 @@ def newton_correction(
         midpoint.wy + nz * ex - nx * ez + dw * ny,
         midpoint.wz + nx * ey - ny * ex + dw * nz,
     )
-    return after, change
+    return new_midpoint, change
 
 
 def march(  # type: ignore[no-untyped-def]
     potential, constants: Constants, ball: BallState, mass: float, inertia: float, pulls, h: float, states, dissipated
 ) -> int:
-    """Advance a ball over all time steps, fill `states` and `dissipated`, and return the number of converged steps.
+    """Advance a ball over all time steps, fill `states` and `dissipated`; return the number of converged steps.
 
     `states` is (steps + 1, 9) and `dissipated` (steps + 1,), in N mm.
 
     `pulls` (steps, 3) is the pull in each step. In Python it is a list, which is faster than an array.
     """
     states[0, :] = ball
-    for number in range(len(dissipated) - 1):
-        row = pulls[number]
-        pull = row[0], row[1], row[2]
-        after = advance(potential, constants, ball, mass, inertia, pull, h)
-        ball = after.ball
-        states[number + 1, :] = ball
-        dissipated[number + 1] = dissipated[number] + after.dissipated
-        if not after.converged:
-            return number
+    for index in range(len(dissipated) - 1):
+        components = pulls[index]
+        pull = components[0], components[1], components[2]
+        result = advance_one_step(potential, constants, ball, mass, inertia, pull, h)
+        ball = result.ball
+        states[index + 1, :] = ball
+        dissipated[index + 1] = dissipated[index] + result.dissipated
+        if not result.converged:
+            return index
     return len(dissipated) - 1

@@ -39,43 +39,46 @@ class ValidityMonitor:
     limit: float = 0.0
 
     def check_array(self, indentation: Array) -> None:
-        """Check the largest of an array of indentations in mm, and log a warning if it is invalid."""
+        """Check the largest of some indentations in mm, and log a warning if the model is invalid there."""
         depths = concrete_values(indentation) if self.limit < inf else None
         if depths is not None and depths.size:
             self.check(float(numpy.max(depths, initial=0.0, where=depths <= self.wall)))
 
     def check(self, indentation: float) -> None:
-        """Check an indentation in mm, and log a warning if it is outside the validity range.
+        """Check an indentation in mm, and log a warning if the model is invalid there.
 
         Indentations beyond the wall are reported by the status of the load instead.
         """
         if not self.limit < indentation <= self.wall:
             return
         contact = self._contact_at(indentation)
-        if not self._exceeds_range(contact):
-            self.limit = self._valid_limit(indentation)
+        if not self._exceeds_validity_range(contact):
+            self.limit = self._find_valid_indentation(indentation)
             return
         self.limit = inf
         _log.warning("%s at an indentation of %.3g mm: %s", self.model.name, indentation, "; ".join(contact.notes))
 
-    def _valid_limit(self, depth: float) -> float:
-        """Return an indentation in mm up to which the model is valid, at least the valid `depth`."""
+    def _find_valid_indentation(self, depth: float) -> float:
+        """Find an indentation in mm, `depth` or larger, at which the model is valid."""
         deeper = min(max(2 * depth, 1e-3 * self.wall), self.wall)
         for _ in range(6):
-            if not self._exceeds_range(self._contact_at(deeper)):
+            if not self._exceeds_validity_range(self._contact_at(deeper)):
                 return deeper
             deeper = (depth + deeper) / 2
         return depth
 
     def _contact_at(self, indentation: float) -> Contact:
+        """Compute the contact at an indentation in mm."""
         return self.model.press(self.joint, indentation=indentation)
 
-    def _exceeds_range(self, contact: Contact) -> bool:
-        """Return True for a contact that is invalid for a reason other than being too small."""
-        return not contact.valid and not all(map(partial(_holds_when_larger, contact), contact._limits))
+    def _exceeds_validity_range(self, contact: Contact) -> bool:
+        """Check if a contact is invalid for a reason other than its small size."""
+        return not contact.valid and not all(
+            map(partial(_is_satisfied_by_larger_contact, contact), contact._validity_ranges)
+        )
 
 
-def _holds_when_larger(contact: Contact, limit: Range) -> bool:
-    """Return True for a limit that is met by the contact, or would be by a larger contact."""
-    grows = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
-    return bool(limit.holds(contact)) or (grows and bool(limit.quantity_of(contact) < limit.low))
+def _is_satisfied_by_larger_contact(contact: Contact, limit: Range) -> bool:
+    """Check if a contact, or a larger contact, lies inside a range."""
+    increases_with_size = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
+    return bool(limit.holds(contact)) or (increases_with_size and bool(limit.quantity_of(contact) < limit.low))

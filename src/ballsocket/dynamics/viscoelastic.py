@@ -62,31 +62,33 @@ class Prony:
 
     @property
     def shares(self) -> Numbers:
-        """Fractions g_i of the terms in the instantaneous modulus."""
+        """Fractions g_i of the instantaneous modulus that relax, one for each term."""
         return numpy.array([share for share, _ in self.terms])
 
     @property
     def times(self) -> Numbers:
-        """Relaxation times τ_i of the terms in s."""
+        """Relaxation times τ_i in s, one for each term."""
         return numpy.array([time for _, time in self.terms])
 
     @property
     def long_term_share(self) -> float:
-        """Fraction g∞ of the modulus that remains at long times."""
+        """Fraction g∞ of the instantaneous modulus that remains after a long time."""
         return 1.0 - sum(share for share, _ in self.terms)
 
     def relaxation(self, time: Numbers) -> Numbers:
-        """Compute the relative relaxation modulus g(t) at times in s, 0 or more."""
+        """Compute the relaxation modulus g(t) over the instantaneous modulus, at times in s, 0 or more."""
         ages = numpy.asarray(time, dtype=float)[..., None]
         return self.long_term_share + numpy.sum(self.shares * numpy.exp(-ages / self.times), axis=-1)
 
     def mean(self, early: Numbers, late: Numbers) -> Numbers:
-        """Compute the mean relaxation modulus g between two times in s."""
-        first, span = early[..., None] / self.times, (late - early)[..., None] / self.times
-        return self.long_term_share + numpy.sum(self.shares * numpy.exp(-first) * -numpy.expm1(-span) / span, axis=-1)
+        """Compute the mean of the relative relaxation modulus g(t) between two times in s."""
+        early_ratio, span_ratio = early[..., None] / self.times, (late - early)[..., None] / self.times
+        return self.long_term_share + numpy.sum(
+            self.shares * numpy.exp(-early_ratio) * -numpy.expm1(-span_ratio) / span_ratio, axis=-1
+        )
 
     def complex_modulus(self, frequency: Numbers) -> Numbers:
-        """Compute the relative complex modulus at frequencies in Hz; its imaginary part is the loss modulus.
+        """Compute the complex modulus over the instantaneous modulus at frequencies in Hz.
 
         It is g∞ + Σ g_i iωτ/(1 + iωτ).
         """
@@ -94,15 +96,16 @@ class Prony:
         return self.long_term_share + numpy.sum(self.shares * phase / (1 + phase), axis=-1)
 
     def creep_compliance(self, time: Numbers) -> Numbers:
-        """Compute the creep compliance J(t), the strain under a unit stress: 1 at time 0, 1/g∞ at long times."""
-        rates, weights = self._retardation
+        """Compute the relative creep compliance J(t), from 1 at time 0 to 1/g∞ after a long time."""
+        rates, weights = self._retardation_rates_and_weights
         return 1.0 / self.long_term_share - numpy.sum(
             weights * numpy.exp(-numpy.asarray(time)[..., None] * rates), axis=-1
         )
 
     @cached_property
-    def _retardation(self) -> tuple[Numbers, Numbers]:
+    def _retardation_rates_and_weights(self) -> tuple[Numbers, Numbers]:
         # strains r of the dashpots: τ r' = 1 + g·r - r, made symmetric by sqrt(g τ); J = 1 + g·r
+        """Retardation rates in 1/s and weights of the creep compliance."""
         g, tau = self.shares, self.times
         root = numpy.sqrt(g / tau)
         rates, modes = numpy.linalg.eigh(numpy.diag(1.0 / tau) - root[:, None] * root)
@@ -151,7 +154,7 @@ class Viscoelastic:
 
     @cached_property
     def potential(self) -> Potential:
-        """Instantaneous elastic energy of the joint over the indentation."""
+        """Elastic energy of the joint with the instantaneous modulus, as a function of the indentation."""
         return potential_of(self.model, self.joint)
 
     def instantaneous_force(self, depth: Numbers) -> Numbers:
@@ -159,19 +162,19 @@ class Viscoelastic:
         return self.potential(numpy.maximum(numpy.asarray(depth, dtype=float), 0.0))[1]
 
     def relaxation_force(self, depth: float, time: Numbers) -> Numbers:
-        """Compute the relaxing force in N at times in s after a sudden, then constant indentation in mm."""
+        """Compute the force in N at times in s after a sudden indentation in mm, which stays constant."""
         return self.instantaneous_force(numpy.array(depth)) * self.modulus.relaxation(time)
 
     def creep_indentation(self, force: float, time: Numbers) -> Numbers:
-        """Compute the creeping indentation in mm at times in s after a sudden, then constant force in N."""
+        """Compute the indentation in mm at times in s after a sudden force in N, which stays constant."""
         return self.model.press(self.joint.with_floats(), force=force * self.modulus.creep_compliance(time)).indentation
 
     def dynamic_stiffness(self, depth: float, frequency: Numbers) -> Numbers:
-        """Compute the complex stiffness in N/mm for small vibrations (Hz) about an indentation in mm."""
+        """Compute the complex stiffness in N/mm for small vibrations in Hz about an indentation in mm."""
         return self.potential(numpy.array(depth))[2] * self.modulus.complex_modulus(frequency)
 
     def separable_force(self, time: Numbers, depth: Numbers) -> Numbers:
-        """Compute the force in N by the separable approximation g(t) F(d(t)), for comparison.
+        """Compute the force in N by the separable approximation g(t) F(d(t)), only for comparison.
 
         The approximation is common but wrong.
         """
@@ -180,13 +183,13 @@ class Viscoelastic:
         return self.modulus.relaxation(numpy.maximum(time - time[touched], 0.0)) * self.instantaneous_force(depth)
 
     def hereditary_force(self, time: Numbers, depth: Numbers) -> Numbers:
-        """Compute the force in N by the hereditary integral ∫ g(t - s) dF, valid while the contact grows."""
+        """Compute the force in N by the hereditary integral ∫ g(t - s) dF; the contact must not shrink."""
         time, depth = _check_history(time, depth)
         rise = numpy.diff(self.instantaneous_force(depth))
         return numpy.append(0.0, numpy.sum(self._mean_relaxation(time) * rise, axis=1))
 
     def cycle_force(self, time: Numbers, depth: Numbers) -> Numbers:
-        """Compute the force in N of a single loading and unloading, after Ting.
+        """Compute the force in N of one loading and unloading, by the method of Ting.
 
         Parameters
         ----------
@@ -201,40 +204,45 @@ class Viscoelastic:
             Times that do not increase; a depth that rises again, for which `spring_force` is valid.
         """
         time, depth = _check_history(time, depth)
-        top = int(numpy.argmax(depth))
-        again = numpy.flatnonzero(numpy.diff(depth)[top:] > 0)
+        peak_index = int(numpy.argmax(depth))
+        rising_steps = numpy.flatnonzero(numpy.diff(depth)[peak_index:] > 0)
         require(
-            "depth", depth, _mask_until(len(depth), top, again), "it must rise once and then fall; use `spring_force`"
+            "depth",
+            depth,
+            _mask_before_second_rise(len(depth), peak_index, rising_steps),
+            "it must rise once and then fall; use `spring_force`",
         )
         force = self.hereditary_force(time, depth)
-        weights, bed = self._mean_relaxation(time), numpy.maximum(depth, 0.0)
-        for number in range(top + 1, len(time)):
-            force[number] = self._unloading_force(weights[number - 1], bed, top, number)
+        weights, positive_depth = self._mean_relaxation(time), numpy.maximum(depth, 0.0)
+        for instant in range(peak_index + 1, len(time)):
+            force[instant] = self._unloading_force(weights[instant - 1], positive_depth, peak_index, instant)
         return force
 
-    def _unloading_force(self, weights: Numbers, depth: Numbers, top: int, number: int) -> float:
-        """Compute the force in N at one instant of unloading, after Ting.
+    def _unloading_force(self, weights: Numbers, depth: Numbers, peak_index: int, instant: int) -> float:
+        """Compute the force in N at one instant of unloading, by the method of Ting.
 
         The force depends on the loading up to the last instant t1 at which the contact had the same edge.
         """
-        strain = numpy.cumsum((weights[:number] * numpy.diff(depth)[:number])[::-1])[::-1]
-        initial = numpy.flatnonzero(strain[: top + 1] <= 0)
+        strain = numpy.cumsum((weights[:instant] * numpy.diff(depth)[:instant])[::-1])[::-1]
+        initial = numpy.flatnonzero(strain[: peak_index + 1] <= 0)
         if len(initial) and initial[0] == 0:
             return 0.0
-        last = int(initial[0]) - 1 if len(initial) else top
-        after = strain[last + 1] if last + 1 < number else 0.0
-        share = strain[last] / (strain[last] - after)
-        edge = depth[last] + share * (depth[last + 1] - depth[last])
-        forces = self.instantaneous_force(numpy.append(depth[: last + 1], edge))
-        return float(numpy.sum(weights[: last + 1] * numpy.diff(forces)))
+        last_loading_index = int(initial[0]) - 1 if len(initial) else peak_index
+        next_strain = strain[last_loading_index + 1] if last_loading_index + 1 < instant else 0.0
+        interpolation = strain[last_loading_index] / (strain[last_loading_index] - next_strain)
+        edge_depth = depth[last_loading_index] + interpolation * (
+            depth[last_loading_index + 1] - depth[last_loading_index]
+        )
+        forces = self.instantaneous_force(numpy.append(depth[: last_loading_index + 1], edge_depth))
+        return float(numpy.sum(weights[: last_loading_index + 1] * numpy.diff(forces)))
 
     def _mean_relaxation(self, time: Numbers) -> Numbers:
-        """Compute the mean relaxation modulus over past intervals: (instants - 1, intervals), 0 for future ones."""
+        """Compute the mean relaxation modulus over each past interval: (instants - 1, intervals); 0 if future."""
         late, early = time[1:, None] - time[None, :-1], time[1:, None] - time[None, 1:]
         return numpy.where(early >= 0, self.modulus.mean(numpy.maximum(early, 0.0), numpy.maximum(late, 1e-300)), 0.0)
 
     def spring_force(self, time: Numbers, depth: Numbers, rings: int = 400) -> Numbers:
-        """Compute the force in N of any indentation history, by radial springs that are Maxwell chains.
+        """Compute the force in N of any indentation history, by radial springs with Maxwell elements.
 
         A spring whose pressure would become negative detaches and recovers, until the ball touches it again.
 
@@ -256,34 +264,40 @@ class Viscoelastic:
         joint = self.joint.with_floats()
         c, deepest = joint.clearance, max(float(depth.max()), 1e-300)
         width = deepest / (c + deepest) / rings
-        m = width * (numpy.arange(rings) + 0.5)
-        ball = numpy.maximum(depth, -c)[:, None] * (1.0 - m) - c * m  # d cos φ - c (1 - cos φ)
-        pressure = _maxwell_pressures(self.modulus, time, ball)
+        ring_versines = width * (numpy.arange(rings) + 0.5)
+        spring_displacements = (
+            numpy.maximum(depth, -c)[:, None] * (1.0 - ring_versines) - c * ring_versines
+        )  # d cos φ - c (1 - cos φ)
+        pressure = _maxwell_pressures(self.modulus, time, spring_displacements)
         factor = 2 * numpy.pi * joint.socket_radius**2 * float(self.model.modulus.evaluate(joint)) * width
-        return factor * (pressure @ (1.0 - m))
+        return factor * (pressure @ (1.0 - ring_versines))
 
 
-def _maxwell_pressures(modulus: Prony, time: Numbers, ball: Numbers) -> Numbers:
-    """Compute the pressures of Maxwell springs over their instantaneous stiffness, in mm: (instants, springs)."""
-    surface = numpy.zeros(ball.shape[1])
-    stresses = numpy.zeros((len(modulus.terms), ball.shape[1]))
-    pressure = numpy.zeros(ball.shape)
-    g, tau, g_inf = modulus.shares[:, None], modulus.times[:, None], modulus.long_term_share
-    for number, step in enumerate(numpy.diff(time), start=1):
-        fade, weight = numpy.exp(-step / tau), -numpy.expm1(-step / tau) * tau / step
-        memory = numpy.sum(g * (fade * stresses - weight * surface), axis=0)
-        stiff = g_inf + float(numpy.sum(g * weight))
-        displaced = numpy.maximum(ball[number], -memory / stiff)  # the ball surface, or the recovering liner surface
-        stresses = fade * stresses + weight * (displaced - surface)
-        pressure[number] = numpy.where(
-            displaced == ball[number], g_inf * displaced + numpy.sum(g * stresses, axis=0), 0.0
+def _maxwell_pressures(modulus: Prony, time: Numbers, spring_displacements: Numbers) -> Numbers:
+    """Compute the pressures of Maxwell springs divided by their stiffness, in mm: (instants, springs)."""
+    surface = numpy.zeros(spring_displacements.shape[1])
+    stresses = numpy.zeros((len(modulus.terms), spring_displacements.shape[1]))
+    pressure = numpy.zeros(spring_displacements.shape)
+    shares, times, long_term_share = modulus.shares[:, None], modulus.times[:, None], modulus.long_term_share
+    for instant, time_step in enumerate(numpy.diff(time), start=1):
+        decay_factor, weight = numpy.exp(-time_step / times), -numpy.expm1(-time_step / times) * times / time_step
+        past_pressure = numpy.sum(shares * (decay_factor * stresses - weight * surface), axis=0)
+        effective_stiffness = long_term_share + float(numpy.sum(shares * weight))
+        displaced = numpy.maximum(
+            spring_displacements[instant], -past_pressure / effective_stiffness
+        )  # the ball surface, or the recovering liner surface
+        stresses = decay_factor * stresses + weight * (displaced - surface)
+        pressure[instant] = numpy.where(
+            displaced == spring_displacements[instant],
+            long_term_share * displaced + numpy.sum(shares * stresses, axis=0),
+            0.0,
         )
         surface = displaced
     return pressure
 
 
 def _check_history(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
-    """Convert times and indentations to arrays; raise ValueError for an invalid history."""
+    """Check the times and indentations of a history, and convert them to arrays; ValueError if invalid."""
     time, depth = numpy.asarray(time, dtype=float), numpy.asarray(depth, dtype=float)
     if time.ndim != 1 or time.shape != depth.shape or len(time) < 2:
         raise ValueError(f"time and depth must be rows of equal length, at least 2, got {time.shape} and {depth.shape}")
@@ -294,9 +308,9 @@ def _check_history(time: Any, depth: Any) -> tuple[Numbers, Numbers]:
     return time, depth
 
 
-def _mask_until(count: int, top: int, again: Numbers) -> Numbers:
-    """Return a mask of the instants before the indentation rises again."""
-    valid = numpy.ones(count, dtype=bool)
-    if len(again):
-        valid[top + again[0] + 1 :] = False
+def _mask_before_second_rise(instant_count: int, peak_index: int, rising_steps: Numbers) -> Numbers:
+    """Return a mask (instants,) that is true until the indentation rises again."""
+    valid = numpy.ones(instant_count, dtype=bool)
+    if len(rising_steps):
+        valid[peak_index + rising_steps[0] + 1 :] = False
     return valid

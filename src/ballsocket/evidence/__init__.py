@@ -1,1 +1,1 @@
-"""What there is to show that a number may be trusted."""
+"""Evidence for computed numbers: verification, comparison with publications, uncertainty, and credibility."""

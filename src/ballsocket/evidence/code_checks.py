@@ -1,4 +1,4 @@
-"""Code verification, here and now: what the code must reproduce on this machine, each with what was observed."""
+"""Code verification: checks of known solutions that run on the present machine."""
 
 from __future__ import annotations
 
@@ -15,7 +15,11 @@ from typing import Any
 import numpy
 
 from ..contact import Model
+from ..core.arrays import Numbers
+from ..core.deprecation import renamed_fields, renamed_names
 from ..elasticity.exact.model import Exact
+from ..elasticity.finite_elements.elasticity import ElasticBlock
+from ..elasticity.finite_elements.mesh import Block, block
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.surfaces import ClosedShell
 from ..models.foundation import RadialFoundation
@@ -29,22 +33,25 @@ from ..problem.gaps import LinearGap
 from ..problem.presets import joints
 
 
+@renamed_fields(what="description")
 @dataclass(frozen=True, kw_only=True)
-class Checked:
-    """A check with what was observed and what is allowed.
+class CheckResult:
+    """Result of a check.
 
     Attributes
     ----------
-    name, what : str
-        Short, and in a sentence.
+    name, description : str
+        Short name, and the observed quantity in words.
     observed : float or None
-        None where it could not be run; then `why` says so.
+        Observed value; None for a check that did not run.
     low, high : float
-        Between which it may lie.
+        Allowed values.
+    why : str
+        Reason for a check that did not run.
     """
 
     name: str
-    what: str
+    description: str
     observed: float | None
     low: float = 0.0
     high: float = inf
@@ -52,15 +59,15 @@ class Checked:
 
     @property
     def passed(self) -> bool | None:
-        """Whether it is as it should be; None where it was not run."""
+        """True for an allowed value; None for a check that did not run."""
         return None if self.observed is None else self.low <= self.observed <= self.high
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return one dictionary for JSON."""
         high = None if self.high == inf else self.high
         return {
             "name": self.name,
-            "what": self.what,
+            "what": self.description,
             "observed": self.observed,
             "low": self.low,
             "high": high,
@@ -69,6 +76,9 @@ class Checked:
             "call": f"ballsocket.evidence.code_checks.CHECKS[{self.name!r}]()",
         }
 
+
+OWN_TOLERANCE, ORDER_OF_ELEMENTS = "own-tolerance", "order-of-elements"
+"""Names of checks that decide a credibility level."""
 
 _TABLE = "closed_forms.csv"
 _K = constant(276.5)
@@ -82,21 +92,22 @@ _MODELS: Mapping[str, Model] = {
 _HIP = joints["hip-36"]
 
 
-def closed_forms() -> Checked:
-    """The closed forms against their definitions in 50-digit arithmetic."""
+def check_closed_forms() -> CheckResult:
+    """Compare the closed forms with their definitions in 50-digit arithmetic."""
     text = (files("ballsocket") / "data" / _TABLE).read_text(encoding="utf-8")
     table = csv.DictReader(line for line in text.splitlines() if not line.startswith("#"))
-    error = max(_off(row) for row in table if row["model"] in _MODELS)
-    return Checked(
+    error = max(_largest_error(row) for row in table if row["model"] in _MODELS)
+    return CheckResult(
         name="closed-forms",
-        what="Largest relative error of five closed forms against their definitions in 50-digit arithmetic, from d/c = "
-        "1e-12 to 1e6 and without clearance",
+        description="Largest relative error of five closed forms against their definitions in 50-digit arithmetic, "
+        "from d/c = 1e-12 to 1e6 and without clearance",
         observed=error,
         high=1e-13,
     )
 
 
-def _off(row: Mapping[str, str]) -> float:
+def _largest_error(row: Mapping[str, str]) -> float:
+    """Compute the largest relative error of a closed form in one row of the table."""
     clearance = float(row["clearance"])
     liner = Material(young=1000.0, poisson=0.4)
     joint = Joint(ball_radius=18.0 - clearance, clearance=clearance, liner_thickness=6.75, liner=liner)
@@ -105,120 +116,188 @@ def _off(row: Mapping[str, str]) -> float:
     return max(abs(float(getattr(contact, name)) / float(row[name]) - 1) for name in names)
 
 
-def balance() -> Checked:
-    """The exact answer's pressures carry its force."""
+def check_balance() -> CheckResult:
+    """Compare the force of the exact solution with the integral of its pressure."""
     contact = Exact().press(_HIP, force=3000.0)
     x, w = numpy.polynomial.legendre.leggauss(60)
     edge = float(contact.half_angle)
-    angle, weight = (
-        edge * numpy.sin(numpy.pi / 4 * (x + 1)),
-        edge * numpy.pi / 4 * numpy.cos(numpy.pi / 4 * (x + 1)) * w,
-    )
-    rings = [float(contact.pressure(one)) * cos(one) * sin(one) for one in angle]
-    carried = 2 * numpy.pi * _HIP.socket_radius**2 * float(numpy.dot(rings, weight))
-    return Checked(
+    angles = edge * numpy.sin(numpy.pi / 4 * (x + 1))
+    weight = edge * numpy.pi / 4 * numpy.cos(numpy.pi / 4 * (x + 1)) * w
+    rings = [float(contact.pressure(angle)) * cos(angle) * sin(angle) for angle in angles]
+    integral = 2 * numpy.pi * _HIP.socket_radius**2 * float(numpy.dot(rings, weight))
+    return CheckResult(
         name="balance",
-        what="Force of the exact answer against the integral of its pressures, relative",
-        observed=abs(carried / 3000.0 - 1),
+        description="Force of the exact solution against the integral of its pressures, relative",
+        observed=abs(integral / 3000.0 - 1),
         high=1e-6,
     )
 
 
-def slope_of_energy() -> Checked:
-    """The exact answer's force is the slope of its energy."""
+def check_slope_of_energy() -> CheckResult:
+    """Compare the force of the exact solution with the slope of its energy."""
     d, step = 0.05, 1e-4
-    low, here, high = (Exact().press(_HIP, indentation=d + by) for by in (-step, 0.0, step))
+    low, middle, high = (Exact().press(_HIP, indentation=d + change) for change in (-step, 0.0, step))
     slope = (float(high.energy) - float(low.energy)) / (2 * step)
-    return Checked(
+    return CheckResult(
         name="slope-of-energy",
-        what="Force of the exact answer against the central difference of its energy, relative",
-        observed=abs(slope / float(here.force) - 1),
+        description="Force of the exact solution against the central difference of its energy, relative",
+        observed=abs(slope / float(middle.force) - 1),
         high=1e-5,
     )
 
 
-def hertz_limit() -> Checked:
-    """A narrow contact in a massive socket is Hertz's."""
+def check_hertz_limit() -> CheckResult:
+    """Compare a narrow contact in a massive socket with Hertz."""
     liner = Material(young=1000.0, poisson=0.3)
     joint = Joint(ball_radius=20.0, clearance=0.05, liner_thickness=inf, liner=liner)
     exact, hertz = (model.press(joint, force=0.001) for model in (Exact(), Hertz()))
-    return Checked(
+    return CheckResult(
         name="hertz-limit",
-        what="Largest pressure of a narrow contact in a massive socket against Hertz, relative",
+        description="Largest pressure of a narrow contact in a massive socket against Hertz, relative",
         observed=abs(float(exact.max_pressure) / float(hertz.max_pressure) - 1),
         high=5e-3,
     )
 
 
-def own_tolerance() -> Checked:
-    """The exact answer keeps the tolerance it is asked for."""
+def check_own_tolerance() -> CheckResult:
+    """Compare the error of the exact solution with its tolerance."""
     best = Exact(tolerance=1e-9).press(_HIP, force=3000.0)
-    shares = []
+    ratios = []
     for tolerance in (1e-3, 1e-5):
-        found = Exact(tolerance=tolerance).press(_HIP, force=3000.0)
-        off = max(abs(getattr(found, name) / getattr(best, name) - 1) for name in ("indentation", "max_pressure"))
-        shares.append(float(off) / tolerance)
-    return Checked(
-        name="own-tolerance",
-        what="Error of the exact answer over the tolerance it was asked for, at 1e-3 and 1e-5, the larger",
-        observed=max(shares),
+        contact = Exact(tolerance=tolerance).press(_HIP, force=3000.0)
+        error = max(abs(getattr(contact, name) / getattr(best, name) - 1) for name in ("indentation", "max_pressure"))
+        ratios.append(float(error) / tolerance)
+    return CheckResult(
+        name=OWN_TOLERANCE,
+        description="Largest error of the exact solution over its required tolerance, at 1e-3 and 1e-5",
+        observed=max(ratios),
         high=1.0,
     )
 
 
-def along_the_axis() -> Checked:
-    """Rings about the cup's axis answer a load along it as the exact answer does."""
-    whole = Sphere(surface=ClosedShell(), gap=LinearGap, cup=Cup())
-    sphere, exact = (model.press(_HIP, indentation=0.05) for model in (whole, Exact()))
-    return Checked(
+def check_along_the_axis() -> CheckResult:
+    """Compare the off-axis solver in a closed shell with the exact solution, for a load along the axis."""
+    closed = Sphere(surface=ClosedShell(), gap=LinearGap, cup=Cup())
+    sphere, exact = (model.press(_HIP, indentation=0.05) for model in (closed, Exact()))
+    return CheckResult(
         name="along-the-axis",
-        what="Force of the off-axis solver in a closed shell against the exact answer, along the axis, relative",
+        description="Force of the off-axis solver in a closed shell against the exact solution, along the axis, "
+        "relative",
         observed=abs(float(sphere.force) / float(exact.force) - 1),
         high=2e-3,
     )
 
 
-def _needs_elements(check: Callable[[], Checked], name: str, what: str) -> Checked:
-    if find_spec("skfem") is None:
-        return Checked(name=name, what=what, observed=None, why="the extra 'fem' is not installed")
-    return check()
+def _check_elements(
+    name: str, description: str, compute: Callable[[], float], low: float = 0.0, high: float = inf
+) -> CheckResult:
+    """Run a check of the finite elements; state the reason if the extra is not installed."""
+    installed = find_spec("skfem") is not None
+    why = "" if installed else "the extra 'fem' is not installed"
+    observed = compute() if installed else None
+    return CheckResult(name=name, description=description, observed=observed, low=low, high=high, why=why)
 
 
-def patch_test() -> Checked:
-    """Biquadratic elements hold the energy of a uniform strain."""
-    what = "Energy of a uniform strain in biquadratic elements, relative error (the patch test)"
-
-    def run() -> Checked:
-        from .element_checks import strain_energy_error
-
-        return Checked(name="patch-test", what=what, observed=strain_energy_error(2), high=1e-4)
-
-    return _needs_elements(run, "patch-test", what)
+def check_patch_test() -> CheckResult:
+    """Compute the error of biquadratic elements in the energy of a uniform strain."""
+    description = "Energy of a uniform strain in biquadratic elements, relative error (the patch test)"
+    return _check_elements("patch-test", description, partial(strain_energy_error, 2), high=1e-4)
 
 
-def order_of_elements(poisson: float = 0.4) -> Checked:
-    """Biquadratic elements converge with the fourth order in displacement."""
-    what = f"Observed order of convergence of biquadratic elements: thick sphere under pressure, nu {poisson:g}"
+def check_order_of_elements(poisson: float = 0.4) -> CheckResult:
+    """Compute the order of convergence of biquadratic elements in displacement: 4 in theory."""
+    description = f"Observed order of convergence of biquadratic elements: thick sphere under pressure, nu {poisson:g}"
 
-    def run() -> Checked:
-        from .element_checks import thick_sphere_error
-
+    def compute() -> float:
+        """Compute the order from the errors with 8 and 16 elements."""
         coarse, fine = (thick_sphere_error(2, count, poisson) for count in (8, 16))
-        return Checked(name="order-of-elements", what=what, observed=log2(coarse / fine), low=3.8)
+        return log2(coarse / fine)
 
-    return _needs_elements(run, "order-of-elements", what)
+    return _check_elements(ORDER_OF_ELEMENTS, description, compute, low=3.8)
 
 
-CHECKS: Mapping[str, Callable[[], Checked]] = MappingProxyType(
+# Known solutions for the finite elements
+
+INNER, OUTER = 1.0, 1.4
+"""Inner and outer radius of the sphere of the element checks."""
+
+
+def shell_block(order: int, elements: int = 6, poisson: float = 0.3, end: float = numpy.pi / 2) -> ElasticBlock:
+    """Create a thick shell with Young's modulus 1 from the axis to a polar angle, with `elements` over the wall."""
+    angle, radius = numpy.linspace(0.0, end, 2 * elements + 1), numpy.linspace(INNER, OUTER, elements + 1)
+    return ElasticBlock(block=block(angle, [radius], order), young=numpy.ones(1), poisson=numpy.array([poisson]))
+
+
+def polar_components(elastic: ElasticBlock, across: Numbers, along: Numbers) -> Numbers:
+    """Convert a displacement in ρ and z at the nodes to the unknowns u_φ and u_r."""
+    phi = numpy.repeat(elastic.block.angle, elastic.block.radius.shape[1])
+    sides = across * numpy.cos(phi) - along * numpy.sin(phi), across * numpy.sin(phi) + along * numpy.cos(phi)
+    return numpy.stack(sides, -1).ravel()
+
+
+def strain_energy_error(order: int) -> float:
+    """Compute the relative error of the energy of u_ρ = a ρ, u_z = b z in the meshed volume (patch test)."""
+    end, a, b, nu = 1.1, 0.3, -0.2, 0.3
+    elastic = shell_block(order, end=end, poisson=nu)
+    rho, z = elastic.block.nodes
+    displacement = polar_components(elastic, a * rho, b * z)
+    G, K = 1 / (2 * (1 + nu)), 1 / (3 * (1 - 2 * nu))
+    trace = 2 * a + b
+    density = G * (2 * a * a + b * b - trace**2 / 3) + K * trace**2 / 2
+    volume = 2 * numpy.pi / 3 * (OUTER**3 - INNER**3) * (1 - numpy.cos(end))
+    return float(abs(displacement @ (elastic.matrix() @ displacement) / 2 / (density * volume) - 1))
+
+
+def thick_sphere_error(order: int, elements: int, poisson: float) -> float:
+    """Compute the mean relative error of the radial displacement of a pressurised bore with a fixed outside.
+
+    The reference is Bartel's modulus K_B = E/R2 (2(1-2ν) + (1+ν)k³)/((1+ν)(1-2ν)(1-k³)), k = R2/b.
+    """
+    from scipy.sparse.linalg import spsolve
+
+    elastic = shell_block(order, elements, poisson)
+    mesh = elastic.block
+    fixed = numpy.zeros(2 * mesh.number.size, dtype=bool)
+    fixed[2 * mesh.number[[0, -1]]] = True  # the axis, and the plane of symmetry
+    fixed[2 * mesh.number[:, -1]] = fixed[2 * mesh.number[:, -1] + 1] = True
+    displacement = numpy.zeros(len(fixed))
+    displacement[~fixed] = spsolve(elastic.matrix()[~fixed][:, ~fixed], pressure_forces(mesh)[~fixed])
+    k = INNER / OUTER
+    modulus = (2 * (1 - 2 * poisson) + (1 + poisson) * k**3) / ((1 + poisson) * (1 - 2 * poisson) * (1 - k**3))
+    error = displacement[2 * mesh.number[:, 0] + 1] * modulus - 1
+    return float(numpy.sqrt(numpy.average(error**2, weights=numpy.sin(mesh.angle))))
+
+
+def pressure_forces(mesh: Block) -> Numbers:
+    """Compute the nodal forces of a unit pressure on the bore, as unknowns u_φ and u_r."""
+    x, w = numpy.polynomial.legendre.leggauss(4)
+    if mesh.order == 1:
+        N, slope = numpy.stack([1 - x, 1 + x]) / 2, numpy.stack([-0.5 + 0 * x, 0.5 + 0 * x])
+    else:
+        N = numpy.stack([x * (x - 1) / 2, 1 - x * x, x * (x + 1) / 2])
+        slope = numpy.stack([x - 0.5, -2 * x, x + 0.5])
+    across, along = numpy.zeros(mesh.number.size), numpy.zeros(mesh.number.size)
+    for first in range(0, len(mesh.angle) - 1, mesh.order):
+        nodes = mesh.number[first : first + mesh.order + 1, 0]
+        rho, z = mesh.nodes[:, nodes]
+        ring = 2 * numpy.pi * (rho @ N) * w
+        across[nodes] += N @ (ring * -(z @ slope))
+        along[nodes] += N @ (ring * (rho @ slope))
+    return polar_components(ElasticBlock(block=mesh, young=numpy.ones(1), poisson=numpy.zeros(1)), across, along)
+
+
+CHECKS: Mapping[str, Callable[[], CheckResult]] = MappingProxyType(
     {
-        "closed-forms": closed_forms,
-        "balance": balance,
-        "slope-of-energy": slope_of_energy,
-        "hertz-limit": hertz_limit,
-        "own-tolerance": own_tolerance,
-        "along-the-axis": along_the_axis,
-        "patch-test": patch_test,
-        "order-of-elements": partial(order_of_elements, 0.4),
+        "closed-forms": check_closed_forms,
+        "balance": check_balance,
+        "slope-of-energy": check_slope_of_energy,
+        "hertz-limit": check_hertz_limit,
+        OWN_TOLERANCE: check_own_tolerance,
+        "along-the-axis": check_along_the_axis,
+        "patch-test": check_patch_test,
+        ORDER_OF_ELEMENTS: check_order_of_elements,
     }
 )
-"""By name."""
+"""Checks by name."""
+
+__getattr__ = renamed_names(__name__, {"Checked": "CheckResult"})

@@ -1,39 +1,105 @@
-"""Validation: numbers that others published, beside ours, with every input and which of them is assumed."""
+"""Comparators for validation: published numbers, our results, the inputs, and the applicability to a question."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import product
 from math import inf, sin
 from types import MappingProxyType
 from typing import Any
 
 from ..catalogue import reference
+from ..core.deprecation import renamed_names
 from ..models.half_space import Hertz
-from ..paper.claims import ELSEWHERE, judged
-from ..paper.claims.elsewhere import pressed
+from ..paper.claims import ELSEWHERE, Claim, judge
 from ..problem import Joint, Layer, Material
 from ..problem.presets import ALUMINA, COCR, TITANIUM, UHMWPE
-from .comparator import Comparator, reach_of
+from .applicability import Ranges, similarity_ranges
+
+MEASURED = "measured"
+"""Kind of a comparator with measurements."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Comparator:
+    """Published numbers compared with our results.
+
+    Attributes
+    ----------
+    name, title, source : str
+    read : str
+        Part of the source that was read.
+    kind : str
+        Method of the source: measured, or computed by others.
+    inputs, assumed : mapping of str to str
+        Published inputs, and inputs that we assumed.
+    published : mapping of str to str
+        Published numbers.
+    ours : mapping of str to tuple of float
+        Smallest and largest of our results over the assumed inputs, by name with unit; empty without a result.
+    reaches : mapping of str to tuple of float
+        Ranges of the joints in the numbers of `SIMILARITY`.
+    agreement : str
+        Summary of the agreement, with its gaps.
+    """
+
+    name: str
+    title: str
+    source: str
+    read: str
+    kind: str
+    inputs: Mapping[str, str]
+    assumed: Mapping[str, str]
+    published: Mapping[str, str]
+    agreement: str
+    ours: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    reaches: Ranges = field(default_factory=dict)
+
+    def summary(self) -> dict[str, Any]:
+        """Return one dictionary for JSON."""
+        return {
+            "name": self.name,
+            "title": self.title,
+            "source": self.source,
+            "read": self.read,
+            "kind": self.kind,
+            "inputs": dict(self.inputs),
+            "assumed": dict(self.assumed),
+            "published": dict(self.published),
+            "ours": {name: list(ends) for name, ends in self.ours.items()},
+            "reaches": {name: list(ends) for name, ends in self.reaches.items()},
+            "agreement": self.agreement,
+            "call": f"ballsocket.evidence.comparators.PUBLISHED[{self.name!r}]()",
+        }
+
 
 _DUROM = (
     "Finite elements of a resurfacing and a total hip, fixed to pelvis and femur, J Bone Joint Surg Br 88-B, Suppl III "
     "(proceedings), doi 10.1302/0301-620X.88BSUPP_III.0880383a"
 )
-_SHOWN = {"pole pressure, MPa": "pole_pressure", "largest pressure, MPa": "max_pressure", "contact area, mm²": "area"}
+_QUANTITIES = {
+    "pole pressure, MPa": "pole_pressure",
+    "largest pressure, MPa": "max_pressure",
+    "contact area, mm²": "area",
+}
 
 
-def _between(joints: Sequence[Joint], force: float) -> dict[str, tuple[float, float]]:
-    found = [reference.press(joint, force=force) for joint in joints]
-    return {title: _ends([getattr(contact, name) for contact in found]) for title, name in _SHOWN.items()}
+def _result_ranges(joints: Sequence[Joint], force: float) -> dict[str, tuple[float, float]]:
+    """Compute the ranges of our results over joints at a force in N."""
+    contacts = [reference.press(joint, force=force) for joint in joints]
+    return {
+        title: _value_range([getattr(contact, name) for contact in contacts]) for title, name in _QUANTITIES.items()
+    }
 
 
-def _ends(values: Sequence[Any]) -> tuple[float, float]:
+def _value_range(values: Sequence[Any]) -> tuple[float, float]:
+    """Return the smallest and the largest value."""
     return float(min(values)), float(max(values))
 
 
 def durom() -> Comparator:
-    """A resurfacing of cobalt-chromium on bone."""
+    """Compare our results with the published DUROM resurfacing: cobalt-chromium on bone."""
     joints = [
         Joint(
             head_diameter=50.0,
@@ -58,15 +124,15 @@ def durom() -> Comparator:
             "CoCr": str(COCR),
         },
         published={"largest pressure": "around 22 MPa", "contact area": "237 mm²"},
-        ours=_between(joints, 3200.0),
-        reaches=reach_of((joint, 3200.0) for joint in joints),
+        ours=_result_ranges(joints, 3200.0),
+        reaches=similarity_ranges((joint, 3200.0) for joint in joints),
         agreement="The pressure lies within what is assumed. The area is not explained: ours is an eighth to a third "
-        "smaller, whatever is assumed of wall and bone.",
+        "smaller, for every assumed wall and bone.",
     )
 
 
 def metasul() -> Comparator:
-    """A metal inlay in polyethylene."""
+    """Compare our results with the published METASUL inlay: metal in polyethylene."""
     joints = [
         Joint(
             head_diameter=28.0,
@@ -87,21 +153,21 @@ def metasul() -> Comparator:
         inputs={"head": "28 mm", "bore": "28.12 mm", "load": "3200 N", "material": "CoCr"},
         assumed={"wall of the inlay": "2 to 4 mm", "polyethylene behind": "3 to 5 mm", "CoCr": str(COCR)},
         published={"largest pressure": "about 47 MPa", "contact area": "74 mm²"},
-        ours=_between(joints, 3200.0),
-        reaches=reach_of((joint, 3200.0) for joint in joints),
+        ours=_result_ranges(joints, 3200.0),
+        reaches=similarity_ranges((joint, 3200.0) for joint in joints),
         agreement="Very sensitive to the wall, which is not published with these numbers: no agreement is claimed.",
     )
 
 
 def mak() -> Comparator:
-    """A ceramic insert, for which Hertz is said to do."""
+    """Compare Hertz' theory with our results for a ceramic insert, as the source does."""
     force, backings = 2500.0, ((), (Layer(thickness=3.0, material=TITANIUM),))
     joints = [
         Joint(ball_radius=radius, clearance=gap, liner_thickness=5.0, liner=ALUMINA, ball=ALUMINA, backing=backing)
         for radius, gap, backing in product((14.0, 18.0), (0.02, 0.04, 0.08), backings)
     ]
     pairs = [(reference.press(joint, force=force), Hertz().press(joint, force=force)) for joint in joints]
-    share = [
+    width = [
         float(joint.socket_radius) * sin(exact.half_angle) / 5.0
         for joint, (exact, _) in zip(joints, pairs, strict=True)
     ]
@@ -118,26 +184,26 @@ def mak() -> Comparator:
             "head": "28 and 36 mm",
             "radial clearance": "0.02 to 0.08 mm",
             "load": "2500 N",
-            "behind the insert": "nothing that gives way, or 3 mm of titanium",
+            "behind the insert": "rigid, or 3 mm of titanium",
             "ceramic": str(ALUMINA),
         },
         published={"contact": "small against head and insert", "largest pressure and area": "as Hertz estimates them"},
         ours={
-            "largest pressure of Hertz over ours": _ends(
+            "largest pressure of Hertz over ours": _value_range(
                 [hertz.max_pressure / exact.max_pressure for exact, hertz in pairs]
             ),
-            "area of Hertz over ours": _ends([hertz.area / exact.area for exact, hertz in pairs]),
-            "radius of the contact over the insert's thickness": _ends(share),
+            "area of Hertz over ours": _value_range([hertz.area / exact.area for exact, hertz in pairs]),
+            "radius of the contact over the insert's thickness": _value_range(width),
         },
-        reaches=reach_of((joint, force) for joint in joints),
-        agreement="An estimate it is: Hertz is up to a seventh low in pressure and a tenth high in area where nothing "
-        "behind the insert gives way, and nearer on titanium. The contact is as wide as the insert is thick at the "
-        "smallest clearance, so 'small' depends on what is assumed.",
+        reaches=similarity_ranges((joint, force) for joint in joints),
+        agreement="Hertz is an estimate: up to a seventh low in pressure and a tenth high in area with a rigid "
+        "backing, and closer on titanium. The contact is as wide as the insert is thick at the smallest clearance, so "
+        "'small' depends on the assumed inputs.",
     )
 
 
 def kurtz() -> Comparator:
-    """A liner of 3 to 12 mm in a metal shell."""
+    """Compare our results with published liners of 3 to 12 mm in a metal shell."""
     force, thick = 2500.0, (3.0, 12.0)
     sets = [
         [
@@ -165,21 +231,21 @@ def kurtz() -> Comparator:
             "stress by direction of the load": "varies by about 20 %",
             "stress by friction of the shell": "varies by 1 to 10 %",
         },
-        ours={"largest pressure of 3 mm over that of 12 mm": _ends([thin / full for thin, full in pressures])},
-        reaches=reach_of((joint, force) for pair in sets for joint in pair),
-        agreement="Thickness matters most there, and here; ours varies by less, 41 to 69 %. Head, clearance, load and "
-        "moduli are not in the abstract, and their load is tilted: no agreement in numbers is claimed.",
+        ours={"largest pressure of 3 mm over that of 12 mm": _value_range([thin / full for thin, full in pressures])},
+        reaches=similarity_ranges((joint, force) for pair in sets for joint in pair),
+        agreement="Thickness has the largest influence in both; ours varies by less, 41 to 69 %. Head, clearance, "
+        "load and moduli are not in the abstract, and their load is tilted: no agreement in numbers is claimed.",
     )
 
 
 def anderson() -> Comparator:
-    """Cartilage of a natural hip, which no lined socket stands for."""
+    """State the published numbers of the cartilage of a natural hip, which is not a lined socket."""
     return Comparator(
         name="anderson",
         title="Natural hip: cartilage on bone, pressure film",
         source="Anderson et al. 2008, J. Biomech. Eng. 130, 051008, doi 10.1115/1.2953472",
         read="abstract",
-        kind="measured, and computed by others",
+        kind=f"{MEASURED}, and computed by others",
         inputs={"hip": "one cadaver, its own shape", "loads": "walking, stairs up and down, after loads in vivo"},
         assumed={},
         published={
@@ -190,13 +256,13 @@ def anderson() -> Comparator:
             "mean pressure, computed": "5.1 to 6.2 MPa",
             "contact area, computed": "304 to 366 mm²",
         },
-        agreement="Not computed here: cartilage of varying thickness between bones that are not round is no lined "
-        "socket. It shows how far two good methods are apart on such a joint, and what a film that saturates hides.",
+        agreement="Not computed here: cartilage of varying thickness between bones that are not round is not a lined "
+        "socket. The numbers show the difference of two good methods on such a joint, and the limit of a film.",
     )
 
 
 def ptfe() -> Comparator:
-    """A bearing lined with PTFE, whose limit is a permanent set."""
+    """State the limits of a bearing with a PTFE liner: a permanent set."""
     return Comparator(
         name="ptfe",
         title="Spherical bearings lined with PTFE: static limit loads",
@@ -208,24 +274,38 @@ def ptfe() -> Comparator:
         assumed={},
         published={"permanent set at the radial limit": "at most 0.076 mm", "at the axial limit": "at most 0.127 mm"},
         ours={"nominal strain at the radial limit, %": (100 * 482 / _PTFE, 100 * 541 / _PTFE)},
-        agreement="Not comparable: a permanent set is not elastic, and at that load a linear liner would be strained "
-        "by a sixth. It says where our models end, not how good they are before.",
+        agreement="Not comparable: a permanent set is not elastic, and at that load the strain of a linear liner would "
+        "be a sixth. The limit shows the end of the range of our models, not their accuracy within it.",
     )
 
 
 _PTFE = 4.5e5 * 6.894757e-3
-"""MPa."""
+"""Young's modulus of PTFE in MPa."""
 
 PUBLISHED: Mapping[str, Callable[[], Comparator]] = MappingProxyType(
-    {each.__name__: each for each in (durom, metasul, mak, kurtz, anderson, ptfe)}
+    {make.__name__: make for make in (durom, metasul, mak, kurtz, anderson, ptfe)}
 )
-"""By name; those whose inputs were published whole are among the claims of `paper.claims`."""
+"""Comparators by name. Publications that state all inputs are among the claims of `paper.claims`."""
 
-CLAIMS = MappingProxyType({claim.__name__: claim for claim in ELSEWHERE})
+CLAIMS: Mapping[str, Claim] = MappingProxyType({row.identifier: row for row in ELSEWHERE})
+"""Claims of other authors, by identifier."""
 
 
 def claim(name: str) -> dict[str, Any]:
-    """What others found, with a verdict and over which joints it reaches, as one dictionary for JSON."""
-    found = judged(CLAIMS[name], reference).summary()
-    reaches = {group: list(ends) for group, ends in reach_of([pressed()[name]]).items()}
-    return {**found, "reaches": reaches, "call": f"ballsocket.evidence.comparators.claim({name!r})"}
+    """Judge a claim of other authors, with the ranges of its joints; return one dictionary for JSON."""
+    row = CLAIMS[name]
+    assert row.joints is not None
+    ranges = {group: list(ends) for group, ends in similarity_ranges([row.joints()]).items()}
+    call = f"ballsocket.evidence.comparators.claim({name!r})"
+    return {**judge(row, reference).summary(), "reaches": ranges, "call": call}
+
+
+_APPLICABILITY = "ballsocket.evidence.applicability"
+__getattr__ = renamed_names(
+    __name__,
+    {
+        "applicability": f"{_APPLICABILITY}.applicability",
+        "between": f"{_APPLICABILITY}.range_text",
+        "reach_of": f"{_APPLICABILITY}.similarity_ranges",
+    },
+)

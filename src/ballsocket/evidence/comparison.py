@@ -16,15 +16,28 @@ from pathlib import Path
 from typing import Any
 
 from ..core.checks import shown
+from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.fingerprint import fingerprint
-from .folder import PAGE, QUESTION, RECORD, SIGNATURE, SUMS, PageMaker, digest, names_of, page_bytes, sums_bytes
-from .folder import record_bytes as canonical
-from .inputs import DRAWING, STATED, made_with
-from .pack import Listener, gathered, silent
+from .folder import (
+    MAX_FILE_SIZE,
+    PAGE,
+    QUESTION,
+    RECORD,
+    SIGNATURE,
+    SUMS,
+    PageMaker,
+    digest,
+    names_of,
+    page_bytes,
+    read_checksums,
+    read_record,
+    record_bytes,
+    sums_bytes,
+)
+from .pack import DRAWING, STATED, Listener, gather_evidence, ignore_progress, made_with
 from .question import read_question
-from .requirements import assessed
-from .signature import PublicKey, SignatureError, verify
+from .requirements import assess
 
 RELATIVE_TOLERANCE = 1e-9
 """Largest relative difference between the numbers of two machines."""
@@ -36,17 +49,17 @@ _OBSERVED_TOLERANCE = 1e-3
 _STATED = ("version", "made_with", "made_on")
 """Entries that no computation can confirm; only a signature covers them."""
 
-_JUDGED = ("credibility", "requirements", "adequacy")
+_DERIVED = ("credibility", "requirements", "adequacy")
 """Entries that follow from the other entries of the record and are derived again."""
 
-_MAX_FILES, _MAX_SIZE = 200, 1 << 26
+_MAX_FILES = 200
 
-_HERE = Serial()
+_SERIAL = Serial()
 
 
 @dataclass(frozen=True)
 class Difference:
-    """One difference between a pack and this version's results, with the reason where values do not show it."""
+    """Difference between a pack and the results of this version, with a reason that the values do not show."""
 
     where: str
     written: Any
@@ -58,6 +71,7 @@ class Difference:
         return {"where": self.where, "written": self.written, "now": self.now, "reason": self.reason}
 
     def __str__(self) -> str:
+        """Return the difference as one line of text."""
         return f"{self.where}: {self.reason or f'written {shown(self.written)}, now {shown(self.now)}'}"
 
 
@@ -86,23 +100,12 @@ class PackComparison:
     sums: bytes
 
 
-@dataclass(frozen=True)
-class Signed:
-    """A valid signature: its key, and True for the expected key or None without one."""
-
-    key: PublicKey
-    expected: bool | None
-
-    def summary(self) -> dict[str, Any]:
-        """Return one dictionary for JSON."""
-        return {"fingerprint": self.key.fingerprint, "verified": self.expected}
-
-
+@renamed_arguments(listen="progress")
 def compare(
     folder: Path,
     page: PageMaker,
-    listen: Listener = silent,
-    engine: Engine = _HERE,
+    progress: Listener = ignore_progress,
+    engine: Engine = _SERIAL,
 ) -> PackComparison:
     """Compare a pack with the results of this version for its question.
 
@@ -114,7 +117,7 @@ def compare(
     folder : Path
     page : callable
         Page maker for a record and a digest.
-    listen : callable
+    progress : callable
         Called with the name of each completed part.
     engine : Engine
 
@@ -125,11 +128,11 @@ def compare(
     OSError
         A file cannot be read.
     """
-    contents, strange = _read_files(folder)
+    contents, foreign = _read_files(folder)
     if QUESTION not in contents:
         raise ValueError(f"{folder} holds no pack of evidence: {QUESTION} is missing")
-    listed = _listed(folder, contents)
-    record = _record(folder, contents)
+    checksums = read_checksums(folder, contents)
+    record = read_record(folder, contents)
     with tempfile.TemporaryDirectory() as copy:
         for name, content in contents.items():
             path = Path(copy, name)
@@ -137,19 +140,19 @@ def compare(
             path.write_bytes(content)
         question = read_question(Path(copy, QUESTION))
         names = names_of(question)
-        again = json.loads(canonical(gathered(question, Path(copy, "computed.anew"), listen, engine)))
+        again = json.loads(record_bytes(gather_evidence(question, Path(copy, "computed.anew"), progress, engine)))
     files = {name: contents[name] for name in names if name in contents}
     outside = [name for name in contents if name not in {*names, SUMS, SIGNATURE}]
-    differences = [*strange, *(Difference(name, "present", "absent", _STRANGE) for name in sorted(outside))]
-    differences += _folders(folder, {*names, SUMS, SIGNATURE})
-    differences += _sums(listed, names, files, contents[SUMS])
+    differences = [*foreign, *(Difference(name, "present", "absent", _FOREIGN) for name in sorted(outside))]
+    differences += _foreign_folders(folder, {*names, SUMS, SIGNATURE})
+    differences += _compare_checksums(checksums, names, files, contents[SUMS])
     pairs = [
         pair
         for name in {**again, **record}
-        if name not in (*_STATED, *_JUDGED)
-        for pair in _pairs(record.get(name, _ABSENT), again.get(name, _ABSENT), name)
+        if name not in (*_STATED, *_DERIVED)
+        for pair in _leaf_pairs(record.get(name, _ABSENT), again.get(name, _ABSENT), name)
     ]
-    differences += [pair for pair in pairs if not _same(pair, again)]
+    differences += [pair for pair in pairs if not _agrees(pair, again)]
     try:
         differences += contradictions(record, files, page)
     except Exception as error:  # a crafted record may break any line that draws it
@@ -157,7 +160,7 @@ def compare(
             Difference(RECORD, "a record", "no record", f"no page can be made of it ({shown(str(error))})")
         )
     return PackComparison(
-        count=len(pairs) + len(listed),
+        count=len(pairs) + len(checksums),
         differences=tuple(differences),
         digest=digest(files),
         made_by=str(record.get("version", "unknown")),
@@ -165,40 +168,8 @@ def compare(
     )
 
 
-_STRANGE = "does not belong to the pack"
+_FOREIGN = "does not belong to the pack"
 _ABSENT = "absent"
-
-
-def signature_of(folder: Path, expected: PublicKey | None = None, sums: bytes | None = None) -> Signed | None:
-    """Verify the signature of a pack; return None for an unsigned pack where no key is expected.
-
-    Parameters
-    ----------
-    folder : Path
-    expected : PublicKey, optional
-    sums : bytes, optional
-        Content of the checksum file that was compared; read from the folder by default.
-
-    Raises
-    ------
-    SignatureError
-        A signature that is invalid, of another key, or missing although a key is expected.
-    ImportError
-        The library of signatures is missing.
-    OSError
-        A file cannot be read.
-    """
-    path = folder / SIGNATURE
-    if not path.is_file():
-        if expected is not None:
-            raise SignatureError(f"{SIGNATURE} is missing: the pack is not signed")
-        return None
-    if path.is_symlink() or path.stat().st_size > _MAX_SIZE:
-        raise SignatureError(f"{SIGNATURE} must be a regular file of at most {_MAX_SIZE} bytes")
-    key = verify((folder / SUMS).read_bytes() if sums is None else sums, path.read_bytes())
-    if expected is not None and key != expected:
-        raise SignatureError(f"the signature is by another key, {key.fingerprint}, not by {expected.fingerprint}")
-    return Signed(key, None if expected is None else True)
 
 
 def contradictions(record: Mapping[str, Any], files: Mapping[str, bytes], page: PageMaker) -> Iterator[Difference]:
@@ -209,28 +180,25 @@ def contradictions(record: Mapping[str, Any], files: Mapping[str, bytes], page: 
     Exception
         A record with missing or unknown entries.
     """
-    if files.get(RECORD) != canonical(record):
+    if files.get(RECORD) != record_bytes(record):
         yield Difference(
             RECORD, "another form", "one form", "differs from the canonical form of its record: the file was edited"
         )
-    yield from _stated(record)
+    yield from _check_stated_entries(record)
     if record.get("version") != fingerprint():
-        reason = f"cannot be verified by this version of ballsocket, {fingerprint()}: the pack is of {_short(record)}"
-        yield Difference("version", record.get("version"), fingerprint(), reason)
+        made_by = record.get("version")
+        reason = f"cannot be verified by this version of ballsocket, {fingerprint()}: the pack is of {shown(made_by)}"
+        yield Difference("version", made_by, fingerprint(), reason)
         return
-    for name, part in assessed(record).items():
-        for pair in _pairs(record.get(name, _ABSENT), json.loads(json.dumps(part)), name):
-            if not _same(pair, record):
+    for name, part in assess(record).items():
+        for pair in _leaf_pairs(record.get(name, _ABSENT), json.loads(json.dumps(part)), name):
+            if not _agrees(pair, record):
                 yield pair
     if PAGE in files:
         yield from _compare_pages(files[PAGE], page_bytes(page(record, digest(files))), record)
 
 
-def _short(record: Mapping[str, Any]) -> str:
-    return shown(record.get("version"))
-
-
-def _stated(record: Mapping[str, Any]) -> Iterator[Difference]:
+def _check_stated_entries(record: Mapping[str, Any]) -> Iterator[Difference]:
     """Check the form of entries that cannot be computed: a past date, names and versions of libraries."""
     try:
         day = date.fromisoformat(record["made_on"])
@@ -248,6 +216,7 @@ _VERSION = re.compile(r"[\w.+~-]{1,30}( [\w.-]{1,20})?", re.ASCII)
 
 
 def _is_version(text: Any) -> bool:
+    """Check the form of a version of a library."""
     return isinstance(text, str) and _VERSION.fullmatch(text) is not None
 
 
@@ -272,19 +241,21 @@ def _compare_pages(written: bytes, drawn: bytes, record: Mapping[str, Any]) -> I
 _FIGURE = re.compile(rb"(?<=src='data:image/svg\+xml;base64,)[A-Za-z0-9+/=]*(?=')")
 
 
-def _position(written: bytes, drawn: bytes) -> int:
+def _first_difference(written: bytes, drawn: bytes) -> int:
     """Return the index of the first byte that differs."""
     pairs = enumerate(zip(written, drawn, strict=False))
     return next((index for index, (first, second) in pairs if first != second), min(len(written), len(drawn)))
 
 
 def _excerpt(page: bytes, compared: bytes) -> str:
-    position = _position(page, compared)
+    """Return the text of a page around the first difference."""
+    position = _first_difference(page, compared)
     return page[max(0, position - 20) : position + 40].decode("utf-8", "replace")
 
 
 def _describe_position(written: bytes, drawn: bytes) -> str:
-    position = _position(written, drawn)
+    """Describe the first difference of two pages."""
+    position = _first_difference(written, drawn)
     figures = [match.span() for match in _FIGURE.finditer(drawn)]
     inside = [number for number, (start, end) in enumerate(figures, 1) if start <= position < end]
     if inside:
@@ -296,54 +267,39 @@ def _describe_position(written: bytes, drawn: bytes) -> str:
 def _read_files(folder: Path) -> tuple[dict[str, bytes], list[Difference]]:
     """Read every regular file of a folder; list links and devices without opening them."""
     contents: dict[str, bytes] = {}
-    strange: list[Difference] = []
+    foreign: list[Difference] = []
     if not (folder / SUMS).is_file():
         raise ValueError(f"{folder} holds no pack of evidence: {SUMS} is missing")
     for parent, folders, names in os.walk(folder):
         for name in [*names, *(name for name in folders if Path(parent, name).is_symlink())]:
             path = Path(parent, name)
             inside, mode = path.relative_to(folder).as_posix(), path.lstat()
-            if len(contents) + len(strange) >= _MAX_FILES:
+            if len(contents) + len(foreign) >= _MAX_FILES:
                 raise ValueError(f"{folder} holds more than {_MAX_FILES} files: a pack of evidence has fewer")
             if stat.S_ISLNK(mode.st_mode):
-                strange.append(Difference(inside, "a link", "a file", "is a symbolic link: a pack holds files only"))
-            elif not stat.S_ISREG(mode.st_mode) or mode.st_size > _MAX_SIZE:
-                strange.append(Difference(inside, "present", "absent", _STRANGE))
+                foreign.append(Difference(inside, "a link", "a file", "is a symbolic link: a pack holds files only"))
+            elif not stat.S_ISREG(mode.st_mode) or mode.st_size > MAX_FILE_SIZE:
+                foreign.append(Difference(inside, "present", "absent", _FOREIGN))
             else:
                 contents[inside] = path.read_bytes()
-    return contents, strange
+    return contents, foreign
 
 
-def _folders(folder: Path, names: set[str]) -> Iterator[Difference]:
-    """List the folders without a file of the pack."""
+def _foreign_folders(folder: Path, names: set[str]) -> Iterator[Difference]:
+    """Yield the folders that contain no file of the pack."""
     parents = {parent.as_posix() for name in names for parent in Path(name).parents}
     for parent, folders, _ in os.walk(folder):
         for path in (Path(parent, name) for name in sorted(folders)):
             inside = path.relative_to(folder).as_posix()
             if inside not in parents and not path.is_symlink():
-                yield Difference(inside, "present", "absent", "does not belong to the pack")
+                yield Difference(inside, "present", "absent", _FOREIGN)
 
 
-def _listed(folder: Path, contents: Mapping[str, bytes]) -> list[tuple[str, str]]:
-    """Read names and checksums from the checksum file."""
-    if SUMS not in contents:
-        raise ValueError(f"{folder} holds no pack of evidence: {SUMS} is not a file")
-    try:
-        lines = contents[SUMS].decode("utf-8").splitlines()
-    except UnicodeDecodeError as error:
-        raise ValueError(f"{folder} holds no pack of evidence: {SUMS} is not text") from error
-    listed = [(name, checksum) for checksum, _, name in (line.partition("  ") for line in lines)]
-    for name, _ in listed:
-        if not name or Path(name).is_absolute() or ".." in Path(name).parts:
-            raise ValueError(f"{SUMS} names {shown(name)}, which is not a file of the pack")
-    return listed
-
-
-def _sums(
-    listed: list[tuple[str, str]], names: list[str], files: Mapping[str, bytes], written: bytes
+def _compare_checksums(
+    checksums: list[tuple[str, str]], names: list[str], files: Mapping[str, bytes], written: bytes
 ) -> list[Difference]:
-    """Compare the checksums with the files, and the checksum file with its canonical form."""
-    sums = dict(listed)
+    """Return the differences of the checksums from the files, and of the checksum file from its canonical form."""
+    sums = dict(checksums)
     both = [*sums, *(name for name in names if name not in sums)]
     now = {name: sha256(files[name]).hexdigest() if name in files else "missing" for name in both}
     stated = {name: sums.get(name, "not listed") for name in both}
@@ -354,31 +310,22 @@ def _sums(
     return wrong
 
 
-def _record(folder: Path, contents: Mapping[str, bytes]) -> dict[str, Any]:
-    try:
-        record = json.loads(contents[RECORD].decode("utf-8"))
-    except (KeyError, ValueError, RecursionError) as error:
-        raise ValueError(f"{folder} holds no pack of evidence: {RECORD} cannot be read") from error
-    if not isinstance(record, dict):
-        raise ValueError(f"{RECORD} holds no record")
-    return record
-
-
-def _pairs(written: Any, now: Any, where: str) -> Iterator[Difference]:
-    """Yield every leaf of both records as a pair."""
+def _leaf_pairs(written: Any, now: Any, where: str) -> Iterator[Difference]:
+    """Yield the values of two records in pairs, one for each entry without subentries."""
     if isinstance(now, dict) and isinstance(written, dict):
         for name in sorted({*now, *written}):
-            yield from _pairs(written.get(name, _ABSENT), now.get(name, _ABSENT), f"{where}.{name}")
+            yield from _leaf_pairs(written.get(name, _ABSENT), now.get(name, _ABSENT), f"{where}.{name}")
         if list(now) != list(written) and set(now) == set(written):
             yield Difference(where, list(written), list(now), "has its keys in another order")
     elif isinstance(now, list) and isinstance(written, list) and len(now) == len(written):
         for index, (old, new) in enumerate(zip(written, now, strict=True)):
-            yield from _pairs(old, new, f"{where}[{index}]")
+            yield from _leaf_pairs(old, new, f"{where}[{index}]")
     else:
         yield Difference(where, written, now)
 
 
-def _same(pair: Difference, computed: Mapping[str, Any]) -> bool:
+def _agrees(pair: Difference, computed: Mapping[str, Any]) -> bool:
+    """Check that the two values of a pair are equal, numbers within a tolerance."""
     if pair.reason or type(pair.written) is not type(pair.now):
         return False
     if not isinstance(pair.now, float):
@@ -392,3 +339,8 @@ def _same(pair: Difference, computed: Mapping[str, Any]) -> bool:
 
 
 _OBSERVED = re.compile(r"code_verification\[(\d+)\]\.observed")
+
+
+__getattr__ = renamed_names(
+    __name__, {name: f"ballsocket.evidence.folder.{name}" for name in ("Signed", "signature_of")}
+)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..core.checks import shown
 from ..core.storage.atomic_files import is_draft_folder, write_atomically
 from .question import Question
-from .signature import sign
+from .signature import PublicKey, SignatureError, sign, verify
 
 if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
@@ -27,6 +28,9 @@ _RESERVED = {name.casefold() for name in (QUESTION, RECORD, PAGE, SUMS, SIGNATUR
 
 _HASH_LENGTH = 64 + len("  ")
 """Characters before the name in a line of the checksums."""
+
+MAX_FILE_SIZE = 1 << 26
+"""Largest size of a file of a pack in bytes."""
 
 PageMaker = Callable[[Mapping[str, Any], str], str]
 """Function from a record and the digest of the pack to the page."""
@@ -49,8 +53,8 @@ def write(question: Question, record: Mapping[str, Any], page: PageMaker, folder
     contents[PAGE] = page_bytes(page(json.loads(contents[RECORD]), digest(contents)))
     (folder / SIGNATURE).unlink(missing_ok=True)
     for name, content in contents.items():
-        _write(folder / name, content)
-    _write(folder / SUMS, sums_bytes(contents))
+        _write_file(folder / name, content)
+    _write_file(folder / SUMS, sums_bytes(contents))
     return folder / PAGE
 
 
@@ -107,26 +111,98 @@ def digest_of(folder: Path) -> str:
 def sign_pack(folder: Path, key: Ed25519PrivateKey, sums: bytes | None = None) -> Path:
     """Sign the checksums of a pack, or compared bytes of them, and write the signature file."""
     message = (folder / SUMS).read_bytes() if sums is None else sums
-    return _write(folder / SIGNATURE, sign(message, key).encode())
+    return _write_file(folder / SIGNATURE, sign(message, key).encode())
 
 
-def check_room(folder: Path, question: Question) -> None:
+def read_checksums(folder: Path, contents: Mapping[str, bytes]) -> list[tuple[str, str]]:
+    """Read names and checksums from the checksum file."""
+    if SUMS not in contents:
+        raise ValueError(f"{folder} holds no pack of evidence: {SUMS} is not a file")
+    try:
+        lines = contents[SUMS].decode("utf-8").splitlines()
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{folder} holds no pack of evidence: {SUMS} is not text") from error
+    listed = [(name, checksum) for checksum, _, name in (line.partition("  ") for line in lines)]
+    for name, _ in listed:
+        if not name or Path(name).is_absolute() or ".." in Path(name).parts:
+            raise ValueError(f"{SUMS} names {shown(name)}, which is not a file of the pack")
+    return listed
+
+
+def read_record(folder: Path, contents: Mapping[str, bytes]) -> dict[str, Any]:
+    """Read the record of a pack."""
+    try:
+        record = json.loads(contents[RECORD].decode("utf-8"))
+    except (KeyError, ValueError, RecursionError) as error:
+        raise ValueError(f"{folder} holds no pack of evidence: {RECORD} cannot be read") from error
+    if not isinstance(record, dict):
+        raise ValueError(f"{RECORD} holds no record")
+    return record
+
+
+@dataclass(frozen=True)
+class Signed:
+    """Valid signature: its key, and True for the expected key or None without one."""
+
+    key: PublicKey
+    expected: bool | None
+
+    def summary(self) -> dict[str, Any]:
+        """Return one dictionary for JSON."""
+        return {"fingerprint": self.key.fingerprint, "verified": self.expected}
+
+
+def signature_of(folder: Path, expected: PublicKey | None = None, sums: bytes | None = None) -> Signed | None:
+    """Verify the signature of a pack; return None for an unsigned pack where no key is expected.
+
+    Parameters
+    ----------
+    folder : Path
+    expected : PublicKey, optional
+    sums : bytes, optional
+        Content of the checksum file that was compared; read from the folder by default.
+
+    Raises
+    ------
+    SignatureError
+        A signature that is invalid, of another key, or missing although a key is expected.
+    ImportError
+        The library of signatures is missing.
+    OSError
+        A file cannot be read.
+    """
+    path = folder / SIGNATURE
+    if not path.is_file():
+        if expected is not None:
+            raise SignatureError(f"{SIGNATURE} is missing: the pack is not signed")
+        return None
+    if path.is_symlink() or path.stat().st_size > MAX_FILE_SIZE:
+        raise SignatureError(f"{SIGNATURE} must be a regular file of at most {MAX_FILE_SIZE} bytes")
+    key = verify((folder / SUMS).read_bytes() if sums is None else sums, path.read_bytes())
+    if expected is not None and key != expected:
+        raise SignatureError(f"the signature is by another key, {key.fingerprint}, not by {expected.fingerprint}")
+    return Signed(key, None if expected is None else True)
+
+
+def check_folder(folder: Path, question: Question) -> None:
     """Raise ValueError for a folder with files that do not belong to the pack."""
     names = {*names_of(question), SUMS, SIGNATURE}
     expected = {*names, WORK, *(parent.as_posix() for name in names for parent in Path(name).parents)}
     present = [path.name for path in folder.iterdir()] if folder.is_dir() else []
-    unexpected = sorted(name for name in present if name not in _tops(expected) and not is_draft_folder(name))
+    unexpected = sorted(name for name in present if name not in _top_names(expected) and not is_draft_folder(name))
     if unexpected:
         raise ValueError(
             f"{folder} holds other files ({shown(unexpected[0])}): a pack needs an empty folder, choose another --out"
         )
 
 
-def _tops(names: set[str]) -> set[str]:
+def _top_names(names: set[str]) -> set[str]:
+    """Return the first part of each path."""
     return {name.split("/")[0] for name in names}
 
 
-def _write(path: Path, content: bytes) -> Path:
+def _write_file(path: Path, content: bytes) -> Path:
+    """Write a file atomically."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with write_atomically(path) as draft:
         draft.write_bytes(content)

@@ -1,14 +1,17 @@
-"""Wear of hips as it was measured beside what the laws say of it, with every input told."""
+"""Published wear of hips, and the predictions of the wear laws for the same tests and patients."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import radians
+from types import MappingProxyType
+from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.deprecation import renamed_fields, renamed_names
 from ..hip.bands import DEFAULT_LEVEL
 from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
@@ -23,24 +26,111 @@ from ..problem import Joint, Material
 from ..problem.cup import Cup
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 
+
+@renamed_fields(what="description", off="half_width")
+@dataclass(frozen=True, kw_only=True)
+class Published:
+    """Published wear or penetration.
+
+    Attributes
+    ----------
+    description : str
+        Test or patients.
+    value : float
+    unit : str
+    source : str
+    half_width : float
+        Half the width of the interval of `spread`; 0 without one.
+    spread : str
+        Kind of the interval: a confidence level, the deviation or the range.
+    read : str
+        Part of the source that was read.
+    """
+
+    description: str
+    value: float
+    unit: str
+    source: str
+    half_width: float = 0.0
+    spread: str = ""
+    read: str = "abstract"
+
+    def __str__(self) -> str:
+        """Return the value with its half width."""
+        return f"{self.value:g} ± {self.half_width:g}" if self.half_width else f"{self.value:g}"
+
+
+_CLARKE = "Clarke et al., ceramic heads of different sizes on polyethylene"
+_ALI = "Ali et al., Bone Joint J Orthop Proc"
+_COOPER = "Cooper et al. 2023, Orthop Proc 105-B SUPP 9"
+_JOGGING = "Bioengineering 2025, 12, 663"
+_RSA = "10-year radiostereometry, 10.1080/17453674.2021.1932140"
+_MCCALDEN = "McCalden et al. 2009, 10.2106/JBJS.H.00244"
+_RATE = "mm3/Mc"
+
+_LACHIEWICZ = "Lachiewicz et al. 2009, 10.1007/s11999-009-1038-9"
+
+
+def _published(description: str, value: float, unit: str, source: str, **details: Any) -> Published:
+    """Create one row of the table of published numbers."""
+    return Published(description=description, value=value, unit=unit, source=source, **details)
+
+
+PUBLISHED: Mapping[str, Published] = MappingProxyType(
+    {
+        "clarke-22": _published("22 mm, serum, 2 kN", 23, _RATE, _CLARKE),
+        "clarke-28": _published("28 mm, serum, 2 kN", 32, _RATE, _CLARKE),
+        "ali-45": _published("36 mm, cup at 45°", 12.8, _RATE, _ALI, half_width=3.8, spread="95 %"),
+        "ali-65": _published("36 mm, cup at 65°", 15.4, _RATE, _ALI, half_width=5.0, spread="95 %"),
+        "ali-45-off": _published("36 mm, 45°, centres 4 mm off", 21.5, _RATE, _ALI, half_width=5.5, spread="95 %"),
+        "ali-65-off": _published("36 mm, 65°, centres 4 mm off", 23.0, _RATE, _ALI, half_width=5.7, spread="95 %"),
+        "cooper": _published("ISO 14242-1", 12.5, _RATE, _COOPER),
+        "cooper-off": _published("then ISO 14242-4", 22.3, _RATE, _COOPER),
+        "walking": _published("ISO walking", 15.24, _RATE, _JOGGING, half_width=0.55, spread="deviation"),
+        "jogging": _published("a patient's jogging", 28.68, _RATE, _JOGGING, half_width=0.88, spread="deviation"),
+        "saikko": _published("32 mm zirconia, distilled water", 4.1, "mg/Mc", "Saikko 1994, Wear 176, 207"),
+        "rsa-bedding": _published("conventional, first 3 months", 0.39, "mm", _RSA),
+        "rsa-rate": _published("conventional, 3 months to 10 years", 0.12, "mm/year", _RSA),
+        "rsa-bedding-linked": _published("cross-linked, first 3 months", 0.21, "mm", _RSA),
+        "rsa-rate-linked": _published("cross-linked, 3 months to 10 years", 0.02, "mm/year", _RSA),
+        "mccalden-linked": _published(
+            "cross-linked, years 1 to 5", 0.003, "mm/year", _MCCALDEN, half_width=0.027, spread="95 %"
+        ),
+        "teeter": _published(
+            "conventional 28 mm, after bedding-in", 0.051, "mm/year", "Teeter 2017", read="second hand"
+        ),
+        "callary": _published(
+            "cross-linked, 12 cohorts",
+            0.03,
+            "mm/year",
+            "Callary et al. 2015, 10.3109/17453674.2014.972890",
+            half_width=0.03,
+            spread="range",
+        ),
+        "lachiewicz": _published("cross-linked, median", 0.028, "mm/year", _LACHIEWICZ),
+        "lachiewicz-volume": _published("cross-linked, median", 25.6, "mm3/year", _LACHIEWICZ),
+    }
+)
+"""Published numbers by name. The test conditions are those of the sources."""
+
 CONVENTIONAL, LINKED = 1.066e-6, 2e-7
-"""k in mm³/(N m); for cross-linked polyethylene 1e-7 to 4e-7 are told."""
+"""Wear factors k in mm³/(N m); published for cross-linked polyethylene: 1e-7 to 4e-7."""
 
 STEPS, YEAR = 1.5e6, 365.25 * 86400.0
-"""Of the usual patient in a year; seconds in one."""
+"""Steps of the mean patient per year, and seconds per year."""
 
 INPUTS = (
     "E 1 GPa, ν 0.4, clearance 0.1 mm, the paper's springs; liners of 8 mm (28 mm), 10.9 mm (22 mm), 6 mm (36 mm), "
     "7 mm (32 mm)",
     "k = 1.066e-6 mm³/(N m) for conventional polyethylene, 2e-7 for cross-linked, each within a factor of 1.5 (one "
     "standard deviation); clearance 0.05 to 0.2 mm",
-    "simulators: the cycle by its name, a cup tilted by 30° from the load in walking, by 0° in rocking; a cup told as "
+    "simulators: the cycle by its name, a cup tilted by 30° from the load in walking, by 0° in rocking; a cup stated "
     "at 45° and 65° by 30° and 50°, since the load of a hip leans by some 15°",
     "patients: ISO 14242-1 for every step, 1.5 million steps a year within a factor of 1.5, a body weight of "
-    "780 ± 130 N around the cycle's own force, a tilt of 30 ± 7°, heads of 28 mm; creep by the logarithmic "
+    "780 ± 130 N around the force of the cycle; a tilt of 30 ± 7°, heads of 28 mm; creep by the logarithmic "
     "law, not verified",
 )
-"""What was put in where the sources do not tell it: nearly all of it."""
+"""Assumed inputs: the sources state only a few."""
 
 _LINERS = {22.225: 10.9, 28.0: 8.0, 32.0: 7.0, 36.0: 6.0}
 _K = LogNormal(median=1.0, factor=1.5)
@@ -48,8 +138,8 @@ _CLEARANCE = Rectangular(low=0.05, high=0.2)
 PATIENTS = 64
 
 
-def in_use(diameter: float, cycle: Cycle, tilt_deg: float = 30.0, wear: WearLaw | None = None) -> HipSimulation:
-    """A hip of a head of this diameter in mm, with the rest of `INPUTS`."""
+def make_hip(diameter: float, cycle: Cycle, tilt_deg: float = 30.0, wear: WearLaw | None = None) -> HipSimulation:
+    """Create the simulation of a hip with a head diameter in mm and the assumed inputs."""
     joint = Joint(
         ball_radius=diameter / 2,
         clearance=0.1,
@@ -62,12 +152,12 @@ def in_use(diameter: float, cycle: Cycle, tilt_deg: float = 30.0, wear: WearLaw 
 
 @dataclass(frozen=True, kw_only=True)
 class Predicted:
-    """A prediction with its band.
+    """Predicted number with its band of 95 %.
 
     Attributes
     ----------
     name : str
-        Of what was `PUBLISHED`.
+        Name in `PUBLISHED`.
     low, median, high : float
     """
 
@@ -77,54 +167,56 @@ class Predicted:
     high: float
 
 
+@renamed_fields(one="numerator", other="denominator")
 @dataclass(frozen=True, kw_only=True)
 class Ratio:
-    """A measured rate over another, and what the laws say of it, whatever their coefficients are.
+    """Ratio of two measured wear rates, as the laws predict it independently of their coefficients.
 
     Attributes
     ----------
-    one, other : str
-        Names of what was `PUBLISHED`.
+    numerator, denominator : str
+        Names in `PUBLISHED`.
     archard : float
+        Ratio by Archard's law.
     area : float, optional
-        By the area law.
+        Ratio by the area law.
     """
 
-    one: str
-    other: str
+    numerator: str
+    denominator: str
     archard: float
     area: float | None = None
 
 
 def ratios() -> Iterator[Ratio]:
-    """The ratios of rates of unworn bores."""
+    """Compute ratios of the wear rates of unworn bores."""
     walk, off = iso_14242_1(), iso_14242_4()
     area = ContactAreaWear(coefficient=1e-6)
-    rocked = [in_use(28.0, rocking(), 0.0), in_use(22.225, rocking(), 0.0)]
+    rocking_hips = [make_hip(28.0, rocking(), 0.0), make_hip(22.225, rocking(), 0.0)]
     yield Ratio(
-        one="clarke-28",
-        other="clarke-22",
-        archard=_rate(rocked[0]) / _rate(rocked[1]),
-        area=_rate(replace(rocked[0], wear=area)) / _rate(replace(rocked[1], wear=area)),
+        numerator="clarke-28",
+        denominator="clarke-22",
+        archard=_rate(rocking_hips[0]) / _rate(rocking_hips[1]),
+        area=_rate(replace(rocking_hips[0], wear=area)) / _rate(replace(rocking_hips[1], wear=area)),
     )
-    for one, other, cycles, tilts in (
+    for numerator, denominator, cycles, tilts in (
         ("ali-65", "ali-45", (walk, walk), (50.0, 30.0)),
         ("ali-45-off", "ali-45", (off, walk), (30.0, 30.0)),
         ("ali-65-off", "ali-65", (off, walk), (50.0, 50.0)),
         ("cooper-off", "cooper", (off, walk), (30.0, 30.0)),
         ("jogging", "walking", (named_cycle("jogging", body_weight=780.0), walk), (30.0, 30.0)),
     ):
-        hips = [in_use(36.0, cycle, tilt) for cycle, tilt in zip(cycles, tilts, strict=True)]
-        yield Ratio(one=one, other=other, archard=_rate(hips[0]) / _rate(hips[1]))
+        hips = [make_hip(36.0, cycle, tilt) for cycle, tilt in zip(cycles, tilts, strict=True)]
+        yield Ratio(numerator=numerator, denominator=denominator, archard=_rate(hips[0]) / _rate(hips[1]))
 
 
-def _rate(use: HipSimulation) -> float:
-    """The rate of the first cycle, in mm³ a million."""
-    return use.first.volume
+def _rate(hip: HipSimulation) -> float:
+    """Return the wear rate of the first cycle in mm³ per million cycles."""
+    return hip.first.volume
 
 
 def simulators(count: int = PATIENTS) -> Iterator[Predicted]:
-    """Rates between one and three million cycles, k and the clearance scattering."""
+    """Predict wear rates between one and three million cycles, with uncertain k and clearance."""
     for name, diameter, cycle, tilt, k in (
         ("clarke-22", 22.225, rocking(), 0.0, CONVENTIONAL),
         ("clarke-28", 28.0, rocking(), 0.0, CONVENTIONAL),
@@ -133,37 +225,38 @@ def simulators(count: int = PATIENTS) -> Iterator[Predicted]:
         ("ali-45-off", 36.0, iso_14242_4(), 30.0, LINKED),
         ("ali-65-off", 36.0, iso_14242_4(), 50.0, LINKED),
     ):
-        use = in_use(diameter, cycle, tilt, Archard(coefficient=k))
-        table = _table(use, {"coefficient": _of(k), "clearance": _CLEARANCE}, [1e6, 3e6], count)
+        hip = make_hip(diameter, cycle, tilt, Archard(coefficient=k))
+        table = _results(hip, {"coefficient": _wear_factor(k), "clearance": _CLEARANCE}, [1e6, 3e6], count)
         volume = table[:, :, list(RESULT_UNITS).index("volume")]
         yield _band(name, (volume[:, 1] - volume[:, 0]) / 2)
 
 
 def patients(count: int = PATIENTS) -> Iterator[Predicted]:
-    """Bedding-in, rates and volumes a year of patients who differ."""
+    """Predict bedding-in, yearly rates and volumes of varied patients."""
     for k, names in (
         (CONVENTIONAL, ("rsa-bedding", "rsa-rate", "teeter")),
         (LINKED, ("rsa-bedding-linked", "rsa-rate-linked", "mccalden-linked", "callary", "lachiewicz")),
     ):
-        use = replace(
-            in_use(28.0, iso_14242_1(), 30.0, Archard(coefficient=k)),
+        hip = replace(
+            make_hip(28.0, iso_14242_1(), 30.0, Archard(coefficient=k)),
             creep=logarithmic(),
             seconds_per_cycle=YEAR / STEPS,
         )
-        table = _table(use, _patients(k), [STEPS / 4, STEPS, 5 * STEPS, 10 * STEPS], count)
-        sunk = table[:, :, list(RESULT_UNITS).index("penetration")]
-        rate = dict.fromkeys(names, (sunk[:, 3] - sunk[:, 0]) / 9.75)
-        rate |= {names[0]: sunk[:, 0]}
-        rate |= {name: (sunk[:, 2] - sunk[:, 1]) / 4 for name in names if name.startswith("mccalden")}
+        table = _results(hip, _patient_distributions(k), [STEPS / 4, STEPS, 5 * STEPS, 10 * STEPS], count)
+        penetration = table[:, :, list(RESULT_UNITS).index("penetration")]
+        rate = dict.fromkeys(names, (penetration[:, 3] - penetration[:, 0]) / 9.75)
+        rate |= {names[0]: penetration[:, 0]}
+        rate |= {name: (penetration[:, 2] - penetration[:, 1]) / 4 for name in names if name.startswith("mccalden")}
         for name, values in rate.items():
             yield _band(name, values)
         if k == LINKED:
             yield _band("lachiewicz-volume", table[:, 2, list(RESULT_UNITS).index("volume")] / 5)
 
 
-def _patients(k: float) -> dict[str, Distribution]:
+def _patient_distributions(k: float) -> dict[str, Distribution]:
+    """Return the distributions of the patients for a wear factor."""
     return {
-        "coefficient": _of(k),
+        "coefficient": _wear_factor(k),
         "clearance": _CLEARANCE,
         "tilt": Normal(mean=radians(30.0), deviation=radians(7.0), low=0.0, high=radians(60.0)),
         "body_weight": Normal(mean=780.0, deviation=130.0, low=400.0, high=1400.0),
@@ -171,15 +264,21 @@ def _patients(k: float) -> dict[str, Distribution]:
     }
 
 
-def _of(k: float) -> LogNormal:
+def _wear_factor(k: float) -> LogNormal:
+    """Return the distribution of a wear factor with median k."""
     return LogNormal(median=k * _K.median, factor=_K.factor)
 
 
-def _table(use: HipSimulation, distributions: dict[str, Distribution], counts: list[float], count: int) -> Numbers:
-    return population(PatientVariability(use=use, distributions=distributions), counts, patients=count)[1].cohort.table
+def _results(hip: HipSimulation, distributions: dict[str, Distribution], counts: list[float], count: int) -> Numbers:
+    """Simulate patients and return their results, shape (patients, cycle counts, quantities)."""
+    return population(PatientVariability(use=hip, distributions=distributions), counts, patients=count)[1].cohort.table
 
 
 def _band(name: str, values: Numbers) -> Predicted:
-    rest = (1 - DEFAULT_LEVEL) / 2
-    low, median, high = (float(each) for each in numpy.nanquantile(values, [rest, 0.5, 1 - rest]))
+    """Compute the band of predicted values."""
+    tail = (1 - DEFAULT_LEVEL) / 2
+    low, median, high = (float(value) for value in numpy.nanquantile(values, [tail, 0.5, 1 - tail]))
     return Predicted(name=name, low=low, median=median, high=high)
+
+
+__getattr__ = renamed_names(__name__, {"in_use": "make_hip"})

@@ -1,4 +1,4 @@
-"""The worst-case matrix: sizes, clearances, loads, orientations combined, and where each number is worst."""
+"""Matrix of cases: combined sizes, clearances, loads and orientations, the worst case of each number, and limits."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy
 
 from ..contact import Contact
 from ..core.arrays import Numbers, to_numpy
-from ..core.deprecation import renamed_names
+from ..core.deprecation import renamed_fields, renamed_names
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES, Quantity
 from ..core.validity import Status
@@ -21,8 +21,8 @@ from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS, pressable
 from .question import Question
 
-ANSWERED = ("max_pressure", "half_angle", "area", "von_mises", "utilisation", "indentation", "force")
-"""What every case is asked for, beside the edge distance and the friction torque."""
+COMPUTED = ("max_pressure", "half_angle", "area", "von_mises", "utilisation", "indentation", "force")
+"""Quantities of the contact in every case, besides the edge distance and the friction torque."""
 
 TORQUE = Quantity(
     "friction_torque", "Mf", "friction torque", Kind.ENERGY, "About an axis across the load, sliding all over, in N mm."
@@ -35,21 +35,41 @@ WEAR = Quantity(
     "Volume, in the first cycles of a hip.",
 )
 NAMES: Mapping[str, Quantity] = {
-    **{name: QUANTITIES[name] for name in (*ANSWERED, "edge_distance")},
+    **{name: QUANTITIES[name] for name in (*COMPUTED, "edge_distance")},
     TORQUE.name: TORQUE,
     WEAR.name: WEAR,
 }
-LEAST = ("edge_distance",)
-"""What is worst where it is smallest."""
+"""Numbers of a case, by name."""
 
+LIMITED: Mapping[str, Quantity] = {**QUANTITIES, **PARAMETERS, **NAMES}
+"""Quantities that can be limited, by name."""
+
+KEYS: Mapping[str, Quantity] = {quantity.key: quantity for quantity in LIMITED.values()}
+"""Quantities that can be limited, by their key in JSON."""
+
+_SMALLEST_IS_WORST = ("edge_distance",)
 _WORST = ("max_pressure", "half_angle", "area", "utilisation", "edge_distance", TORQUE.name, WEAR.name)
 
 Case = dict[str, float]
+"""Values of the varied parameters, by name."""
 
 
 @dataclass(frozen=True)
 class Row:
-    """One case: its parameters, what was answered (NaN where nothing was), and how it went."""
+    """Result of a case.
+
+    Attributes
+    ----------
+    case : dict of str to float
+    numbers : mapping of str to float
+        Computed numbers by name; NaN for a missing result.
+    errors : mapping of str to float
+        Known relative errors by name.
+    status : str
+        Name of the status of the contact.
+    valid : bool
+        True in the range of the model.
+    """
 
     case: Case
     numbers: Mapping[str, float]
@@ -58,14 +78,14 @@ class Row:
     valid: bool
 
     def with_wear(self, rate: float | None) -> Row:
-        """The row with its wear beside the other numbers."""
+        """Add the wear rate to the numbers of the row."""
         return replace(self, numbers={**self.numbers, WEAR.name: numpy.nan if rate is None else rate})
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON, with the units of files."""
+        """Return one dictionary for JSON, with the units of files."""
         return {
-            "case": {PARAMETERS[name].key: written(PARAMETERS[name], value) for name, value in self.case.items()},
-            "numbers": {NAMES[name].key: written(NAMES[name], value) for name, value in self.numbers.items()},
+            "case": {PARAMETERS[name].key: to_file_unit(PARAMETERS[name], value) for name, value in self.case.items()},
+            "numbers": {NAMES[name].key: to_file_unit(NAMES[name], value) for name, value in self.numbers.items()},
             "errors": {NAMES[name].key: value for name, value in self.errors.items() if isfinite(value)},
             "status": self.status,
             "valid": self.valid,
@@ -73,151 +93,153 @@ class Row:
 
     @staticmethod
     def of(summary: Mapping[str, Any]) -> Row:
-        """A row from its summary."""
+        """Create a row from its summary."""
+        case, numbers, errors = (summary[name] for name in ("case", "numbers", "errors"))
         return Row(
+            {name: case[p.key] / p.written.factor for name, p in PARAMETERS.items() if p.key in case},
             {
-                name: summary["case"][each.key] / each.written.factor
-                for name, each in PARAMETERS.items()
-                if each.key in summary["case"]
+                name: _to_internal_unit(quantity, numbers[quantity.key])
+                for name, quantity in NAMES.items()
+                if quantity.key in numbers
             },
-            {
-                name: _read(each, summary["numbers"].get(each.key))
-                for name, each in NAMES.items()
-                if each.key in summary["numbers"]
-            },
-            {name: summary["errors"][each.key] for name, each in NAMES.items() if each.key in summary["errors"]},
+            {name: errors[quantity.key] for name, quantity in NAMES.items() if quantity.key in errors},
             summary["status"],
             summary["valid"],
         )
 
 
-def _read(quantity: Quantity, value: float | None) -> float:
+def _to_internal_unit(quantity: Quantity, value: float | None) -> float:
+    """Convert a number of a file to internal units; NaN for None."""
     return numpy.nan if value is None else value / quantity.written.factor
 
 
-def written(quantity: Quantity, value: float) -> float | None:
-    """A number in the unit of files; None where it is missing."""
+def to_file_unit(quantity: Quantity, value: float) -> float | None:
+    """Convert a number to the unit of files; None for a missing number."""
     return value * quantity.written.factor if isfinite(value) else None
 
 
-def cases(question: Question) -> list[Case]:
-    """Every combination, the last axis fastest."""
+def list_cases(question: Question) -> list[Case]:
+    """Combine the values of all axes of a question; the last axis varies fastest."""
     return [dict(zip(question.axes, values, strict=True)) for values in product(*question.axes.values())]
 
 
-def rows(question: Question, those: Sequence[Case]) -> list[Row]:
-    """Some cases, answered all at once."""
-    values = {name: numpy.array([case[name] for case in those]) for name in question.axes}
+def compute_rows(question: Question, cases: Sequence[Case]) -> list[Row]:
+    """Compute several cases in one call."""
+    count = len(cases)
+    values = {name: numpy.array([case[name] for case in cases]) for name in question.axes}
     joint, load, possible = pressable(question.file.joint, values)
     contact = question.model.press(joint, **load)
-    found = {name: _column(value, len(those)) for name, value in _numbers(question, contact, load).items()}
-    bars = {name: _column(value, len(those)) for name, value in known_errors(contact).items() if name in NAMES}
-    status, valid = _column(contact.status, len(those)), _column(contact.valid, len(those))
-    made = numpy.broadcast_to(to_numpy(possible), len(those))
+    numbers = {name: _column(value, count) for name, value in _contact_numbers(question, contact).items()}
+    errors = {name: _column(value, count) for name, value in known_errors(contact).items() if name in NAMES}
+    status, valid, made = (_column(value, count) for value in (contact.status, contact.valid, possible))
     return [
         Row(
             case,
-            {name: float(value[at]) if made[at] else numpy.nan for name, value in found.items()},
-            {name: float(value[at]) for name, value in bars.items()},
-            Status(int(status[at]) if made[at] else Status.NO_JOINT).name,
-            bool(valid[at] and made[at]),
+            {name: float(value[i]) if made[i] else numpy.nan for name, value in numbers.items()},
+            {name: float(value[i]) for name, value in errors.items()},
+            Status(int(status[i]) if made[i] else Status.NO_JOINT).name,
+            bool(valid[i] and made[i]),
         )
-        for at, case in enumerate(those)
+        for i, case in enumerate(cases)
     ]
 
 
-def _numbers(question: Question, contact: Contact, load: Mapping[str, Any]) -> dict[str, Any]:
-    found = {name: getattr(contact, name) for name in ANSWERED}
-    found["edge_distance"] = _edge_distance(question, contact)
+def _contact_numbers(question: Question, contact: Contact) -> dict[str, Any]:
+    """Return the numbers of a contact, by name."""
+    numbers = {name: getattr(contact, name) for name in COMPUTED}
+    numbers["edge_distance"] = _edge_distance(question, contact)
     if question.friction is not None:
-        found[TORQUE.name] = _torque(question, contact, question.friction)
-    return {name: value for name, value in found.items() if value is not None}
+        numbers[TORQUE.name] = _friction_torque(question, contact, question.friction)
+    return {name: value for name, value in numbers.items() if value is not None}
 
 
 def _edge_distance(question: Question, contact: Contact) -> Any:
-    """To the rim: of the contact as it is pressed off the axis, or of a round one under a vertical load."""
+    """Compute the edge distance in rad: of the off-axis contact, or of a round contact under a vertical load."""
     if question.model.off_axis:
         return contact.edge_distance  # type: ignore[attr-defined]
     return question.file.cup.edge_distance(contact.joint.socket_radius, contact.half_angle, UP)
 
 
-def _torque(question: Question, contact: Contact, friction: float) -> Any:
-    """Off the axis the lever of every pressure is taken as the ball's radius, which is its most."""
+def _friction_torque(question: Question, contact: Contact, friction: float) -> Any:
+    """Compute the friction torque in N mm; off the axis an upper bound, with the ball radius as every lever."""
     if question.model.off_axis:
         return friction * contact.joint.ball_radius * contact.pressure_integral
     return contact.friction_torque(friction)
 
 
 def known_errors(contact: Contact) -> Mapping[str, Any]:
-    """Relative errors that a solver knows of its answer, by quantity; a tolerance where it keeps one."""
+    """Return the relative errors that a solver reports, by quantity; otherwise its tolerance."""
     known: Mapping[str, Any] = getattr(contact, "error", None) or {}
     tolerance = getattr(contact.model, "tolerance", None)
-    return known if known or tolerance is None else dict.fromkeys(ANSWERED, tolerance)
+    return known if known or tolerance is None else dict.fromkeys(COMPUTED, tolerance)
 
 
 def _column(value: Any, count: int) -> Numbers:
+    """Broadcast a number to all cases."""
     return numpy.broadcast_to(to_numpy(value), count)
 
 
-def worst(found: Sequence[Row]) -> dict[str, Row]:
-    """Where each of the numbers is worst, by its name; those that no case answers are left out."""
-    places = {}
+def worst_rows(rows: Sequence[Row]) -> dict[str, Row]:
+    """Find the worst row of each number, by name; numbers without a result are omitted."""
+    worst = {}
     for name in _WORST:
-        known = [row for row in found if isfinite(row.numbers.get(name, numpy.nan))]
+        known = [row for row in rows if isfinite(row.numbers.get(name, numpy.nan))]
         if known:
-            places[name] = (min if name in LEAST else max)(known, key=lambda row: row.numbers[name])
-    return places
+            worst[name] = (min if name in _SMALLEST_IS_WORST else max)(known, key=lambda row: row.numbers[name])
+    return worst
 
 
+@renamed_fields(near="marginal")
 @dataclass(frozen=True)
 class LimitCheck:
-    """How a limit is kept over the matrix.
+    """Result of the check of a limit over the matrix.
 
     Attributes
     ----------
     limit : Limit
-    beyond, unknown, near : int
-        Cases outside it, without an answer, and nearer to its end than the numbers may be off.
+    beyond, unknown, marginal : int
+        Number of cases outside the limit, without a result, and closer to the limit than the required accuracy.
     row : Row or None
-        The case that is worst.
+        Row with the smallest margin.
     """
 
     limit: Limit
     beyond: int
     unknown: int
-    near: int
+    marginal: int
     row: Row | None
 
     @property
     def verdict(self) -> str:
-        """In words."""
+        """Verdict in words."""
         if self.beyond:
             return "not kept"
         if self.unknown or self.row is None:
             return "not known"
-        return "kept, but nearer than the required accuracy" if self.near else "kept"
+        return "kept, but nearer than the required accuracy" if self.marginal else "kept"
 
-    def _end(self, end: float) -> float | None:
-        return written({**PARAMETERS, **NAMES, **QUANTITIES}[self.limit.name], end)
+    def _in_file_unit(self, end: float) -> float | None:
+        """Convert an end of the limit to the unit of files."""
+        return to_file_unit({**PARAMETERS, **NAMES, **QUANTITIES}[self.limit.name], end)
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return one dictionary for JSON."""
         return {
             "limit": str(self.limit),
             "name": self.limit.name,
-            "low": self._end(self.limit.low),
-            "high": self._end(self.limit.high),
+            "low": self._in_file_unit(self.limit.low),
+            "high": self._in_file_unit(self.limit.high),
             "verdict": self.verdict,
             "beyond": self.beyond,
             "unknown": self.unknown,
-            "near": self.near,
+            "near": self.marginal,
             "worst": None if self.row is None else self.row.summary(),
         }
 
 
-def kept(limit: Limit, found: Sequence[Row], accuracy: float) -> LimitCheck:
-    """How a limit is kept, where numbers may be off by a share of themselves."""
-    values = numpy.array([_limited(limit, row) for row in found], dtype=float)
+def check_limit(limit: Limit, rows: Sequence[Row], accuracy: float) -> LimitCheck:
+    """Check a limit over the matrix, with numbers of a relative accuracy."""
+    values = numpy.array([_limited_value(limit, row) for row in rows], dtype=float)
     margin = numpy.minimum(values - limit.low, limit.high - values)
     known = numpy.isfinite(values)
     order = numpy.where(known, margin, numpy.inf)
@@ -225,13 +247,62 @@ def kept(limit: Limit, found: Sequence[Row], accuracy: float) -> LimitCheck:
         limit=limit,
         beyond=int((known & (margin < 0)).sum()),
         unknown=int((~known).sum()),
-        near=int((known & (margin >= 0) & (margin < accuracy * abs(values))).sum()),
-        row=found[int(order.argmin())] if known.any() else None,
+        marginal=int((known & (margin >= 0) & (margin < accuracy * abs(values))).sum()),
+        row=rows[int(order.argmin())] if known.any() else None,
     )
 
 
-def _limited(limit: Limit, row: Row) -> float:
+def _limited_value(limit: Limit, row: Row) -> float:
+    """Return the limited number of a row, or the parameter of its case."""
     return float(row.numbers.get(limit.name, row.case.get(limit.name, numpy.nan)))
 
 
-__getattr__ = renamed_names(__name__, {"Kept": "LimitCheck"})
+# Titles and texts of the record and the page
+
+_LARGEST_INTEGER = 1e9
+_LONG_TITLES = {"utilisation": "utilisation (von Mises stress over yield stress)"}
+_LIMIT_ENDS = (("low", "at least"), ("high", "at most"))
+
+
+def title_of(name: str) -> str:
+    """Return the title of a number by its name."""
+    return _LONG_TITLES.get(name) or LIMITED[name].title
+
+
+def number(value: Any) -> str:
+    """Format a number with five digits, without an exponent below 1e9; a dash for None."""
+    if value is None or isinstance(value, str):
+        return value or "–"
+    text = f"{value:.5g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < _LARGEST_INTEGER else text
+
+
+def limit_text(limit: Mapping[str, Any]) -> str:
+    """Format a limit with the title and the unit of its number: "largest pressure at most 15 MPa"."""
+    quantity = KEYS.get(limit["name"]) or LIMITED[limit["name"]]
+    unit = quantity.written.text
+    ends = [f"{word} {number(limit[end])} {unit}".strip() for end, word in _LIMIT_ENDS if limit[end] is not None]
+    return f"{title_of(limit['name'])} {' and '.join(ends)}"
+
+
+def input_title(name: str) -> str:
+    """Return the title of an input by its name.
+
+    Examples
+    --------
+    >>> input_title("liner_young"), input_title("backing[0].thickness")
+    ("Young's modulus of the liner", 'thickness of layer 1 behind the liner')
+    """
+    if name == "friction.coefficient":
+        return "coefficient of friction"
+    layer, _, inside = name.rpartition(".")
+    if layer:
+        index = int(layer.removeprefix("backing[").removesuffix("]")) + 1
+        return f"{LIMITED[inside].title} of layer {index} behind the liner"
+    part, _, strength = name.partition("_")
+    return LIMITED[name].title if name in LIMITED else f"{LIMITED[strength].title} of the {part}"
+
+
+__getattr__ = renamed_names(
+    __name__, {"Kept": "LimitCheck", "cases": "list_cases", "rows": "compute_rows", "kept": "check_limit"}
+)

@@ -1,179 +1,73 @@
-"""A pack of evidence: everything gathered, piece by piece, so that a killed run goes on where it stopped."""
+"""Record of an evidence pack: the results of its plan, the inputs, and the assessment."""
 
 from __future__ import annotations
 
-import re
+import platform
+import sys
 from collections.abc import Callable, Mapping, Sequence
-from contextlib import suppress
 from datetime import date
-from functools import partial
-from hashlib import sha256
-from math import degrees
+from importlib.metadata import PackageNotFoundError, version
+from math import degrees, inf
 from pathlib import Path
-from shutil import rmtree
 from typing import Any
 
+from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
+from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.storage.fingerprint import fingerprint
-from ..paper.plan import Piece, Plan, Results, Summary
+from ..core.storage.plan import Results
+from ..problem import Material
+from ..problem.dimensions import DIAMETERS, STORED_LENGTHS
 from ..studies.parameters import pressable
-from . import matrix
-from .calculation import beside, largest_deviation, rival
-from .code_checks import CHECKS
-from .comparator import applicability, reach_asked
-from .comparators import CLAIMS, PUBLISHED, claim
+from .applicability import applicability, question_ranges
 from .credibility import model_risk
-from .inputs import inputs, made_with
+from .matrix import WEAR, Row, check_limit, worst_rows
+from .plan import distinct_cases, plan, plan_worst_cases
 from .question import Question
-from .requirements import assessed
-from .scatter import scattered
-from .wear import rates, worn
+from .requirements import assess
+from .worst_case import largest_deviation
 
-_HERE = Serial()
+_SERIAL = Serial()
 
 Listener = Callable[[str], None]
+"""Function that is called with the name of each completed piece."""
 
 
-def silent(name: str) -> None:
-    """Nobody listens."""
+def ignore_progress(name: str) -> None:
+    """Ignore the name of a completed piece."""
 
 
-def gathered(question: Question, folder: Path, listen: Listener = silent, engine: Engine = _HERE) -> dict[str, Any]:
-    """Everything that the pack says, as one dictionary for JSON.
+@renamed_arguments(listen="progress")
+def gather_evidence(
+    question: Question, folder: Path, progress: Listener = ignore_progress, engine: Engine = _SERIAL
+) -> dict[str, Any]:
+    """Compute the record of a pack, as one dictionary for JSON.
 
     Parameters
     ----------
     question : Question
     folder : Path
-        Where pieces are kept: what lies there of the same question by the same code is not computed anew.
-    listen : callable
-        Told the name of each piece when it is there.
+        Folder of the stored results. Results of the same question by the same code are not computed again.
+    progress : callable
+        Called with the name of each completed piece.
     engine : Engine
 
     Raises
     ------
     OSError
-        A folder that cannot be written to.
+        The folder is not writable.
     """
-    first = plan(question).results(folder, listen, engine)
-    found = [matrix.Row.of(row) for block in first["matrix"] for row in block]
-    worn_away = [rate for block in first["wear_rates"] for rate in block]
-    found = [row.with_wear(rate) for row, rate in zip(found, worn_away, strict=True)] if worn_away else found
-    worst = matrix.worst(found)
-    second = later(question, worst).results(folder, listen, engine)
-    return _record(question, found, worst, {**first, **second})
+    first = plan(question).results(folder, progress, engine)
+    rows = [Row.of(row) for block in first["matrix"] for row in block]
+    rates = [rate for block in first["wear_rates"] for rate in block]
+    rows = [row.with_wear(rate) for row, rate in zip(rows, rates, strict=True)] if rates else rows
+    worst = worst_rows(rows)
+    second = plan_worst_cases(question, worst).results(folder, progress, engine)
+    return _record(question, rows, worst, {**first, **second})
 
 
-def count_kept(question: Question, folder: Path) -> int:
-    """Count the stored results of a question from a stopped run."""
-    return sum(1 for name in _folders(question) for path in (folder / name).glob("*.json"))
-
-
-def remove_kept(folder: Path) -> None:
-    """Remove the stored results of all questions from a folder, and the empty folder."""
-    for path in folder.glob("*-*"):
-        if _KEPT.fullmatch(path.name):
-            rmtree(path, ignore_errors=True)
-    with suppress(OSError):
-        folder.rmdir()
-
-
-def _folders(question: Question) -> tuple[str, str]:
-    return f"{_FIRST}-{_digest(question)}", f"{_LATER}-{_digest(question)}"
-
-
-_FIRST, _LATER, _LENGTH = "first", "later", 12
-_KEPT = re.compile(rf"({_FIRST}|{_LATER})-[0-9a-f]{{{_LENGTH}}}")
-
-
-def plan(question: Question) -> Plan:
-    """What does not depend on where the worst cases are."""
-    cases = matrix.cases(question)
-    first = next(iter(question.axes))
-    blocks = [tuple(case for case in cases if case[first] == value) for value in question.axes[first]]
-    return Plan(
-        name=_folders(question)[0],
-        parts={
-            "matrix": {f"block {number}": partial(_block, question, block) for number, block in enumerate(blocks)},
-            "wear_rates": {
-                f"block {number}": partial(rates, question, block)
-                for number, block in enumerate(blocks)
-                if question.hip is not None
-            },
-            "code_verification": {name: Summary(check) for name, check in CHECKS.items()},
-            "claims": {name: partial(claim, name) for name in CLAIMS},
-            "comparators": {name: Summary(found) for name, found in PUBLISHED.items()},
-        },
-    )
-
-
-def later(question: Question, places: Mapping[str, matrix.Row]) -> Plan:
-    """What is asked of the worst cases."""
-    pressed = places.get("max_pressure", next(iter(places.values()), None))
-    worst = None if pressed is None else pressed.case
-    parts: dict[str, Mapping[str, Piece]] = {
-        "rival": {} if worst is None else {"": partial(_rival, question, worst)},
-        "calculation": {
-            f"case {number}": partial(_beside, question, case) for number, case in enumerate(_distinct(places))
-        },
-        "uncertainty": {},
-        "wear": {},
-    }
-    if question.tolerances and worst is not None:
-        parts["uncertainty"] = {"": partial(scattered, question, worst)}
-    if matrix.WEAR.name in places:
-        parts["wear"] = {"": partial(worn, question, places[matrix.WEAR.name].case)}
-    return Plan(name=_folders(question)[1], parts=parts)
-
-
-def _digest(question: Question) -> str:
-    """A digest of what is asked, and of the files that it names."""
-    digest = sha256()
-    for path in question.files:
-        digest.update(path.read_bytes())
-    return digest.hexdigest()[:_LENGTH]
-
-
-def _block(question: Question, those: Sequence[matrix.Case]) -> list[dict[str, Any]]:
-    return [row.summary() for row in matrix.rows(question, those)]
-
-
-def _beside(question: Question, case: matrix.Case) -> list[dict[str, Any]]:
-    return [method.summary() for method in beside(question, case)]
-
-
-def _rival(question: Question, case: matrix.Case) -> list[dict[str, Any]]:
-    return [method.summary() for method in rival(question, case)]
-
-
-def _distinct(places: Mapping[str, matrix.Row]) -> list[matrix.Case]:
-    """The cases in which some number of a press is worst, each once."""
-    pressed = [row.case for name, row in places.items() if name != matrix.WEAR.name]
-    return list({tuple(case.items()): case for case in pressed}.values())
-
-
-def _compared(names: list[str], methods: list[Any], others: list[Any]) -> dict[str, Any]:
-    """A case that is the worst of some numbers, by all methods; where the pressure is worst by another program too."""
-    listed = [*methods, *(others if "max_pressure" in names else [])]
-    return {
-        "worst_of": names,
-        "methods": listed,
-        "deviation": largest_deviation(listed),
-        "call": "ballsocket.evidence.calculation.beside(question, case)",
-    }
-
-
-def _record(
-    question: Question,
-    found: Sequence[matrix.Row],
-    worst: Mapping[str, matrix.Row],
-    results: Results,
-) -> dict[str, Any]:
-    others: list[Any] = next(iter(results["rival"]), [])
-    calculation = [
-        _compared([name for name, row in worst.items() if row.case == one and name != matrix.WEAR.name], piece, others)
-        for one, piece in zip(_distinct(worst), results["calculation"], strict=True)
-    ]
+def _record(question: Question, rows: Sequence[Row], worst: Mapping[str, Row], results: Results) -> dict[str, Any]:
+    """Assemble the record from the results of all pieces, and assess it."""
     record: dict[str, Any] = {
         "version": fingerprint(),
         "made_with": made_with(),
@@ -182,29 +76,46 @@ def _record(
         "context_of_use": question.context,
         "risk": model_risk(question.influence, question.consequence),
         "required": {"accuracy": question.accuracy, "limits": [str(limit) for limit in question.limits]},
-        "inputs": inputs(question),
-        "recentred": [each.summary() for each in question.recentred],
+        "inputs": list_inputs(question),
+        "recentred": [entry.summary() for entry in question.recentred],
         "model": {"name": question.model.name, "call": _CALL},
-        "matrix": [row.summary() for row in found],
+        "matrix": [row.summary() for row in rows],
         "worst": {name: row.summary() for name, row in worst.items()},
-        "drawn": _drawn(question, worst),
-        "limits": [matrix.kept(limit, found, question.accuracy).summary() for limit in question.limits],
+        "drawn": _drawn_joint(question, worst),
+        "limits": [check_limit(limit, rows, question.accuracy).summary() for limit in question.limits],
         "code_verification": results["code_verification"],
-        "calculation": calculation,
-        "claims": [dict(each) for each in results["claims"]],
-        "comparators": [dict(each) for each in results["comparators"]],
+        "calculation": _calculations(worst, results),
+        "claims": [dict(entry) for entry in results["claims"]],
+        "comparators": [dict(entry) for entry in results["comparators"]],
         "uncertainty": next(iter(results["uncertainty"]), None),
         "wear": next(iter(results["wear"]), None),
     }
-    tilted, asked = question.model.off_axis, reach_asked(question, found)
-    for each in (*record["claims"], *record["comparators"]):
-        each["applicability"] = applicability(each["reaches"], asked, tilted)
-    record["accurate"] = _accurate(record)
-    return {**record, **assessed(record)}
+    ranges = question_ranges(question, rows)
+    for entry in (*record["claims"], *record["comparators"]):
+        entry["applicability"] = applicability(entry["reaches"], ranges, question.model.off_axis)
+    record["accurate"] = _accuracy(record)
+    return {**record, **assess(record)}
 
 
-def _drawn(question: Question, worst: Mapping[str, matrix.Row]) -> dict[str, Any] | None:
-    """The joint and its contact where the pressure is worst, for a drawing; None where nothing answered."""
+_CALL = "question = read_question('question.toml'); compute_rows(question, list_cases(question))"
+
+
+def _calculations(worst: Mapping[str, Row], results: Results) -> list[dict[str, Any]]:
+    """Return the methods of each worst case, with CalculiX for the largest pressure."""
+    calculix: list[Any] = next(iter(results["rival"]), [])
+    calculations = []
+    for case, methods in zip(distinct_cases(worst), results["calculation"], strict=True):
+        names = [name for name, row in worst.items() if row.case == case and name != WEAR.name]
+        listed = [*methods, *(calculix if "max_pressure" in names else [])]
+        call = "ballsocket.evidence.worst_case.compare_methods(question, case)"
+        calculations.append(
+            {"worst_of": names, "methods": listed, "deviation": largest_deviation(listed), "call": call}
+        )
+    return calculations
+
+
+def _drawn_joint(question: Question, worst: Mapping[str, Row]) -> dict[str, Any] | None:
+    """Return the joint and the contact with the largest pressure for a drawing; None without a result."""
     row = worst.get("max_pressure")
     if row is None:
         return None
@@ -216,16 +127,92 @@ def _drawn(question: Question, worst: Mapping[str, matrix.Row]) -> dict[str, Any
     }
 
 
-_CALL = "question = read_question('question.toml'); rows(question, cases(question))"
+def _accuracy(record: Mapping[str, Any]) -> dict[str, Any]:
+    """Compare error bars and deviations of methods with the required accuracy."""
+    errors = [error for row in record["matrix"] for error in row["errors"].values()]
+    deviations = [value for calculation in record["calculation"] for value in calculation["deviation"].values()]
+    largest = max([*errors, *deviations], default=None)
+    required = record["required"]["accuracy"]
+    return {"largest": largest, "required": required, "holds": largest is not None and largest <= required}
 
 
-def _accurate(record: Mapping[str, Any]) -> dict[str, Any]:
-    """Whether bars and deviations stay within the required accuracy."""
-    bars = [bar for row in record["matrix"] for bar in row["errors"].values()]
-    apart = [value for piece in record["calculation"] for value in piece["deviation"].values()]
-    largest = max([*bars, *apart], default=None)
-    return {
-        "largest": largest,
-        "required": record["required"]["accuracy"],
-        "holds": largest is not None and largest <= record["required"]["accuracy"],
-    }
+def list_inputs(question: Question) -> list[dict[str, Any]]:
+    """List every number of the input, with unit, tolerance and source."""
+    joint = question.file.joint
+    rows = [("joint", name, getattr(joint, name), JOINT[name].written.text, joint.source) for name in STORED_LENGTHS]
+    rows += _material_inputs("liner", joint.liner) + _material_inputs("ball", joint.ball)
+    for number, layer in enumerate(joint.backing):
+        rows.append(("backing", f"backing[{number}].thickness", layer.thickness, "mm", joint.source))
+        rows += _material_inputs("backing", layer.material, f"backing[{number}].")
+    if question.friction is not None:
+        rows.append(("friction", "friction.coefficient", question.friction, "", ""))
+    return [
+        {
+            "name": name,
+            "value": value if abs(value) < inf else "inf",
+            "unit": unit,
+            "tolerance": _tolerance_text(question, name),
+            "source": _source_text(question, name, body) or source,
+        }
+        for body, name, value, unit, source in rows
+    ]
+
+
+def _material_inputs(body: str, material: Material | None, prefix: str = "") -> list[tuple[str, str, Any, str, str]]:
+    """List body, name, value, unit and source of each known number of a material."""
+    if material is None:
+        return []
+    known = {name: getattr(material, name) for name in (*MATERIAL, *STRESS_LIMITS)}
+    return [
+        (body, f"{prefix or f'{body}_'}{name}", value, QUANTITIES[name].written.text, material.source)
+        for name, value in known.items()
+        if value is not None
+    ]
+
+
+def _source_text(question: Question, name: str, body: str) -> str:
+    """Return the source that the question states for an input; empty without one."""
+    recentred = {DIAMETERS.get(entry.name, entry.name) for entry in question.recentred}
+    by_tolerance = "nominal value of its tolerance in the question" if name in recentred else ""
+    return question.sources.get(name) or by_tolerance or question.sources.get(body, "")
+
+
+def _tolerance_text(question: Question, name: str) -> str:
+    """Format the tolerance of an input; empty without one."""
+    spreads = {DIAMETERS.get(stated, stated): (stated, spread) for stated, spread in question.tolerances.items()}
+    if name not in spreads:
+        varied = {DIAMETERS.get(axis, axis) for axis in question.axes}
+        return "varied in the matrix" if name in varied else ""
+    stated, spread = spreads[name]
+    factor = 0.5 if stated in DIAMETERS else 1.0
+    low, high = (factor * float(spread.frozen.ppf(end)) for end in (0.0, 1.0))
+    return f"{low:g} to {high:g}"
+
+
+_LIBRARIES = ("numpy", "scipy", "scikit-fem", "array-api-compat", "matplotlib", "pillow")
+DRAWING = ("matplotlib", "pillow", "freetype", "zlib")
+"""Libraries that decide the bytes of a figure."""
+
+STATED = ("python", "system", *_LIBRARIES, "freetype", "zlib")
+"""Names of the entries in `made_with`."""
+
+
+def made_with() -> dict[str, str]:
+    """Return the machine and the versions of the libraries that compute and draw."""
+    from matplotlib.ft2font import __freetype_version__
+    from PIL import features
+
+    versions = {}
+    for name in _LIBRARIES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    drawing = {"freetype": __freetype_version__, "zlib": str(features.version("zlib"))}
+    machine = f"{sys.platform} {platform.machine()}"
+    return {"python": platform.python_version(), "system": machine, **versions, **drawing}
+
+
+__getattr__ = renamed_names(
+    __name__, {"gathered": "gather_evidence", "inputs": "list_inputs", "silent": "ignore_progress"}
+)

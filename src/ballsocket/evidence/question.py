@@ -13,7 +13,7 @@ from unicodedata import category
 from ..catalogue import off_axis, reference
 from ..contact import Model
 from ..core.checks import check_names, check_text, require, shown
-from ..core.input_files import open_input, record_inputs, resolve_input
+from ..core.input_files import open_input, packed_files, record_inputs, resolve_input
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
 from ..files.joint_file import JointFile, JointTables
@@ -40,7 +40,6 @@ from ..studies.distributions import Distribution, Rectangular
 from ..studies.limits import Limit
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, contradiction, nominal, varied
 from ..studies.phrases import limit_of, spread_of
-from .named_files import packed_files
 
 LEVELS = ("low", "medium", "high")
 MOST = 2000
@@ -169,38 +168,38 @@ class Recentred:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Question:
-    """What is asked, of which joint, how exactly it must be known, and where it may become worst.
+    """Question of a file: its joint, matrix of cases, limits, tolerances and required accuracy.
 
     Attributes
     ----------
     text, context : str
         The question and its context of use, in words.
     influence, consequence : str
-        Of the model on the decision, and of a wrong decision: "low", "medium" or "high".
+        Influence of the model on the decision, and consequence of a wrong decision: "low", "medium" or "high".
     accuracy : float
-        Relative: how far off the numbers may be.
+        Largest allowed relative error of the numbers.
     file : JointFile
-        The joint as it is usually, and its cup.
+        The nominal joint, and its cup.
     axes : mapping of str to tuple of float
-        What the matrix of cases varies, in mm, N, MPa, rad; a load is among it.
+        Values of the varied parameters, in mm, N, MPa, rad; one of them is a load.
     limits : tuple of Limit
-        What must be kept.
+        Limits of the numbers.
     tolerances : mapping of str to Distribution
-        What scatters.
+        Distributions of uncertain inputs.
     recentred : tuple of Recentred
         Inputs whose tolerance states another nominal value than the joint's file or preset.
     sources : mapping of str to str
-        Where inputs come from, by their names.
+        Sources of inputs, by name.
     friction : float, optional
-        A coefficient.
+        Coefficient of friction.
     hip : Path, optional
-        A file about a hip in use, whose wear belongs to the evidence.
+        File of a hip simulation, whose wear belongs to the evidence.
     finite_elements : bool
-        Whether they judge the worst cases.
+        True for a check of the worst cases by finite elements.
     path : Path
         The file.
     files : tuple of Path
-        It, and the files that it names, which a pack takes along.
+        The question file and the files that it names, which belong to the pack.
     """
 
     text: str
@@ -222,7 +221,7 @@ class Question:
 
     @property
     def model(self) -> Model:
-        """The one that answers: exact, and off the axis where the matrix turns load or cup."""
+        """Model of the matrix: `Exact`, or the off-axis solver for tilted loads or cups."""
         chosen = off_axis if any(name in AIMS for name in self.axes) else reference
         return chosen.in_cup(self.file.cup)
 
@@ -297,7 +296,7 @@ def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:
 
 
 def _tolerances(texts: Mapping[str, str]) -> Mapping[str, Distribution]:
-    """What scatters, by name, all of it between ends that make a joint and a load along the axis."""
+    """Read the distributions of uncertain inputs; their ends must be possible joints and loads along the axis."""
     spreads = dict(spread_of(f"{name} = {text}") for name, text in texts.items())
     for name, spread in spreads.items():
         if name in AIMS:
@@ -318,15 +317,15 @@ def _recentred(
     700 +- 100 states 700. A range such as 0.40 .. 0.45 states none: the joint's value is used, or the middle of the
     range where that value lies outside.
     """
-    found = []
+    recentred = []
     for name, spread in tolerances.items():
         stated = None if name in axes or name in LOADS else nominal(file.joint, name)
         used = float(spread.frozen.median())
         inside = isinstance(spread, Rectangular) and stated is not None and spread.low <= stated <= spread.high
         if stated is not None and not inside and not isclose(stated, used, rel_tol=1e-9):
-            found.append(Recentred(name, stated, used))
-    joint, _ = varied(file.joint, {each.name: each.used for each in found})
-    return replace(file, joint=joint), tuple(found)
+            recentred.append(Recentred(name, stated, used))
+    joint, _ = varied(file.joint, {entry.name: entry.used for entry in recentred})
+    return replace(file, joint=joint), tuple(recentred)
 
 
 def _check_visible(path: Path) -> None:
@@ -345,7 +344,7 @@ _JOINERS = "\u200c\u200d"
 """Invisible characters that some scripts need between letters."""
 
 ALMOST_ALL = (0.001, 0.999)
-"""Shares of what scatters, between which it is."""
+"""Quantiles that count as the ends of a distribution."""
 
 
 def _sources(texts: Mapping[str, str]) -> Mapping[str, str]:

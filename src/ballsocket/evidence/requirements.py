@@ -5,25 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from .credibility import FACTORS, Record, error_margins
-from .matrix import NAMES
-from .terms import input_title, limit_text, number
+from ..core.deprecation import renamed_names
+from .credibility import FACTORS
+from .credibility_levels import Record, error_margins
+from .matrix import NAMES, input_title, limit_text, number
 
 MET, NOT_MET, UNKNOWN = "met", "not met", "not known"
 """States of a requirement."""
 
 
-def assessed(record: Record) -> dict[str, Any]:
-    """Assess a record: credibility factors, matrix of requirements, and adequacy."""
+def assess(record: Record) -> dict[str, Any]:
+    """Return the credibility factors, the matrix of requirements and the adequacy of a record."""
     factors = [factor.summary(record) for factor in FACTORS]
     rows = [
-        *_limits(record),
-        *_accuracy(record),
-        *_margins(record),
-        *_bands(record),
-        *_checks(record),
-        *_inputs(record),
-        *_factors(factors),
+        *_limit_rows(record),
+        *_accuracy_rows(record),
+        *_margin_rows(record),
+        *_band_rows(record),
+        *_check_rows(record),
+        *_input_rows(record),
+        *_factor_rows(factors),
     ]
     return {"credibility": factors, "requirements": rows, "adequacy": _adequacy(record, factors)}
 
@@ -31,6 +32,7 @@ def assessed(record: Record) -> dict[str, Any]:
 def _row(
     identifier: str, requirement: str, evidence: str, met: bool | None, where: str, gap: str = ""
 ) -> dict[str, Any]:
+    """Create one row of the matrix; `met` is None for an unknown state."""
     status = UNKNOWN if met is None else MET if met else NOT_MET
     return {
         "id": identifier,
@@ -42,7 +44,8 @@ def _row(
     }
 
 
-def _limits(record: Record) -> Iterator[dict[str, Any]]:
+def _limit_rows(record: Record) -> Iterator[dict[str, Any]]:
+    """Compare the matrix with each limit, one row for each."""
     for index, limit in enumerate(record["limits"]):
         within = {"not kept": False, "not known": None}.get(limit["verdict"], True)
         gap = f"cases beyond the limit: {limit['beyond']}; without a result: {limit['unknown']}"
@@ -50,7 +53,8 @@ def _limits(record: Record) -> Iterator[dict[str, Any]]:
         yield _row(identifier, f"limit: {limit_text(limit)}", f"{limit['verdict']}", within, f"limits[{index}]", gap)
 
 
-def _accuracy(record: Record) -> Iterator[dict[str, Any]]:
+def _accuracy_rows(record: Record) -> Iterator[dict[str, Any]]:
+    """Compare errors and deviations with the required accuracy, in one row."""
     accurate = record["accurate"]
     largest = accurate["largest"]
     evidence = "no error bar and no second method" if largest is None else f"{100 * largest:.2g} % at most"
@@ -59,7 +63,8 @@ def _accuracy(record: Record) -> Iterator[dict[str, Any]]:
     yield _row("A1", text, evidence, met, "accurate", "a more exact method, or a wider accuracy")
 
 
-def _margins(record: Record) -> Iterator[dict[str, Any]]:
+def _margin_rows(record: Record) -> Iterator[dict[str, Any]]:
+    """Compare the numerical error with the margin to each limit, one row for each."""
     for index, margin in enumerate(error_margins(record)):
         share = margin["share"]
         evidence = "no error bar" if share is None else f"{100 * share:.2g} % of the margin"
@@ -73,7 +78,7 @@ def _margins(record: Record) -> Iterator[dict[str, Any]]:
         )
 
 
-def _bands(record: Record) -> Iterator[dict[str, Any]]:
+def _band_rows(record: Record) -> Iterator[dict[str, Any]]:
     """Compare the band over the tolerances with each limit, one row for each."""
     bands = {} if record["uncertainty"] is None else record["uncertainty"]["bands"]
     for index, limit in enumerate(record["limits"]):
@@ -92,7 +97,8 @@ def _bands(record: Record) -> Iterator[dict[str, Any]]:
         yield _row(f"U{index + 1}", text, evidence, above and below, "uncertainty.bands", "narrower tolerances")
 
 
-def _checks(record: Record) -> Iterator[dict[str, Any]]:
+def _check_rows(record: Record) -> Iterator[dict[str, Any]]:
+    """List the code checks, one row for each."""
     for index, check in enumerate(record["code_verification"]):
         evidence = "not run" if check["observed"] is None else f"{check['observed']:.2g}"
         gap = check["why"] or "a check that passes"
@@ -100,13 +106,15 @@ def _checks(record: Record) -> Iterator[dict[str, Any]]:
         yield _row(f"V{index + 1}", f"code check {check['name']}", evidence, check["passed"], where, gap)
 
 
-def _inputs(record: Record) -> Iterator[dict[str, Any]]:
+def _input_rows(record: Record) -> Iterator[dict[str, Any]]:
+    """List the sources of the inputs, one row for each."""
     for index, item in enumerate(record["inputs"]):
         text, source = f"source of the {input_title(item['name'])}", item["source"]
         yield _row(f"I{index + 1}", text, source or "none", bool(source), f"inputs[{index}]", "a source in [sources]")
 
 
-def _factors(factors: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+def _factor_rows(factors: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+    """List the credibility factors, one row for each."""
     for index, factor in enumerate(factors):
         goal, level = factor["goal"], factor["reached"]
         yield _row(
@@ -137,3 +145,6 @@ def _adequacy(record: Record, factors: list[dict[str, Any]]) -> dict[str, Any]:
 def gaps(record: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """Return the rows with the status not met or not known."""
     return [row for row in record["requirements"] if row["status"] != MET]
+
+
+__getattr__ = renamed_names(__name__, {"assessed": "assess"})

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from cryptography.hazmat.primitives.asymmetric.ed25519 import Ed25519PrivateKey
 
 NAMESPACE = "ballsocket"
-"""Signed purpose; a signature for another purpose is refused."""
+"""Purpose of the signature; signatures for other purposes are refused."""
 
 _MAGIC, _VERSION, _ALGORITHM = b"SSHSIG", (1).to_bytes(4, "big"), b"ssh-ed25519"
 _HASHES = ("sha512", "sha256")
@@ -31,18 +31,18 @@ class SignatureError(ValueError):
 
 @dataclass(frozen=True)
 class PublicKey:
-    """An Ed25519 public key: its 32 bytes."""
+    """Ed25519 public key of 32 bytes."""
 
     point: bytes
 
     @property
     def blob(self) -> bytes:
-        """The key in the wire format of SSH."""
+        """Key in the wire format of SSH."""
         return _text(_ALGORITHM) + _text(self.point)
 
     @property
     def fingerprint(self) -> str:
-        """The name of the key as `ssh-keygen -l` prints it."""
+        """Fingerprint of the key, as `ssh-keygen -l` prints it."""
         return "SHA256:" + b64encode(sha256(self.blob).digest()).decode("ascii").rstrip("=")
 
 
@@ -67,7 +67,7 @@ def read_private_key(path: Path) -> Ed25519PrivateKey:
     from cryptography.hazmat.primitives.serialization import load_ssh_private_key
 
     try:
-        key = load_ssh_private_key(_content(path), password=None)
+        key = load_ssh_private_key(_read_key_file(path), password=None)
     except TypeError as error:  # raised for a key that needs a password
         raise ValueError(
             f"{path.name} is protected by a passphrase: sign with ssh-keygen -Y sign -n {NAMESPACE} -f {path.name} "
@@ -100,7 +100,7 @@ def read_public_key(path: Path) -> PublicKey:
     """
     wrong = ValueError(f"{path.name} must be a public Ed25519 key: one line 'ssh-ed25519 AAAA... name' is needed")
     try:
-        lines = [line.split() for line in _content(path).decode("utf-8").splitlines() if line.strip()]
+        lines = [line.split() for line in _read_key_file(path).decode("utf-8").splitlines() if line.strip()]
         (words,) = lines
         if words[0] != _ALGORITHM.decode("ascii"):
             raise wrong
@@ -127,7 +127,7 @@ def sign(message: bytes, key: Ed25519PrivateKey) -> str:
 
 
 def verify(message: bytes, signature: bytes) -> PublicKey:
-    """Verify a signature against the key that it names, and return this key. The caller must decide on its trust.
+    """Verify a signature with the key that it contains, and return the key; the caller decides on its trust.
 
     Raises
     ------
@@ -163,7 +163,8 @@ def verify(message: bytes, signature: bytes) -> PublicKey:
     return key
 
 
-def _content(path: Path) -> bytes:
+def _read_key_file(path: Path) -> bytes:
+    """Read a key file of limited size."""
     with open_input(path) as stream:
         content = stream.read(_MAX_FILE_SIZE + 1)
     if len(content) > _MAX_FILE_SIZE:
@@ -177,11 +178,13 @@ def _text(content: bytes) -> bytes:
 
 
 def _signed_bytes(message: bytes, algorithm: str) -> bytes:
+    """Return the bytes that are signed for a message."""
     parts = (NAMESPACE.encode(), b"", algorithm.encode(), new(algorithm, message).digest())
     return _MAGIC + b"".join(map(_text, parts))
 
 
 def _public_key(blob: bytes) -> PublicKey:
+    """Create a public key from the wire format of SSH."""
     reader = _Reader(blob)
     kind, point = reader.text(), reader.text()
     reader.end()
@@ -191,7 +194,7 @@ def _public_key(blob: bytes) -> PublicKey:
 
 
 def _unarmoured(signature: bytes) -> bytes:
-    """Return the bytes between the two lines of a signature's file."""
+    """Decode the bytes between the first and the last line of a signature file."""
     try:
         lines = signature.decode("ascii").splitlines()
         if len(lines) < 3 or lines[0] != _BEGIN or lines[-1] != _END:
@@ -202,12 +205,13 @@ def _unarmoured(signature: bytes) -> bytes:
 
 
 class _Reader:
-    """A cursor over bytes that refuses to read beyond their end, and to leave any."""
+    """Reader of the string format of RFC 4251 that refuses missing and additional bytes."""
 
     def __init__(self, content: bytes) -> None:
         self._content, self._position = content, 0
 
     def take(self, count: int) -> bytes:
+        """Return the next bytes."""
         piece = self._content[self._position : self._position + count]
         if len(piece) < count:
             raise SignatureError("the signature is damaged: it ends too early")
@@ -215,8 +219,10 @@ class _Reader:
         return piece
 
     def text(self) -> bytes:
+        """Return the next string."""
         return self.take(int.from_bytes(self.take(4), "big"))
 
     def end(self) -> None:
+        """Refuse bytes after the end."""
         if self._position != len(self._content):
             raise SignatureError("the signature is damaged: bytes follow its end")

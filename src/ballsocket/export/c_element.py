@@ -15,7 +15,7 @@ from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
 from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement, reaction
-from ..dynamics.load import status_of
+from ..dynamics.load import contact_state_of
 from ..dynamics.potential import CurvePotential, energy_curve
 from ..dynamics.reaction import BallCentre, Constants, Elastic, Vector
 from ..version import __version__
@@ -44,13 +44,13 @@ class Recording:
 
     @cached_property
     def state(self) -> tuple[Vector, Vector, Vector]:
-        """Position, velocity and spin as inputs of the tape."""
+        """Position, velocity and spin of the ball as inputs of the tape."""
         x, v, w = (tuple(self.tape.input(f"{name}[{axis}]") for axis in range(3)) for name in STATE)
         return x, v, w  # type: ignore[return-value]
 
     @cached_property
     def constants(self) -> Constants:
-        """Constants of the element; tunable parameters are inputs of the tape."""
+        """Constants of the force element, in which the tunable parameters are inputs of the tape."""
         tuned: dict[str, Any] = {
             parameter.constant: self.tape.input(f"p->{parameter.name}", tunable=True) for parameter in TUNABLES
         }
@@ -59,26 +59,29 @@ class Recording:
 
     @cached_property
     def curves(self) -> dict[str, CurveLaw]:
-        """Tabulated curves that the C program evaluates, by name."""
+        """Fitted curves that the C program evaluates, by name: half angle, largest pressure, energy."""
         half_angle, max_pressure = self.element.curves
         curves = {HALF_ANGLE: half_angle, MAX_PRESSURE: max_pressure}
         potential = self.element.potential
         if isinstance(potential, CurvePotential):
             curves[ENERGY] = potential.curve
-        elif not _can_be_recorded(potential):
+        elif not _is_recordable(potential):
             law = self.element.model.law(self.element.joint)
             curves[ENERGY] = energy_curve(law, half_angle.shallowest, self.element.wall)
         return curves
 
     @cached_property
     def centre(self) -> BallCentre:
-        return reaction.centre_of(*self.state[0], self.constants.clearance)
+        """Recorded position of the ball centre."""
+        return reaction.ball_centre_at(*self.state[0], self.constants.clearance)
 
     @cached_property
     def contact(self) -> Elastic:
+        """Recorded elastic contact at the position of the ball."""
         return reaction.elastic_contact(self._potential, self.centre, self.constants)
 
     def _potential(self, depth: Recorded) -> tuple[Part, Part, Part]:
+        """Record energy, force and stiffness at an indentation."""
         if ENERGY in self.curves:
             energy, force, stiffness = self.tape.curve(ENERGY, depth, 3)
             return energy, force, stiffness
@@ -86,43 +89,49 @@ class Recording:
 
     @cached_property
     def load(self) -> Outputs:
-        """Recorded force, moment and energy."""
+        """Recorded force, moment and elastic energy, by C variable."""
         parts = reaction.force_and_moment(self.centre, self.contact, *self.state[1:], self.constants)
-        return {**_numbered("force", parts[:3]), **_numbered("moment", parts[3:]), "*energy": self.contact.energy}
+        return {
+            **_by_array_element("force", parts[:3]),
+            **_by_array_element("moment", parts[3:]),
+            "*energy": self.contact.energy,
+        }
 
     @cached_property
     def contact_size(self) -> Outputs:
-        """Recorded half angle and largest pressure."""
+        """Recorded half angle and largest pressure, by C variable."""
         depth = self.centre.indentation
         angle, pressure = (self.tape.curve(name, depth, 1)[0] for name in (HALF_ANGLE, MAX_PRESSURE))
         return {"*half_angle": angle, "*max_pressure": pressure}
 
     @cached_property
     def status(self) -> Outputs:
-        """Recorded code of the `ContactState`."""
-        return {"status": status_of(self.centre, self.contact, isfinite(self.centre.distance), self.constants)}
+        """Recorded code of the `ContactState` (free, contact, at the rim, ...)."""
+        return {"status": contact_state_of(self.centre, self.contact, isfinite(self.centre.distance), self.constants)}
 
     @cached_property
     def tangent(self) -> Outputs:
-        """Recorded tangent stiffness ∂²U/∂r², nine components."""
-        xx, yy, zz, xy, yz, zx = reaction.tangent(self.centre, self.contact, self.constants)
-        return _numbered("tangent", (xx, xy, zx, xy, yy, yz, zx, yz, zz))
+        """Recorded tangent stiffness ∂²U/∂r² in N/mm, nine components by C variable."""
+        xx, yy, zz, xy, yz, zx = reaction.tangent_stiffness(self.centre, self.contact, self.constants)
+        return _by_array_element("tangent", (xx, xy, zx, xy, yy, yz, zx, yz, zz))
 
     @cached_property
     def slope(self) -> Outputs:
-        """Recorded derivatives of load, half angle and pressure in a direction of the state space."""
-        names = (f"way[{number}]" for number in range(9))
+        """Recorded directional derivatives of load, half angle and pressure with respect to the state."""
+        names = (f"way[{index}]" for index in range(9))
         direction = {part: self.tape.input(name) for part, name in zip(chain(*self.state), names, strict=True)}
-        return _numbered(
+        return _by_array_element(
             "slope", directional_derivatives([*self.load.values(), *self.contact_size.values()], direction)
         )
 
 
-def _numbered(name: str, parts: Any) -> Outputs:
-    return {f"{name}[{number}]": part for number, part in enumerate(parts)}
+def _by_array_element(name: str, parts: Any) -> Outputs:
+    """Return recorded parts by their C array elements, such as "force[0]"."""
+    return {f"{name}[{index}]": part for index, part in enumerate(parts)}
 
 
-def _can_be_recorded(potential: Any) -> bool:
+def _is_recordable(potential: Any) -> bool:
+    """Check if the formulas of an elastic energy can be recorded; iterations and branches cannot."""
     try:
         potential(Tape().input("depth"))
     except (TypeError, AttributeError, ValueError):  # iterations and data-dependent branches
@@ -167,31 +176,31 @@ class CElement:
 
     @cached_property
     def recording(self) -> Recording:
-        """Recorded formulas of the element."""
+        """Recorded formulas of the force element."""
         return Recording(element=self.element)
 
     @property
     def header(self) -> str:
-        """Text of the header that other programs include."""
+        """Text of the C header that other programs include."""
         fields = "\n".join(
             f"    double {parameter.name}; /* {parameter.unit}: {parameter.meaning} */" for parameter in TUNABLES
         )
-        codes = "\n".join(f"    {self.name.upper()}_{touch.name} = {touch.value}," for touch in ContactState)
+        codes = "\n".join(f"    {self.name.upper()}_{state.name} = {state.value}," for state in ContactState)
         names = {"name": self.name, "NAME": self.name.upper()}
         return fill_template("element.h", fields=fields, codes=codes, **names, **self.about)
 
     @property
     def source(self) -> str:
-        """Text of the C source file."""
+        """Text of the C source file of the force element."""
         recording, constants = self.recording, self.element.constants
         return fill_template(
             "element.c",
             name=self.name,
             NAME=self.name.upper(),
-            along=_template("curve.c"),
-            curves="\n".join(_curve_function(name, curve) for name, curve in sorted(recording.curves.items())),
+            along=_read_template("curve.c"),
+            curves="\n".join(_curve_function_code(name, curve) for name, curve in sorted(recording.curves.items())),
             defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
-            checks="\n".join(_range_check(parameter.name, parameter.above) for parameter in TUNABLES),
+            checks="\n".join(_range_check_statement(parameter.name, parameter.above) for parameter in TUNABLES),
             first_touch=c_number(constants.clearance - constants.smoothing),
             load=c_statements({**recording.status, **recording.load}),
             pressed=c_statements({**recording.status, **recording.contact_size}),
@@ -215,34 +224,35 @@ class CElement:
 
     @property
     def about(self) -> dict[str, str]:
-        """Version, model and joint for comments in generated files."""
+        """Version, model and joint as texts for the comments in generated files."""
         joint = re.sub(r"[^\x20-\x7e]|\*/|/\*|--|\\", "?", repr(self.element.joint.with_floats()))
         return {"version": __version__, "model": self.element.model.name, "joint": joint}
 
 
-def _range_check(name: str, above: bool) -> str:
+def _range_check_statement(name: str, is_positive: bool) -> str:
     """Return the C statement that rejects a parameter outside its range."""
-    operator, allowed = (">", "above 0") if above else (">=", "0 or more")
+    operator, allowed = (">", "above 0") if is_positive else (">=", "0 or more")
     condition = f"p->{name} {operator} 0.0 && p->{name} < INFINITY"
     return f'    if (!({condition})) return "{name} must be finite and {allowed}";'
 
 
-def _curve_function(name: str, curve: CurveLaw) -> str:
-    """Return the C code of a tabulated curve: its coefficients and the function that evaluates it."""
+def _curve_function_code(name: str, curve: CurveLaw) -> str:
+    """Return the C code of a fitted curve: its coefficients and the function that evaluates it."""
     pieces: Numbers = curve.pieces
-    rows = ",\n".join("    " + ", ".join(map(c_number, row)) for row in pieces.tolist())
+    coefficient_rows = ",\n".join("    " + ", ".join(map(c_number, coefficients)) for coefficients in pieces.tolist())
     ends = ", ".join(map(c_number, (curve.shallowest, curve.deepest, curve.first, curve.density)))
     return (
-        f"static const double {name}_rows[] = {{\n{rows}\n}};\n"
+        f"static const double {name}_rows[] = {{\n{coefficient_rows}\n}};\n"
         f"static const curve {name}_data = {{{ends}, {pieces.shape[0]}, {pieces.shape[1]}, {name}_rows}};\n"
         f"static void {name}(double d, double out[4]) {{ along_curve(&{name}_data, d, out); }}\n"
     )
 
 
-def _template(name: str) -> str:
+def _read_template(name: str) -> str:
+    """Read a template file of this package."""
     return (files(__package__) / "templates" / name).read_text(encoding="utf-8")
 
 
-def fill_template(template: str, **values: str) -> str:
-    """Fill a template file of this package with values, and return the text."""
-    return Template(_template(template)).substitute(values)
+def fill_template(template_name: str, **values: str) -> str:
+    """Fill a template file of this package with values, and return the resulting text."""
+    return Template(_read_template(template_name)).substitute(values)

@@ -21,7 +21,7 @@ def c_number(value: float) -> str:
 
 
 def c_statements(targets: Mapping[str, Part]) -> str:
-    """Translate recorded steps to C statements that assign each target."""
+    """Translate recorded steps to C statements that assign a value to each target variable."""
     steps = _required_steps(list(targets.values()))
     lines = [line for step in steps for line in _step_statements(step)]
     lines += [f"{name} = {_c_operand(part)};" for name, part in targets.items()]
@@ -29,7 +29,7 @@ def c_statements(targets: Mapping[str, Part]) -> str:
 
 
 def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
-    """Return the steps that the parts depend on, in the order of the tape."""
+    """List the recorded steps that some parts depend on, in the order of the tape."""
     required: dict[int, Recorded] = {}
     pending = list(parts)
     while pending:
@@ -41,7 +41,7 @@ def _required_steps(parts: Sequence[Part]) -> list[Recorded]:
 
 
 def _step_statements(step: Recorded) -> Iterator[str]:
-    """Yield the C statements of a recorded step."""
+    """Yield the C statements that compute a recorded step."""
     if step.step == "input":
         return
     if step.step == "curve":
@@ -52,22 +52,23 @@ def _step_statements(step: Recorded) -> Iterator[str]:
     yield f"const {kind} {_c_operand(step)} = {_step_expression(step, [_c_operand(part) for part in step.parts])};"
 
 
-def _step_expression(step: Recorded, parts: list[str]) -> str:
-    """Return the C expression of a recorded step, with its operands as text."""
+def _step_expression(step: Recorded, operands: list[str]) -> str:
+    """Return the C expression of a recorded step from the texts of its operands."""
     if step.step == "where":
-        return "{} ? {} : {}".format(*parts)
+        return "{} ? {} : {}".format(*operands)
     if step.step == "slope":
-        return f"{parts[0]}[{step.about}]"
+        return f"{operands[0]}[{step.about}]"
     if step.step == "neg":
-        return f"-{parts[0]}"
+        return f"-{operands[0]}"
     if step.step == "not":
-        return f"!{parts[0]}"
-    if len(parts) == 2 and not step.step.isalnum():
-        return f"{parts[0]} {_C_OPERATORS.get(step.step, step.step)} {parts[1]}"
-    return f"{step.step}({', '.join(parts)})"
+        return f"!{operands[0]}"
+    if len(operands) == 2 and not step.step.isalnum():
+        return f"{operands[0]} {_C_OPERATORS.get(step.step, step.step)} {operands[1]}"
+    return f"{step.step}({', '.join(operands)})"
 
 
 def _c_operand(part: Part) -> str:
+    """Return a part as a C operand: a literal, an input or a variable such as "t12"."""
     if not isinstance(part, Recorded):
         return c_number(part)
     return str(part.about) if part.step == "input" else f"t{part.number}"

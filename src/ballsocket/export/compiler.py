@@ -40,14 +40,17 @@ class Platform:
 
     @property
     def bits(self) -> int:
+        """Word size of the processor in bits, 32 or 64."""
         return _BITS.get(self.processor, 64 if sys.maxsize > 2**32 else 32)
 
     @property
     def library_ending(self) -> str:
+        """File name ending of a shared library, such as ".so"."""
         return _LIBRARY_ENDINGS.get(self.system, ".so")
 
 
 def _this_platform() -> Platform:
+    """Determine the platform of this machine."""
     processor = platform.machine().lower()
     processor = _PROCESSORS.get(processor, processor)
     if sys.maxsize < 2**32 and processor == "x86_64":
@@ -68,24 +71,24 @@ class NoCompiler(RuntimeError):  # noqa: N818 - a sentence for people
 
 
 def compiler() -> list[str]:
-    """Return the command of the C compiler: the variable CC, else the first of cc, gcc and clang.
+    """Return the command of the C compiler: the environment variable CC, else the first of cc, gcc and clang.
 
     Raises
     ------
     NoCompiler
         No compiler is installed.
     """
-    chosen = _environment_arguments("CC")
-    if chosen and shutil.which(chosen[0]):
-        return chosen
+    stated_command = _split_environment_variable("CC")
+    if stated_command and shutil.which(stated_command[0]):
+        return stated_command
     installed = next(filter(None, map(shutil.which, _COMPILER_NAMES)), None)
-    if chosen or installed is None:
-        names = (
-            f"CC is {chosen[0]!r}, which is not installed"
-            if chosen
+    if stated_command or installed is None:
+        reason = (
+            f"CC is {stated_command[0]!r}, which is not installed"
+            if stated_command
             else f"none of {', '.join(_COMPILER_NAMES)} is installed"
         )
-        raise NoCompiler(f"no C compiler: {names}")
+        raise NoCompiler(f"no C compiler: {reason}")
     return [installed]
 
 
@@ -104,7 +107,7 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
     NoCompiler
         A missing compiler, a failed one (with its first error message), or an unknown output format.
     """
-    flags = _environment_arguments("CFLAGS")
+    flags = _split_environment_variable("CFLAGS")
     command = [
         *compiler(),
         "-std=c99",
@@ -118,13 +121,13 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
         "-lm",
     ]
     try:
-        finished = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
+        process = subprocess.run(command, cwd=folder, capture_output=True, text=True, errors="replace", timeout=300)
     except (OSError, subprocess.TimeoutExpired) as error:
         raise NoCompiler(f"the compiler {command[0]} could not be run: {error}") from error
-    if finished.returncode:
-        lines = finished.stderr.splitlines() or ["it printed no message"]
+    if process.returncode:
+        lines = process.stderr.splitlines() or ["it printed no message"]
         message = next((line for line in lines if "error" in line), lines[0])
-        raise NoCompiler(f"the compiler {command[0]} ended with {finished.returncode}: {message:.200}")
+        raise NoCompiler(f"the compiler {command[0]} ended with {process.returncode}: {message:.200}")
     try:
         return library_platform((folder / library).read_bytes())
     except (OSError, ValueError) as error:
@@ -132,7 +135,7 @@ def compile_library(sources: Sequence[str], library: Path, folder: Path, options
 
 
 def shared_library(sources: Sequence[str], library: Path, folder: Path, options: Sequence[str] = ()) -> Path:
-    """Compile C sources of a folder into a shared library that runs on this machine.
+    """Compile C sources of a folder into a shared library for this machine, and return its path.
 
     Raises
     ------
@@ -147,7 +150,7 @@ def shared_library(sources: Sequence[str], library: Path, folder: Path, options:
 
 
 def library_platform(header: bytes) -> Platform:
-    """Determine the platform of a library from its first bytes (ELF, PE or Mach-O).
+    """Determine the operating system and processor of a library from its first bytes (ELF, PE or Mach-O).
 
     Raises
     ------
@@ -168,8 +171,8 @@ def library_platform(header: bytes) -> Platform:
     return Platform(system=system, processor=machines[machine])
 
 
-def _environment_arguments(name: str) -> list[str]:
-    """Split an environment variable into the arguments of a command."""
+def _split_environment_variable(name: str) -> list[str]:
+    """Split the value of an environment variable into the arguments of a command."""
     value = os.environ.get(name, "")
     try:
         return shlex.split(value)

@@ -46,23 +46,25 @@ class PowerFit:
 
 
 def power_fit(element: ForceElement, depth: float) -> PowerFit:
-    """Fit the power law F = k d^n up to an indentation in mm, with the smallest largest error."""
-    d = depth * numpy.linspace(_LOWEST_FITTED_SHARE, 1.0, _SAMPLES)
-    F = element.potential(d)[1]
-    exponent = _golden_section_minimum(lambda n: _best_stiffness(d, F, n)[1])
-    k, error = _best_stiffness(d, F, exponent)
-    return PowerFit(stiffness=k, exponent=exponent, depth=depth, error=error / float(F[-1]))
+    """Fit the power law F = k d^n (force F, indentation d) by the smallest largest error, up to a depth in mm."""
+    depths = depth * numpy.linspace(_LOWEST_FITTED_SHARE, 1.0, _SAMPLES)
+    forces = element.potential(depths)[1]
+    exponent = _find_minimum(lambda n: _fit_stiffness(depths, forces, n)[1])
+    k, error = _fit_stiffness(depths, forces, exponent)
+    return PowerFit(stiffness=k, exponent=exponent, depth=depth, error=error / float(forces[-1]))
 
 
-def _best_stiffness(d: Numbers, F: Numbers, n: float) -> tuple[float, float]:
-    """Find the stiffness k with the smallest largest error of F = k d^n; return k and this error in N."""
-    shape = (d / d[-1]) ** n
-    k = _golden_section_minimum(lambda k: float(numpy.max(abs(k * shape - F))), 0.5 * float(F[-1]), 2.0 * float(F[-1]))
-    return k / float(d[-1]) ** n, float(numpy.max(abs(k * shape - F)))
+def _fit_stiffness(depths: Numbers, forces: Numbers, exponent: float) -> tuple[float, float]:
+    """Find the stiffness k of F = k d^n with the smallest largest force error; return k and the error in N."""
+    relative_force = (depths / depths[-1]) ** exponent
+    k = _find_minimum(
+        lambda k: float(numpy.max(abs(k * relative_force - forces))), 0.5 * float(forces[-1]), 2.0 * float(forces[-1])
+    )
+    return k / float(depths[-1]) ** exponent, float(numpy.max(abs(k * relative_force - forces)))
 
 
-def _golden_section_minimum(function: Callable[[float], float], low: float = 0.5, high: float = 4.0) -> float:
-    """Return the position of the minimum of a unimodal function by golden-section search."""
+def _find_minimum(function: Callable[[float], float], low: float = 0.5, high: float = 4.0) -> float:
+    """Find the position of the minimum of a function with one minimum, by golden-section search."""
     ratio = (5.0**0.5 - 1.0) / 2.0
     for _ in range(60):
         inner_low, inner_high = high - ratio * (high - low), low + ratio * (high - low)
@@ -109,17 +111,17 @@ class ExpressionFit:
     error_beyond: float = 0.0
 
     def __call__(self, distance: Numbers) -> Numbers:
-        """Compute the force in N at distances between the centres in m."""
+        """Compute the fitted force in N at distances between the centres in m."""
         d = numpy.maximum(distance - self.clearance, 0.0)
         if not self.coefficients:
-            return self.scale * _spring_shape(d, self.clearance)
+            return self.scale * _spring_force_shape(d, self.clearance)
         fitted = numpy.minimum(d, self.depth)
         t = numpy.sqrt(fitted / (fitted + self.length))
         exponential = numpy.exp(numpy.polyval((*self.coefficients[::-1], 0.0), t))
         return self.scale * fitted**self.power * exponential * (d / self.depth).clip(1.0) ** self.power_beyond
 
     def text(self, distance: str, rate: str, hysteresis: float) -> str:
-        """Write the force towards the socket's centre as an expression, with Hunt-Crossley damping (s/m)."""
+        """Write the force in N as an expression of distance and rate, with Hunt-Crossley damping in s/m."""
         c = repr(self.clearance)
         u = f"max({distance}-{c},0)"
         if self.coefficients:
@@ -136,7 +138,7 @@ class ExpressionFit:
 
     @property
     def range_note(self) -> str:
-        """Note on the accuracy within and beyond the fitted depth; empty for an exact expression."""
+        """Note on the errors of the fit below and above the fitted depth; empty for an exact expression."""
         if self.error_beyond <= _NEGLIGIBLE_ERROR:
             return ""
         return (
@@ -145,12 +147,16 @@ class ExpressionFit:
         )
 
 
-def _spring_shape(d: Numbers, c: float) -> Numbers:
+def _spring_force_shape(d: Numbers, c: float) -> Numbers:
+    """Compute the force of radial springs divided by its factor G: d² (3 c + 2 d)/(c + d)².
+
+    d is the indentation and c the clearance, in the same unit.
+    """
     return d * d * (3.0 * c + 2.0 * d) / (c + d) ** 2
 
 
 def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
-    """Fit one expression to the force law of an element, up to an indentation in mm.
+    """Fit the force law of an element by one expression of the distance, up to an indentation in mm.
 
     If the model is valid beyond `depth`, the fit covers its valid range.
     """
@@ -158,41 +164,45 @@ def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
     fitted_depth = max(depth, valid_depth(element))
     d = numpy.geomspace(1e-3 * fitted_depth, fitted_depth, 997)
     forces = element.potential(d)[1]
-    ratio = forces / _spring_shape(d, c)
+    ratio = forces / _spring_force_shape(d, c)
     lengths = {"clearance": 1e-3 * c, "depth": 1e-3 * fitted_depth}
     if c > 0.0 and numpy.ptp(ratio) < 1e-12 * ratio[0]:
         fit = ExpressionFit(scale=1e3 * float(ratio[0]), length=1e-3 * c, power=2.0, coefficients=(), **lengths)
     else:
-        fit = _fit_exponential(element, fitted_depth, c or 1e-3 * R2, lengths)
+        fit = _fit_exponential_law(element, fitted_depth, c or 1e-3 * R2, lengths)
     deeper = numpy.linspace(fitted_depth, max(min(2.0 * fitted_depth, element.wall), fitted_depth), 100)
-    return replace(fit, error=_largest_error(fit, element, d), error_beyond=_largest_error(fit, element, deeper))
+    return replace(
+        fit, error=_largest_force_error(fit, element, d), error_beyond=_largest_force_error(fit, element, deeper)
+    )
 
 
-def _largest_error(fit: ExpressionFit, element: ForceElement, d: Numbers) -> float:
-    """Compute the largest relative force error of a fit at indentations in mm."""
-    forces = element.potential(d)[1]
-    return float(numpy.nanmax(abs(fit(1e-3 * (element.constants.clearance + d)) / forces - 1.0)))
+def _largest_force_error(fit: ExpressionFit, element: ForceElement, depths: Numbers) -> float:
+    """Compute the largest relative error of the fitted force at indentations in mm."""
+    forces = element.potential(depths)[1]
+    return float(numpy.nanmax(abs(fit(1e-3 * (element.constants.clearance + depths)) / forces - 1.0)))
 
 
-def _fit_exponential(element: ForceElement, depth: float, h: float, lengths: dict[str, float]) -> ExpressionFit:
-    """Fit the force by a power of the indentation times the exponential of a polynomial."""
-    t = numpy.linspace(0.0, 1.0, _SAMPLES + 1)[1:] * (depth / (depth + h)) ** 0.5
-    d = h * t * t / (1.0 - t * t)
+def _fit_exponential_law(
+    element: ForceElement, depth: float, transition_depth: float, lengths: dict[str, float]
+) -> ExpressionFit:
+    """Fit the force by a power of the indentation times the exponential of a polynomial, up to a depth in mm."""
+    t = numpy.linspace(0.0, 1.0, _SAMPLES + 1)[1:] * (depth / (depth + transition_depth)) ** 0.5
+    d = transition_depth * t * t / (1.0 - t * t)
     _, force, stiffness = element.potential(d)
     power = round(2.0 * float(stiffness[0] * d[0] / force[0])) / 2.0
-    fit = numpy.polynomial.Polynomial.fit(t, numpy.log(force / d**power), _DEGREE).convert().coef
+    polynomial_coefficients = numpy.polynomial.Polynomial.fit(t, numpy.log(force / d**power), _DEGREE).convert().coef
     return ExpressionFit(
-        scale=float(numpy.exp(fit[0])) * 1e3**power,
-        length=1e-3 * h,
+        scale=float(numpy.exp(polynomial_coefficients[0])) * 1e3**power,
+        length=1e-3 * transition_depth,
         power=power,
         power_beyond=float(stiffness[-1] * d[-1] / force[-1]),
-        coefficients=tuple(map(float, fit[1:])),
+        coefficients=tuple(map(float, polynomial_coefficients[1:])),
         **lengths,
     )
 
 
-def depth_of(element: ForceElement, load: dict[str, float]) -> float:
-    """Return the largest indentation in mm that a fit covers: that of a load, else the largest valid one."""
+def fit_depth(element: ForceElement, load: dict[str, float]) -> float:
+    """Return the largest indentation in mm of a fit: that under a given load, else the largest valid one."""
     if load:
         model: Model = element.model
         return float(model.press(element.joint.with_floats(), **load).indentation)

@@ -37,19 +37,19 @@ class Tape:
     _steps_by_key: dict[tuple[Any, ...], Recorded] = field(default_factory=dict)
 
     def input(self, name: str, tunable: bool = False) -> Recorded:
-        """Record an input of the calculation.
+        """Record a named input of the calculation.
 
         A formula may compare a `tunable` input with 0; the general case is recorded.
         """
         return self.record("input", (), name, tunable=tunable)
 
-    def curve(self, name: str, x: Recorded, slopes: int) -> tuple[Recorded, ...]:
-        """Record the evaluation of a tabulated curve, and return its value and derivatives."""
+    def curve(self, name: str, x: Recorded, value_count: int) -> tuple[Recorded, ...]:
+        """Record the evaluation of a fitted curve at x; return its value and derivatives."""
         evaluation = self.record("curve", (x,), name)
-        return tuple(self.record("slope", (evaluation,), order) for order in range(slopes))
+        return tuple(self.record("slope", (evaluation,), order) for order in range(value_count))
 
     def record(self, step: str, parts: tuple[Part, ...], about: Any = None, *, tunable: bool | None = None) -> Recorded:
-        """Return the step with an operation and its parts; record it if it is new."""
+        """Record an operation on some parts, unless it is on the tape already; return its result."""
         key = (step, about, *((id(part) if isinstance(part, Recorded) else ("number", part)) for part in parts))
         if key not in self._steps_by_key:
             if tunable is None:
@@ -61,7 +61,7 @@ class Tape:
 
 
 class Recorded:
-    """Unknown number of a recorded formula: an operation with its parts."""
+    """Unknown number of a recorded formula: the result of an operation on its parts."""
 
     __slots__ = ("about", "number", "parts", "step", "tape", "tunable")
     dtype = "float64"
@@ -145,42 +145,45 @@ class Recorded:
 
 
 def where(condition: Part, if_true: Part, if_false: Part) -> Part:
-    """Select one of two parts by a condition, elementwise."""
+    """Record the choice between two parts by a condition."""
     if isinstance(condition, bool):
         return if_true if condition else if_false
     return condition.tape.record("where", (condition, if_true, if_false))
 
 
-def _clip(x: Part, low: float, high: float) -> Part:
-    """Limit a part to an interval, whose ends may be infinite; NaN stays NaN."""
+def _record_clip(x: Part, low: float, high: float) -> Part:
+    """Record the limitation of a part to an interval with possibly infinite ends; NaN stays NaN."""
     if low > -math.inf:
         x = where(x < low, low, x)
     return where(x > high, high, x) if high < math.inf else x
 
 
-def _function(name: str) -> Callable[..., Recorded]:
-    def function(*parts: Part) -> Recorded:
-        tape = next(part.tape for part in parts if isinstance(part, Recorded))
-        return tape.record(name, parts)
+def _recording_function(step_name: str) -> Callable[..., Recorded]:
+    """Make a function that records its call as a step with this name."""
 
-    return function
+    def record_call(*parts: Part) -> Recorded:
+        tape = next(part.tape for part in parts if isinstance(part, Recorded))
+        return tape.record(step_name, parts)
+
+    return record_call
 
 
 class _Namespace:
-    """Array API namespace of recorded numbers, with the functions that formulas use."""
+    """Array API namespace of recorded numbers, with the mathematical functions of the formulas."""
 
     __name__ = "recorded"
     int8 = "int8"
-    isfinite = staticmethod(_function("isfinite"))
-    where, clip = staticmethod(where), staticmethod(_clip)
+    isfinite = staticmethod(_recording_function("isfinite"))
+    where, clip = staticmethod(where), staticmethod(_record_clip)
 
     def __getattr__(self, name: str) -> Callable[..., Recorded]:
         if name not in FUNCTIONS:
             raise AttributeError(name)
-        return _function(FUNCTIONS[name])
+        return _recording_function(FUNCTIONS[name])
 
     @staticmethod
     def astype(part: Part, dtype: str) -> Part:
+        """Return the part unchanged, because recorded numbers have one type."""
         return part
 
 
@@ -192,23 +195,26 @@ _NAMESPACE = _Namespace()
 
 
 def directional_derivatives(parts: Sequence[Part], direction: Mapping[Recorded, Part]) -> list[Part]:
-    """Record the derivatives of parts along a direction of the inputs."""
+    """Record the derivatives of some parts with respect to the inputs, along a direction."""
     slopes: dict[int, Slope] = {variable.number: rate for variable, rate in direction.items()}
-    recorded = [part for part in parts if isinstance(part, Recorded)]
-    for step in list(recorded[0].tape.steps) if recorded else ():
+    recorded_parts = [part for part in parts if isinstance(part, Recorded)]
+    for step in list(recorded_parts[0].tape.steps) if recorded_parts else ():
         if step.number not in slopes:
             slopes[step.number] = (
-                None if step.step in BOOLEAN else _chain_rule(step, [_slope_of(part, slopes) for part in step.parts])
+                None
+                if step.step in BOOLEAN
+                else _record_chain_rule(step, [_derivative_of(part, slopes) for part in step.parts])
             )
-    return [0.0 if (slope := _slope_of(part, slopes)) is None else slope for part in parts]
+    return [0.0 if (slope := _derivative_of(part, slopes)) is None else slope for part in parts]
 
 
-def _slope_of(part: Part, slopes: Mapping[int, Slope]) -> Slope:
+def _derivative_of(part: Part, slopes: Mapping[int, Slope]) -> Slope:
+    """Return the derivative of a part; None for a constant."""
     return slopes[part.number] if isinstance(part, Recorded) else None
 
 
-def _chain_rule(step: Recorded, slopes: list[Slope]) -> Slope:
-    """Record the derivative of a step from the derivatives of its parts."""
+def _record_chain_rule(step: Recorded, slopes: list[Slope]) -> Slope:
+    """Record the derivative of a step by the chain rule, from the derivatives of its parts."""
     if all(slope is None for slope in slopes):
         return None
     if step.step == "where":
@@ -220,22 +226,24 @@ def _chain_rule(step: Recorded, slopes: list[Slope]) -> Slope:
         return step.tape.record("slope", step.parts, step.about + 1) * slopes[0]
     total: Slope = None
     for rate, slope in zip(_PARTIAL_DERIVATIVES[step.step](step, *step.parts), slopes, strict=True):
-        total = total if slope is None else _sum(total, _product(rate, slope))
+        total = total if slope is None else _record_sum(total, _record_product(rate, slope))
     return total
 
 
-def _sum(total: Slope, term: Part) -> Part:
+def _record_sum(total: Slope, term: Part) -> Part:
+    """Record the sum of a total and a term; a missing total counts as 0."""
     return term if total is None else total + term
 
 
-def _product(rate: Part, slope: Part) -> Part:
+def _record_product(rate: Part, slope: Part) -> Part:
+    """Record the product of a partial derivative and a slope, without a multiplication by ±1."""
     if not isinstance(rate, Recorded) and abs(rate) == 1.0:
         return slope if rate > 0 else -slope
     return rate * slope
 
 
-def _inverse_root(a: Part) -> Part:
-    # formulas clip their arguments at the ends, where the slope of the clipped formula is 0
+def _asin_derivative(a: Part) -> Part:
+    """Record the derivative 1/sqrt(1 - a²) of asin a; 0 at and beyond ±1, where formulas clip their arguments."""
     return where(a * a < 1.0, 1.0 / sqrt(1.0 - a * a), 0.0)
 
 
@@ -256,8 +264,8 @@ _PARTIAL_DERIVATIVES: Mapping[str, Callable[..., tuple[Part, ...]]] = {
     "tan": lambda y, a: (1.0 + y * y,),
     "tanh": lambda y, a: (1.0 - y * y,),
     "atan": lambda y, a: (1.0 / (1.0 + a * a),),
-    "asin": lambda y, a: (_inverse_root(a),),
-    "acos": lambda y, a: (-_inverse_root(a),),
+    "asin": lambda y, a: (_asin_derivative(a),),
+    "acos": lambda y, a: (-_asin_derivative(a),),
     "asinh": lambda y, a: (1.0 / sqrt(1.0 + a * a),),
     "atan2": lambda y, a, b: (b / (a * a + b * b), -a / (a * a + b * b)),
 }

@@ -29,22 +29,25 @@ class ExportJob:
     depth: float
 
     @cached_property
-    def program(self) -> CElement:
+    def c_program(self) -> CElement:
+        """C source and header of the force element."""
         return CElement(element=self.element, name=self.name)
 
     @cached_property
-    def power(self) -> PowerFit:
+    def fitted_power_law(self) -> PowerFit:
+        """Fitted power law F = k d^n of the force element."""
         return power_fit(self.element, self.depth)
 
     @cached_property
-    def expression(self) -> ExpressionFit:
+    def fitted_expression(self) -> ExpressionFit:
+        """Force law fitted as one expression of the distance."""
         return expression_fit(self.element, self.depth)
 
     @property
     def template_context(self) -> dict[str, str]:
-        """Values that every template may use, by name."""
+        """Values for the placeholders of file templates, by name."""
         return {
-            **self.program.about,
+            **self.c_program.about,
             "name": self.name,
             "NAME": self.name.upper(),
             "library": f"_{self.name}{LIBRARY_ENDING}",
@@ -58,7 +61,8 @@ class ExportJob:
     words = RenamedAttribute("template_context")
 
     def program_texts(self) -> dict[str, str]:
-        return {f"{self.name}.h": self.program.header, f"{self.name}.c": self.program.source}
+        """Return the texts of the C header and source, by file name."""
+        return {f"{self.name}.h": self.c_program.header, f"{self.name}.c": self.c_program.source}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,7 +90,7 @@ class Target:
     without: tuple[str, ...] = ()
 
     def write(self, job: ExportJob, folder: Path) -> tuple[list[Path], str]:
-        """Write the files of a job into a folder; return their paths, and notes on missing or limited features.
+        """Write the files of an export job into a folder; return their paths, and notes on omitted features.
 
         Raises
         ------
@@ -101,8 +105,9 @@ class Target:
         return paths, "; ".join(filter(None, (self.compiled(job, folder), self._omitted_features(job), self.note(job))))
 
     def _omitted_features(self, job: ExportJob) -> str:
-        missing = [name for name in self.without if FEATURES[name](job.element.constants)]
-        return f"{self.name} cannot represent {' and '.join(missing)}: omitted" if missing else ""
+        """Describe the features of the element that the target program cannot represent; empty if none."""
+        omitted = [name for name in self.without if FEATURES[name](job.element.constants)]
+        return f"{self.name} cannot represent {' and '.join(omitted)}: omitted" if omitted else ""
 
 
 FEATURES: Mapping[str, Callable[[Constants], bool]] = {

@@ -20,12 +20,13 @@ _LINE_OF_CENTRES = tuple(name for name in FEATURES if name != "damping")
 """Features that one force along the line of centres cannot represent."""
 
 
-def _python_module(job: ExportJob) -> dict[str, str]:
+def _python_module_texts(job: ExportJob) -> dict[str, str]:
+    """Return the texts of the C program and of the Python module that loads it, by file name."""
     return {**job.program_texts(), f"{job.name}.py": fill_template("module.py.txt", **job.template_context)}
 
 
 def _compile_library(job: ExportJob, folder: Path) -> str:
-    """Compile the library that the Python module loads; return a note if compilation fails."""
+    """Compile the C library that the Python module loads; return a note if the compilation fails."""
     try:
         shared_library([f"{job.name}.c"], Path(job.template_context["library"]), folder)
     except NoCompiler as error:
@@ -33,24 +34,25 @@ def _compile_library(job: ExportJob, folder: Path) -> str:
     return ""
 
 
-def _opensim(job: ExportJob) -> Texts:
-    """Write the OpenSim file with an expression force."""
-    fit, element = job.expression, job.element
-    accuracy = fit.range_note or f"within {100 * fit.error:.1g} % of the law"
+def _opensim_texts(job: ExportJob) -> Texts:
+    """Return the text of the OpenSim file with an expression force, by file name."""
+    fitted_expression, element = job.fitted_expression, job.element
+    accuracy = fitted_expression.range_note or f"within {100 * fitted_expression.error:.1g} % of the law"
     hysteresis = element.damping.hysteresis if element.damping else 0.0
-    expression = fit.text("d", "ddot", 1e3 * hysteresis)
-    ball = repr(0.4 * (1e-3 * element.constants.ball_radius) ** 2)
+    expression = fitted_expression.text("d", "ddot", 1e3 * hysteresis)
+    inertia = repr(0.4 * (1e-3 * element.constants.ball_radius) ** 2)
     return {
         f"{job.name}.osim": fill_template(
-            "opensim.osim", expression=expression, nearness=accuracy, inertia=ball, **job.template_context
+            "opensim.osim", expression=expression, nearness=accuracy, inertia=inertia, **job.template_context
         )
     }
 
 
-def _mujoco(job: ExportJob) -> Texts:
+def _mujoco_texts(job: ExportJob) -> Texts:
+    """Return the texts of the MuJoCo plug-in, callback and model, by file name."""
     radius = repr(1e-3 * job.element.constants.ball_radius)
     return {
-        **_python_module(job),
+        **_python_module_texts(job),
         f"{job.name}_mujoco.c": fill_template("mujoco.c", **job.template_context),
         f"{job.name}_mujoco.py": fill_template("mujoco.py.txt", **job.template_context),
         f"{job.name}.xml": fill_template("mujoco.xml", ball_radius=radius, **job.template_context),
@@ -58,13 +60,13 @@ def _mujoco(job: ExportJob) -> Texts:
 
 
 def _compile_plugin(job: ExportJob, folder: Path) -> str:
-    """Compile the library, and the plug-in if MuJoCo is installed; return a note on a missing one."""
-    missing, mujoco = _compile_library(job, folder), find_spec("mujoco")
-    if missing or mujoco is None or not mujoco.submodule_search_locations:
-        return missing or "the plug-in is not compiled: mujoco, whose headers it needs, is not installed"
+    """Compile the C library, and the MuJoCo plug-in if MuJoCo is installed; return a note on a missing one."""
+    library_note, mujoco = _compile_library(job, folder), find_spec("mujoco")
+    if library_note or mujoco is None or not mujoco.submodule_search_locations:
+        return library_note or "the plug-in is not compiled: mujoco, whose headers it needs, is not installed"
     package = Path(mujoco.submodule_search_locations[0])
-    linked = next(iter(sorted(package.glob(f"libmujoco*{LIBRARY_ENDING}*"))), None)
-    sources = [f"{job.name}.c", f"{job.name}_mujoco.c", *([str(linked)] if linked else [])]
+    mujoco_library = next(iter(sorted(package.glob(f"libmujoco*{LIBRARY_ENDING}*"))), None)
+    sources = [f"{job.name}.c", f"{job.name}_mujoco.c", *([str(mujoco_library)] if mujoco_library else [])]
     options = ("-isystem", str(package / "include"), f"-Wl,-rpath,{package}")
     try:
         shared_library(sources, Path(job.template_context["plugin"]), folder, options)
@@ -73,13 +75,14 @@ def _compile_plugin(job: ExportJob, folder: Path) -> str:
     return ""
 
 
-def _drake(job: ExportJob) -> Texts:
-    return {**_python_module(job), f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context)}
+def _drake_texts(job: ExportJob) -> Texts:
+    """Return the texts of the Python module and the Drake system, by file name."""
+    return {**_python_module_texts(job), f"{job.name}_drake.py": fill_template("drake.py.txt", **job.template_context)}
 
 
-def _exudyn(job: ExportJob) -> Texts:
-    """Write the Exudyn module and its fitted power law."""
-    power, constants = job.power, job.element.constants
+def _exudyn_texts(job: ExportJob) -> Texts:
+    """Return the texts of the Python module and the Exudyn module with its power law, by file name."""
+    power, constants = job.fitted_power_law, job.element.constants
     fit = {
         "stiffness": repr(power.stiffness * 1e3**power.exponent),
         "exponent": repr(power.exponent),
@@ -89,13 +92,13 @@ def _exudyn(job: ExportJob) -> Texts:
         "socket_radius": repr(1e-3 * constants.socket_radius),
     }
     return {
-        **_python_module(job),
+        **_python_module_texts(job),
         f"{job.name}_exudyn.py": fill_template("exudyn.py.txt", **fit, **job.template_context),
     }
 
 
-def _modelica(job: ExportJob) -> Texts:
-    """Write the Modelica package around the C program."""
+def _modelica_texts(job: ExportJob) -> Texts:
+    """Return the texts of the Modelica package and its C program, by file name."""
     constants = job.element.constants
     declarations = "\n".join(
         f'    parameter Real {number.name}(unit="{number.si_unit}", min=0) = {start * number.si!r} "{number.meaning}";'
@@ -114,10 +117,11 @@ def _modelica(job: ExportJob) -> Texts:
     }
 
 
-def _table(job: ExportJob) -> Texts:
+def _table_texts(job: ExportJob) -> Texts:
+    """Return the texts of the table of the force law and of the fitted power law, by file name."""
     return {
         f"{job.name}_law.csv": _law_table(job.element, job.depth),
-        f"{job.name}_power.txt": _power_law(job.element, job.power, __version__),
+        f"{job.name}_power.txt": _power_law_text(job.element, job.fitted_power_law, __version__),
     }
 
 
@@ -128,17 +132,17 @@ _COLUMNS = ("indentation_mm", "force_N", "stiffness_N/mm", "energy_N_mm", "half_
 
 
 def _law_table(element: ForceElement, depth: float) -> str:
-    """Write the force law up to an indentation in mm as CSV."""
-    d = numpy.linspace(0.0, depth, _TABLE_ROWS)
-    energy, force, stiffness = element.potential(d)
-    angle = numpy.degrees(element.half_angle(d))
-    columns = (d, force, stiffness, energy, angle, element.max_pressure(d))
+    """Return a CSV table of force, stiffness, energy, half angle and pressure up to an indentation in mm."""
+    depths = numpy.linspace(0.0, depth, _TABLE_ROWS)
+    energy, force, stiffness = element.potential(depths)
+    angle = numpy.degrees(element.half_angle(depths))
+    columns = (depths, force, stiffness, energy, angle, element.max_pressure(depths))
     rows = numpy.stack(columns, axis=1).tolist()
     return "\n".join([",".join(_COLUMNS), *(",".join(f"{value:.9g}" for value in row) for row in rows)]) + "\n"
 
 
-def _power_law(element: ForceElement, fit: PowerFit, version: str) -> str:
-    """Write the fitted power law, its error, and expressions for Adams, MotionSolve and Simpack, in mm, N and s."""
+def _power_law_text(element: ForceElement, fit: PowerFit, version: str) -> str:
+    """Return the fitted power law as text, with expressions for Adams, MotionSolve and Simpack in mm, N and s."""
     c, k, n = element.constants.clearance, fit.stiffness, fit.exponent
     return f"""# F = k d^n of a ball in a socket, in mm, N and s; written by ballsocket {version}
 # {element.model.name}: error up to {fit.depth:.4g} mm at most {100 * fit.error:.2g} % of the force at that depth
@@ -161,18 +165,20 @@ TARGETS: Mapping[str, Target] = {
         Target(
             name="opensim",
             title="an expression force in an .osim file",
-            texts=_opensim,
-            note=lambda job: job.expression.range_note,
+            texts=_opensim_texts,
+            note=lambda job: job.fitted_expression.range_note,
             without=_LINE_OF_CENTRES,
         ),
-        Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco, compiled=_compile_plugin),
-        Target(name="drake", title="a LeafSystem", texts=_drake, compiled=_compile_library),
-        Target(name="exudyn", title="a user function and its hollow sphere", texts=_exudyn, compiled=_compile_library),
-        Target(name="modelica", title="a package around the law in C", texts=_modelica),
+        Target(name="mujoco", title="a passive plug-in and a callback", texts=_mujoco_texts, compiled=_compile_plugin),
+        Target(name="drake", title="a LeafSystem", texts=_drake_texts, compiled=_compile_library),
+        Target(
+            name="exudyn", title="a user function and its hollow sphere", texts=_exudyn_texts, compiled=_compile_library
+        ),
+        Target(name="modelica", title="a package around the law in C", texts=_modelica_texts),
         Target(
             name="table",
             title="a table, and k and n for Adams, MotionSolve and Simpack",
-            texts=_table,
+            texts=_table_texts,
             without=tuple(FEATURES),
         ),
     )

@@ -11,7 +11,7 @@ _DEPTHS = 129
 
 
 def valid_depth(element: ForceElement) -> float:
-    """Return the largest indentation in mm at which the model is valid; 0 if it is valid nowhere.
+    """Find the largest indentation in mm at which the contact model is valid; 0 if no indentation is valid.
 
     Lower limits of the contact size are ignored: every contact passes through them at first touch.
     """

@@ -35,6 +35,35 @@ _PRODUCT_SIGNS = ("*", "/", "·", "×")
 _SUPERSCRIPTS = str.maketrans("\u00b2\u00b3", "23")
 _INFINITE = re.compile(r"\s*[-+]?inf(?:inity)?\s*", re.IGNORECASE)
 
+_COMMON_UNITS = {
+    "mm": "millimeter",
+    "um": "micrometer",
+    "µm": "micrometer",
+    "μm": "micrometer",
+    "cm": "centimeter",
+    "m": "meter",
+    "N": "newton",
+    "kN": "kilonewton",
+    "MPa": "megapascal",
+    "GPa": "gigapascal",
+    "deg": "degree",
+    "\u00b0": "degree",
+}
+"""Names of common units in pint, whose import takes as long as a press."""
+
+_COMMON_FACTORS: dict[tuple[tuple[str, int], ...], float] = {
+    (("millimeter", 1), ("millimeter", 1)): 1.0,
+    (("micrometer", 1), ("millimeter", 1)): 0.001,
+    (("centimeter", 1), ("millimeter", 1)): 10.0,
+    (("meter", 1), ("millimeter", 1)): 1000.0,
+    (("newton", 1), ("newton", 1)): 1.0,
+    (("kilonewton", 1), ("newton", 1)): 1000.0,
+    (("megapascal", 1), ("megapascal", 1)): 1.0,
+    (("gigapascal", 1), ("megapascal", 1)): 1000.0,
+    (("degree", 1), ("degree", 1)): 1.0,
+}
+"""Conversion factors from a unit to another one, equal to those of pint."""
+
 _IN_RADIANS = re.compile(r"; \S+ degrees are \S+ radians$")
 _REFUSED = re.compile(r"(?P<name>\w+) = \S+ is not allowed: (?P<rule>.*)")
 
@@ -190,6 +219,9 @@ def _factor(tokens: list[re.Match[str]]) -> dict[str, int]:
 
 
 def _unit_name(text: str) -> str:
+    """Return the name of a unit in pint; the common units need no import of pint."""
+    if text in _COMMON_UNITS:
+        return _COMMON_UNITS[text]
     import pint
 
     try:
@@ -209,6 +241,9 @@ def convert(number: float, units: Units, target: Units) -> float:
     ValueError
         Units of another dimension, or a number out of range.
     """
+    factor = _COMMON_FACTORS.get((*units.items(), *target.items()))
+    if factor is not None:
+        return number * factor
     import pint
 
     registry = _registry()

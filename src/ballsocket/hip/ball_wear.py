@@ -16,7 +16,7 @@ from .wear_law import CycleExposure
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BilinearInterpolation:
-    """Interpolation from the cells of a grid to points between them.
+    """Bilinear interpolation from the cells of a grid to points between the cell centres.
 
     Attributes
     ----------
@@ -30,39 +30,47 @@ class BilinearInterpolation:
     weights: Numbers
 
     def interpolate(self, fields: Numbers) -> Numbers:
-        """Interpolate fields of cell values (n or 1, all cells) at the points: (n, points)."""
-        count, points, corners = self.cells.shape
-        fields = numpy.broadcast_to(fields, (count, fields.shape[-1]))
-        values = numpy.take_along_axis(fields, self.cells.reshape(count, -1), axis=1)
-        return numpy.einsum("tpk,tpk->tp", values.reshape(count, points, corners), self.weights)
+        """Interpolate cell values (n or 1, cells) to the points: (n, points)."""
+        instant_count, point_count, corner_count = self.cells.shape
+        fields = numpy.broadcast_to(fields, (instant_count, fields.shape[-1]))
+        values = numpy.take_along_axis(fields, self.cells.reshape(instant_count, -1), axis=1)
+        return numpy.einsum("tpk,tpk->tp", values.reshape(instant_count, point_count, corner_count), self.weights)
 
 
 def interpolation_at(grid: Grid, directions: Numbers) -> BilinearInterpolation:
-    """Create the bilinear interpolation from the cells of a grid to points, given as unit vectors (3, n, points)."""
+    """Create the bilinear interpolation from a grid to points given by unit vectors (3, n, points)."""
     x, y, z = directions
     polar, azimuth = numpy.arctan2(numpy.hypot(x, y), z), numpy.arctan2(y, x)
     ring = numpy.clip(numpy.searchsorted(grid.polar, polar) - 1, 0, grid.rings - 2)
     polar_fraction = numpy.clip((polar - grid.polar[ring]) / (grid.polar[ring + 1] - grid.polar[ring]), 0.0, 1.0)
-    column = azimuth / (2 * numpy.pi) * grid.meridians - 0.5
-    meridian = numpy.floor(column).astype(int)
-    fraction = column - meridian
+    meridian_position = azimuth / (2 * numpy.pi) * grid.meridians - 0.5
+    meridian = numpy.floor(meridian_position).astype(int)
+    meridian_fraction = meridian_position - meridian
     cells = numpy.stack(
         [(ring + i) * grid.meridians + (meridian + j) % grid.meridians for i in (0, 1) for j in (0, 1)], axis=-1
     )
-    inner, outer = 1 - polar_fraction, polar_fraction
-    weights = numpy.stack([inner * (1 - fraction), inner * fraction, outer * (1 - fraction), outer * fraction], axis=-1)
+    inner_weight, outer_weight = 1 - polar_fraction, polar_fraction
+    weights = numpy.stack(
+        [
+            inner_weight * (1 - meridian_fraction),
+            inner_weight * meridian_fraction,
+            outer_weight * (1 - meridian_fraction),
+            outer_weight * meridian_fraction,
+        ],
+        axis=-1,
+    )
     return BilinearInterpolation(cells=cells, weights=weights * (polar <= grid.reach)[..., None])
 
 
 def ball_directions(grid: Grid) -> Numbers:
     """Compute unit vectors (3, cells) to the centres of the cells of an unrotated ball, in the body's frame."""
-    first, second, axis = grid.middles.reshape(3, -1)
-    return numpy.stack([second, axis, first])
+    first_axis, second_axis, axis = grid.middles.reshape(3, -1)
+    return numpy.stack([second_axis, axis, first_axis])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CounterfaceMap:
-    """Cells of the ball that pass over cells of the socket in a cycle.
+    """Relation of the cells of the ball to the cells of the socket during a cycle.
 
     Attributes
     ----------
@@ -93,47 +101,47 @@ class CounterfaceMap:
     on_ball: BilinearInterpolation
 
     def depth_on_socket(self, depth: Numbers) -> Numbers:
-        """Interpolate the worn depth of the ball (m,) at the socket's cells: (instants, n)."""
+        """Interpolate the worn depth of the ball (m,) in mm to the socket's cells: (instants, n)."""
         field = numpy.zeros((1, self.ball_size))
         field[0, self.cells] = depth
         return self.on_socket.interpolate(field)
 
     def ball_exposure(self, cycle: CycleExposure) -> CycleExposure:
-        """Compute pressure and sliding of the ball's cells, with the friction work of the socket in each instant."""
-        pressure = self._interpolate_on_ball(cycle.pressure)
+        """Compute pressure and sliding of the ball's cells; their friction work equals that of the socket."""
+        pressure = self._interpolate_to_ball(cycle.pressure)
         socket_work = (cycle.pressure * cycle.sliding.distances) @ self.socket_areas
         ball_work = (pressure * self.sliding.distances) @ self.areas
-        ratio = numpy.divide(socket_work, ball_work, out=numpy.zeros_like(socket_work), where=ball_work > 0)
+        work_ratio = numpy.divide(socket_work, ball_work, out=numpy.zeros_like(socket_work), where=ball_work > 0)
         return CycleExposure(
-            pressure=pressure * ratio[:, None],
+            pressure=pressure * work_ratio[:, None],
             sliding=self.sliding,
-            contact_shares=lambda: self._interpolate_on_ball(cycle.contact),
+            contact_shares=lambda: self._interpolate_to_ball(cycle.contact),
         )
 
-    def _interpolate_on_ball(self, values: Numbers) -> Numbers:
-        """Interpolate values of the socket's cells (instants, n) at the ball's cells: (instants, m)."""
+    def _interpolate_to_ball(self, values: Numbers) -> Numbers:
+        """Interpolate values of the socket's cells (instants, n) to the ball's cells: (instants, m)."""
         field = numpy.zeros((len(values), self.socket_size))
         field[:, self.socket_cells] = values
         return self.on_ball.interpolate(field)
 
 
 def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
-    """Map cells of the socket to the cells of the ball that pass over them during a cycle."""
+    """Find the cells of the ball that pass over some cells of the socket, with their interpolations."""
     cup_frame = numpy.array(setup.frame.placed.frame)
-    rotated = cup_frame @ setup.frame.side_cycle.midpoint_rotations[setup.frame.loaded]
+    rotations_in_cup = cup_frame @ setup.frame.side_cycle.midpoint_rotations[setup.frame.loaded]
     grid = setup.ball_grid
     directions = ball_directions(grid)
-    to_ball = interpolation_at(setup.grid, numpy.einsum("tij,jp->itp", rotated, directions))
-    selected = numpy.zeros(len(setup.foundation.areas))
-    selected[cells] = 1.0
-    ball_cells = numpy.flatnonzero((to_ball.interpolate(selected[None]) > 0).any(axis=0))
-    to_socket = numpy.einsum("tji,jp->itp", rotated, setup.foundation.directions[:, cells])
+    to_ball = interpolation_at(setup.grid, numpy.einsum("tij,jp->itp", rotations_in_cup, directions))
+    selected_cells = numpy.zeros(len(setup.foundation.areas))
+    selected_cells[cells] = 1.0
+    ball_cells = numpy.flatnonzero((to_ball.interpolate(selected_cells[None]) > 0).any(axis=0))
+    to_socket = numpy.einsum("tji,jp->itp", rotations_in_cup, setup.foundation.directions[:, cells])
     radius = float(setup.joint.ball_radius)
     return CounterfaceMap(
         cells=ball_cells,
         sliding=SurfaceSliding(
             radius=radius,
-            rotation_increments=numpy.einsum("tji,tj->ti", rotated, setup.frame.rotation_increments),
+            rotation_increments=numpy.einsum("tji,tj->ti", rotations_in_cup, setup.frame.rotation_increments),
             directions=directions[:, ball_cells],
         ),
         areas=numpy.repeat(grid.areas[:, 0], grid.meridians)[ball_cells] * radius**2,
@@ -148,7 +156,7 @@ def map_counterface(setup: HipSetup, cells: Numbers) -> CounterfaceMap:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ActiveCells:
-    """Cells of the socket near the contacts, and the cells of a wearing ball that pass over them.
+    """Socket cells near the contacts, and ball cells that pass over them if the ball wears.
 
     Attributes
     ----------
@@ -169,19 +177,19 @@ class ActiveCells:
 
     @property
     def ball_cells(self) -> Numbers:
-        """Numbers of the ball's cells; empty for a ball without wear."""
+        """Indices of the wearing cells of the ball; empty for a ball without wear."""
         return numpy.zeros(0, dtype=int) if self.counterface is None else self.counterface.cells
 
     @property
     def areas(self) -> Numbers:
-        """Areas of all wearing cells in mm², first of the socket, then of the ball."""
+        """Areas in mm² of all wearing cells, first of the socket, then of the ball."""
         if self.counterface is None:
             return self.foundation.areas
         return numpy.concatenate([self.foundation.areas, self.counterface.areas])
 
 
 def select_active_cells(setup: HipSetup, cells: Numbers) -> ActiveCells:
-    """Select cells of the socket by their numbers, with the cells of a wearing ball that pass over them."""
+    """Select socket cells by their indices, and the cells of a wearing ball that pass over them."""
     counterface = None if setup.ball_wear is None else map_counterface(setup, cells)
     return ActiveCells(
         cells=cells,

@@ -11,7 +11,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_arguments
-from .contact_checks import list_notes
+from .contact_checks import list_check_notes
 from .variability import RESULT_UNITS, CohortResult, PatientVariability, summarize_distributions
 from .wear_law import coefficient_field
 
@@ -30,7 +30,7 @@ INFLUENCED_RESULTS = ("volume", "depth", "penetration")
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SharedCoefficient:
-    """Results of a cohort in which all patients share one wear coefficient: a low, a median or a high one.
+    """Results of a cohort whose patients all have the same wear coefficient: low, median or high.
 
     Attributes
     ----------
@@ -44,7 +44,7 @@ class SharedCoefficient:
     results: Mapping[str, Numbers]
 
     def quantile(self, coefficient: str, name: str, fraction: float) -> Numbers:
-        """Compute the quantile of a result of `CONVERTED` over the patients at each report, for one coefficient."""
+        """Compute a quantile of a result over the patients at each report, for one wear coefficient."""
         return numpy.nanquantile(self.results[coefficient][:, :, CONVERTED.index(name)], fraction, axis=0)
 
 
@@ -84,34 +84,34 @@ class Bands:
 
     @property
     def subject(self) -> str:
-        """Word for the members of a band in texts: "predictions" for an unknown wear coefficient, else "patients"."""
+        """Noun for the members of the bands: "predictions" if the wear coefficient is unknown, else "patients"."""
         return "predictions" if COEFFICIENT in self.variability.distributions else "patients"
 
     @property
     def n_patients(self) -> int:
-        """Number of patients."""
+        """Number of simulated patients."""
         return len(self.cohort.refused)
 
     @property
     def n_failed(self) -> int:
-        """Number of patients without a result."""
+        """Number of patients whose simulation has no result."""
         return int((self.cohort.refused != "").sum())
 
     @property
-    def _tails(self) -> tuple[float, float]:
-        """Probabilities of the lower and the upper end of a band, such as 0.025 and 0.975."""
-        tail = (1 - self.level) / 2
-        return tail, 1 - tail
+    def _end_probabilities(self) -> tuple[float, float]:
+        """Probabilities of the lower and upper end of each band, such as 0.025 and 0.975."""
+        low_probability = (1 - self.level) / 2
+        return low_probability, 1 - low_probability
 
     @property
-    def _fractions(self) -> dict[str, float]:
-        """Probabilities of the ends and the median of a band, by name."""
-        low, high = self._tails
+    def _probabilities_by_name(self) -> dict[str, float]:
+        """Probabilities of the lower end, the median and the upper end of each band, by name."""
+        low, high = self._end_probabilities
         return {"low": low, "median": 0.5, "high": high}
 
     @renamed_arguments(share="fraction")
     def quantile(self, name: str, fraction: float) -> Numbers:
-        """Compute a quantile of one result over the patients at each report; NaN if no patient has a result.
+        """Compute a quantile of one result over the patients at each report; NaN without results.
 
         Parameters
         ----------
@@ -125,12 +125,12 @@ class Bands:
         return numpy.nanquantile(self.cohort.table[:, :, list(RESULT_UNITS).index(name)], fraction, axis=0)
 
     def band(self, name: str) -> tuple[Numbers, Numbers]:
-        """Compute the lower and the upper end of the band of one result (a name of `RESULT_UNITS`) at each report."""
-        low, high = (self.quantile(name, fraction) for fraction in self._tails)
+        """Compute the lower and upper end of the band of one result at each report, such as "volume"."""
+        low, high = (self.quantile(name, fraction) for fraction in self._end_probabilities)
         return low, high
 
     def population_band(self, name: str, coefficient: str = "median") -> tuple[Numbers, Numbers]:
-        """Compute both ends of the band of patients with the same wear coefficient, two arrays (reports,).
+        """Compute the lower and upper end of the band of patients who share one wear coefficient.
 
         Parameters
         ----------
@@ -150,12 +150,12 @@ class Bands:
             raise ValueError(f"coefficient = {coefficient!r} is not allowed: {', '.join(self.shared.values)}")
         if name not in CONVERTED:
             raise ValueError(f"{name!r} has no band for one coefficient: {', '.join(CONVERTED)}")
-        low, high = (self.shared.quantile(coefficient, name, fraction) for fraction in self._tails)
+        low, high = (self.shared.quantile(coefficient, name, fraction) for fraction in self._end_probabilities)
         return low, high
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the assumptions and limits of the bands."""
+        """Sentences on the assumptions and limits of the bands."""
         assumed = f"assumed: given and independent distributions of {', '.join(self.variability.distributions)}"
         surface = () if self.variability.use.uses_springs else ("the bands are for radial springs",)
         return (
@@ -169,16 +169,16 @@ class Bands:
 
     @property
     def nominal_notes(self) -> tuple[str, ...]:
-        """Notes of the nominal patient's simulation: contact model in the first cycle, cycle, cup and laws."""
+        """Sentences on the simulation of the nominal patient: contact model, cycle, cup and laws."""
         checks = [("nominal patient, in the first cycle", self.variability.coarse_simulation.unworn_checks)]
-        return (*list_notes(checks), *self.variability.use.notes)
+        return (*list_check_notes(checks), *self.variability.use.notes)
 
     @property
     def _coefficient_note(self) -> tuple[str, ...]:
-        """Note on the wear coefficient that all patients share."""
+        """Sentence on a wear coefficient that is unknown but equal for all patients."""
         if COEFFICIENT not in self.variability.distributions:
             return ()
-        low, high = self.variability.distributions[COEFFICIENT].frozen.ppf(self._tails)
+        low, high = self.variability.distributions[COEFFICIENT].frozen.ppf(self._end_probabilities)
         coefficient = coefficient_field(self.variability.use.wear)
         unit = "" if coefficient is None else coefficient.unit.text
         band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
@@ -186,7 +186,7 @@ class Bands:
 
     @property
     def _failure_note(self) -> tuple[str, ...]:
-        """Note on patients without a result."""
+        """Sentence on the number of patients without a result."""
         if not self.n_failed:
             return ()
         reasons = Counter(str(error).split(":")[0] for error in self.cohort.refused if error)
@@ -196,53 +196,58 @@ class Bands:
 
     @property
     def _wear_through_note(self) -> tuple[str, ...]:
-        """Note on patients whose liner is worn through."""
+        """Sentence on the number of patients whose liner is worn through."""
         depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
         n_worn_through = int((depth > self.variability.use.joint.liner_thickness).sum())
         return (f"{n_worn_through} of {self.n_patients} patients wear their liner through",) if n_worn_through else ()
 
     @property
     def _validity_note(self) -> tuple[str, ...]:
-        """Note on patients whose contact leaves the validity of its model."""
-        outside = int((self.cohort.valid[:, -1] == 0).sum())
+        """Sentence on the number of patients with contacts outside the validity of the contact model."""
+        invalid_count = int((self.cohort.valid[:, -1] == 0).sum())
         model = self.variability.coarse_simulation.contact_model.name
         sentence = (
-            f"{outside} of {self.n_patients} patients have contacts outside the validity of the contact model ({model})"
+            f"{invalid_count} of {self.n_patients} patients have contacts outside the validity of the contact model "
+            f"({model})"
         )
-        return (sentence,) if outside else ()
+        return (sentence,) if invalid_count else ()
 
     @property
     def peak_utilisation(self) -> Numbers:
-        """Largest utilisation of each patient from the first cycle to each report: (patients, reports)."""
+        """Largest ratio of von Mises to yield stress of each patient up to each report: (patients, reports)."""
         return self.cohort.peak_utilisation
 
     @renamed_arguments(look="report")
     def valid_fraction(self, report: int) -> float:
-        """Compute the fraction of patients with valid contacts from the first cycle to a report."""
+        """Compute the fraction of patients whose contacts are valid from the first cycle to a report."""
         valid = self.cohort.valid[self.cohort.refused == "", report]
         return float(valid.mean()) if len(valid) else numpy.nan
 
     @property
     def valid(self) -> bool:
-        """True if every patient with a result has valid contacts from the first cycle to each report."""
+        """True if the contacts of all patients with a result are valid from the first cycle to the last report."""
         valid = self.cohort.valid[self.cohort.refused == ""]
         return bool(valid.size and (valid == 1).all())
 
     @renamed_arguments(share="fraction")
     def utilisation_quantile(self, fraction: float) -> Numbers:
-        """Compute a quantile of the patients' largest utilisation up to each report; NaN if unknown."""
-        known = self.peak_utilisation[~numpy.isnan(self.peak_utilisation).any(axis=1)]
-        return numpy.quantile(known, fraction, axis=0) if len(known) else numpy.full(len(self.counts), numpy.nan)
+        """Compute a quantile of the patients' largest ratio of von Mises to yield stress at each report."""
+        known_utilisations = self.peak_utilisation[~numpy.isnan(self.peak_utilisation).any(axis=1)]
+        return (
+            numpy.quantile(known_utilisations, fraction, axis=0)
+            if len(known_utilisations)
+            else numpy.full(len(self.counts), numpy.nan)
+        )
 
     @renamed_arguments(look="report")
     def edge_loading(self, report: int) -> float:
-        """Compute the fraction of patients with edge loading in some instant of the cycle at a report."""
+        """Compute the fraction of patients whose contact reaches the rim during the cycle, at a report."""
         column = list(RESULT_UNITS).index("edge_distance")
         distance = self.cohort.table[self.cohort.refused == "", report, column]
         return float((distance <= 0).mean()) if len(distance) else numpy.nan
 
     def summary(self) -> dict[str, Any]:
-        """Return the bands as plain data for JSON."""
+        """Return the bands as a dictionary for JSON."""
         return {
             "bands": [self._summarize_report(report) for report in range(len(self.counts))],
             "sobol": self._summarize_indices(),
@@ -258,10 +263,11 @@ class Bands:
         }
 
     def _summarize_report(self, report: int) -> dict[str, Any]:
-        """Return the bands at one report as data for JSON."""
+        """Return the bands of all results at one report as a dictionary for JSON."""
         bands: dict[str, dict[str, Any]] = {
             name: {
-                end: _finite_or_none(self.quantile(name, fraction)[report]) for end, fraction in self._fractions.items()
+                end_name: _finite_or_none(self.quantile(name, fraction)[report])
+                for end_name, fraction in self._probabilities_by_name.items()
             }
             for name in RESULT_UNITS
         }
@@ -275,24 +281,24 @@ class Bands:
             **bands,
             "edge_loading": _finite_or_none(self.edge_loading(report)),
             "peak_utilisation": {
-                end: _finite_or_none(self.utilisation_quantile(fraction)[report])
-                for end, fraction in self._fractions.items()
+                end_name: _finite_or_none(self.utilisation_quantile(fraction)[report])
+                for end_name, fraction in self._probabilities_by_name.items()
             },
             "valid": _finite_or_none(self.valid_fraction(report)),
         }
 
     def _summarize_coefficients(self, shared: SharedCoefficient, name: str, report: int) -> dict[str, Any]:
-        """Return the bands of one result at one report for each shared wear coefficient, as data for JSON."""
+        """Return the bands of one result at one report for each shared coefficient, for JSON."""
         return {
             coefficient: {
-                end: _finite_or_none(shared.quantile(coefficient, name, fraction)[report])
-                for end, fraction in self._fractions.items()
+                end_name: _finite_or_none(shared.quantile(coefficient, name, fraction)[report])
+                for end_name, fraction in self._probabilities_by_name.items()
             }
             for coefficient in shared.values
         }
 
     def _summarize_indices(self) -> dict[str, Any] | None:
-        """Return the Sobol indices by result and sampled quantity as data for JSON; None without indices."""
+        """Return the Sobol indices by result and sampled quantity for JSON; None without indices."""
         if self.indices is None:
             return None
         return {
@@ -313,5 +319,5 @@ class Bands:
 
 
 def _finite_or_none(value: float) -> float | None:
-    """Convert a number for JSON: NaN and infinity become None."""
+    """Return a finite number unchanged, and None for NaN or an infinite number."""
     return float(value) if numpy.isfinite(value) else None

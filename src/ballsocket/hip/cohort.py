@@ -49,7 +49,7 @@ ProgressCallback = Callable[[int], None]
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CohortRun:
-    """Simulation of a sampled patient cohort, divided into pieces of a few patients.
+    """Simulation of a sampled patient cohort, divided into groups ("pieces") of a few patients.
 
     A call with the number of a piece simulates its patients.
 
@@ -76,15 +76,15 @@ class CohortRun:
 
     @property
     def pieces(self) -> range:
-        """Numbers of the pieces of the cohort, from 0."""
+        """Indices from 0 of the pieces of work; each piece is a group of patients."""
         return range(ceil(len(self) / PATIENTS_PER_PIECE))
 
     def patient_numbers(self, piece: int) -> range:
-        """Return the numbers of the patients in a piece."""
+        """Return the indices of the patients in a piece (group of patients)."""
         return range(piece * PATIENTS_PER_PIECE, min((piece + 1) * PATIENTS_PER_PIECE, len(self)))
 
     def __call__(self, piece: int) -> CohortResult:
-        """Simulate the patients of a piece.
+        """Simulate the patients of one piece (group of patients).
 
         Raises
         ------
@@ -92,12 +92,14 @@ class CohortRun:
             This worker has another version of the package than the process that started the run.
         """
         check_worker_code(self.code)
-        tables, contacts, errors = zip(*(self._simulate(number) for number in self.patient_numbers(piece)), strict=True)
+        tables, contacts, errors = zip(
+            *(self._simulate_patient(patient_index) for patient_index in self.patient_numbers(piece)), strict=True
+        )
         return CohortResult(table=numpy.stack(tables), refused=numpy.array(errors), contact=numpy.stack(contacts))
 
-    def _simulate(self, number: int) -> tuple[Numbers, Numbers, str]:
-        """Simulate one patient, and return the results, the contacts and an error message."""
-        values = {name: float(column[number]) for name, column in self.values.items()}
+    def _simulate_patient(self, patient_index: int) -> tuple[Numbers, Numbers, str]:
+        """Simulate one patient; return results, contacts and an error message, empty without error."""
+        values = {name: float(samples[patient_index]) for name, samples in self.values.items()}
         try:
             patient = self.variability.patient(values)
             reports = patient.simulate(self.counts)
@@ -113,7 +115,7 @@ class CohortRun:
         store: CohortStore | None = None,
         progress: ProgressCallback = lambda finished: None,
     ) -> CohortResult:
-        """Simulate all patients whose results are not in the store.
+        """Simulate all patients of the cohort, except those whose results are stored.
 
         Raises
         ------
@@ -136,7 +138,7 @@ class CohortRun:
 
 @dataclass(frozen=True, kw_only=True)
 class CohortStore(PieceStore):
-    """Folder with the results of a cohort, one file a piece.
+    """Folder of stored cohort results, one file for each piece (group of patients).
 
     Attributes
     ----------
@@ -153,16 +155,16 @@ class CohortStore(PieceStore):
     n_patients: int = 0
 
     @property
-    def _label_path(self) -> Path:
-        """Path of the file with the identity of the cohort."""
+    def _label_file_path(self) -> Path:
+        """Path of the label file, which identifies the cohort."""
         return self.folder / _LABEL_NAME
 
     def _piece_path(self, piece: int) -> Path:
-        """Return the path of the file with the results of a piece."""
+        """Return the path of the file with the results of a piece (group of patients)."""
         return self.folder / f"patients_{piece:06d}.npz"
 
     def create(self) -> None:
-        """Create the folder of the store and its label file, unless they exist.
+        """Create the folder and the label file of the store, unless they exist.
 
         Raises
         ------
@@ -170,18 +172,18 @@ class CohortStore(PieceStore):
             The folder is not writable.
         """
         self.folder.mkdir(parents=True, exist_ok=True)
-        if not self._label_path.exists():
-            write_text(self._label_path, json.dumps({"identity": self.identity}))
+        if not self._label_file_path.exists():
+            write_text(self._label_file_path, json.dumps({"identity": self.identity}))
 
     def check(self) -> None:
-        """Check that an existing store belongs to this cohort.
+        """Check that an existing store belongs to this cohort; ValueError otherwise.
 
         Raises
         ------
         ValueError
             The folder has another cohort or a damaged label.
         """
-        label = self._label_path
+        label = self._label_file_path
         if not label.exists():
             return
         try:
@@ -192,12 +194,12 @@ class CohortStore(PieceStore):
             raise ValueError(f"{self.folder} has another cohort, or one of another version; choose another folder")
 
     def load(self, numbers: Sequence[int]) -> dict[int, CohortResult]:
-        """Load the stored results of pieces that are complete and undamaged."""
-        results = {piece: self._read(piece) for piece in numbers}
+        """Load the stored results of some pieces; omit missing and damaged files."""
+        results = {piece: self._read_piece(piece) for piece in numbers}
         return {piece: result for piece, result in results.items() if result is not None}
 
     def save(self, number: int, result: CohortResult) -> CohortResult:
-        """Store the result of a piece in a file, and return the result.
+        """Write the result of a piece to its file, and return the result.
 
         Raises
         ------
@@ -208,8 +210,8 @@ class CohortStore(PieceStore):
         write_arrays(self._piece_path(number), identity=self.identity, **arrays)
         return result
 
-    def _read(self, piece: int) -> CohortResult | None:
-        """Read the result of a piece; return None if it is missing, damaged or of another cohort."""
+    def _read_piece(self, piece: int) -> CohortResult | None:
+        """Read the result of a piece; return None if the file is missing, damaged or of another cohort."""
         try:
             arrays = read_arrays(self._piece_path(piece))
             if str(arrays.pop("identity")) != self.identity:
@@ -217,13 +219,13 @@ class CohortStore(PieceStore):
             result = CohortResult(**arrays)
         except (OSError, ValueError, TypeError, KeyError):
             return None
-        expected = min(PATIENTS_PER_PIECE, self.n_patients - piece * PATIENTS_PER_PIECE)
-        return result if len(result.table) == expected else None
+        patient_count = min(PATIENTS_PER_PIECE, self.n_patients - piece * PATIENTS_PER_PIECE)
+        return result if len(result.table) == patient_count else None
 
 
 @renamed_arguments(scatter="variability")
 def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence[float], seed: int) -> CohortStore:
-    """Create the store of a sampled cohort in a folder, and check that the folder has no other cohort.
+    """Create the store of a cohort in a folder; ValueError if the folder stores another cohort.
 
     Parameters
     ----------
@@ -250,7 +252,7 @@ def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence
 
 
 def sample_patients(variability: PatientVariability, count: int, seed: int) -> Mapping[str, Numbers]:
-    """Sample the quantities of patients from a Sobol sequence; a larger count keeps the first patients.
+    """Sample the quantities of patients from a Sobol sequence; the first patients do not depend on `count`.
 
     Raises
     ------
@@ -263,7 +265,7 @@ def sample_patients(variability: PatientVariability, count: int, seed: int) -> M
 
 
 def table_columns(run: CohortRun, result: CohortResult) -> Iterator[tuple[str, Numbers]]:
-    """Yield name and values of each column of the table of patients; angles are in degrees."""
+    """Yield name and values of each column of the patient table, with angles in degrees."""
     for name, values in run.values.items():
         yield f"{name}{_SUFFIXES.get(name, '')}", numpy.degrees(values) if name in ANGLES else values
     for report, count in enumerate(run.counts):
@@ -274,7 +276,7 @@ def table_columns(run: CohortRun, result: CohortResult) -> Iterator[tuple[str, N
 
 
 def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
-    """Write a CSV file with one row per patient, and return its path.
+    """Write the patient table to a CSV file, one row for each patient, and return its path.
 
     Raises
     ------

@@ -27,7 +27,7 @@ COLUMNS = ("instant", "force", "indentation", "half_angle", "max_pressure")
 
 @dataclass(frozen=True, kw_only=True)
 class GridLaws:
-    """Contact quantities of a wear simulation for a `Contact`; NaN where the simulation does not compute them."""
+    """Half angle and largest pressure of a simulated contact, for a `Contact`; other quantities are NaN."""
 
     half_angle: Array
     max_pressure: Array
@@ -39,20 +39,20 @@ class GridLaws:
     pressure_integral: Array = nan
 
     def pressure(self, angle: Array) -> Array:
-        """Return NaN: the pressure of a worn bore does not depend on one angle alone."""
+        """Return NaN, because the pressure of a worn bore depends on more than one angle."""
         return nan * angle
 
 
 @dataclass(frozen=True, kw_only=True, repr=False, eq=False)
 class GridContact(Contact):
-    """Contact of a wear simulation as a `Contact` of the matching model, for validity and strength.
+    """Contact from a wear simulation, as a `Contact` that checks validity and strength.
 
     Its von Mises stress is a fitted ratio times the largest pressure, with an error of typically 6 %. If the yield
     stress is within that error, the ratio is computed from the exact solution at the same half angle.
     """
 
     def _compute_von_mises(self) -> Array:
-        """Compute the largest von Mises stress in MPa."""
+        """Compute the largest von Mises stress in the liner in MPa; near yield by the exact solution."""
         estimate = super()._compute_von_mises()
         if not isinstance(self.max_pressure, float) or not self._may_yield(estimate):
             return estimate
@@ -60,7 +60,7 @@ class GridContact(Contact):
         return ratio * self.max_pressure if isfinite(ratio) else estimate
 
     def _may_yield(self, estimate: float) -> bool:
-        """Check if the yield stress or the elastic limit lies within the error of a von Mises stress (MPa)."""
+        """Check if a limit of yielding lies within the error of an estimated von Mises stress in MPa."""
         yield_stress = self.joint.liner.yield_stress
         low, high = strength.von_mises_bounds(self, estimate)
         return yield_stress is not None and any(low <= limit * yield_stress <= high for limit in _NOTED_UTILISATIONS)
@@ -72,7 +72,7 @@ _NOTED_UTILISATIONS = 1.0, strength.MAX_ELASTIC_UTILISATION
 
 @lru_cache(maxsize=256)
 def exact_stress_ratio(joint: Joint, half_angle: float) -> float:
-    """Compute the ratio of the liner's largest von Mises stress to the largest pressure by the exact solution.
+    """Compute the ratio of the liner's largest von Mises stress to the largest pressure, by `Exact`.
 
     It is NaN without an exact solution.
     """
@@ -85,7 +85,7 @@ def exact_stress_ratio(joint: Joint, half_angle: float) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class ContactCheck:
-    """Validity, strength and notes of the contact model at the worst instant of one activity.
+    """Validity, strength and notes of the contact of one activity at its worst instant.
 
     Attributes
     ----------
@@ -115,7 +115,7 @@ class ContactCheck:
     notes: tuple[str, ...]
 
     def summary(self) -> dict[str, Any]:
-        """Return the check as data for JSON."""
+        """Return the contact check as a dictionary for JSON."""
         return {
             "activity": self.activity,
             "at": self.instant,
@@ -130,7 +130,7 @@ class ContactCheck:
 
 
 def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
-    """Compute half angles in rad of round contacts with the areas of contacts on a grid: (contacts,).
+    """Compute the half angles in rad of round contacts with the same areas as contacts on a grid: (contacts,).
 
     Parameters
     ----------
@@ -140,19 +140,26 @@ def half_angles(grid: Grid, reach: float, field: Numbers) -> Numbers:
     field : array (contacts, cells)
         Positive in the contact and linear across its edge. A field that is 0 outside marks the cells alone.
     """
-    rows = field.reshape(len(field), grid.rings, grid.meridians)
-    inner, outer = rows[:, :-1], rows[:, 1:]
-    fall = inner - outer
-    crossing = numpy.divide(inner, fall, out=numpy.full_like(fall, 0.5), where=(inner < 0) | (outer < 0))
-    low, high = numpy.where(inner > 0, 0.0, crossing), numpy.where(outer > 0, 1.0, crossing)
-    pressed = (inner > 0) | (outer > 0)
-    polar, step = grid.polar[:-1, None], numpy.diff(grid.polar)[:, None]
-    between = numpy.where(pressed, numpy.cos(polar + low * step) - numpy.cos(polar + high * step), 0.0)
-    ends = (
-        (rows[:, 0] > 0) * (1 - numpy.cos(grid.polar[0])),
-        (rows[:, -1] > 0) * _solid_angle_fraction(grid.polar[-1], reach),
+    level = field.reshape(len(field), grid.rings, grid.meridians)
+    inner_level, outer_level = level[:, :-1], level[:, 1:]
+    level_drop = inner_level - outer_level
+    crossing = numpy.divide(
+        inner_level, level_drop, out=numpy.full_like(level_drop, 0.5), where=(inner_level < 0) != (outer_level < 0)
     )
-    versine = (between.sum(axis=1) + ends[0] + ends[1]).mean(axis=1)
+    start_fraction, end_fraction = (
+        numpy.where(inner_level > 0, 0.0, crossing),
+        numpy.where(outer_level > 0, 1.0, crossing),
+    )
+    pressed = (inner_level > 0) | (outer_level > 0)
+    polar, polar_step = grid.polar[:-1, None], numpy.diff(grid.polar)[:, None]
+    ring_versines = numpy.where(
+        pressed, numpy.cos(polar + start_fraction * polar_step) - numpy.cos(polar + end_fraction * polar_step), 0.0
+    )
+    end_versines = (
+        (level[:, 0] > 0) * (1 - numpy.cos(grid.polar[0])),
+        (level[:, -1] > 0) * _solid_angle_fraction(grid.polar[-1], reach),
+    )
+    versine = (ring_versines.sum(axis=1) + end_versines[0] + end_versines[1]).mean(axis=1)
     return numpy.arccos(numpy.clip(1 - versine, -1.0, 1.0))
 
 
@@ -162,13 +169,13 @@ def _solid_angle_fraction(polar: float, reach: float) -> float:
 
 
 def grid_contact(model: Model, joint: Joint, worst: Numbers) -> GridContact:
-    """Build a `GridContact` from one row of a table of worst contacts, or from a table (contacts, `COLUMNS`)."""
-    plain = worst.ndim == 1
-    force, indentation, half_angle, max_pressure = (float(x) if plain else x for x in worst.T[1:])
+    """Build a `GridContact` from one row or all rows of a table of worst contacts, with the columns `COLUMNS`."""
+    is_single = worst.ndim == 1
+    force, indentation, half_angle, max_pressure = (float(column) if is_single else column for column in worst.T[1:])
     return GridContact(
         model=model,
         joint=joint,
-        status=Status.OK if plain else numpy.zeros(len(worst), dtype=numpy.int8),
+        status=Status.OK if is_single else numpy.zeros(len(worst), dtype=numpy.int8),
         laws=GridLaws(half_angle=half_angle, max_pressure=max_pressure),
         force=force,
         indentation=indentation,
@@ -176,7 +183,7 @@ def grid_contact(model: Model, joint: Joint, worst: Numbers) -> GridContact:
 
 
 def utilisation_and_validity(model: Model, joint: Joint, stages: Sequence[Numbers]) -> Numbers:
-    """Compute the largest utilisation of all activities, and validity (1 or 0), at each stage of a run: (stages, 2).
+    """Compute the largest ratio of von Mises to yield stress, and validity, at each stage: (stages, 2).
 
     `stages` are tables of worst contacts. Utilisation is NaN where no yield stress is known.
     """
@@ -186,13 +193,14 @@ def utilisation_and_validity(model: Model, joint: Joint, stages: Sequence[Number
         return numpy.tile([nan, 1.0], (len(stages), 1))
     contact = grid_contact(model, joint, table)
     utilisation, valid = (
-        numpy.broadcast_to(numpy.asarray(x, dtype=float), len(table)) for x in (contact.utilisation, contact.valid)
+        numpy.broadcast_to(numpy.asarray(values, dtype=float), len(table))
+        for values in (contact.utilisation, contact.valid)
     )
     return numpy.stack([utilisation.reshape(shape).max(axis=1), valid.reshape(shape).min(axis=1)], axis=1)
 
 
 def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, instant: str) -> ContactCheck:
-    """Check validity and strength of one contact, a row of a table of worst contacts."""
+    """Check validity and strength of the worst contact of one activity, a row of a table."""
     contact = grid_contact(model, joint, worst)
     utilisation = float(contact.utilisation)
     return ContactCheck(
@@ -209,12 +217,12 @@ def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, ins
 
 
 def largest_utilisation(checks: Sequence[ContactCheck]) -> float | None:
-    """Return the largest utilisation of some checks; None if no utilisation is known."""
+    """Return the largest ratio of von Mises to yield stress of some checks; None if all are unknown."""
     return max((check.utilisation for check in checks if check.utilisation is not None), default=None)
 
 
-def list_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator[str]:
-    """List the notes of checks at several stages of a run, each kind of note once, at its first occurrence.
+def list_check_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator[str]:
+    """Yield the notes of contact checks at several stages of a run, each kind of note only once.
 
     A missing yield stress holds throughout the run: its note names no instant.
 
@@ -223,16 +231,16 @@ def list_notes(stages: Sequence[tuple[str, Sequence[ContactCheck]]]) -> Iterator
     stages : sequence of pairs
         Stage in words ("in the first cycle") and its checks. Notes that differ in numbers alone are of one kind.
     """
-    listed = set()
+    listed_kinds = set()
     for stage, checks in stages:
         for check in sorted(checks, key=_severity_key):
             for note in check.notes:
                 kind = "".join(letter for letter in note if not letter.isdigit())
-                if kind not in listed:
-                    listed.add(kind)
+                if kind not in listed_kinds:
+                    listed_kinds.add(kind)
                     yield note if note == check.utilisation_note else f"{note} ({stage}, at {check.instant})"
 
 
 def _severity_key(check: ContactCheck) -> tuple[float, float]:
-    """Return the sort key of a check: large utilisations and pressures come first."""
+    """Return the sort key of a check: the largest ratios of stress to strength come first, then pressures."""
     return -(check.utilisation or 0.0), -check.max_pressure

@@ -43,43 +43,43 @@ class CreepLaw(Law):
 
     @property
     def _confined_elements(self) -> tuple[Numbers, Numbers]:
-        """Compliances in 1/MPa and retardation times in s of the elements in the confined liner."""
+        """Compliances in 1/MPa and retardation times in s of the elements of the confined liner."""
         compliances, times = self.elements
         return self.confinement * numpy.array(compliances), numpy.array(times)
 
     def response(self, seconds: Numbers | float) -> Numbers:
-        """Compute the creep compliance (strain per MPa) after a time in s under constant pressure."""
+        """Compute the creep strain per MPa after a time in s under constant pressure."""
         compliance, time = self._confined_elements
         return -numpy.expm1(-numpy.asarray(seconds)[..., None] / time) @ compliance
 
     def initial_strain(self, points: int) -> Numbers:
-        """Return the strains of an unloaded liner: zeros (elements, points)."""
+        """Return the creep strains of an unloaded liner: zeros (elements, points)."""
         return numpy.zeros((len(self.elements[1]), points))
 
     def advance_strain(self, strain: Numbers, pressure: Numbers, seconds: float) -> Numbers:
-        """Compute the strains (elements, points) after a time in s under constant pressures in MPa (points,)."""
-        compliance, growth = self._growth(seconds)
+        """Compute the creep strains (elements, points) after a time in s under constant pressures in MPa."""
+        compliance, growth = self._compliance_and_growth(seconds)
         return strain + growth[:, None] * (compliance[:, None] * pressure - strain)
 
     def linear_response(self, strain: Numbers, seconds: float) -> tuple[Numbers, float]:
-        """Compute the total strain after a time in s as a linear function of the pressure.
+        """Compute the total creep strain after a time in s as a linear function of the pressure.
 
         Returns
         -------
         tuple
             Strain without pressure (points,), and the added strain per MPa.
         """
-        compliance, growth = self._growth(seconds)
+        compliance, growth = self._compliance_and_growth(seconds)
         return ((1 - growth)[:, None] * strain).sum(axis=0), float(growth @ compliance)
 
-    def _growth(self, seconds: float) -> tuple[Numbers, Numbers]:
-        """Compute the compliance of each element in 1/MPa, and the share of its final strain that a time in s adds."""
+    def _compliance_and_growth(self, seconds: float) -> tuple[Numbers, Numbers]:
+        """Compute compliances in 1/MPa of the elements, and their fractions of the final strain after a time in s."""
         compliance, time = self._confined_elements
         return compliance, -numpy.expm1(-seconds / time)
 
 
 def constrained_share(poisson: float) -> float:
-    """Compute the ratio of the strain of a laterally constrained layer to the strain of a free bar.
+    """Compute the strain of a laterally confined layer divided by that of a free bar, from Poisson's ratio.
 
     This is E/M, with the constrained (oedometric) modulus M = E (1 - ν)/((1 + ν)(1 - 2ν)), for a Poisson's ratio that
     is the same at all times. If the volume creeps less than the shape does, the strain is smaller still.
@@ -104,12 +104,12 @@ def constrained_share(poisson: float) -> float:
 
 
 def creep_notes(creep: CreepLaw | None, poisson: float) -> tuple[str, ...]:
-    """List the notes on a creep law and its confinement, for a liner with a Poisson's ratio; empty without a law."""
+    """List notes on a creep law and the confinement of the liner; empty without a creep law."""
     return () if creep is None else (*creep.notes, *filter(None, [confinement_note(creep, poisson)]))
 
 
 def confinement_note(creep: CreepLaw, poisson: float) -> str:
-    """Describe the lateral constraint that a creep law assumes; empty for a Poisson's ratio outside 0 to 0.5."""
+    """Describe the lateral confinement that a creep law assumes, for a liner's Poisson's ratio."""
     if creep.confinement != 1:
         return f"creep strain is {creep.confinement:.3g} of that of a free bar: the liner is laterally constrained"
     if not 0 < poisson <= 0.5:

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from ..core.checks import NamedItems, known_name
 from ..core.deprecation import renamed_names
 from .creep_law import CreepLaw, constrained_share
-from .law_fields import law_field, list_unit, read_law, select_law
+from .law_fields import law_field, list_unit, read_law, select_law_class
 
 _MINUTE = 60.0
 """Seconds in a minute."""
@@ -75,7 +75,7 @@ class KelvinVoigtChain(CreepLaw):
 
     @property
     def elements(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Compliances in 1/MPa and retardation times in s."""
+        """Compliances in 1/MPa and retardation times in s of the Kelvin-Voigt elements."""
         return self.compliances, self.times
 
 
@@ -97,17 +97,17 @@ class LogarithmicCreep(CreepLaw):
 
     @property
     def elements(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
-        """Compliances in 1/MPa and retardation times in s."""
+        """Compliances in 1/MPa and retardation times in s of the Kelvin-Voigt elements."""
         return self.compliances, self.times
 
     @property
     def compliances(self) -> tuple[float, ...]:
-        """Compliance of each element in 1/MPa."""
+        """Compliance of each Kelvin-Voigt element in 1/MPa."""
         return (_STRAIN_PER_DECADE,) * _N_DECADES
 
     @property
     def times(self) -> tuple[float, ...]:
-        """Retardation time of each element in s."""
+        """Retardation time of each Kelvin-Voigt element in s."""
         # Σ (1 - exp(-t/τ 10^-i)) = log10(t/τ) + 1/2 + γ/ln 10 but for a ripple
         begin = 4 - _STRAIN_AT_REFERENCE / _STRAIN_PER_DECADE + 0.5 + _EULER_GAMMA / log(10)
         return tuple(_MINUTE * 10 ** (begin + decade) for decade in range(_N_DECADES))
@@ -118,7 +118,7 @@ class LogarithmicCreep(CreepLaw):
 
 
 def logarithmic(confinement: float = 1.0) -> LogarithmicCreep:
-    """Create the logarithmic creep law of UHMWPE; see `LogarithmicCreep`."""
+    """Create the logarithmic creep law of UHMWPE for a confinement of the liner."""
     return LogarithmicCreep(confinement=confinement)
 
 
@@ -137,7 +137,7 @@ CONFINEMENTS: Mapping[str, Callable[[float], float]] = MappingProxyType(
 
 
 def read_creep_law(table: Mapping[str, Any], poisson: float) -> CreepLaw:
-    """Read the creep law of the table [creep] of a file, for a liner of this Poisson's ratio.
+    """Read the creep law from the table [creep] of a file, for a liner with a Poisson's ratio.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def read_creep_law(table: Mapping[str, Any], poisson: float) -> CreepLaw:
         An unknown law or confinement, a missing key, a key of another law, or a value that is not allowed.
     """
     name = known_name("confinement", table.get("confinement", "unconfined"), CONFINEMENTS)
-    law = select_law(table, CREEP_LAWS, "creep law")
+    law = select_law_class(table, CREEP_LAWS, "creep law")
     return read_law(table, CREEP_LAWS, law, confinement=CONFINEMENTS[name](poisson))
 
 

@@ -47,44 +47,44 @@ class CupFrame:
     cup: Cup = Cup()  # noqa: RUF009 (frozen)
 
     def __post_init__(self) -> None:
-        """Check that no load pushes the ball over the rim, unless a spring balances the load there."""
-        outside = self._instants_beyond_rim
+        """Check that no load pushes the ball over the rim, unless a spring balances it; ValueError otherwise."""
+        dislocated = self._instants_beyond_rim
         if self.separation is not None:
-            outside = outside[numpy.isnan(self.separation.displacement[:, 0])]
-        if len(outside):
-            first = outside[0]
+            dislocated = dislocated[numpy.isnan(self.separation.displacement[:, 0])]
+        if len(dislocated):
+            first_dislocated = dislocated[0]
             raise ValueError(
-                f"dislocated at {self.cycle.describe_step(first)}: the load of "
-                f"{numpy.linalg.norm(self.forces[first]):.0f} N points "
-                f"{degrees(self._force_angles[first]):.1f}° from the dome's pole, and the bore ends at "
+                f"dislocated at {self.cycle.describe_step(first_dislocated)}: the load of "
+                f"{numpy.linalg.norm(self.forces[first_dislocated]):.0f} N points "
+                f"{degrees(self._force_angles[first_dislocated]):.1f}° from the dome's pole, and the bore ends at "
                 f"{degrees(self.reach):.1f}°"
             )
 
     @cached_property
     def side_cycle(self) -> Cycle | Mix:
-        """Cycle for the side of the body that the cup belongs to: mirrored for a left cup."""
+        """Cycle for the cup's side of the body: the given cycle, mirrored for a left cup."""
         return self.cycle.mirrored() if self.cup.side is Side.LEFT else self.cycle
 
     @cached_property
     def forces(self) -> Numbers:
-        """Forces of the ball on the socket in N, in the cup's frame: (instants, 3)."""
+        """Forces of the ball on the socket in N at all instants, in the cup's frame: (instants, 3)."""
         forces = self.side_cycle.forces
         return forces if self.cycle.frame is Frame.CUP else _convert_to_cup_frame(self.placed, forces)
 
     @property
     def _force_angles(self) -> Numbers:
-        """Angles of the forces from the dome's pole, in rad: (instants,)."""
+        """Angles in rad between the forces and the dome's pole: (instants,)."""
         return numpy.arctan2(numpy.hypot(self.forces[:, 0], self.forces[:, 1]), self.forces[:, 2])
 
     @cached_property
     def _load_mask(self) -> Numbers:
         """Mask of the instants with a load: (instants,)."""
-        sizes = self.cycle.force_magnitudes
-        return numpy.asarray(sizes > _MIN_RELATIVE_FORCE * max(float(sizes.max()), 1e-300))
+        magnitudes = self.cycle.force_magnitudes
+        return numpy.asarray(magnitudes > _MIN_RELATIVE_FORCE * max(float(magnitudes.max()), 1e-300))
 
     @cached_property
     def _spring_loaded_ball(self) -> SpringLoadedBall | None:
-        """Ball on the lateral spring of the cycle; None without a spring."""
+        """Model of the ball on the lateral spring of the cycle; None without a spring."""
         spring = self.side_cycle.spring
         if spring is None:
             return None
@@ -98,12 +98,12 @@ class CupFrame:
 
     @property
     def _spring_axis(self) -> Numbers:
-        """First axis of the cycle's frame, along which the spring acts, in the cup's frame: (3,)."""
+        """Direction of the spring force in the cup's frame, the first axis of the cycle's frame: (3,)."""
         return numpy.array([1.0, 0.0, 0.0] if self.cycle.frame is Frame.CUP else numpy.array(self.placed.frame)[:, 0])
 
     @cached_property
     def lateral_stiffness(self) -> Numbers:
-        """Stiffness matrix in N/mm of the cycle's lateral spring: (3, 3).
+        """Stiffness matrix of the cycle's lateral spring in N/mm: (3, 3), zero without a spring.
 
         A displacement of the ball times this matrix is the decrease of the force on the socket.
         """
@@ -111,38 +111,38 @@ class CupFrame:
         return numpy.outer(self._spring_axis, self._spring_axis) * (0.0 if spring is None else spring.stiffness)
 
     def socket_forces(self, displacement: Numbers) -> Numbers:
-        """Compute the forces on the socket in N for displacements of the ball in mm: (loaded, 3)."""
+        """Compute the forces on the socket in N for displacements (loaded, 3) of the ball in mm."""
         return self.loads - displacement @ self.lateral_stiffness
 
     @cached_property
     def _instants_beyond_rim(self) -> Numbers:
-        """Indices of the instants in which the load pushes the ball over the rim."""
-        beyond = numpy.flatnonzero(self._load_mask & (self._force_angles >= self.reach))
+        """Indices of the instants in which the load points beyond the rim."""
+        beyond_rim = numpy.flatnonzero(self._load_mask & (self._force_angles >= self.reach))
         return (
-            beyond
+            beyond_rim
             if self._spring_loaded_ball is None
-            else beyond[self._spring_loaded_ball.leaves_bore(self.forces[beyond])]
+            else beyond_rim[self._spring_loaded_ball.leaves_bore(self.forces[beyond_rim])]
         )
 
     @cached_property
     def separation(self) -> Microseparation | None:
-        """Instants in which a spring has pushed the ball onto the rim; None without such instants."""
-        beyond = self._instants_beyond_rim
+        """Microseparation: instants in which a spring has pushed the ball onto the rim; None without any."""
+        beyond_rim = self._instants_beyond_rim
         return (
             None
-            if self._spring_loaded_ball is None or not len(beyond)
-            else self._spring_loaded_ball.solve_separation(self.forces[beyond], beyond)
+            if self._spring_loaded_ball is None or not len(beyond_rim)
+            else self._spring_loaded_ball.solve_separation(self.forces[beyond_rim], beyond_rim)
         )
 
     @cached_property
     def placed(self) -> Cup:
-        """Cup in its orientation: that of `cup` if set, else the tilt of the cycle's standard."""
+        """Cup with its orientation: the stated one, else the tilt by the cycle's standard."""
         tilt = self.cycle.cup_tilt
         return self.cup if self.cup.oriented or tilt is None else self.cup.tilted(tilt)
 
     @property
     def reach(self) -> float:
-        """Polar angle in rad of the end of the bore, from the dome's pole."""
+        """Polar angle in rad from the dome's pole to the end of the bore."""
         return float(self.cup.rim - self.cup.chamfer / self.joint.socket_radius)
 
     @cached_property
@@ -154,23 +154,27 @@ class CupFrame:
 
     @cached_property
     def activities(self) -> tuple[tuple[str, Numbers], ...]:
-        """Name of each activity with contact, and its loads as indices into the loaded instants."""
+        """Name of each activity with contact, and indices of its loads among the loaded instants."""
         indices = {
-            number: numpy.flatnonzero((self.loaded >= part.start) & (self.loaded < part.stop))
-            for number, (_, part) in enumerate(self.cycle.activity_slices)
+            activity_index: numpy.flatnonzero((self.loaded >= step_range.start) & (self.loaded < step_range.stop))
+            for activity_index, (_, step_range) in enumerate(self.cycle.activity_slices)
         }
-        return tuple((self.cycle.activity_slices[number][0], loads) for number, loads in indices.items() if len(loads))
+        return tuple(
+            (self.cycle.activity_slices[activity_index][0], loads)
+            for activity_index, loads in indices.items()
+            if len(loads)
+        )
 
     @cached_property
     def loads(self) -> Numbers:
-        """Forces in N of the loaded instants, in the cup's frame: (loaded, 3)."""
+        """Forces in N at the loaded instants, in the cup's frame: (loaded, 3)."""
         return numpy.ascontiguousarray(self.forces[self.loaded])
 
     @property
     def largest_load_index(self) -> Numbers:
         """Index of the largest load among the loaded instants: (1,), or (0,) without loads."""
-        sizes = numpy.linalg.norm(self.loads, axis=1)
-        return numpy.flatnonzero(sizes == sizes.max(initial=0.0))[:1]
+        magnitudes = numpy.linalg.norm(self.loads, axis=1)
+        return numpy.flatnonzero(magnitudes == magnitudes.max(initial=0.0))[:1]
 
     @cached_property
     def rotation_increments(self) -> Numbers:
@@ -179,22 +183,24 @@ class CupFrame:
 
     @property
     def slide(self) -> float:
-        """Sliding distance in mm of the ball in a cycle, at the point of the socket where the load points."""
-        sizes = self.cycle.force_magnitudes[:, None]
-        directions = numpy.divide(self.forces, sizes, out=numpy.zeros_like(self.forces), where=sizes > 0)
+        """Sliding distance in mm in a cycle, at the point of the socket to which the load points."""
+        magnitudes = self.cycle.force_magnitudes[:, None]
+        directions = numpy.divide(self.forces, magnitudes, out=numpy.zeros_like(self.forces), where=magnitudes > 0)
         rotations = _convert_to_cup_frame(self.placed, self.side_cycle.rotation_increments)
-        return sliding_distance(float(self.joint.ball_radius), rotations, _fill_unloaded(directions, self.loaded))
+        return sliding_distance(
+            float(self.joint.ball_radius), rotations, _fill_unloaded_directions(directions, self.loaded)
+        )
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the orientation of the cup, unloaded instants and microseparation."""
+        """Sentences on the orientation of the cup, unloaded instants and microseparation."""
         tilted = () if self.placed == self.cup else (_TILTED.format(degrees(self.cycle.cup_tilt or 0.0)),)
         separated = () if self.separation is None else (self.separation.describe(self.cycle),)
-        return (*tilted, *self._unloaded_notes, *separated)
+        return (*tilted, *self._unloaded_instants_note, *separated)
 
     @property
-    def _unloaded_notes(self) -> tuple[str, ...]:
-        """Note on the instants without a load."""
+    def _unloaded_instants_note(self) -> tuple[str, ...]:
+        """Sentence on the instants without a load; empty if all are loaded."""
         unloaded = numpy.flatnonzero(~self._load_mask)
         if len(unloaded) == self.cycle.n_steps:
             return (_NEVER_LOADED,)
@@ -213,12 +219,12 @@ def _convert_to_cup_frame(cup: Cup, vectors: Numbers) -> Numbers:
     return numpy.ascontiguousarray(vectors @ numpy.array(cup.frame).T)
 
 
-def _fill_unloaded(directions: Numbers, loaded: Numbers) -> Numbers:
+def _fill_unloaded_directions(directions: Numbers, loaded: Numbers) -> Numbers:
     """Replace the direction of each unloaded instant by that of the last loaded instant before."""
     if not len(loaded):
         return directions
-    last = numpy.searchsorted(loaded, numpy.arange(len(directions)), side="right") - 1
-    return directions[loaded[last]]
+    last_loaded = numpy.searchsorted(loaded, numpy.arange(len(directions)), side="right") - 1
+    return directions[loaded[last_loaded]]
 
 
 T = TypeVar("T")

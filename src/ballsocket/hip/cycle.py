@@ -49,7 +49,7 @@ class Frame(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class Spring:
-    """Lateral spring between ball and socket, which models a translational mismatch of their centres.
+    """Lateral spring between ball and socket, which pulls their centres apart by a mismatch.
 
     It pulls the ball to the side while the load is small.
 
@@ -70,7 +70,7 @@ class Spring:
 
     @property
     def force(self) -> float:
-        """Force on an undisplaced ball, to the right, in N."""
+        """Spring force in N on an undisplaced ball, to the right."""
         return self.stiffness * self.mismatch
 
 
@@ -142,32 +142,32 @@ class Cycle:
 
     @cached_property
     def forces(self) -> Numbers:
-        """Forces at the midpoints of the steps in N: (steps, 3)."""
+        """Force vectors in N at the midpoints of the steps: (steps, 3)."""
         return self._forces_at(self.phases)
 
     def _forces_at(self, phases: Numbers) -> Numbers:
-        """Compute the force vectors in N at phases, with the force of the spring: (n, 3)."""
+        """Compute the force vectors (n, 3) in N at phases from 0 to 1, including the force of the spring."""
         force = numpy.asarray(self.force(phases), dtype=float)
         if force.ndim == 1:
-            upward = numpy.maximum(force, 0.0)
-            force = numpy.stack([0 * upward, 0 * upward, upward])
+            upward_force = numpy.maximum(force, 0.0)
+            force = numpy.stack([0 * upward_force, 0 * upward_force, upward_force])
         if self.spring is not None:
             force = force + self.spring.force * _RIGHT
         return numpy.ascontiguousarray(force.T)
 
     @cached_property
     def largest_force(self) -> float:
-        """Largest force of the cycle in N, also between the midpoints."""
+        """Largest magnitude of the force in N during the cycle, also between the midpoints of steps."""
         return float(numpy.linalg.norm(self._forces_at(numpy.linspace(0.0, 1.0, _PEAK_SAMPLES + 1)), axis=1).max())
 
     @cached_property
     def force_magnitudes(self) -> Numbers:
-        """Magnitudes of the forces in N: (steps,)."""
+        """Magnitudes of the forces in N at the midpoints of the steps: (steps,)."""
         return numpy.linalg.norm(self.forces, axis=1)
 
     @cached_property
     def rotations(self) -> Numbers:
-        """Rotation matrices of the ball at the ends of the steps, the last equal to the first: (steps + 1, 3, 3)."""
+        """Rotation matrices of the ball at the ends of the steps (steps + 1, 3, 3); the last equals the first."""
         angles = numpy.asarray(self.angles(numpy.arange(self.n_steps) / self.n_steps), dtype=float).T
         matrices = rotation_matrices(angles, self.order)
         return numpy.concatenate([matrices, matrices[:1]])
@@ -179,7 +179,7 @@ class Cycle:
 
     @cached_property
     def rotation_increments(self) -> Numbers:
-        """Rotation of the ball during each step, as rotation vectors in rad: (steps, 3)."""
+        """Rotation vectors in rad of the ball during each step: (steps, 3)."""
         return rotation_vectors(self.rotations[1:] @ self.rotations[:-1].swapaxes(1, 2))
 
     @property
@@ -189,29 +189,29 @@ class Cycle:
 
     @property
     def activity_cycles(self) -> tuple[Cycle, ...]:
-        """Cycles of all activities, as in a mix: a tuple of one cycle."""
+        """Cycles of all activities: this cycle alone, because only a `Mix` has several."""
         return (self,)
 
     @property
     def per_year(self) -> None:
-        """Number of cycles a year: None, because only a mix states this number."""
+        """Number of cycles a year: None, because only a `Mix` states it."""
         return None
 
     @property
     def activity_slices(self) -> tuple[tuple[str, slice], ...]:
-        """Name and range of steps of each activity, as in a mix: one activity."""
+        """Name and range of steps of each activity: one entry, because only a `Mix` has several."""
         return ((self.name, slice(0, self.n_steps)),)
 
     def describe_step(self, step: int) -> str:
-        """Describe the phase of a step in words."""
+        """Describe the time of a step in words, such as "12.5 % of the cycle"."""
         return f"{100 * self.phases[step]:.1f} % of the cycle"
 
     def finer(self) -> Cycle:
-        """Return this cycle with twice as many steps, up to the largest allowed number."""
+        """Return this cycle with twice as many time steps, up to the largest allowed number."""
         return replace(self, n_steps=min(2 * self.n_steps, _MAX_STEPS))
 
     def transformed(self, transform: Callable[[Cycle], Cycle]) -> Cycle:
-        """Apply a function to this cycle, as `Mix.transformed` does to the cycle of each activity."""
+        """Return the result of a function of this cycle; a `Mix` applies it to each of its cycles."""
         return transform(self)
 
     def mirrored(self) -> Cycle:
@@ -228,12 +228,12 @@ class Cycle:
         )
 
     def _mirrored_force(self, phases: Numbers) -> Numbers:
-        """Compute the forces in N of the mirrored cycle at phases."""
+        """Compute the forces in N of the mirrored cycle at phases from 0 to 1."""
         force = numpy.asarray(self.force(phases), dtype=float)
         return force if force.ndim == 1 or self.frame is Frame.CUP else _MIRRORED_FORCE * force
 
     def scaled(self, factor: float) -> Cycle:
-        """Return this cycle with its forces multiplied by a factor."""
+        """Return this cycle with all forces multiplied by a factor."""
         return replace(self, force=lambda phases: factor * self.force(phases))
 
 
@@ -243,7 +243,7 @@ _MIRRORED_ANGLES = numpy.array([[1.0], [-1.0], [-1.0]])
 
 
 def check_step_count(count: Any, name: str = "n_steps") -> int:
-    """Check a number of time steps and return it.
+    """Check a number of time steps and return it; ValueError if it is not allowed.
 
     Raises
     ------
@@ -257,7 +257,7 @@ def check_step_count(count: Any, name: str = "n_steps") -> int:
 
 @dataclass(frozen=True, kw_only=True)
 class CycleParameter:
-    """Adjustable number of a named cycle, with its key in files.
+    """Adjustable number of a named cycle: its key in files, argument and kind of quantity.
 
     Attributes
     ----------

@@ -155,14 +155,14 @@ def _table_cycle(table: HipColumns, order: str, options: TableOptions) -> Cycle:
 
 
 def _check_force(title: str, values: Numbers) -> None:
-    """Check a column of forces (N); ValueError beyond the forces of any hip, as from a wrong unit."""
+    """Raise ValueError for forces (N) above those of any hip, which suggest a wrong unit."""
     largest = float(abs(values).max())
     if largest > _MAX_FORCE:
         raise ValueError(f"{title} goes to {largest:.4g} N; allowed are forces up to {_MAX_FORCE:g} N")
 
 
 def _check_angle(title: str, values: Numbers) -> None:
-    """Check a column of angles (rad); ValueError beyond 180°, as from degrees under a head in rad."""
+    """Raise ValueError for angles (rad) beyond 180°, which suggest degrees in a column of radians."""
     largest = float(values[abs(values).argmax()])
     if abs(largest) > pi:
         raise ValueError(f"{title} goes to {180 / pi * largest:.4g}°; allowed are angles up to 180°: check its unit")

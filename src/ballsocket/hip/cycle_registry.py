@@ -26,7 +26,7 @@ CYCLES: Mapping[str, CycleDefinition] = MappingProxyType({definition.name: defin
 def named_cycle(
     name: Any, n_steps: int = DEFAULT_STEPS, order: str = "xyz", body_weight: float | None = None, **parameters: Any
 ) -> Cycle:
-    """Create a cycle by its name.
+    """Create one of the registered cycles by its name, such as "iso-14242-1".
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ _PARALLEL_TOLERANCE = 1e-9
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LoadInterpolation:
-    """Interpolation of results for many loads between a few solved load levels.
+    """Interpolation of results between a few solved loads ("levels") to all loads.
 
     Attributes
     ----------
@@ -53,40 +53,43 @@ class LoadInterpolation:
     loads: Numbers
     weights: Numbers
 
-    def interpolate(self, solved: Numbers) -> Numbers:
-        """Interpolate results from the levels (levels, ...) to all loads: (loads, ...)."""
-        return self.weights @ solved
+    def interpolate(self, level_results: Numbers) -> Numbers:
+        """Interpolate results of the solved levels (levels, ...) to all loads: (loads, ...)."""
+        return self.weights @ level_results
 
 
 def levels_at_all_loads(loads: Numbers) -> LoadInterpolation:
-    """Create an interpolation in which every load (loads, 3) is a level."""
+    """Create an interpolation for which every load (loads, 3) is solved."""
     return LoadInterpolation(loads=loads, weights=numpy.eye(len(loads)))
 
 
 def interpolate_loads(loads: Numbers, max_levels: int = _MAX_LEVELS) -> LoadInterpolation:
-    """Create the interpolation for loads (loads, 3) in N: a few levels for one direction, else every load.
+    """Choose the loads (levels) to solve for, and the interpolation from them to all loads (loads, 3) in N.
 
     The levels are closer to each other at small loads, where the contacts change most.
     """
-    size = numpy.linalg.norm(loads, axis=1)
-    if len(loads) <= max_levels or abs(numpy.cross(loads, loads[0])).max() > _PARALLEL_TOLERANCE * size.max() ** 2:
+    magnitudes = numpy.linalg.norm(loads, axis=1)
+    if (
+        len(loads) <= max_levels
+        or abs(numpy.cross(loads, loads[0])).max() > _PARALLEL_TOLERANCE * magnitudes.max() ** 2
+    ):
         return levels_at_all_loads(loads)
-    levels = numpy.linspace(size.min() ** 0.5, size.max() ** 0.5, max_levels) ** 2
-    levels[0], levels[-1] = size.min(), size.max()
+    levels = numpy.linspace(magnitudes.min() ** 0.5, magnitudes.max() ** 0.5, max_levels) ** 2
+    levels[0], levels[-1] = magnitudes.min(), magnitudes.max()
     if levels[-1] - levels[0] <= _PARALLEL_TOLERANCE * levels[-1]:
         levels = levels[-1:]
-        return LoadInterpolation(loads=levels[:, None] * loads[0] / size[0], weights=numpy.ones((len(loads), 1)))
-    lower = numpy.clip(numpy.searchsorted(levels, size, side="right") - 1, 0, max_levels - 2)
-    fraction = (size - levels[lower]) / (levels[lower + 1] - levels[lower])
+        return LoadInterpolation(loads=levels[:, None] * loads[0] / magnitudes[0], weights=numpy.ones((len(loads), 1)))
+    lower_level = numpy.clip(numpy.searchsorted(levels, magnitudes, side="right") - 1, 0, max_levels - 2)
+    fraction = (magnitudes - levels[lower_level]) / (levels[lower_level + 1] - levels[lower_level])
     weights = numpy.zeros((len(loads), max_levels))
-    rows = numpy.arange(len(loads))
-    weights[rows, lower], weights[rows, lower + 1] = 1 - fraction, fraction
-    return LoadInterpolation(loads=levels[:, None] * loads[0] / size[0], weights=weights)
+    load_indices = numpy.arange(len(loads))
+    weights[load_indices, lower_level], weights[load_indices, lower_level + 1] = 1 - fraction, fraction
+    return LoadInterpolation(loads=levels[:, None] * loads[0] / magnitudes[0], weights=weights)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GridSmoothing:
-    """Smoothing filter for fields on a grid, which conserves their volume.
+    """Smoothing filter for fields on a grid, which preserves the integral over the surface.
 
     The filter is [1 2 1]/4 along the meridians and around the axis, there with the width of the rings.
 
@@ -103,23 +106,23 @@ class GridSmoothing:
 
     @cached_property
     def _harmonic_factors(self) -> Numbers:
-        """Filter factors of the harmonics about the axis: (rings, harmonics)."""
+        """Filter factors of the circumferential harmonics on each ring: (rings, harmonics)."""
         # cos²(π m / 2M') is [1 2 1]/4 on M' cells a half circle
         half_circle = numpy.maximum(self.grid.meridians / 2 * numpy.sin(self.grid.polar), 1.0)[:, None]
         m = numpy.arange(self.grid.max_harmonic + 1)
         return numpy.where(m < half_circle, numpy.cos(numpy.pi * m / (2 * half_circle)) ** 2, 0.0)
 
     @cached_property
-    def _ring_flux(self) -> Numbers:
-        """Weights of the exchange between neighbouring rings in the filter, as areas: (rings - 1, 1)."""
+    def _ring_exchange(self) -> Numbers:
+        """Exchange coefficients between neighbouring rings in the filter, as areas: (rings - 1, 1)."""
         areas = self.grid.areas
         return numpy.minimum(areas[1:], areas[:-1]) / 4
 
     def __call__(self, fields: Numbers) -> Numbers:
-        """Smooth fields (..., rings, meridians)."""
+        """Smooth fields (..., rings, meridians) on the grid."""
         waves = scipy.fft.rfft(fields) * self._harmonic_factors
         filtered = scipy.fft.irfft(waves, n=self.grid.meridians)
-        flux = self._ring_flux * numpy.diff(filtered, axis=-2)
+        flux = self._ring_exchange * numpy.diff(filtered, axis=-2)
         no_flux = numpy.zeros_like(filtered[..., :1, :])
         flux = numpy.concatenate([no_flux, flux, no_flux], axis=-2)
         return filtered + numpy.diff(flux, axis=-2) / self.grid.areas
@@ -127,7 +130,7 @@ class GridSmoothing:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ElasticFoundation:
-    """Elastic socket whose cells are coupled; see `SocketFoundation`.
+    """Foundation of an elastic socket, in which a pressure on one cell displaces all cells.
 
     Attributes
     ----------
@@ -155,7 +158,7 @@ class ElasticFoundation:
 
     @cached_property
     def normals(self) -> Numbers:
-        """Means of the outward normal over the cells, in the cup's frame: (3, cells)."""
+        """Mean outward normal of each cell, in the cup's frame: (3, cells)."""
         return numpy.ascontiguousarray(self.grid.normals.reshape(3, -1))
 
     @cached_property
@@ -164,43 +167,43 @@ class ElasticFoundation:
         return numpy.repeat(self.grid.areas[:, 0], self.grid.meridians) * self.socket_radius**2
 
     @cached_property
-    def _smoothing(self) -> GridSmoothing:
-        """Smoothing filter on the grid of the bore."""
+    def _smoothing_filter(self) -> GridSmoothing:
+        """Filter that smooths fields on the grid of the bore."""
         return GridSmoothing(grid=self.grid)
 
     def smooth(self, depth: Numbers) -> Numbers:
-        """Smooth a depth in mm to waves that the grid resolves, at the same volume: (cells,)."""
-        return self._smoothing(depth.reshape(self.grid.rings, -1)).ravel()
+        """Smooth a worn depth (cells,) in mm to waves that the grid resolves, with the same volume."""
+        return self._smoothing_filter(depth.reshape(self.grid.rings, -1)).ravel()
 
     @cached_property
     def max_stiffness(self) -> float:
-        """Largest ratio of pressure change to depth over all smoothed waves of the bore, in MPa/mm.
+        """Largest ratio in MPa/mm of pressure change to worn depth, over all waves on the bore.
 
         It is computed by power iteration.
         """
         field = numpy.random.default_rng(_SEED).normal(size=(1, self.grid.rings, self.grid.meridians))
-        growth = 0.0
+        stiffness = 0.0
         for _ in range(_POWER_ITERATIONS):
             field = field / numpy.linalg.norm(field)
-            field = self._smoothing(self.compliance.pressure(field))
-            growth = float(numpy.linalg.norm(field))
-        return growth
+            field = self._smoothing_filter(self.compliance.pressure(field))
+            stiffness = float(numpy.linalg.norm(field))
+        return stiffness
 
     def select_cells(self, cells: Numbers) -> ElasticFoundation:
-        """Return this foundation with all its cells, because elastic cells are coupled."""
+        """Return this foundation unchanged: elastic cells are coupled, so all are needed."""
         return self
 
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
-        """Return a mask of all cells, because elastic cells are coupled: (cells,)."""
+        """Return a mask (cells,) of all cells: elastic cells are coupled, so all are needed."""
         return numpy.ones(len(self.areas), dtype=bool)
 
     @property
     def edge_inset(self) -> float:
-        """Distance from the zero of `edge_field` inwards to the contact edge, as a fraction of a ring's width."""
+        """Distance from the zero of `edge_field` inwards to the contact edge, in ring widths."""
         return self.edges.inset
 
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute a field in mm that is 0 at the edge of each contact and positive inside: (loads, cells)."""
+        """Compute a field (loads, cells) in mm that is 0 near contact edges and positive in contacts."""
         shape = (len(equilibrium.pressure), self.grid.rings, self.grid.meridians)
         pressure = equilibrium.pressure.reshape(shape)
         overlap = equilibrium.displacement @ self.normals - self.clearance - depth
@@ -208,13 +211,13 @@ class ElasticFoundation:
         return self.edges.levels(pressure, gap).reshape(equilibrium.pressure.shape)
 
     @cached_property
-    def _neighbours(self) -> Numbers:
-        """Indices of the four neighbours of every cell: (2, 2, cells)."""
+    def _neighbour_indices(self) -> Numbers:
+        """Indices of the four neighbours of each cell: (2, 2, cells)."""
         return grid_neighbours(self.grid)
 
     def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells)."""
-        return contact_shares(self.edge_field(equilibrium, depth), self._neighbours, self.edge_inset)
+        """Compute the fraction of each cell that is in contact, from 0 to 1: (loads, cells)."""
+        return contact_shares(self.edge_field(equilibrium, depth), self._neighbour_indices, self.edge_inset)
 
     def solve_equilibrium(
         self,
@@ -223,7 +226,7 @@ class ElasticFoundation:
         start: CycleEquilibrium | None = None,
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
-        """Solve displacements and pressures under all loads by full elasticity.
+        """Solve for displacements and pressures under all loads, with coupled elastic cells.
 
         The parameters are those of `SpringFoundation.solve_equilibrium`.
 
@@ -239,29 +242,35 @@ class ElasticFoundation:
             depth=depth.reshape(shape[1:]),
             kind=LinearGap,
         )
-        bed = BoreContact(compliance=self.compliance, gap=gap, tether=lateral_stiffness)
-        solved = self._solve_levels(bed, levels, depth, start)
-        flat = solved.pressure.reshape(shape[0], -1)
+        bore_contact = BoreContact(compliance=self.compliance, gap=gap, tether=lateral_stiffness)
+        solved = self._solve_load_levels(bore_contact, levels, depth, start)
+        level_pressure = solved.pressure.reshape(shape[0], -1)
         return CycleEquilibrium(
             displacement=levels.interpolate(solved.displacement),
-            pressure=levels.interpolate(flat),
+            pressure=levels.interpolate(level_pressure),
             converged=bool(solved.converged.all()),
             levels=(solved.displacement, solved.pressure),
         )
 
-    def _solve_levels(
-        self, bed: BoreContact, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
+    def _solve_load_levels(
+        self, bore_contact: BoreContact, levels: LoadInterpolation, depth: Numbers, start: CycleEquilibrium | None
     ) -> EquilibriumBatch:
-        """Solve the equilibria of the load levels; those without convergence start again from deeper displacements."""
-        count, sizes = len(levels.loads), magnitudes_and_directions(levels.loads)
-        deep = initial_displacement(self, self.compliance.uniform_stiffness, depth, *sizes)
+        """Solve the contacts under all load levels; repeat unconverged ones from a deeper start."""
+        level_count, magnitudes_and_unit_vectors = len(levels.loads), magnitudes_and_directions(levels.loads)
+        initial_guess = initial_displacement(
+            self, self.compliance.uniform_stiffness, depth, *magnitudes_and_unit_vectors
+        )
         previous = None if start is None else start.levels
-        begin, pressure = previous if previous is not None and len(previous[0]) == count else (deep, None)
-        solved = solve_force(bed, levels.loads, begin, numpy.ones(count, dtype=bool), pressure)
+        start_displacement, pressure = (
+            previous if previous is not None and len(previous[0]) == level_count else (initial_guess, None)
+        )
+        solved = solve_force(
+            bore_contact, levels.loads, start_displacement, numpy.ones(level_count, dtype=bool), pressure
+        )
         for factor in _DEEPER_STARTS:
             if solved.converged.all():
                 break
-            retried = solve_force(bed, levels.loads, factor * deep, ~solved.converged)
+            retried = solve_force(bore_contact, levels.loads, factor * initial_guess, ~solved.converged)
             unsolved = ~solved.converged
             for name in ("displacement", "pressure", "converged"):
                 getattr(solved, name)[unsolved] = getattr(retried, name)[unsolved]
@@ -270,7 +279,7 @@ class ElasticFoundation:
 
 @lru_cache(maxsize=4)
 def elastic_foundation(surface: RealCup | ClosedShell, joint: Joint, cup: Cup, width: float) -> ElasticFoundation:
-    """Create the elastic foundation of a joint, on a grid of rings of one width in rad.
+    """Create the elastic foundation of a joint on a grid, whose rings have a width in rad.
 
     The last four foundations are cached.
     """

@@ -53,7 +53,7 @@ class Lubricant:
 
 
 def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float) -> tuple[Numbers, Numbers]:
-    """Compute the minimum and the central film thickness in mm by Hamrock and Dowson: isoviscous, elastic, circular.
+    """Compute the minimum and central film thickness in mm by the formulas of Hamrock and Dowson.
 
     Parameters
     ----------
@@ -73,14 +73,17 @@ def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float
     if float(joint.clearance) == 0:
         return numpy.full_like(force, numpy.nan), numpy.full_like(force, numpy.nan)
     # h_min = 2.80 R* U^.65 W^-.21, h_cen = 3.34 R* U^.64 W^-.22, U = ηu/(E'R*), W = F/(E'R*²), u = ωR1/2
-    radius = float(joint.ball_radius * joint.socket_radius / joint.clearance)
+    effective_radius = float(joint.ball_radius * joint.socket_radius / joint.clearance)
     ball_compliance = 0.0 if joint.ball is None else _plane_strain_compliance(joint.ball)
     modulus = 2 / (_plane_strain_compliance(joint.liner) + ball_compliance)
-    speed = 1e-6 * viscosity * spin * float(joint.ball_radius) / 2 / (modulus * radius)
-    load = force / (modulus * radius**2)
+    speed_parameter = 1e-6 * viscosity * spin * float(joint.ball_radius) / 2 / (modulus * effective_radius)
+    load_parameter = force / (modulus * effective_radius**2)
     with numpy.errstate(divide="ignore", invalid="ignore"):
-        least, central = 2.80 * radius * speed**0.65 * load**-0.21, 3.34 * radius * speed**0.64 * load**-0.22
-    return least, central
+        minimum, central = (
+            2.80 * effective_radius * speed_parameter**0.65 * load_parameter**-0.21,
+            3.34 * effective_radius * speed_parameter**0.64 * load_parameter**-0.22,
+        )
+    return minimum, central
 
 
 def _plane_strain_compliance(material: Material) -> float:
@@ -121,33 +124,33 @@ class Film:
 
     @property
     def regime(self) -> str:
-        """Lubrication regime at the thickest film: boundary, mixed or full; unknown without clearance."""
+        """Lubrication regime at the thickest film: "boundary", "mixed" or "full"; "unknown" without clearance."""
         largest = float(self.ratio.max(initial=0.0))
         if numpy.isnan(largest):
             return "unknown"
         return "boundary" if largest < _MIXED_RATIO else "mixed" if largest < _FULL_RATIO else "full"
 
     def summary(self) -> dict[str, Any]:
-        """Return the film as data for JSON, with thicknesses in nm."""
+        """Return film and friction as a dictionary for JSON, with thicknesses in nm."""
         if not len(self.phases):
             return {}
-        size = numpy.linalg.norm(self.moment, axis=1)
+        moment_magnitudes = numpy.linalg.norm(self.moment, axis=1)
         values = {
             "least_nm": 1e6 * self.least.min(),
             "largest_nm": 1e6 * self.least.max(),
             "lambda_least": self.ratio.min(),
             "lambda_largest": self.ratio.max(),
-            "moment_Nmm": size.max(),
+            "moment_Nmm": moment_magnitudes.max(),
             "power_W": self.heat / self.duration,
             "heat_J_per_cycle": self.heat,
         }
-        numbers = {name: float(value) if numpy.isfinite(value) else None for name, value in values.items()}
-        largest_moment = [float(component) for component in self.moment[size.argmax()]]
-        return {**numbers, "moment_on_cup_Nmm": largest_moment, "regime": self.regime, "note": CONFORMITY_NOTE}
+        finite_values = {name: float(value) if numpy.isfinite(value) else None for name, value in values.items()}
+        largest_moment = [float(component) for component in self.moment[moment_magnitudes.argmax()]]
+        return {**finite_values, "moment_on_cup_Nmm": largest_moment, "regime": self.regime, "note": CONFORMITY_NOTE}
 
 
 class LoadedCycle(Protocol):
-    """Loads and rotations of a cycle in the cup's frame, as in `CupFrame`."""
+    """Interface of the loads and rotations of a cycle in the cup's frame, such as `CupFrame`."""
 
     @property
     def joint(self) -> Joint:
@@ -156,7 +159,7 @@ class LoadedCycle(Protocol):
 
     @property
     def cycle(self) -> Cycle | Mix:
-        """Loads and rotations."""
+        """Cycle of loads and rotations."""
         ...
 
     @property
@@ -170,7 +173,7 @@ class LoadedCycle(Protocol):
         ...
 
     def socket_forces(self, displacement: Numbers) -> Numbers:
-        """Compute the forces on the socket in N for displacements of the ball in mm: (loaded, 3)."""
+        """Compute the forces on the socket in N for displacements (loaded, 3) of the ball in mm."""
         ...
 
 
@@ -184,9 +187,11 @@ def film(
     """Compute film thickness, friction moment, power and heat of a cycle from its contacts and sliding."""
     durations = frame.cycle.seconds[frame.loaded]
     forces = frame.socket_forces(equilibrium.displacement)
-    size = numpy.linalg.norm(forces, axis=1)
-    spin = numpy.linalg.norm(numpy.cross(frame.rotation_increments, forces), axis=1) / numpy.where(size > 0, size, 1.0)
-    least, central = film_thickness(frame.joint, size, spin / durations, lubricant.viscosity)
+    force_magnitudes = numpy.linalg.norm(forces, axis=1)
+    spin = numpy.linalg.norm(numpy.cross(frame.rotation_increments, forces), axis=1) / numpy.where(
+        force_magnitudes > 0, force_magnitudes, 1.0
+    )
+    least, central = film_thickness(frame.joint, force_magnitudes, spin / durations, lubricant.viscosity)
     roughness = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
     work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.distances, foundation.areas)
     return Film(
@@ -194,24 +199,24 @@ def film(
         least=least,
         central=central,
         ratio=least / roughness if roughness > 0 else numpy.full_like(least, inf),
-        moment=lubricant.friction * _unit_moment(foundation, sliding, equilibrium.pressure),
+        moment=lubricant.friction * _moment_at_unit_friction(foundation, sliding, equilibrium.pressure),
         power=1e-3 * work / durations,
         heat=1e-3 * float(work.sum()),
         duration=frame.cycle.duration,
     )
 
 
-def _unit_moment(foundation: SocketFoundation, sliding: SurfaceSliding, pressure: Numbers) -> Numbers:
-    """Compute the friction moment on the cup for a coefficient of friction of 1, in N mm: (instants, 3).
+def _moment_at_unit_friction(foundation: SocketFoundation, sliding: SurfaceSliding, pressure: Numbers) -> Numbers:
+    """Compute the friction moment on the cup in N mm for a coefficient of friction of 1: (instants, 3).
 
     It is ∫ R n × v/abs(v) p dA with v = R ω × n, and n × (ω × n) = ω - (ω·n) n.
     """
-    n, rotations, distances = foundation.directions, sliding.rotation_increments, sliding.distances
-    weight = numpy.divide(
+    directions, rotations, distances = foundation.directions, sliding.rotation_increments, sliding.distances
+    pressure_weight = numpy.divide(
         pressure * foundation.areas * sliding.radius**2,
         distances,
         out=numpy.zeros_like(distances),
         where=distances > 0,
     )
-    along_normal = weight * (rotations @ n)
-    return rotations * weight.sum(axis=1)[:, None] - along_normal @ n.T
+    normal_part = pressure_weight * (rotations @ directions)
+    return rotations * pressure_weight.sum(axis=1)[:, None] - normal_part @ directions.T

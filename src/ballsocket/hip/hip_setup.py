@@ -109,7 +109,7 @@ class HipSetup:
     passed = RenamedAttribute("exposure")
 
     def __post_init__(self) -> None:
-        """Check kinds and limits of the fields, and that no load dislocates the ball."""
+        """Check types and limits of the fields, and that no load pushes the ball over the rim."""
         for name, kind in (("joint", Joint), ("cycle", Cycle | Mix), ("cup", Cup)):
             if not isinstance(getattr(self, name), kind):
                 raise TypeError(f"{name} must be a {name.capitalize()}, got {shown(getattr(self, name))}")
@@ -139,7 +139,7 @@ class HipSetup:
 
     @cached_property
     def frame(self) -> CupFrame:
-        """Loads and rotations of the cycle in the frame of the cup."""
+        """Loads and rotations of the cycle, transformed to the frame of the cup."""
         return CupFrame(joint=self.joint, cycle=self.cycle, cup=self.cup)
 
     @property
@@ -149,12 +149,12 @@ class HipSetup:
 
     @property
     def seconds(self) -> float:
-        """Time in s that a cycle stands for in the creep of the liner."""
+        """Time in s that each cycle represents in the creep of the liner."""
         return self.cycle.duration if self.seconds_per_cycle is None else self.seconds_per_cycle
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the cycle, the cup and the laws."""
+        """Sentences on the cycle, the cup and the laws, for reports."""
         law_notes = (*self.wear.notes, *(self.ball_wear.notes if self.ball_wear else ()))
         return (
             *self.cycle.notes,
@@ -165,13 +165,13 @@ class HipSetup:
 
     @cached_property
     def grid(self) -> Grid:
-        """Grid of cells on the bore."""
+        """Grid of cells on the bore of the socket."""
         reach = socket_shape(self.joint, self.cup).reach
         return (graded_grid if self.uses_springs else even_grid)(reach, self.ring_width)
 
     @cached_property
     def foundation(self) -> SocketFoundation:
-        """Foundation of the socket: radial springs or full elasticity."""
+        """Foundation of the socket: independent radial springs, or coupled elastic cells."""
         joint = self.joint
         if not isinstance(self.surface, Springs):
             return elastic_foundation(self.surface, joint, self._unoriented_cup, self.ring_width)
@@ -184,7 +184,7 @@ class HipSetup:
 
     @cached_property
     def ball_grid(self) -> Grid:
-        """Grid of cells on the ball, in rings about the axis to the front.
+        """Grid of cells on the ball, with rings about the axis to the front.
 
         The cells in contact then have similar widths.
         """
@@ -197,12 +197,12 @@ class HipSetup:
 
     @property
     def _unoriented_cup(self) -> Cup:
-        """Cup without its orientation."""
+        """Cup without its orientation, with the same arc and interface."""
         return Cup(arc_of_cover=self.cup.arc_of_cover, chamfer=self.cup.chamfer, interface=self.cup.interface)
 
     @cached_property
     def sliding(self) -> SurfaceSliding:
-        """Sliding of the ball over the cells of the socket in the loaded instants."""
+        """Sliding of the ball over the cells of the socket at the loaded instants."""
         return SurfaceSliding(
             radius=float(self.joint.ball_radius),
             rotation_increments=self.frame.rotation_increments,
@@ -211,7 +211,7 @@ class HipSetup:
 
     @renamed_arguments(rest="equilibrium")
     def edge(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> RimDistance:
-        """Compute the distance from each contact to the rim, on a bore worn by a depth in mm."""
+        """Compute the distance of each contact from the rim (`RimDistance`), for a worn depth (cells,) in mm."""
         field = self.foundation.edge_field(equilibrium, self._depth_field(depth))
         return rim_distance(
             self.grid, self.foundation.socket_radius, field, equilibrium.pressure, self.foundation.edge_inset
@@ -219,7 +219,7 @@ class HipSetup:
 
     @renamed_arguments(rest="equilibrium")
     def edge_distance(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
-        """Compute the shortest arc in mm from the edge of each contact to the end of the bore: (loaded,).
+        """Compute the shortest arc in mm from each contact edge to the end of the bore: (loaded,).
 
         It is 0 where the contact reaches the end of the bore: edge loading.
         """
@@ -228,7 +228,7 @@ class HipSetup:
     def solve_equilibrium(
         self, depth: Numbers | float = 0.0, start: CycleEquilibrium | None = None
     ) -> CycleEquilibrium:
-        """Solve the contacts of a cycle on a bore worn by a depth in mm: (cells,).
+        """Solve the contacts of a cycle on a worn bore, with a worn depth (cells,) in mm.
 
         Parameters
         ----------
@@ -240,26 +240,26 @@ class HipSetup:
         return self.foundation.solve_equilibrium(frame.loads, self._depth_field(depth), start, frame.lateral_stiffness)
 
     def _depth_field(self, depth: Numbers | float) -> Numbers:
-        """Return a depth as an array: (cells,), or (loaded, cells) for a depth that differs between instants."""
+        """Convert a worn depth to an array in mm: (cells,), or (loaded, cells) if instants differ."""
         field = numpy.asarray(depth)
         return field if field.ndim == 2 else numpy.broadcast_to(field, self.foundation.areas.shape)
 
     @cached_property
     def contact_model(self) -> Model:
-        """Contact model with the same foundation: radial springs, or full elasticity."""
+        """Contact model with the same foundation as the simulation: radial springs, or full elasticity."""
         if isinstance(self.surface, Springs):
             return RadialFoundation(modulus=self.surface.modulus)
         return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=self.ring_width)
 
     @renamed_arguments(rest="equilibrium")
     def worst_contacts(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
-        """Tabulate the contact with the largest pressure of each activity: (activities with contact, `COLUMNS`)."""
+        """Tabulate the contact of largest pressure of each activity: (activities, columns `COLUMNS`)."""
         largest = equilibrium.pressure.max(axis=1, initial=0.0)
         rows = numpy.array([loads[largest[loads].argmax()] for _, loads in self.frame.activities], dtype=int)
         worn = self._depth_field(depth)
         worn = worn[rows] if worn.ndim == 2 else worn
         overlap = equilibrium.displacement[rows] @ self.foundation.normals - self.foundation.clearance - worn
-        chosen = CycleEquilibrium(
+        worst_equilibrium = CycleEquilibrium(
             displacement=equilibrium.displacement[rows],
             pressure=equilibrium.pressure[rows],
             converged=equilibrium.converged,
@@ -269,14 +269,14 @@ class HipSetup:
                 rows,
                 numpy.linalg.norm(self.frame.loads[rows], axis=1),
                 numpy.maximum(overlap.max(axis=1, initial=0.0), 0.0),
-                half_angles(self.grid, self.frame.reach, self.foundation.edge_field(chosen, worn)),
+                half_angles(self.grid, self.frame.reach, self.foundation.edge_field(worst_equilibrium, worn)),
                 largest[rows],
             ],
             axis=1,
         )
 
     def contact_checks(self, worst: Numbers) -> tuple[ContactCheck, ...]:
-        """Check validity and strength of the worst contact of each activity, from a table of `worst_contacts`."""
+        """Check validity and strength of each row of a table of worst contacts."""
         frame = self.frame
         instants = [self.cycle.describe_step(step) for step in frame.loaded[worst[:, 0].astype(int)]]
         return tuple(
@@ -286,7 +286,7 @@ class HipSetup:
 
     @cached_property
     def unworn_worst_contacts(self) -> Numbers:
-        """Table of the worst contacts of the first cycle, as of `worst_contacts`."""
+        """Table of the contact of largest pressure of each activity in the first cycle."""
         return self.worst_contacts(self.unworn)
 
     @cached_property
@@ -296,22 +296,22 @@ class HipSetup:
 
     @renamed_arguments(rest="equilibrium")
     def exposure(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> CycleExposure:
-        """Collect pressure and sliding of the socket's cells, as a wear law needs, on a bore worn by a depth in mm."""
+        """Collect pressure and sliding of the socket's cells over a cycle, as input of a wear law."""
         contact_shares = partial(self.foundation.contact_shares, equilibrium, self._depth_field(depth))
         return CycleExposure(pressure=equilibrium.pressure, sliding=self.sliding, contact_shares=contact_shares)
 
     @cached_property
     def unworn(self) -> CycleEquilibrium:
-        """Contacts of the first cycle, on an unworn bore."""
+        """Contacts at all loaded instants of the first cycle, on an unworn bore."""
         return self.solve_equilibrium()
 
     def film(self, lubricant: Lubricant, depth: Numbers | float = 0.0) -> Film:
-        """Compute film and friction of a cycle on a bore worn by a depth in mm: (cells,)."""
+        """Compute lubricant film and friction of a cycle on a bore with a worn depth (cells,) in mm."""
         return film(self.frame, self.foundation, self.sliding, self.solve_equilibrium(depth), lubricant)
 
     @cached_property
     def first(self) -> FirstCycleResult:
-        """Results of the first cycle on an unworn bore, with wear per million cycles."""
+        """Results of the first cycle on an unworn bore; wear is per million cycles."""
         cycle = self.exposure(self.unworn)
         depth, work = self.wear.depth(cycle), cycle.work * self.foundation.areas
         total_work = float(work.sum())
@@ -327,7 +327,7 @@ class HipSetup:
 
     @property
     def crossing_angle(self) -> float:
-        """Mean angle in rad between sliding and its principal direction in the first cycle, weighted by p v."""
+        """Mean angle in rad between sliding and its principal direction in the first cycle."""
         cycle = self.exposure(self.unworn)
         worn = numpy.flatnonzero(cycle.work > 0)
         weight = (cycle.work * self.foundation.areas)[worn]
@@ -336,6 +336,6 @@ class HipSetup:
 
     @property
     def largest_speed(self) -> float:
-        """Largest speed of sliding in contact in the first cycle, in mm/s."""
+        """Largest sliding speed in mm/s at points in contact, in the first cycle."""
         distances = numpy.where(self.unworn.pressure > 0, self.sliding.distances, 0.0)
         return float((distances / self.cycle.seconds[self.frame.loaded][:, None]).max(initial=0.0))

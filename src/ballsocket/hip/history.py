@@ -13,7 +13,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_names
-from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_notes
+from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes
 from .film import Lubricant
 from .hip_setup import HipSetup
 from .law_fields import law_summary
@@ -22,7 +22,7 @@ from .rim import ClosestApproach, RimDistance
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Report:
-    """State of a hip after a number of cycles.
+    """Results of a wear simulation after a number of cycles.
 
     Attributes
     ----------
@@ -84,16 +84,16 @@ class Report:
 
     @property
     def penetration(self) -> float:
-        """Distance by which the ball's centre has moved since the first cycle, in mm."""
+        """Distance in mm by which the ball's centre has moved since the first cycle."""
         return float(numpy.linalg.norm(self.displacement))
 
     @property
     def edge(self) -> RimDistance:
-        """Distance from each contact to the rim."""
+        """Distance of each contact from the rim, with azimuth and pressure."""
         return RimDistance(distance=self.edge_distance, azimuth=self.edge_place, pressure=self.edge_pressure)
 
     def summary(self) -> dict[str, Any]:
-        """Return the report as data for JSON, in mm, MPa and mm³."""
+        """Return the report as a dictionary for JSON, in mm, MPa and mm³."""
         return {
             "cycles": self.cycles,
             "volume": self.volume,
@@ -112,7 +112,7 @@ class Report:
 
 @dataclass(frozen=True, kw_only=True)
 class NumericalError:
-    """Estimated relative errors of volume and depth for this joint, law and cycle.
+    """Estimated relative errors of worn volume and depth for this joint, law and cycle.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class NumericalError:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class History:
-    """Results of a wear simulation.
+    """Results of a wear simulation: reports at several cycle counts.
 
     Attributes
     ----------
@@ -150,12 +150,12 @@ class History:
 
     @property
     def last(self) -> Report:
-        """Report at the end of the run."""
+        """Last report, at the end of the run."""
         return self.reports[-1]
 
     @property
     def converged(self) -> bool:
-        """True if every contact balanced its load."""
+        """True if the contacts balance their loads in all reports."""
         return all(report.converged for report in self.reports)
 
     @cached_property
@@ -165,36 +165,36 @@ class History:
 
     @property
     def valid(self) -> bool:
-        """True if every contact balances its load and the worst contacts are inside their model's validity."""
+        """True if all contacts balance their loads and the worst contacts are valid for the contact model."""
         return self.converged and self.contact_valid
 
     @property
     def contact_valid(self) -> bool:
-        """True if the worst contacts in the first cycle and at the reports are inside the validity of their model."""
+        """True if the worst contacts at the start and at all reports are valid for the contact model."""
         return all(check.valid for check in (*self.use.unworn_checks, *chain(*self.contact_checks)))
 
     @property
     def utilisation(self) -> float | None:
-        """Largest utilisation in the first cycle and at the reports; None where no yield stress is known."""
+        """Largest ratio of von Mises to yield stress during the run; None if it is unknown."""
         return largest_utilisation((*self.use.unworn_checks, *chain(*self.contact_checks)))
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on cycle, cup, laws, contact model and rim, for reports."""
+        """Sentences on cycle, cup, laws, contact model and rim, for reports."""
         unbalanced = () if self.converged else (_NOT_CONVERGED,)
         return (*self._contact_notes, *self.use.notes, *self._thin_liner_notes, *self._rim_notes, *unbalanced)
 
     @property
     def _contact_notes(self) -> tuple[str, ...]:
-        """Notes of the contact model, each at its first occurrence."""
+        """Sentences of the contact model, each kind only once."""
         later = (_AFTER_CYCLES.format(report.cycles) for report in self.reports)
         return tuple(
-            list_notes([(_FIRST_CYCLE, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
+            list_check_notes([(_FIRST_CYCLE, self.use.unworn_checks), *zip(later, self.contact_checks, strict=True)])
         )
 
     @property
     def _thin_liner_notes(self) -> tuple[str, ...]:
-        """Note on a liner that is worn through, or so thin that its stiffness has changed."""
+        """Sentence on a liner that is worn through, or whose stiffness has changed by wear."""
         liner = float(self.use.joint.liner_thickness)
         for limit, sentence in ((1.0, _WORN_THROUGH), (_THIN_LINER, _WORN_THIN)):
             first = next((report for report in self.reports if report.depth > limit * liner), None)
@@ -204,12 +204,12 @@ class History:
 
     @property
     def worst(self) -> ClosestApproach | None:
-        """Instant of the first cycle in which the contact is nearest to the rim; None without contact."""
+        """Closest approach of the contact to the rim in the first cycle; None without contact."""
         return self.use.edge(self.use.unworn).closest_approach(self.use.frame)
 
     @property
     def _rim_notes(self) -> tuple[str, ...]:
-        """Note on the first stage at which a contact reaches the rim."""
+        """Sentence on the first report at which a contact reaches the rim."""
         frame, stages = self.use.frame, [(_FIRST_CYCLE, self.worst)]
         stages += [
             (_AFTER_CYCLES.format(report.cycles), report.edge.closest_approach(frame)) for report in self.reports
@@ -221,7 +221,7 @@ class History:
         return ()
 
     def summary(self) -> dict[str, Any]:
-        """Return the results as data for JSON."""
+        """Return the results as a dictionary for JSON."""
         first, separation = self.use.first, self.use.frame.separation
         return {
             "cycle": {
@@ -231,7 +231,7 @@ class History:
                 "pressure_slide_integral_Nm": first.work,
                 "cross_shear_mean": first.cross_shear,
                 "crossing_angle_mean_deg": degrees(self.use.crossing_angle),
-                "edge": _edge_summary(self.worst),
+                "edge": _closest_approach_summary(self.worst),
                 "microseparation": None if separation is None else separation.summary(self.use.cycle),
                 "peaks": {
                     "force_N": first.max_force,
@@ -258,7 +258,7 @@ class History:
         }
 
     def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
-        """Return a report as data for JSON, with checks of its contacts, and with years if they are known."""
+        """Return a report with its contact checks as a dictionary for JSON, with years if known."""
         per_year, edge = self.use.cycle.per_year, report.edge.closest_approach(self.use.frame)
         years = {} if per_year is None else {"years": report.cycles / per_year}
         contact = {
@@ -266,7 +266,7 @@ class History:
             "utilisation": largest_utilisation(checks),
             "contact": [check.summary() for check in checks],
         }
-        return {**report.summary(), **years, "edge": _edge_summary(edge), **contact}
+        return {**report.summary(), **years, "edge": _closest_approach_summary(edge), **contact}
 
 
 _THIN_LINER = 0.25
@@ -284,8 +284,8 @@ _AT_RIM = (
 _NOT_CONVERGED = "a contact did not balance its load: the results of this run are invalid"
 
 
-def _edge_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
-    """Return the instant nearest to the rim as data for JSON; None without contact."""
+def _closest_approach_summary(worst: ClosestApproach | None) -> dict[str, Any] | None:
+    """Return the closest approach to the rim as a dictionary for JSON; None without contact."""
     return None if worst is None else worst.summary()
 
 

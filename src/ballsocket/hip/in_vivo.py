@@ -26,35 +26,35 @@ _UNLOADED_SHARE = 0.1
 
 
 def _iso_waveform(phases: Numbers) -> Numbers:
-    """Compute the force of ISO 14242-1 as a share of its peak."""
+    """Compute the force of ISO 14242-1 divided by its peak, at phases from 0 to 1."""
     return numpy.asarray(_ISO_WALKING.force(phases)) / 3000.0
 
 
-def _single_peak(end: float) -> PhaseFunction:
-    """Create a waveform with one peak between phase 0 and `end`, constant and small afterwards."""
+def _single_peak_waveform(end: float) -> PhaseFunction:
+    """Make a force waveform with one peak between phase 0 and `end`, constant and small afterwards."""
     return lambda phases: (
         _UNLOADED_SHARE + (1 - _UNLOADED_SHARE) * numpy.sin(pi * numpy.minimum(phases / end, 1.0)) ** 2
     )
 
 
-def _double_peak(phases: Numbers) -> Numbers:
-    """Compute a waveform (force as a share of its peak) with one peak in each half of the cycle."""
-    return _single_peak(0.5)(phases % 0.5)
+def _double_peak_waveform(phases: Numbers) -> Numbers:
+    """Compute a force, divided by its peak, with one peak in each half of the cycle."""
+    return _single_peak_waveform(0.5)(phases % 0.5)
 
 
-def _no_motion(phases: Numbers) -> Numbers:
-    """Return zero angles for phases (n,): (3, n)."""
+def _zero_angles(phases: Numbers) -> Numbers:
+    """Return zero angles (3, n) for phases (n,), for an activity without motion."""
     return numpy.zeros((3, len(phases)))
 
 
-def _sit_to_stand(phases: Numbers) -> Numbers:
-    """Compute the angles in rad of standing up from 80° of flexion and sitting down: (3, n)."""
+def _sit_to_stand_angles(phases: Numbers) -> Numbers:
+    """Compute the joint angles (3, n) in rad of standing up from 80° of flexion and sitting down."""
     return radians(80.0) * numpy.stack([numpy.cos(pi * phases) ** 2, 0 * phases, 0 * phases])
 
 
 @dataclass(frozen=True, kw_only=True)
 class InVivo:
-    """Measured peak load of an activity, and the assumed waveform and motion of its cycle.
+    """Activity with a measured peak load, and an assumed waveform and motion.
 
     Attributes
     ----------
@@ -90,16 +90,16 @@ _ACTIVITIES: Mapping[str, InVivo] = MappingProxyType(
         "one-leg-stance": InVivo(
             percent=261,
             source=_BERGMANN_2016,
-            waveform=_single_peak(1.0),
-            angles=_no_motion,
+            waveform=_single_peak_waveform(1.0),
+            angles=_zero_angles,
             duration=4.0,
             assumption="one peak, without motion",
         ),
         "stand-up": InVivo(
             percent=215,
             source=_BERGMANN_2016,
-            waveform=_double_peak,
-            angles=_sit_to_stand,
+            waveform=_double_peak_waveform,
+            angles=_sit_to_stand_angles,
             duration=6.0,
             assumption="standing up and sitting down with 80° of flexion, one peak each",
         ),
@@ -109,15 +109,15 @@ _ACTIVITIES: Mapping[str, InVivo] = MappingProxyType(
         "jogging": InVivo(
             percent=550,
             source=_BERGMANN_1993,
-            waveform=_single_peak(0.35),
+            waveform=_single_peak_waveform(0.35),
             duration=0.7,
             assumption="one peak over 35 % of the cycle, motion of ISO 14242-1",
         ),
         "stumbling": InVivo(
             percent=870,
             source=f"{_BERGMANN_1993}, 720 to 870",
-            waveform=_single_peak(0.35),
-            angles=_no_motion,
+            waveform=_single_peak_waveform(0.35),
+            angles=_zero_angles,
             assumption="one peak, without motion",
         ),
     }
@@ -125,7 +125,7 @@ _ACTIVITIES: Mapping[str, InVivo] = MappingProxyType(
 
 
 def check_body_weight(body_weight: float) -> float:
-    """Check a body weight in N and return it; ValueError if it is not positive or exceeds 10 kN."""
+    """Check a body weight in N and return it; ValueError if it is not between 0 and 10 kN."""
     allowed = f"a body weight is above 0 and at most {_MAX_BODY_WEIGHT:g} N"
     require("body_weight", body_weight, 0 < body_weight <= _MAX_BODY_WEIGHT, allowed)
     return body_weight
@@ -133,7 +133,7 @@ def check_body_weight(body_weight: float) -> float:
 
 @renamed_arguments(instants="n_steps")
 def in_vivo(name: str, body_weight: float, n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
-    """Create the cycle of an activity from a peak load measured in patients, directed upwards in the body.
+    """Create the cycle of an activity, such as "walking", from a peak load measured in patients.
 
     Only the peak force was measured; the notes state the assumed waveform and motion.
 

@@ -25,14 +25,14 @@ _AXIS_NAMES = {
 
 
 def parse_rotation_order(text: Any) -> str:
-    """Convert a rotation order such as "flexion, adduction, rotation" or "FE-AA-IER" into axis letters such as "xyz".
+    """Convert an order of rotations, such as "flexion, adduction, rotation", to axis letters such as "xyz".
 
     Raises
     ------
     ValueError
         `text` does not name the three rotations once each.
     """
-    words = text if isinstance(text, list | tuple) else _split_order(text) if isinstance(text, str) else []
+    words = text if isinstance(text, list | tuple) else _split_rotation_order(text) if isinstance(text, str) else []
     axes = "".join(_AXIS_NAMES.get(str(word).strip().lower(), "?") for word in words)
     if sorted(axes) != ["x", "y", "z"]:
         allowed = "'flexion, adduction, rotation' in any order"
@@ -40,14 +40,14 @@ def parse_rotation_order(text: Any) -> str:
     return axes
 
 
-def _split_order(text: str) -> list[str]:
-    """Split a rotation order at commas, semicolons, hyphens or blanks, or into its three letters."""
+def _split_rotation_order(text: str) -> list[str]:
+    """Split the text of a rotation order into three words or letters."""
     words = text.replace(";", ",").split(",") if "," in text else text.replace("-", " ").split()
     return list(words[0].strip()) if len(words) == 1 and len(words[0].strip()) == 3 else words
 
 
 def rotation_matrices(angles: Numbers, order: str = "xyz") -> Numbers:
-    """Compute rotation matrices from angles about the axes x, y and z.
+    """Compute rotation matrices (..., 3, 3) from angles in rad about the axes x, y and z.
 
     Parameters
     ----------
@@ -60,15 +60,15 @@ def rotation_matrices(angles: Numbers, order: str = "xyz") -> Numbers:
     -------
     array (..., 3, 3)
     """
-    product = numpy.broadcast_to(numpy.eye(3), (*angles.shape[:-1], 3, 3))
+    matrices = numpy.broadcast_to(numpy.eye(3), (*angles.shape[:-1], 3, 3))
     for letter in order:
         axis = "xyz".index(letter)
-        product = product @ _axis_rotation(axis, angles[..., axis])
-    return product
+        matrices = matrices @ _axis_rotation_matrices(axis, angles[..., axis])
+    return matrices
 
 
-def _axis_rotation(axis: int, angle: Numbers) -> Numbers:
-    """Compute the rotation matrices about one coordinate axis: (..., 3, 3)."""
+def _axis_rotation_matrices(axis: int, angle: Numbers) -> Numbers:
+    """Compute rotation matrices (..., 3, 3) about one coordinate axis from angles in rad."""
     second, third = (axis + 1) % 3, (axis + 2) % 3
     matrix = numpy.zeros((*angle.shape, 3, 3))
     matrix[..., axis, axis] = 1.0
@@ -95,14 +95,14 @@ def rotation_vectors(matrices: Numbers) -> Numbers:
     )
     sine = numpy.linalg.norm(doubled_sine_axis, axis=-1) / 2
     angle = numpy.arctan2(sine, (numpy.trace(m, axis1=-2, axis2=-1) - 1) / 2)
-    ratio = numpy.divide(angle, sine, out=numpy.ones_like(angle), where=sine > 0)
-    return doubled_sine_axis / 2 * ratio[..., None]
+    angle_over_sine = numpy.divide(angle, sine, out=numpy.ones_like(angle), where=sine > 0)
+    return doubled_sine_axis / 2 * angle_over_sine[..., None]
 
 
 def cross_shear(xx: Numbers, yy: Numbers, xy: Numbers) -> Numbers:
-    """Compute the cross-shear ratio of second moments of sliding: the smaller eigenvalue over the sum of both.
+    """Compute the cross-shear ratio of sliding from its second moments xx, yy and xy.
 
-    It is 0 on a straight track, 1/2 on a circle, and 0 where nothing slides.
+    It is the smaller eigenvalue over the sum of both: 0 on a straight track or without sliding, 1/2 on a circle.
     """
     # λ_min/(λ_min + λ_max), without cancellation
     trace = xx + yy
@@ -112,7 +112,7 @@ def cross_shear(xx: Numbers, yy: Numbers, xy: Numbers) -> Numbers:
 
 
 def track_cross_shear(steps: Numbers, weights: Numbers | float = 1.0) -> Numbers:
-    """Compute the cross-shear ratio of a track from its displacement steps.
+    """Compute the cross-shear ratio of a track on a plane from its displacement steps.
 
     Parameters
     ----------
@@ -130,15 +130,15 @@ def track_cross_shear(steps: Numbers, weights: Numbers | float = 1.0) -> Numbers
     0.25
     """
     length = numpy.linalg.norm(steps, axis=-1)
-    scale = weights * numpy.divide(1.0, length, out=numpy.zeros_like(length), where=length > 0)
+    weight_per_length = weights * numpy.divide(1.0, length, out=numpy.zeros_like(length), where=length > 0)
     x, y = steps[..., 0], steps[..., 1]
-    return cross_shear(*((scale * product).sum(axis=-1) for product in (x * x, y * y, x * y)))
+    return cross_shear(*((weight_per_length * product).sum(axis=-1) for product in (x * x, y * y, x * y)))
 
 
 @renamed_fields(turns="rotation_increments", steps="distances", part="select_points")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SurfaceSliding:
-    """Sliding of the ball's surface over points of the socket.
+    """Sliding of the ball's surface over points of the socket during a cycle.
 
     Attributes
     ----------
@@ -156,13 +156,13 @@ class SurfaceSliding:
 
     @cached_property
     def distances(self) -> Numbers:
-        """Sliding distances over each point in each time step, in mm: (steps, points)."""
-        along = self.rotation_increments @ self.directions
-        square = (self.rotation_increments * self.rotation_increments).sum(axis=1)[:, None]
-        return self.radius * numpy.sqrt(numpy.maximum(square - along * along, 0.0))
+        """Sliding distance in mm at each point in each time step: (steps, points)."""
+        axial_part = self.rotation_increments @ self.directions
+        squared_angles = (self.rotation_increments * self.rotation_increments).sum(axis=1)[:, None]
+        return self.radius * numpy.sqrt(numpy.maximum(squared_angles - axial_part * axial_part, 0.0))
 
     def select_points(self, points: Numbers) -> SurfaceSliding:
-        """Return the sliding over some of the points, selected by their indices or a mask."""
+        """Return the sliding at a subset of the points, selected by indices or a mask."""
         selected = SurfaceSliding(
             radius=self.radius, rotation_increments=self.rotation_increments, directions=self.directions[:, points]
         )
@@ -170,36 +170,47 @@ class SurfaceSliding:
         return selected
 
     def velocities(self, seconds: Numbers) -> Numbers:
-        """Compute the sliding velocities R ω × n from the durations of the steps in s: (steps, points, 3) mm/s."""
-        omega = self.rotation_increments / seconds[:, None]
-        return self.radius * numpy.cross(omega[:, None], self.directions.T[None])
+        """Compute sliding velocities (steps, points, 3) in mm/s from the durations of the steps in s."""
+        angular_velocities = self.rotation_increments / seconds[:, None]
+        return self.radius * numpy.cross(angular_velocities[:, None], self.directions.T[None])
 
     @cached_property
-    def _rotated_components(self) -> tuple[Numbers, Numbers]:
-        """Tangential components of each sliding step, rotated by 90°: two arrays (steps, points)."""
+    def _rotated_sliding_components(self) -> tuple[Numbers, Numbers]:
+        """Two tangential components of each sliding step, rotated by 90°, in mm: (steps, points)."""
         first, second = tangents(self.directions)
         return self.radius * (self.rotation_increments @ first), self.radius * (self.rotation_increments @ second)
 
     @cached_property
-    def _second_moments(self) -> tuple[Numbers, ...]:
-        """Second moments ds dsᵀ/|ds| of each sliding step, rotated by 90°: xx, yy, xy, each (steps, points)."""
-        a, b = self._rotated_components
-        scale = numpy.divide(1.0, self.distances, out=numpy.zeros_like(self.distances), where=self.distances > 0)
-        return a * a * scale, b * b * scale, a * b * scale
+    def _sliding_second_moments(self) -> tuple[Numbers, ...]:
+        """Second moments xx, yy and xy of each sliding step divided by its length: (steps, points)."""
+        first_component, second_component = self._rotated_sliding_components
+        inverse_length = numpy.divide(
+            1.0, self.distances, out=numpy.zeros_like(self.distances), where=self.distances > 0
+        )
+        return (
+            first_component * first_component * inverse_length,
+            second_component * second_component * inverse_length,
+            first_component * second_component * inverse_length,
+        )
 
     def cross_shear(self, pressure: Numbers) -> Numbers:
-        """Compute the cross-shear ratio at each point, weighted by the pressure (steps, points): (points,)."""
-        return cross_shear(*(numpy.einsum("tp,tp->p", pressure, moment) for moment in self._second_moments))
+        """Compute the cross-shear ratio (points,) of sliding, weighted by the pressure (steps, points)."""
+        return cross_shear(*(numpy.einsum("tp,tp->p", pressure, moment) for moment in self._sliding_second_moments))
 
     def crossing_angle(self, pressure: Numbers) -> Numbers:
-        """Compute the mean angle in rad between sliding and its principal direction at each point: (points,).
+        """Compute the mean angle (points,) in rad between sliding and its principal direction.
 
         The mean is weighted by pressure (steps, points) and sliding distance. It is 0 on a straight track and π/4 on
         a circle.
         """
-        xx, yy, xy = (numpy.einsum("tp,tp->p", pressure, moment) for moment in self._second_moments)
-        principal, (a, b) = numpy.arctan2(2 * xy, xx - yy) / 2, self._rotated_components
-        deviation = numpy.arccos(numpy.clip(abs(numpy.cos(numpy.arctan2(b, a) - principal)), 0.0, 1.0))
+        xx, yy, xy = (numpy.einsum("tp,tp->p", pressure, moment) for moment in self._sliding_second_moments)
+        principal, (first_component, second_component) = (
+            numpy.arctan2(2 * xy, xx - yy) / 2,
+            self._rotated_sliding_components,
+        )
+        deviation = numpy.arccos(
+            numpy.clip(abs(numpy.cos(numpy.arctan2(second_component, first_component) - principal)), 0.0, 1.0)
+        )
         weight = pressure * self.distances
         total, weighted_sum = weight.sum(axis=0), numpy.einsum("tp,tp->p", weight, deviation)
         return numpy.divide(weighted_sum, total, out=numpy.zeros_like(total), where=total > 0)
@@ -207,7 +218,7 @@ class SurfaceSliding:
 
 @renamed_arguments(turns="rotation_increments")
 def sliding_distance(radius: float, rotation_increments: Numbers, direction: Numbers) -> float:
-    """Compute the distance in mm that the ball slides over a point of the socket in a cycle.
+    """Compute the distance in mm that the ball slides over one point of the socket during a cycle.
 
     Parameters
     ----------
@@ -222,7 +233,7 @@ def sliding_distance(radius: float, rotation_increments: Numbers, direction: Num
 
 
 def tracks(rotations: Numbers, points: Numbers, radius: float = 1.0) -> Numbers:
-    """Compute the tracks in mm of points of the ball over the socket during a cycle.
+    """Compute the paths in mm of points of the ball over the socket during a cycle.
 
     Parameters
     ----------

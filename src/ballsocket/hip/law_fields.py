@@ -17,7 +17,7 @@ from ..files.units import parse
 
 @dataclass(frozen=True, kw_only=True)
 class LawUnit:
-    """Unit of a field of a law.
+    """Unit of a field of a wear or creep law.
 
     Attributes
     ----------
@@ -37,33 +37,33 @@ class LawUnit:
     read: Callable[[str, Any], Any]
 
     def example(self, value: Any) -> str:
-        """Format a value as an example for files, with its unit."""
+        """Format an example value with its unit, as it is written in files."""
         if isinstance(value, tuple):
             return f"[{', '.join(f'{number:g}' for number in value)}]"
         return f"'{value:g} {self.typed}'" if self.typed else f"{value:g}"
 
 
 def kind_unit(kind: Kind) -> LawUnit:
-    """Return the unit of a kind of quantity."""
+    """Create the unit of a field from its kind of quantity, such as a pressure."""
     text = "" if kind is Kind.NUMBER else kind.unit
     return LawUnit(text=text, typed=text, suffix=text, read=lambda name, value: parse(name, value, kind))
 
 
 def bare_unit(text: str, suffix: str) -> LawUnit:
-    """Return a unit that files do not write: its values are plain numbers."""
+    """Create a unit for a field that files state as a plain number, without unit text."""
     return LawUnit(text=text, typed="", suffix=suffix, read=lambda name, value: parse(name, value, Kind.NUMBER))
 
 
 def list_unit(text: str, suffix: str) -> LawUnit:
-    """Return the unit of a list of plain numbers."""
+    """Create a unit for a field that is a list of plain numbers."""
 
-    def read(name: str, value: Any) -> tuple[float, ...]:
+    def read_numbers(name: str, value: Any) -> tuple[float, ...]:
         """Read a list of plain numbers from a file."""
         if not isinstance(value, list) or not value:
             raise ValueError(f"{name} = {shown(value)} must be a list of numbers, in {text}")
         return tuple(parse(name, number, Kind.NUMBER) for number in value)
 
-    return LawUnit(text=text, typed=text, suffix=suffix, read=read)
+    return LawUnit(text=text, typed=text, suffix=suffix, read=read_numbers)
 
 
 NUMBER = kind_unit(Kind.NUMBER)
@@ -75,7 +75,7 @@ PRESSURE = kind_unit(Kind.MODULUS)
 
 @dataclass(frozen=True, kw_only=True)
 class LawField:
-    """Number of a law, with its unit, meaning and limits.
+    """Field of a wear or creep law: one number or a list, with unit, meaning and limits.
 
     Attributes
     ----------
@@ -108,17 +108,17 @@ class LawField:
 
     @property
     def is_list(self) -> bool:
-        """True if the value is a tuple of numbers."""
+        """True if the value of the field is a tuple of numbers."""
         return isinstance(self.example, tuple)
 
     @property
     def allowed_range(self) -> str:
-        """Allowed range in words, for messages."""
+        """Allowed range of the field in words, for messages."""
         low = f"{self.meaning} ({self.unit.text or 'a number'}) is {'at least' if self.low_included else 'above'} "
         return f"{low}{self.low:g}, and {'finite' if self.high == inf else f'below {self.high:g}'}"
 
     def check(self, value: Any) -> None:
-        """Check kind and limits of a value of this field.
+        """Check type and limits of a value of this field; TypeError or ValueError otherwise.
 
         Raises
         ------
@@ -131,9 +131,9 @@ class LawField:
             if not isinstance(number, Real) or isinstance(number, bool):
                 wanted = "a tuple of numbers" if self.is_list else "one number"
                 raise TypeError(f"{self.name} must be {wanted}, got {value!r:.60}")
-            real = float(number)
-            above_low = self.low <= real if self.low_included else self.low < real
-            require(self.name, number, above_low and real < self.high, self.allowed_range)
+            float_number = float(number)
+            above_low = self.low <= float_number if self.low_included else self.low < float_number
+            require(self.name, number, above_low and float_number < self.high, self.allowed_range)
 
 
 def law_field(
@@ -147,7 +147,7 @@ def law_field(
     high: float = inf,
     low_included: bool = True,
 ) -> Any:
-    """Define a field of a law with its unit, meaning and limits, as `dataclasses.field` does.
+    """Define a dataclass field of a law, with its unit, meaning and limits.
 
     Parameters
     ----------
@@ -163,8 +163,8 @@ def law_field(
         Limits; `high` itself is excluded, `low` only with `low_included=False`.
     """
     limits = {"low": low, "high": high, "low_included": low_included}
-    words = {"unit": unit, "meaning": meaning, "example": example, "key": key, **limits}
-    return field(default=default, metadata={"law": words})
+    metadata = {"unit": unit, "meaning": meaning, "example": example, "key": key, **limits}
+    return field(default=default, metadata={"law": metadata})
 
 
 class Law(ABC):
@@ -179,44 +179,49 @@ class Law(ABC):
     """True if the text of the law identifies it, so that a run can be stored."""
 
     def __post_init__(self) -> None:
-        """Check all numbers against their limits."""
-        for part in self.law_fields():
-            part.check(getattr(self, part.name))
+        """Check all fields of the law against their limits."""
+        for law_number in self.law_fields():
+            law_number.check(getattr(self, law_number.name))
 
     @classmethod
     def law_fields(cls) -> tuple[LawField, ...]:
-        """Return the fields of the law with their units and limits."""
+        """List the fields of the law with their units and limits."""
         return tuple(
             LawField(
-                name=part.name,
-                required=part.default is MISSING,
-                **{**part.metadata["law"], "key": part.metadata["law"]["key"] or part.name},
+                name=dataclass_field.name,
+                required=dataclass_field.default is MISSING,
+                **{
+                    **dataclass_field.metadata["law"],
+                    "key": dataclass_field.metadata["law"]["key"] or dataclass_field.name,
+                },
             )
-            for part in fields(cls)  # type: ignore[arg-type]  # every law is a dataclass
-            if "law" in part.metadata
+            for dataclass_field in fields(cls)  # type: ignore[arg-type]  # every law is a dataclass
+            if "law" in dataclass_field.metadata
         )
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the numbers of the law, for reports."""
+        """Sentences on the numbers of the law, for reports."""
         return ()
 
     def summary(self) -> dict[str, Any]:
-        """Return name and numbers as data for JSON; keys end in units."""
+        """Return name and numbers of the law as a dictionary for JSON, with units at the ends of keys."""
         numbers = {
-            "_".join(filter(None, (part.name, part.unit.suffix))): _as_json(getattr(self, part.name), part)
-            for part in self.law_fields()
+            "_".join(filter(None, (law_number.name, law_number.unit.suffix))): _field_value_for_json(
+                getattr(self, law_number.name), law_number
+            )
+            for law_number in self.law_fields()
         }
         return {"law": self.name, **numbers}
 
 
-def _as_json(value: Any, part: LawField) -> Any:
-    """Convert the value of a field to a number or a list of numbers."""
-    return list(map(float, value)) if part.is_list else float(value)
+def _field_value_for_json(value: Any, law_number: LawField) -> Any:
+    """Convert the value of a field for JSON: to a number or a list of numbers."""
+    return list(map(float, value)) if law_number.is_list else float(value)
 
 
 def law_summary(law: Any) -> dict[str, Any] | None:
-    """Return name and numbers of a law as data for JSON; None without a law, and the class alone of other objects."""
+    """Return name and numbers of a law as a dictionary for JSON; None without a law."""
     if law is None:
         return None
     return law.summary() if isinstance(law, Law) else {"law": type(law).__name__}
@@ -226,8 +231,8 @@ AnyLaw = TypeVar("AnyLaw", bound=Law)
 
 
 def law_keys(laws: Mapping[str, type[AnyLaw]]) -> tuple[str, ...]:
-    """Return the keys that files use for the fields of any of the laws, without repetitions."""
-    return tuple(dict.fromkeys(part.key for law in laws.values() for part in law.law_fields()))
+    """List the keys in files of the fields of several laws, each key once."""
+    return tuple(dict.fromkeys(law_number.key for law in laws.values() for law_number in law.law_fields()))
 
 
 def read_law(
@@ -237,7 +242,7 @@ def read_law(
     keys: Mapping[str, str] = MappingProxyType({}),
     **values: Any,
 ) -> AnyLaw:
-    """Read a law from a table of a file.
+    """Create a law of a given class from a table of a file.
 
     Parameters
     ----------
@@ -255,27 +260,32 @@ def read_law(
     ValueError
         A missing key, a key of another law, or a value that is not allowed.
     """
-    known = {keys.get(part.key, part.key): part for part in law.law_fields()}
+    fields_by_key = {keys.get(law_number.key, law_number.key): law_number for law_number in law.law_fields()}
     for key in law_keys(laws):
-        if key in table and key not in {*known, *keys}:
-            raise ValueError(f"{key} belongs to {_describe_laws_with(key, laws)}, and the law is {law.name!r}")
-    for key, part in known.items():
-        if part.required and key not in table:
+        if key in table and key not in {*fields_by_key, *keys}:
+            raise ValueError(f"{key} belongs to {_describe_laws_with_key(key, laws)}, and the law is {law.name!r}")
+    for key, law_number in fields_by_key.items():
+        if law_number.required and key not in table:
             raise ValueError(
-                f"the law {law.name!r} needs {key} ({part.meaning}), such as {key} = {part.unit.example(part.example)}"
+                f"the law {law.name!r} needs {key} ({law_number.meaning}), such as "
+                f"{key} = {law_number.unit.example(law_number.example)}"
             )
-    numbers = {part.name: part.unit.read(key, table[key]) for key, part in known.items() if key in table}
+    numbers = {
+        law_number.name: law_number.unit.read(key, table[key])
+        for key, law_number in fields_by_key.items()
+        if key in table
+    }
     return law(**numbers, **values)
 
 
-def _describe_laws_with(key: str, laws: Mapping[str, type[AnyLaw]]) -> str:
-    """Describe the laws that have a key, for messages."""
-    names = [repr(name) for name, law in laws.items() if any(part.key == key for part in law.law_fields())]
+def _describe_laws_with_key(key: str, laws: Mapping[str, type[AnyLaw]]) -> str:
+    """Describe in words the laws that have a field with a key, for messages."""
+    names = [repr(name) for name, law in laws.items() if any(law_number.key == key for law_number in law.law_fields())]
     return f"the law {names[0]}" if len(names) == 1 else f"the laws {', '.join(names)}"
 
 
-def select_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:
-    """Select the law that a table names, else the first law of the registry with a key in the table.
+def select_law_class(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun: str) -> type[AnyLaw]:
+    """Select the class of a law by its name in a table, else by the keys in the table.
 
     Without such a key the first law of the registry is the default.
     """
@@ -285,7 +295,7 @@ def select_law(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]], noun:
 
 
 def _laws_with_keys(table: Mapping[str, Any], laws: Mapping[str, type[AnyLaw]]) -> Iterator[type[AnyLaw]]:
-    """Yield the laws of which a table has at least one key."""
+    """Yield the laws that have at least one of their keys in a table."""
     for law in laws.values():
-        if any(part.key in table for part in law.law_fields()):
+        if any(law_number.key in table for law_number in law.law_fields()):
             yield law

@@ -17,7 +17,7 @@ from .cycle import Cycle, Frame
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Activity:
-    """Activity of a patient: a cycle of load and motion, and its number a year.
+    """Activity of a patient: a cycle of load and motion, and the number of these cycles a year.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class Activity:
 )
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Mix:
-    """Mix of activities, weighted by their numbers of cycles a year.
+    """Mix of activities of a patient, weighted by their numbers of cycles a year.
 
     A cycle of the mix is the mean cycle. Rotation increment and duration of each step are multiplied by the fraction
     of its activity in all cycles. Wear from pressures and sliding distances is then the wear of all activities.
@@ -78,54 +78,54 @@ class Mix:
 
     @property
     def activity_cycles(self) -> tuple[Cycle, ...]:
-        """Cycles of the activities."""
+        """Cycle of each activity."""
         return tuple(activity.cycle for activity in self.activities)
 
     @property
     def per_year(self) -> float:
-        """Total number of cycles a year."""
+        """Number of cycles of all activities a year."""
         return sum(activity.per_year for activity in self.activities)
 
     @property
     def fractions(self) -> tuple[float, ...]:
-        """Fraction of each activity in all cycles."""
+        """Number of cycles of each activity divided by that of all activities."""
         return tuple(activity.per_year / self.per_year for activity in self.activities)
 
     @property
     def name(self) -> str:
-        """Names of the activities, joined by +."""
+        """Names of the activities, joined by "+"."""
         return " + ".join(cycle.name for cycle in self.activity_cycles)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes of the activities for reports, without repetitions."""
+        """Sentences on the activities for reports, without repetitions."""
         notes = tuple(dict.fromkeys(note for cycle in self.activity_cycles for note in cycle.notes))
         return notes if len({cycle.cup_tilt for cycle in self.activity_cycles}) == 1 else (*notes, _NO_COMMON_TILT)
 
     @property
     def cup_tilt(self) -> float | None:
-        """Tilt of the cup in rad by a standard, if it is the same for all activities."""
+        """Tilt of the cup in rad by a standard; None if the activities have different ones."""
         tilts = {cycle.cup_tilt for cycle in self.activity_cycles}
         return tilts.pop() if len(tilts) == 1 else None
 
     @property
     def frame(self) -> Frame:
-        """Reference frame of the forces: the body."""
+        """Reference frame of the forces, always the body."""
         return Frame.BODY
 
     @property
     def spring(self) -> None:
-        """Lateral spring: always None."""
+        """Lateral spring: None, because activities of a mix have no spring."""
         return None
 
     @property
     def n_steps(self) -> int:
-        """Number of steps of all activities."""
+        """Number of time steps of all activities together."""
         return sum(cycle.n_steps for cycle in self.activity_cycles)
 
     @property
     def phases(self) -> Numbers:
-        """Phases from 0 to 1 at the midpoints of the steps, one activity after the other: (steps,)."""
+        """Phases from 0 to 1 at the midpoints of all steps, one activity after the other: (steps,)."""
         return (numpy.arange(self.n_steps) + 0.5) / self.n_steps
 
     @property
@@ -135,17 +135,17 @@ class Mix:
 
     @cached_property
     def seconds(self) -> Numbers:
-        """Duration of each step in s, times the fraction of its activity: (steps,)."""
-        return self._weighted(lambda cycle: cycle.seconds)
+        """Duration of each step in s, multiplied by the fraction of its activity: (steps,)."""
+        return self._join_weighted_values(lambda cycle: cycle.seconds)
 
     @cached_property
     def forces(self) -> Numbers:
-        """Forces at the midpoints of the steps in N: (steps, 3)."""
+        """Force vectors in N at the midpoints of the steps: (steps, 3)."""
         return numpy.concatenate([cycle.forces for cycle in self.activity_cycles])
 
     @cached_property
     def force_magnitudes(self) -> Numbers:
-        """Magnitudes of the forces in N: (steps,)."""
+        """Magnitudes of the forces in N at the midpoints of the steps: (steps,)."""
         return numpy.linalg.norm(self.forces, axis=1)
 
     @cached_property
@@ -155,11 +155,11 @@ class Mix:
 
     @cached_property
     def rotation_increments(self) -> Numbers:
-        """Rotation of the ball during each step in rad, times the fraction of its activity: (steps, 3)."""
-        return self._weighted(lambda cycle: cycle.rotation_increments)
+        """Rotation vectors in rad of the steps, multiplied by the fraction of the activity: (steps, 3)."""
+        return self._join_weighted_values(lambda cycle: cycle.rotation_increments)
 
-    def _weighted(self, values_of: Callable[[Cycle], Numbers]) -> Numbers:
-        """Concatenate values of all steps, each multiplied by the fraction of its activity."""
+    def _join_weighted_values(self, values_of: Callable[[Cycle], Numbers]) -> Numbers:
+        """Join values of the steps of all activities, each multiplied by the fraction of its activity."""
         return numpy.concatenate(
             [fraction * values_of(cycle) for fraction, cycle in zip(self.fractions, self.activity_cycles, strict=True)]
         )
@@ -184,7 +184,7 @@ class Mix:
         return tuple(slices)
 
     def describe_step(self, step: int) -> str:
-        """Describe the activity and phase of a step in words."""
+        """Describe activity and time of a step in words, such as "12.5 % of walking"."""
         for cycle in self.activity_cycles:
             if step < cycle.n_steps:
                 return f"{100 * cycle.phases[step]:.1f} % of {cycle.name}"
@@ -192,11 +192,11 @@ class Mix:
         raise IndexError(step)
 
     def finer(self) -> Mix:
-        """Return this mix with twice as many steps."""
+        """Return this mix with twice as many time steps in each activity."""
         return self.transformed(lambda cycle: cycle.finer())
 
     def mirrored(self) -> Mix:
-        """Return this mix for the other side of the body."""
+        """Return this mix for the other side of the body: lateral forces and rotations change sign."""
         return self.transformed(lambda cycle: cycle.mirrored())
 
     def scaled(self, factor: float) -> Mix:
@@ -204,7 +204,7 @@ class Mix:
         return self.transformed(lambda cycle: cycle.scaled(factor))
 
     def transformed(self, transform: Callable[[Cycle], Cycle]) -> Mix:
-        """Return this mix with a function applied to the cycle of each activity."""
+        """Return this mix with each cycle replaced by the result of a function of that cycle."""
         return Mix(activities=tuple(replace(activity, cycle=transform(activity.cycle)) for activity in self.activities))
 
 

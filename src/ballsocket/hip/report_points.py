@@ -35,7 +35,7 @@ _CONVERTERS = {"float": float, "bool": bool}
 
 @dataclass(frozen=True, kw_only=True)
 class Checkpoint:
-    """File with the state and the reports of one run.
+    """File on disk that stores the state and the reports of one wear simulation.
 
     Attributes
     ----------
@@ -50,11 +50,11 @@ class Checkpoint:
 
     @property
     def path(self) -> Path:
-        """Path of the file."""
+        """Path of the checkpoint file."""
         return self.folder / _FILE_NAME
 
     def write(self, state: Mapping[str, Any], reports: tuple[Report, ...]) -> None:
-        """Store the state of a run and its reports so far.
+        """Write the state of a simulation and its reports so far to the file.
 
         Raises
         ------
@@ -70,7 +70,7 @@ class Checkpoint:
         write_arrays(self.path, identity=self.identity, count=len(reports), **state, **report_arrays)
 
     def read(self) -> tuple[dict[str, Numbers], tuple[Report, ...]] | None:
-        """Read the stored state and reports; return None if nothing is stored.
+        """Read the stored state and reports; return None if the file does not exist.
 
         Raises
         ------
@@ -95,16 +95,16 @@ class Checkpoint:
 
 
 def _read_report(arrays: Mapping[str, Numbers], prefix: str) -> Report:
-    """Build a report from the arrays whose names begin with a prefix."""
+    """Build a report from stored arrays, whose names begin with a prefix."""
     values: dict[str, Any] = {}
     for field in _REPORT_FIELDS:
-        convert: Any = _CONVERTERS.get(str(field.type), numpy.asarray)
-        values[field.name] = convert(arrays[prefix + field.name])
+        convert_value: Any = _CONVERTERS.get(str(field.type), numpy.asarray)
+        values[field.name] = convert_value(arrays[prefix + field.name])
     return Report(**values)
 
 
 def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
-    """Create the `Checkpoint` of a wear simulation in a folder, without writing to it.
+    """Create the `Checkpoint` of a wear simulation in a folder; its file is not yet written.
 
     Raises
     ------
@@ -132,7 +132,7 @@ def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
 
 
 def check_total_wear(setup: HipSetup, cycles: float) -> None:
-    """Check that a number of cycles wears at most ten liner thicknesses at the initial wear rate.
+    """Check that the cycles wear at most ten liner thicknesses at the initial rate; ValueError otherwise.
 
     Raises
     ------
@@ -142,10 +142,10 @@ def check_total_wear(setup: HipSetup, cycles: float) -> None:
     exposure = setup.exposure(setup.unworn)
     thickness = float(min(setup.joint.liner_thickness, setup.joint.socket_radius))
     laws = (law for law in (setup.wear, setup.ball_wear) if law is not None)
-    worn = cycles * max(float(law.depth(exposure).max(initial=0.0)) for law in laws)
-    if not worn <= _MAX_WORN_LINERS * thickness:
+    estimated_depth = cycles * max(float(law.depth(exposure).max(initial=0.0)) for law in laws)
+    if not estimated_depth <= _MAX_WORN_LINERS * thickness:
         raise ValueError(
-            f"{cycles:g} cycles at the rate of the first one would wear {worn:.3g} mm away, more than "
+            f"{cycles:g} cycles at the rate of the first one would wear {estimated_depth:.3g} mm away, more than "
             f"{_MAX_WORN_LINERS:g} times the {thickness:g} mm of the liner: reduce the wear coefficient or the cycles"
         )
 
@@ -153,7 +153,7 @@ def check_total_wear(setup: HipSetup, cycles: float) -> None:
 def run_to_report_points(
     integrator: WearIntegrator, counts: Sequence[float], progress: Callable[[float], None], stored: Checkpoint | None
 ) -> tuple[Report, ...]:
-    """Run a simulation to the requested cycle counts, resuming from a checkpoint."""
+    """Run a wear simulation to the requested cycle counts, resuming from a checkpoint."""
     reports: tuple[Report, ...] = ()
     checkpointed = stored.read() if stored else None
     if checkpointed is not None:
@@ -161,62 +161,63 @@ def run_to_report_points(
         integrator.resume(state)
         reports = tuple(report for report in reports if report.cycles in counts)
     reported = {report.cycles for report in reports}
-    for count in counts:
-        if count in reported:
+    for report_count in counts:
+        if report_count in reported:
             continue
-        if count < integrator.cycles:
+        if report_count < integrator.cycles:
             raise ValueError(
-                f"the store has reached {integrator.cycles:g} cycles without a report at {count:g}; give another folder"
+                f"the store has reached {integrator.cycles:g} cycles without a report at {report_count:g}; "
+                "give another folder"
             )
 
         def store_block(cycles: float) -> None:
-            """Store the state after a block, and report the progress."""
-            if stored is not None and cycles < count:  # noqa: B023 (called before the next)
+            """Store the state after a block of cycles, and report the progress."""
+            if stored is not None and cycles < report_count:  # noqa: B023 (called before the next)
                 stored.write(integrator.state, reports)  # noqa: B023
             progress(cycles)
 
-        reports = (*reports, make_report(integrator.run_until(count, store_block)))
+        reports = (*reports, make_report(integrator.run_until(report_count, store_block)))
         if stored is not None:
             stored.write(integrator.state, reports)
     return reports
 
 
 def make_report(integrator: WearIntegrator) -> Report:
-    """Create the report of the present state of a simulation."""
-    setup, creep_depth, shape = integrator.setup, integrator.creep_depth, (integrator.setup.grid.rings, -1)
+    """Create a report of the present state of a wear simulation."""
+    setup, creep_depth, grid_shape = integrator.setup, integrator.creep_depth, (integrator.setup.grid.rings, -1)
     depth = integrator.depth + creep_depth
     if setup.ball_wear is not None:
         counterface = map_counterface(setup, numpy.arange(len(depth)))
         depth = depth + counterface.on_socket.interpolate(integrator.ball[None])
-    combined = setup.solve_equilibrium(depth, integrator.equilibrium)
-    worn = combined if setup.creep is None else _solve_or_unworn(setup, integrator.depth)
-    states = (combined, worn, _solve_or_unworn(setup, creep_depth))
-    largest, unworn = setup.frame.largest_load_index, setup.unworn.displacement
-    displacements = [(state.displacement - unworn)[largest].sum(axis=0) for state in states]
-    edge = setup.edge(combined, depth)
+    contacts = setup.solve_equilibrium(depth, integrator.equilibrium)
+    contacts_by_wear = contacts if setup.creep is None else _solve_contacts(setup, integrator.depth)
+    equilibria = (contacts, contacts_by_wear, _solve_contacts(setup, creep_depth))
+    largest_load, unworn_displacement = setup.frame.largest_load_index, setup.unworn.displacement
+    displacements = [(state.displacement - unworn_displacement)[largest_load].sum(axis=0) for state in equilibria]
+    edge = setup.edge(contacts, depth)
     return Report(
         cycles=integrator.cycles,
-        wear=integrator.depth.reshape(shape),
+        wear=integrator.depth.reshape(grid_shape),
         volume=integrator.volume,
         depth=float(integrator.depth.max()),
         work=integrator.work,
         displacement=displacements[0],
         wear_displacement=displacements[1],
         creep_displacement=displacements[2],
-        max_pressure=float(combined.pressure.max(initial=0.0)),
+        max_pressure=float(contacts.pressure.max(initial=0.0)),
         edge_distance=edge.distance,
         edge_place=edge.azimuth,
         edge_pressure=edge.pressure,
-        crept=creep_depth.reshape(shape),
+        crept=creep_depth.reshape(grid_shape),
         creep_depth=float(creep_depth.max()),
         ball_wear=integrator.ball,
         ball_volume=integrator.ball_volume,
         ball_depth=float(integrator.ball.max(initial=0.0)),
-        worst_contacts=setup.worst_contacts(combined, depth),
-        converged=integrator.converged and all(state.converged for state in states),
+        worst_contacts=setup.worst_contacts(contacts, depth),
+        converged=integrator.converged and all(state.converged for state in equilibria),
     )
 
 
-def _solve_or_unworn(setup: HipSetup, depth: Numbers) -> CycleEquilibrium:
-    """Solve the contacts on a worn bore, or return those of the unworn bore for zero depth."""
+def _solve_contacts(setup: HipSetup, depth: Numbers) -> CycleEquilibrium:
+    """Solve the contacts on a worn bore; for zero depth, return those of the unworn bore."""
     return setup.solve_equilibrium(depth) if depth.any() else setup.unworn

@@ -24,18 +24,18 @@ _BALANCE_TOLERANCE = 1e-6
 
 
 class StepSequence(Protocol):
-    """Steps of a cycle or a mix of activities."""
+    """Interface of the time steps of a cycle or a mix of activities."""
 
     @property
     def n_steps(self) -> int:
-        """Number of steps."""
+        """Number of time steps."""
 
     def describe_step(self, step: int) -> str:
-        """Describe the phase of a step in words."""
+        """Describe the time of a step in words, such as "12.5 % of the cycle"."""
 
 
 class CupLoading(Protocol):
-    """Loads of a cycle in a cup."""
+    """Interface of the loads of a cycle in a cup, such as `CupFrame`."""
 
     @property
     def cycle(self) -> StepSequence:
@@ -53,7 +53,7 @@ class CupLoading(Protocol):
 @renamed_fields(place="azimuth", told="step_description", reaching="steps_at_rim", where="location")
 @dataclass(frozen=True, kw_only=True)
 class ClosestApproach:
-    """Step of a cycle in which the contact is closest to the rim, at the largest load if several are.
+    """Step of a cycle in which the contact is closest to the rim.
 
     Attributes
     ----------
@@ -77,11 +77,11 @@ class ClosestApproach:
 
     @property
     def location(self) -> str:
-        """Phase and position around the cup, in words."""
+        """Time in the cycle and position around the cup in words."""
         return f"{self.step_description}, {abs(degrees(self.azimuth)):.0f}° from the cup's uppermost point"
 
     def summary(self) -> dict[str, Any]:
-        """Return the closest approach as data for JSON, in mm and degrees."""
+        """Return the closest approach as a dictionary for JSON, in mm and degrees."""
         azimuth = degrees(self.azimuth)
         return {
             "distance_mm": self.distance,
@@ -95,7 +95,7 @@ class ClosestApproach:
 @renamed_fields(place="azimuth", nearest="closest_index", worst="closest_approach")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RimDistance:
-    """Distance from each contact of a cycle to the rim.
+    """Distance of each contact of a cycle from the rim of the cup.
 
     Attributes
     ----------
@@ -112,14 +112,14 @@ class RimDistance:
     pressure: Numbers
 
     def closest_index(self, loading: CupLoading) -> int | None:
-        """Return the index of the contact closest to the rim, at the largest load if several are; None if unloaded."""
+        """Return the index of the contact closest to the rim; None without loads."""
         if not len(self.distance):
             return None
-        closest = numpy.flatnonzero(self.distance <= self.distance.min())
-        return int(closest[numpy.linalg.norm(loading.loads[closest], axis=1).argmax()])
+        closest_indices = numpy.flatnonzero(self.distance <= self.distance.min())
+        return int(closest_indices[numpy.linalg.norm(loading.loads[closest_indices], axis=1).argmax()])
 
     def closest_approach(self, loading: CupLoading) -> ClosestApproach | None:
-        """Return the step in which the contact is closest to the rim; None if no step is loaded."""
+        """Return the step in which the contact is closest to the rim; None without loads."""
         index = self.closest_index(loading)
         if index is None:
             return None
@@ -133,7 +133,7 @@ class RimDistance:
 
 
 def rim_distance(grid: Grid, radius: float, field: Numbers, pressure: Numbers, inset: float) -> RimDistance:
-    """Compute the distance in mm from each contact to the rim.
+    """Compute the distance in mm of each contact from the rim, from a field that is 0 at contact edges.
 
     Parameters
     ----------
@@ -150,26 +150,26 @@ def rim_distance(grid: Grid, radius: float, field: Numbers, pressure: Numbers, i
         Distance of the edge inside that zero, as a share of a ring's width. If it is positive, pressure in the last
         ring means a contact that reaches the rim.
     """
-    rows = field.reshape(len(field), grid.rings, grid.meridians)
-    nodes = grid.polar - inset * numpy.diff(grid.edges)
+    level = field.reshape(len(field), grid.rings, grid.meridians)
+    polar_nodes = grid.polar - inset * numpy.diff(grid.edges)
     if inset > 0:
-        nodes[-1] = grid.reach
-    is_end = (rows > 0) & numpy.concatenate([rows[:, 1:] <= 0, numpy.ones_like(rows[:, :1], dtype=bool)], axis=1)
+        polar_nodes[-1] = grid.reach
+    is_end = (level > 0) & numpy.concatenate([level[:, 1:] <= 0, numpy.ones_like(level[:, :1], dtype=bool)], axis=1)
     next_ring = numpy.concatenate([numpy.arange(1, grid.rings), [grid.rings - 2]])  # extrapolates beyond the last ring
-    drop = rows - rows[:, next_ring]
-    fraction = numpy.divide(rows, drop, out=numpy.full_like(rows, numpy.inf), where=is_end & (drop != 0))
-    spacing = (nodes[next_ring] - nodes)[:, None]
-    edges = numpy.where(fraction * spacing >= 0, nodes[:, None] + fraction * spacing, grid.reach)
-    edge_angle = numpy.where(is_end, numpy.minimum(edges, grid.reach), 0.0).max(axis=1, initial=0.0)
+    level_drop = level - level[:, next_ring]
+    fraction = numpy.divide(level, level_drop, out=numpy.full_like(level, numpy.inf), where=is_end & (level_drop != 0))
+    spacing = (polar_nodes[next_ring] - polar_nodes)[:, None]
+    edge_angles = numpy.where(fraction * spacing >= 0, polar_nodes[:, None] + fraction * spacing, grid.reach)
+    edge_angle = numpy.where(is_end, numpy.minimum(edge_angles, grid.reach), 0.0).max(axis=1, initial=0.0)
     return RimDistance(
         distance=(grid.reach - edge_angle.max(axis=1, initial=0.0)) * radius,
-        azimuth=_edge_azimuth(edge_angle, rows[:, -1], grid.azimuth),
-        pressure=pressure.reshape(rows.shape)[:, -1].max(axis=1, initial=0.0),
+        azimuth=_edge_azimuth(edge_angle, level[:, -1], grid.azimuth),
+        pressure=pressure.reshape(level.shape)[:, -1].max(axis=1, initial=0.0),
     )
 
 
 def _edge_azimuth(edge_angle: Numbers, last_ring: Numbers, azimuth: Numbers) -> Numbers:
-    """Return the azimuth of the outermost edge (loads, meridians); at the rim, the mean of the pressed meridians."""
+    """Compute the azimuth in rad of the contact edge that is closest to the rim: (loads,)."""
     outermost = edge_angle >= edge_angle.max(axis=1, initial=0.0)[:, None]
     weight = numpy.where(outermost, numpy.maximum(last_ring, 1e-300), 0.0)
     x, y = weight @ numpy.cos(azimuth), weight @ numpy.sin(azimuth)
@@ -179,7 +179,7 @@ def _edge_azimuth(edge_angle: Numbers, last_ring: Numbers, azimuth: Numbers) -> 
 @renamed_fields(instants="steps", place="azimuth", told="describe")
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Microseparation:
-    """Steps of a cycle in which the ball sits on the rim of its cup.
+    """Steps of a cycle in which the ball sits on the rim of the cup.
 
     Attributes
     ----------
@@ -197,23 +197,23 @@ class Microseparation:
 
     @property
     def largest(self) -> float:
-        """Largest distance between the centres in mm."""
+        """Largest distance in mm between the centres of ball and socket."""
         return float(numpy.linalg.norm(self.displacement, axis=1).max(initial=0.0))
 
-    def _interval(self, n_steps: int) -> tuple[int, int]:
-        """Return the first and the last step of the microseparation, which may continue into the next cycle."""
+    def _first_and_last_step(self, n_steps: int) -> tuple[int, int]:
+        """Return the first and the last step of the microseparation."""
         distances = numpy.diff(self.steps, append=self.steps[0] + n_steps)
         longest = int(distances.argmax())
         return int(self.steps[(longest + 1) % len(distances)]), int(self.steps[longest])
 
     def summary(self, cycle: StepSequence) -> dict[str, Any]:
-        """Return the microseparation as data for JSON, in mm and degrees."""
-        first, last = (cycle.describe_step(step) for step in self._interval(cycle.n_steps))
+        """Return the microseparation as a dictionary for JSON, in mm and degrees."""
+        first_text, last_text = (cycle.describe_step(step) for step in self._first_and_last_step(cycle.n_steps))
         azimuth = self.azimuth[int(numpy.linalg.norm(self.displacement, axis=1).argmax())]
-        return {"from": first, "to": last, "largest_mm": self.largest, "place_deg": degrees(azimuth)}
+        return {"from": first_text, "to": last_text, "largest_mm": self.largest, "place_deg": degrees(azimuth)}
 
     def describe(self, cycle: StepSequence) -> str:
-        """Describe the microseparation in a sentence for reports."""
+        """Describe the microseparation in one sentence for reports."""
         values = self.summary(cycle)
         return (
             f"microseparation from {values['from']} to {values['to']}: the ball sits on the rim, with up to "
@@ -224,7 +224,7 @@ class Microseparation:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SpringLoadedBall:
-    """Rigid ball that a spring pulls to the side, on the edge of a rigid rim without friction.
+    """Model of a rigid ball that a spring pulls over the edge of a rigid rim without friction.
 
     The load points from the ball's centre to the edge that it rests on: c = R2 r - R1 f. The spring force decreases
     with the displacement of the ball.
@@ -248,21 +248,21 @@ class SpringLoadedBall:
     ball_radius: float
 
     @cached_property
-    def _pull_direction(self) -> Numbers:
-        """Direction of the spring force on an undisplaced ball: (3,)."""
+    def _spring_force_direction(self) -> Numbers:
+        """Direction of the spring force on an undisplaced ball, a unit vector: (3,)."""
         return numpy.sign(self.spring.mismatch) * self.side
 
     def leaves_bore(self, forces: Numbers) -> Numbers:
-        """Check if the ball leaves the bore under each force (n, 3) in N that points beyond the rim: (n,).
+        """Check if the ball leaves the bore, for each force (n, 3) in N that points beyond the rim.
 
         The ball stays in the bore if its displacement within the clearance reduces the spring force enough.
         """
         undisplaced = numpy.zeros(len(forces))
-        leaves: Numbers = self._centre(forces, undisplaced) @ self._pull_direction <= undisplaced
+        leaves: Numbers = self._ball_centre_on_rim(forces, undisplaced) @ self._spring_force_direction <= undisplaced
         return leaves
 
     def solve_separation(self, forces: Numbers, steps: Numbers) -> Microseparation:
-        """Solve the equilibrium of the ball on the rim under each force.
+        """Solve for the position of the ball on the rim under each force (n, 3) in N.
 
         Parameters
         ----------
@@ -274,26 +274,33 @@ class SpringLoadedBall:
         mismatch = abs(self.spring.mismatch)
         low, high = numpy.zeros(len(forces)), numpy.full(len(forces), mismatch)
         for _ in range(_BISECTIONS):
-            middle = (low + high) / 2
-            beyond = self._centre(forces, middle) @ self._pull_direction > middle
-            low, high = numpy.where(beyond, low, middle), numpy.where(beyond, middle, high)
-        centre = self._centre(forces, high)
-        held = abs(centre @ self._pull_direction - high) <= _BALANCE_TOLERANCE * mismatch
-        loads = self._loads(forces, high)
+            trial_displacement = (low + high) / 2
+            is_beyond = (
+                self._ball_centre_on_rim(forces, trial_displacement) @ self._spring_force_direction > trial_displacement
+            )
+            low, high = (
+                numpy.where(is_beyond, low, trial_displacement),
+                numpy.where(is_beyond, trial_displacement, high),
+            )
+        ball_centre = self._ball_centre_on_rim(forces, high)
+        is_balanced = abs(ball_centre @ self._spring_force_direction - high) <= _BALANCE_TOLERANCE * mismatch
+        loads = self._loads_after_displacement(forces, high)
         return Microseparation(
             steps=steps,
-            displacement=numpy.where(held[:, None], centre, numpy.nan),
+            displacement=numpy.where(is_balanced[:, None], ball_centre, numpy.nan),
             azimuth=numpy.arctan2(loads[:, 1], loads[:, 0]),
         )
 
-    def _loads(self, forces: Numbers, displacement: Numbers) -> Numbers:
-        """Compute the loads in N after a displacement along the spring: (n, 3)."""
-        return forces - self.spring.stiffness * displacement[:, None] * self._pull_direction
+    def _loads_after_displacement(self, forces: Numbers, displacement: Numbers) -> Numbers:
+        """Compute the loads (n, 3) in N: forces minus the spring force at displacements (n,) in mm."""
+        return forces - self.spring.stiffness * displacement[:, None] * self._spring_force_direction
 
-    def _centre(self, forces: Numbers, displacement: Numbers) -> Numbers:
-        """Compute the ball's centre in mm on the rim under the loads after a displacement: (n, 3)."""
-        loads = self._loads(forces, displacement)
-        along = loads / numpy.linalg.norm(loads, axis=1)[:, None]
-        across = loads[:, :2] / numpy.linalg.norm(loads[:, :2], axis=1)[:, None]
-        edge = numpy.column_stack([sin(self.reach) * across, numpy.full(len(loads), cos(self.reach))])
-        return self.socket_radius * edge - self.ball_radius * along
+    def _ball_centre_on_rim(self, forces: Numbers, displacement: Numbers) -> Numbers:
+        """Compute the position (n, 3) in mm of the ball's centre on the rim, after a displacement in mm."""
+        loads = self._loads_after_displacement(forces, displacement)
+        load_direction = loads / numpy.linalg.norm(loads, axis=1)[:, None]
+        radial_direction = loads[:, :2] / numpy.linalg.norm(loads[:, :2], axis=1)[:, None]
+        edge_direction = numpy.column_stack(
+            [sin(self.reach) * radial_direction, numpy.full(len(loads), cos(self.reach))]
+        )
+        return self.socket_radius * edge_direction - self.ball_radius * load_direction

@@ -101,15 +101,17 @@ class HipSimulation(HipSetup):
 
     @cached_property
     def discretization_error(self) -> tuple[float, float]:
-        """Relative errors of volume and depth of the first cycle, estimated with half the time steps and ring widths.
+        """Estimated relative errors of volume and depth by time steps and rings, in the first cycle.
 
         The absolute differences are added and multiplied by 1.55, which holds for errors of order 1.5 or more.
         Rings are not narrower than 0.5°.
         """
         finer_steps = replace(self, cycle=self.cycle.finer())
         finer_rings = replace(finer_steps, ring_width=max(self.ring_width / 2, MIN_RING_WIDTH))
-        firsts = (self.first, finer_steps.first, finer_rings.first)
-        return _halving_error([first.volume for first in firsts]), _halving_error([first.depth for first in firsts])
+        first_cycles = (self.first, finer_steps.first, finer_rings.first)
+        return _relative_discretization_error(
+            [first_cycle.volume for first_cycle in first_cycles]
+        ), _relative_discretization_error([first_cycle.depth for first_cycle in first_cycles])
 
 
 _ERROR_RATIO = 1 / (1 - 2**-1.5)
@@ -120,16 +122,16 @@ the error by 3.
 """
 
 
-def _halving_error(values: list[float]) -> float:
-    """Estimate the relative discretization error of a result from three: coarse, half steps, half steps and rings."""
-    value, finer_steps, finer_rings = values
+def _relative_discretization_error(values: list[float]) -> float:
+    """Estimate the relative discretization error from results with coarse and halved steps and rings."""
+    coarse, finer_steps, finer_rings = values
     if not finer_rings:
         return 0.0
-    return _ERROR_RATIO * (abs(value - finer_steps) + abs(finer_steps - finer_rings)) / abs(finer_rings)
+    return _ERROR_RATIO * (abs(coarse - finer_steps) + abs(finer_steps - finer_rings)) / abs(finer_rings)
 
 
 def check_cycles(cycles: float, report_at: Sequence[float]) -> list[float]:
-    """Check the cycle counts of a run, and return those of its reports in ascending order.
+    """Check the cycle counts of a run, and return the counts of its reports in ascending order.
 
     The last one is the total count.
 

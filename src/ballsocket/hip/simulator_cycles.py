@@ -30,12 +30,12 @@ _ISO_NOTE = "the key points of ISO 14242-1 are as quoted in the literature; the 
 _TWO_AXIS_NOTE = "the waveform of the two-axis simulator is a typical one, not that of a specific machine"
 
 
-def _iso_force(phases: Numbers) -> Numbers:
+def _iso_14242_1_force(phases: Numbers) -> Numbers:
     """Compute the force of ISO 14242-1 in N."""
     return half_cosines(phases, *_ISO_FORCE)
 
 
-def _iso_angles(phases: Numbers) -> Numbers:
+def _iso_14242_1_angles(phases: Numbers) -> Numbers:
     """Compute the angles of ISO 14242-1 in rad, one cosine each.
 
     Flexion is 25° to -18°, adduction 7° to -4°, inward rotation -10° to 2°.
@@ -47,7 +47,7 @@ def _iso_angles(phases: Numbers) -> Numbers:
     return numpy.radians([flexion, adduction, rotation])
 
 
-def _iso_key_points(phases: Numbers) -> Numbers:
+def _iso_14242_1_key_point_angles(phases: Numbers) -> Numbers:
     """Compute the angles of ISO 14242-1 in rad by half cosines between its key points."""
     return numpy.stack([half_cosines(phases, *key_points) for key_points in _ISO_ANGLES])
 
@@ -69,8 +69,8 @@ def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseF
     """
     return Cycle(
         name="iso-14242-1",
-        force=_iso_force,
-        angles=angles or _iso_angles,
+        force=_iso_14242_1_force,
+        angles=angles or _iso_14242_1_angles,
         n_steps=n_steps,
         order=order,
         cup_tilt=_ISO_TILT,
@@ -81,7 +81,7 @@ def iso_14242_1(n_steps: int = DEFAULT_STEPS, order: str = "xyz", angles: PhaseF
 @renamed_arguments(instants="n_steps")
 def iso_14242_1_key_points(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """Create the cycle of ISO 14242-1 with half cosines between the key points of each angle; see `iso_14242_1`."""
-    return replace(iso_14242_1(n_steps, order, _iso_key_points), name="iso-14242-1-key-points")
+    return replace(iso_14242_1(n_steps, order, _iso_14242_1_key_point_angles), name="iso-14242-1-key-points")
 
 
 @renamed_arguments(instants="n_steps")
@@ -89,8 +89,8 @@ def flexion(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
     """Create a cycle with the force and the flexion of ISO 14242-1 only: each track is an arc, passed twice."""
     return Cycle(
         name="flexion",
-        force=_iso_force,
-        angles=lambda phases: _iso_angles(phases) * numpy.array([[1.0], [0.0], [0.0]]),
+        force=_iso_14242_1_force,
+        angles=lambda phases: _iso_14242_1_angles(phases) * numpy.array([[1.0], [0.0], [0.0]]),
         n_steps=n_steps,
         order=order,
         cup_tilt=_ISO_TILT,
@@ -148,7 +148,7 @@ def two_axis(n_steps: int = DEFAULT_STEPS, order: str = "xyz", *, peak: float = 
     """
     return Cycle(
         name="two-axis",
-        force=lambda phases: peak * (0.2 + 0.8 * (_iso_force(phases) - 300.0) / 2700.0),
+        force=lambda phases: peak * (0.2 + 0.8 * (_iso_14242_1_force(phases) - 300.0) / 2700.0),
         angles=lambda phases: numpy.stack(
             [
                 _TWO_AXIS_AMPLITUDES[0] * numpy.cos(2 * pi * phases),

@@ -31,7 +31,7 @@ _CONTACT_STEP = 1e-3
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleEquilibrium:
-    """Equilibria of the ball under all loads of a cycle.
+    """Displacements and pressures of the ball under all loads of a cycle.
 
     Attributes
     ----------
@@ -52,7 +52,7 @@ class CycleEquilibrium:
 
 
 class SocketFoundation(Protocol):
-    """Foundation of the socket: pressures of its cells under all loads of a cycle."""
+    """Interface of a foundation: computes the pressures of the socket's cells under all loads of a cycle."""
 
     @property
     def clearance(self) -> float:
@@ -71,7 +71,7 @@ class SocketFoundation(Protocol):
 
     @property
     def normals(self) -> Numbers:
-        """Means of the outward normal over the cells, in the cup's frame: (3, cells)."""
+        """Mean outward normal of each cell, in the cup's frame: (3, cells)."""
         ...
 
     @property
@@ -81,20 +81,20 @@ class SocketFoundation(Protocol):
 
     @property
     def max_stiffness(self) -> float:
-        """Largest ratio of pressure change to depth over all waves of the bore, in MPa/mm."""
+        """Largest ratio in MPa/mm of pressure change to worn depth, over all waves on the bore."""
         ...
 
     @property
     def edge_inset(self) -> float:
-        """Distance from the zero of `edge_field` inwards to the contact edge, as a fraction of a cell's width."""
+        """Distance from the zero of `edge_field` inwards to the contact edge, in cell widths."""
         ...
 
     def select_cells(self, cells: Numbers) -> SocketFoundation:
-        """Return the foundation of the selected cells alone."""
+        """Return the foundation for a subset of the cells."""
         ...
 
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
-        """Return the mask of the cells in or near a contact: (cells,).
+        """Return a mask (cells,) of the cells in a contact or close to one.
 
         The margin is relative to the largest overlap.
         """
@@ -107,24 +107,24 @@ class SocketFoundation(Protocol):
         start: CycleEquilibrium | None = None,
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
-        """Solve displacements and pressures under all loads; see `SpringFoundation.solve_equilibrium`."""
+        """Solve for displacements in mm and pressures in MPa under all loads."""
         ...
 
     def smooth(self, depth: Numbers) -> Numbers:
-        """Smooth a depth in mm to waves that the grid resolves, at the same volume: (cells,)."""
+        """Smooth a worn depth (cells,) in mm to waves that the grid resolves, with the same volume."""
         ...
 
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute a field in mm that is 0 at the edge of each contact and positive inside: (loads, cells)."""
+        """Compute a field (loads, cells) in mm that is 0 near contact edges and positive in contacts."""
         ...
 
     def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells)."""
+        """Compute the fraction of each cell that is in contact, from 0 to 1: (loads, cells)."""
         ...
 
 
 def spring_foundation(grid: Grid, modulus: float, clearance: float, socket_radius: float) -> SpringFoundation:
-    """Create a foundation of radial springs, one for each cell of a grid."""
+    """Create a foundation of radial springs, one for each cell of a grid on the bore."""
     return SpringFoundation(
         directions=numpy.ascontiguousarray(grid.middles.reshape(3, -1)),
         normals=numpy.ascontiguousarray(grid.normals.reshape(3, -1)),
@@ -138,7 +138,7 @@ def spring_foundation(grid: Grid, modulus: float, clearance: float, socket_radiu
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SpringFoundation:
-    """Foundation of independent radial springs, p = K max(u, 0), u = e·n - c - h.
+    """Foundation of independent radial springs, whose pressure is modulus times overlap.
 
     Attributes
     ----------
@@ -163,17 +163,17 @@ class SpringFoundation:
     neighbours: Numbers
 
     def select_cells(self, cells: Numbers) -> SpringFoundation:
-        """Return the foundation of the selected cells alone."""
+        """Return the foundation for a subset of the cells."""
         return replace(
             self,
             directions=self.directions[:, cells],
             normals=self.normals[:, cells],
             areas=self.areas[cells],
-            neighbours=subset_neighbours(self.neighbours, cells),
+            neighbours=neighbours_in_subset(self.neighbours, cells),
         )
 
     def cells_near_contact(self, equilibrium: CycleEquilibrium, depth: Numbers, margin: float) -> Numbers:
-        """Return the mask of the cells in or near a contact under any load: (cells,).
+        """Return a mask (cells,) of the cells in a contact or close to one under any load.
 
         The margin is relative to the largest overlap.
 
@@ -184,35 +184,35 @@ class SpringFoundation:
         return mask
 
     def smooth(self, depth: Numbers) -> Numbers:
-        """Return the depth unchanged, because springs resolve every wave of the grid."""
+        """Return the worn depth (cells,) unchanged, because springs resolve every wave of the grid."""
         return depth
 
     @property
     def edge_inset(self) -> float:
-        """Distance from the zero of `edge_field` inwards to the contact edge, as a fraction of a cell's width: 0."""
+        """Distance from the zero of `edge_field` to the contact edge in cell widths: 0 for springs."""
         return 0.0
 
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute the overlap of ball and bore in mm, positive inside the contacts: (loads, cells)."""
+        """Compute the overlap (loads, cells) of ball and bore in mm, positive inside contacts."""
         return equilibrium.displacement @ self.normals - self.clearance - depth
 
     def contact_shares(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
-        """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells)."""
+        """Compute the fraction of each cell that is in contact, from 0 to 1: (loads, cells)."""
         return contact_shares(self.edge_field(equilibrium, depth), self.neighbours, self.edge_inset)
 
     @property
     def max_stiffness(self) -> float:
-        """Largest ratio of pressure change to depth over all waves of the bore, in MPa/mm."""
+        """Foundation modulus in MPa/mm, the ratio of pressure change to worn depth."""
         return self.modulus
 
     @cached_property
-    def _force_weights(self) -> Numbers:
-        """Matrix from pressures in MPa to forces in N: (cells, 3)."""
+    def _pressure_to_force(self) -> Numbers:
+        """Matrix (cells, 3) that converts pressures in MPa to a force in N."""
         return (self.normals * self.areas).T.copy()
 
     @cached_property
-    def _stiffness_weights(self) -> Numbers:
-        """Stiffness in N/mm of each cell per foundation modulus, n nᵀ dA: (cells, 9)."""
+    def _contact_to_stiffness(self) -> Numbers:
+        """Matrix (cells, 9) that converts contact masks to stiffness matrices over the modulus."""
         n = self.normals
         return (n[:, None] * n[None] * self.areas).reshape(9, -1).T.copy()
 
@@ -223,7 +223,7 @@ class SpringFoundation:
         start: CycleEquilibrium | None = None,
         lateral_stiffness: Numbers = NO_LATERAL_SPRING,
     ) -> CycleEquilibrium:
-        """Solve displacements and pressures under all loads by Newton's method.
+        """Solve for displacements in mm and pressures in MPa under all loads by Newton's method.
 
         Parameters
         ----------
@@ -236,65 +236,65 @@ class SpringFoundation:
         lateral_stiffness : array (3, 3)
             Stiffness (N/mm) of a spring that unloads the ball as it moves.
         """
-        e = (
+        displacement = (
             initial_displacement(self, self.modulus, depth, *magnitudes_and_directions(loads))
             if start is None
             else start.displacement
         )
-        allowed = FORCE_TOLERANCE * numpy.linalg.norm(loads, axis=1)
-        error = numpy.inf
+        force_tolerance = FORCE_TOLERANCE * numpy.linalg.norm(loads, axis=1)
+        relative_error = numpy.inf
         for _ in range(_MAX_ITERATIONS):
-            overlap = e @ self.normals
+            overlap = displacement @ self.normals
             overlap -= self.clearance + depth
             in_contact = (overlap > 0).astype(float)
             pressure = numpy.maximum(overlap, 0.0, out=overlap)
             pressure *= self.modulus
-            residual = loads - e @ lateral_stiffness - pressure @ self._force_weights
-            error = float((numpy.linalg.norm(residual, axis=1) / allowed).max(initial=0.0))
-            if error <= 1:
+            residual = loads - displacement @ lateral_stiffness - pressure @ self._pressure_to_force
+            relative_error = float((numpy.linalg.norm(residual, axis=1) / force_tolerance).max(initial=0.0))
+            if relative_error <= 1:
                 break
-            e = e + self._newton_step(in_contact, residual, loads, lateral_stiffness)
-        return CycleEquilibrium(displacement=e, pressure=pressure, converged=error <= 1)
+            displacement = displacement + self._newton_step(in_contact, residual, loads, lateral_stiffness)
+        return CycleEquilibrium(displacement=displacement, pressure=pressure, converged=relative_error <= 1)
 
     def _newton_step(
         self, in_contact: Numbers, residual: Numbers, loads: Numbers, lateral_stiffness: Numbers
     ) -> Numbers:
-        """Compute the step of Newton's method for the displacements in mm: (loads, 3).
+        """Compute the Newton step (loads, 3) of the displacements in mm.
 
         A ball without contact moves along its load until it touches the bore.
         """
-        tangent = self.modulus * (in_contact @ self._stiffness_weights).reshape(-1, 3, 3)
+        tangent = self.modulus * (in_contact @ self._contact_to_stiffness).reshape(-1, 3, 3)
         trace = numpy.trace(tangent, axis1=1, axis2=2)
         separated = trace <= 0
         tangent += lateral_stiffness
-        added = numpy.where(separated, 1.0, _REGULARISATION * trace)
-        step = numpy.linalg.solve(tangent + added[:, None, None] * numpy.eye(3), residual[:, :, None])[:, :, 0]
+        regularisation = numpy.where(separated, 1.0, _REGULARISATION * trace)
+        step = numpy.linalg.solve(tangent + regularisation[:, None, None] * numpy.eye(3), residual[:, :, None])[:, :, 0]
         direction = loads / numpy.linalg.norm(loads, axis=1)[:, None]
         return numpy.where(separated[:, None], (self.clearance + _CONTACT_STEP * self.socket_radius) * direction, step)
 
 
 def grid_neighbours(grid: Grid) -> Numbers:
-    """Return the indices of the four neighbours of every cell: (2, 2, cells), along the meridians and around the axis.
+    """Return the indices (2, 2, cells) of two neighbours along the meridian and two around the axis.
 
     Across the pole the neighbour is the opposite cell of the first ring. At the rim a cell is its own neighbour.
     """
     cells = numpy.arange(grid.rings * grid.meridians).reshape(grid.rings, grid.meridians)
-    before = numpy.vstack([numpy.roll(cells[:1], grid.meridians // 2, axis=1), cells[:-1]])
-    after = numpy.vstack([cells[1:], cells[-1:]])
-    circumferential = [numpy.roll(cells, shift, axis=1) for shift in (1, -1)]
-    return numpy.stack([before, after, *circumferential]).reshape(2, 2, -1)
+    previous_ring = numpy.vstack([numpy.roll(cells[:1], grid.meridians // 2, axis=1), cells[:-1]])
+    next_ring = numpy.vstack([cells[1:], cells[-1:]])
+    ring_neighbours = [numpy.roll(cells, shift, axis=1) for shift in (1, -1)]
+    return numpy.stack([previous_ring, next_ring, *ring_neighbours]).reshape(2, 2, -1)
 
 
-def subset_neighbours(neighbours: Numbers, cells: Numbers) -> Numbers:
-    """Renumber the neighbours for a subset of the cells; a neighbour outside the subset becomes the cell itself."""
-    numbers = numpy.full(neighbours.shape[-1], -1)
-    numbers[cells] = numpy.arange(len(cells))
-    chosen = numbers[neighbours[..., cells]]
-    return numpy.where(chosen < 0, numpy.arange(len(cells)), chosen)
+def neighbours_in_subset(neighbours: Numbers, cells: Numbers) -> Numbers:
+    """Renumber the neighbour indices for a subset of cells; cells outside are replaced by the cell itself."""
+    subset_indices = numpy.full(neighbours.shape[-1], -1)
+    subset_indices[cells] = numpy.arange(len(cells))
+    subset_neighbour_indices = subset_indices[neighbours[..., cells]]
+    return numpy.where(subset_neighbour_indices < 0, numpy.arange(len(cells)), subset_neighbour_indices)
 
 
 def contact_shares(level: Numbers, neighbours: Numbers, inset: float) -> Numbers:
-    """Compute the share of each cell that is in contact, from 0 to 1: (loads, cells).
+    """Compute the fraction of each cell in contact (loads, cells) from a field that is 0 at contact edges.
 
     Parameters
     ----------
@@ -306,8 +306,10 @@ def contact_shares(level: Numbers, neighbours: Numbers, inset: float) -> Numbers
     """
     positive, span = level > 0, numpy.zeros_like(level)
     for pair in neighbours:
-        falls = [numpy.where(positive[:, cells] != positive, abs(level - level[:, cells]), 0.0) for cells in pair]
-        span += numpy.maximum(*falls)
-    steps = numpy.divide(level, span, out=numpy.where(positive, 1.0, -1.0), where=span > 0)
-    cell_shares: Numbers = numpy.clip(0.5 - inset + steps, 0.0, 1.0)
+        level_differences = [
+            numpy.where(positive[:, cells] != positive, abs(level - level[:, cells]), 0.0) for cells in pair
+        ]
+        span += numpy.maximum(*level_differences)
+    edge_steps = numpy.divide(level, span, out=numpy.where(positive, 1.0, -1.0), where=span > 0)
+    cell_shares: Numbers = numpy.clip(0.5 - inset + edge_steps, 0.0, 1.0)
     return cell_shares

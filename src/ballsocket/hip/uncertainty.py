@@ -36,7 +36,7 @@ _SERIAL = Serial()
 
 
 def _ignore_progress(finished: int) -> None:
-    pass
+    """Ignore the number of finished patients."""
 
 
 @renamed_arguments(scatter="variability", listen="progress")
@@ -49,7 +49,7 @@ def uncertainty(
     engine: Engine = _SERIAL,
     progress: ProgressCallback = _ignore_progress,
 ) -> Bands:
-    """Compute the uncertainty bands of a wear simulation, and the Sobol indices of the sampled quantities.
+    """Compute uncertainty bands of a wear simulation, and Sobol indices of the sampled quantities.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def population(
     store: CohortStore | None = None,
     progress: ProgressCallback = _ignore_progress,
 ) -> tuple[CohortRun, Bands]:
-    """Simulate a sampled patient cohort, and compute its bands.
+    """Simulate a sampled patient cohort, and compute the bands of its results.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def population(
 
 @dataclass
 class _SampleSimulation:
-    """Simulation of samples as a function for Sobol indices, which stores the results of all samples.
+    """Function for Sobol indices that simulates samples and stores their results.
 
     It returns `INFLUENCED_RESULTS` at the last report, with the shape (results, points).
     """
@@ -166,27 +166,29 @@ class _SampleSimulation:
     n_finished: int = 0
 
     def __call__(self, samples: Numbers) -> Numbers:
-        """Simulate samples (quantities, points), and return their results: (results, points)."""
+        """Simulate samples (quantities, points), and return their results (results, points)."""
         values = dict(zip(self.variability.distributions, samples.reshape(len(samples), -1), strict=True))
         run = CohortRun(variability=self.variability, counts=self.counts, values=values)
         result = run.simulate(self.engine, None, lambda finished: self.progress(self.n_finished + finished))
         self.n_finished += len(run)
         self.results.append(result)
         self.sampled.append(values)
-        last = result.table[:, -1, [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]]
-        return last.T.reshape(len(INFLUENCED_RESULTS), *samples.shape[1:]).copy()
+        last_results = result.table[:, -1, [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]]
+        return last_results.T.reshape(len(INFLUENCED_RESULTS), *samples.shape[1:]).copy()
 
 
 def _quick_run_errors(variability: PatientVariability, reports: Sequence[Report]) -> dict[str, float]:
-    """Compute the largest relative difference between the nominal patient's coarse simulation and the full one."""
+    """Compute the largest relative errors of the nominal patient's coarse simulation, by result."""
     coarse_reports = variability.patient({}).simulate([report.cycles for report in reports])
     coarse, full = result_table(coarse_reports), result_table(reports)
     errors = {}
     for name in INFLUENCED_RESULTS:
         column = list(RESULT_UNITS).index(name)
-        value, reference = coarse[:, column], full[:, column]
-        ratio = numpy.divide(value, reference, out=numpy.ones_like(value), where=reference > 0)
-        errors[name] = float(abs(ratio - 1).max())
+        coarse_values, full_values = coarse[:, column], full[:, column]
+        coarse_over_full = numpy.divide(
+            coarse_values, full_values, out=numpy.ones_like(coarse_values), where=full_values > 0
+        )
+        errors[name] = float(abs(coarse_over_full - 1).max())
     return errors
 
 
@@ -198,7 +200,7 @@ def share_coefficient(
     level: float,
     engine: Engine,
 ) -> SharedCoefficient | None:
-    """Compute the results of patients who all share a low, a median or a high wear coefficient.
+    """Compute the results if all patients have the same wear coefficient: low, median or high.
 
     Each result is multiplied by the ratio of the nominal patient's results at both coefficients. Twice the cycles wear
     as much as twice the coefficient. The ratio is therefore taken at the coefficient times the patient's cycle ratio.
@@ -225,45 +227,52 @@ def share_coefficient(
     """
     if COEFFICIENT not in variability.distributions or len(variability.distributions) == 1:
         return None
-    tail = (1 - level) / 2
-    ends = variability.distributions[COEFFICIENT].frozen.ppf([tail, 0.5, 1 - tail])
-    values = dict(zip(("low", "median", "high"), map(float, ends), strict=True))
+    low_probability = (1 - level) / 2
+    coefficients = variability.distributions[COEFFICIENT].frozen.ppf([low_probability, 0.5, 1 - low_probability])
+    values = dict(zip(("low", "median", "high"), map(float, coefficients), strict=True))
     sampled_coefficients, cycle_ratios = sampled[COEFFICIENT], _cycle_ratios(variability, sampled)
     low, high = (
-        min(sampled_coefficients.min(), ends[0]) * cycle_ratios.min(),
-        max(sampled_coefficients.max(), ends[-1]) * cycle_ratios.max(),
+        min(sampled_coefficients.min(), coefficients[0]) * cycle_ratios.min(),
+        max(sampled_coefficients.max(), coefficients[-1]) * cycle_ratios.max(),
     )
     if not 0 < low < high or numpy.isnan(table).all():
         return None
     exposures = numpy.geomspace(low, high, _NODES)
     nominal = CohortRun(variability=variability, counts=counts, values={COEFFICIENT: exposures}).simulate(engine)
-    known = nominal.refused == ""
-    if not known.any():
+    has_result = nominal.refused == ""
+    if not has_result.any():
         return None
-    response = _Response(exposures=exposures[known], table=nominal.table[known][:, :, _CONVERTED_COLUMNS])
-    factors = table[:, :, _CONVERTED_COLUMNS] / response.interpolate(sampled_coefficients * cycle_ratios)
-    results = {name: factors * response.interpolate(value * cycle_ratios) for name, value in values.items()}
+    response = _NominalResponse(
+        exposures=exposures[has_result], table=nominal.table[has_result][:, :, _CONVERTED_COLUMNS]
+    )
+    patient_factors = table[:, :, _CONVERTED_COLUMNS] / response.interpolate(sampled_coefficients * cycle_ratios)
+    results = {name: patient_factors * response.interpolate(value * cycle_ratios) for name, value in values.items()}
     return SharedCoefficient(values=MappingProxyType(values), results=MappingProxyType(results))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Response:
-    """Results of the nominal patient (nodes, reports, results) over coefficient times cycle ratio (nodes,)."""
+class _NominalResponse:
+    """Results of the nominal patient as a function of the exposure, wear coefficient times cycle ratio."""
 
     exposures: Numbers
     table: Numbers
 
     def interpolate(self, exposures: Numbers) -> Numbers:
-        """Interpolate the results on logarithmic axes: (points, reports, results), NaN for zero wear."""
-        x, nodes = numpy.log(exposures), numpy.log(self.exposures)
+        """Interpolate the nominal results at other exposures, on logarithmic axes; NaN for no wear.
+
+        Their shape is (points, reports, results).
+        """
+        log_exposures, log_nodes = numpy.log(exposures), numpy.log(self.exposures)
         with numpy.errstate(divide="ignore"):
-            columns = numpy.log(self.table).reshape(len(nodes), -1).T
-        values = numpy.exp(numpy.stack([numpy.interp(x, nodes, column) for column in columns], axis=-1))
-        return numpy.where(values > 0, values, numpy.nan).reshape(len(x), *self.table.shape[1:])
+            log_results = numpy.log(self.table).reshape(len(log_nodes), -1).T
+        values = numpy.exp(
+            numpy.stack([numpy.interp(log_exposures, log_nodes, column) for column in log_results], axis=-1)
+        )
+        return numpy.where(values > 0, values, numpy.nan).reshape(len(log_exposures), *self.table.shape[1:])
 
 
 def _cycle_ratios(variability: PatientVariability, sampled: Mapping[str, Numbers]) -> Numbers:
-    """Compute the ratio of each patient's cycles to those of the nominal patient."""
+    """Compute each patient's cycles a year divided by those of the nominal patient."""
     nominal = variability.cycles_per_year
     if "cycles_per_year" not in sampled or not nominal:
         return numpy.ones(len(sampled[COEFFICIENT]))

@@ -60,7 +60,7 @@ RESULT_UNITS: Mapping[str, str] = {
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PatientVariability:
-    """Independent distributions of the quantities that differ between patients.
+    """Independent distributions of the quantities that vary between patients.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class PatientVariability:
     quick = RenamedAttribute("coarse_simulation")
 
     def __post_init__(self) -> None:
-        """Check names and medians of the distributions."""
+        """Check the names and the medians of the distributions."""
         check_names(self.distributions, SAMPLED_QUANTITIES, "among the quantities of patients")
         if not self.distributions:
             raise ValueError("no quantity differs between patients: give one of " + ", ".join(SAMPLED_QUANTITIES))
@@ -114,19 +114,19 @@ class PatientVariability:
                 require(f"the median of {name}", median, 0 < median < inf, "it must be positive")
 
     @cached_property
-    def _medians(self) -> dict[str, float]:
-        """Medians of the sampled quantities by name."""
+    def _medians_by_name(self) -> dict[str, float]:
+        """Median of each sampled quantity, by name."""
         return {name: float(distribution.frozen.median()) for name, distribution in self.distributions.items()}
 
     @property
     def cycles_per_year(self) -> float | None:
-        """Cycles of the nominal patient in a year: those of a mix or the median; None if unknown."""
+        """Number of cycles of the nominal patient a year; None if unknown."""
         per_year = self.use.cycle.per_year
-        return self._medians.get("cycles_per_year") if per_year is None else per_year
+        return self._medians_by_name.get("cycles_per_year") if per_year is None else per_year
 
     @cached_property
     def coarse_simulation(self) -> HipSimulation:
-        """Simulation of the nominal patient with the coarse discretization of the sampled patients."""
+        """Simulation of the nominal patient with few time steps and wide rings."""
         use = self.use
         return replace(
             use,
@@ -137,7 +137,7 @@ class PatientVariability:
         )
 
     def patient(self, values: Mapping[str, float]) -> Patient:
-        """Create a patient from values of the sampled quantities.
+        """Create a patient from a value of each sampled quantity.
 
         Parameters
         ----------
@@ -175,17 +175,17 @@ class PatientVariability:
         )
 
     def _ratio_to_nominal(self, values: Mapping[str, float], name: str) -> float:
-        """Compute the ratio of a patient's quantity to that of the nominal patient."""
+        """Compute a patient's quantity divided by that of the nominal patient."""
         if name not in values:
             return 1.0
         nominal = self.body_weight if name == "body_weight" else self.cycles_per_year
         require(name, values[name], 0 < values[name] < inf, "it must be positive")
-        return values[name] / (nominal or self._medians[name])
+        return values[name] / (nominal or self._medians_by_name[name])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Patient:
-    """Wear simulation of one patient of a cohort.
+    """Wear simulation of one patient of a cohort, with the ratio of the patient's cycles to the nominal ones.
 
     Attributes
     ----------
@@ -199,7 +199,7 @@ class Patient:
     cycle_ratio: float
 
     def simulate(self, counts: Sequence[float]) -> tuple[Report, ...]:
-        """Simulate the wear of this patient, with reports at cycle counts of the nominal patient.
+        """Simulate the wear of this patient, and return reports at the nominal patient's cycle counts.
 
         Raises
         ------
@@ -207,8 +207,11 @@ class Patient:
             A contact did not balance its load, or the liner would be worn through many times.
         """
         check_total_wear(self.use, self.cycle_ratio * counts[-1])
-        run = WearIntegrator(setup=self.use)
-        reports = tuple(make_report(run.run_until(self.cycle_ratio * count, lambda cycles: None)) for count in counts)
+        integrator = WearIntegrator(setup=self.use)
+        reports = tuple(
+            make_report(integrator.run_until(self.cycle_ratio * report_count, lambda cycles: None))
+            for report_count in counts
+        )
         if not all(report.converged for report in reports):
             raise ValueError("a contact did not balance its load")
         return reports
@@ -219,7 +222,7 @@ class Patient:
 
 @dataclass(frozen=True, eq=False)
 class _CycleTable:
-    """Periodic function of the phase, linear between tabulated values, which can be pickled.
+    """Periodic function of the phase, linear between tabulated values.
 
     Attributes
     ----------
@@ -233,13 +236,15 @@ class _CycleTable:
     values: Numbers
 
     def __call__(self, phases: Numbers) -> Numbers:
-        """Interpolate the values at phases (n,): (..., n)."""
-        rows = [numpy.interp(phases, self.phases, row, period=1.0) for row in numpy.atleast_2d(self.values)]
-        return numpy.reshape(rows, (*self.values.shape[:-1], -1))
+        """Interpolate the tabulated values at phases (n,) from 0 to 1: (..., n)."""
+        interpolated_rows = [
+            numpy.interp(phases, self.phases, row_values, period=1.0) for row_values in numpy.atleast_2d(self.values)
+        ]
+        return numpy.reshape(interpolated_rows, (*self.values.shape[:-1], -1))
 
 
 def _tabulate_cycle(cycle: Cycle) -> Cycle:
-    """Convert a cycle to a few steps with tabulated forces at their midpoints and angles at their starts."""
+    """Convert a cycle to one with few time steps, whose forces and angles are tabulated."""
     coarse = replace(cycle, n_steps=min(cycle.n_steps, _COARSE_INSTANTS))
     midpoints, starts = coarse.phases, numpy.arange(coarse.n_steps) / coarse.n_steps
     force, angles = (
@@ -269,17 +274,17 @@ class CohortResult:
 
     @property
     def peak_utilisation(self) -> Numbers:
-        """Largest utilisation from the first cycle to each report: (patients, reports), NaN if unknown."""
+        """Largest ratio of von Mises to yield stress up to each report: (patients, reports)."""
         return numpy.maximum.accumulate(self.contact[:, :, 0], axis=1)[:, 1:]
 
     @property
     def valid(self) -> Numbers:
-        """Validity from the first cycle to each report, 1 or 0: (patients, reports)."""
+        """Validity of all contacts up to each report, 1 or 0: (patients, reports)."""
         return numpy.minimum.accumulate(self.contact[:, :, 1], axis=1)[:, 1:]
 
 
 def join_results(results: Sequence[CohortResult]) -> CohortResult:
-    """Concatenate the results of consecutive groups of patients."""
+    """Join the results of consecutive groups of patients to one `CohortResult`."""
     return CohortResult(
         table=numpy.concatenate([result.table for result in results]),
         refused=numpy.concatenate([result.refused for result in results]),
@@ -288,36 +293,36 @@ def join_results(results: Sequence[CohortResult]) -> CohortResult:
 
 
 def result_table(reports: Sequence[Report]) -> Numbers:
-    """Convert the results of `RESULT_UNITS` at the reports to an array: (reports, results)."""
-    return numpy.array([[_result_number(report, name) for name in RESULT_UNITS] for report in reports])
+    """Tabulate the results named in `RESULT_UNITS` at each report: (reports, results)."""
+    return numpy.array([[_result_as_number(report, name) for name in RESULT_UNITS] for report in reports])
 
 
 def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
-    """Compute utilisation and validity of the contact in the first cycle and at each report: (1 + reports, 2)."""
+    """Tabulate ratio of von Mises to yield stress, and validity, of the first cycle and each report."""
     return utilisation_and_validity(
         use.contact_model, use.joint, [use.unworn_worst_contacts, *(report.worst_contacts for report in reports)]
     )
 
 
-def _result_number(report: Report, name: str) -> float:
-    """Return one result of a report as a number; for `edge_distance`, the least of the cycle."""
+def _result_as_number(report: Report, name: str) -> float:
+    """Return one result of a report as a number, for `edge_distance` the least of the cycle."""
     value = getattr(report, name)
     return float(value.min(initial=inf)) if name == "edge_distance" else float(value)
 
 
 def summarize_distributions(variability: PatientVariability) -> dict[str, Any]:
-    """Return the distributions of the patients as plain data in mm, N and degrees."""
+    """Return the distributions of all sampled quantities as a dictionary for JSON."""
     return {
         name: _summarize_distribution(name, distribution) for name, distribution in variability.distributions.items()
     }
 
 
 def _summarize_distribution(name: str, distribution: Distribution) -> dict[str, Any]:
-    """Return name and parameters of a distribution as data for JSON; angles in degrees."""
+    """Return type and parameters of a distribution as a dictionary for JSON, angles in degrees."""
     factor = degrees(1.0) if name in ANGLES else 1.0
     parameters = {parameter.name: getattr(distribution, parameter.name) for parameter in fields(distribution)}
-    shown = {key: factor * value for key, value in parameters.items() if isfinite(value)}
-    return {"distribution": type(distribution).__name__, **shown}
+    shown_parameters = {key: factor * value for key, value in parameters.items() if isfinite(value)}
+    return {"distribution": type(distribution).__name__, **shown_parameters}
 
 
 __getattr__ = renamed_names(

@@ -23,29 +23,31 @@ _TIME_TOLERANCE = 1e-6
 
 
 def half_cosines(phases: Numbers, knots: Numbers, values: Numbers) -> Numbers:
-    """Interpolate values between knots of a cycle by half cosines, which are level at each knot."""
+    """Interpolate between values at knots of a cycle by half cosines, with zero slope at each knot."""
     interval = numpy.clip(numpy.searchsorted(knots, phases, side="right") - 1, 0, len(knots) - 2)
     fraction = (phases - knots[interval]) / (knots[interval + 1] - knots[interval])
     return values[interval] + (values[interval + 1] - values[interval]) * (1 - numpy.cos(pi * fraction)) / 2
 
 
 def monotone_periodic(phase: Numbers, values: Numbers) -> PhaseFunction:
-    """Interpolate rows of a table by a smooth periodic function, monotone between rows.
+    """Create a smooth periodic function through the values of a table, monotone between them.
 
     The difference between the last and the first value is distributed linearly over the cycle.
     """
     from scipy.interpolate import PchipInterpolator
 
-    closed: Any = values - (phase - 0.5) * (values[..., -1:] - values[..., :1])
-    before, after = slice(-4, -1), slice(1, 4)
-    times = numpy.concatenate([phase[before] - 1, phase, phase[after] + 1])
-    extended = numpy.concatenate([closed[..., before], closed, closed[..., after]], axis=-1)
+    closed_values: Any = values - (phase - 0.5) * (values[..., -1:] - values[..., :1])
+    last_values, first_values = slice(-4, -1), slice(1, 4)
+    times = numpy.concatenate([phase[last_values] - 1, phase, phase[first_values] + 1])
+    extended = numpy.concatenate(
+        [closed_values[..., last_values], closed_values, closed_values[..., first_values]], axis=-1
+    )
     interpolator = PchipInterpolator(times, extended, axis=-1)
     return lambda phases: numpy.asarray(interpolator(phases))
 
 
 def time_column(columns: dict[str, Numbers]) -> str:
-    """Return the name of the column with times or phases: "time" or "phase".
+    """Find the name of the column with times or phases: "time" or "phase".
 
     Raises
     ------
@@ -58,7 +60,7 @@ def time_column(columns: dict[str, Numbers]) -> str:
 
 
 def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict[str, Numbers]:
-    """Interpolate the columns of one table at the times of another.
+    """Interpolate the columns of a table at the times of a reference table.
 
     Raises
     ------
@@ -68,17 +70,17 @@ def resample(columns: dict[str, Numbers], reference: dict[str, Numbers]) -> dict
     name = time_column(columns)
     if name != time_column(reference):
         raise ValueError("one file has a column time and another one phase: they cannot be combined")
-    time, wanted = columns[name], reference[name]
-    _check_increasing(name, time)
-    slack = _TIME_TOLERANCE * (wanted[-1] - wanted[0])
-    if time[0] > wanted[0] + slack or time[-1] < wanted[-1] - slack:
-        spans = (f"{times[0]:g} to {times[-1]:g}" for times in (wanted, time))
+    time, reference_time = columns[name], reference[name]
+    _check_increasing_times(name, time)
+    time_tolerance = _TIME_TOLERANCE * (reference_time[-1] - reference_time[0])
+    if time[0] > reference_time[0] + time_tolerance or time[-1] < reference_time[-1] - time_tolerance:
+        spans = (f"{times[0]:g} to {times[-1]:g}" for times in (reference_time, time))
         raise ValueError(f"one file goes from {next(spans)}, and another one only from {next(spans)}: use from and to")
-    return {title: numpy.interp(wanted, time, values) for title, values in columns.items() if title != name}
+    return {title: numpy.interp(reference_time, time, values) for title, values in columns.items() if title != name}
 
 
 def select_time_range(columns: dict[str, Numbers], begin: float | None, end: float | None) -> dict[str, Numbers]:
-    """Select the rows of a table between two times, with interpolated rows at both times.
+    """Select the rows of a table between two times, and interpolate rows at both times.
 
     Raises
     ------
@@ -89,7 +91,7 @@ def select_time_range(columns: dict[str, Numbers], begin: float | None, end: flo
         return columns
     name = time_column(columns)
     time = columns[name]
-    _check_increasing(name, time)
+    _check_increasing_times(name, time)
     first, last = (time[0] if begin is None else begin), (time[-1] if end is None else end)
     if not time[0] <= first < last <= time[-1]:
         raise ValueError(f"from {first:g} to {last:g} is not allowed: {name} goes from {time[0]:g} to {time[-1]:g}")
@@ -99,7 +101,7 @@ def select_time_range(columns: dict[str, Numbers], begin: float | None, end: flo
 
 
 def phases_and_duration(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
-    """Convert the time column into phases from 0 to 1 and a duration in s (1 s for a column of phases).
+    """Convert the time column of a table to phases from 0 to 1, and return also the duration in s.
 
     Raises
     ------
@@ -108,7 +110,7 @@ def phases_and_duration(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
     """
     name = time_column(columns)
     time = columns[name]
-    _check_increasing(name, time)
+    _check_increasing_times(name, time)
     steps = numpy.diff(time)
     median = float(numpy.median(steps))
     if steps.max() > _MAX_STEP_RATIO * median:
@@ -120,8 +122,8 @@ def phases_and_duration(columns: dict[str, Numbers]) -> tuple[Numbers, float]:
     return (time - time[0]) / (time[-1] - time[0]), float(time[-1] - time[0]) if name == "time" else 1.0
 
 
-def _check_increasing(name: str, time: Numbers) -> None:
-    """Check that times increase from row to row; ValueError if they do not."""
+def _check_increasing_times(name: str, time: Numbers) -> None:
+    """Check that times increase from row to row; ValueError otherwise."""
     steps = numpy.diff(time)
     if not (steps > 0).all():
         row = int((steps <= 0).argmax())
@@ -129,7 +131,7 @@ def _check_increasing(name: str, time: Numbers) -> None:
 
 
 def check_closed(name: str, values: Numbers, closure: float, unit: str, factor: float) -> None:
-    """Check that a column ends with its first value, as a cycle does; ValueError if it does not.
+    """Check that a column ends with its first value, as a closed cycle does; ValueError otherwise.
 
     `closure` is the allowed difference as a share of the column's range; `factor` converts values to `unit` for the
     message.

@@ -88,11 +88,11 @@ class WearIntegrator:
     margin: float = _MARGIN
 
     def __post_init__(self) -> None:
-        """Set the state of an unworn bore."""
+        """Initialize the state of the integrator for an unworn bore."""
         self.depth = numpy.zeros(len(self.setup.foundation.areas))
         self.ball = numpy.zeros(0 if self.setup.ball_wear is None else len(self.setup.ball_areas))
-        creep, count = self.setup.creep, len(self.depth)
-        self.strain = numpy.zeros((1, count)) if creep is None else creep.initial_strain(count)
+        creep, cell_count = self.setup.creep, len(self.depth)
+        self.strain = numpy.zeros((1, cell_count)) if creep is None else creep.initial_strain(cell_count)
         self.equilibrium = self.setup.unworn
         self._update_active_cells()
         if self._max_decay_rate > 0:
@@ -100,7 +100,7 @@ class WearIntegrator:
 
     @property
     def creep_depth(self) -> Numbers:
-        """Depth of creep in mm: (cells,)."""
+        """Depth in mm of each cell by creep of the liner: (cells,)."""
         strain = self.strain.sum(axis=0)
         if not strain.any():
             return strain
@@ -118,30 +118,30 @@ class WearIntegrator:
 
     @property
     def relative_volume_error(self) -> float:
-        """Estimated error of the worn volume by the blocks, relative to the volume."""
+        """Estimated integration error of the worn volume, divided by the worn volume."""
         total_volume = self.volume + self.ball_volume
         return self.volume_error / total_volume if total_volume > 0 else 0.0
 
     def _update_active_cells(self) -> None:
-        """Select the cells near the contacts, and compute their wear per cycle."""
+        """Select the active cells, those near the contacts, and compute their wear per cycle."""
         mask = self.setup.foundation.cells_near_contact(self.equilibrium, self.depth + self.creep_depth, self.margin)
         cells = numpy.flatnonzero(mask)
         self._active = select_active_cells(self.setup, cells)
         self._active_creep = self.creep_depth[cells]
-        self._rate = self._compute_rate(self._state_vector)
+        self._rate = self._compute_change_per_cycle(self._state_vector)
 
     @property
     def _state_vector(self) -> Numbers:
-        """State vector of the integration: depths of the active cells of socket and ball, and the work."""
+        """State vector: worn depths in mm of the active cells of socket and ball, and friction work."""
         active = self._active
         return numpy.concatenate([self.depth[active.cells], self.ball[active.ball_cells], [self.work]])
 
-    def _compute_rate(self, values: Numbers) -> Numbers:
-        """Compute the change of the state vector per cycle."""
-        active, count = self._active, len(self._active.cells)
-        depth = values[:count] + self._active_creep
+    def _compute_change_per_cycle(self, state_vector: Numbers) -> Numbers:
+        """Compute the change of the state vector per cycle, by solving the contacts of a cycle."""
+        active, socket_cell_count = self._active, len(self._active.cells)
+        depth = state_vector[:socket_cell_count] + self._active_creep
         if active.counterface is not None:
-            depth = depth + active.counterface.depth_on_socket(values[count:-1])
+            depth = depth + active.counterface.depth_on_socket(state_vector[socket_cell_count:-1])
         equilibrium = active.foundation.solve_equilibrium(
             self.setup.frame.loads, depth, self.equilibrium, self.setup.frame.lateral_stiffness
         )
@@ -151,12 +151,12 @@ class WearIntegrator:
         self._exposure = CycleExposure(
             pressure=equilibrium.pressure, sliding=active.sliding, contact_shares=contact_shares
         )
-        worn = active.foundation.smooth(self.setup.wear.depth(self._exposure))
-        work = float(self._exposure.work @ active.foundation.areas)
-        return numpy.concatenate([worn, self._ball_rate, [work]])
+        wear_per_cycle = active.foundation.smooth(self.setup.wear.depth(self._exposure))
+        work_per_cycle = float(self._exposure.work @ active.foundation.areas)
+        return numpy.concatenate([wear_per_cycle, self._ball_wear_per_cycle, [work_per_cycle]])
 
     @property
-    def _ball_rate(self) -> Numbers:
+    def _ball_wear_per_cycle(self) -> Numbers:
         """Worn depth of the ball per cycle in mm; empty for a ball without wear."""
         counterface, law = self._active.counterface, self.setup.ball_wear
         if counterface is None or law is None:
@@ -165,7 +165,7 @@ class WearIntegrator:
 
     @property
     def _max_decay_rate(self) -> float:
-        """Largest decay rate per cycle of waves of the worn depth: wear sensitivity times largest stiffness."""
+        """Largest decay rate per cycle of a wave on the worn bore: wear sensitivity times stiffness."""
         sensitivity = max_wear_sensitivity(self.setup.wear, self._exposure)
         counterface = self._active.counterface
         if counterface is not None and self.setup.ball_wear is not None:
@@ -174,7 +174,7 @@ class WearIntegrator:
 
     @property
     def state(self) -> dict[str, Any]:
-        """State of the run before the next block, as arrays by name for a checkpoint.
+        """State of the simulation between two blocks, as named arrays for a checkpoint.
 
         A resumed run equals an uninterrupted run bit by bit.
         """
@@ -183,9 +183,9 @@ class WearIntegrator:
         return {**numbers, **cells, **_equilibrium_arrays(self.equilibrium)}
 
     def resume(self, state: Mapping[str, Numbers]) -> None:
-        """Continue from a stored state with its contacts, without solving them again."""
-        for name, kind in _STATE.items():
-            setattr(self, name, kind(state[name]))
+        """Restore a stored state with its contacts, without solving the contacts again."""
+        for name, convert in _STATE.items():
+            setattr(self, name, convert(state[name]))
         self._active = select_active_cells(self.setup, state["cells"])
         self._active_creep = self.creep_depth[state["cells"]]
         self._rate = state["rate"]
@@ -193,81 +193,94 @@ class WearIntegrator:
         self._exposure = CycleExposure(pressure=self.equilibrium.pressure, sliding=self._active.sliding)
 
     def run_until(self, count: float, progress: Callable[[float], None]) -> WearIntegrator:
-        """Integrate up to a number of cycles, and return this integrator."""
+        """Integrate wear and creep up to a number of cycles, and return this integrator."""
         while self.cycles < count:
-            self._advance(count)
+            self._advance_block(count)
             progress(self.cycles)
         return self
 
-    def _advance(self, count: float) -> None:
-        """Integrate one block of cycles, as long as its error and the final number of cycles allow."""
+    def _advance_block(self, count: float) -> None:
+        """Integrate one block of cycles, whose length is limited by its error and the final count."""
         decay_rate, remaining = self._max_decay_rate, count - self.cycles
         while True:
             length = _block_length(min(self.length, max_step_length(decay_rate), self._max_creep_step), remaining)
             block = integrate_step(
-                self._compute_rate, self._state_vector, self._rate, length, stage_count(length, decay_rate)
+                self._compute_change_per_cycle, self._state_vector, self._rate, length, stage_count(length, decay_rate)
             )
             if self._contact_left_active_cells(block):
                 self.margin *= 2
                 self._update_active_cells()
                 continue
-            error = self._block_error(block, decay_rate)
-            self.length = length * min(max(_STEP_SAFETY * max(error, 1e-12) ** (-1 / 3), _MIN_GROWTH), _MAX_GROWTH)
-            if error <= 1:
+            relative_error = self._relative_block_error(block, decay_rate)
+            self.length = length * min(
+                max(_STEP_SAFETY * max(relative_error, 1e-12) ** (-1 / 3), _MIN_GROWTH), _MAX_GROWTH
+            )
+            if relative_error <= 1:
                 break
         self.volume_error += abs(float(block.error[:-1] @ self._active.areas))
-        self._store_values(block.values)
+        self._store_state_vector(block.values)
         self.steps, self._rate = self.steps + 1, block.rate
         self.cycles = count if length == remaining else self.cycles + length
         if self.setup.creep is not None:
-            self._advance_creep(self.setup.creep, length * self.setup.seconds)
-        if self._contact_spreads or self.setup.creep is not None:
+            self._advance_creep_strain(self.setup.creep, length * self.setup.seconds)
+        if self._contact_near_inactive_cells or self.setup.creep is not None:
             self._update_active_cells()
 
-    def _store_values(self, values: Numbers) -> None:
-        """Write the integrated state back to the depths and the work."""
-        active, count = self._active, len(self._active.cells)
-        self.depth, self.ball, self.work = self.depth.copy(), self.ball.copy(), float(values[-1])
-        self.depth[active.cells], self.ball[active.ball_cells] = values[:count], values[count:-1]
+    def _store_state_vector(self, state_vector: Numbers) -> None:
+        """Copy the state vector back to the depths of socket and ball and the friction work."""
+        active, socket_cell_count = self._active, len(self._active.cells)
+        self.depth, self.ball, self.work = self.depth.copy(), self.ball.copy(), float(state_vector[-1])
+        self.depth[active.cells], self.ball[active.ball_cells] = (
+            state_vector[:socket_cell_count],
+            state_vector[socket_cell_count:-1],
+        )
 
     @property
     def _max_creep_step(self) -> float:
-        """Largest number of cycles in a block with creep; infinite without creep."""
+        """Largest number of cycles in a block of a creeping liner; infinite without creep."""
         if not self.setup.creep:
             return inf
         return max(_CREEP_GROWTH * self.cycles, _FIRST_CREEP_BLOCK / self.setup.seconds)
 
-    def _advance_creep(self, creep: CreepLaw, seconds: float) -> None:
-        """Advance the creep strains by a time in s, under the mean pressure at the end of a block.
+    def _advance_creep_strain(self, creep: CreepLaw, seconds: float) -> None:
+        """Advance the creep strains by a time in s, under the mean pressures of a cycle.
 
         Creep decreases this pressure: both are iterated.
         """
         active, setup = self._active, self.setup
         weights = setup.cycle.seconds[setup.frame.loaded] / setup.cycle.duration
-        recovered, strain_per_pressure = creep.linear_response(self.strain[:, active.cells], seconds)
+        recovered_strain, strain_per_pressure = creep.linear_response(self.strain[:, active.cells], seconds)
         thickness = float(setup.joint.liner_thickness)
-        mean = weights @ self._exposure.pressure
+        mean_pressure = weights @ self._exposure.pressure
         stiffness = active.foundation.max_stiffness * (weights @ (self._exposure.pressure > 0))
         for _ in range(_MAX_CREEP_SWEEPS):
-            self._active_creep = active.foundation.smooth(thickness * (recovered + strain_per_pressure * mean))
-            self._compute_rate(self._state_vector)
-            change = (weights @ self._exposure.pressure - mean) / (1 + stiffness * thickness * strain_per_pressure)
-            mean = numpy.maximum(mean + change, 0.0)
-            if abs(change).max(initial=0.0) <= _CREEP_TOLERANCE * mean.max(initial=0.0):
+            self._active_creep = active.foundation.smooth(
+                thickness * (recovered_strain + strain_per_pressure * mean_pressure)
+            )
+            self._compute_change_per_cycle(self._state_vector)
+            pressure_change = (weights @ self._exposure.pressure - mean_pressure) / (
+                1 + stiffness * thickness * strain_per_pressure
+            )
+            mean_pressure = numpy.maximum(mean_pressure + pressure_change, 0.0)
+            if abs(pressure_change).max(initial=0.0) <= _CREEP_TOLERANCE * mean_pressure.max(initial=0.0):
                 break
         pressure = numpy.zeros(len(self.depth))
-        pressure[active.cells] = mean
+        pressure[active.cells] = mean_pressure
         self.strain = creep.advance_strain(self.strain, pressure, seconds)
 
-    def _block_error(self, block: ChebyshevStep, decay_rate: float) -> float:
-        """Estimate the root mean square error of a block over the cells, relative to the allowed error."""
-        initial = _FIRST_BLOCK * float(self._rate[:-1].max(initial=0.0)) / decay_rate if decay_rate > 0 else 0.0
-        allowed = self.setup.tolerance * max(float(block.values[:-1].max(initial=0.0)), initial)
-        error = block.error[:-1]
-        return float(numpy.sqrt(error @ error / max(len(error), 1))) / allowed if allowed > 0 else 0.0
+    def _relative_block_error(self, block: ChebyshevStep, decay_rate: float) -> float:
+        """Estimate the root mean square depth error of a block, divided by the allowed error."""
+        initial_depth = _FIRST_BLOCK * float(self._rate[:-1].max(initial=0.0)) / decay_rate if decay_rate > 0 else 0.0
+        allowed_error = self.setup.tolerance * max(float(block.values[:-1].max(initial=0.0)), initial_depth)
+        depth_error = block.error[:-1]
+        return (
+            float(numpy.sqrt(depth_error @ depth_error / max(len(depth_error), 1))) / allowed_error
+            if allowed_error > 0
+            else 0.0
+        )
 
     def _contact_left_active_cells(self, block: ChebyshevStep) -> bool:
-        """Check if the contact at the end of a block includes inactive cells."""
+        """Check if a contact at the end of a block reaches inactive cells."""
         depth = self.creep_depth
         depth += self.depth
         depth[self._active.cells] = block.values[: len(self._active.cells)] + self._active_creep
@@ -276,8 +289,8 @@ class WearIntegrator:
         return bool(mask.any())
 
     @property
-    def _contact_spreads(self) -> bool:
-        """True if the contact is close to inactive cells."""
+    def _contact_near_inactive_cells(self) -> bool:
+        """True if a contact is close to inactive cells."""
         depth = self.depth + self.creep_depth
         mask = self.setup.foundation.cells_near_contact(self.equilibrium, depth, self.margin / 2)
         mask[self._active.cells] = False
@@ -302,7 +315,7 @@ _STATE: Mapping[str, Callable[[Any], Any]] = MappingProxyType(
 
 
 def _equilibrium_arrays(equilibrium: CycleEquilibrium) -> dict[str, Any]:
-    """Convert contacts to arrays by name, for a stored state."""
+    """Convert the contacts of a cycle to named arrays for a stored state."""
     arrays = {
         "equilibrium_displacement": equilibrium.displacement,
         "equilibrium_pressure": equilibrium.pressure,
@@ -314,16 +327,16 @@ def _equilibrium_arrays(equilibrium: CycleEquilibrium) -> dict[str, Any]:
 
 
 def _read_equilibrium(state: Mapping[str, Numbers]) -> CycleEquilibrium:
-    """Read contacts from the arrays of a stored state; see `_equilibrium_arrays`."""
-    interpolated = "level_displacement" in state
+    """Create the contacts of a cycle from the named arrays of a stored state."""
+    has_levels = "level_displacement" in state
     return CycleEquilibrium(
         displacement=state["equilibrium_displacement"],
         pressure=state["equilibrium_pressure"],
         converged=bool(state["equilibrium_converged"]),
-        levels=(state["level_displacement"], state["level_pressure"]) if interpolated else None,
+        levels=(state["level_displacement"], state["level_pressure"]) if has_levels else None,
     )
 
 
 def _block_length(length: float, remaining: float) -> float:
-    """Limit a block to the remaining cycles; two blocks share them equally instead of a long and a short one."""
+    """Limit the length of a block to the remaining cycles, which two last blocks share equally."""
     return remaining if length >= remaining else min(length, remaining / 2)

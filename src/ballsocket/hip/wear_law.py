@@ -61,17 +61,17 @@ class CycleExposure:
 
     @cached_property
     def contact(self) -> Numbers:
-        """Share of each point's cell that is in contact, from 0 to 1: (instants, points)."""
+        """Fraction of each point's cell that is in contact, from 0 to 1: (instants, points)."""
         return (self.pressure > 0).astype(float) if self.contact_shares is None else self.contact_shares()
 
     @cached_property
     def work(self) -> Numbers:
-        """Integral ∫ p v dt of pressure times sliding speed at each point, in N/mm: (points,)."""
+        """Friction work per area over the coefficient of friction, ∫ p v dt, in N/mm: (points,)."""
         return numpy.einsum("tp,tp->p", self.pressure, self.sliding.distances)
 
     @cached_property
     def cross_shear(self) -> Numbers:
-        """Cross-shear ratio at each point, from 0 to 1/2: (points,)."""
+        """Cross-shear ratio of sliding at each point, from 0 to 1/2: (points,)."""
         return self.sliding.cross_shear(self.pressure)
 
 
@@ -103,20 +103,20 @@ class FirstCycleResult:
 
 
 class AnyWearLaw(Protocol):
-    """Interface of a wear law for a simulation: a `WearLaw`, or any object with `depth` and `notes`."""
+    """Interface of a wear law: a `WearLaw`, or any object with `depth` and `notes`."""
 
     def depth(self, cycle: CycleExposure) -> Numbers:
-        """Compute the worn depth of each point in a cycle, in mm: (points,)."""
+        """Compute the worn depth in mm of each point in a cycle: (points,)."""
         ...
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Notes on the coefficients."""
+        """Sentences on the coefficients, for reports."""
         ...
 
 
 class WearLaw(Law):
-    """Base of wear laws: frozen dataclasses with `name`, `title`, fields by `law_field`, and `depth`.
+    """Base class of wear laws: frozen dataclasses with fields by `law_field`, and the method `depth`.
 
     A law in the registry `WEAR_LAWS` is available in files, on the command line, and in the explorer.
     """
@@ -126,10 +126,10 @@ class WearLaw(Law):
 
     @abstractmethod
     def depth(self, cycle: CycleExposure) -> Numbers:
-        """Compute the worn depth of each point in a cycle, in mm: (points,)."""
+        """Compute the worn depth in mm of each point in a cycle: (points,)."""
 
     def with_coefficient(self, value: float) -> WearLaw:
-        """Return the law with another wear coefficient.
+        """Return this law with another value of its wear coefficient.
 
         Raises
         ------
@@ -141,21 +141,21 @@ class WearLaw(Law):
 
 
 def coefficient_field(law: Any) -> LawField | None:
-    """Return the field of the wear coefficient of a law; None for a law without one."""
-    parts = law.law_fields() if isinstance(law, Law) else ()
-    return next((part for part in parts if part.key == COEFFICIENT), None)
+    """Return the field with the wear coefficient of a law; None for a law without a coefficient."""
+    law_numbers = law.law_fields() if isinstance(law, Law) else ()
+    return next((law_number for law_number in law_numbers if law_number.key == COEFFICIENT), None)
 
 
 def _require_coefficient_field(law: Any) -> LawField:
-    """Return the field of the wear coefficient of a law; ValueError for a law without one."""
-    part = coefficient_field(law)
-    if part is None:
+    """Return the field with the wear coefficient of a law; ValueError without a coefficient."""
+    coefficient_number = coefficient_field(law)
+    if coefficient_number is None:
         raise ValueError("coefficient cannot be sampled: the wear law has no coefficient")
-    return part
+    return coefficient_number
 
 
 def with_coefficient(law: AnyWearLaw, value: float) -> AnyWearLaw:
-    """Return a law with another wear coefficient.
+    """Return a wear law with another value of its wear coefficient.
 
     Raises
     ------
@@ -168,32 +168,32 @@ def with_coefficient(law: AnyWearLaw, value: float) -> AnyWearLaw:
 
 
 def plausibility_notes(*factors: float) -> tuple[str, ...]:
-    """Return a note on the first wear factor (mm³/(N m)) outside the range of joint materials, else nothing."""
+    """Return a sentence on a wear factor in mm³/(N m) outside the usual range; empty otherwise."""
     low, high = _PLAUSIBLE_FACTORS
-    unusual = next((factor for factor in factors if factor > 0 and not low <= factor <= high), None)
-    if unusual is None:
+    unusual_factor = next((factor for factor in factors if factor > 0 and not low <= factor <= high), None)
+    if unusual_factor is None:
         return ()
     return (
-        f"a wear factor of {unusual:g} mm^3/(N m) is out of the usual range of {low:g} to {high:g}; "
+        f"a wear factor of {unusual_factor:g} mm^3/(N m) is out of the usual range of {low:g} to {high:g}; "
         "one in mm^3/(N mm) is 1000 times smaller",
     )
 
 
 def max_wear_sensitivity(law: AnyWearLaw, cycle: CycleExposure) -> float:
-    """Compute the largest derivative of the worn depth per cycle with respect to the pressure, in mm/MPa."""
-    step = _PRESSURE_STEP * float(cycle.pressure.max(initial=0.0))
-    if not step > 0:
+    """Compute the largest derivative in mm/MPa of the worn depth per cycle with respect to pressure."""
+    pressure_step = _PRESSURE_STEP * float(cycle.pressure.max(initial=0.0))
+    if not pressure_step > 0:
         return 0.0
-    raised = CycleExposure(
-        pressure=cycle.pressure + step * (cycle.pressure > 0),
+    raised_exposure = CycleExposure(
+        pressure=cycle.pressure + pressure_step * (cycle.pressure > 0),
         sliding=cycle.sliding,
         contact_shares=lambda: cycle.contact,
     )
-    return float((law.depth(raised) - law.depth(cycle)).max() / step)
+    return float((law.depth(raised_exposure) - law.depth(cycle)).max() / pressure_step)
 
 
 def wear_factor(name: str, value: Any) -> float:
-    """Read a wear factor k in mm³/(N m): a number, or text such as "1.066e-6 mm^3/(N m)".
+    """Read a wear factor k in mm³/(N m) from a number, or from text such as "1.066e-6 mm^3/(N m)".
 
     Raises
     ------
@@ -210,45 +210,45 @@ def wear_factor(name: str, value: Any) -> float:
     ValueError: coefficient = '1.066e-9 mm^3/(N mm)' is for mm of sliding: 1 mm^3/(N mm) is 1000 mm^3/(N m), \
 so that this is 1.066e-06 mm^3/(N m); write it so
     """
-    number, unit = _split_unit(name, value, _WEAR_FACTOR)
+    number, unit = _split_number_and_unit(name, value, _WEAR_FACTOR)
     if unit:
-        number *= _factor_in_metres(name, value, number, unit, _FACTOR_UNITS)
+        number *= _factor_to_wear_factor_unit(name, value, number, unit, _FACTOR_UNITS)
     require(name, number, 0 <= number < inf, f"a wear coefficient is at least 0 {_WEAR_FACTOR}, and finite")
     return number
 
 
 def wear_per_energy(name: str, value: Any) -> float:
-    """Read a wear volume per friction energy in mm³/J: a number, or text such as "1e-5 mm^3/J".
+    """Read a worn volume per friction energy in mm³/J from a number, or from text such as "1e-5 mm^3/J".
 
     Raises
     ------
     ValueError
         As `wear_factor`.
     """
-    number, unit = _split_unit(name, value, "mm^3/J")
+    number, unit = _split_number_and_unit(name, value, "mm^3/J")
     if unit:
-        number *= _factor_in_metres(name, value, number, unit, _ENERGY_UNITS)
+        number *= _factor_to_wear_factor_unit(name, value, number, unit, _ENERGY_UNITS)
     require(name, number, 0 <= number < inf, "a wear coefficient is at least 0 mm^3/J, and finite")
     return number
 
 
 def wear_per_slide(name: str, value: Any) -> float:
-    """Read a wear depth per length of sliding in mm/mm: a number, or text such as "1e-6 mm/m".
+    """Read a worn depth per sliding distance in mm/mm from a number, or from text such as "1e-6 mm/m".
 
     Raises
     ------
     ValueError
         Text without a number, or a unit of another dimension.
     """
-    number, unit = _split_unit(name, value, "mm/m")
+    number, unit = _split_number_and_unit(name, value, "mm/m")
     if unit:
-        number *= _unit_factor(name, value, unit, "", "mm/mm, a depth over a length of sliding")
+        number *= _conversion_factor(name, value, unit, "", "mm/mm, a depth over a length of sliding")
     require(name, number, 0 <= number < inf, "a wear coefficient is at least 0, and finite")
     return number
 
 
-def _split_unit(name: str, value: Any, example: str) -> tuple[float, str]:
-    """Split a coefficient into its number and the text of its unit."""
+def _split_number_and_unit(name: str, value: Any, example: str) -> tuple[float, str]:
+    """Split a wear coefficient into its number and the text of its unit."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return parse(name, value, Kind.NUMBER), ""
     try:
@@ -260,10 +260,10 @@ def _split_unit(name: str, value: Any, example: str) -> tuple[float, str]:
     return number, unit
 
 
-def _factor_in_metres(name: str, value: Any, number: float, unit: str, allowed: tuple[str, ...]) -> float:
-    """Compute the factor from a unit to mm³/(N m); ValueError for units with other lengths of sliding."""
+def _factor_to_wear_factor_unit(name: str, value: Any, number: float, unit: str, allowed: tuple[str, ...]) -> float:
+    """Compute the factor that converts a unit to mm³/(N m); ValueError if it uses another length."""
     meaning = f"{_WEAR_FACTOR}, a volume over a force and a length of sliding"
-    factor = _unit_factor(name, value, unit, _WEAR_FACTOR, meaning)
+    factor = _conversion_factor(name, value, unit, _WEAR_FACTOR, meaning)
     if parse_units(unit) not in [parse_units(accepted) for accepted in allowed]:
         written = unit.replace("**", "^").replace("N*m", "N m")
         length = "for mm of sliding" if abs(factor / 1000 - 1) < 1e-9 else "for another length of sliding"
@@ -274,8 +274,8 @@ def _factor_in_metres(name: str, value: Any, number: float, unit: str, allowed: 
     return factor
 
 
-def _unit_factor(name: str, value: Any, unit: str, target: str, meaning: str) -> float:
-    """Compute the factor from a unit to a target unit; ValueError for a unit of another dimension."""
+def _conversion_factor(name: str, value: Any, unit: str, target: str, meaning: str) -> float:
+    """Compute the factor that converts a unit to another; ValueError for a unit of another dimension."""
     try:
         return convert(1.0, parse_units(unit), parse_units(target))
     except ValueError as error:

@@ -11,7 +11,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import NamedItems, require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
-from .law_fields import NUMBER, PRESSURE, Law, law_field, read_law, select_law
+from .law_fields import NUMBER, PRESSURE, Law, law_field, read_law, select_law_class
 from .wear_law import (
     COEFFICIENT,
     METRE,
@@ -165,7 +165,7 @@ class CustomWearLaw(Law):
     of = RenamedAttribute("function")
 
     def depth(self, cycle: CycleExposure) -> Numbers:
-        """Compute the worn depth of each point in a cycle by the function, in mm: (points,)."""
+        """Compute the worn depth in mm of each point in a cycle by the given function: (points,)."""
         depth, shape = numpy.asarray(self.function(cycle), dtype=float), cycle.pressure.shape[1:]
         if depth.shape != shape:
             raise ValueError(f"a CustomWearLaw returned depths of shape {depth.shape}; the points need {shape}")
@@ -194,29 +194,29 @@ BALL_COEFFICIENT = "ball_coefficient"
 
 
 def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
-    """Read the wear law of the table [wear] of a file.
+    """Read the wear law of the socket from the table [wear] of a file.
 
     Raises
     ------
     ValueError
         An unknown law, a missing key, a key of another law, or a value that is not allowed.
     """
-    return read_law(table, WEAR_LAWS, select_law(table, WEAR_LAWS, "law"))
+    return read_law(table, WEAR_LAWS, select_law_class(table, WEAR_LAWS, "law"))
 
 
 def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:
-    """Read the wear law of the ball from the table [wear] of a file; None without `ball_coefficient`.
+    """Read the wear law of the ball from the table [wear] of a file; None for a ball without wear.
 
     Raises
     ------
     ValueError
         A law that does not wear balls, or as `read_wear_law`.
     """
-    law = select_law(table, WEAR_LAWS, "law")
+    law = select_law_class(table, WEAR_LAWS, "law")
     if BALL_COEFFICIENT not in table:
         return None
     if not law.wears_balls:
-        names = ", ".join(repr(name) for name, known in WEAR_LAWS.items() if known.wears_balls)
+        names = ", ".join(repr(name) for name, registered_law in WEAR_LAWS.items() if registered_law.wears_balls)
         raise ValueError(f"{BALL_COEFFICIENT} is not allowed with the law {law.name!r}; it belongs to {names}")
     return read_law(table, WEAR_LAWS, law, keys={COEFFICIENT: BALL_COEFFICIENT})
 

@@ -11,7 +11,7 @@ from ..core.arrays import Numbers
 from ..core.deprecation import renamed_names
 from .information import QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
 from .misfit import FitResult, Misfit
-from .search import minimise
+from .search import minimise_misfit
 from .unknowns import Unknown
 
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies
@@ -28,7 +28,7 @@ _LIMIT_TOLERANCE = 1e-9  # distance from the end of a range, in deviations of th
 
 
 def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, Information]:
-    """Compute the 95 % bands of all unknowns, with uncertainties widened by the observed scatter.
+    """Compute the 95 % bands of all unknowns; excessive scatter of the data widens the uncertainties.
 
     The factor is Birge's ratio, the root of χ² over the degrees of freedom, if above 1. Student's quantile
     replaces the normal quantile if the probability of the scatter is below 5 %.
@@ -51,62 +51,73 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
     ----------
     Birge 1932, Phys. Rev. 40, 207; Particle Data Group 2024, Phys. Rev. D 110, 030001, section 5.2.2.
     """
-    factor = scatter_ratio(misfit, best)
-    if factor > 1:
-        misfit = replace(misfit, widening=factor)
-        best = replace(minimise(misfit, best.theta), rivals=best.rivals)
-    quantile = _band_quantile(factor, misfit.freedom)
-    rises = (quantile**2, (quantile * QUANTILE_99 / QUANTILE_95) ** 2)
+    widening_factor = scatter_ratio(misfit, best)
+    if widening_factor > 1:
+        misfit = replace(misfit, widening=widening_factor)
+        best = replace(minimise_misfit(misfit, best.theta), rivals=best.rivals)
+    quantile = _band_half_width(widening_factor, misfit.freedom)
+    chi_squared_limits = (quantile**2, (quantile * QUANTILE_99 / QUANTILE_95) ** 2)
     for _ in range(_MAX_RESTARTS):
-        rivals = [rival for rival in best.rivals if misfit.costs(rival[None])[0] < best.cost + rises[0] / 2]
-        profiles = profile_ends(misfit, [best.theta, *rivals], best.cost, rises)
+        rivals = [
+            rival for rival in best.rivals if misfit.costs(rival[None])[0] < best.cost + chi_squared_limits[0] / 2
+        ]
+        profiles = profile_ends(misfit, [best.theta, *rivals], best.cost, chi_squared_limits)
         if profiles.cost > best.cost - _MIN_DECREASE:
             break
-        best = replace(minimise(misfit, profiles.lowest), rivals=best.rivals)
-    rows = enumerate(zip(misfit.transform.unknowns, *profiles.ends, strict=True))
-    intervals = tuple(_combine_ends(index, *row) for index, row in rows)
-    matrix = misfit.fisher_information(best.theta)
-    return misfit, best, Information(misfit.transform, best.theta, matrix, intervals, quantile)
+        best = replace(minimise_misfit(misfit, profiles.lowest), rivals=best.rivals)
+    unknowns_and_ends = enumerate(zip(misfit.transform.unknowns, *profiles.ends, strict=True))
+    intervals = tuple(_make_interval(index, *unknown_and_ends) for index, unknown_and_ends in unknowns_and_ends)
+    fisher_matrix = misfit.fisher_information(best.theta)
+    return misfit, best, Information(misfit.transform, best.theta, fisher_matrix, intervals, quantile)
 
 
-def _combine_ends(
-    index: int, unknown: Unknown, band: tuple[ProfileEnd, ProfileEnd], wide: tuple[ProfileEnd, ProfileEnd]
+def _make_interval(
+    index: int, unknown: Unknown, ends_95: tuple[ProfileEnd, ProfileEnd], ends_99: tuple[ProfileEnd, ProfileEnd]
 ) -> Interval:
-    """Make the interval of an unknown from the ends of its 95 % band and its 99 % interval.
+    """Make the interval of an unknown from the ends of its 95 % interval and of its 99 % interval.
 
     The 99 % interval may be open.
     """
-    ends = zip(wide, (-1, 1), strict=True)
-    closed = all(end.closed or unknown.is_physical(side, float(end.theta[index])) for end, side in ends)
-    return Interval(*band, closed)
+    ends_and_sides = zip(ends_99, (-1, 1), strict=True)
+    closed = all(end.closed or unknown.is_physical(side, float(end.theta[index])) for end, side in ends_and_sides)
+    return Interval(*ends_95, closed)
 
 
 def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
-    """Compute the ratio of observed scatter to stated uncertainties, at least 1.
+    """Compute the ratio of the scatter of the data to their stated uncertainties, at least 1.
 
     This is the most likely factor for the distribution of the scatter, with the degrees of freedom as the number of
     values. For a normal scatter it is the root of χ² over the degrees of freedom.
     """
     from scipy.optimize import brentq
 
-    z = misfit.standardised_residuals(misfit.forward.results_at(misfit.transform.to_values(best.theta[None]))[0])
-    z = numpy.where(misfit.saturated, numpy.minimum(z, 0.0), z)
+    residuals = misfit.standardised_residuals(
+        misfit.forward.results_at(misfit.transform.to_values(best.theta[None]))[0]
+    )
+    residuals = numpy.where(misfit.saturated, numpy.minimum(residuals, 0.0), residuals)
 
-    def excess(factor: float) -> float:
-        """Compute the excess of the sum of squares over the degrees of freedom; 0 at the most likely factor."""
-        u = z / factor
-        return float(numpy.sum(u * misfit.scatter.misfit(u) * misfit.scatter.slope(u))) - misfit.freedom
+    def excess_of_squares(factor: float) -> float:
+        """Compute the sum of squared residuals minus the degrees of freedom, for a factor on uncertainties."""
+        scaled_residuals = residuals / factor
+        return (
+            float(
+                numpy.sum(
+                    scaled_residuals * misfit.scatter.misfit(scaled_residuals) * misfit.scatter.slope(scaled_residuals)
+                )
+            )
+            - misfit.freedom
+        )
 
-    if misfit.freedom <= 0 or excess(1.0) <= 0:
+    if misfit.freedom <= 0 or excess_of_squares(1.0) <= 0:
         return 1.0
     upper = 2.0
-    while excess(upper) > 0:
+    while excess_of_squares(upper) > 0:
         upper *= 2
-    return float(brentq(excess, 1.0, upper, rtol=1e-6))
+    return float(brentq(excess_of_squares, 1.0, upper, rtol=1e-6))
 
 
-def _band_quantile(factor: float, freedom: int) -> float:
-    """Return the half width of a 95 % band in standard deviations.
+def _band_half_width(factor: float, freedom: int) -> float:
+    """Compute the half width of a 95 % band in standard deviations, by Student's or the normal distribution.
 
     It is Student's quantile for an improbably large scatter, else the normal quantile.
     """
@@ -118,7 +129,7 @@ def _band_quantile(factor: float, freedom: int) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Profiles:
-    """Ends of all profile likelihood intervals, and the best point found on the way.
+    """Ends of all profile likelihood intervals, and the best point of the search for them.
 
     Attributes
     ----------
@@ -136,8 +147,8 @@ class Profiles:
 
 
 @dataclass(eq=False)
-class _Path:
-    """State of the search for one end of a profile interval."""
+class _EndSearch:
+    """State of the search for one end of a profile likelihood interval."""
 
     index: int
     side: int
@@ -149,8 +160,8 @@ class _Path:
 
 
 @dataclass(frozen=True, eq=False)
-class _Point:
-    """Quadratic approximation of χ² about a point of a path."""
+class _QuadraticModel:
+    """Quadratic approximation of χ² about the present point of a search path."""
 
     rise: float
     gradient: Numbers
@@ -158,7 +169,7 @@ class _Point:
 
 
 def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: Sequence[float]) -> Profiles:
-    """Find both ends of the profile likelihood interval of each unknown.
+    """Find both ends of the profile likelihood interval of each unknown, for each limit on the rise of χ².
 
     All ends are computed together: an iteration needs one array call of the model.
 
@@ -178,66 +189,75 @@ def profile_ends(misfit: Misfit, starts: Sequence[Numbers], cost: float, rises: 
     """
     indices = range(len(starts[0]))
     paths = [
-        _Path(index, side, rise, start, start)
+        _EndSearch(index, side, rise, start, start)
         for rise in rises
         for index in indices
         for side in (-1, 1)
         for start in starts
     ]
     low, high = misfit.transform.low, misfit.transform.high
-    lowest, least = starts[0], cost
+    lowest, least_cost = starts[0], cost
     for _ in range(_MAX_ITERATIONS):
         active = [path for path in paths if path.end is None]
         if not active:
             break
         residuals, slopes = misfit.residuals_and_slopes(numpy.stack([path.theta for path in active]))
         costs = numpy.nan_to_num(numpy.sum(residuals**2, axis=1) / 2, nan=numpy.inf)
-        if costs.min() < least:
-            lowest, least = active[int(costs.argmin())].theta, float(costs.min())
+        if costs.min() < least_cost:
+            lowest, least_cost = active[int(costs.argmin())].theta, float(costs.min())
         for path, residual, slope in zip(active, residuals, slopes, strict=True):
-            _advance_path(path, residual, slope, cost, low, high)
+            _advance_end_search(path, residual, slope, cost, low, high)
     ends = iter([path.end or ProfileEnd(path.previous, False, (path.index,)) for path in paths])
-    rows = [
+    end_pairs = [
         [
             (_next_outermost_end(ends, len(starts), index, -1), _next_outermost_end(ends, len(starts), index, 1))
             for index in indices
         ]
         for _ in rises
     ]
-    return Profiles(rows, lowest, least)
+    return Profiles(end_pairs, lowest, least_cost)
 
 
-def _next_outermost_end(ends: Iterator[ProfileEnd], count: int, index: int, side: int) -> ProfileEnd:
-    """Return the outermost of the next `count` ends, one for each start."""
-    return max([next(ends) for _ in range(count)], key=lambda end: side * float(end.theta[index]))
+def _next_outermost_end(ends: Iterator[ProfileEnd], start_count: int, index: int, side: int) -> ProfileEnd:
+    """Return the outermost of the next `start_count` interval ends, one for each starting point."""
+    return max([next(ends) for _ in range(start_count)], key=lambda end: side * float(end.theta[index]))
 
 
-def _limiting_unknowns(path: _Path, point: _Point, move: Numbers, low: Numbers, high: Numbers) -> tuple[int, ...]:
-    """Find the other unknowns whose range limits an interval, at its end.
+def _limiting_unknowns(
+    path: _EndSearch, point: _QuadraticModel, theta_step: Numbers, low: Numbers, high: Numbers
+) -> tuple[int, ...]:
+    """Find the other unknowns whose search range limits an interval at its end.
 
     The gradient of χ² points outward there.
     """
-    theta = numpy.clip(path.theta + move, low, high)
-    new_gradient = point.gradient + point.hessian @ move
-    outward = _is_limited_by_range(theta, new_gradient, low, high)
-    inner = set(numpy.flatnonzero(~outward).tolist()) - {path.index}
-    at_limit = [index for index in numpy.flatnonzero(outward).tolist() if index != path.index]
-    gains = {index: _misfit_decrease(point.hessian, new_gradient, [*inner, index]) for index in at_limit}
-    return tuple(index for index, gain in gains.items() if gain > _MIN_LIMIT_GAIN * path.rise)
+    theta = numpy.clip(path.theta + theta_step, low, high)
+    new_gradient = point.gradient + point.hessian @ theta_step
+    limited_mask = _mask_limited_by_range(theta, new_gradient, low, high)
+    inner_indices = set(numpy.flatnonzero(~limited_mask).tolist()) - {path.index}
+    at_limit = [index for index in numpy.flatnonzero(limited_mask).tolist() if index != path.index]
+    misfit_decreases = {
+        index: _chi_squared_decrease(point.hessian, new_gradient, [*inner_indices, index]) for index in at_limit
+    }
+    return tuple(index for index, decrease in misfit_decreases.items() if decrease > _MIN_LIMIT_GAIN * path.rise)
 
 
-def _is_limited_by_range(theta: Numbers, gradient: Numbers, low: Numbers, high: Numbers) -> Numbers:
-    """Return a mask of the unknowns at an end of their range beyond which χ² would decrease."""
+def _mask_limited_by_range(theta: Numbers, gradient: Numbers, low: Numbers, high: Numbers) -> Numbers:
+    """Return a mask of the unknowns at an end of their range, beyond which χ² would decrease."""
     return ((theta - low < _LIMIT_TOLERANCE) & (gradient > 0)) | ((high - theta < _LIMIT_TOLERANCE) & (gradient < 0))
 
 
-def _misfit_decrease(hessian: Numbers, gradient: Numbers, free: list[int]) -> float:
-    """Compute the decrease of χ² to its minimum over the free unknowns, in the quadratic approximation."""
-    return float(gradient[free] @ numpy.linalg.solve(hessian[numpy.ix_(free, free)], gradient[free]))
+def _chi_squared_decrease(hessian: Numbers, gradient: Numbers, free_indices: list[int]) -> float:
+    """Compute the decrease of χ² if the free unknowns minimise its quadratic approximation."""
+    return float(
+        gradient[free_indices]
+        @ numpy.linalg.solve(hessian[numpy.ix_(free_indices, free_indices)], gradient[free_indices])
+    )
 
 
-def _advance_path(path: _Path, residual: Numbers, slope: Numbers, best: float, low: Numbers, high: Numbers) -> None:
-    """Compute the next Newton step of a path, or cut the last step to a quarter if the model failed."""
+def _advance_end_search(
+    path: _EndSearch, residual: Numbers, slope: Numbers, best_cost: float, low: Numbers, high: Numbers
+) -> None:
+    """Advance a search path by a Newton step; cut its last step to a quarter if the model failed there."""
     if not (numpy.isfinite(residual).all() and numpy.isfinite(slope).all()):
         path.step /= 4
         path.theta = path.previous + (path.theta - path.previous) / 4
@@ -246,57 +266,67 @@ def _advance_path(path: _Path, residual: Numbers, slope: Numbers, best: float, l
         return
     theta = path.theta
     hessian = slope.T @ slope + _DAMPING * numpy.eye(len(theta))
-    point = _Point(float(residual @ residual) - 2 * best, slope.T @ residual, hessian)
-    move, excess, gain = _newton_step(path, point, low, high)
-    limit = high[path.index] - theta[path.index] if path.side > 0 else theta[path.index] - low[path.index]
+    point = _QuadraticModel(float(residual @ residual) - 2 * best_cost, slope.T @ residual, hessian)
+    theta_step, profile_rise, decrease = _newton_step(path, point, low, high)
+    distance_to_range_end = (
+        high[path.index] - theta[path.index] if path.side > 0 else theta[path.index] - low[path.index]
+    )
     path.previous = theta
-    others_fitted = gain < _RELATIVE_TOLERANCE * path.rise
-    if others_fitted and abs(excess - path.rise) < _RELATIVE_TOLERANCE * path.rise:
-        end = numpy.clip(theta + move, low, high)
-        path.end = ProfileEnd(end, True, _limiting_unknowns(path, point, move, low, high))
-    elif others_fitted and limit < _LIMIT_TOLERANCE and excess < path.rise:
+    others_fitted = decrease < _RELATIVE_TOLERANCE * path.rise
+    if others_fitted and abs(profile_rise - path.rise) < _RELATIVE_TOLERANCE * path.rise:
+        end = numpy.clip(theta + theta_step, low, high)
+        path.end = ProfileEnd(end, True, _limiting_unknowns(path, point, theta_step, low, high))
+    elif others_fitted and distance_to_range_end < _LIMIT_TOLERANCE and profile_rise < path.rise:
         limits = _limiting_unknowns(path, point, numpy.zeros(len(theta)), low, high)
         path.end = ProfileEnd(theta, False, (path.index, *limits))
     else:
-        path.step = max(path.step / 2, _MIN_CURVED_STEP) if gain > path.rise else path.step
-        path.theta = numpy.clip(theta + move, low, high)
+        path.step = max(path.step / 2, _MIN_CURVED_STEP) if decrease > path.rise else path.step
+        path.theta = numpy.clip(theta + theta_step, low, high)
 
 
-def _newton_step(path: _Path, point: _Point, low: Numbers, high: Numbers) -> tuple[Numbers, float, float]:
-    """Compute the Newton step towards the end of a profile interval.
+def _newton_step(path: _EndSearch, point: _QuadraticModel, low: Numbers, high: Numbers) -> tuple[Numbers, float, float]:
+    """Compute the Newton step towards an interval end: change of theta, rise of χ² and possible decrease.
 
     Returns the step, the rise of χ² on the profile, and the gain.
 
     The other unknowns minimise χ² within their ranges.
     """
     index, theta = path.index, path.theta
-    fixed = _is_limited_by_range(theta, point.gradient, low, high)
-    fixed[index] = True
-    shift = numpy.zeros(len(theta))
+    fixed_mask = _mask_limited_by_range(theta, point.gradient, low, high)
+    fixed_mask[index] = True
+    range_shift = numpy.zeros(len(theta))
     while True:
-        new_gradient = point.gradient + point.hessian @ shift
-        level = point.rise + float(shift @ (point.gradient + new_gradient))
-        free = numpy.flatnonzero(~fixed)
-        sides = numpy.stack([new_gradient[free], point.hessian[free, index]], axis=1)
-        solution = numpy.linalg.solve(point.hessian[numpy.ix_(free, free)], sides) if len(free) else sides
-        gain = float(new_gradient[free] @ solution[:, 0])
-        slope, curvature = (
-            numpy.array([new_gradient[index], point.hessian[index, index]]) - point.hessian[index, free] @ solution
+        new_gradient = point.gradient + point.hessian @ range_shift
+        shifted_rise = point.rise + float(range_shift @ (point.gradient + new_gradient))
+        free_indices = numpy.flatnonzero(~fixed_mask)
+        right_sides = numpy.stack([new_gradient[free_indices], point.hessian[free_indices, index]], axis=1)
+        solution = (
+            numpy.linalg.solve(point.hessian[numpy.ix_(free_indices, free_indices)], right_sides)
+            if len(free_indices)
+            else right_sides
         )
-        along = 0.0
-        if gain < path.rise:  # χ² rises by 2 slope δ + curvature δ² along the profile
-            root = max(slope * slope + curvature * (path.rise - level + gain), 0.0) ** 0.5
-            along = float(numpy.clip((path.side * root - slope) / curvature, -path.step, path.step))
-        along = float(numpy.clip(theta[index] + along, low[index], high[index]) - theta[index])
-        move = shift.copy()
-        move[index] = along
-        move[free] = -solution[:, 0] - solution[:, 1] * along
-        beyond = numpy.where(fixed, 0.0, numpy.maximum(low - theta - move, theta + move - high))
-        worst = int(numpy.argmax(beyond))
-        if beyond[worst] <= 0:
-            return move, level - gain, gain
-        fixed[worst] = True
-        shift[worst] = numpy.clip(theta[worst] + move[worst], low[worst], high[worst]) - theta[worst]
+        decrease = float(new_gradient[free_indices] @ solution[:, 0])
+        slope, curvature = (
+            numpy.array([new_gradient[index], point.hessian[index, index]])
+            - point.hessian[index, free_indices] @ solution
+        )
+        index_step = 0.0
+        if decrease < path.rise:  # χ² rises by 2 slope δ + curvature δ² along the profile
+            square_root = max(slope * slope + curvature * (path.rise - shifted_rise + decrease), 0.0) ** 0.5
+            index_step = float(numpy.clip((path.side * square_root - slope) / curvature, -path.step, path.step))
+        index_step = float(numpy.clip(theta[index] + index_step, low[index], high[index]) - theta[index])
+        theta_step = range_shift.copy()
+        theta_step[index] = index_step
+        theta_step[free_indices] = -solution[:, 0] - solution[:, 1] * index_step
+        range_excess = numpy.where(fixed_mask, 0.0, numpy.maximum(low - theta - theta_step, theta + theta_step - high))
+        worst_index = int(numpy.argmax(range_excess))
+        if range_excess[worst_index] <= 0:
+            return theta_step, shifted_rise - decrease, decrease
+        fixed_mask[worst_index] = True
+        range_shift[worst_index] = (
+            numpy.clip(theta[worst_index] + theta_step[worst_index], low[worst_index], high[worst_index])
+            - theta[worst_index]
+        )
 
 
 __getattr__ = renamed_names(__name__, {"banded": "compute_bands"})

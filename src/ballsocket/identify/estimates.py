@@ -37,11 +37,11 @@ class Estimate:
 
     @property
     def identifiable(self) -> bool:
-        """True if the data identify the unknown, or if it has a stated distribution."""
+        """True if the data identify the unknown, or if its prior is a stated distribution."""
         return self.value == self.value
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the estimate for JSON; the value is None if unidentifiable."""
+        """Return the estimate as a dictionary for JSON; the value of an unidentifiable unknown is None."""
         value = self.value if self.identifiable else None
         return {
             "name": self.name,
@@ -76,11 +76,11 @@ class Product:
 
     @property
     def name(self) -> str:
-        """Name of the product, such as "clearance · liner_young"."""
+        """Name of the product from its factors, such as "clearance · liner_young"."""
         return " · ".join(name if power == 1 else f"{name}^{power:.3g}" for name, power in self.exponents.items())
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the product for JSON."""
+        """Return the product as a dictionary for JSON."""
         return {
             "name": self.name,
             "exponents": self.exponents,

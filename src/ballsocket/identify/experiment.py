@@ -50,7 +50,7 @@ class Candidate:
     order: float = 0.0
 
     def measured(self, value: float) -> Measured:
-        """Convert the candidate to a data set with an assumed measured value."""
+        """Return a data set for this candidate, with an assumed measured value."""
         load: dict[str, Any] = {} if self.force is None else {"force": self.force}
         return Measured(
             quantity=self.quantity,
@@ -85,7 +85,7 @@ class Gain:
     settles = RenamedAttribute("identifies")
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the gain for JSON."""
+        """Return the information gain of the candidate as a dictionary for JSON."""
         return {
             "quantity": self.candidate.quantity,
             "force": self.candidate.force,
@@ -135,13 +135,13 @@ class Experiment:
         return tuple(name for name in STANDARD_QUANTITIES if name in sufficient)
 
     def summary(self) -> list[dict[str, Any]]:
-        """Return a list of the gains for JSON."""
+        """Return the information gains of all candidates as a list for JSON."""
         return [gain.summary() for gain in self.gains]
 
 
 @renamed_arguments(found="fitted")
 def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = None) -> Experiment:
-    """Compute the expected information gains of candidate measurements.
+    """Compute the expected information gain of each candidate for the next measurement.
 
     Parameters
     ----------
@@ -158,23 +158,28 @@ def experiment(fitted: FittedModel, candidates: Iterable[Candidate] | None = Non
     ----------
     Chaloner & Verdinelli 1995, Stat. Sci. 10, 273.
     """
-    chosen = standard_candidates(fitted) if candidates is None else tuple(candidates)
-    rows = _candidate_slopes(fitted, chosen)
-    valid = [(candidate, row) for candidate, row in zip(chosen, rows, strict=True) if numpy.isfinite(row).all()]
-    gains = [_compute_gain(fitted, candidate, row) for candidate, row in valid]
+    candidate_list = standard_candidates(fitted) if candidates is None else tuple(candidates)
+    slope_rows = _candidate_slopes(fitted, candidate_list)
+    valid = [
+        (candidate, slopes)
+        for candidate, slopes in zip(candidate_list, slope_rows, strict=True)
+        if numpy.isfinite(slopes).all()
+    ]
+    gains = [_compute_gain(fitted, candidate, slopes) for candidate, slopes in valid]
     return Experiment(tuple(sorted(gains, key=lambda gain: -gain.bits)), fitted.information.unidentifiable)
 
 
 def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
-    """List the default candidate measurements; see `experiment`."""
+    """List the default candidates for the next measurement: the standard quantities at several loads."""
     forces = _candidate_forces(fitted)
-    pairs = [
+    quantities_and_forces = [
         (quantity, None) if quantity in OF_JOINT else (quantity, force)
         for quantity in STANDARD_QUANTITIES
         for force in forces
     ]
     candidates = [
-        Candidate(quantity, 1.0, force, *_choose_machine(fitted, quantity)) for quantity, force in dict.fromkeys(pairs)
+        Candidate(quantity, 1.0, force, *_choose_indentation_machine(fitted, quantity))
+        for quantity, force in dict.fromkeys(quantities_and_forces)
     ]
     values = _candidate_results(fitted, candidates)
     return tuple(
@@ -185,62 +190,70 @@ def standard_candidates(fitted: FittedModel) -> tuple[Candidate, ...]:
 
 
 def _candidate_forces(fitted: FittedModel) -> list[float]:
-    """Return equally spaced forces in N up to 1.5 times the largest force of the data."""
-    rows = [measured.loads for measured in fitted.data if measured.load == "force"]
-    rows += [row for measured, row in zip(fitted.data, fitted.results, strict=True) if measured.quantity == "force"]
-    largest = float(numpy.max(numpy.concatenate(rows), initial=0.0)) if rows else 0.0
+    """Return equally spaced candidate forces in N, up to 1.5 times the largest force of the data."""
+    force_arrays = [measured.loads for measured in fitted.data if measured.load == "force"]
+    force_arrays += [
+        forces for measured, forces in zip(fitted.data, fitted.results, strict=True) if measured.quantity == "force"
+    ]
+    largest = float(numpy.max(numpy.concatenate(force_arrays), initial=0.0)) if force_arrays else 0.0
     return numpy.linspace(0.0, _LOAD_FACTOR * (largest or _DEFAULT_FORCE), _N_LOADS + 1)[1:].tolist()
 
 
-def _choose_machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
-    """Choose the machine of the present indentations, and count its next reading."""
-    orders = {measured.machine: measured.order for measured in fitted.data if measured.machine is not IDEAL_MACHINE}
-    if quantity != "indentation" or not orders:
+def _choose_indentation_machine(fitted: FittedModel, quantity: str) -> tuple[Machine, float]:
+    """Choose the machine of the measured indentations, and the number of its next reading."""
+    reading_numbers = {
+        measured.machine: measured.order for measured in fitted.data if measured.machine is not IDEAL_MACHINE
+    }
+    if quantity != "indentation" or not reading_numbers:
         return IDEAL_MACHINE, 0.0
-    machine, order = next(iter(orders.items()))
-    return machine, float(order.max()) + 1
+    machine, numbers = next(iter(reading_numbers.items()))
+    return machine, float(numbers.max()) + 1
 
 
 def _estimate_uncertainty(fitted: FittedModel, quantity: str, value: float) -> float:
-    """Estimate the uncertainty of a new measurement from those of the data.
+    """Estimate the uncertainty of a new measurement from the uncertainties of the data.
 
     It is absolute or relative, whichever varies less; 2 % for a new quantity.
     """
-    rows = [(measured.uncertainty, abs(measured.values)) for measured in fitted.data if measured.quantity == quantity]
-    if not rows:
+    uncertainties_and_values = [
+        (measured.uncertainty, abs(measured.values)) for measured in fitted.data if measured.quantity == quantity
+    ]
+    if not uncertainties_and_values:
         return _RELATIVE_UNCERTAINTY * value
-    absolute, values = (numpy.concatenate(columns) for columns in zip(*rows, strict=True))
+    absolute, values = (numpy.concatenate(columns) for columns in zip(*uncertainties_and_values, strict=True))
     relative = absolute / numpy.maximum(values, 1e-300)
-    constant = numpy.std(numpy.log(absolute)) <= numpy.std(numpy.log(relative))
-    return float(numpy.median(absolute) if constant else numpy.median(relative) * value)
+    use_absolute = numpy.std(numpy.log(absolute)) <= numpy.std(numpy.log(relative))
+    return float(numpy.median(absolute) if use_absolute else numpy.median(relative) * value)
 
 
 def _candidate_results(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
-    """Compute the model results of the candidates at the best point: (candidates,)."""
+    """Compute the model results of all candidates at the best-fit values: (candidates,)."""
     forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
     return forward.results_at(numpy.atleast_2d(fitted.transform.to_values(fitted.best.theta)))[0]
 
 
 def _candidate_slopes(fitted: FittedModel, candidates: Sequence[Candidate]) -> Numbers:
-    """Compute the derivatives of the candidates' results with respect to theta: (candidates, unknowns)."""
+    """Compute the derivatives of all candidates' results by theta: (candidates, unknowns)."""
     forward = replace(fitted.misfit.forward, data=tuple(candidate.measured(1.0) for candidate in candidates))
     return fitted.misfit.slopes(forward, fitted.transform, fitted.best.theta)[1]
 
 
 def _compute_gain(fitted: FittedModel, candidate: Candidate, slopes: Numbers) -> Gain:
-    """Compute the information gain of a candidate by a rank-one update of the covariance."""
-    before = fitted.information.covariance
-    row = slopes * (fitted.misfit.scatter.information**0.5 / candidate.uncertainty)
-    covariance = before @ row
-    added = float(row @ covariance)
-    after = numpy.diagonal(before) - covariance**2 / (1 + added)
+    """Compute the information gain of a candidate from the covariance before and after it."""
+    old_covariance = fitted.information.covariance
+    weighted_slopes = slopes * (fitted.misfit.scatter.information**0.5 / candidate.uncertainty)
+    cross_covariance = old_covariance @ weighted_slopes
+    variance_ratio = float(weighted_slopes @ cross_covariance)
+    new_variances = numpy.diagonal(old_covariance) - cross_covariance**2 / (1 + variance_ratio)
     names = fitted.transform.names
-    narrow = [name for index, name in enumerate(names) if after[index] ** 0.5 < MAX_WIDTH_RATIO]
+    narrow_unknowns = [name for index, name in enumerate(names) if new_variances[index] ** 0.5 < MAX_WIDTH_RATIO]
     return Gain(
         candidate=candidate,
-        bits=log(1 + added) / log(4),
-        uncertainty_ratio=dict(zip(names, numpy.sqrt(after / numpy.diagonal(before)).tolist(), strict=True)),
-        identifies=tuple(name for name in fitted.information.unidentifiable if name in narrow),
+        bits=log(1 + variance_ratio) / log(4),
+        uncertainty_ratio=dict(
+            zip(names, numpy.sqrt(new_variances / numpy.diagonal(old_covariance)).tolist(), strict=True)
+        ),
+        identifies=tuple(name for name in fitted.information.unidentifiable if name in narrow_unknowns),
     )
 
 

@@ -15,7 +15,7 @@ from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..problem import Joint
 from ..studies.parameters import varied
 from .estimates import Estimate
-from .forward_model import insert_numbers, split_numbers
+from .forward_model import insert_model_numbers, split_joint_and_model_values
 from .information import Information
 from .measured import Measured
 from .misfit import FitResult, Misfit
@@ -44,22 +44,22 @@ class FittedModel:
 
     @property
     def model(self) -> Model:
-        """Contact model with the best-fit values of its numbers."""
-        return insert_numbers(self.misfit.forward.model, split_numbers(self.point)[1])
+        """Contact model, whose parameters have their best-fit values."""
+        return insert_model_numbers(self.misfit.forward.model, split_joint_and_model_values(self.point)[1])
 
     @property
     def data(self) -> tuple[Measured, ...]:
-        """Data sets of the fit."""
+        """Data sets to which the model is fitted."""
         return self.misfit.forward.data
 
     @property
     def transform(self) -> ParameterTransform:
-        """Transform between values of the unknowns and scaled parameters theta."""
+        """Transform between values of the unknowns and scaled parameters theta of the search."""
         return self.misfit.transform
 
     @cached_property
     def point(self) -> dict[str, float]:
-        """Best-fit values by unknown, in mm, N, MPa, rad.
+        """Best-fit value of each unknown, by name, in mm, N, MPa and rad.
 
         Other values of an unidentifiable unknown fit the data as well.
         """
@@ -68,23 +68,23 @@ class FittedModel:
 
     @property
     def joint(self) -> Joint:
-        """Joint with the best-fit values of its numbers."""
-        return varied(self.misfit.forward.joint, split_numbers(self.point)[0])[0]
+        """Joint, whose numbers have their best-fit values."""
+        return varied(self.misfit.forward.joint, split_joint_and_model_values(self.point)[0])[0]
 
     @cached_property
     def estimates(self) -> dict[str, Estimate]:
-        """Estimates with 95 % bands, by unknown; NaN for the value of an unidentifiable unknown."""
-        return {unknown.name: self._estimate(index) for index, unknown in enumerate(self.transform.unknowns)}
+        """Estimate with 95 % band of each unknown, by name; the value is NaN if unidentifiable."""
+        return {unknown.name: self._make_estimate(index) for index, unknown in enumerate(self.transform.unknowns)}
 
-    def _estimate(self, index: int) -> Estimate:
-        """Make the estimate of one unknown from its profile interval."""
+    def _make_estimate(self, index: int) -> Estimate:
+        """Make the `Estimate` of one unknown from its profile interval."""
         unknown, information = self.transform.unknowns[index], self.information
         interval, name = information.intervals[index], unknown.name
-        ends = (interval.low, interval.high)
-        low, high = (_snap_to_range(unknown, self.transform.to_values(end.theta)[index]) for end in ends)
+        interval_ends = (interval.low, interval.high)
+        low, high = (_snap_to_range_end(unknown, self.transform.to_values(end.theta)[index]) for end in interval_ends)
         value = float("nan") if name in information.unidentifiable else self.point[name]
-        width, limits = information.deviations[name], information.limited_by(name)
-        return Estimate(name, unknown.quantity.unit, value, low, high, width, limits)
+        band_width_ratio, limiting_names = information.deviations[name], information.limited_by(name)
+        return Estimate(name, unknown.quantity.unit, value, low, high, band_width_ratio, limiting_names)
 
     def __getitem__(self, name: str) -> Estimate:
         key = name.replace(".", "_")
@@ -92,13 +92,13 @@ class FittedModel:
 
     @cached_property
     def results(self) -> tuple[Numbers, ...]:
-        """Model results at the best point, one array per data set."""
+        """Model results for the best-fit values, one array for each data set."""
         results = self.misfit.forward.results_at(self.transform.to_values(self.best.theta[None]))[0]
         return self._split_by_data_set(results)
 
     @renamed_arguments(place="index")
     def curve(self, index: int, count: int = 60) -> tuple[Numbers, Numbers]:
-        """Compute the fitted curve over the load range of a data set.
+        """Compute model results at equally spaced loads over the load range of a data set.
 
         The data set has no angles.
 
@@ -119,38 +119,40 @@ class FittedModel:
         measured = self.data[index]
         loads = numpy.linspace(measured.loads.min(), measured.loads.max(), count)
         changes: dict[str, Any] = {measured.load: loads, "values": numpy.ones(count), "saturation": inf}
-        ascending = numpy.argsort(measured.loads)
-        order = numpy.interp(loads, measured.loads[ascending], measured.order[ascending])
-        row = replace(measured, uncertainty=1.0, load_uncertainty=0.0, order=order, **changes)
-        forward = replace(self.misfit.forward, data=(row,))
+        load_order = numpy.argsort(measured.loads)
+        reading_numbers = numpy.interp(loads, measured.loads[load_order], measured.order[load_order])
+        curve_data = replace(measured, uncertainty=1.0, load_uncertainty=0.0, order=reading_numbers, **changes)
+        forward = replace(self.misfit.forward, data=(curve_data,))
         return loads, forward.results_at(self.transform.to_values(self.best.theta[None]))[0]
 
     @property
     def residuals(self) -> tuple[Numbers, ...]:
-        """Residuals (value minus result, over the stated uncertainty), one array per data set.
+        """Measured values minus model results, divided by the stated uncertainties; one array per data set.
 
         For a saturated value it is the shortfall.
         """
-        z = self.misfit.widening * self.misfit.standardised_residuals(numpy.concatenate(self.results))
-        return self._split_by_data_set(numpy.where(self.misfit.saturated, numpy.maximum(-z, 0.0), -z))
+        standardised = self.misfit.widening * self.misfit.standardised_residuals(numpy.concatenate(self.results))
+        return self._split_by_data_set(
+            numpy.where(self.misfit.saturated, numpy.maximum(-standardised, 0.0), -standardised)
+        )
 
-    def _split_by_data_set(self, row: Numbers) -> tuple[Numbers, ...]:
-        """Split an array (data,) into one array per data set."""
-        return tuple(numpy.split(row, numpy.cumsum([len(measured) for measured in self.data])[:-1]))
+    def _split_by_data_set(self, values: Numbers) -> tuple[Numbers, ...]:
+        """Split an array over all values (data,) into one array for each data set."""
+        return tuple(numpy.split(values, numpy.cumsum([len(measured) for measured in self.data])[:-1]))
 
     @property
     def freedom(self) -> int:
-        """Degrees of freedom: number of values minus unknowns without a stated distribution."""
+        """Number of degrees of freedom: values minus unknowns without a stated distribution."""
         return self.misfit.freedom
 
     @property
     def spread(self) -> float:
-        """Birge's ratio: root of χ² over the degrees of freedom, 1 for correct uncertainties.
+        """Birge's ratio, the root of χ² over the degrees of freedom; 1 for correct uncertainties.
 
         It is NaN without degrees of freedom.
         """
-        total = sum(float(numpy.sum(row**2)) for row in self.residuals)
-        return (total / self.freedom) ** 0.5 if self.freedom > 0 else float("nan")
+        chi_squared = sum(float(numpy.sum(residuals**2)) for residuals in self.residuals)
+        return (chi_squared / self.freedom) ** 0.5 if self.freedom > 0 else float("nan")
 
     @property
     def identifiable(self) -> bool:
@@ -158,6 +160,6 @@ class FittedModel:
         return not self.information.unidentifiable
 
 
-def _snap_to_range(unknown: Unknown, value: float) -> float:
-    """Return an end of a band, or the end of the range if both are equal within rounding."""
+def _snap_to_range_end(unknown: Unknown, value: float) -> float:
+    """Replace an end of a band by an end of the search range, if they differ only by rounding."""
     return next((end for end in (unknown.low, unknown.high) if abs(value - end) <= 1e-9 * abs(end)), float(value))

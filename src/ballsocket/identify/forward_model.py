@@ -24,17 +24,17 @@ Columns = Mapping[str, Array]
 _NEWTON_ITERATIONS = 3  # for the force of a compliant machine; its compliance is small
 
 
-def split_numbers(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Split values of unknowns into those of the joint and those of the model, by name.
+def split_joint_and_model_values(values: Mapping[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Split values of unknowns by name into numbers of the joint and numbers of the contact model.
 
     Errors of a machine are in neither.
     """
-    joint = {name: value for name, value in values.items() if name in JOINT_NUMBERS}
-    return joint, {name: value for name, value in values.items() if name in MODEL_NUMBERS}
+    joint_values = {name: value for name, value in values.items() if name in JOINT_NUMBERS}
+    return joint_values, {name: value for name, value in values.items() if name in MODEL_NUMBERS}
 
 
-def insert_numbers(model: Model, values: Mapping[str, Array]) -> Model:
-    """Return a copy of the model with new values of its numbers, by name."""
+def insert_model_numbers(model: Model, values: Mapping[str, Array]) -> Model:
+    """Return a copy of the contact model with new values of its parameters, by name."""
     for name, value in values.items():
         model = MODEL_NUMBERS[name].insert_into(model, value)
     return model
@@ -42,7 +42,7 @@ def insert_numbers(model: Model, values: Mapping[str, Array]) -> Model:
 
 @dataclass(frozen=True, eq=False)
 class ForwardModel:
-    """Forward model of an identification: results for all data from values of the unknowns.
+    """Forward model of an identification: computes results for all data from values of the unknowns.
 
     The results are in the order of the data sets.
 
@@ -63,124 +63,142 @@ class ForwardModel:
     _known_errors: dict[str, float] = field(init=False)
 
     def __post_init__(self) -> None:
-        known: dict[str, float] = {}
+        known_errors: dict[str, float] = {}
         for measured in self.data:
-            known |= measured.machine.known_errors()
-        object.__setattr__(self, "_known_errors", known)
+            known_errors |= measured.machine.known_errors()
+        object.__setattr__(self, "_known_errors", known_errors)
 
     def results_at(self, values: Array, load_perturbation: float = 0.0) -> Array:
-        """Compute the model results (points, data) from values of the unknowns (points, unknowns).
+        """Compute the model results (points, data) for values of the unknowns (points, unknowns).
 
         A result is NaN where the model has none.
 
         Values may be of any array library. `load_perturbation` is a relative change of every load.
         """
-        columns = {name: values[:, index : index + 1] for index, name in enumerate(self.names)}
-        of_joint, of_model = split_numbers(columns)
-        joint, possible = varied(self.joint, of_joint)
-        pressed = _PressedPoints(insert_numbers(self.model, of_model), joint, self._known_errors | columns)
-        rows = self._compute_rows(pressed, 1 + load_perturbation)
+        values_by_name = {name: values[:, index : index + 1] for index, name in enumerate(self.names)}
+        joint_values, model_values = split_joint_and_model_values(values_by_name)
+        joint, valid_geometry = varied(self.joint, joint_values)
+        joints_at_points = _JointsAtPoints(
+            insert_model_numbers(self.model, model_values), joint, self._known_errors | values_by_name
+        )
+        result_rows = self._compute_results(joints_at_points, 1 + load_perturbation)
         xp = arrays.namespace(values)
-        rows = [xp.broadcast_to(xp.asarray(row), (len(values), row.shape[-1])) for row in rows]
-        return arrays.where(possible, xp.concat(rows, axis=1), float("nan"))
+        result_rows = [
+            xp.broadcast_to(xp.asarray(result_row), (len(values), result_row.shape[-1])) for result_row in result_rows
+        ]
+        return arrays.where(valid_geometry, xp.concat(result_rows, axis=1), float("nan"))
 
-    def _compute_rows(self, pressed: _PressedPoints, factor: float) -> list[Array]:
-        """Compute the results of each data set.
+    def _compute_results(self, joints_at_points: _JointsAtPoints, load_factor: float) -> list[Array]:
+        """Compute the model results of each data set: one array (points, values) for each.
 
         Data sets with the same kind of load share one press.
         """
-        rows: dict[int, Array] = {}
+        results_by_index: dict[int, Array] = {}
         for kind in dict.fromkeys(measured.load for measured in self.data):
             indices = [index for index, measured in enumerate(self.data) if measured.load == kind]
-            shared = [index for index in indices if not _is_load_read_by_machine(self.data[index])]
+            shared_indices = [index for index in indices if not _is_load_read_by_machine(self.data[index])]
             if not kind:
-                rows |= {index: _read_joint_number(pressed.joint, self.data[index]) for index in indices}
+                results_by_index |= {
+                    index: _read_joint_number(joints_at_points.joint, self.data[index]) for index in indices
+                }
                 continue
-            if shared:
-                rows |= self._compute_rows_of_one_press(pressed, kind, shared, factor)
-            for index in set(indices) - set(shared):
-                rows[index] = pressed.compute_at_read_indentation(self.data[index], factor)
-        return [rows[index] for index in range(len(self.data))]
+            if shared_indices:
+                results_by_index |= self._compute_results_of_one_press(
+                    joints_at_points, kind, shared_indices, load_factor
+                )
+            for index in set(indices) - set(shared_indices):
+                results_by_index[index] = joints_at_points.compute_at_read_indentation(self.data[index], load_factor)
+        return [results_by_index[index] for index in range(len(self.data))]
 
-    def _compute_rows_of_one_press(
-        self, pressed: _PressedPoints, kind: str, indices: list[int], factor: float
+    def _compute_results_of_one_press(
+        self, joints_at_points: _JointsAtPoints, kind: str, indices: list[int], load_factor: float
     ) -> dict[int, Array]:
-        """Compute the results of data sets with the same kind of load by one press."""
-        loads = factor * numpy.concatenate([self.data[index].loads for index in indices])
-        contact, rows, start = pressed.press(kind, loads), {}, 0
+        """Compute the results of several data sets with the same kind of load by one press."""
+        loads = load_factor * numpy.concatenate([self.data[index].loads for index in indices])
+        contact, results_by_index, start = joints_at_points.press(kind, loads), {}, 0
         for index in indices:
             measured = self.data[index]
-            span = slice(start, start + len(measured))
+            value_range = slice(start, start + len(measured))
             start += len(measured)
-            rows[index] = pressed.compute_readings(contact, len(loads), measured, span)
-        return rows
+            results_by_index[index] = joints_at_points.compute_readings(contact, len(loads), measured, value_range)
+        return results_by_index
 
 
 @dataclass(frozen=True, eq=False)
-class _PressedPoints:
-    """Joints, model, errors of machines and numbers of observables at many values of the unknowns."""
+class _JointsAtPoints:
+    """Joints, contact model and other numbers at many values of the unknowns."""
 
     model: Model
     joint: Joint
     numbers: Columns
 
     def press(self, kind: str, load: Array) -> Contact | None:
-        """Compute the contacts under one kind of load; None if no point has a result."""
+        """Compute the contacts of all joints under loads of one kind; None if no point has a result."""
         load_by_kind = {kind: arrays.namespace(*self.joint.numbers()).asarray(load)}
         try:
             return self.model.press(self.joint, **load_by_kind)
         except OutsideDomainError:
             return None
 
-    def compute_readings(self, contact: Contact | None, count: int, measured: Measured, span: slice) -> Array:
-        """Compute the readings of one data set: its slice of `count` contacts plus machine errors."""
+    def compute_readings(
+        self, contact: Contact | None, contact_count: int, measured: Measured, value_range: slice
+    ) -> Array:
+        """Compute the readings of one data set: model results plus machine errors."""
         if contact is None:
             return numpy.full((1, len(measured)), numpy.nan)
-        return self._read_quantity(contact, count, measured, span) + self._added_error(measured, contact, span)
+        return self._measured_quantity_values(contact, contact_count, measured, value_range) + self._indentation_error(
+            measured, contact, value_range
+        )
 
-    def compute_at_read_indentation(self, measured: Measured, factor: float) -> Array:
-        """Compute the results at measured indentations, corrected for machine errors."""
-        zero = self._sum_errors(measured, 0.0, depends_on_force=False)
+    def compute_at_read_indentation(self, measured: Measured, load_factor: float) -> Array:
+        """Compute the results at indentations that a machine with errors has read."""
+        zero_error = self._sum_machine_errors(measured, 0.0, depends_on_force=False)
         force: Array = measured.values if measured.quantity == "force" else 0.0 * measured.values
-        contact = self.press("indentation", _clip_negative(factor * measured.loads - zero))
+        contact = self.press("indentation", _clip_negative_indentation(load_factor * measured.loads - zero_error))
         for _ in range(_NEWTON_ITERATIONS if measured.machine.depends_on_force else 0):
-            error = self._sum_errors(measured, force, depends_on_force=True)
-            contact = self.press("indentation", _clip_negative(factor * measured.loads - zero - error))
+            force_error = self._sum_machine_errors(measured, force, depends_on_force=True)
+            contact = self.press(
+                "indentation", _clip_negative_indentation(load_factor * measured.loads - zero_error - force_error)
+            )
             if contact is not None:
                 stiffness = arrays.where(arrays.isfinite(contact.stiffness), contact.stiffness, 0.0)
-                force = force - (force - contact.force) / (1 + self._sum_error_slopes(measured, force) * stiffness)
+                force = force - (force - contact.force) / (
+                    1 + self._sum_machine_error_slopes(measured, force) * stiffness
+                )
         return self.compute_readings(contact, len(measured), measured, slice(None))
 
-    def _read_quantity(self, contact: Contact, count: int, measured: Measured, span: slice) -> Array:
-        """Read the measured quantity of a data set from its slice of `count` contacts."""
+    def _measured_quantity_values(
+        self, contact: Contact, contact_count: int, measured: Measured, value_range: slice
+    ) -> Array:
+        """Return the values of the measured quantity of a data set from the computed contacts."""
         if measured.observable is not None:
             numbers = {name: self.numbers[name] for name in measured.observable.numbers}
-            return _add_point_axis(measured.observable.read(contact, **numbers))[:, span]
+            return _add_point_axis(measured.observable.read(contact, **numbers))[:, value_range]
         if measured.quantity != "pressure":
-            return _add_point_axis(getattr(contact, measured.quantity))[:, span]
-        angle = numpy.zeros(count)
-        angle[span] = measured.angle
-        return _add_point_axis(contact.pressure(arrays.namespace(contact.force).asarray(angle)))[:, span]
+            return _add_point_axis(getattr(contact, measured.quantity))[:, value_range]
+        angle = numpy.zeros(contact_count)
+        angle[value_range] = measured.angle
+        return _add_point_axis(contact.pressure(arrays.namespace(contact.force).asarray(angle)))[:, value_range]
 
-    def _added_error(self, measured: Measured, contact: Contact, span: slice) -> Array:
-        """Compute the machine error in mm that adds to the indentations of a data set; 0 for other quantities."""
+    def _indentation_error(self, measured: Measured, contact: Contact, value_range: slice) -> Array:
+        """Compute the machine error in mm of the indentations of a data set; 0 for other quantities."""
         if measured.quantity != "indentation" or not measured.machine.name:
             return 0.0
-        force = _add_point_axis(contact.force)[:, span]
-        return self._sum_errors(measured, force, depends_on_force=True) + self._sum_errors(
+        force = _add_point_axis(contact.force)[:, value_range]
+        return self._sum_machine_errors(measured, force, depends_on_force=True) + self._sum_machine_errors(
             measured, 0.0, depends_on_force=False
         )
 
-    def _sum_errors(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
-        """Sum the machine errors in mm that depend on the force, or those that do not."""
+    def _sum_machine_errors(self, measured: Measured, force: Array, *, depends_on_force: bool) -> Array:
+        """Sum the machine errors in mm: either those that depend on the force, or the others."""
         return sum(
             self.numbers[measured.machine.key(name)] * error.effect(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
             if (error.slope is not None) == depends_on_force
         )
 
-    def _sum_error_slopes(self, measured: Measured, force: Array) -> Array:
-        """Sum the derivatives of the machine errors with respect to the force, in mm/N."""
+    def _sum_machine_error_slopes(self, measured: Measured, force: Array) -> Array:
+        """Sum the derivatives of the machine errors with respect to the force in mm/N."""
         return sum(
             self.numbers[measured.machine.key(name)] * error.slope(force, measured.order)
             for name, error in MACHINE_ERRORS.items()
@@ -189,25 +207,25 @@ class _PressedPoints:
 
 
 def _is_load_read_by_machine(measured: Measured) -> bool:
-    """Check if the loads of a data set are indentations read by a machine with errors."""
+    """Check if the loads of a data set are indentations that a machine with errors has read."""
     return measured.load == "indentation" and bool(measured.machine.name)
 
 
-def _clip_negative(indentation: Array) -> Array:
-    """Replace negative indentations by 0."""
+def _clip_negative_indentation(indentation: Array) -> Array:
+    """Replace negative indentations by 0 mm."""
     return arrays.clip(indentation, 0.0, inf)
 
 
 def _add_point_axis(values: Array) -> Array:
-    """Add a leading axis of points to values that are equal for all points."""
+    """Add a leading axis of length 1 to values that are equal at all points."""
     return values[None, :] if len(values.shape) == 1 else values
 
 
 def _read_joint_number(joint: Joint, measured: Measured) -> Array:
-    """Read a measured number of the joint, repeated for each value of the data set."""
+    """Return a measured number of the joint, repeated for each value of the data set."""
     if measured.quantity in PARTS:
-        part, _, number = measured.quantity.partition("_")
-        value = getattr(getattr(joint, part), number)
+        part_name, _, field_name = measured.quantity.partition("_")
+        value = getattr(getattr(joint, part_name), field_name)
     else:
         value = getattr(joint, measured.quantity)
     if arrays.is_plain_number(value):

@@ -95,7 +95,7 @@ def identify(
     _check_counts_and_areas(sets, joint, unknowns)
     _check_observables(sets, {unknown.name for unknown in unknowns})
     forward = ForwardModel(model, joint, sets, tuple(unknown.name for unknown in unknowns))
-    uncertainty = _concatenate(measured.uncertainty for measured in sets)
+    uncertainty = _join_data_sets(measured.uncertainty for measured in sets)
     misfit = Misfit(forward, ParameterTransform(unknowns), scatter, slopes, uncertainty)
     best = find_best_fit(misfit, seed)
     uncertain_loads = any(measured.load and measured.load_uncertainty.any() for measured in sets)
@@ -106,33 +106,33 @@ def identify(
 
 
 def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
-    """Combine the uncertainties of values and loads.
+    """Combine the uncertainties of values and loads to one uncertainty for each value.
 
     The slope of the results over the load converts those of the loads.
     """
     data, values = misfit.forward.data, misfit.transform.to_values(best.theta[None])
     above, below = (misfit.forward.results_at(values, load_perturbation=side * _LOAD_STEP)[0] for side in (1, -1))
     slope = (above - below) / (2 * _LOAD_STEP)  # by ln of the load
-    of_loads = _concatenate(_relative_load_uncertainty(measured) for measured in data)
-    of_values = _concatenate(measured.uncertainty for measured in data)
+    of_loads = _join_data_sets(_relative_load_uncertainty(measured) for measured in data)
+    of_values = _join_data_sets(measured.uncertainty for measured in data)
     return numpy.hypot(of_values, numpy.where(of_loads > 0, slope * of_loads, 0.0))
 
 
 def _relative_load_uncertainty(measured: Measured) -> Numbers:
-    """Compute the relative uncertainty of the loads; 0 for a quantity of the joint."""
+    """Compute the relative uncertainty of each load of a data set; 0 for a number of the joint."""
     if not measured.load:
         return numpy.zeros(len(measured))
     loads = measured.loads
     return numpy.where(loads > 0, measured.load_uncertainty / numpy.where(loads > 0, loads, 1.0), 0.0)
 
 
-def _concatenate(rows: Iterable[Numbers]) -> Numbers:
-    """Concatenate the arrays of all data sets to one array (data,)."""
-    return numpy.concatenate(list(rows))
+def _join_data_sets(arrays: Iterable[Numbers]) -> Numbers:
+    """Join the arrays of all data sets to one array (data,)."""
+    return numpy.concatenate(list(arrays))
 
 
 def _check_data_sets(data: Any) -> tuple[Measured, ...]:
-    """Check that the data are sets of `Measured`, and return them as a tuple."""
+    """Check that all data sets are of type `Measured`, and return them as a tuple."""
     sets = tuple(data) if isinstance(data, list | tuple) else (data,)
     if not sets:
         raise ValueError("data must have at least one set of measurements, got none")
@@ -143,7 +143,7 @@ def _check_data_sets(data: Any) -> tuple[Measured, ...]:
 
 
 def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Sequence[Unknown]) -> None:
-    """Check that there are unknowns, enough values and possible areas; raise ValueError otherwise."""
+    """Check the numbers of unknowns and values, and the measured areas; ValueError if invalid."""
     if not unknowns:
         raise ValueError("free has no unknowns: name at least one with two ends, such as clearance")
     for measured in data:
@@ -158,7 +158,7 @@ def _check_counts_and_areas(data: Sequence[Measured], joint: Joint, unknowns: Se
 
 
 def _check_observables(data: Sequence[Measured], names: set[str]) -> None:
-    """Raise ValueError if a number of an observable is not an unknown, or is an unknown that no data depend on."""
+    """Check that the numbers of all custom observables are unknowns; ValueError otherwise."""
     needed = {name: measured for measured in data if measured.observable for name in measured.observable.numbers}
     for name, measured in needed.items():
         if name not in names:

@@ -32,7 +32,7 @@ _MIN_SINGULAR_VALUE = 0.5  # smallest singular value of independent unit directi
 
 @dataclass(frozen=True, eq=False)
 class ProfileEnd:
-    """One end of a profile likelihood interval.
+    """Lower or upper end of a profile likelihood interval.
 
     Attributes
     ----------
@@ -67,13 +67,13 @@ class Interval:
 
     @property
     def limiting_indices(self) -> frozenset[int]:
-        """Indices of the unknowns whose ranges limit the 95 % band."""
+        """Indices of the unknowns whose search ranges limit the 95 % interval."""
         return frozenset((*self.low.limited_by, *self.high.limited_by))
 
 
 @dataclass(frozen=True, eq=False)
 class Information:
-    """Fisher information of the data on the unknowns, with identifiability and covariance.
+    """Fisher information of the data about the unknowns, with identifiability and covariance.
 
     Attributes
     ----------
@@ -98,18 +98,18 @@ class Information:
     untold = RenamedAttribute("unidentifiable")
 
     @cached_property
-    def _eigenmodes(self) -> tuple[Numbers, Numbers]:
-        """Eigenvalues and eigenvectors of the information matrix."""
-        return _eigenmodes(self.matrix)
+    def _eigenvalues_and_vectors(self) -> tuple[Numbers, Numbers]:
+        """Eigenvalues and eigenvectors of the Fisher information matrix."""
+        return _eigenvalues_and_vectors(self.matrix)
 
     @property
     def eigenvalues(self) -> Numbers:
-        """Eigenvalues of the information matrix, in descending order."""
-        return self._eigenmodes[0]
+        """Eigenvalues of the Fisher information matrix, in descending order."""
+        return self._eigenvalues_and_vectors[0]
 
     @cached_property
     def rank(self) -> int:
-        """Number of identifiable directions in the space of unknowns.
+        """Number of independent directions in the space of unknowns that the data identify.
 
         It is full if every unknown is identifiable.
         """
@@ -117,132 +117,151 @@ class Information:
         if not unidentifiable:
             return len(self.transform.names)
         directions = numpy.stack([self._band_vector(index) for index in unidentifiable], axis=1)
-        sizes = numpy.linalg.svd(directions / numpy.linalg.norm(directions, axis=0), compute_uv=False)
-        return len(self.transform.names) - max(1, int(numpy.sum(sizes > _MIN_SINGULAR_VALUE)))
+        singular_values = numpy.linalg.svd(directions / numpy.linalg.norm(directions, axis=0), compute_uv=False)
+        return len(self.transform.names) - max(1, int(numpy.sum(singular_values > _MIN_SINGULAR_VALUE)))
 
     @property
     def condition(self) -> float:
-        """Condition number: ratio of largest to smallest eigenvalue, infinite if the smallest is 0."""
+        """Ratio of largest to smallest eigenvalue of the information; infinite if the smallest is 0."""
         values = self.eigenvalues
         return float(values[0] / values[-1]) if values[-1] > 1e-12 * values[0] else inf
 
     @cached_property
     def deviations(self) -> Mapping[str, float]:
-        """Ratio of 95 % band width to prior range, by unknown."""
-        pairs = zip(self.transform.unknowns, self.intervals, range(len(self.intervals)), strict=True)
-        return {unknown.name: _width_ratio(unknown, interval, index) for unknown, interval, index in pairs}
+        """Width of each 95 % band divided by the width of the prior range, by unknown."""
+        unknowns_and_intervals = zip(self.transform.unknowns, self.intervals, range(len(self.intervals)), strict=True)
+        return {
+            unknown.name: _band_to_prior_width_ratio(unknown, interval, index)
+            for unknown, interval, index in unknowns_and_intervals
+        }
 
     @cached_property
     def unidentifiable(self) -> tuple[str, ...]:
-        """Names of the unidentifiable unknowns, among those with only a range as prior.
+        """Names of the unknowns that the data do not identify and that have no prior distribution.
 
         One of three conditions holds. The profile interval of 99 % leaves the range. The band of 95 % takes half of the
         range or more. The range of another unidentifiable unknown limits the band and shifts it by a tenth or more.
         """
-        widths, unknowns = self.deviations, self.transform.unknowns
-        ranges = [index for index, unknown in enumerate(unknowns) if not unknown.has_distribution]
-        wide = {
+        width_ratios, unknowns = self.deviations, self.transform.unknowns
+        range_indices = [index for index, unknown in enumerate(unknowns) if not unknown.has_distribution]
+        wide_indices = {
             index
-            for index in ranges
-            if not self.intervals[index].closed or widths[unknowns[index].name] >= MAX_WIDTH_RATIO
+            for index in range_indices
+            if not self.intervals[index].closed or width_ratios[unknowns[index].name] >= MAX_WIDTH_RATIO
         }
-        shifted = {index for index in ranges if any(self._is_shifted(index, cause) for cause in wide - {index})}
-        return tuple(unknown.name for index, unknown in enumerate(unknowns) if index in wide | shifted)
+        shifted_indices = {
+            index
+            for index in range_indices
+            if any(self._is_band_shifted(index, limiting_index) for limiting_index in wide_indices - {index})
+        }
+        return tuple(unknown.name for index, unknown in enumerate(unknowns) if index in wide_indices | shifted_indices)
 
-    def _is_shifted(self, index: int, cause: int) -> bool:
-        """Check if the range of another unknown limits a band and shifts it by 10 % or more."""
-        limited = cause in self.intervals[index].limiting_indices
-        return limited and abs(self._band_vector(cause)[index]) >= MAX_SHIFT * sqrt(12)
+    def _is_band_shifted(self, index: int, limiting_index: int) -> bool:
+        """Check if the range of another unknown limits the band of an unknown and shifts it by 10 % or more."""
+        is_limited = limiting_index in self.intervals[index].limiting_indices
+        return is_limited and abs(self._band_vector(limiting_index)[index]) >= MAX_SHIFT * sqrt(12)
 
     def _band_vector(self, index: int) -> Numbers:
-        """Compute the change of all unknowns in theta from lower to upper end of one unknown's band."""
+        """Compute the change of all thetas from the lower to the upper end of one unknown's 95 % band."""
         interval = self.intervals[index]
         return interval.high.theta - interval.low.theta
 
     def limited_by(self, name: str) -> tuple[str, ...]:
-        """Return the names of the unknowns whose ranges limit the band of an unknown.
+        """List the names of the unknowns whose search ranges limit the band of an unknown.
 
         The name of the unknown itself may be one of them.
         """
-        limits = self.intervals[self.transform.names.index(name)].limiting_indices
+        limiting_indices = self.intervals[self.transform.names.index(name)].limiting_indices
         unknowns = enumerate(self.transform.unknowns)
-        return tuple(unknown.name for index, unknown in unknowns if index in limits and not unknown.has_distribution)
+        return tuple(
+            unknown.name for index, unknown in unknowns if index in limiting_indices and not unknown.has_distribution
+        )
 
     @cached_property
     def _identifiable_information(self) -> Numbers:
-        """Information matrix restricted to the identifiable directions."""
-        values, vectors = self._eigenmodes
+        """Fisher information matrix without the unidentifiable directions."""
+        values, vectors = self._eigenvalues_and_vectors
         return (vectors[:, : self.rank] * values[: self.rank]) @ vectors[:, : self.rank].T
 
     @cached_property
     def covariance(self) -> Numbers:
-        """Covariance matrix of theta, from the data and prior distributions.
+        """Covariance matrix of theta from the data and the prior distributions.
 
         In unidentifiable directions the ranges count as priors.
         """
-        from_prior = [
+        has_prior_information = [
             unknown.has_distribution or unknown.name in self.unidentifiable for unknown in self.transform.unknowns
         ]
-        return numpy.linalg.inv(self._identifiable_information + numpy.diag(numpy.array(from_prior, dtype=float)))
+        return numpy.linalg.inv(
+            self._identifiable_information + numpy.diag(numpy.array(has_prior_information, dtype=float))
+        )
 
     @cached_property
     def products(self) -> tuple[Product, ...]:
         """Identifiable products of powers of unknowns that are unidentifiable separately."""
         if not self.unidentifiable:
             return ()
-        products = (self._make_product(vector) for vector in self._eigenmodes[1][:, : self.rank].T)
+        products = (
+            self._product_from_eigenvector(vector) for vector in self._eigenvalues_and_vectors[1][:, : self.rank].T
+        )
         return tuple(product for product in products if product is not None)
 
-    def _make_product(self, vector: Numbers) -> Product | None:
-        """Convert an eigenvector to a product of powers; None if the product is not identifiable.
+    def _product_from_eigenvector(self, vector: Numbers) -> Product | None:
+        """Convert an eigenvector to a product of powers of unknowns; None if it is not identifiable.
 
         Its largest power is 1.
         """
         unknowns = self.transform.unknowns
-        spans = [unknown.prior_deviation for unknown in unknowns]
-        powers = vector / spans
-        factors = [index for index in range(len(unknowns)) if abs(vector)[index] > _MIN_MIXED_COMPONENT]
-        mixed = set(self.unidentifiable) & {unknowns[index].name for index in factors}
-        if len(factors) < 2 or not mixed or not all(unknowns[index].logarithmic for index in factors):
+        prior_deviations = [unknown.prior_deviation for unknown in unknowns]
+        powers = vector / prior_deviations
+        factor_indices = [index for index in range(len(unknowns)) if abs(vector)[index] > _MIN_MIXED_COMPONENT]
+        unidentifiable_factors = set(self.unidentifiable) & {unknowns[index].name for index in factor_indices}
+        if (
+            len(factor_indices) < 2
+            or not unidentifiable_factors
+            or not all(unknowns[index].logarithmic for index in factor_indices)
+        ):
             return None
-        powers = powers / powers[factors[numpy.argmax(abs(powers[factors]))]]
-        exponents = {unknowns[index].name: _round_power(float(powers[index])) for index in factors}
+        powers = powers / powers[factor_indices[numpy.argmax(abs(powers[factor_indices]))]]
+        exponents = {unknowns[index].name: _round_exponent(float(powers[index])) for index in factor_indices}
         product = self._product_band(exponents)
-        widths = [
-            abs(self._band_vector(index)[index]) * spans[index] for index in factors if unknowns[index].name in mixed
+        band_widths = [
+            abs(self._band_vector(index)[index]) * prior_deviations[index]
+            for index in factor_indices
+            if unknowns[index].name in unidentifiable_factors
         ]
-        return product if log(product.high / product.low) < MAX_WIDTH_RATIO * min(widths) else None
+        return product if log(product.high / product.low) < MAX_WIDTH_RATIO * min(band_widths) else None
 
     def _product_band(self, exponents: dict[str, float]) -> Product:
-        """Compute value and 95 % band of a product of powers of unknowns.
+        """Compute the value and the 95 % band of a product of powers of unknowns.
 
         The band includes those of the unidentifiable unknowns.
         """
-        weight = numpy.array([exponents.get(name, 0.0) for name in self.transform.names])
-        direction = weight * [unknown.prior_deviation for unknown in self.transform.unknowns]
-        known = numpy.diag([float(unknown.has_distribution) for unknown in self.transform.unknowns])
-        covariance = numpy.linalg.pinv(self._identifiable_information + known, rcond=1e-9, hermitian=True)
-        half = self.quantile * float(direction @ covariance @ direction) ** 0.5
-        middle = self._log_product(exponents, self.theta)
+        exponent_vector = numpy.array([exponents.get(name, 0.0) for name in self.transform.names])
+        direction = exponent_vector * [unknown.prior_deviation for unknown in self.transform.unknowns]
+        prior_information = numpy.diag([float(unknown.has_distribution) for unknown in self.transform.unknowns])
+        covariance = numpy.linalg.pinv(self._identifiable_information + prior_information, rcond=1e-9, hermitian=True)
+        half_width = self.quantile * float(direction @ covariance @ direction) ** 0.5
+        log_value = self._log_product(exponents, self.theta)
         intervals = [self.intervals[self.transform.names.index(name)] for name in self.unidentifiable]
-        ends = [
+        log_ends = [
             self._log_product(exponents, end.theta) for interval in intervals for end in (interval.low, interval.high)
         ]
-        low, high = min(middle - half, *ends), max(middle + half, *ends)
+        low, high = min(log_value - half_width, *log_ends), max(log_value + half_width, *log_ends)
         units = {unknown.name: unknown.quantity.unit for unknown in self.transform.unknowns}
         unit = " ".join(
             units[name] if power == 1 else f"{units[name]}^{power:.3g}" for name, power in exponents.items()
         )
-        return Product(exponents, unit, exp(middle), exp(low), exp(high))
+        return Product(exponents, unit, exp(log_value), exp(low), exp(high))
 
     def _log_product(self, exponents: Mapping[str, float], theta: Numbers) -> float:
-        """Compute the logarithm of a product of powers of unknowns at theta."""
+        """Compute the logarithm of a product of powers of unknowns at a point theta."""
         values = dict(zip(self.transform.names, self.transform.to_values(theta).tolist(), strict=True))
         return sum(power * log(values[name]) for name, power in exponents.items())
 
 
-def _width_ratio(unknown: Unknown, interval: Interval, index: int) -> float:
-    """Compute the ratio of band width to prior width.
+def _band_to_prior_width_ratio(unknown: Unknown, interval: Interval, index: int) -> float:
+    """Compute the width of the 95 % band of an unknown, divided by the width of its prior.
 
     The prior width is that of the range, or of the 95 % band of a distribution.
     """
@@ -250,14 +269,14 @@ def _width_ratio(unknown: Unknown, interval: Interval, index: int) -> float:
     return width / (2 * QUANTILE_95 if unknown.has_distribution else sqrt(12))
 
 
-def _eigenmodes(matrix: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute eigenvalues in descending order, and eigenvectors as columns, of a symmetric matrix."""
+def _eigenvalues_and_vectors(matrix: Numbers) -> tuple[Numbers, Numbers]:
+    """Compute the eigenvalues (descending) and eigenvectors (columns) of a symmetric matrix."""
     values, vectors = numpy.linalg.eigh((matrix + matrix.T) / 2)
     return numpy.maximum(values[::-1], 0.0), vectors[:, ::-1]
 
 
-def _round_power(power: float) -> float:
-    """Round a power to the nearest multiple of 1/2 if it is closer than 0.1."""
+def _round_exponent(power: float) -> float:
+    """Round an exponent to the nearest multiple of 1/2 if the difference is below 0.1."""
     half_integer = round(2 * power) / 2
     return half_integer if abs(power - half_integer) < 0.1 and half_integer else power
 

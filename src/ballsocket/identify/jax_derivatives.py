@@ -15,7 +15,7 @@ from .unknowns import ParameterTransform
 
 
 def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute model results and their derivatives by automatic differentiation with JAX.
+    """Compute model results and their derivatives with respect to theta by JAX.
 
     The first call for a set of data compiles the model, which takes seconds.
 
@@ -46,23 +46,27 @@ def by_tracing(forward: ForwardModel, transform: ParameterTransform, theta: Numb
 
     values = transform.to_values(theta)
     with jax.enable_x64(True):
-        rows = [_compile(forward)(row) for row in values.reshape(-1, values.shape[-1])]
-    results, slopes = (numpy.stack([numpy.asarray(row[index]) for row in rows]) for index in (0, 1))
+        results_and_slopes = [
+            _compile_forward_model(forward)(point_values) for point_values in values.reshape(-1, values.shape[-1])
+        ]
+    results, slopes = (
+        numpy.stack([numpy.asarray(point_result[index]) for point_result in results_and_slopes]) for index in (0, 1)
+    )
     shape = theta.shape[:-1]
     slopes = slopes.reshape(*shape, -1, theta.shape[-1])
     return results.reshape(*shape, -1), slopes * transform.derivatives(theta)[..., None, :]
 
 
 @lru_cache(maxsize=8)
-def _compile(forward: ForwardModel) -> Callable[[Numbers], tuple[Any, Any]]:
-    """Compile results and derivatives of a forward model with JAX."""
+def _compile_forward_model(forward: ForwardModel) -> Callable[[Numbers], tuple[Any, Any]]:
+    """Compile the results of a forward model and their derivatives with JAX."""
     import jax
 
-    def results(values: Any) -> Any:
-        """Compute the model results for one set of values: (data,)."""
+    def results_of_point(values: Any) -> Any:
+        """Compute the model results (data,) for one set of values of the unknowns."""
         return forward.results_at(values[None, :])[0]
 
     compiled: Callable[[Numbers], tuple[Any, Any]] = jax.jit(
-        lambda values: (results(values), jax.jacfwd(results)(values))
+        lambda values: (results_of_point(values), jax.jacfwd(results_of_point)(values))
     )
     return compiled

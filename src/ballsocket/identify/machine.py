@@ -52,7 +52,7 @@ class Machine:
         errors: Iterable[tuple[str, NumberOrRange]] = (),
         **sizes: NumberOrRange,
     ) -> None:
-        """Store the sizes of all registered errors; raise an error for unknown or invalid ones."""
+        """Store the sizes of all registered errors; raise TypeError for unknown errors."""
         sizes = {**dict(errors), **sizes}
         for key in sizes:
             if key not in MACHINE_ERRORS:
@@ -60,7 +60,7 @@ class Machine:
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "errors", tuple((key, sizes.get(key, 0.0)) for key in MACHINE_ERRORS))
         for key, size in self.errors:
-            _check_size(MACHINE_ERRORS[key], size)
+            _check_error_size(MACHINE_ERRORS[key], size)
 
     def __getattr__(self, name: str) -> Any:
         sizes = dict(self.__dict__.get("errors", ()))
@@ -73,16 +73,16 @@ class Machine:
         return f"Machine({', '.join([*sizes, f'name={self.name!r}'])})"
 
     def key(self, error: str) -> str:
-        """Return the name of an error of this machine as an unknown, such as "machine.offset"."""
+        """Return the full name of an error of this machine, such as "machine.offset"."""
         return f"{self.name}.{error}"
 
     @property
     def unknown_errors(self) -> dict[str, tuple[float, float]]:
-        """Lower and upper end of each unknown error, by its name such as "machine.offset"."""
+        """Lower and upper limit of each unknown error, by full name such as "machine.offset"."""
         return {self.key(error): size for error, size in self.errors if isinstance(size, tuple)}
 
     def known_errors(self) -> dict[str, float]:
-        """Return the sizes of the known errors, by names such as "machine.offset"."""
+        """Return the size of each known error, by full name such as "machine.offset"."""
         return {self.key(error): size for error, size in self.errors if not isinstance(size, tuple)}
 
     known = RenamedAttribute("known_errors")
@@ -90,17 +90,17 @@ class Machine:
 
     @property
     def has_zero_error(self) -> bool:
-        """True if the indentation read at zero force may differ from zero."""
+        """True if the machine may read an indentation other than zero at zero force."""
         return any(size != 0.0 for error, size in self.errors if MACHINE_ERRORS[error].slope is None)
 
     @property
     def depends_on_force(self) -> bool:
-        """True if an error depends on the force."""
+        """True if an error of the machine depends on the force."""
         return any(size != 0.0 for error, size in self.errors if MACHINE_ERRORS[error].slope is not None)
 
 
-def _check_size(error: MachineError, size: Any) -> None:
-    """Check the size of an error: an allowed number, or two ascending ends; raise ValueError otherwise."""
+def _check_error_size(error: MachineError, size: Any) -> None:
+    """Check the size of a machine error: a number, or two ends in ascending order; ValueError otherwise."""
     ends = size if isinstance(size, tuple) else (size, size)
     if len(ends) != 2 or not -inf < ends[0] <= ends[1] < inf or (isinstance(size, tuple) and ends[0] == ends[1]):
         raise ValueError(f"{error.name} = {shown(size)} must be a number, or two ends in ascending order")

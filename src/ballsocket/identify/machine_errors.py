@@ -41,7 +41,7 @@ class MachineError:
 
     @property
     def name(self) -> str:
-        """Name of the error.
+        """Name of the error, such as "offset".
 
         It is also an argument of `Machine` and a key in files.
         """

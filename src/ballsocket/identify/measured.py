@@ -102,127 +102,145 @@ class Measured:
     own = RenamedAttribute("observable")
 
     def __post_init__(self) -> None:
-        """Check all fields, and convert them to arrays."""
+        """Check all fields of the data set, and convert them to arrays."""
         if not isinstance(self.machine, Machine):
             raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
         if self.observable is None:
             self._set_field("quantity", known_name("quantity", self.quantity, MEASURED))
         self._set_field("described", MEASURED[self.quantity] if self.observable is None else self.observable.described)
-        values = _to_row(self._format_label(self.quantity), self.values)
+        values = _to_float_array(self._message_label(self.quantity), self.values)
         self._set_field("values", values)
-        self._check_values(values)
-        self._set_field("uncertainty", self._broadcast(f"{self.quantity}_uncertainty", self.uncertainty, values))
-        sigma, title = self.uncertainty, self._format_label(f"{self.quantity}_uncertainty")
+        self._check_measured_values(values)
+        self._set_field(
+            "uncertainty", self._broadcast_to_values(f"{self.quantity}_uncertainty", self.uncertainty, values)
+        )
+        sigma, title = self.uncertainty, self._message_label(f"{self.quantity}_uncertainty")
         require(title, sigma, (sigma > 0) & (sigma < inf), "an uncertainty is above 0 and finite")
         require("saturation", self.saturation, self.saturation > 0, "the largest reading of a film is above 0")
         if self.quantity not in OF_JOINT:
-            self._set_load(values)
+            self._check_and_set_load(values)
         if (self.angle is not None) != (self.quantity == "pressure"):
             rule = "needs an angle" if self.angle is None else "takes no angle"
-            raise ValueError(f"{self._format_label(self.quantity)} {rule}")
+            raise ValueError(f"{self._message_label(self.quantity)} {rule}")
         if self.angle is not None:
-            self._set_field("angle", FIELD["angle"].check(self._broadcast("angle", self.angle, values)))
+            self._set_field("angle", FIELD["angle"].check(self._broadcast_to_values("angle", self.angle, values)))
         if self.machine is not IDEAL_MACHINE and "indentation" not in (self.quantity, self.load):
             raise ValueError(
-                f"{self._format_label(self.quantity)} has a machine, but only indentations are read by one"
+                f"{self._message_label(self.quantity)} has a machine, but only indentations are read by one"
             )
-        self._set_field("order", self._check_order(values))
+        self._set_field("order", self._check_reading_numbers(values))
 
     def _set_field(self, name: str, value: Any) -> None:
-        """Set a field of this frozen instance."""
+        """Set a field of this frozen data set."""
         object.__setattr__(self, name, value)
 
-    def _format_label(self, quantity: str) -> str:
-        """Format the name of a quantity with the name of the data set, for messages."""
+    def _message_label(self, quantity: str) -> str:
+        """Format the names of data set and quantity as a label for messages."""
         return f"{self.name}: {quantity}" if self.name else quantity
 
-    def _check_order(self, values: Numbers) -> Numbers:
-        """Check the numbers of the readings, and return them; 0, 1, 2, ... by default."""
+    def _check_reading_numbers(self, values: Numbers) -> Numbers:
+        """Check the sequence numbers of the readings, and return them; 0, 1, 2, ... by default."""
         if self.order is None:
             return numpy.arange(float(values.size))
-        order = self._broadcast("order", self.order, values)
-        require(self._format_label("order"), order, abs(order) < inf, "numbers of readings must be finite")
-        return order
+        reading_numbers = self._broadcast_to_values("order", self.order, values)
+        require(
+            self._message_label("order"),
+            reading_numbers,
+            abs(reading_numbers) < inf,
+            "numbers of readings must be finite",
+        )
+        return reading_numbers
 
-    def _check_values(self, values: Numbers) -> None:
-        """Check that no value is missing or not allowed; raise ValueError otherwise."""
-        gaps = numpy.flatnonzero(numpy.isnan(values))
-        if len(gaps):
-            rows = ", ".join(str(gap + 1) for gap in gaps[:8])
+    def _check_measured_values(self, values: Numbers) -> None:
+        """Check that all measured values are present and allowed; ValueError otherwise."""
+        missing_indices = numpy.flatnonzero(numpy.isnan(values))
+        if len(missing_indices):
+            row_numbers = ", ".join(str(index + 1) for index in missing_indices[:8])
             raise ValueError(
-                f"{self._format_label(self.quantity)} has no number in row {rows}: add it, or omit the row"
+                f"{self._message_label(self.quantity)} has no number in row {row_numbers}: add it, or omit the row"
             )
         if self.observable is not None:
             return
         if not self.described.allowed:
-            require(self._format_label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
+            require(self._message_label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
         elif self.machine is IDEAL_MACHINE:  # a machine with an offset may read less than 0
             allowed = self.described.allows(values)
-            require(self._format_label(self.quantity), values, allowed, self.described.allowed)
+            require(self._message_label(self.quantity), values, allowed, self.described.allowed)
 
-    def _broadcast(self, name: str, numbers: Any, values: Numbers) -> Numbers:
-        """Broadcast one number to all values, or check that there is one number per value."""
-        row = _to_row(self._format_label(name), numbers)
-        if row.size not in (1, values.size):
-            raise ValueError(f"{self._format_label(name)} must have 1 or {values.size} numbers, got {row.size}")
-        if numpy.isnan(row).any():
-            raise ValueError(f"{self._format_label(name)} has no number in row {int(numpy.isnan(row).argmax()) + 1}")
-        return numpy.broadcast_to(row, values.shape)
+    def _broadcast_to_values(self, name: str, numbers: Any, values: Numbers) -> Numbers:
+        """Repeat one number for all values, or check that there is one number for each value."""
+        number_array = _to_float_array(self._message_label(name), numbers)
+        if number_array.size not in (1, values.size):
+            raise ValueError(
+                f"{self._message_label(name)} must have 1 or {values.size} numbers, got {number_array.size}"
+            )
+        if numpy.isnan(number_array).any():
+            raise ValueError(
+                f"{self._message_label(name)} has no number in row {int(numpy.isnan(number_array).argmax()) + 1}"
+            )
+        return numpy.broadcast_to(number_array, values.shape)
 
-    def _set_load(self, values: Numbers) -> None:
-        """Check the load with its uncertainty, and store both."""
+    def _check_and_set_load(self, values: Numbers) -> None:
+        """Check the loads of the data set and their uncertainty, and store both."""
         kind, load = select_load(**{name: getattr(self, name) for name in LOADS})
         if kind == self.quantity:
             raise ValueError(
-                f"{self._format_label(kind)} is both the measured quantity and the load; choose another load"
+                f"{self._message_label(kind)} is both the measured quantity and the load; choose another load"
             )
-        row = self._broadcast(kind, load, values)
+        loads = self._broadcast_to_values(kind, load, values)
         if self.machine is IDEAL_MACHINE or kind != "indentation":
-            require(self._format_label(kind), row, LOADS[kind].allows(row), LOADS[kind].allowed)
+            require(self._message_label(kind), loads, LOADS[kind].allows(loads), LOADS[kind].allowed)
         self._set_field("load", kind)
-        self._set_field(kind, row)
-        sigma = self._broadcast("load_uncertainty", self.load_uncertainty, values)
-        require(self._format_label("load_uncertainty"), sigma, (sigma >= 0) & (sigma < inf), _NOT_NEGATIVE)
-        self._set_field("load_uncertainty", sigma)
-        self._check_unloaded(row, values)
+        self._set_field(kind, loads)
+        load_sigma = self._broadcast_to_values("load_uncertainty", self.load_uncertainty, values)
+        require(
+            self._message_label("load_uncertainty"),
+            load_sigma,
+            (load_sigma >= 0) & (load_sigma < inf),
+            _NOT_NEGATIVE,
+        )
+        self._set_field("load_uncertainty", load_sigma)
+        self._check_values_at_zero_load(loads, values)
 
-    def _check_unloaded(self, load: Numbers, values: Numbers) -> None:
-        """Check that values at zero load are 0, unless the machine has a zero error."""
+    def _check_values_at_zero_load(self, load: Numbers, values: Numbers) -> None:
+        """Check that measured values at zero load are 0, unless the machine has a zero error."""
         if not self.machine.has_zero_error:
             rule = f"at first touch the {self.described.title} is 0, except with a zero error of the machine"
-            require(self._format_label(self.load), load, (load > 0) | (values == 0), rule)
+            require(self._message_label(self.load), load, (load > 0) | (values == 0), rule)
 
     def __len__(self) -> int:
         return len(self.values)
 
     @property
     def loads(self) -> Numbers:
-        """Loads in N, mm or rad; empty for a quantity of the joint."""
+        """Loads in N, mm or rad, one for each value; empty for a number of the joint."""
         return getattr(self, self.load) if self.load else numpy.zeros(0)
 
     @property
     def saturated(self) -> Numbers:
-        """Mask of the saturated values, which are lower bounds."""
+        """Mask of the saturated values, which are only lower bounds of the true values."""
         return numpy.asarray(self.values >= self.saturation)
 
     def check_area(self, joint: Joint) -> None:
-        """Check that measured contact areas are smaller than half of the ball; raise ValueError otherwise."""
+        """Check that measured contact areas are smaller than half of the ball's surface; ValueError otherwise."""
         if self.quantity == "area":
-            half = 2 * pi * float(joint.ball_radius) ** 2
-            rule = f"a contact area is below half of the ball, 2π R1² = {half:.4g} mm²"
-            require(self._format_label("area"), self.values, self.values < half, rule)
+            half_ball_area = 2 * pi * float(joint.ball_radius) ** 2
+            rule = f"a contact area is below half of the ball, 2π R1² = {half_ball_area:.4g} mm²"
+            require(self._message_label("area"), self.values, self.values < half_ball_area, rule)
 
 
-def _to_row(name: str, numbers: Any) -> Numbers:
-    """Convert numbers to an array (values,); raise ValueError if this is impossible."""
+def _to_float_array(name: str, numbers: Any) -> Numbers:
+    """Convert numbers to a one-dimensional array of floats; ValueError if this is impossible."""
     try:
-        plain = numpy.asarray(numbers)
-        row = numpy.atleast_1d(plain.astype(float, casting="safe" if plain.dtype.kind == "c" else "unsafe"))
+        number_array = numpy.asarray(numbers)
+        float_array = numpy.atleast_1d(
+            number_array.astype(float, casting="safe" if number_array.dtype.kind == "c" else "unsafe")
+        )
     except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name} = {shown(numbers)} must be numbers") from error
-    if row.ndim != 1 or row.size == 0:
-        raise ValueError(f"{name} of shape {row.shape} must be a row of numbers")
-    return row
+    if float_array.ndim != 1 or float_array.size == 0:
+        raise ValueError(f"{name} of shape {float_array.shape} must be a row of numbers")
+    return float_array
 
 
 _init: Any = renamed_arguments(own="observable")(Measured.__init__)

@@ -19,7 +19,7 @@ Slopes = Callable[[ForwardModel, ParameterTransform, Numbers], tuple[Numbers, Nu
 
 
 def by_differences(forward: ForwardModel, transform: ParameterTransform, theta: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute model results and their derivatives by central differences.
+    """Compute model results and their derivatives with respect to theta by central differences.
 
     One array call computes all points. At the ends of the ranges, differences are one-sided.
 
@@ -37,25 +37,29 @@ def by_differences(forward: ForwardModel, transform: ParameterTransform, theta: 
     derivatives : array (..., data, unknowns)
         Derivatives with respect to theta.
     """
-    count = theta.shape[-1]
-    points = theta.reshape(-1, 1, count)
-    step = forward.model.smooth_step * numpy.eye(count)
+    unknown_count = theta.shape[-1]
+    points = theta.reshape(-1, 1, unknown_count)
+    step = forward.model.smooth_step * numpy.eye(unknown_count)
     stencil = numpy.concatenate([points, points + step, points - step], axis=1)
     stencil = numpy.clip(stencil, transform.low, transform.high)
-    results = forward.results_at(transform.to_values(stencil.reshape(-1, count))).reshape(*stencil.shape[:2], -1)
-    centre, above, below = results[:, 0], results[:, 1 : 1 + count], results[:, 1 + count :]
-    up, down = (numpy.diagonal(half, axis1=1, axis2=2) for half in numpy.split(stencil[:, 1:], 2, axis=1))
-    above, up = _replace_missing_neighbours(above, up, centre, points[:, 0])
-    below, down = _replace_missing_neighbours(below, down, centre, points[:, 0])
-    slopes = (above - below) / numpy.where(up > down, up - down, inf)[..., None]
+    results = forward.results_at(transform.to_values(stencil.reshape(-1, unknown_count))).reshape(
+        *stencil.shape[:2], -1
+    )
+    centre, above, below = results[:, 0], results[:, 1 : 1 + unknown_count], results[:, 1 + unknown_count :]
+    theta_above, theta_below = (
+        numpy.diagonal(half_stencil, axis1=1, axis2=2) for half_stencil in numpy.split(stencil[:, 1:], 2, axis=1)
+    )
+    above, theta_above = _replace_missing_neighbours(above, theta_above, centre, points[:, 0])
+    below, theta_below = _replace_missing_neighbours(below, theta_below, centre, points[:, 0])
+    slopes = (above - below) / numpy.where(theta_above > theta_below, theta_above - theta_below, inf)[..., None]
     shape = theta.shape[:-1]
-    return centre.reshape(*shape, -1), slopes.swapaxes(1, 2).reshape(*shape, -1, count)
+    return centre.reshape(*shape, -1), slopes.swapaxes(1, 2).reshape(*shape, -1, unknown_count)
 
 
 def _replace_missing_neighbours(
     results: Numbers, theta: Numbers, centre: Numbers, points: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """Replace neighbouring points without a result by the central point."""
+    """Replace neighbouring points at which the model has no result by the central point."""
     missing = numpy.isnan(results).any(axis=-1)
     return numpy.where(missing[..., None], centre[:, None], results), numpy.where(missing, points, theta)
 
@@ -84,7 +88,7 @@ class FitResult:
 
 @dataclass(frozen=True, eq=False)
 class Misfit:
-    """Difference between data and model results: residuals for a least-squares fit.
+    """Residuals between data and model results for a least-squares fit.
 
     Half of their sum of squares is minus ln of the posterior density, up to a constant.
 
@@ -123,15 +127,15 @@ class Misfit:
 
     @property
     def freedom(self) -> int:
-        """Degrees of freedom: number of values minus unknowns without a stated distribution."""
+        """Number of degrees of freedom: values minus unknowns without a stated distribution."""
         return len(self.value) - sum(not unknown.has_distribution for unknown in self.transform.unknowns)
 
     def standardised_residuals(self, results: Numbers) -> Numbers:
-        """Compute the standardised residuals z = (result - value)/uncertainty, with widened uncertainties."""
+        """Compute the residuals (result - value)/uncertainty of model results."""
         return (results - self.value) / (self.widening * self.uncertainty)
 
     def residuals(self, results: Numbers) -> Numbers:
-        """Compute the least-squares residual of each value from the distribution of the scatter.
+        """Compute the least-squares residuals of model results for the distribution of the scatter.
 
         Half the sum of squares is minus ln of the likelihood, up to a constant.
         """
@@ -139,54 +143,63 @@ class Misfit:
         return numpy.where(self.saturated, self.scatter.censored(z)[0], self.scatter.misfit(z))
 
     def residuals_and_slopes(self, theta: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute least-squares residuals of data and priors, (..., data), and their derivatives."""
+        """Compute the residuals (..., data) of data and priors at theta, and their derivatives."""
         results, slopes = self.slopes(self.forward, self.transform, theta)
-        z = self.standardised_residuals(results)
-        weight = numpy.where(self.saturated, self.scatter.censored(z)[1], self.scatter.slope(z))
-        weight = weight / (self.widening * self.uncertainty)
-        known = numpy.array([unknown.has_distribution for unknown in self.transform.unknowns])
-        unit = numpy.broadcast_to(numpy.eye(theta.shape[-1])[known], (*theta.shape[:-1], known.sum(), len(known)))
+        standardised = self.standardised_residuals(results)
+        residual_slopes = numpy.where(
+            self.saturated, self.scatter.censored(standardised)[1], self.scatter.slope(standardised)
+        )
+        residual_slopes = residual_slopes / (self.widening * self.uncertainty)
+        has_distribution = numpy.array([unknown.has_distribution for unknown in self.transform.unknowns])
+        prior_slopes = numpy.broadcast_to(
+            numpy.eye(theta.shape[-1])[has_distribution],
+            (*theta.shape[:-1], has_distribution.sum(), len(has_distribution)),
+        )
         return (
-            numpy.concatenate([self.residuals(results), self.transform.prior_residuals(theta)[..., known]], axis=-1),
-            numpy.concatenate([weight[..., None] * slopes, unit], axis=-2),
+            numpy.concatenate(
+                [self.residuals(results), self.transform.prior_residuals(theta)[..., has_distribution]], axis=-1
+            ),
+            numpy.concatenate([residual_slopes[..., None] * slopes, prior_slopes], axis=-2),
         )
 
     def costs(self, theta: Numbers) -> Numbers:
-        """Compute the cost of each point: minus ln of the posterior density up to a constant.
+        """Compute half of the sum of squared residuals at each point theta (points, unknowns): (points,).
 
         The priors are the stated distributions. The cost is infinite without a result; shape (points,).
         """
         residuals = self.residuals(self.forward.results_at(self.transform.to_values(theta)))
-        squares = numpy.sum(residuals**2, axis=1) + numpy.sum(self.transform.prior_residuals(theta) ** 2, axis=-1)
-        cost = squares / 2
+        sum_of_squares = numpy.sum(residuals**2, axis=1) + numpy.sum(
+            self.transform.prior_residuals(theta) ** 2, axis=-1
+        )
+        cost = sum_of_squares / 2
         return numpy.where(numpy.isfinite(cost), cost, inf)
 
     def log_posterior(self, theta: Numbers) -> Numbers:
-        """Compute the logarithm of the posterior density of each point, up to a constant: (points,).
+        """Compute the logarithm of the posterior density at each point theta, up to a constant: (points,).
 
         All values in a range are equally likely.
         """
-        prior = log_prior(self.transform, theta)
-        inside = numpy.clip(theta, self.transform.low, self.transform.high)
-        residuals = self.residuals(self.forward.results_at(self.transform.to_values(inside)))
-        total = prior - numpy.sum(residuals**2, axis=1) / 2
-        return numpy.where(numpy.isfinite(total), total, -inf)
+        log_prior_density = log_prior(self.transform, theta)
+        theta_in_range = numpy.clip(theta, self.transform.low, self.transform.high)
+        residuals = self.residuals(self.forward.results_at(self.transform.to_values(theta_in_range)))
+        log_density = log_prior_density - numpy.sum(residuals**2, axis=1) / 2
+        return numpy.where(numpy.isfinite(log_density), log_density, -inf)
 
     def fisher_information(self, theta: Numbers) -> Numbers:
-        """Compute the Fisher information matrix of the data on theta: (unknowns, unknowns)."""
+        """Compute the Fisher information matrix (unknowns, unknowns) of the data about theta."""
         results, slopes = self.slopes(self.forward, self.transform, theta)
-        return (slopes * self._weights(results)[:, None]).T @ slopes
+        return (slopes * self._information_weights(results)[:, None]).T @ slopes
 
     def project_errors(self, theta: Numbers, errors: Numbers) -> Numbers:
-        """Project errors of the values on the unknowns: Jᵀ W δ of shape (unknowns, kinds).
+        """Compute the weighted projections Jᵀ W δ of errors δ of the values on the unknowns.
 
         J are the derivatives, W the weights, and δ the errors (kinds, data).
         """
         results, slopes = self.slopes(self.forward, self.transform, theta)
-        return slopes.T @ (self._weights(results) * errors).T
+        return slopes.T @ (self._information_weights(results) * errors).T
 
-    def _weights(self, results: Numbers) -> Numbers:
-        """Compute the Fisher information of each value on its model result, in 1/unit²."""
+    def _information_weights(self, results: Numbers) -> Numbers:
+        """Compute the weight of each value: its Fisher information about the model result, in 1/unit²."""
         information = numpy.where(self.saturated, self._censored_information(results), self.scatter.information)
         return information / (self.widening * self.uncertainty) ** 2
 

@@ -35,17 +35,17 @@ class ModelNumber:
 
     @property
     def name(self) -> str:
-        """Name of the parameter, which is also the name of the unknown."""
+        """Name of the model parameter, such as "work_of_adhesion"."""
         return self.quantity.name
 
     def belongs_to(self, model: Model) -> bool:
-        """Check if a model, or the model that it wraps, has this parameter."""
-        inner = _wrapped(model)
+        """Check if a contact model, or the model inside a wrapper, has this parameter."""
+        inner = _wrapped_model(model)
         return isinstance(model, self.models) if inner is None else self.belongs_to(inner)
 
     def insert_into(self, model: Model, value: Array) -> Model:
-        """Return a copy of the model with another value of this parameter."""
-        inner = _wrapped(model)
+        """Return a copy of a contact model with another value of this parameter."""
+        inner = _wrapped_model(model)
         if inner is not None:
             wrapper: Any = model
             wrapped: Model = replace(wrapper, model=self.insert_into(inner, value))
@@ -57,8 +57,8 @@ class ModelNumber:
         return changed
 
 
-def _wrapped(model: Model) -> Model | None:
-    """Return the model inside a wrapper, such as a model in a cup; None if there is no wrapper."""
+def _wrapped_model(model: Model) -> Model | None:
+    """Return the model inside a wrapper, such as a model in a cup; None without a wrapper."""
     inner = getattr(model, "model", None)
     return inner if isinstance(inner, Model) else None
 

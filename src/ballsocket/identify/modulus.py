@@ -30,7 +30,7 @@ def as_constant(joint: Joint, wanted: numpy.ndarray) -> Modulus:
 
 
 def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """Fit the polynomial foundation modulus of Eq. (18) by least squares of relative errors.
+    """Fit a foundation modulus K R2/E that is a polynomial of R2/L, Eq. (18), to moduli `wanted` in MPa/mm.
 
     K R2/E = C1 + C2 (R2/L) + C3 (R2/L)².
 
@@ -48,24 +48,28 @@ def as_polynomial(joint: Joint, wanted: numpy.ndarray) -> Modulus:
         raise ValueError(
             f"liner_thickness has {thicknesses} different values, but Eq. (18) has three constants: give 3 or more"
         )
-    ratio, scaled = numpy.broadcast_arrays(_to_floats(joint.thickness_ratio), wanted * _to_floats(joint.socket_radius))
-    scaled = scaled / _to_floats(joint.liner.young)
-    basis = numpy.stack([ratio.ravel() ** k for k in range(3)], axis=-1) / scaled.ravel()[:, None]
-    constants, _ = nnls(basis, numpy.ones(scaled.size))
+    thickness_ratio, scaled_moduli = numpy.broadcast_arrays(
+        _to_floats(joint.thickness_ratio), wanted * _to_floats(joint.socket_radius)
+    )
+    scaled_moduli = scaled_moduli / _to_floats(joint.liner.young)
+    basis = numpy.stack([thickness_ratio.ravel() ** k for k in range(3)], axis=-1) / scaled_moduli.ravel()[:, None]
+    constants, _ = nnls(basis, numpy.ones(scaled_moduli.size))
     return polynomial(*map(float, constants), source="fitted")
 
 
 def as_corrected_vessel(joint: Joint, wanted: numpy.ndarray) -> Modulus:
-    """Fit a corrected vessel modulus K_B (a0 + a1 κ + a2 κ²) by least squares.
+    """Fit a foundation modulus K_B (a0 + a1 κ + a2 κ²) to target moduli `wanted` in MPa/mm.
 
     κ = R2/(R2 + L), and K_B is the modulus of a spherical vessel.
     """
-    ratio = _to_floats(joint.thickness_ratio)
-    kappa, factor = numpy.broadcast_arrays(ratio / (1 + ratio), wanted / _to_floats(spherical_vessel(joint)))
-    powers = min(3, numpy.unique(kappa).size)  # one thickness determines one constant
-    basis = numpy.stack([kappa.ravel() ** k for k in range(powers)], axis=-1)
-    constants = numpy.linalg.lstsq(basis, factor.ravel(), rcond=None)[0]
-    return corrected_vessel(*map(float, numpy.pad(constants, (0, 3 - powers))), source="this project's fit")
+    thickness_ratio = _to_floats(joint.thickness_ratio)
+    kappa, correction_factor = numpy.broadcast_arrays(
+        thickness_ratio / (1 + thickness_ratio), wanted / _to_floats(spherical_vessel(joint))
+    )
+    term_count = min(3, numpy.unique(kappa).size)  # one thickness determines one constant
+    basis = numpy.stack([kappa.ravel() ** k for k in range(term_count)], axis=-1)
+    constants = numpy.linalg.lstsq(basis, correction_factor.ravel(), rcond=None)[0]
+    return corrected_vessel(*map(float, numpy.pad(constants, (0, 3 - term_count))), source="this project's fit")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -96,12 +100,12 @@ class Calibration:
 
     @property
     def model(self) -> RadialFoundation:
-        """Closed-form contact model with the fitted modulus."""
+        """Contact model of radial springs with the fitted modulus."""
         return RadialFoundation(modulus=self.modulus)
 
     @property
     def residual(self) -> numpy.ndarray:
-        """Relative residual of the fitted modulus, fitted over target minus 1.
+        """Relative residual of the fitted foundation modulus: fitted over target modulus, minus 1.
 
         It has the shape of the joint.
         """
@@ -109,26 +113,26 @@ class Calibration:
 
     @cached_property
     def error(self) -> dict[str, float]:
-        """Largest relative error of the closed form over joints and loads, by quantity.
+        """Largest relative error of the calibrated model over joints and loads, by quantity.
 
         In indentation, peak pressure and half angle at equal force; in force at equal indentation.
         """
         force = self.force.reshape(-1, *(1 for _ in numpy.shape(self.wanted)))
-        truth = self.reference.press(self.joint, force=force)
-        at_force = self.model.press(self.joint, force=force)
-        at_depth = self.model.press(self.joint, indentation=truth.indentation)
+        reference_contact = self.reference.press(self.joint, force=force)
+        contact_at_force = self.model.press(self.joint, force=force)
+        contact_at_depth = self.model.press(self.joint, indentation=reference_contact.indentation)
         errors = {
-            name: max_relative_error(getattr(at_force, name), getattr(truth, name))
+            name: max_relative_error(getattr(contact_at_force, name), getattr(reference_contact, name))
             for name in ("indentation", "max_pressure", "half_angle")
         }
-        return {**errors, "force": max_relative_error(at_depth.force, truth.force)}
+        return {**errors, "force": max_relative_error(contact_at_depth.force, reference_contact.force)}
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the calibration for JSON."""
+        """Return the calibration as a dictionary for JSON."""
         return {
             "reference": self.reference.name,
             "modulus": self.modulus.name,
-            "constants": [float(number) for number in self.modulus.constants],
+            "constants": [float(constant_value) for constant_value in self.modulus.constants],
             "force": self.force.tolist(),
             "foundation_modulus": numpy.asarray(self.wanted).tolist(),
             "spread_over_load": self.spread,
@@ -140,7 +144,7 @@ class Calibration:
 def calibrate(
     joint: Joint, *, force: Array = FORCES, form: Form = as_constant, reference: Model | None = None
 ) -> Calibration:
-    """Fit a foundation modulus to the mean p0/d of a reference model over several loads.
+    """Fit a foundation modulus to a reference model, to the mean ratio of pole pressure to indentation.
 
     The paper fits its modulus to finite elements in the same way.
 
@@ -176,8 +180,8 @@ def calibrate(
     loads = numpy.atleast_1d(numpy.asarray(force, dtype=float))
     if loads.size == 0 or not numpy.all(loads > 0):
         raise ValueError(f"force = {loads.tolist()} is not allowed: a calibration needs loads (N) above 0")
-    shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in joint.numbers()))
-    contact = model.press(joint, force=loads.reshape(-1, *(1 for _ in shape)))
+    joint_shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in joint.numbers()))
+    contact = model.press(joint, force=loads.reshape(-1, *(1 for _ in joint_shape)))
     moduli = _to_floats(contact.foundation_modulus)
     if not numpy.all(numpy.isfinite(moduli)):
         raise ValueError(f"{model.name} has no result for some joints or loads: {'; '.join(contact.notes)}")
@@ -192,11 +196,11 @@ def calibrate(
     )
 
 
-def _to_floats(x: Array) -> numpy.ndarray:
+def _to_floats(numbers: Array) -> numpy.ndarray:
     """Convert numbers or arrays of any library to a NumPy array of floats."""
-    return numpy.asarray(arrays.to_numpy(x), dtype=float)
+    return numpy.asarray(arrays.to_numpy(numbers), dtype=float)
 
 
 def max_relative_error(value: Array, truth: Array) -> float:
-    """Compute the largest relative error of values over all points."""
+    """Compute the largest relative error of values against true values."""
     return float(numpy.max(abs(_to_floats(value) / _to_floats(truth) - 1)))

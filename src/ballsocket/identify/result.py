@@ -43,21 +43,21 @@ class IdentificationResult(FittedModel):
 
     @cached_property
     def sensitivity(self) -> tuple[Sensitivity, ...]:
-        """Shifts of the estimates by assumed machine errors: zero offset, compliance and drift."""
+        """Shifts of the estimates by machine errors of assumed size that the fit neglects."""
         return sensitivities(self)
 
     def shift_ratio(self, error: Sensitivity, name: str) -> float:
-        """Compute the ratio of a shift to half the band width; 0 for an unidentifiable unknown."""
+        """Compute the shift of an estimate by a machine error, divided by half the band width."""
         estimate = self.estimates[name]
         return 2 * abs(error.shifts[name]) / (estimate.high - estimate.low) if estimate.identifiable else 0.0
 
     @cached_property
     def notes(self) -> tuple[str, ...]:
-        """Notes on identifiability, range ends, fit, machine errors and model validity."""
+        """Sentences on identifiability, range ends, fit, machine errors and model validity."""
         writers = (
             _identifiability_notes,
             _band_notes,
-            _search_notes,
+            _convergence_notes,
             _range_notes,
             _fit_notes,
             _machine_notes,
@@ -67,15 +67,15 @@ class IdentificationResult(FittedModel):
 
     @cached_property
     def next(self) -> Experiment:
-        """Expected information gains of the standard next measurements; see `experiment`."""
+        """Expected information gains of the standard candidates for the next measurement."""
         return experiment(self)
 
     def posterior(self, samples: int = 4000, seed: int = 0) -> Posterior:
-        """Sample the posterior distribution by Markov chains; see `ballsocket.identify.posterior.posterior`."""
+        """Draw samples from the posterior distribution of the unknowns by Markov chains."""
         return posterior(self, samples, seed)
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the result for JSON, in mm, N, MPa, rad."""
+        """Return the result as a dictionary for JSON, in mm, N, MPa and rad."""
         return {
             "model": self.model.name,
             "valid": self.identifiable and self.best.converged,
@@ -111,19 +111,19 @@ class IdentificationResult(FittedModel):
 
 
 def _format_estimate(estimate: Estimate) -> str:
-    """Format the value and band of an estimate with their unit."""
+    """Format the value and the 95 % band of an estimate as text, with the unit."""
     unit = f" {estimate.unit}" if estimate.unit != "1" else ""
     band = f"{estimate.low:.4g} to {estimate.high:.4g}{unit}"
     return f"= {estimate.value:.4g}{unit} ({band})" if estimate.identifiable else f"is not identifiable: {band}"
 
 
 def _finite_or_none(number: float) -> float | None:
-    """Return a finite number, or None for JSON if it is infinite or NaN."""
+    """Return a finite number unchanged, and None for an infinite one or NaN."""
     return number if abs(number) < float("inf") else None
 
 
 def _identifiability_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield a note on unidentifiable unknowns and the measurements that would identify them."""
+    """Yield a sentence on unidentifiable unknowns and on measurements that would identify them."""
     unidentifiable = result.information.unidentifiable
     if not unidentifiable:
         return
@@ -147,7 +147,7 @@ def _identifiability_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _band_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield notes on bands that a range limits."""
+    """Yield sentences on 95 % bands that the search range of an unknown limits."""
     for name, estimate in result.estimates.items():
         if name not in estimate.limited_by:
             continue
@@ -164,7 +164,7 @@ def _band_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _quantity_title(quantity: str) -> str:
-    """Return the title of a measured quantity for notes."""
+    """Return the title of a measured quantity in words, for notes."""
     return "free play" if quantity == "diametral_clearance" else MEASURED[quantity].title
 
 
@@ -178,8 +178,8 @@ def _join_with_and(names: Sequence[str]) -> str:
     return " and ".join([", ".join(names[:-1]), names[-1]]) if len(names) > 1 else names[0]
 
 
-def _search_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield notes on a search that did not converge, and on other points that fit as well."""
+def _convergence_notes(result: IdentificationResult) -> Iterator[str]:
+    """Yield sentences on a search without convergence, and on other points that fit equally well."""
     if not result.best.converged:
         yield "the search did not converge: the numbers are those of its last step"
     if result.best.rivals and result.identifiable:
@@ -187,7 +187,7 @@ def _search_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _range_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield notes on best values at an end of their range."""
+    """Yield sentences on best-fit values at an end of their search range."""
     theta = result.best.theta
     for index, unknown in enumerate(result.transform.unknowns):
         for side, end in ((-1, unknown.low), (1, unknown.high)):
@@ -197,7 +197,7 @@ def _range_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _fit_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield notes on outliers, excessive scatter, and widened uncertainties."""
+    """Yield sentences on outliers, large scatter, and widened uncertainties."""
     from scipy.stats import chi2
 
     outliers = [
@@ -219,7 +219,7 @@ def _fit_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _machine_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield notes on machine errors that shift an estimate by a standard uncertainty or more."""
+    """Yield sentences on machine errors that shift an estimate by a standard uncertainty or more."""
     numbers = [unknown.name for unknown in result.transform.unknowns if not unknown.of_machine]
     for error in result.sensitivity if numbers else ():
         ratio, name = max((result.shift_ratio(error, name), name) for name in numbers)
@@ -233,7 +233,7 @@ def _machine_notes(result: IdentificationResult) -> Iterator[str]:
 
 
 def _validity_notes(result: IdentificationResult) -> Iterator[str]:
-    """Yield the model's own notes on the contacts at the loads of the data."""
+    """Yield the contact model's notes on the contacts at the loads of the data."""
     notes: dict[str, None] = {}
     for measured in result.data:
         if measured.load:

@@ -14,26 +14,26 @@ from ..core.deprecation import RenamedAttribute, renamed_names
 
 
 class ScatterModel(Protocol):
-    """Protocol of a distribution of the standardised residual z = (result - value)/uncertainty."""
+    """Interface of a distribution of the standardised residual z = (result - value)/uncertainty."""
 
     def misfit(self, z: Numbers) -> Numbers:
-        """Compute the least-squares residual r of a value from its standardised residual z.
+        """Compute the least-squares residual r(z) from the standardised residual z.
 
         r²/2 is minus ln of the density, relative to the density at 0.
         """
 
     def slope(self, z: Numbers) -> Numbers:
-        """Compute the derivative dr/dz of the least-squares residual."""
+        """Compute the derivative dr/dz of the least-squares residual r(z)."""
 
     def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the least-squares residual of a saturated value, and its derivative.
+        """Compute the least-squares residual of a saturated reading and its derivative, from z.
 
         r²/2 is minus ln of the probability of a reading above the limit.
         """
 
     @property
     def information(self) -> float:
-        """Fisher information of one reading on the true value, in 1/uncertainty²."""
+        """Fisher information of one reading about the true value, in 1/uncertainty²."""
 
     @property
     def constant(self) -> float:
@@ -49,7 +49,7 @@ class NormalScatter:
 
     @property
     def information(self) -> float:
-        """Fisher information of one reading on the true value, 1/uncertainty²."""
+        """Fisher information of one reading about the true value, in 1/uncertainty²: 1."""
         return 1.0
 
     @property
@@ -58,19 +58,19 @@ class NormalScatter:
         return -log(2 * pi) / 2
 
     def misfit(self, z: Numbers) -> Numbers:
-        """Return the least-squares residual, which equals the standardised residual z."""
+        """Return the least-squares residual r(z), which equals the standardised residual z."""
         return z
 
     def slope(self, z: Numbers) -> Numbers:
-        """Return the derivative of the least-squares residual, 1 for each value."""
+        """Return the derivative dr/dz of the least-squares residual, which is 1."""
         return numpy.ones_like(z)
 
     def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the least-squares residual of a saturated value, and its derivative."""
+        """Compute the least-squares residual of a saturated reading and its derivative, from z."""
         from scipy.special import log_ndtr
 
-        logarithm = log_ndtr(z)
-        return _censored_residual(logarithm, numpy.exp(self.constant - z * z / 2 - logarithm))
+        log_probability = log_ndtr(z)
+        return _censored_residual(log_probability, numpy.exp(self.constant - z * z / 2 - log_probability))
 
     def draw(self, count: int, random: numpy.random.Generator) -> Numbers:
         """Draw random readings from the standard normal distribution."""
@@ -107,7 +107,7 @@ class HeavyTailed:
 
     @property
     def information(self) -> float:
-        """Fisher information of one reading on the true value, in 1/uncertainty²."""
+        """Fisher information of one reading about the true value, in 1/uncertainty²."""
         return (self.degrees + 1) / (self.degrees + 3)
 
     @property
@@ -117,14 +117,14 @@ class HeavyTailed:
         return lgamma((n + 1) / 2) - lgamma(n / 2) - log(n * pi) / 2
 
     def misfit(self, z: Numbers) -> Numbers:
-        """Compute the least-squares residual of a value from its standardised residual z.
+        """Compute the least-squares residual r(z) from the standardised residual z.
 
         r = ±sqrt((n + 1) ln(1 + z²/n)) for n degrees of freedom.
         """
         return numpy.sign(z) * numpy.sqrt((self.degrees + 1) * numpy.log1p(z * z / self.degrees))
 
     def slope(self, z: Numbers) -> Numbers:
-        """Compute the derivative dr/dz of the least-squares residual.
+        """Compute the derivative dr/dz of the least-squares residual r(z).
 
         Its limit at 0 is sqrt((n + 1)/n).
         """
@@ -134,7 +134,7 @@ class HeavyTailed:
         return numpy.where(at_centre, ((n + 1) / n) ** 0.5, slope)
 
     def censored(self, z: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the least-squares residual of a saturated value, and its derivative."""
+        """Compute the least-squares residual of a saturated reading and its derivative, from z."""
         from scipy.special import stdtr
 
         probability = numpy.maximum(stdtr(self.degrees, z), 1e-300)
@@ -150,12 +150,12 @@ class HeavyTailed:
     told = RenamedAttribute("information")
 
 
-def _censored_residual(logarithm: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
-    """Compute the least-squares residual of a saturated value, and its derivative, from ln P.
+def _censored_residual(log_probability: Numbers, hazard: Numbers) -> tuple[Numbers, Numbers]:
+    """Compute the least-squares residual sqrt(-2 ln P) of a saturated reading, and its derivative.
 
-    P is the probability of a reading above the limit. `hazard` is the derivative of ln P.
+    P is the probability of a reading above the limit, and `hazard` the derivative of ln P by the standardised residual.
     """
-    r = numpy.sqrt(-2 * numpy.minimum(logarithm, 0.0))
+    r = numpy.sqrt(-2 * numpy.minimum(log_probability, 0.0))
     return r, numpy.where(r > 1e-150, -hazard / numpy.maximum(r, 1e-150), 0.0)
 
 

@@ -22,7 +22,7 @@ _TYPICAL_FORCE = 500.0  # force in N of the reading by which errors are ordered
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Sensitivity of the estimates to one machine error of assumed size.
+    """Shifts of the estimates by one machine error of assumed size.
 
     Attributes
     ----------
@@ -43,14 +43,14 @@ class Sensitivity:
 
     @property
     def title(self) -> str:
-        """Description of the machine error, such as "a zero offset of 1 µm"."""
+        """Description of the machine error in words, such as "a zero offset of 1 µm"."""
         error = MACHINE_ERRORS[self.part]
         shown = error.quantity.shown
         of_machine = f" in {self.machine}" if self.machine else ""
         return f"{error.phrase.format(f'{shown.factor * self.size:g} {shown.text}')}{of_machine}"
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the shifts for JSON, in mm, N, MPa, rad.
+        """Return machine error and shifts as a dictionary for JSON, in mm, N, MPa and rad.
 
         The shift of an unidentifiable unknown is None.
         """
@@ -59,30 +59,32 @@ class Sensitivity:
 
 
 def sensitivities(fitted: FittedModel) -> tuple[Sensitivity, ...]:
-    """Compute the shifts of all estimates caused by machine errors of assumed size.
+    """Compute the shifts of all estimates by machine errors of assumed size.
 
     The shifts are linear at the best point: δθ = (Jᵀ W J)⁻¹ Jᵀ W δ, with the errors δ of the values. Errors that are
     unknowns of the fit are omitted. Their sizes are those assumed in the registry.
     """
-    cases = list(_neglected_errors(fitted))
-    if not cases:
+    neglected_errors = list(_neglected_errors(fitted))
+    if not neglected_errors:
         return ()
     theta, transform, forward = fitted.best.theta, fitted.transform, fitted.misfit.forward
     values = transform.to_values(theta[None])
     results = forward.results_at(values)[0]
-    errors = numpy.stack([_result_change(fitted, machine, error, values, results) for machine, error in cases])
-    moves = fitted.information.covariance @ fitted.misfit.project_errors(theta, errors)
-    shifts = transform.derivatives(theta)[:, None] * moves
+    errors = numpy.stack(
+        [_change_by_machine_error(fitted, machine, error, values, results) for machine, error in neglected_errors]
+    )
+    theta_shifts = fitted.information.covariance @ fitted.misfit.project_errors(theta, errors)
+    shifts = transform.derivatives(theta)[:, None] * theta_shifts
     unidentifiable = [name in fitted.information.unidentifiable for name in transform.names]
     shifts[unidentifiable] = numpy.nan
     return tuple(
-        Sensitivity(machine, error.name, error.assumed, dict(zip(transform.names, column.tolist(), strict=True)))
-        for (machine, error), column in zip(cases, shifts.T, strict=True)
+        Sensitivity(machine, error.name, error.assumed, dict(zip(transform.names, shift_column.tolist(), strict=True)))
+        for (machine, error), shift_column in zip(neglected_errors, shifts.T, strict=True)
     )
 
 
 def _neglected_errors(fitted: FittedModel) -> Iterator[tuple[str, MachineError]]:
-    """Yield (machine name, error) for each machine error that is not an unknown.
+    """Yield machine name and error for each machine error that the fit neglects.
 
     The errors are in descending order of their effect.
     """
@@ -99,18 +101,22 @@ def _reads_indentation(measured: Measured) -> bool:
     return "indentation" in (measured.quantity, measured.load)
 
 
-def _result_change(fitted: FittedModel, name: str, error: MachineError, values: Numbers, results: Numbers) -> Numbers:
-    """Compute the change of the model results caused by a machine error of assumed size: (data,)."""
+def _change_by_machine_error(
+    fitted: FittedModel, machine_name: str, error: MachineError, values: Numbers, results: Numbers
+) -> Numbers:
+    """Compute the change of the model results (data,) by a machine error of assumed size."""
     data = tuple(
-        _add_error(measured, error) if _reads_indentation(measured) and measured.machine.name == name else measured
+        _add_machine_error(measured, error)
+        if _reads_indentation(measured) and measured.machine.name == machine_name
+        else measured
         for measured in fitted.data
     )
-    changed = replace(fitted.misfit.forward, data=data).results_at(values)[0]
-    return (changed - results) / _RELATIVE_STEP
+    changed_results = replace(fitted.misfit.forward, data=data).results_at(values)[0]
+    return (changed_results - results) / _RELATIVE_STEP
 
 
-def _add_error(measured: Measured, error: MachineError) -> Measured:
-    """Return a copy of a data set whose machine has an additional error."""
+def _add_machine_error(measured: Measured, error: MachineError) -> Measured:
+    """Return a copy of a data set whose machine has one more error."""
     machine = measured.machine if measured.machine.name else Machine(name=_DEFAULT_NAME)
     size: dict[str, Any] = {error.name: getattr(machine, error.name) + _RELATIVE_STEP * error.assumed}
     return replace(measured, machine=replace(machine, **size))

@@ -37,29 +37,29 @@ class Trials:
 
     @property
     def half_widths(self) -> Numbers:
-        """Half widths of the 95 % bands, in standard deviations of the priors."""
+        """Half widths of all 95 % bands, in standard deviations of the priors."""
         return (self.high - self.low) / 2
 
     @property
     def coverage(self) -> dict[str, float]:
-        """Fraction of the bands that contain the true value, by unknown; 0.95 is expected."""
+        """Fraction of 95 % bands that contain the true value, for each unknown by name."""
         covered = (self.low <= self.truth) & (self.truth <= self.high)
         return dict(zip(self.names, covered.mean(axis=0).tolist(), strict=True))
 
     @property
     def bias(self) -> dict[str, float]:
-        """Mean error of the estimates over the mean band width, by unknown; 0 is expected."""
+        """Mean error of the estimates divided by the mean band width, for each unknown by name."""
         bias = (self.middle - self.truth).mean(axis=0) / (2 * self.half_widths.mean(axis=0))
         return dict(zip(self.names, bias.tolist(), strict=True))
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the trials for JSON."""
+        """Return coverage and bias of the trials as a dictionary for JSON."""
         return {"trials": len(self.middle), "coverage": self.coverage, "bias": self.bias}
 
 
 @renamed_arguments(found="fitted")
 def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
-    """Identify many synthetic data sets about the best fit, to test coverage and bias of the bands.
+    """Identify the unknowns from many synthetic data sets, to test coverage and bias of the bands.
 
     Parameters
     ----------
@@ -80,21 +80,21 @@ def trials(fitted: FittedModel, count: int = 200, seed: int = 0) -> Trials:
     """
     require("count", count, count > 0, "1 trial or more")
     random = numpy.random.default_rng(seed)
-    widened = fitted.misfit.widening * fitted.misfit.uncertainty
-    stated = replace(fitted.misfit, uncertainty=widened, widening=1.0)
-    middle, low, high = [], [], []
-    for number in range(count):
-        misfit = replace(stated, forward=replace(stated.forward, data=draw_data_sets(fitted, random)))
-        _, best, information = compute_bands(misfit, find_best_fit(misfit, seed + number))
-        middle.append(best.theta)
-        low.append([interval.low.theta[index] for index, interval in enumerate(information.intervals)])
-        high.append([interval.high.theta[index] for index, interval in enumerate(information.intervals)])
-    return Trials(fitted.transform.names, fitted.best.theta, *map(numpy.array, (middle, low, high)))
+    widened_uncertainty = fitted.misfit.widening * fitted.misfit.uncertainty
+    trial_misfit = replace(fitted.misfit, uncertainty=widened_uncertainty, widening=1.0)
+    best_points, low_ends, high_ends = [], [], []
+    for trial in range(count):
+        misfit = replace(trial_misfit, forward=replace(trial_misfit.forward, data=draw_data_sets(fitted, random)))
+        _, best, information = compute_bands(misfit, find_best_fit(misfit, seed + trial))
+        best_points.append(best.theta)
+        low_ends.append([interval.low.theta[index] for index, interval in enumerate(information.intervals)])
+        high_ends.append([interval.high.theta[index] for index, interval in enumerate(information.intervals)])
+    return Trials(fitted.transform.names, fitted.best.theta, *map(numpy.array, (best_points, low_ends, high_ends)))
 
 
 @renamed_arguments(found="fitted")
 def draw_data_sets(fitted: FittedModel, random: numpy.random.Generator) -> tuple[Measured, ...]:
-    """Draw synthetic measurements about the results of the best fit.
+    """Draw synthetic data sets with random scatter about the results of the best fit.
 
     The values include the errors of the loads.
     """
@@ -102,13 +102,15 @@ def draw_data_sets(fitted: FittedModel, random: numpy.random.Generator) -> tuple
     uncertainties = numpy.split(widened, numpy.cumsum([len(measured) for measured in fitted.data])[:-1])
     scatter = fitted.misfit.scatter
     return tuple(
-        replace(measured, values=_add_noise(measured, results, uncertainty * scatter.draw(len(measured), random)))
+        replace(
+            measured, values=_add_reading_noise(measured, results, uncertainty * scatter.draw(len(measured), random))
+        )
         for measured, results, uncertainty in zip(fitted.data, fitted.results, uncertainties, strict=True)
     )
 
 
-def _add_noise(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
-    """Add noise to results; limit the readings by the saturation, and by 0 for an ideal machine."""
+def _add_reading_noise(measured: Measured, results: Numbers, noise: Numbers) -> Numbers:
+    """Add random noise to model results, and limit the readings to the range of the machine."""
     readings = results + noise
     return numpy.minimum(readings if measured.machine.name else numpy.maximum(readings, 0.0), measured.saturation)
 

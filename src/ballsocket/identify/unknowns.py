@@ -62,7 +62,7 @@ class Unknown:
 
     @property
     def prior_mean(self) -> float:
-        """Mean of the prior on the search scale, in its standard deviations; 0 for a range."""
+        """Mean of the prior on the search scale, in standard deviations of the prior; 0 for a range."""
         if isinstance(self.prior, Rectangular):
             return 0.0
         return (self.prior.mean if isinstance(self.prior, Normal) else log(self.prior.median)) / self.prior_deviation
@@ -77,26 +77,26 @@ class Unknown:
         return (self.to_scale(self.high) - self.to_scale(self.low)) / sqrt(12)
 
     def is_physical(self, side: int, theta: float) -> bool:
-        """Check if theta lies at an end of the range that is a physical limit, such as a compliance of 0."""
+        """Check if theta is at an end of the range that is a physical limit, such as a compliance of 0."""
         end = self.high if side > 0 else self.low
         beyond = end + side * 1e-6 * max(abs(end), 1e-12)
         return abs(theta - self.to_scale(end) / self.prior_deviation) < 1e-6 and not self.quantity.allows(beyond)
 
     def to_scale(self, value: Array) -> Array:
-        """Convert a value to the search scale: its logarithm, or the value itself."""
+        """Convert a value of the unknown to the search scale: its logarithm, or the value itself."""
         return numpy.log(value) if self.logarithmic else value
 
     def from_scale(self, scaled: Array) -> Array:
-        """Convert a number on the search scale to a value."""
+        """Convert a number on the search scale to a value of the unknown."""
         return numpy.exp(scaled) if self.logarithmic else scaled
 
     def derivative(self, scaled: Array) -> Array:
-        """Compute the derivative of the value with respect to the number on the search scale."""
+        """Compute the derivative of the unknown's value with respect to its number on the search scale."""
         return numpy.exp(scaled) if self.logarithmic else numpy.ones_like(scaled)
 
 
 def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], model: Model) -> tuple[Unknown, ...]:
-    """Collect the unknowns of an identification: free numbers by name, and machine errors with ranges.
+    """List all unknowns of an identification: free numbers, and machine errors with ranges.
 
     Parameters
     ----------
@@ -117,67 +117,67 @@ def collect_unknowns(free: Mapping[str, Prior], machines: Iterable[Machine], mod
     check_names(priors, FREE_NUMBERS, "among the unknowns")
     for name in priors:
         if name in MODEL_NUMBERS:
-            _check_model(MODEL_NUMBERS[name], model)
-    numbers = [_make_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
-    return (*numbers, *_unknown_errors(machines))
+            _check_has_number(MODEL_NUMBERS[name], model)
+    number_unknowns = [_make_unknown(name, FREE_NUMBERS[name], prior) for name, prior in priors.items()]
+    return (*number_unknowns, *_collect_machine_errors(machines))
 
 
-def _check_model(number: ModelNumber, model: Model) -> None:
-    """Check that the model has a free number; raise ValueError otherwise."""
+def _check_has_number(number: ModelNumber, model: Model) -> None:
+    """Check that a contact model has the parameter that is to be identified; ValueError otherwise."""
     if not number.belongs_to(model):
         models = ", ".join(name for name, candidate in catalogue.items() if number.belongs_to(candidate))
         raise ValueError(f"{number.name} is not a number of the model {model.name}; models that have it: {models}")
 
 
-def _unknown_errors(machines: Iterable[Machine]) -> list[Unknown]:
-    """Collect the unknown machine errors; raise ValueError if two machines share a name."""
-    by_name: dict[str, Machine] = {}
+def _collect_machine_errors(machines: Iterable[Machine]) -> list[Unknown]:
+    """List the unknown errors of all machines; ValueError if two machines have the same name."""
+    machines_by_name: dict[str, Machine] = {}
     for machine in machines:
-        if by_name.setdefault(machine.name, machine) != machine:
+        if machines_by_name.setdefault(machine.name, machine) != machine:
             raise ValueError(f"two machines have the name {shown(machine.name)}; use different names")
     return [
         _make_unknown(machine.key(error), MACHINE_ERRORS[error].quantity, size, of_machine=True)
-        for machine in by_name.values()
+        for machine in machines_by_name.values()
         for error, size in machine.errors
         if isinstance(size, tuple)
     ]
 
 
-def _make_unknown(name: str, quantity: Quantity, stated: Prior, of_machine: bool = False) -> Unknown:
-    """Make an unknown with its prior, search range and scale."""
-    prior = _make_prior(name, stated)
+def _make_unknown(name: str, quantity: Quantity, stated_prior: Prior, of_machine: bool = False) -> Unknown:
+    """Make an `Unknown` with prior, search range and scale from its stated prior."""
+    prior = _make_prior(name, stated_prior)
     low, high = _search_range(prior, quantity)
     for end in (low, high):
         require(name, end, quantity.allows(end), quantity.allowed)
-    ratios = isinstance(prior, Rectangular) and low > 0 and quantity.kind is not Kind.NUMBER
+    logarithmic_range = isinstance(prior, Rectangular) and low > 0 and quantity.kind is not Kind.NUMBER
     return Unknown(
         name=name,
         quantity=quantity,
         prior=prior,
         low=low,
         high=high,
-        logarithmic=ratios or isinstance(prior, LogNormal),
+        logarithmic=logarithmic_range or isinstance(prior, LogNormal),
         of_machine=of_machine,
     )
 
 
-def _make_prior(name: str, stated: Prior) -> Distribution:
-    """Convert two ends to a rectangular distribution; return a stated distribution unchanged."""
-    if isinstance(stated, Distribution):
-        return stated
+def _make_prior(name: str, stated_prior: Prior) -> Distribution:
+    """Convert two ends to a uniform distribution; return a stated distribution unchanged."""
+    if isinstance(stated_prior, Distribution):
+        return stated_prior
     try:
-        low, high = map(float, stated)
+        low, high = map(float, stated_prior)
     except (TypeError, ValueError) as error:
         raise ValueError(
-            f"{name} = {shown(stated)} must be two ends, such as (0.02, 0.3), or a distribution"
+            f"{name} = {shown(stated_prior)} must be two ends, such as (0.02, 0.3), or a distribution"
         ) from error
     if not -inf < low < high < inf:
-        raise ValueError(f"{name} = {shown(stated)} is not allowed: two finite ends in ascending order")
+        raise ValueError(f"{name} = {shown(stated_prior)} is not allowed: two finite ends in ascending order")
     return Rectangular(low=low, high=high)
 
 
 def _search_range(prior: Distribution, quantity: Quantity) -> tuple[float, float]:
-    """Compute the ends of the search range.
+    """Compute the lower and the upper end of the search range of an unknown from its prior.
 
     They are those of a range, or eight standard deviations about a mean, if allowed.
     """
@@ -209,52 +209,57 @@ class ParameterTransform:
 
     @property
     def low(self) -> Numbers:
-        """Lower ends of the search ranges, as theta."""
+        """Lower ends of the search ranges, as scaled parameters theta (unknowns,)."""
         return self.to_theta([unknown.low for unknown in self.unknowns])
 
     @property
     def high(self) -> Numbers:
-        """Upper ends of the search ranges, as theta."""
+        """Upper ends of the search ranges, as scaled parameters theta (unknowns,)."""
         return self.to_theta([unknown.high for unknown in self.unknowns])
 
     def to_theta(self, values: Any) -> Numbers:
-        """Convert values (..., unknowns) to scaled parameters theta."""
+        """Convert values of the unknowns (..., unknowns) to scaled parameters theta."""
         columns = numpy.moveaxis(numpy.asarray(values, dtype=float), -1, 0)
-        pairs = zip(self.unknowns, columns, strict=True)
-        return numpy.stack([unknown.to_scale(column) / unknown.prior_deviation for unknown, column in pairs], axis=-1)
+        unknowns_and_columns = zip(self.unknowns, columns, strict=True)
+        return numpy.stack(
+            [unknown.to_scale(column) / unknown.prior_deviation for unknown, column in unknowns_and_columns], axis=-1
+        )
 
     def to_values(self, theta: Numbers) -> Numbers:
-        """Convert scaled parameters theta (..., unknowns) to values."""
-        pairs = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
-        return numpy.stack([unknown.from_scale(column * unknown.prior_deviation) for unknown, column in pairs], axis=-1)
+        """Convert scaled parameters theta (..., unknowns) to values of the unknowns."""
+        unknowns_and_columns = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
+        return numpy.stack(
+            [unknown.from_scale(column * unknown.prior_deviation) for unknown, column in unknowns_and_columns], axis=-1
+        )
 
     def derivatives(self, theta: Numbers) -> Numbers:
-        """Compute the derivatives of the values with respect to theta: (..., unknowns)."""
-        pairs = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
+        """Compute the derivative of each unknown's value with respect to its theta: (..., unknowns)."""
+        unknowns_and_columns = zip(self.unknowns, numpy.moveaxis(theta, -1, 0), strict=True)
         columns = [
-            unknown.derivative(column * unknown.prior_deviation) * unknown.prior_deviation for unknown, column in pairs
+            unknown.derivative(column * unknown.prior_deviation) * unknown.prior_deviation
+            for unknown, column in unknowns_and_columns
         ]
         return numpy.stack(columns, axis=-1)
 
     def prior_residuals(self, theta: Numbers) -> Numbers:
-        """Compute the deviation of each unknown from its prior mean, in standard deviations.
+        """Compute the deviation of each theta from its prior mean, in standard deviations.
 
         It is 0 for a range.
         """
-        known = numpy.array([unknown.has_distribution for unknown in self.unknowns])
-        return numpy.where(known, theta - [unknown.prior_mean for unknown in self.unknowns], 0.0)
+        has_distribution = numpy.array([unknown.has_distribution for unknown in self.unknowns])
+        return numpy.where(has_distribution, theta - [unknown.prior_mean for unknown in self.unknowns], 0.0)
 
 
 def log_prior(transform: ParameterTransform, theta: Numbers) -> Numbers:
-    """Compute the logarithm of the prior density of theta, up to a constant; -inf outside the ranges.
+    """Compute the logarithm of the prior density of theta, up to a constant; -inf outside the search ranges.
 
     All values in a range are equally likely.
     """
-    inside = numpy.all((theta >= transform.low) & (theta <= transform.high), axis=-1)
-    flat = numpy.array([0.0 if unknown.has_distribution else 1.0 for unknown in transform.unknowns])
-    stretch = numpy.sum(flat * numpy.log(transform.derivatives(theta)), axis=-1)
-    square = numpy.sum(transform.prior_residuals(theta) ** 2, axis=-1) / 2
-    return numpy.where(inside, stretch - square, -inf)
+    in_range = numpy.all((theta >= transform.low) & (theta <= transform.high), axis=-1)
+    has_range = numpy.array([0.0 if unknown.has_distribution else 1.0 for unknown in transform.unknowns])
+    log_jacobian = numpy.sum(has_range * numpy.log(transform.derivatives(theta)), axis=-1)
+    half_squares = numpy.sum(transform.prior_residuals(theta) ** 2, axis=-1) / 2
+    return numpy.where(in_range, log_jacobian - half_squares, -inf)
 
 
 __getattr__ = renamed_names(__name__, {"Scales": "ParameterTransform"})

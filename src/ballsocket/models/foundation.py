@@ -157,9 +157,10 @@ def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as t
 
 
 def Vessel() -> RadialFoundation:  # noqa: N802
-    """Make the model of a vessel modulus with linear kinematics, the paper's closed form for Bartel's integral.
+    """Make the model with the modulus of a spherical vessel and linear kinematics.
 
-    It equals the constrained radial columns with K_B of Jin, Dowson & Fisher 1994.
+    It is the closed form of Heß & Forsbach for Bartel's integral. It equals the constrained radial columns with K_B of
+    Jin, Dowson & Fisher 1994.
 
     References
     ----------

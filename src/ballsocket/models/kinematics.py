@@ -91,7 +91,7 @@ def linear_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
 
 
 def cosine_versine(R2: Array, c: Array, d: Array) -> Array:
-    """Compute the versine 1 - cos ε of the half angle without clearance: 1 (a full hemisphere) under load."""
+    """Compute the versine 1 - cos ε of the half angle for cosine kinematics: 1 (a hemisphere) under load."""
     return where(d > 0, 1.0, 0.0 * d)
 
 
@@ -101,32 +101,32 @@ def cosine_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
 
 
 def cosine_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
-    """Compute the radial displacement of the springs at the versine m = 1 - cos φ without clearance."""
+    """Compute the radial spring displacement at the versine m = 1 - cos φ for cosine kinematics, without clearance."""
     return linear_displacement(R2, 0.0 * c, d, m)
 
 
 def cosine_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the contact force from the indentation without clearance."""
+    """Compute the contact force from the indentation for cosine kinematics, without clearance."""
     return linear_force(R2, 0.0 * c, K, d)
 
 
 def cosine_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the contact stiffness dF/dd without clearance."""
+    """Compute the contact stiffness dF/dd for cosine kinematics, without clearance."""
     return linear_stiffness(R2, 0.0 * c, K, d)
 
 
 def cosine_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the elastic energy of the springs without clearance."""
+    """Compute the elastic energy of the springs for cosine kinematics, without clearance."""
     return linear_energy(R2, 0.0 * c, K, d)
 
 
 def cosine_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the integral of the pressure over the contact area without clearance."""
+    """Compute the integral of the pressure over the contact area for cosine kinematics, without clearance."""
     return linear_pressure_integral(R2, 0.0 * c, K, d)
 
 
 def cosine_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
-    """Compute the indentation d from the contact force without clearance."""
+    """Compute the indentation d from the contact force for cosine kinematics, without clearance."""
     # F = (2π/3) K R2² d
     return 1.5 * F / (pi * R2**2 * K)
 

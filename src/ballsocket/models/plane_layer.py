@@ -166,15 +166,19 @@ class LayerSolution:
         return transform, edge, mean, second
 
     def _solve_block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
-        """Solve the integral equations of a block of contacts; return the four parts of `_transforms`."""
+        """Solve the integral equations of a block of contacts for h1 and h2, and compute their integrals.
+
+        The four arrays are those of `_transforms`.
+        """
         xp = arrays.namespace(width)
         x, wx, k, _ = self._quadrature_points
         alpha = width[:, None, None]
         waves = cos(k[:, None] * x * alpha)
+        # integral equations at the quadrature points (Nyström's method)
         matrix = alpha * (xp.matrix_transpose(waves) @ (kernel[..., None] * waves)) * wx
         matrix = matrix + pi / 2 * xp.eye(x.shape[0], dtype=width.dtype, device=arrays.device(width))
-        sides = xp.stack([xp.ones_like(x), x * x], axis=-1)
-        h = xp.linalg.solve(matrix, arrays.broadcast_to(sides, (*matrix.shape[:-1], 2)))
+        right_sides = xp.stack([xp.ones_like(x), x * x], axis=-1)
+        h = xp.linalg.solve(matrix, arrays.broadcast_to(right_sides, (*matrix.shape[:-1], 2)))
         weighted = wx[:, None] * h
         transform = waves @ weighted
         edge_wave = cos(k * width[:, None])
@@ -294,32 +298,39 @@ _POWERS = {"force": (8.0, 3.4, 2.0), "indentation": (4.0, 1.6, 0.8)}
 
 
 def _solve_width(joint: Joint, kind: str, load: Array) -> LayerSolution:
-    """Solve for the contact width of a load; NaN where the half angle would exceed π/2."""
+    """Solve for the contact width α = a/L at a load; NaN where the half angle would exceed π/2.
+
+    `kind` is "force", "indentation" or "half_angle", for a load in N, mm or rad.
+    """
     shape = (load, *joint.numbers())
     widest = broadcast(pi / 2 * clip(joint.thickness_ratio, 0.0, MAX_THICKNESS_RATIO), *shape)
     if arrays.concrete_values(widest) is None:
         widest = clip(widest, 0.0, TRACED_WIDTH)
-    reach = _quadrature_width(widest)
+    quadrature_width = _quadrature_width(widest)
     if kind == "half_angle":
         width = broadcast(load * joint.thickness_ratio, *shape)
         width = where(width <= widest, width, float("nan"))
-        return LayerSolution(joint=joint, width=width, widest=reach)
+        return LayerSolution(joint=joint, width=width, widest=quadrature_width)
     index = 0 if kind == "force" else 1
-    goal = log(broadcast(safe_divisor(load), *shape))
+    log_load = log(broadcast(safe_divisor(load), *shape))
 
-    def law(narrowing: Array, reach: float) -> tuple[Array, Array]:
+    def negative_log_load(narrowing: Array, quadrature_width: float) -> tuple[Array, Array]:
         """Compute -ln(load) and its slope at a width `widest` exp(-narrowing)."""
         width = widest * exp(-narrowing)
-        solution = LayerSolution(joint=joint, width=width, widest=reach)
+        solution = LayerSolution(joint=joint, width=width, widest=quadrature_width)
         value, slope = solution.force_and_indentation[index], solution.radius_derivatives[index]
         return -log(value), slope * width * joint.liner_thickness / value
 
-    missing = -goal - law(0.0 * goal, reach)[0]  # negative if even the widest contact has less than the load
-    steep, guess, flat = (clip(missing, 0.0, inf) / power for power in _POWERS[kind])
-    reach = _quadrature_width(widest * exp(-steep))
-    root = increasing_root(lambda narrowing: law(narrowing, reach), -goal, steep, flat, guess, steps=24)
-    width = where(missing >= 0, widest * exp(-root), float("nan"))
-    return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=reach)
+    # logarithm of the ratio of the load at the widest contact to this load
+    log_ratio = -log_load - negative_log_load(0.0 * log_load, quadrature_width)[0]
+    # the load is about a power of the width: bounds and estimate of ln(widest/width)
+    lower, estimate, upper = (clip(log_ratio, 0.0, inf) / power for power in _POWERS[kind])
+    quadrature_width = _quadrature_width(widest * exp(-lower))
+    root = increasing_root(
+        lambda narrowing: negative_log_load(narrowing, quadrature_width), -log_load, lower, upper, estimate, steps=24
+    )
+    width = where(log_ratio >= 0, widest * exp(-root), float("nan"))
+    return LayerSolution(joint=joint, width=where(load > 0, width, 0.0), widest=quadrature_width)
 
 
 def _quadrature_width(width: Array) -> float:

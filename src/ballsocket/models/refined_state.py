@@ -227,33 +227,32 @@ def half_angle_of_force(load: Array, liner: Liner) -> Array:
     return _solve_half_angle(_force_residual, load, log(load / (2.5 + load / 3)) / 3, liner)
 
 
-def _solve_half_angle(residual: Increasing, load: Array, start: Array, liner: Liner) -> Array:
-    """Solve for the half angle ε in rad by Newton's method from the estimate ln ε = `start`."""
-    start = start + (_LOG_OFFSET - ln(MAX_HALF_ANGLE))
+def _solve_half_angle(residual: Increasing, load: Array, log_estimate: Array, liner: Liner) -> Array:
+    """Solve for the half angle ε in rad by Newton's method, from an estimate of ln ε."""
+    start = log_estimate + (_LOG_OFFSET - ln(MAX_HALF_ANGLE))
     end = 0.0 * start + (_LOG_OFFSET + 1e-12)  # includes the widest contact itself
     root = increasing_root(residual, 0.0 * start, start - 6.0, end, start, arguments=(load, liner))
     return where(root < end, exp(root - _LOG_OFFSET) * MAX_HALF_ANGLE, nan)
 
 
-def _indentation_residual(unknown: Array, load: Array, liner: Liner) -> Pair:
+def _indentation_residual(log_angle: Array, load: Array, liner: Liner) -> Pair:
     """Compute the residual of an indentation at a trial half angle, and its slope.
 
     The residual is ln x/(1 + x), x = d/c, less its value at the load.
     """
-    contact = scaled_contact(exp(unknown - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
+    contact = scaled_contact(exp(log_angle - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
     total = 2 * contact.share + contact.gap
     residual = log(2 * contact.share / total * (1 + 1 / load))
     return residual, (contact.share_rate * contact.gap - contact.gap_slope) / total
 
 
-def _force_residual(unknown: Array, load: Array, liner: Liner) -> Pair:
+def _force_residual(log_angle: Array, load: Array, liner: Liner) -> Pair:
     """Compute the residual of a force at a trial half angle, and its slope.
 
     The residual is ln x/(1 + x), x = d/c, less its value at the load over the secant stiffness.
     """
-    contact = scaled_contact(exp(unknown - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
+    contact = scaled_contact(exp(log_angle - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
     total = 2 * contact.share + contact.gap
     residual = log(2 * contact.share / total * (1 + contact.secant / load))
-    return residual, (
-        contact.share_rate * contact.gap - contact.gap_slope
-    ) / total + contact.secant_rate * contact.secant / (contact.secant + load)
+    indentation_slope = (contact.share_rate * contact.gap - contact.gap_slope) / total
+    return residual, indentation_slope + contact.secant_rate * contact.secant / (contact.secant + load)

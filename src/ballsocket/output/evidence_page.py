@@ -5,7 +5,7 @@ from __future__ import annotations
 from html import escape
 
 from ..core.storage.fingerprint import fingerprint
-from ..evidence.terms import input_title, limit_text, number, title_of
+from ..evidence.matrix import input_title, limit_text, number, title_of
 from . import html
 from .evidence_sections import (
     calculation_section,
@@ -55,7 +55,7 @@ def evidence_page(record: Record, digest: str = "") -> str:
     Parameters
     ----------
     record : mapping
-        See `evidence.pack.gathered`.
+        See `evidence.pack.gather_evidence`.
     digest : str
         Digest of the pack, see `evidence.folder.digest`; omitted if empty.
     """

@@ -8,9 +8,8 @@ from itertools import starmap
 from typing import Any
 
 from ..evidence.folder import RECORD
-from ..evidence.matrix import NAMES
+from ..evidence.matrix import KEYS, NAMES, limit_text, number, title_of
 from ..evidence.requirements import MET, NOT_MET, UNKNOWN
-from ..evidence.terms import KEYS, limit_text, number, title_of
 from . import evidence_figures as figures
 from . import html
 from .evidence_words import (

@@ -6,8 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from html import escape
 from typing import Any
 
-from ..evidence.matrix import NAMES
-from ..evidence.terms import KEYS, LIMITED, number, title_of
+from ..evidence.matrix import KEYS, LIMITED, NAMES, number, title_of
 from ..studies.parameters import LOADS
 from . import html
 

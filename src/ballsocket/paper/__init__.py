@@ -1,1 +1,1 @@
-"""Heß & Forsbach 2021 recomputed: its parameter sets and its checkable sentences, each with a verdict."""
+"""Recomputation of Heß & Forsbach 2021: parameter sets, figures, tables, and checkable statements with verdicts."""

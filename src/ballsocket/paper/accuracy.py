@@ -1,4 +1,4 @@
-"""How far every model is from the exact answer, over all the joints that the paper had in mind."""
+"""Errors of every model against the exact solution, over the joints of the paper."""
 
 from __future__ import annotations
 
@@ -19,16 +19,28 @@ RANGES = {"ball_radius": (11.0, 23.0), "outer_radius": (16.0, 26.0), "clearance"
 """Table 1 of Heß & Forsbach 2021 in mm, and the Poisson's ratios of Table 3."""
 
 THICKNESS = (3.0, 15.0)
+"""Smallest and largest liner thickness in mm."""
+
 FORCES = numpy.array([500.0, 1000.0, 2000.0, 3000.0, 4000.0])
 """Loads in N."""
 
 QUANTITIES = ("indentation", "max_pressure", "half_angle", "force")
-"""The first three at given force, the force at the exact answer's indentation."""
+"""Compared quantities: the first three at a given force, the force at the indentation of the exact solution."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Spread:
-    """Relative errors of one quantity over all joints and loads, and where the worst is."""
+    """Relative errors of one quantity over all joints and loads.
+
+    Attributes
+    ----------
+    median, high, worst : float
+        Median, 95th percentile and maximum.
+    joint : Joint
+        Joint with the largest error.
+    load : float
+        Force in N of the largest error.
+    """
 
     median: float
     high: float
@@ -37,7 +49,7 @@ class Spread:
     load: float
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON; `high` is the 95th percentile, `load` in N."""
+        """Return one dictionary for JSON; `high` is the 95th percentile, `load` in N."""
         return {
             "median": self.median,
             "percentile_95": self.high,
@@ -48,7 +60,16 @@ class Spread:
 
 @dataclass(frozen=True, kw_only=True)
 class Accuracy:
-    """One model: a `Spread` for each of `QUANTITIES`, and the shares of contacts that it answers and trusts."""
+    """Errors of one model.
+
+    Attributes
+    ----------
+    model : str
+    spreads : dict of str to Spread
+        Errors by quantity.
+    answered, valid : float
+        Fractions of the contacts with a result, and of those within the range of the model.
+    """
 
     model: str
     spreads: dict[str, Spread]
@@ -56,31 +77,31 @@ class Accuracy:
     valid: float
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return one dictionary for JSON."""
         errors = {name: spread.summary() for name, spread in self.spreads.items()}
         return {"model": self.model, "answered": self.answered, "valid": self.valid, "errors": errors}
 
 
 def edge_joints() -> Joint:
-    """Joints on the ends of the paper's ranges, where errors are worst: as arrays of shape (joints,).
+    """Create the joints at the ends of the paper's ranges, where errors are largest: arrays of shape (joints,).
 
-    Every combination of the ends and the middle of the head's radius, of what liners the outer radius leaves it, and
-    of the ends of the clearance, at ν 0.3, 0.4 and 0.49.
+    They combine ends and middle of the head radius, ends and middle of the liner thickness that the outer radius
+    allows, the ends of the clearance, and ν 0.3, 0.4 and 0.49.
     """
     clearances = RANGES["clearance"]
     largest = RANGES["outer_radius"][1] - THICKNESS[0] - max(clearances)  # leaves the thinnest liner
     radii = numpy.linspace(RANGES["ball_radius"][0], largest, 3)
-    R1, c, poisson, share = (
+    R1, c, poisson, fraction = (
         grid.ravel() for grid in numpy.meshgrid(radii, clearances, (0.3, 0.4, 0.49), (0.0, 0.5, 1.0), indexing="ij")
     )
     thinnest, thickest = (numpy.clip(outer - R1 - c, *THICKNESS) for outer in RANGES["outer_radius"])
-    return _joints(R1, c, thinnest + share * (thickest - thinnest), poisson)
+    return _joints(R1, c, thinnest + fraction * (thickest - thinnest), poisson)
 
 
 def paper_joints(count: int = 128) -> Joint:
-    """Joints that fill the paper's ranges evenly, as arrays of shape (joints,): steel on 1 GPa.
+    """Create joints that fill the paper's ranges evenly, as arrays of shape (joints,): steel on 1 GPa.
 
-    `count` points of Sobol's sequence, less those whose liner would be too thin or too thick; a power of two.
+    They are `count` points of Sobol's sequence (a power of two), without those with a liner that is too thin or thick.
     """
     from scipy.stats.qmc import Sobol, scale
 
@@ -88,11 +109,12 @@ def paper_joints(count: int = 128) -> Joint:
     points = scale(Sobol(len(RANGES), scramble=False).random(count), low, high)
     R1, outer, clearance, poisson = points.T
     thickness = outer - R1 - clearance
-    kept = (thickness >= THICKNESS[0]) & (thickness <= THICKNESS[1])
-    return _joints(R1[kept], clearance[kept], thickness[kept], poisson[kept])
+    allowed = (thickness >= THICKNESS[0]) & (thickness <= THICKNESS[1])
+    return _joints(R1[allowed], clearance[allowed], thickness[allowed], poisson[allowed])
 
 
 def _joints(R1: Numbers, clearance: Numbers, thickness: Numbers, poisson: Numbers) -> Joint:
+    """Create joints of steel on 1 GPa."""
     return Joint(
         ball_radius=R1,
         clearance=clearance,
@@ -105,20 +127,20 @@ def _joints(R1: Numbers, clearance: Numbers, thickness: Numbers, poisson: Number
 def accuracies(
     models: Mapping[str, Model] | None = None, joints: Joint | None = None, edges: Joint | None = None
 ) -> tuple[Accuracy, ...]:
-    """The errors of models against the exact answer, the most accurate in peak pressure first.
+    """Compute the errors of models against the exact solution, sorted by the median error of the peak pressure.
 
     Parameters
     ----------
     models : mapping of str to Model, optional
-        By default the whole catalogue. A model that answers no joint at all is left out.
+        By default the full catalogue. A model without a result for any joint is omitted.
     joints : Joint, optional
-        Arrays of shape (joints,), over which median and percentile are taken; `paper_joints()` by default.
+        Joints of median and percentile, arrays of shape (joints,); `paper_joints()` by default.
     edges : Joint, optional
-        More of them, among which the worst is looked for too; `edge_joints()` by default.
+        Additional joints for the maximum; `edge_joints()` by default.
     """
     chosen = catalogue if models is None else models
     within = paper_joints() if joints is None else joints
-    family = _together(within, edge_joints() if edges is None else edges)
+    family = _concatenate(within, edge_joints() if edges is None else edges)
     inner = slice(0, len(within.ball_radius))
     exact = reference.press(family, force=FORCES[:, None])
     rows = []
@@ -126,39 +148,42 @@ def accuracies(
         if name == reference.name:
             continue
         try:
-            pressed = model.press(family, force=FORCES[:, None])
-            pushed = model.press(family, indentation=exact.indentation)
+            at_force = model.press(family, force=FORCES[:, None])
+            at_indentation = model.press(family, indentation=exact.indentation)
         except OutsideDomainError:
             continue
-        rows.append(_accuracy(name, family, inner, exact, pressed, pushed))
+        rows.append(_accuracy(name, family, inner, exact, at_force, at_indentation))
     return tuple(sorted(rows, key=lambda row: row.spreads["max_pressure"].median))
 
 
-def _together(one: Joint, other: Joint) -> Joint:
-    """Joints of two families, both of arrays."""
-    pairs = zip(one.numbers(), other.numbers(), strict=True)
-    shapes = [numpy.ones(len(joint.ball_radius)) for joint in (one, other)]
-    return one.with_numbers([numpy.concatenate([a * shapes[0], b * shapes[1]]) for a, b in pairs])
+def _concatenate(first: Joint, second: Joint) -> Joint:
+    """Concatenate two families of joints, both of arrays."""
+    pairs = zip(first.numbers(), second.numbers(), strict=True)
+    shapes = [numpy.ones(len(joint.ball_radius)) for joint in (first, second)]
+    return first.with_numbers([numpy.concatenate([a * shapes[0], b * shapes[1]]) for a, b in pairs])
 
 
-def _accuracy(name: str, joints: Joint, inner: slice, exact: Contact, pressed: Contact, pushed: Contact) -> Accuracy:
-    contacts = {"force": pushed}
+def _accuracy(
+    name: str, joints: Joint, inner: slice, exact: Contact, at_force: Contact, at_indentation: Contact
+) -> Accuracy:
+    """Compute the errors of one model from its contacts at given force and at given indentation."""
+    contacts = {"force": at_indentation}
     spreads = {}
     for quantity in QUANTITIES:
-        value = getattr(contacts.get(quantity, pressed), quantity)
-        spreads[quantity] = _spread(abs(value / getattr(exact, quantity) - 1), joints, inner)
+        value = getattr(contacts.get(quantity, at_force), quantity)
+        spreads[quantity] = _error_statistics(abs(value / getattr(exact, quantity) - 1), joints, inner)
     return Accuracy(
         model=name,
         spreads=spreads,
-        answered=float(numpy.mean(numpy.isfinite(pressed.indentation))),
-        valid=float(numpy.mean(pressed.valid)),
+        answered=float(numpy.mean(numpy.isfinite(at_force.indentation))),
+        valid=float(numpy.mean(at_force.valid)),
     )
 
 
-def _spread(error: Numbers, joints: Joint, inner: slice) -> Spread:
-    """Spread of errors (loads, joints): the usual ones over the inner joints, the worst over all."""
-    usual = error[:, inner]
-    known = usual[numpy.isfinite(usual)]
+def _error_statistics(error: Numbers, joints: Joint, inner: slice) -> Spread:
+    """Compute median and percentile of errors (loads, joints) over the inner joints, and the maximum over all."""
+    inside = error[:, inner]
+    known = inside[numpy.isfinite(inside)]
     load, which = numpy.unravel_index(int(numpy.nanargmax(error)), error.shape)
     numbers = [float(numpy.broadcast_to(number, error.shape[1:])[which]) for number in joints.numbers()]
     return Spread(

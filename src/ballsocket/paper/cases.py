@@ -1,4 +1,4 @@
-"""The parameter sets of the paper's figures (doi 10.3390/app112311170): steel on 1 GPa, lengths in mm, loads in N."""
+"""Parameter sets of the figures of the paper (doi 10.3390/app112311170): steel on 1 GPa, lengths in mm, loads in N."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ POISSON = (0.30, 0.35, 0.40, 0.45, 0.49)
 CLEARANCES = (0.05, 0.1, 0.15, 0.2)
 HEAD_RADII = (11.0, 14.0, 16.0, 20.0, 23.0)
 THICKNESSES = (3.0, 6.0, 9.0, 12.0)
-"""The paper names the ends of these series and not always what lies between (Figure 5)."""
+"""Series of Figure 5 in mm. The paper states the ends of each series, and not always the values between them."""
 
 LOAD = 3000.0
-"""At which pressures and areas are shown."""
+"""Force in N at which pressures and areas are shown."""
 
 LOADS = numpy.array([1000.0, 1500.0, 2000.0, 2500.0, 3000.0])
-"""Over which the foundation modulus is averaged."""
+"""Forces in N over which the foundation modulus is averaged."""
 
 OUTER_RADII = RANGES["outer_radius"]
-"""The limits of Table 1 for R2 + L, dotted in Figure 6."""
+"""Limits of Table 1 for R2 + L in mm, dotted in Figure 6."""
 
 
 def hip(poisson: Numbers | float = 0.4) -> Joint:
-    """Figures 3 and 4: R2 18, L 6.75, c 0.1."""
+    """Create the joint of Figures 3 and 4: R2 18, L 6.75, c 0.1 mm."""
     return joint(head_radius=17.9, liner_thickness=6.75, poisson=poisson)
 
 
@@ -44,7 +44,7 @@ def joint(
     liner_thickness: Numbers | float = 6.0,
     poisson: Numbers | float = 0.4,
 ) -> Joint:
-    """A joint of Figure 5, whose series start from R1 16, c 0.1, L 6 and ν 0.4."""
+    """Create a joint of Figure 5; the defaults are the common joint of its series."""
     return Joint(
         ball_radius=head_radius,
         clearance=clearance,
@@ -55,7 +55,7 @@ def joint(
 
 
 def series() -> dict[str, Joint]:
-    """The three series of Figure 5, each as one joint of arrays."""
+    """Return the three series of Figure 5, each as one joint of arrays."""
     return {
         "clearance": joint(clearance=numpy.array(CLEARANCES)),
         "head_radius": joint(head_radius=numpy.array(HEAD_RADII)),
@@ -64,18 +64,18 @@ def series() -> dict[str, Joint]:
 
 
 def named_series() -> Iterator[tuple[str, Joint, tuple[float, ...]]]:
-    """Series of joints, each with the symbol and the values of what varies."""
+    """Yield symbol, joints and values of each series of Figure 5."""
     symbols = (JOINT[name].symbol for name in ("clearance", "ball_radius", "liner_thickness"))
     yield from zip(symbols, series().values(), (CLEARANCES, HEAD_RADII, THICKNESSES), strict=True)
 
 
 def by_ratio(ratio: Numbers, poisson: Numbers | float) -> Joint:
-    """Figure 2, right, and Table 3: joints by R2/L whose outer radius is 24 mm, in the middle of Table 1."""
+    """Create the joints of Figure 2 (right) and Table 3 from R2/L; their outer radius is 24 mm."""
     return paper_joint(poisson, ratio)
 
 
 def outline(poisson: float = 0.4, heads: int = 5, liners: int = 3) -> tuple[Numbers, Numbers, Joint]:
-    """Head radii and liner thicknesses that Table 1 allows, from end to end, and their joints; c is 0.1 mm."""
+    """Return head radii and liner thicknesses in mm over the range of Table 1, and their joints with c 0.1 mm."""
     radius = numpy.linspace(*RANGES["ball_radius"], heads)[:, None] + numpy.zeros(liners)
     thinnest, thickest = (numpy.clip(outer - radius - 0.1, *THICKNESS) for outer in (OUTER_RADII[0], OUTER_RADII[1]))
     thickness = thinnest + (thickest - thinnest) * numpy.linspace(0.0, 1.0, liners)
@@ -84,10 +84,10 @@ def outline(poisson: float = 0.4, heads: int = 5, liners: int = 3) -> tuple[Numb
 
 
 def with_clearance(joints: Joint, clearance: float) -> Joint:
-    """Joints that differ from the given ones in their clearance (mm) alone."""
+    """Replace the radial clearance (mm) of joints."""
     return replace(joints, clearance=clearance)
 
 
 def scaled_modulus(contact_pressure: Numbers, indentation: Numbers, socket_radius: Numbers) -> Numbers:
-    """K~ = p0 R2/(d E), Eq. (17), for the liner of 1000 MPa."""
+    """Compute the dimensionless modulus K~ = p0 R2/(d E), Eq. (17), for a liner of 1000 MPa."""
     return contact_pressure * socket_radius / (indentation * 1000.0)

@@ -1,4 +1,4 @@
-"""What Figures 2 to 6 of the paper show, recomputed with any models: as the paper draws them, and with every model."""
+"""Figures 2 to 6 of the paper, recomputed with any models: as in the paper, and with every model."""
 
 from __future__ import annotations
 
@@ -17,13 +17,14 @@ from . import cases
 from .figure import Figure, FigureLine, Map, Panel
 
 Models = Mapping[str, Model]
-"""By the name under which they are drawn."""
+"""Models by their name in the figure."""
 
 FIT = "Eq. (18), Table 3"
-"""The paper's closed form, where its modulus is what is shown."""
+"""Name of the paper's closed form in figures of the modulus."""
 
 
-def _line(model: str, case: str, x: Any, y: Any) -> FigureLine:
+def _curve(model: str, case: str, x: Any, y: Any) -> FigureLine:
+    """Create a curve from arrays."""
     return FigureLine(model=model, case=case, x=to_numpy(x).ravel().tolist(), y=to_numpy(y).ravel().tolist())
 
 
@@ -34,7 +35,7 @@ _MODULUS = "p0 R2/(d E)"
 
 
 def figure_2(poisson: float, references: Models) -> Figure:
-    """K~ = p0 R2/(d E) by force, clearance and R2/L for one ν, with the published fit."""
+    """Compute K~ = p0 R2/(d E) by force, clearance and R2/L for one ν, with the published fit."""
     panels = _modulus_panels(poisson, {**references, FIT: HessForsbach()}, f"ν {poisson:g}")
     return Figure(
         title="Figure 2",
@@ -46,7 +47,7 @@ def figure_2(poisson: float, references: Models) -> Figure:
 
 
 def figure_2_models(poisson: float, models: Models) -> Figure:
-    """Figure 2 for one ν with every model: what each of them takes for the modulus."""
+    """Compute Figure 2 for one ν with the modulus of every model."""
     panels = _modulus_panels(poisson, models, "")
     return Figure(
         title="Figure 2, with every model",
@@ -59,15 +60,15 @@ def figure_2_models(poisson: float, models: Models) -> Figure:
 
 
 def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str, str], list[FigureLine]]:
-    """Title and axis of each panel, and its lines."""
+    """Compute the lines of each panel, by title and axis label."""
     hip = cases.hip(poisson)
     wide = cases.joint(head_radius=18.0 - _CLEARANCES, clearance=_CLEARANCES, liner_thickness=6.75, poisson=poisson)
     family = cases.by_ratio(_RATIOS, poisson)
     by_force, by_clearance, by_ratio = [], [], []
     for name, model in models.items():
-        by_force.append(_line(name, case, _FORCES, _scaled(model, hip, _FORCES)))
-        by_clearance.append(_line(name, case, _CLEARANCES, _mean_modulus(model, wide)))
-        by_ratio.append(_line(name, case, _RATIOS, _mean_modulus(model, family)))
+        by_force.append(_curve(name, case, _FORCES, _scaled_modulus(model, hip, _FORCES)))
+        by_clearance.append(_curve(name, case, _CLEARANCES, _mean_modulus(model, wide)))
+        by_ratio.append(_curve(name, case, _RATIOS, _mean_modulus(model, family)))
     return {
         ("by force", CONTACT["force"].label()): by_force,
         ("by clearance", JOINT["clearance"].label()): by_clearance,
@@ -75,20 +76,22 @@ def _modulus_panels(poisson: float, models: Models, case: str) -> dict[tuple[str
     }
 
 
-def _scaled(model: Model, joint: Joint, force: Numbers) -> Numbers:
+def _scaled_modulus(model: Model, joint: Joint, force: Numbers) -> Numbers:
+    """Compute the dimensionless modulus of a model at forces in N."""
     contact = model.press(joint, force=force)
     return cases.scaled_modulus(contact.max_pressure, contact.indentation, joint.socket_radius)
 
 
 def _mean_modulus(model: Model, joints: Joint) -> Numbers:
-    return _scaled(model, joints, cases.LOADS[:, None]).mean(axis=0)
+    """Compute the mean dimensionless modulus over 1 to 3 kN."""
+    return _scaled_modulus(model, joints, cases.LOADS[:, None]).mean(axis=0)
 
 
 _STEPS = 25
 
 
 def figure_3_or_4(number: int, models: Models) -> Figure:
-    """Force over indentation, and pressure over angle at 3 kN, of all models; ν 0.4 for Figure 3, 0.45 for Figure 4."""
+    """Compute force by indentation and pressure by angle at 3 kN: ν 0.4 for Figure 3, 0.45 for Figure 4."""
     poisson = {3: 0.40, 4: 0.45}[number]
     joint = cases.hip(poisson)
     return Figure(
@@ -104,30 +107,30 @@ SERIES: dict[str, dict[str, Joint]] = {
     "head radius": {f"R1 {r:g} mm": cases.joint(head_radius=r) for r in (11.0, 16.0, 23.0)},
     "liner thickness": {f"L {t:g} mm": cases.joint(liner_thickness=t) for t in (3.0, 6.0, 12.0)},
 }
-"""The joints of Figure 5."""
+"""Joints of Figure 5, by series."""
 
 _LETTERS = {"clearance": ("a", "b"), "head radius": ("c", "d"), "liner thickness": ("e", "f")}
 
 
 def figure_5(series: str, case: str, models: Models) -> Figure:
-    """Force and pressure of one joint of the three series, for the panels that show its series."""
+    """Compute force and pressure of one joint of Figure 5, for the two panels of its series."""
     joint = SERIES[series][case]
-    place = _BY_ARC if series == "head radius" else _BY_ANGLE
-    left, right = _LETTERS[series]
+    axis = _BY_ARC if series == "head radius" else _BY_ANGLE
+    first, second = _LETTERS[series]
     return Figure(
         title="Figure 5",
         caption="Force by indentation, and pressure at 3 kN, by clearance, head radius and liner thickness around "
         "R1 16, L 6, c 0.1 mm, ν 0.4. Pressure is shown over the arc R1 φ where the head's radius varies.",
         columns=2,
         panels=[
-            _load_panel(f"({left}) {series}: force", case, joint, models),
-            _pressure_panel(f"({right}) {series}: pressure at 3 kN", case, joint, models, place),
+            _load_panel(f"({first}) {series}: force", case, joint, models),
+            _pressure_panel(f"({second}) {series}: pressure at 3 kN", case, joint, models, axis),
         ],
     )
 
 
 def figure_5_forces(series: str, case: str, models: Models) -> Figure:
-    """Force over indentation of one joint of the three series with every model, in a panel of its own."""
+    """Compute force by indentation of one joint of Figure 5 with every model, in a separate panel."""
     return Figure(
         title="Figure 5, forces of every model",
         caption="Force by indentation for each joint of Figure 5.",
@@ -137,7 +140,7 @@ def figure_5_forces(series: str, case: str, models: Models) -> Figure:
 
 
 def figure_5_pressures(series: str, case: str, models: Models) -> Figure:
-    """Pressure over angle of the same joint."""
+    """Compute pressure by angle of one joint of Figure 5 with every model, in a separate panel."""
     return Figure(
         title="Figure 5, pressures of every model",
         caption="Pressure by angle at 3 kN for each joint of Figure 5.",
@@ -147,32 +150,34 @@ def figure_5_pressures(series: str, case: str, models: Models) -> Figure:
 
 
 def _load_panel(title: str, case: str, joint: Joint, models: Models) -> Panel:
+    """Compute the panel of force by indentation."""
     forces = 4000.0 * numpy.linspace(0.06, 1.0, _STEPS) ** 2
     depth, force = CONTACT["indentation"], CONTACT["force"]
     lines = []
     for name, model in models.items():
         pressed = model.press(joint, force=forces).indentation * depth.shown.factor
-        lines.append(_line(name, case, numpy.append(0.0, pressed), numpy.append(0.0, forces)))
+        lines.append(_curve(name, case, numpy.append(0.0, pressed), numpy.append(0.0, forces)))
     return Panel(title=title, x=depth.label(), y=force.label(), lines=lines, highest=float(forces[-1]))
 
 
-Place = tuple[str, Callable[[Joint, Numbers], Numbers]]
-_BY_ANGLE: Place = (FIELD["angle"].label(), lambda joint, angle: numpy.degrees(angle))
-_BY_ARC: Place = ("arc from the pole R1 φ [mm]", lambda joint, angle: angle * joint.ball_radius)
+PressureAxis = tuple[str, Callable[[Joint, Numbers], Numbers]]
+_BY_ANGLE: PressureAxis = (FIELD["angle"].label(), lambda joint, angle: numpy.degrees(angle))
+_BY_ARC: PressureAxis = ("arc from the pole R1 φ [mm]", lambda joint, angle: angle * joint.ball_radius)
 
 
-def _pressure_panel(title: str, case: str, joint: Joint, models: Models, place: Place = _BY_ANGLE) -> Panel:
-    label, position = place
+def _pressure_panel(title: str, case: str, joint: Joint, models: Models, axis: PressureAxis = _BY_ANGLE) -> Panel:
+    """Compute the panel of pressure at 3 kN by angle or arc."""
+    label, position = axis
     lines = []
     for name, model in models.items():
         contact = model.press(joint, force=cases.LOAD)
         angle = float(contact.half_angle) * numpy.sin(numpy.linspace(0.0, numpy.pi / 2, 60))
-        lines.append(_line(name, case, position(joint, angle), contact.pressure(angle)))
+        lines.append(_curve(name, case, position(joint, angle), contact.pressure(angle)))
     return Panel(title=title, x=label, y=FIELD["pressure"].label(), lines=lines)
 
 
 def figure_6(name: str, model: Model, points: int = 25) -> Figure:
-    """Peak pressure and contact area over head radius and liner thickness at 3 kN, about the outer radii of Table 1."""
+    """Compute maps of peak pressure and contact area at 3 kN over head radius and liner thickness."""
     grid = _CurveGrid(points)
     contact = model.press(grid.joint, force=cases.LOAD)
     return Figure(
@@ -188,7 +193,7 @@ def figure_6(name: str, model: Model, points: int = 25) -> Figure:
 
 
 def figure_6_pressures(name: str, model: Model, reference: Model, points: int = 25) -> Figure:
-    """How far one model's peak pressure lies from a reference's, over the same axes."""
+    """Compute the map of the deviation of a model from a reference in peak pressure."""
     return Figure(
         title="Figure 6, pressures of every model",
         caption="How far the peak pressure of each model lies from the exact one, in %; white is within 1 %.",
@@ -198,7 +203,7 @@ def figure_6_pressures(name: str, model: Model, reference: Model, points: int = 
 
 
 def figure_6_areas(name: str, model: Model, reference: Model, points: int = 25) -> Figure:
-    """How far its contact area does."""
+    """Compute the map of the deviation of a model from a reference in contact area."""
     return Figure(
         title="Figure 6, areas of every model",
         caption="How far the contact area of each model lies from the exact one, in %; white is within 1 %.",
@@ -210,12 +215,13 @@ def figure_6_areas(name: str, model: Model, reference: Model, points: int = 25) 
 def _deviation(
     name: str, symbol: str, grid: _CurveGrid, pair: tuple[Model, Model], quantity: Callable[[Contact], Numbers]
 ) -> Map:
-    value, truth = (quantity(each.press(grid.joint, force=cases.LOAD)) for each in pair)
+    """Compute the map of the relative deviation of the first model from the second, in percent."""
+    value, truth = (quantity(model.press(grid.joint, force=cases.LOAD)) for model in pair)
     return replace(grid.map(f"{name}: {symbol} over exact [%]", 100 * (value / truth - 1)), about_zero=True)
 
 
 class _CurveGrid:
-    """Head radii and liner thicknesses, `points` of each, a little beyond the outer radii of Table 1."""
+    """Grid of head radii and liner thicknesses, `points` of each, slightly beyond the outer radii of Table 1."""
 
     def __init__(self, points: int) -> None:
         self.radius, self.thickness = numpy.linspace(11.0, 23.0, points), numpy.linspace(3.0, 15.0, points)
@@ -224,9 +230,10 @@ class _CurveGrid:
         self.joint = cases.joint(head_radius=R[self.inside], liner_thickness=L[self.inside])
 
     def map(self, title: str, values: Numbers) -> Map:
-        whole = numpy.full(self.inside.shape, numpy.nan)
-        whole[self.inside] = values
-        rows = [[None if numpy.isnan(value) else value for value in row] for row in whole.tolist()]
+        """Create a map of values at the joints of the grid."""
+        table = numpy.full(self.inside.shape, numpy.nan)
+        table[self.inside] = values
+        rows = [[None if numpy.isnan(value) else value for value in row] for row in table.tolist()]
         return Map(
             title=title,
             x_label=JOINT["ball_radius"].label(),

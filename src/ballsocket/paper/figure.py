@@ -1,10 +1,9 @@
-"""A figure as numbers: panels of curves, and maps. What is drawn, written as CSV and kept in files."""
+"""Figures as numbers: panels of curves, and maps, for plots, CSV and JSON files."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, replace
-from itertools import groupby
 from typing import Any
 
 from ..core.deprecation import renamed_names
@@ -12,7 +11,7 @@ from ..core.deprecation import renamed_names
 
 @dataclass(frozen=True, kw_only=True)
 class FigureLine:
-    """One curve: `model` says who, `case` what is varied; numbers with the units of the panel's axes."""
+    """Curve of a model and a case; numbers in the units of the axes of its panel."""
 
     model: str
     case: str
@@ -22,7 +21,7 @@ class FigureLine:
 
 @dataclass(frozen=True, kw_only=True)
 class Panel:
-    """One part of a figure; `highest` is where its upright axis ends, None a little above its lines."""
+    """Panel of a figure: axis labels and curves; `highest` is the end of the vertical axis, None for automatic."""
 
     title: str
     x: str
@@ -33,9 +32,9 @@ class Panel:
 
 @dataclass(frozen=True, kw_only=True)
 class Map:
-    """A quantity over two axes; `z` has a row for each y, None where there is nothing.
+    """Map of a quantity over two axes; `z` has a row for each y, and None for a missing value.
 
-    `about_zero` says that its sign matters: a deviation.
+    `about_zero` is true for a deviation, whose sign matters.
     """
 
     title: str
@@ -49,7 +48,7 @@ class Map:
 
 @dataclass(frozen=True, kw_only=True)
 class Figure:
-    """One figure: panels, or maps, so many in a row."""
+    """Figure of panels or maps; `columns` is their number in a row."""
 
     title: str
     caption: str
@@ -58,34 +57,35 @@ class Figure:
     maps: list[Map] = field(default_factory=list)
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return one dictionary for JSON."""
         return asdict(self)
 
     @classmethod
     def of(cls, summary: Mapping[str, Any]) -> Figure:
-        """From its dictionary."""
+        """Create a figure from its dictionary."""
         panels = [
             Panel(**{**panel, "lines": [FigureLine(**line) for line in panel["lines"]]}) for panel in summary["panels"]
         ]
-        return cls(**{**summary, "panels": panels, "maps": [Map(**each) for each in summary["maps"]]})
+        return cls(**{**summary, "panels": panels, "maps": [Map(**entry) for entry in summary["maps"]]})
 
     @classmethod
     def joined(cls, parts: Iterable[Figure]) -> Figure:
-        """One figure of several: panels of one title get the lines of all, in the order of the parts."""
+        """Join several figures into one: panels with the same title get the lines of all, in the order of the parts."""
         figures = list(parts)
         return replace(
             figures[0],
             panels=list(_merged(panel for figure in figures for panel in figure.panels)),
-            maps=[each for figure in figures for each in figure.maps],
+            maps=[entry for figure in figures for entry in figure.maps],
         )
 
 
 def _merged(panels: Iterable[Panel]) -> Iterator[Panel]:
-    kept = list(panels)
-    order = {title: place for place, title in enumerate(dict.fromkeys(panel.title for panel in kept))}
-    for _, group in groupby(sorted(kept, key=lambda panel: order[panel.title]), key=lambda panel: panel.title):
-        same = list(group)
-        yield replace(same[0], lines=[line for panel in same for line in panel.lines])
+    """Merge panels with the same title."""
+    groups: dict[str, list[Panel]] = {}
+    for panel in panels:
+        groups.setdefault(panel.title, []).append(panel)
+    for group in groups.values():
+        yield replace(group[0], lines=[line for panel in group for line in panel.lines])
 
 
 __getattr__ = renamed_names(__name__, {"Line": "FigureLine"})

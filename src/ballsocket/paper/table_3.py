@@ -1,4 +1,4 @@
-"""Table 3 of the paper: the foundation modulus fitted to finite elements, and fitted again to the exact answer."""
+"""Table 3 of the paper: the foundation modulus fitted to finite elements, and fitted again to the exact solution."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from ..problem import Joint, Material
 from ..problem.presets import STEEL
 
 RATIOS = numpy.array([0.73, 1.0, 1.35, 1.8, 2.3, 2.8, 3.4, 4.1, 4.9, 5.8, 6.7, 7.7])
-"""The twelve R2/L over which Table 3 is refitted."""
+"""Ratios R2/L over which Table 3 is refitted."""
 
 
 def paper_joint(poisson: Array, ratios: Array = RATIOS) -> Joint:
-    """Joints by R2/L in the ranges of Table 1: outer radius 24 mm, clearance 0.1 mm, steel on 1 GPa."""
+    """Create joints from R2/L in the ranges of Table 1: outer radius 24 mm, clearance 0.1 mm, steel on 1 GPa."""
     socket = 24.0 * ratios / (1 + ratios)
     return Joint(
         ball_radius=socket - 0.1,
@@ -34,10 +34,10 @@ def paper_joint(poisson: Array, ratios: Array = RATIOS) -> Joint:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TableColumn:
-    """One column of Table 3: the paper's constants and ours.
+    """Column of Table 3: the constants of the paper and ours.
 
-    `difference` is how far the paper's K lies from the reference at each of `RATIOS`, relative; `paper_error` the worst
-    errors of the closed form with the paper's K, as `calibration.error` has them with ours.
+    `difference` is the relative difference of the paper's K from the reference at each of `RATIOS`. `paper_error` has
+    the largest errors of the closed form with the paper's K; `calibration.error` has those with ours.
     """
 
     poisson: float
@@ -48,7 +48,7 @@ class TableColumn:
     calibration: Calibration
 
     def summary(self) -> dict[str, Any]:
-        """One dictionary for JSON."""
+        """Return one dictionary for JSON."""
         return {
             "poisson": self.poisson,
             "paper": list(self.paper),
@@ -63,12 +63,12 @@ class TableColumn:
 
 
 def refit_table_3(reference: Model | None = None) -> tuple[TableColumn, ...]:
-    """Table 3 fitted again, to `Exact()` unless told otherwise."""
+    """Fit Table 3 again, by default to `Exact()`."""
     return tuple(refit_column(poisson, reference) for poisson in table_3()["poisson"])
 
 
 def refit_column(poisson: float, reference: Model | None = None) -> TableColumn:
-    """One column of Table 3, for one of its Poisson's ratios.
+    """Fit one column of Table 3 again, for one of its Poisson's ratios.
 
     Raises
     ------
@@ -77,9 +77,9 @@ def refit_column(poisson: float, reference: Model | None = None) -> TableColumn:
     """
     published = table_3()
     if poisson not in published["poisson"]:
-        raise ValueError(f"poisson = {poisson!r} has no column in Table 3: {published['poisson']} have")
-    place = published["poisson"].index(poisson)
-    paper = _three(published[name][place] for name in ("C1", "C2", "C3"))
+        raise ValueError(f"poisson = {poisson!r} has no column in Table 3; allowed: {published['poisson']}")
+    column = published["poisson"].index(poisson)
+    paper = _three(published[name][column] for name in ("C1", "C2", "C3"))
     joint = paper_joint(poisson)
     fit = calibrate(joint, form=as_polynomial, reference=reference)
     theirs = replace(fit, modulus=polynomial(*paper))
@@ -94,5 +94,6 @@ def refit_column(poisson: float, reference: Model | None = None) -> TableColumn:
 
 
 def _three(numbers: Iterable[Any]) -> tuple[float, float, float]:
+    """Convert three numbers to floats."""
     first, second, third = (float(number) for number in numbers)
     return first, second, third

@@ -57,7 +57,7 @@ class LinearGap:
         return -1.5 * d * numpy.sin(1.5 * t) - self.clearance * clearance_term
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the Abel transform of ∂u/∂d, the change of displacement with indentation."""
+        """Compute the Abel transform A[∂u/∂d](t) of the derivative of the displacement by the indentation."""
         return numpy.cos(1.5 * t) + 0.0 * d
 
     deepening = RenamedAttribute("indentation_derivative")
@@ -86,7 +86,9 @@ class CircularGap:
 
         Angles are in rad, indentations in mm; they broadcast.
         """
-        return self._gap_derivatives(2 * numpy.sin(angle / 2) ** 2, d)[0]
+        versine = 2 * numpy.sin(angle / 2) ** 2  # w = 1 - cos φ
+        u, _, _ = self._gap_derivatives(versine, d)
+        return u
 
     def transform(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute the Abel transform A[u](t) of the displacement in mm."""
@@ -97,7 +99,7 @@ class CircularGap:
         return _abel_transform_slope(t, lambda w: self._gap_derivatives(w, d))
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the Abel transform of ∂u/∂d, the change of displacement with indentation."""
+        """Compute the Abel transform A[∂u/∂d](t) of the derivative of the displacement by the indentation."""
         return _abel_transform(t, lambda w: self._indentation_derivatives(w, d))
 
     deepening = RenamedAttribute("indentation_derivative")

@@ -1,13 +1,16 @@
 """Exact solution: published tables, limits, an independent finite-element code, and its error estimate."""
 
 import json
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from numpy.polynomial import polynomial
 
 import ballsocket as bs
+from ballsocket.elasticity.exact import load_curve, subsurface
 from ballsocket.elasticity.exact.kernel import Kernel
+from ballsocket.elasticity.exact.model import curve_of
 from ballsocket.elasticity.exact.modes import ElasticBall, Shell, Socket
 
 from ...joints import HIP
@@ -361,3 +364,123 @@ def test_energy_is_the_work_and_stiffness_the_slope(gap):
     above, here, below = (bs.Exact(gap=gap, tolerance=1e-9).press(HIP, indentation=x) for x in (d + step, d, d - step))
     np.testing.assert_allclose((above.energy - below.energy) / (2 * step), here.force, rtol=1e-6)
     np.testing.assert_allclose((above.force - below.force) / (2 * step), here.stiffness, rtol=1e-6)
+
+
+def test_the_stress_of_a_narrow_contact_is_that_of_a_half_space():
+    """Below Hertz' pressure the largest von Mises stress is 0.62 p0 for ν 0.3."""
+    liner = bs.Material(young=1000.0, poisson=0.3)
+    joint_here = bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=6.75, liner=liner)
+    contact = bs.Exact().press(joint_here, half_angle=np.radians([0.3, 0.9, 1.1]))
+    np.testing.assert_allclose(contact.von_mises[:2] / contact.max_pressure[:2], 0.62, atol=1e-3)
+    assert contact.von_mises[2] / contact.max_pressure[2] == pytest.approx(0.62, abs=0.02)
+
+
+def test_the_bounds_of_the_stress_are_ten_percent_from_a_coarse_sum():
+    soft = bs.Layer(thickness=10.0, material=bs.CANCELLOUS_BONE)
+    contact = bs.Exact().press(HIP.replace(backing=(soft,)), force=np.array([1e-6, 300.0, 3000.0]))
+    low, high = contact.von_mises_bounds
+    assert (low < contact.von_mises).all()
+    assert (contact.von_mises < high).all()
+    np.testing.assert_allclose(high / low, 1.1 / 0.9, rtol=1e-12)
+    middle = (low + high) / 2
+    np.testing.assert_allclose(middle, contact.von_mises, rtol=0.02)
+
+
+def power_law(state_error):
+    """Make contacts with d ~ ε² and F ~ ε³, as those of Hertz."""
+    angle = np.array([0.1, 0.2])
+    d, force = 3.0 * angle**2, 5.0 * angle**3
+    return SimpleNamespace(
+        half_angle=angle,
+        indentation=d,
+        force=force,
+        stiffness=1.5 * force / d,
+        indentation_slope=2 * d / angle,
+        error=np.array(state_error),
+    )
+
+
+def test_errors_grow_with_the_slopes_of_a_point_contact():
+    """Three times the error e of the solution: e/3 in ε by force, e (1 + 2/3) in d, 2 e in the pressure."""
+    state = power_law([1e-7, 2e-7])
+    for kind, slope in (("indentation", 2.0), ("force", 3.0)):
+        np.testing.assert_allclose(load_curve.log_slope(kind, state), slope)
+    e = 3 * state.error
+    expected = {
+        "force": {"half_angle": e / 3, "force": 0 * e, "indentation": e * (1 + 2 / 3), "energy": e * (3 + 2 / 3)},
+        "indentation": {"half_angle": e / 2, "force": e * 2.5, "indentation": 0 * e, "energy": e * 4.5},
+        "half_angle": {"half_angle": 0 * e, "force": e, "indentation": e, "energy": 2 * e},
+    }
+    pressures = {"force": 2 * e, "indentation": 2.5 * e, "half_angle": e}
+    for kind, values in expected.items():
+        errors = load_curve.errors(kind, state)
+        for name, value in values.items():
+            np.testing.assert_allclose(errors[name], value, err_msg=f"{kind} {name}")
+        for name in ("max_pressure", "pole_pressure", "stiffness", "pressure_integral"):
+            np.testing.assert_allclose(errors[name], pressures[kind], err_msg=f"{kind} {name}")
+
+
+@pytest.mark.parametrize("kind", ["force", "indentation"])
+def test_half_angles_are_estimated_within_a_fifth_of_a_percent(kind):
+    """Below the knots the estimate is the power law of a point contact, with the logarithm of its slope."""
+    curve = curve_of(bs.Exact(), HIP)
+    state = curve.state(np.radians(np.linspace(0.3, 84.0, 40)), 20)
+    estimate = curve._estimate_angle(kind, getattr(state, kind))
+    np.testing.assert_allclose(estimate, state.half_angle, rtol=2e-3)
+    tiny = curve.state(np.radians([0.05, 0.1]), 20)
+    np.testing.assert_allclose(curve._estimate_angle(kind, getattr(tiny, kind)), tiny.half_angle, rtol=0.02)
+
+
+def test_windows_of_knots_surround_their_half_angles():
+    knots = np.degrees(load_curve._ANGLES)
+    for angles in ([2.5], [5.0, 7.0], [30.0, 35.0], [55.0]):
+        window = load_curve.knot_window(np.radians(angles))
+        inside = knots[window]
+        assert len(inside) == 8
+        assert np.count_nonzero(inside < min(angles)) >= 2
+        assert np.count_nonzero(inside > max(angles)) >= 2
+    for angles in ([1.0, 60.0], [2.0, 30.0], [84.0]):
+        assert load_curve.knot_window(np.radians(angles)) is None
+
+
+@pytest.mark.parametrize("index", [0, 3, 6])
+def test_a_refined_search_lies_between_the_neighbours_of_the_largest_value(index):
+    values = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0, 8.0])
+    finer = subsurface._refined_points(values, index)
+    assert len(finer) == 9
+    assert finer[4] == values[index]
+    assert finer[0] == values[max(index - 1, 0)]
+    assert finer[-1] == values[min(index + 1, 6)]
+    assert (np.diff(finer) >= 0).all()
+
+
+def test_the_peak_stress_is_the_largest_of_a_fine_search():
+    """At a wide contact it lies in the liner, below the edge of the contact."""
+    contact = bs.Exact().press(RIGID, force=3000.0)
+    peak = contact.peak_stress
+    angle, depth = np.linspace(0.0, 1.3, 53) * contact.half_angle, np.linspace(0.0, 6.75, 55)
+    values = contact.stress(angle[:, None], depth).von_mises
+    assert values.max() <= peak.von_mises * (1 + 1e-9)
+    assert values.max() == pytest.approx(peak.von_mises, rel=5e-3)
+    i, j = np.unravel_index(values.argmax(), values.shape)
+    assert peak.angle == pytest.approx(angle[i], abs=angle[1] - angle[0])
+    assert peak.depth == pytest.approx(depth[j], abs=depth[1] - depth[0])
+    assert contact.stress(peak.angle, peak.depth).von_mises == pytest.approx(peak.von_mises, rel=1e-6)
+    assert contact.von_mises == peak.von_mises
+
+
+def test_an_incompressible_liner_that_is_free_outside_has_an_answer():
+    soft = RIGID.replace(liner=bs.Material(young=1000.0, poisson=0.5), support=bs.Support.FREE)
+    contact = bs.Exact().press(soft, force=100.0)
+    assert contact.status is bs.Status.OK
+    nearly = bs.Exact().press(soft.replace(liner=bs.Material(young=1000.0, poisson=0.49999)), force=100.0)
+    assert contact.indentation == pytest.approx(nearly.indentation, rel=1e-4)
+
+
+def test_zeta_values_are_those_of_scipy():
+    from scipy.special import zeta
+
+    from ballsocket.elasticity.exact import closed_forms
+
+    integers = [*range(2, 2 * closed_forms._MAX_TERMS)]
+    assert [closed_forms._zeta(s) for s in integers] == pytest.approx(zeta(integers).tolist(), rel=3e-16)

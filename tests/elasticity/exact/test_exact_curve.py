@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.exact import subsurface
+from ballsocket.elasticity.exact import chebyshev_curve, subsurface
+from ballsocket.elasticity.exact.chebyshev_curve import ChebyshevState
 
 from ...joints import HIP
 
@@ -46,6 +47,21 @@ def test_every_quantity_is_within_its_stated_error(joint):
             off = abs(getattr(found, name) / getattr(exact, name) - 1)
             assert off.max() < 2e-7, (kind, name)
             assert (off <= found.error.get(name, 1e-6) + 1e-10).all(), (kind, name)
+
+
+def test_every_joint_is_fitted_by_series(joint):
+    """A curve that cannot be fitted would be solved contact by contact, with the same results."""
+    state = bs.ExactCurve().press(joint, force=10.0).single_state
+    assert isinstance(state, ChebyshevState)
+    series = state.series
+    assert series.is_accurate
+    assert (series.truncation < 1e-6).all()
+    knots = series.knots.half_angle
+    values, slopes = series.evaluate_functions(knots)
+    np.testing.assert_allclose(values, chebyshev_curve._dimensionless_quantities(series.knots), rtol=1e-9, atol=1e-9)
+    middle, step = knots[8:-4], 1e-5
+    above, below = (series.evaluate_functions(middle * np.exp(side * step))[0][:2] for side in (1, -1))
+    np.testing.assert_allclose(slopes[:, 8:-4], (above - below) / (2 * step), rtol=1e-4, atol=1e-6)
 
 
 def test_the_pressure_profile_is_within_a_millionth_of_the_peak(joint):

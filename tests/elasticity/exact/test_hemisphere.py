@@ -1,15 +1,18 @@
 """Estimated changes on a hemisphere with a free rim and half a ball, against finite elements of that body."""
 
 import json
+import re
 from dataclasses import replace
 from math import inf, radians
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
 from ballsocket.contact.closed_sphere import NOTED_CHANGE, hemisphere_indentation_change, max_hemisphere_change
+from ballsocket.elasticity.exact.contact import NearHemisphere
 from ballsocket.elasticity.exact.free_face import FreeFace
 from ballsocket.elasticity.exact.modes import Shell, Socket
 
@@ -45,6 +48,12 @@ def test_the_change_on_a_hemisphere_is_that_of_finite_elements(row):
     noted = any(note.startswith(CLOSED) for note in contact.notes)
     assert noted == (max(map(abs, known.values())) > NOTED_CHANGE)
     assert not contact.valid or abs(known["indentation"]) < 0.16
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['kind']} {row['change']['von_mises']:.4f}")
+def test_the_change_of_the_von_mises_stress_is_that_of_finite_elements(row):
+    contact = bs.ExactCurve().press(joint_of(row), half_angle=row["half_angle"])
+    assert contact._hemisphere_von_mises == pytest.approx(row["change"]["von_mises"], rel=0.17, abs=4.5e-3)
 
 
 BASE = bs.Joint(
@@ -88,6 +97,45 @@ def test_balls_that_are_a_little_soft_are_noted(young, poisson, ball, change):
     contact = bs.Exact().press(joint, half_angle=radians(50.0))
     assert contact.hemisphere["indentation"] > NOTED_CHANGE
     assert any(note.startswith(CLOSED) for note in contact.notes)
+
+
+def test_the_note_has_the_changes_in_percent():
+    contact = bs.Exact().press(BASE.replace(backing=(TITANIUM, layer(15.0, 500.0))), half_angle=radians(45.0))
+    note = next(note for note in contact.notes if note.startswith(CLOSED))
+    noted = {symbol: float(value) for symbol, value in re.findall(r"(d|ε|pmax|dF/dd) ([+-][\d.]+) %", note)}
+    change = contact.hemisphere
+    assert noted["d"] == pytest.approx(100 * change["indentation"], rel=5e-3)
+    assert noted["dF/dd"] == pytest.approx(100 * change["stiffness"], rel=5e-3)
+    assert set(noted) == {
+        symbol
+        for symbol, name in (
+            ("d", "indentation"),
+            ("ε", "half_angle"),
+            ("pmax", "max_pressure"),
+            ("dF/dd", "stiffness"),
+        )
+        if abs(change[name]) > 0.01
+    }
+    assert "up to" not in note
+    angles = np.radians([20.0, 45.0])
+    several = bs.Exact().press(BASE.replace(backing=(TITANIUM, layer(15.0, 500.0))), half_angle=angles)
+    assert any("has up to d +" in note for note in several.notes)
+    largest = max(several.hemisphere["indentation"])
+    assert any(f"d +{100 * largest:.3g} %" in note for note in several.notes)
+
+
+def test_a_contact_is_near_the_hemisphere_up_to_fifteen_percent():
+    limit = NearHemisphere()
+    assert str(limit) == "change of d or pmax on a hemisphere ≤ 15 %"
+    for indentation, pressure, near in ((0.14, -0.14, True), (0.16, 0.0, False), (0.0, -0.16, False)):
+        contact = SimpleNamespace(
+            hemisphere={"indentation": indentation, "max_pressure": pressure},
+            hemisphere_change_bound=lambda name: inf,
+            indentation=0.1,
+        )
+        assert limit.holds(contact) == near
+        contact.hemisphere_change_bound = lambda name: 0.15
+        assert limit.holds(contact)
 
 
 def test_a_common_hip_has_no_note():
@@ -140,7 +188,7 @@ def test_tabulated_and_refined_models_estimate_the_change():
 
 
 def test_the_change_is_in_the_summary_and_names_the_next_model(tmp_path):
-    from ballsocket.cli.next_steps import next_steps
+    from ballsocket.cli.json_answers import next_steps
 
     contact = bs.Exact().press(BASE.replace(backing=(TITANIUM, layer(5.0, 500.0))), half_angle=radians(45.0))
     result = contact.summary()

@@ -53,6 +53,7 @@ def test_a_point_contact_is_that_of_hertz():
     hertz = bs.Hertz().press(joint, force=tiny.force)
     assert tiny.max_pressure == pytest.approx(hertz.max_pressure, rel=1e-5)
     assert tiny.half_angle == pytest.approx(hertz.half_angle, rel=1e-5)
+    assert tiny.max_pressure_angle == 0.0
 
 
 @pytest.mark.parametrize("joint", [RIGID, HIP])
@@ -107,6 +108,18 @@ def test_loads_beyond_the_tables_have_a_status():
     assert contact.status.tolist() == [bs.Status.OK, bs.Status.NOT_REACHED]
     assert bs.Tabulated().press(HIP, force=1e9).status is bs.Status.NOT_REACHED
     assert not bs.Tabulated().press(replace(HIP, ball=bs.Material(young=2e5, poisson=0.45)), force=1000.0).valid
+
+
+def test_loads_near_the_perfect_fit_are_solved():
+    """In a thick liner indentations of a thousand clearances change the half angle by fractions of a degree."""
+    thick = replace(RIGID, liner_thickness=80.0, clearance=1e-3)
+    depth = 1e-3 * np.array([50.0, 150.0, 1000.0, 5000.0])
+    found, exact = (model.press(thick, indentation=depth) for model in (bs.Tabulated(), bs.Exact()))
+    assert found.status.tolist() == [bs.Status.OK] * 4
+    np.testing.assert_allclose(found.force, exact.force, rtol=1e-6)
+    again = bs.Tabulated().press(thick, force=found.force)
+    assert again.status.tolist() == [bs.Status.OK] * 4
+    np.testing.assert_allclose(again.indentation, depth, rtol=1e-10)
 
 
 def test_every_field_has_derivatives_in_jax():
@@ -167,7 +180,7 @@ def test_a_file_without_tables_is_refused_before_any_computation(content, tmp_pa
 def test_an_unwritable_file_of_tables_is_refused_before_any_computation(tmp_path):
     for place in (tmp_path, tmp_path / "none" / "tables.npz"):
         with pytest.raises(OSError, match="this is a folder|No such file"):
-            build_tables.build(place, workers=0)
+            build_tables.build_tables(place, workers=0)
 
 
 def test_builder_coordinates_invert_those_of_the_tables():

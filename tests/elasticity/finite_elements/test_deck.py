@@ -4,12 +4,14 @@ import json
 import os
 import shutil
 from functools import cached_property
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
 from ballsocket.elasticity.finite_elements.decks import calculix as ccx
+from ballsocket.elasticity.finite_elements.decks.bodies import faceting_gap
 from ballsocket.elasticity.finite_elements.decks.deck import deck_of
 
 from ...extent import some
@@ -150,6 +152,7 @@ def test_steps_have_their_displacements_and_expected_results():
         np.testing.assert_allclose(made.expected[name], getattr(again, name))
     assert made.expected["force"][-1] == pytest.approx(contact.force, rel=1e-6)
     assert made.expected["half_angle_deg"][-1] == pytest.approx(40.0, abs=1e-4)
+    assert [int(line.split()[1]) for line in deck.title[-5:]] == [1, 2, 3, 4, 5]
     np.testing.assert_allclose([float(word) for word in deck.title[-1].split()[1:]][1:],
                                [made.expected[name][-1] for name in made.expected], rtol=1e-6)  # fmt: skip
 
@@ -173,6 +176,40 @@ def test_an_elastic_ball_is_pushed_at_its_equator_and_a_rigid_one_at_all_nodes()
     assert set(elastic.set("PUSHED")).isdisjoint(elastic.set("UPRIGHT"))
     ball = {int(node) for head, rows in rigid.blocks if head.endswith("ELSET=BALL") for row in rows for node in row[1:]}
     assert set(rigid.set("PUSHED")) == ball <= set(rigid.set("UPRIGHT"))
+
+
+def test_a_rigid_ball_is_a_thin_ring_one_element_longer_than_the_bore():
+    contact = pressed(RIGID)
+    deck = Read(deck_of(contact, scale=1.0).text())
+    nodes = deck.set("ROUND")
+    places = np.add([deck.nodes[node] for node in nodes], (0.0, 0.1))
+    angle = np.arctan2(places[:, 0], -places[:, 1])
+    assert np.diff(angle)[-2:] == pytest.approx(np.diff(angle)[-4:-2])
+    last = contact._solved.pair.angle[-2:]
+    assert angle[-1] == pytest.approx(last[1] + (last[1] - last[0]))
+    inside = min(np.hypot(x, y + 0.1) for x, y in (deck.nodes[node] for node in deck.set("PUSHED")))
+    assert inside == pytest.approx(0.95 * 17.9)
+
+
+def test_facets_leave_a_gap_of_chords_or_parabolas():
+    """Largest distance from an arc to the element through its nodes; none where both bodies have the same nodes."""
+    half, radius = 0.05, 18.0
+    pair = SimpleNamespace(
+        surfaces=[
+            SimpleNamespace(corners=np.arange(0.0, 0.91, 0.05)),
+            SimpleNamespace(corners=np.append(np.arange(0.0, 0.61, 2 * half), [1.6, 2.5])),
+        ],
+        angle=np.arange(0.0, 0.61, 0.05),
+        radius=radius,
+        resolution=SimpleNamespace(order=1),
+    )
+    assert faceting_gap(pair) == pytest.approx(radius * (1 - np.cos(half)), rel=1e-3)
+    pair.resolution.order = 2
+    t = np.linspace(-1.0, 1.0, 2001)
+    below = radius - radius * np.hypot(np.sin(half) * t, 1 - (1 - np.cos(half)) * t**2)
+    assert faceting_gap(pair) == pytest.approx(abs(below).max(), rel=1e-2)
+    pair.surfaces[1] = pair.surfaces[0]
+    assert faceting_gap(pair) == 0.0
 
 
 def test_a_fixed_liner_has_a_fixed_outer_surface():
@@ -328,7 +365,7 @@ def test_the_end_of_each_step_is_read(tmp_path):
 
 
 def test_contact_pressures_are_separated_from_other_results(tmp_path):
-    numbers = "".join(f"{value:12.5E}" for value in (1.0, 2.0, 3.0, 4.5, 0.0, 0.0))
+    numbers = "".join(f"{value:12.5E}" for value in (-1.0, 2.0, 3.0, 4.5, -0.5, 0.0))
     blocks = [
         f"  100CL  101 {time:.9f}           9                     0    1           1\n -4  {name}       6    1\n"
         f" -5  ONE         1    4    1    1\n -1{7:10d}{numbers}\n -3\n"
@@ -344,6 +381,35 @@ def test_the_edge_is_where_the_gap_closes():
     gap = np.where(angle < 0.7, -1e-4, 3.0 * np.clip(angle - 0.7, 0.0, None) ** 1.5)
     assert ccx.edge_angle(angle, gap) == pytest.approx(0.7, abs=1e-9)
     assert ccx.edge_angle(angle, np.full_like(angle, -1e-4)) == angle[-1]
+
+
+def test_the_edge_is_extrapolated_from_five_nodes_behind_the_smeared_ones():
+    """Pressures are smeared over the two nodes beyond the edge, and far nodes do not follow the power law."""
+    angle = np.linspace(0.0, 1.0, 101)
+    gap = np.where(angle < 0.5, 0.0, 3.0 * np.clip(angle - 0.482, 0.0, None) ** 1.5)
+    gap[50:52] *= 3.0
+    gap[57:] *= 2.0
+    assert ccx.edge_angle(angle, gap) == pytest.approx(0.482, abs=1e-9)
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-3])
+def test_gap_between_the_displaced_surfaces_is_computed_in_both_directions(scale):
+    """The ball moves down by d, the bore follows it radially where they touch and shrinks sideways elsewhere."""
+    angle, clearance, d = np.array([0.0, 0.4, 0.9, 1.5]), 0.1, 0.05
+    imposed = d * np.cos(angle) - clearance * (1 - np.cos(angle))
+    moved = np.array([imposed[0], imposed[1], -0.02, -0.03])  # outwards along the radius
+    nodes = [3, 5, 8, 9]
+    bore = np.column_stack([nodes, scale * moved * np.sin(angle), -scale * moved * np.cos(angle)])
+    ball = np.column_stack([[11, 12], [0.0, 0.0], [-scale * d, -scale * d]])
+    deck = {
+        "bore": {"node": nodes, "angle": angle.tolist()},
+        "round": {"node": [11, 12], "angle": [0.0, 1.6]},
+        "joint": {"clearance": clearance},
+        "scale": scale,
+    }
+    surfaces = ccx._Surfaces(deck=deck, bore=bore[::-1], ball=ball, pressures={})
+    assert surfaces.indentation == pytest.approx(d)
+    assert surfaces.gap == pytest.approx(moved - imposed, abs=1e-12)
 
 
 def test_the_pole_pressure_excludes_the_neighbouring_nodes():

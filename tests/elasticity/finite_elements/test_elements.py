@@ -7,7 +7,13 @@ from scipy.sparse.linalg import spsolve
 from ballsocket.elasticity.finite_elements.bodies import ball_body, socket_body
 from ballsocket.elasticity.finite_elements.mesh import graded_points
 from ballsocket.elasticity.finite_elements.shapes import Resolution, SocketShape
-from ballsocket.evidence.element_checks import a_block, polar, pressed, strain_energy_error, thick_sphere_error
+from ballsocket.evidence.code_checks import (
+    polar_components,
+    pressure_forces,
+    shell_block,
+    strain_energy_error,
+    thick_sphere_error,
+)
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Interface
 
@@ -16,9 +22,9 @@ ORDERS = pytest.mark.parametrize("order", [1, 2], ids=["bilinear", "biquadratic"
 
 @ORDERS
 def test_a_translation_along_the_axis_has_no_energy(order):
-    elastic = a_block(order, end=1.1)
+    elastic = shell_block(order, end=1.1)
     K = elastic.matrix()
-    moved = polar(elastic, np.zeros(elastic.block.number.size), np.ones(elastic.block.number.size))
+    moved = polar_components(elastic, np.zeros(elastic.block.number.size), np.ones(elastic.block.number.size))
     assert abs(K @ moved).max() < 1e-12 * abs(K).max()
     assert abs(K - K.T).max() < 1e-12 * abs(K).max()
 
@@ -109,7 +115,7 @@ def test_bonded_layers_of_one_material_are_one_layer():
         socket_body(SocketShape(layers=layers, **ends), resolution)
         for layers in (((1.5, 1.0, 0.3),), ((1.2, 1.0, 0.3), (1.5, 1.0, 0.3)))
     )
-    forces = pressed(one.elastic.block)[one.normals] * np.cos(one.elastic.block.angle) ** 4
+    forces = pressure_forces(one.elastic.block)[one.normals] * np.cos(one.elastic.block.angle) ** 4
     np.testing.assert_allclose(one.compliance() @ forces, two.compliance() @ forces, rtol=1e-3, atol=1e-4)
 
 

@@ -7,13 +7,18 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.elasticity.exact.model import curve_of
 from ballsocket.elasticity.exact.modes import Shell, Socket
-from ballsocket.elasticity.finite_elements import load_curve, memory, mesh, tangent
+from ballsocket.elasticity.finite_elements import load_curve, memory, mesh, solver, tangent
+from ballsocket.elasticity.finite_elements.bodies import socket_body
+from ballsocket.elasticity.finite_elements.condensation import nested_dissection
 from ballsocket.elasticity.finite_elements.decks import calculix
+from ballsocket.elasticity.finite_elements.elasticity import shape_functions
 from ballsocket.elasticity.finite_elements.full_contact import FullContact
-from ballsocket.elasticity.finite_elements.harmonics import socket_harmonics
+from ballsocket.elasticity.finite_elements.harmonics import Harmonics, socket_harmonics
 from ballsocket.elasticity.finite_elements.load_search import ContactBracket
 from ballsocket.elasticity.finite_elements.round_contact import partial_contact, pressure_at_pole
+from ballsocket.elasticity.finite_elements.section import _superconvergent_points as superconvergent_points
 from ballsocket.elasticity.finite_elements.shapes import Resolution, SocketShape, ball_corners, socket_shape
 from ballsocket.elasticity.finite_elements.solver import Settings, load_curve_of
 from ballsocket.elasticity.finite_elements.surfaces import ContactSurface, lagrange
@@ -164,6 +169,35 @@ def test_the_pressure_at_the_pole_is_extrapolated_by_an_even_polynomial():
     assert pressure_at_pole(angle, pressures, 1.0) == pytest.approx(5.0, rel=1e-9)
     few = angle[::8]
     assert pressure_at_pole(few, 5.0 - 2.0 * few**2, 1.0) == pytest.approx(5.0, rel=1e-9)
+
+
+def test_the_pressure_at_the_pole_of_few_nodes_is_a_parabola_through_three():
+    """Scatter that is orthogonal to a parabola has no effect; the fourth node lies outside the pole region."""
+    angle = np.array([0.0, 0.1, 0.2, 0.3, 0.4, 1.0])
+    square = angle[1:4] ** 2
+    scatter = np.cross(np.ones(3), square)
+    pressures = np.append(99.0, np.append(5.0 - 2.0 * square + 0.3 * scatter / abs(scatter).max(), [77.0, 0.0]))
+    assert pressure_at_pole(angle, pressures, 0.5) == pytest.approx(5.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("elements", [5.5, 6.5])
+def test_a_contact_of_few_elements_has_a_pole_pressure(pair, elements):
+    half_angle = elements * pair.resolution.size
+    contact = partial_contact(pair, LinearGap(clearance=0.1, socket_radius=18.0), half_angle)
+    assert contact.last <= 3
+    exact = bs.Exact().press(RIGID, half_angle=half_angle)
+    assert contact.pole_pressure == pytest.approx(exact.pole_pressure, rel=0.02)
+
+
+def test_stresses_are_extrapolated_bilinearly_to_the_nodes():
+    corners = np.array([[0.0, 1.0, 1.0, 0.0, 0.5, 1.0, 0.5, 0.0, 0.5], [0.0, 0.0, 1.0, 1.0, 0.0, 0.5, 1.0, 0.5, 0.5]])
+    assert shape_functions(2, corners)[0] == pytest.approx(np.eye(9), abs=1e-14)
+    points, extrapolation = superconvergent_points(2)
+    for function in (lambda x, y: 1.0 + 0 * x, lambda x, y: x, lambda x, y: y, lambda x, y: x * y):
+        assert function(*points) @ extrapolation == pytest.approx(function(*corners), abs=1e-14)
+    points, extrapolation = superconvergent_points(1)
+    assert points.ravel().tolist() == [0.5, 0.5]
+    assert (np.array([3.0]) @ extrapolation).tolist() == [3.0] * 4
 
 
 def test_lagrange_polynomials_interpolate():
@@ -330,3 +364,241 @@ def test_bounds_of_the_stress_are_open_near_a_rim():
     assert not low > 0
     assert high == inf
     assert full.max_pressure > 0
+
+
+def test_elements_of_the_contact_have_the_size_of_the_mesh(pair):
+    contact = partial_contact(pair, LinearGap(clearance=0.1, socket_radius=18.0), 0.7)
+    assert contact.edge_element == pytest.approx(pair.resolution.size, rel=0.03)
+    assert 0.7 - 4.1 * pair.resolution.size < pair.angle[contact.last] < 0.7 - 2.9 * pair.resolution.size
+
+
+def test_small_elements_end_at_the_reach_and_never_leave_a_sliver():
+    resolution = Resolution(size=0.1, reach=0.6, growth=1.3, widest=0.3, deepest=0.5, order=1)
+    for end in (0.5, 0.6, 0.64):
+        assert resolution.angles(end) == pytest.approx(np.linspace(0.0, end, round(min(end, 0.6) / 0.1) + 1))
+    for end in (0.66, 0.75, 1.5):
+        angles = resolution.angles(end)
+        assert angles[:7] == pytest.approx(np.arange(7) * 0.1)
+        assert angles[-1] == end
+        assert np.diff(angles).max() <= 0.3 + 1e-12
+    assert Resolution(size=0.1, reach=inf, growth=1.3, widest=0.1, deepest=0.5, order=1).angles(0.02).tolist() == [
+        0.0,
+        0.02,
+    ]
+
+
+def test_halvings_divide_every_element_in_four():
+    once = Resolution(size=0.2, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2)
+    shape = socket_shape(HIP, bs.Cup())
+    angle, radii = shape.corners(once)
+    for number in (1, 2):
+        fine_angle, fine_radii = shape.corners(replace(once, halvings=number))
+        assert fine_angle[:: 2**number] == pytest.approx(angle)
+        assert fine_radii[0][:: 2**number] == pytest.approx(radii[0])
+
+
+@pytest.mark.parametrize(
+    ("chamfer", "thickness", "arc", "allowed"),
+    [
+        (0.0, 6.75, 180.0, True),
+        (6.0, 6.75, 180.0, True),
+        (6.1, 6.75, 180.0, False),
+        (0.007, 6.75, 180.0, True),
+        (0.006, 6.75, 180.0, False),
+        (14.0, 30.0, 180.0, True),
+        (14.3, 30.0, 180.0, False),
+        (7.0, 30.0, 90.0, True),
+        (7.2, 30.0, 90.0, False),
+    ],
+)
+def test_chamfers_leave_a_tenth_of_the_liner_and_half_of_the_bore(chamfer, thickness, arc, allowed):
+    cup, joint = bs.Cup(arc_of_cover=radians(arc), chamfer=chamfer), replace(RIGID, liner_thickness=thickness)
+    if allowed:
+        solver.check_cup(cup, joint)
+    else:
+        with pytest.raises(ValueError, match="chamfer = .* is not allowed"):
+            solver.check_cup(cup, joint)
+
+
+def test_elements_of_one_size_fit_the_layers_and_the_bore():
+    backed = replace(RIGID, backing=(bs.Layer(thickness=1.0, material=bs.TITANIUM),))
+    solver._check_element_size(0.5, backed, 28.0)
+    with pytest.raises(ValueError, match=r"backing\[0\].thickness = 1 is not allowed: .* two elements of 0.51 mm"):
+        solver._check_element_size(0.51, backed, 28.0)
+    for size, allowed in ((28.0 / 23.9, False), (28.0 / 24.1, True), (2.9e-4, True), (2.7e-4, False)):
+        if allowed:
+            solver._check_element_size(size, RIGID, 28.0)
+        else:
+            with pytest.raises(ValueError, match="the bore of 28 mm allows 24 to 100000 elements"):
+                solver._check_element_size(size, RIGID, 28.0)
+
+
+@pytest.mark.parametrize(("elements", "allowed"), [(22, False), (24, True), (25, False), (26, True), (27, False)])
+def test_adapted_elements_are_even_and_at_least_24(elements, allowed):
+    if allowed:
+        assert bs.Adapted(elements=elements).elements == elements
+    else:
+        with pytest.raises(ValueError, match="must be even and at least 24"):
+            bs.Adapted(elements=elements)
+
+
+@pytest.mark.parametrize("growth", [0.99, 2.01])
+def test_elements_grow_by_a_factor_of_one_to_two(growth):
+    for spacing in (bs.Adapted, lambda growth: bs.Uniform(size=0.5, growth=growth)):
+        with pytest.raises(ValueError, match="growth must lie between 1 and 2"):
+            spacing(growth=growth)
+        assert spacing(growth=1.0).growth == 1.0
+        assert spacing(growth=2.0).growth == 2.0
+
+
+def test_a_contact_has_the_size_of_its_mesh_in_its_summary():
+    contact = bs.FiniteElement(spacing=COARSE, meshes=1).press(RIGID, force=300.0)
+    summary = contact.summary()
+    assert summary["mesh"] == {
+        "elements": contact.mesh.elements,
+        "nodes": contact.mesh.nodes,
+        "largest": contact.mesh.nodes,
+        "element_size": contact.mesh.element_size,
+    }
+    assert "mesh" not in bs.FiniteElement(spacing=COARSE, meshes=1).press(RIGID, force=0.0).summary()
+    assert "mesh" not in bs.FiniteElement(spacing=COARSE, meshes=1).press(RIGID, force=[1.0, 300.0]).summary()
+
+
+def test_a_contact_under_tension_or_overlap_is_not_round(monkeypatch):
+    model, force = bs.FiniteElement(spacing=COARSE, meshes=1), 250.0
+    assert model.press(RIGID, force=force).status is bs.Status.OK
+    monkeypatch.setattr(load_curve, "_MAX_TENSION", -2.0)
+    assert model.press(RIGID, force=force).status is bs.Status.NOT_ROUND
+    monkeypatch.undo()
+    monkeypatch.setattr(load_curve, "_MAX_OVERLAP", -inf)
+    assert model.press(RIGID, force=[0.0, force]).status.tolist() == [bs.Status.OK, bs.Status.NOT_ROUND]
+
+
+def test_the_gap_of_a_solved_contact_is_open_and_its_pressure_positive(pair):
+    contact = partial_contact(pair, LinearGap(clearance=0.1, socket_radius=18.0), 0.7)
+    assert -1.0 < contact.tension < 0.0
+    assert contact.overlap < 0.0
+    squeezed = replace(contact)
+    object.__setattr__(squeezed, "indentation", 1.2 * contact.indentation)
+    assert squeezed.overlap > 1e-3
+
+
+def test_a_bracket_spans_its_class_and_the_next_four(curve):
+    for number in (0, 3):
+        bracket = curve._bracket(number, load_curve.COARSE)
+        assert curve.classes[number + 5] < bracket.low < curve.classes[number + 4]
+        assert curve.classes[number] <= bracket.high <= 1.12 * curve.classes[number]
+    assert curve._bracket(0, load_curve.COARSE).high == curve.classes[0]
+    assert curve._bracket(3, load_curve.COARSE) is curve._bracket(3, load_curve.COARSE)
+
+
+def test_loads_are_solved_on_the_mesh_of_their_class(curve):
+    angles = [contact_class * 0.99 for contact_class in curve.classes[1:6]]
+    assert [curve._mesh_class("half_angle", angle) for angle in angles] == [1, 2, 3, 4, 5]
+    assert curve._mesh_class("half_angle", curve.classes[0]) == 0
+    assert curve._mesh_class("half_angle", 1e-9) == len(curve.classes) - 2
+    for angle in angles[:3]:
+        contact = partial_contact(curve.pairs(0, load_curve.COARSE), curve.gap, 0.93 * angle)
+        for kind in ("force", "indentation"):
+            assert curve._mesh_class(kind, getattr(contact, kind)) == curve._mesh_class("half_angle", 0.93 * angle)
+    assert curve._mesh_class("force", 1e9) == 0
+
+
+def perfect_fit(pair, gap):
+    """Bisect for the half angle at which the indentation becomes infinite."""
+    low, high = 0.5, float(pair.angle[-1])
+    for _ in range(30):
+        middle = (low + high) / 2
+        low, high = (middle, high) if partial_contact(pair, gap, middle).indentation > 0 else (low, middle)
+    return low
+
+
+@pytest.fixture(scope="module")
+def soft_pair():
+    cup = bs.Cup(arc_of_cover=radians(340.0))
+    settings = Settings(cup=cup, spacing=COARSE, ball_spacing=COARSE, order=2, meshes=1, gap=LinearGap)
+    return load_curve_of(settings, replace(RIGID, liner_thickness=inf)).pairs(0, load_curve.COARSE)
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_a_bracket_ends_before_the_perfect_fit(soft_pair, count):
+    """Samples end there, and larger loads are solved between the last sample and the fit; one sample is no bracket.
+
+    In a massive socket that is nearly a whole sphere the fit is that of the exact solution.
+    """
+    gap = LinearGap(clearance=0.1, socket_radius=18.0)
+    fit = perfect_fit(soft_pair, gap)
+    assert fit == pytest.approx(curve_of(bs.Exact(), replace(RIGID, liner_thickness=inf)).widest, abs=radians(0.3))
+    ratio = 1.001
+    low = fit / ratio ** (count - 0.5)
+    bracket = ContactBracket(pair=soft_pair, gap=gap, low=low, high=low * ratio**9)
+    assert len(bracket._samples) == count
+    assert not bracket.lies_below("force", 1e12)
+    if count == 1:
+        assert bracket.solve("force", bracket._samples[0].force * 1.001) is None
+        assert bracket.estimate_angle("force", bracket._samples[0].force * 1.001) is None
+        return
+    for kind in ("force", "indentation"):
+        first, last = (getattr(bracket._samples[i], kind) for i in (0, -1))
+        for load in (first * 1.0001, (first + last) / 2, 3.0 * last):
+            contact = bracket.solve(kind, load)
+            assert getattr(contact, kind) == pytest.approx(load, rel=1e-8)
+            assert bracket.estimate_angle(kind, load) == pytest.approx(contact.half_angle, rel=2e-3)
+
+
+@pytest.mark.parametrize(("order", "shape"), [(1, (20, 33)), (2, (41, 21)), (2, (39, 65))])
+def test_separators_of_nested_dissection_are_lines_between_elements(order, shape):
+    """A separator halves its part: no element has nodes on both sides."""
+    grid = np.arange(shape[0] * shape[1]).reshape(shape)
+
+    def check(ordered, rows, columns):
+        height, width = len(rows), len(columns)
+        assert sorted(ordered) == sorted(grid[np.ix_(rows, columns)].ravel())
+        if height * width <= 24 or min(height, width) <= 2:
+            return
+        along = 0 if height >= width else 1
+        lines = (rows, columns)[along]
+        separator = ordered[-(width if along == 0 else height) :]
+        (line,) = {(int(node) // shape[1], int(node) % shape[1])[along] for node in separator}
+        assert line % order == 0
+        cut = int(np.searchsorted(lines, line))
+        assert abs(2 * cut - len(lines)) <= 2 * order
+        count = cut * (width if along == 0 else height)
+        parts = [(lines[:cut], ordered[:count]), (lines[cut + 1 :], ordered[count : -len(separator)])]
+        for part, nodes in parts:
+            check(nodes, *((part, columns) if along == 0 else (rows, part)))
+
+    check(nested_dissection(grid, order), np.arange(shape[0]), np.arange(shape[1]))
+
+
+@pytest.mark.parametrize("support", Support)
+@pytest.mark.parametrize("interface", Interface)
+@pytest.mark.parametrize("layers", [((1.3, 1.0, 0.4),), ((1.2, 1.0, 0.3), (1.35, 8.0, 0.25))], ids=["liner", "shell"])
+def test_harmonic_zero_is_the_axisymmetric_body(layers, interface, support):
+    if interface is Interface.SLIDING and support is Support.FREE and len(layers) == 1:
+        pytest.skip("a liner without backing does not slide on nothing")
+    shape = SocketShape(layers=layers, rim=1.4, chamfer=0.1, interface=interface, support=support)
+    body = socket_body(shape, Resolution(size=0.13, reach=inf, growth=1.4, widest=0.13, deepest=0.5, order=2))
+    harmonics = Harmonics(elastic=body.elastic, shape=shape)
+    np.testing.assert_array_equal(harmonics.bore, body.contact)
+    edges = body.elastic.block.angle[: len(body.contact) : 2]
+    loads = harmonics._ring_loads(edges)
+    expected = loads.T @ body.compliance() @ loads
+    (matrix,) = harmonics.ring_compliance(edges, [0])
+    np.testing.assert_allclose(matrix, expected, rtol=1e-7, atol=1e-9 * abs(expected).max())
+
+
+@pytest.mark.parametrize("support", Support)
+def test_harmonic_one_includes_the_sideways_translation_of_the_load(support):
+    """A sliding liner is softer than a bonded one for every load, and both harmonics 1 and 2 are positive definite."""
+    edges, layers = np.linspace(0.0, 1.4, 9), ((1.2, 1.0, 0.3), (1.35, 8.0, 0.25))
+    bonded, sliding = (
+        socket_harmonics(
+            SocketShape(layers=layers, rim=1.4, chamfer=0.0, interface=interface, support=support), edges
+        ).ring_compliance(edges, [1, 2])
+        for interface in (Interface.BONDED, Interface.SLIDING)
+    )
+    for tight, loose in zip(bonded, sliding, strict=True):
+        assert np.linalg.eigvalsh(tight).min() > 0
+        assert np.linalg.eigvalsh(loose - tight).min() > -1e-9
+        assert np.trace(loose) > 1.005 * np.trace(tight)

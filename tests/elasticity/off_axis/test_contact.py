@@ -8,6 +8,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.elasticity.off_axis.bore_contact import BoreContact
+from ballsocket.elasticity.off_axis.grid import even_grid
 
 from .shapes import COARSE, RIGID, TIGHT, WRAPPED
 
@@ -185,6 +186,15 @@ def test_ring_width_is_half_a_degree_to_six(width):
     with pytest.raises(ValueError, match="ring_width"):
         bs.Sphere(ring_width=radians(width))
     assert bs.Sphere(ring_width=radians(min(max(width, 0.51), 5.99))).ring_width > 0
+
+
+def test_depth_of_a_bore_has_one_value_per_cell():
+    directions = even_grid(pi / 2, 0.3).centroids
+    uniform = bs.BoreDeviation(of=lambda n: 0.02)
+    for model, depth in ((COARSE, 0.0), (replace(COARSE, worn=uniform), 0.02)):
+        cells = model._worn_depth(directions, 18.0)
+        assert cells.shape == directions.shape[1:]
+        assert (cells == depth).all()
 
 
 def test_scan_of_another_radius_is_limited_to_half_the_socket():

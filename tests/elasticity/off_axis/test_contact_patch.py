@@ -87,6 +87,18 @@ def test_margin_is_the_angle_between_contact_and_rim(tilt):
     assert patch.edge_margin == pytest.approx(radians(60.0) - tilt, abs=radians(0.15))
 
 
+def test_edge_lies_between_the_last_loaded_and_the_first_open_cell():
+    """The levels of further cells do not matter: the edge divides the distance of two middles as 3 : 1."""
+    rings = np.where(np.arange(GRID.rings) <= 12, 3.0, -50.0)
+    rings[13] = -1.0
+    level = rings[:, None] * np.ones(GRID.meridians)
+    patch = ContactPatch(
+        grid=GRID, pressure=np.maximum(level, 0.0), level=level, axis=np.array([0.0, 0.0, 1.0]), inset=0.0
+    )
+    edge = GRID.polar[12] + 0.75 * (GRID.polar[13] - GRID.polar[12])
+    assert patch.edge_margin == pytest.approx(GRID.reach - edge, abs=1e-9)
+
+
 def test_contact_that_reaches_the_rim_ends_there():
     patch = cap(direction(radians(75.0)), radians(30.0))
     assert patch.edge_loaded

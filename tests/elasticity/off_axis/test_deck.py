@@ -134,6 +134,67 @@ def test_elements_fill_the_half_shell():
     assert first_of_ball == len(elements) + 1
 
 
+def test_thin_layer_has_three_equal_elements():
+    radii = DECK.socket.radius
+    assert np.diff(radii) == pytest.approx(np.full(3, JOINT.liner_thickness / 3))
+
+
+def test_elements_grow_by_half_across_an_interface():
+    """The backing is thick enough to continue the growth of the liner's elements."""
+    backed = JOINT.replace(backing=(bs.Layer(thickness=40.0, material=bs.TITANIUM),))
+    deck = TiltedDeck(joint=backed, cup=bs.Cup(), indentation=0.04, tilt=0.5, element_size=radians(3.0))
+    steps = np.diff(deck.socket.radius)
+    assert steps[0] == pytest.approx(radians(3.0) * JOINT.socket_radius, rel=0.25)
+    ratios = steps[1:] / steps[:-1]
+    assert ratios.max() < 1.6
+    interface = abs(deck.socket.radius - 24.75).argmin()
+    assert ratios[interface - 1] > 1.2
+
+
+def test_element_sizes_divide_the_angles_evenly():
+    assert len(DECK.socket.polar) == 6 + 1
+    assert len(DECK.socket.azimuth) == 12 + 1
+    assert np.diff(DECK.socket.polar) == pytest.approx(radians(15.0))
+    narrow = TiltedDeck(
+        joint=JOINT, cup=bs.Cup(arc_of_cover=radians(50.0)), indentation=0.04, tilt=0.1, element_size=radians(12.0)
+    )
+    assert len(narrow.socket.polar) == 4 + 1
+
+
+@pytest.mark.parametrize(("degrees", "allowed"), [(0.49, False), (0.51, True), (14.9, True), (15.1, False)])
+def test_elements_are_half_a_degree_to_fifteen_wide(degrees, allowed):
+    make = {"joint": JOINT, "cup": bs.Cup(), "indentation": 0.04, "tilt": 0.5, "element_size": radians(degrees)}
+    if allowed:
+        assert TiltedDeck(**make).element_size == radians(degrees)
+    else:
+        with pytest.raises(ValueError, match="an element is 0.5 to 15 degrees wide"):
+            TiltedDeck(**make)
+
+
+@pytest.mark.parametrize(("scale", "allowed"), [(0.0, False), (1.0, True), (1.05, False)])
+def test_scale_is_at_most_one(scale, allowed):
+    make = {"joint": JOINT, "cup": bs.Cup(), "indentation": 0.04, "tilt": 0.5, "scale": scale}
+    if allowed:
+        assert TiltedDeck(**make).scale == scale
+    else:
+        with pytest.raises(ValueError, match="a scale lies above 0 and is at most 1"):
+            TiltedDeck(**make)
+
+
+def test_lines_of_a_deck_hold_their_numbers():
+    """CalculiX reads at most 16 entries of a line; a row that continues ends with a comma."""
+    lines = DECK.text().splitlines()
+    start = lines.index(next(line for line in lines if line.startswith("*ELEMENT, TYPE=C3D20R")))
+    first, second = lines[start + 1 : start + 3]
+    assert first.endswith(",")
+    assert len(first.rstrip(",").split(",")) == 12
+    assert len(second.split(",")) == 9
+    outside = lines[lines.index("*NSET, NSET=OUTSIDE") + 1]
+    assert len(outside.split(",")) == 16
+    numbers = [int(node) for row in section("NSET=PUSHED", DECK.text()) for node in row]
+    assert numbers == sorted(set(DECK.ball.number.ravel().tolist()) - {0})
+
+
 def test_layers_of_the_backing_are_sets_of_elements():
     backed = JOINT.replace(backing=(bs.Layer(thickness=4.0, material=bs.TITANIUM),))
     deck = TiltedDeck(joint=backed, cup=bs.Cup(), indentation=0.04, tilt=0.5, element_size=radians(15.0))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.elasticity.finite_elements.progress import progress_to
 from ballsocket.output.orientation_plot import orientation_figure
 
 from ...joints import HIP
@@ -20,6 +21,15 @@ INCLINATION, ANTEVERSION = np.radians([20.0, 45.0, 85.0]), np.radians([-10.0, 30
 @pytest.fixture(scope="module")
 def oriented():
     return bs.orient(HIP, model=SPHERE, force=1500.0, inclination=INCLINATION, anteversion=ANTEVERSION)
+
+
+def test_progress_counts_the_inclinations_from_one():
+    messages = []
+    with progress_to(messages.append):
+        bs.orient(HIP, model=SPHERE, force=100.0, inclination=[0.3, 0.5, 0.7], anteversion=0.1)
+    assert [text for text in messages if text.startswith("inclination")] == [
+        f"inclination {number} of 3" for number in (1, 2, 3)
+    ]
 
 
 def legend(figure):

@@ -11,6 +11,7 @@ from ballsocket.elasticity.finite_elements.harmonics import socket_harmonics
 from ballsocket.elasticity.finite_elements.shapes import socket_shape
 from ballsocket.elasticity.off_axis.compliance import AxisymmetricOperator
 from ballsocket.elasticity.off_axis.grid import graded_grid
+from ballsocket.elasticity.off_axis.ring_matrices import _harmonic_nodes as harmonic_nodes
 from ballsocket.elasticity.off_axis.ring_matrices import interpolate_harmonics, legendre_ring_integrals, sphere_rings
 
 from ...joints import HIP
@@ -44,6 +45,17 @@ def test_interpolated_harmonics_are_as_accurate_as_computed_ones():
     interpolated = interpolate_harmonics(lambda m: meridian.ring_compliance(RINGS.edges, m), RINGS.max_harmonic)
     diagonal = np.sqrt(np.einsum("mii->mi", exact))
     assert (abs(interpolated - exact) / (diagonal[:, :, None] * diagonal[:, None, :])).max() < 1e-5
+
+
+def test_low_harmonics_are_all_computed_and_high_ones_at_growing_steps():
+    for largest in (0, 3, 6, 7, 12):
+        nodes = harmonic_nodes(largest)
+        assert nodes[-1] == largest
+        assert nodes[: min(largest, 8) + 1].tolist() == list(range(min(largest, 8) + 1))
+    steps = np.diff(harmonic_nodes(90))
+    assert (np.diff(steps[:-1]) >= 0).all()
+    assert steps.max() > 5
+    assert len(steps) < 30
 
 
 def test_sliding_liner_does_not_rotate_in_its_shell():

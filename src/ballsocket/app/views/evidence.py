@@ -10,7 +10,7 @@ from functools import partial
 from typing import Any
 
 from ...core.checks import check_names, shown
-from ...evidence.terms import title_of
+from ...evidence.matrix import title_of
 from ...files.joint_file import JointFile
 from ...output import evidence_words
 from ...output import html as page

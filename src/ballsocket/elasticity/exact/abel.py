@@ -180,8 +180,8 @@ class AbelState(PeakPressure):
         return 2 * pi * self._squared_radius * total / self.kernel.compliance
 
     @cached_property
-    def widening(self) -> Numbers:
-        """Derivative of the indentation by the half angle, dd/dε, in mm/rad.
+    def indentation_slope(self) -> Numbers:
+        """Derivative dd/dε of the indentation with respect to the half angle, in mm/rad.
 
         It follows from the balance of a deeper punch and a wider contact at the edge.
         """
@@ -200,7 +200,7 @@ class AbelState(PeakPressure):
         nodes, weights = (numpy.array(part) for part in gauss_legendre(16))
         angles = (nodes[:, None] * self.half_angle).ravel()
         narrower = AbelState(kernel=self.kernel, gap=self.gap, intervals=Intervals(half_angle=angles, grid=self.grid))
-        power = (narrower.force * narrower.widening).reshape(len(nodes), -1)
+        power = (narrower.force * narrower.indentation_slope).reshape(len(nodes), -1)
         return self.half_angle * (weights @ power)
 
     @cached_property

@@ -96,8 +96,8 @@ class ChebyshevCurve:
         return float(angle_root(self.curve.widest, self.curve.ratio))
 
     @cached_property
-    def _series(self) -> Numbers:
-        """Chebyshev coefficients (rows, terms) of the six functions, then of the derivatives of the logarithms."""
+    def _chebyshev_coefficients(self) -> Numbers:
+        """Chebyshev coefficients (rows, terms) of the dimensionless functions, then of the slopes of logarithms."""
         series = coefficients(_dimensionless_quantities(self.knots), 1)
         slopes = numpy.zeros_like(series[:LOG_FUNCTIONS])
         slopes[:, :-1] = numpy.polynomial.chebyshev.chebder(series[:LOG_FUNCTIONS], axis=1)
@@ -106,7 +106,7 @@ class ChebyshevCurve:
     @cached_property
     def truncation(self) -> Numbers:
         """Estimated truncation error of the Chebyshev series of each function."""
-        return _TAIL_TERMS * numpy.max(abs(self._series[:-LOG_FUNCTIONS, -_TAIL_TERMS:]), axis=1)
+        return _TAIL_TERMS * numpy.max(abs(self._chebyshev_coefficients[:-LOG_FUNCTIONS, -_TAIL_TERMS:]), axis=1)
 
     @property
     def is_accurate(self) -> bool:
@@ -133,14 +133,14 @@ class ChebyshevCurve:
 
     def evaluate_functions(self, angle: Numbers) -> tuple[Numbers, Numbers]:
         """Evaluate the functions (functions, contacts) at half angles, and the slopes of both logarithms by ln ε."""
-        rows = _evaluate_in_blocks(lambda block: self._series @ self.evaluate_polynomials(block), angle)
+        rows = _evaluate_in_blocks(lambda block: self._chebyshev_coefficients @ self.evaluate_polynomials(block), angle)
         slope = angle_derivative(angle, angle_root(angle, self.curve.ratio), self.curve.ratio) / self._widest_coordinate
         return rows[:-LOG_FUNCTIONS], rows[-LOG_FUNCTIONS:] * slope
 
     def evaluate_polynomials(self, angle: Numbers) -> Numbers:
         """Evaluate the Chebyshev polynomials (terms, contacts) at half angles."""
         return chebyshev_polynomials(
-            2 * angle_root(angle, self.curve.ratio) / self._widest_coordinate - 1, self._series.shape[1]
+            2 * angle_root(angle, self.curve.ratio) / self._widest_coordinate - 1, self._chebyshev_coefficients.shape[1]
         )
 
     @cached_property
@@ -192,7 +192,10 @@ class ChebyshevState(PeakPressure):
 
     @cached_property
     def _functions(self) -> tuple[Numbers, Numbers]:
-        """Values of the dimensionless functions, and slopes of both logarithms by ln ε."""
+        """Values of the dimensionless functions, and slopes of both logarithms by ln ε.
+
+        The order is that of `_dimensionless_quantities`.
+        """
         return self.series.evaluate_functions(self.half_angle)
 
     @cached_property
@@ -220,21 +223,22 @@ class ChebyshevState(PeakPressure):
         return self._total_displacement * self._relative_indentation[0]
 
     @cached_property
-    def widening(self) -> Numbers:
-        """Derivative of the indentation by the half angle, dd/dε, in mm/rad."""
+    def indentation_slope(self) -> Numbers:
+        """Derivative dd/dε of the indentation with respect to the half angle, in mm/rad."""
         rate = self._functions[1][0] / self.half_angle + 1 / numpy.tan(self.half_angle / 2)
         return self._total_displacement * self._relative_indentation[0] * rate / self._relative_indentation[1]
 
     @cached_property
     def _pressure_scale(self) -> Numbers:
-        """Pressure scale X ε/C in MPa."""
+        """Pressure scale X ε/C in MPa, from the total displacement X and the compliance C of the kernel."""
         return self._total_displacement * self.half_angle / self.kernel.compliance
 
     @cached_property
     def force(self) -> Numbers:
         """Force F in N."""
         radius = self.gap.socket_radius * self.half_angle
-        return numpy.exp(self._functions[0][1]) * self._pressure_scale * radius * radius
+        dimensionless_force = numpy.exp(self._functions[0][1])
+        return dimensionless_force * self._pressure_scale * radius * radius
 
     @cached_property
     def pole_pressure(self) -> Numbers:

@@ -143,7 +143,7 @@ class ElasticContact(SolvedContact):
         unaffected = (negligible & bounded) | arrays.to_numpy(self._failed)
         if not unaffected.all() and bounded.all() and self.joint.strengths() and self._is_single:
             changes["von Mises"] = numpy.array(self._hemisphere_von_mises)
-        return self._note(unaffected, _describe_changes(changes))
+        return self._note_on_invalid_points(unaffected, _describe_changes(changes))
 
     @property
     def _is_single(self) -> bool:
@@ -230,9 +230,9 @@ class CurveContact(ElasticContact):
         return super()._joint_von_mises(position, piece)
 
 
-def _hemisphere_changes(piece: JointContacts) -> numpy.ndarray:
-    """Compute the relative changes on a hemisphere of the contacts of one joint: (quantities, contacts)."""
-    changes = hemisphere_of(piece.state.kernel).changes(piece.state.half_angle)
+def _hemisphere_changes(contacts: JointContacts) -> numpy.ndarray:
+    """Compute the relative change of each quantity if the socket is a hemisphere: (quantities, contacts)."""
+    changes = hemisphere_of(contacts.state.kernel).changes(contacts.state.half_angle)
     return numpy.stack([changes[name] for name in CHANGES])
 
 

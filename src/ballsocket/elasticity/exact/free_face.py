@@ -102,6 +102,7 @@ class FreeFace:
         def integrate_radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:
             return a.T @ ((w * factor)[:, None] * b)
 
+        # rr, rp, pp: blocks of the radial, mixed and polar displacement coefficients
         mixed = integrate_radial(g, f, lame)
         rr = numpy.kron(
             integrate_radial(g, g, lame + 2 * shear)

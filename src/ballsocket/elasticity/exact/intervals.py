@@ -78,7 +78,7 @@ class Intervals:
         size = max(1, _BLOCK // (_wave_panels(self.half_angle, self.grid, len(remainder)).count * len(remainder)))
         for first in range(0, len(self.half_angle), size):
             block = slice(first, first + size)
-            waves = _waves_and_integrals(self.half_angle[block], self.grid, len(remainder))
+            waves = _waves_and_integration_matrices(self.half_angle[block], self.grid, len(remainder))
             _add_products(waves, remainder, (operators[0][block], operators[1][block]))
 
 
@@ -118,7 +118,9 @@ class CachedIntervals:
             return
         count = min(cached for cached in _CACHED_COUNTS if cached >= len(remainder))
         if count not in self._cached_waves:
-            even, odd, even_integrals, odd_integrals = _waves_and_integrals(self.half_angle, self.grid, count)
+            even, odd, even_integrals, odd_integrals = _waves_and_integration_matrices(
+                self.half_angle, self.grid, count
+            )
             self._cached_waves[count] = even.copy(), odd.copy(), even_integrals.copy(), odd_integrals.copy()
         even, odd, even_integrals, odd_integrals = self._cached_waves[count]
         first = slice(len(remainder))
@@ -135,7 +137,7 @@ def _add_products(waves: tuple[Numbers, Numbers, Numbers, Numbers], remainder: N
         operator += numpy.matmul(weighted, integrals, out=workspace_array("remainder", operator.shape))
 
 
-def _waves_and_integrals(
+def _waves_and_integration_matrices(
     half_angle: Numbers, grid: QuadratureGrid, count: int
 ) -> tuple[Numbers, Numbers, Numbers, Numbers]:
     """Compute the cosines and sines of (n + ½) t, and the matrices that integrate functions times them.

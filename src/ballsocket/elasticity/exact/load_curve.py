@@ -47,7 +47,7 @@ class CurvePoints(Protocol):
     @property
     def stiffness(self) -> Numbers: ...
     @property
-    def widening(self) -> Numbers: ...
+    def indentation_slope(self) -> Numbers: ...
     @property
     def error(self) -> Numbers: ...
 
@@ -197,7 +197,7 @@ def _is_contact(state: AbelState) -> Numbers:
 
 def log_slope(kind: str, state: CurvePoints) -> Numbers:
     """Compute the logarithmic derivative of the load by the half angle, d ln(load)/d ln ε."""
-    deepening = state.half_angle * state.widening
+    deepening = state.half_angle * state.indentation_slope
     return deepening / state.indentation if kind == "indentation" else deepening * state.stiffness / state.force
 
 

@@ -17,7 +17,7 @@ from ...core.arrays import Array, Numbers
 from ...core.checks import require
 from ...core.quantities import MATERIAL
 from ...problem import Joint, Material, Support
-from .waves import UNIT, SupportedLayer, fixed_condition, free_condition
+from .waves import UNIT, SupportedLayer, fixed_surface_condition, free_surface_condition
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,7 +188,7 @@ class Socket:
     def _layers(self, n: numpy.ndarray) -> list[SupportedLayer]:
         """Return the layers from the bore outwards, each with the condition that its backing imposes."""
         is_free = self.support is Support.FREE and not isinf(self.shells[-1].thickness)
-        condition = free_condition(n) if is_free else fixed_condition()
+        condition = free_surface_condition(n) if is_free else fixed_surface_condition()
         layers: list[SupportedLayer] = []
         for shell, inner in zip(self.shells[::-1], self._bounds[-2::-1], strict=True):
             layers.insert(0, SupportedLayer(**vars(shell), inner=float(inner), n=n, condition=condition))

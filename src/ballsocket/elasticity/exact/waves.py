@@ -45,18 +45,18 @@ def _outer(column: tuple[numpy.ndarray, ...], row: tuple[numpy.ndarray, ...]) ->
     return numpy.array(column)[:, None] * numpy.array(row)
 
 
-def fixed_condition() -> tuple[Matrix, Matrix]:
+def fixed_surface_condition() -> tuple[Matrix, Matrix]:
     """Return the boundary condition u = 0 of a fixed surface as matrices A and B of A u + B r σ = 0."""
     return UNIT, 0 * UNIT
 
 
-def free_condition(n: numpy.ndarray) -> tuple[Matrix, Matrix]:
+def free_surface_condition(n: numpy.ndarray) -> tuple[Matrix, Matrix]:
     """Return the boundary condition σ = 0 of a free surface as matrices A and B of A u + B r σ = 0.
 
     At n = 1 the condition is u_r + 2 u_φ = 0 (no mean translation) and σ_rr = σ_rφ (uniform traction).
     """
     A = numpy.zeros((2, 2, len(n)))
-    B = A + UNIT
+    B = A + UNIT  # a unit matrix for each degree
     first = n == 1
     A[0, :, first], B[0, :, first], B[1, :, first] = (1.0, 2.0), (0.0, 0.0), (1.0, -1.0)
     return A, B

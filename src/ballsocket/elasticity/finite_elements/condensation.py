@@ -46,11 +46,12 @@ class CondensedBody:
     def _elimination_order(self) -> Numbers:
         """Indices of the free unknowns in the order of elimination, those of the contact last."""
         block = self.elastic.block
+        # the two nodes of a sliding interface share a grid point, and so a rank
         grid = numpy.arange(len(block.angle) * (block.level[-1] + 1)).reshape(len(block.angle), -1)
         rank = numpy.empty(grid.size, dtype=int)
         rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
         node_rank = rank[grid[:, block.level]].ravel()
-        free = numpy.unique(self.elastic.unknowns)
+        free = numpy.unique(self.elastic.element_unknowns)
         free = free[~self.fixed_unknowns[free] & ~numpy.isin(free, self.normals)]
         return numpy.concatenate([free[numpy.argsort(node_rank[free // 2], kind="stable")], self.normals])
 

@@ -70,7 +70,7 @@ class ElasticBlock:
     poisson: Numbers
 
     @cached_property
-    def unknowns(self) -> Numbers:
+    def element_unknowns(self) -> Numbers:
         """Indices of each element's unknowns, shape (elements, unknowns).
 
         The unknowns u_φ and u_r of node i are 2i and 2i + 1. Where layers slide on each other they share u_r.
@@ -78,8 +78,8 @@ class ElasticBlock:
         shared = numpy.arange(2 * self.block.number.size)
         for column in self.block.sliding:
             shared[2 * self.block.number[:, column + 1] + 1] = 2 * self.block.number[:, column] + 1
-        numbers = shared[2 * self.block.elements[..., None] + numpy.arange(2)]
-        return numbers.transpose(1, 0, 2).reshape(self.block.elements.shape[1], -1)
+        indices = shared[2 * self.block.elements[..., None] + numpy.arange(2)]
+        return indices.transpose(1, 0, 2).reshape(self.block.elements.shape[1], -1)
 
     @cached_property
     def moduli(self) -> tuple[Numbers, Numbers]:
@@ -89,12 +89,12 @@ class ElasticBlock:
     def matrix(self) -> csc_matrix:
         """Assemble the stiffness matrix, from displacements to forces on full rings."""
         size = 2 * self.block.number.size
-        count = self.unknowns.shape[1]
-        K = numpy.empty((len(self.unknowns), count, count))
-        elements = numpy.arange(len(self.unknowns))
+        count = self.element_unknowns.shape[1]
+        K = numpy.empty((len(self.element_unknowns), count, count))
+        elements = numpy.arange(len(self.element_unknowns))
         for chunk in self.chunks(elements):
             K[chunk] = self._stiffness(elements[chunk])
-        rows, columns = numpy.broadcast_arrays(self.unknowns[:, :, None], self.unknowns[:, None, :])
+        rows, columns = numpy.broadcast_arrays(self.element_unknowns[:, :, None], self.element_unknowns[:, None, :])
         positions = (rows.ravel().astype(numpy.int32), columns.ravel().astype(numpy.int32))
         return coo_matrix((K.ravel(), positions), shape=(size, size)).tocsc()
 

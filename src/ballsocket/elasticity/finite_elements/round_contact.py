@@ -43,23 +43,27 @@ class PartialContact:
         The arrays are angles in rad, weights of ∫ dA in mm², edge functions (2, angles), and the slope of t in ε.
         """
         previous, start = self.pair.angle[self.last - 1 : self.last + 1]
-        rise = self._corners_between(previous, start)
-        widths = numpy.diff(rise)[:, None]
-        rising = (rise[:-1, None] + widths * _NODES).ravel()
+        # the first function increases between the last two nodes, then decreases to the edge
+        rise_ends = self._corners_between(previous, start)
+        rise_steps = numpy.diff(rise_ends)[:, None]
+        rising_angle = (rise_ends[:-1, None] + rise_steps * _NODES).ravel()
         width = self.half_angle - start
         t_ends = numpy.sqrt(
             numpy.maximum(self.half_angle - self._corners_between(start, self.half_angle), 0.0) / width
         )[::-1]
-        steps = numpy.diff(t_ends)[:, None]
-        t = (t_ends[:-1, None] + steps * _NODES).ravel()  # φ = ε - width t²
-        falling = self.half_angle - width * t * t
-        angle = numpy.concatenate([rising, falling])
-        weights = numpy.concatenate([(widths * _WEIGHTS).ravel(), (steps * _WEIGHTS).ravel() * 2 * width * t])
-        zero = numpy.zeros_like(rising)
+        t_steps = numpy.diff(t_ends)[:, None]
+        t = (t_ends[:-1, None] + t_steps * _NODES).ravel()  # φ = ε - width t²
+        falling_angle = self.half_angle - width * t * t
+        angle = numpy.concatenate([rising_angle, falling_angle])
+        weights = numpy.concatenate([(rise_steps * _WEIGHTS).ravel(), (t_steps * _WEIGHTS).ravel() * 2 * width * t])
+        zero = numpy.zeros_like(rising_angle)
         shape = numpy.stack(
-            [numpy.concatenate([(rising - previous) / (start - previous), t]), numpy.concatenate([zero, t - t**3])]
+            [
+                numpy.concatenate([(rising_angle - previous) / (start - previous), t]),
+                numpy.concatenate([zero, t - t**3]),
+            ]
         )
-        slope = numpy.concatenate([numpy.zeros_like(rising), (1 / t - t) / (2 * width)])
+        slope = numpy.concatenate([numpy.zeros_like(rising_angle), (1 / t - t) / (2 * width)])
         return angle, weights * self.pair.area(angle), shape, slope
 
     def _corners_between(self, start: float, end: float) -> Numbers:
@@ -149,8 +153,8 @@ class PartialContact:
             next_residual = self._edge_residual(*self._ball_displacements(d + step))
             if next_residual == residual:
                 break
-            move = -residual * step / (next_residual - residual)
-            d, residual, step = d + step, next_residual, move - step
+            secant_step = -residual * step / (next_residual - residual)  # from d to the root of the secant
+            d, residual, step = d + step, next_residual, secant_step - step
             if abs(step) <= _INDENTATION_TOLERANCE * abs(d):
                 break
         return d + step if d + step > 0 else numpy.nan

@@ -168,13 +168,13 @@ class _LoadedBody:
                 position=numpy.stack([across, self.height_shift - below])[:, nodes],
                 elements=local_nodes.reshape(elements.shape),
                 displacement=displacement[:, nodes],
-                stress=self._stress(index, local_nodes.reshape(elements.shape), len(nodes)),
+                stress=self._nodal_stress(index, local_nodes.reshape(elements.shape), len(nodes)),
             )
 
-    def _stress(self, layer: int, elements: Numbers, nodes: int) -> Stress:
-        """Compute the nodal stresses of a layer in MPa, averages of those of the elements around a node."""
+    def _nodal_stress(self, layer: int, elements: Numbers, node_count: int) -> Stress:
+        """Compute the nodal stresses of a layer in MPa, as averages over the elements around each node."""
         components = self._element_stresses(layer)
-        total, count = numpy.zeros((4, nodes)), numpy.zeros(nodes)
+        total, count = numpy.zeros((4, node_count)), numpy.zeros(node_count)
         numpy.add.at(count, elements.T, 1.0)
         for sums, values in zip(total, components, strict=True):
             numpy.add.at(sums, elements.T, values)
@@ -195,7 +195,7 @@ class _LoadedBody:
         flat = self._displacements.ravel()
         for chunk in elastic.chunks(element_indices):
             strains = elastic.strains(element_indices[chunk], points)
-            u = flat[elastic.unknowns[element_indices[chunk]]]
+            u = flat[elastic.element_unknowns[element_indices[chunk]]]
             strain = numpy.einsum("eqsu,eu->seq", strains.strain, u)
             swelling = numpy.einsum("equ,eu->eq", strains.swelling, u)
             mean = bulk * swelling - 2 * shear * (strain[0] + strain[1] + strain[3]) / 3

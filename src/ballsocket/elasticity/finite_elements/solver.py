@@ -41,26 +41,30 @@ class Settings:
 
 @lru_cache(maxsize=32)
 def load_curve_of(settings: Settings, joint: Joint) -> MeshedLoadCurve:
-    """Return the load curve of a joint of plain numbers, cached for further loads."""
+    """Return the load curve of a joint with scalar parameters; it is cached for further loads."""
     _check_geometry(settings, joint)
     radius, bore = float(joint.socket_radius), socket_shape(joint, settings.cup).reach
     ends_at_rim = bore <= pi / 2 + 1e-12
     widest = bore if ends_at_rim else LIMIT
-    classes = settings.spacing.classes(widest, radius)
+    class_limits = settings.spacing.classes(widest, radius)
 
     thickness, order = float(joint.liner_thickness), settings.order
 
-    def make_resolution(spacing: Spacing, number: int, mesh: int) -> Resolution:
-        coarse = spacing.coarse(classes[number], radius, thickness, order)
+    def make_resolution(spacing: Spacing, class_index: int, mesh: int) -> Resolution:
+        """Make the coarse or the fine mesh resolution of a class of half angles."""
+        coarse = spacing.coarse(class_limits[class_index], radius, thickness, order)
         return coarse if mesh == COARSE else replace(coarse, halvings=1)
 
-    def make_pair(number: int, mesh: int) -> SurfacePair:
-        socket, ball = (make_resolution(spacing, number, mesh) for spacing in (settings.spacing, settings.ball_spacing))
-        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * classes[number], widest))
+    def make_pair(class_index: int, mesh: int) -> SurfacePair:
+        """Make the meshed surfaces of socket and ball for a class of half angles."""
+        socket, ball = (
+            make_resolution(spacing, class_index, mesh) for spacing in (settings.spacing, settings.ball_spacing)
+        )
+        return _make_surface_pair(settings, joint, socket, ball, min(_REACH_FACTOR * class_limits[class_index], widest))
 
     gap = settings.gap(clearance=float(joint.clearance), socket_radius=radius)
     return MeshedLoadCurve(
-        pairs=make_pair, classes=classes, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order
+        pairs=make_pair, classes=class_limits, gap=gap, ends_at_rim=ends_at_rim, meshes=settings.meshes, order=order
     )
 
 

@@ -154,8 +154,10 @@ class OffAxisContact(SolvedContact):
             notes.append(self._dislocation_note)
         if not self._all_points_failed:
             unbounded = self.laws.combine(lambda piece: piece.state.unbounded) == 1
-            notes += self._note(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
-            notes += self._note(~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _RIM_NOTE)
+            notes += self._note_on_invalid_points(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
+            notes += self._note_on_invalid_points(
+                ~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _RIM_NOTE
+            )
         return tuple(notes)
 
     @property

@@ -73,9 +73,9 @@ class ContactStates:
         return (~self.equilibrium.converged & ~self.dislocated).astype(float)
 
     @property
-    def reached(self) -> Numbers:
-        """True where a contact can have the prescribed half angle."""
-        return ~(self.too_wide & ~self.dislocated)
+    def reachable(self) -> Numbers:
+        """True where a contact can have the prescribed half angle, and where the ball is dislocated."""
+        return numpy.logical_not(self.too_wide) | self.dislocated
 
     @cached_property
     def patches(self) -> tuple[ContactPatch, ...]:

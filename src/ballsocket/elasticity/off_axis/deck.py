@@ -226,7 +226,7 @@ class TiltedDeck:
         lines = [
             *self._title_lines(),
             *self._mesh_lines(),
-            *self._materials_lines(),
+            *self._material_lines(),
             *self._contact_lines(),
             *self._step_lines(),
         ]
@@ -267,11 +267,12 @@ class TiltedDeck:
         yield from _element_lines(self.socket, lambda k: f"LAYER{int(numpy.searchsorted(ends, k, 'right'))}")
         yield from _element_lines(self.ball, lambda k: "SKIN")
 
-    def _materials_lines(self) -> Iterator[str]:
-        """Yield the lines of materials and sections of all layers and of the ball's skin."""
+    def _material_lines(self) -> Iterator[str]:
+        """Yield the input-file lines of the materials and sections of all layers and of the ball's skin."""
         liner = float(self.joint.liner.young)
         materials = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._shape.layers)}
-        for name, (young, nu) in (materials | {"SKIN": (1e3 * liner, 0.3)}).items():
+        materials["SKIN"] = 1e3 * liner, 0.3  # almost rigid
+        for name, (young, nu) in materials.items():
             yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {nu:.12g}")
             yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
 

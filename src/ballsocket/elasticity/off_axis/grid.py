@@ -155,8 +155,9 @@ class Grid:
 
     def integrate_product(self, first: Numbers, second: Numbers) -> Numbers:
         """Integrate the product of two fields (..., rings, meridians) over a unit sphere."""
-        rings: Numbers = numpy.vecdot(first, second)
-        return rings @ self.areas[:, 0].astype(rings.dtype)
+        ring_sums: Numbers = numpy.vecdot(first, second)
+        cell_areas = self.areas[:, 0]  # equal around a ring
+        return ring_sums @ cell_areas.astype(ring_sums.dtype)
 
 
 def graded_grid(reach: float, width: float) -> Grid:

@@ -174,7 +174,7 @@ def _rim_contact_tilts(states: ContactStates, cut: Numbers) -> Numbers:
     worn = bool(states.bore.gap.depth.any())  # otherwise all meridians are the same
     azimuth = numpy.arctan2(y, x) if worn else 0.0 * x
     rows, group = numpy.unique(numpy.stack([states.load[cut], azimuth]), axis=1, return_inverse=True)
-    group, tilt, level = group.ravel(), polar_angle(states.axes[cut].T), _rim_levels(states)[cut]
+    group, tilt, level = group.ravel(), polar_angle(states.axes[cut].T), _max_rim_levels(states)[cut]
     smallest = numpy.array([numpy.flatnonzero(group == i)[tilt[group == i].argmin()] for i in range(rows.shape[1])])
     load, azimuth = rows
     return _solve_rim_contact(states, load, azimuth, tilt[smallest], level[smallest])[group]
@@ -200,7 +200,7 @@ def _solve_rim_contact(
     indices, low = numpy.arange(len(load)), numpy.full(len(load), _POLE_TILT)
     axial = solve(indices, low)
     filled = ~axial.equilibrium.converged | (axial.edge_loaded == 1)
-    low_level, high_level, root = _rim_levels(axial), high_level.copy(), low.copy()
+    low_level, high_level, root = _max_rim_levels(axial), high_level.copy(), low.copy()
     margin = _patch_margins(axial)
     guess = low + margin  # first touch of a rigid rim
     active, previous_free = indices[~filled & (high > low)], numpy.full(len(load), -1)
@@ -211,7 +211,7 @@ def _solve_rim_contact(
         tilt = (low[active] * above - high[active] * below) / (above - below)
         tilt = numpy.where(guess[active] < high[active], guess[active], tilt)  # excludes NaN and infinity
         trial = solve(active, tilt)
-        level, trial_margin = _rim_levels(trial), _patch_margins(trial)
+        level, trial_margin = _max_rim_levels(trial), _patch_margins(trial)
         with numpy.errstate(divide="ignore", invalid="ignore"):
             secant = tilt + trial_margin * (tilt - low[active]) / (margin[active] - trial_margin)
         free = level <= 0
@@ -236,8 +236,11 @@ def _patch_margins(states: ContactStates) -> Numbers:
     return numpy.array([patch.edge_margin for patch in states.patches])
 
 
-def _rim_levels(states: ContactStates) -> Numbers:
-    """Find the largest level in mm of each contact in the ring at the rim: (contacts,)."""
+def _max_rim_levels(states: ContactStates) -> Numbers:
+    """Return the largest level in mm of each contact, over the cells of the ring at the rim: (contacts,).
+
+    A level is positive in the contact, and minus the gap outside.
+    """
     largest: Numbers = states.levels[:, -1].max(axis=1)
     return largest
 

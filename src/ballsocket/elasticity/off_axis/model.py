@@ -304,7 +304,7 @@ class Sphere(Model):
             load=loads,
             touching=touching,
             state=state,
-            reached=state.reached,
+            reached=state.reachable,
             error=state.errors(kind),
         )
 

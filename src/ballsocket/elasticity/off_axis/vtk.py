@@ -10,7 +10,7 @@ import numpy
 from ...core.arrays import Numbers
 from ...core.checks import needs
 from ...core.storage.atomic_files import write_atomically
-from ..finite_elements.decks.vtk import check_suffix
+from ..finite_elements.decks.vtk import check_vtk_path
 from .contact import OffAxisContact
 from .directions import unit_vectors
 
@@ -43,7 +43,7 @@ def write_vtk(contact: OffAxisContact, path: Path) -> None:
     ImportError
         The package meshio is not installed.
     """
-    check_suffix(path)
+    check_vtk_path(path)
     grid = contact.single_state.bore.compliance.grid
     needs("fem", "meshio")
     import meshio

@@ -55,80 +55,87 @@ class UnitInformation:
 
 
 def fmi2_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
-    """Write `modelDescription.xml` for FMI 2.0, as bytes."""
-    root = _root("2.0", information, {"guid": information.guid, "numberOfEventIndicators": "0"})
+    """Return the XML file `modelDescription.xml` of an FMU for FMI 2.0, as bytes."""
+    root = _description_root("2.0", information, {"guid": information.guid, "numberOfEventIndicators": "0"})
     files = SubElement(root[1], "SourceFiles")
     for parent in (SubElement(root[0], "SourceFiles"), files):
         for source in information.sources:
             SubElement(parent, "File", name=source)
-    _units(root)
-    _categories(SubElement(root, "LogCategories"))
+    _add_units(root)
+    _add_log_categories(SubElement(root, "LogCategories"))
     SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
-    listed = SubElement(root, "ModelVariables")
+    variables_element = SubElement(root, "ModelVariables")
     for variable in variables:
-        kind = SubElement(listed, "ScalarVariable", _attributes(variable))
-        SubElement(kind, "Real", _start(variable))
+        scalar_variable = SubElement(variables_element, "ScalarVariable", _variable_attributes(variable))
+        SubElement(scalar_variable, "Real", _unit_and_start_attributes(variable))
     structure = SubElement(root, "ModelStructure")
     outputs = [variable for variable in variables if variable.causality == "output"]
     for parent in (SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")):
         for variable in outputs:
             SubElement(
-                parent, "Unknown", {"index": str(variable.reference), **_dependencies(variable.needs, parent.tag)}
+                parent,
+                "Unknown",
+                {"index": str(variable.reference), **_dependency_attributes(variable.needs, parent.tag)},
             )
-    return _xml(root)
+    return _xml_bytes(root)
 
 
 def fmi3_description(information: UnitInformation, variables: Sequence[Variable]) -> bytes:
-    """Write `modelDescription.xml` for FMI 3.0, as bytes."""
-    root = _root("3.0", information, {"instantiationToken": information.guid})
-    _units(root)
-    _categories(SubElement(root, "LogCategories"))
+    """Return the XML file `modelDescription.xml` of an FMU for FMI 3.0, as bytes."""
+    root = _description_root("3.0", information, {"instantiationToken": information.guid})
+    _add_units(root)
+    _add_log_categories(SubElement(root, "LogCategories"))
     SubElement(root, "DefaultExperiment", startTime="0", stopTime=str(STOP), stepSize=str(STEP))
-    listed = SubElement(root, "ModelVariables")
+    variables_element = SubElement(root, "ModelVariables")
     time = {"name": "time", "valueReference": "0", "causality": "independent", "variability": "continuous"}
-    SubElement(listed, "Float64", time, unit="s")
+    SubElement(variables_element, "Float64", time, unit="s")
     for variable in variables:
-        SubElement(listed, "Float64", {**_attributes(variable), **_start(variable)})
+        SubElement(
+            variables_element, "Float64", {**_variable_attributes(variable), **_unit_and_start_attributes(variable)}
+        )
     structure = SubElement(root, "ModelStructure")
     outputs = [variable for variable in variables if variable.causality == "output"]
     for tag in ("Output", "InitialUnknown"):
         for variable in outputs:
             SubElement(
-                structure, tag, {"valueReference": str(variable.reference), **_dependencies(variable.needs, tag)}
+                structure,
+                tag,
+                {"valueReference": str(variable.reference), **_dependency_attributes(variable.needs, tag)},
             )
-    return _xml(root)
+    return _xml_bytes(root)
 
 
 def build_description(information: UnitInformation) -> bytes:
-    """Write `buildDescription.xml`, the list of source files for FMI 3.0, as bytes."""
+    """Return the XML file `buildDescription.xml` of FMI 3.0, a list of the source files, as bytes."""
     root = Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = SubElement(root, "BuildConfiguration", modelIdentifier=information.name)
     files = SubElement(configuration, "SourceFileSet", language="C99")
     for source in information.sources:
         SubElement(files, "SourceFile", name=source)
-    return _xml(root)
+    return _xml_bytes(root)
 
 
-def _root(version: str, information: UnitInformation, identifiers: dict[str, str]) -> Element:
-    """Make the root element of a description, with the capabilities of the unit."""
+def _description_root(version: str, information: UnitInformation, identifiers: dict[str, str]) -> Element:
+    """Make the root element of a model description in XML, with the capabilities of the FMU."""
     texts = {
         "description": information.text,
         "generationTool": information.tool,
         "variableNamingConvention": "structured",
     }
-    named = {"fmiVersion": version, "modelName": information.name, **identifiers, **texts}
-    root = Element("fmiModelDescription", named)
+    attributes = {"fmiVersion": version, "modelName": information.name, **identifiers, **texts}
+    root = Element("fmiModelDescription", attributes)
     capabilities = dict.fromkeys(_CAPABILITIES[version], "true")
-    identified = {"modelIdentifier": information.name, **capabilities}
+    identifier = {"modelIdentifier": information.name, **capabilities}
     not_needed = (
         {"completedIntegratorStepNotNeeded": "true"} if version == "2.0" else {"needsCompletedIntegratorStep": "false"}
     )
-    SubElement(root, "ModelExchange", {**identified, **not_needed})
-    SubElement(root, "CoSimulation", {**identified, "canHandleVariableCommunicationStepSize": "true"})
+    SubElement(root, "ModelExchange", {**identifier, **not_needed})
+    SubElement(root, "CoSimulation", {**identifier, "canHandleVariableCommunicationStepSize": "true"})
     return root
 
 
-def _units(root: Element) -> None:
+def _add_units(root: Element) -> None:
+    """Add the definitions of all units to a model description."""
     units = SubElement(root, "UnitDefinitions")
     for name, powers in UNITS.items():
         SubElement(
@@ -136,13 +143,14 @@ def _units(root: Element) -> None:
         )
 
 
-def _categories(parent: Element) -> None:
+def _add_log_categories(parent: Element) -> None:
+    """Add the categories of log messages to an XML element."""
     for name, meaning in LOG_CATEGORIES.items():
         SubElement(parent, "Category", name=name, description=meaning)
 
 
-def _attributes(variable: Variable) -> dict[str, str]:
-    """Return the XML attributes of a variable."""
+def _variable_attributes(variable: Variable) -> dict[str, str]:
+    """Return the XML attributes that describe a variable."""
     parameter = variable.causality == "parameter"
     attributes = {
         "name": variable.name,
@@ -154,23 +162,26 @@ def _attributes(variable: Variable) -> dict[str, str]:
     return attributes | ({"initial": "exact"} if parameter else {})
 
 
-def _start(variable: Variable) -> dict[str, str]:
+def _unit_and_start_attributes(variable: Variable) -> dict[str, str]:
+    """Return the unit and the start value of a variable as XML attributes."""
     return {"unit": variable.unit} | ({} if variable.start is None else {"start": repr(variable.start)})
 
 
-def _dependencies(inputs: Iterable[int], tag: str) -> dict[str, str]:
+def _dependency_attributes(inputs: Iterable[int], tag: str) -> dict[str, str]:
     # initial outputs depend on parameters too; without this attribute they depend on every variable
+    """Return the XML attribute that lists the inputs of an output; empty for initial values."""
     return {} if tag.startswith("Initial") else {"dependencies": " ".join(map(str, inputs))}
 
 
-def _xml(root: Element) -> bytes:
+def _xml_bytes(root: Element) -> bytes:
+    """Convert an XML element to the indented text of a file, as bytes."""
     indent(root)
     return tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Standard:
-    """Version of the FMI standard; `folder` returns the folder name for the binaries of a platform."""
+    """Version of the FMI standard, with its C wrapper, folder names of binaries, and description file."""
 
     version: str
     wrapper: str
@@ -178,12 +189,13 @@ class Standard:
     describe: Callable[[UnitInformation, Sequence[Variable]], bytes]
 
 
-def _fmi2_folder(platform: Platform) -> str:
+def _fmi2_folder_name(platform: Platform) -> str:
+    """Return the folder name of the binaries of a platform in FMI 2.0, such as "linux64"."""
     return f"{ {'windows': 'win'}.get(platform.system, platform.system) }{platform.bits}"
 
 
 STANDARDS: Mapping[int, Standard] = {
-    2: Standard(version="2.0", wrapper="fmi2.c", folder=_fmi2_folder, describe=fmi2_description),
+    2: Standard(version="2.0", wrapper="fmi2.c", folder=_fmi2_folder_name, describe=fmi2_description),
     3: Standard(version="3.0", wrapper="fmi3.c", folder=str, describe=fmi3_description),
 }
 
@@ -227,38 +239,41 @@ class Fmu:
 
     @property
     def standard(self) -> Standard:
-        """FMI standard of the unit."""
+        """Version of the FMI standard of the FMU."""
         return STANDARDS[self.version]
 
     @cached_property
     def sources(self) -> Mapping[str, str]:
-        """Source files of the unit: contents by name."""
+        """Texts of the C source files of the FMU, by file name."""
         values = {
             "name": self.name,
             "NAME": self.name.upper(),
             "version": __version__,
             "guid": self.guid,
-            **self._numbers,
+            **self._template_values,
         }
-        return self._program | {name: fill_template(name, **values) for name in ("fmu_core.h", self.standard.wrapper)}
+        return self._program_texts | {
+            name: fill_template(name, **values) for name in ("fmu_core.h", self.standard.wrapper)
+        }
 
     @cached_property
     def guid(self) -> str:
-        """Identifier that links description and binary; it depends on all numbers of the unit."""
-        parts = (*self._program.values(), *self._numbers.values(), self.standard.version, self.name)
+        """Unique identifier that links description and binary; it changes with every number of the FMU."""
+        parts = (*self._program_texts.values(), *self._template_values.values(), self.standard.version, self.name)
         return f"{{{UUID(bytes=sha256(''.join(parts).encode()).digest()[:16])}}}"
 
     @cached_property
-    def _program(self) -> dict[str, str]:
+    def _program_texts(self) -> dict[str, str]:
+        """Texts of the C header and source of the force element, by file name."""
         program = CElement(element=self.element, name=self.name)
         return {f"{self.name}.h": program.header, f"{self.name}.c": program.source}
 
     @cached_property
-    def _numbers(self) -> dict[str, str]:
-        """Numbers and texts of the C wrapper, by the names in its template."""
+    def _template_values(self) -> dict[str, str]:
+        """Numbers and texts for the placeholders in the template of the C wrapper, by name."""
         element, constants = self.element, self.element.constants
         deepest = valid_depth(element)
-        beyond = f"{element.model.name} is not valid beyond an indentation of {deepest:.4g} mm"
+        validity_message = f"{element.model.name} is not valid beyond an indentation of {deepest:.4g} mm"
         return {
             "parameters": str(len(TUNABLES)),
             "units": ", ".join(c_number(parameter.si) for parameter in TUNABLES),
@@ -266,20 +281,20 @@ class Fmu:
                 c_number(getattr(constants, parameter.constant) * parameter.si) for parameter in TUNABLES
             ),
             "valid": c_number(element.joint.with_floats().clearance + deepest),
-            "beyond": beyond,
+            "beyond": validity_message,
         }
 
     @property
     def information(self) -> UnitInformation:
-        """Name, identifier and texts of the unit for its description."""
-        texts = [name for name in self.sources if name.endswith(".c")]
-        text = f"ball in a socket, {self.element.model.title}"
+        """Name, identifier and texts for the description file of the FMU."""
+        c_sources = [name for name in self.sources if name.endswith(".c")]
+        description = f"ball in a socket, {self.element.model.title}"
         return UnitInformation(
-            name=self.name, guid=self.guid, text=text, tool=f"ballsocket {__version__}", sources=texts
+            name=self.name, guid=self.guid, text=description, tool=f"ballsocket {__version__}", sources=c_sources
         )
 
     def write(self, path: Path) -> FmuFile:
-        """Write the FMU archive; the result names a binary that is missing.
+        """Write the FMU archive, and return its path with a note if the binary for this platform is missing.
 
         Raises
         ------
@@ -294,7 +309,7 @@ class Fmu:
             files["sources/buildDescription.xml"] = build_description(self.information)
         missing = ""
         try:
-            platform, binary = self._binary()
+            platform, binary = self._compile_binary()
             files[f"binaries/{self.standard.folder(platform)}/{self.name}{platform.library_ending}"] = binary
             if platform != THIS_PLATFORM:
                 missing = (
@@ -310,7 +325,8 @@ class Fmu:
                 archive.writestr(entry, files[name], zipfile.ZIP_DEFLATED, 9)
         return FmuFile(path=Path(path), missing=missing)
 
-    def _binary(self) -> tuple[Platform, bytes]:
+    def _compile_binary(self) -> tuple[Platform, bytes]:
+        """Compile the C sources; return the platform and the bytes of the shared library."""
         with TemporaryDirectory() as temporary:
             folder = Path(temporary)
             for name, text in self.sources.items():

@@ -66,18 +66,23 @@ _STATE, _POSITION = tuple(range(1, 10)), (1, 2, 3)
 
 
 def variables(element: ForceElement) -> tuple[Variable, ...]:
-    """List the variables of an FMU in the order of their references, from 1."""
-    parts = [*_inputs(), *_outputs(), *_parameters(element)]
-    return tuple(Variable(reference=number, **part) for number, part in enumerate(parts, 1))
+    """List all variables of an FMU in the order of their reference numbers, from 1."""
+    properties = [*_input_properties(), *_output_properties(), *_parameter_properties(element)]
+    return tuple(
+        Variable(reference=reference, **variable_properties)
+        for reference, variable_properties in enumerate(properties, 1)
+    )
 
 
-def _inputs() -> Iterator[dict]:
+def _input_properties() -> Iterator[dict]:
+    """Yield the properties of all inputs: position, velocity and spin."""
     for name, (unit, meaning) in _VECTORS.items():
         for axis in (1, 2, 3):
             yield {"name": f"{name}[{axis}]", "causality": "input", "unit": unit, "description": meaning, "start": 0.0}
 
 
-def _outputs() -> Iterator[dict]:
+def _output_properties() -> Iterator[dict]:
+    """Yield the properties of all outputs: force, moment, energy, half angle and largest pressure."""
     for name, (unit, meaning) in _LOADS.items():
         for axis in (1, 2, 3):
             described = {"name": f"{name}[{axis}]", "unit": unit, "description": meaning}
@@ -86,7 +91,8 @@ def _outputs() -> Iterator[dict]:
         yield {"name": name, "causality": "output", "unit": unit, "description": meaning, "needs": _POSITION}
 
 
-def _parameters(element: ForceElement) -> Iterator[dict]:
+def _parameter_properties(element: ForceElement) -> Iterator[dict]:
+    """Yield the properties of all tunable parameters of the element, with start values."""
     for parameter in TUNABLES:
         start = getattr(element.constants, parameter.constant) * parameter.si
         properties = {"unit": parameter.si_unit, "description": parameter.meaning, "start": start}
@@ -106,11 +112,11 @@ def write_cross_check(element: ForceElement, path: Path) -> tuple[Path, Path, Pa
     """
     time = numpy.arange(round(STOP / STEP) + 1) * STEP
     state = trajectory(element, time)
-    listed = variables(element)
+    fmu_variables = variables(element)
     stem = path.with_suffix("")
-    tables = (("in", "input", in_si(state)), ("ref", "output", reference_loads(element, state)))
+    tables = (("in", "input", states_in_si(state)), ("ref", "output", reference_loads(element, state)))
     inputs, reference = (
-        write_text(Path(f"{stem}_{ending}.csv"), _csv(_names(listed, causality), time, values))
+        write_text(Path(f"{stem}_{ending}.csv"), _csv_text(_names_of_kind(fmu_variables, causality), time, values))
         for ending, causality, values in tables
     )
     options = f"StartTime, 0\nStopTime, {STOP}\nStepSize, {STEP}\nRelTol, 1e-6\n"
@@ -118,7 +124,7 @@ def write_cross_check(element: ForceElement, path: Path) -> tuple[Path, Path, Pa
 
 
 def trajectory(element: ForceElement, time: Numbers) -> Numbers:
-    """Compute a test trajectory of a ball that touches, slides, spins and separates: states (times, 9).
+    """Compute the states (times, 9) of a test motion in which the ball touches, slides, spins and separates.
 
     The units are mm, mm/s and rad/s.
     """
@@ -135,23 +141,25 @@ def trajectory(element: ForceElement, time: Numbers) -> Numbers:
     return numpy.hstack([distance[:, None] * normal, velocity, spin])
 
 
-def in_si(state: Numbers) -> Numbers:
-    """Convert states from mm, mm/s and rad/s to m, m/s and rad/s."""
+def states_in_si(state: Numbers) -> Numbers:
+    """Convert states (position, velocity, spin) from mm, mm/s and rad/s to m, m/s and rad/s."""
     return numpy.hstack([_MM * state[:, :6], state[:, 6:]])
 
 
 def reference_loads(element: ForceElement, state: Numbers) -> Numbers:
-    """Compute the reference outputs of the Python element at states, in the order and units of the FMU."""
+    """Compute the outputs of the Python element at given states, in the order and units of the FMU."""
     load = element(state[:, :3], state[:, 3:6], state[:, 6:])
     scalars = (_MM * load.energy, load.half_angle, _MPA * load.max_pressure)
     return numpy.hstack([load.force, _MM * load.moment, numpy.stack(scalars, axis=-1)])
 
 
-def _names(listed: tuple[Variable, ...], causality: str) -> list[str]:
-    return [variable.name for variable in listed if variable.causality == causality]
+def _names_of_kind(fmu_variables: tuple[Variable, ...], causality: str) -> list[str]:
+    """List the names of the variables of one kind: "input", "output" or "parameter"."""
+    return [variable.name for variable in fmu_variables if variable.causality == causality]
 
 
-def _csv(names: list[str], time: Numbers, values: Numbers) -> str:
+def _csv_text(names: list[str], time: Numbers, values: Numbers) -> str:
+    """Format a table of values over time as CSV text."""
     head = ",".join(f'"{name}"' for name in ("time", *names))
     rows = numpy.hstack([time[:, None], values]).tolist()
     return "\n".join([head, *(",".join(map(repr, row)) for row in rows)]) + "\n"

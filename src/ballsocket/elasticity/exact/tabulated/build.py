@@ -75,7 +75,7 @@ class TableAccuracy:
         return "\n".join((head, *parts))
 
 
-def build(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
+def build_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
     """Compute the tables, write them to a file and check them.
 
     Parameters

@@ -114,30 +114,30 @@ def angle_of_force(load: Array, curve: CurveCoefficients) -> Array:
     return _solve_angle(_force_residual, load, log(load / (3 + load)) / 3, curve)
 
 
-def _solve_angle(residual: Increasing, load: Array, start: Array, curve: CurveCoefficients) -> Array:
-    """Solve for the half angle in rad by Newton's method from the close estimate ln ε = `start`."""
-    start = start + (_LOG_OFFSET - math.log(LIMIT))
+def _solve_angle(residual: Increasing, load: Array, log_estimate: Array, curve: CurveCoefficients) -> Array:
+    """Solve for the half angle in rad by Newton's method, from an estimate of ln ε."""
+    start = log_estimate + (_LOG_OFFSET - math.log(LIMIT))
     end = 0.0 * start + (_LOG_OFFSET + 1e-12)  # includes the widest contact itself
     root = increasing_root(residual, 0.0 * start, start - 6.0, end, start, arguments=(load, curve), steps=16)
     return where(root < end, exp(root - _LOG_OFFSET) * LIMIT, math.nan)
 
 
-def _indentation_residual(unknown: Array, load: Array, curve: CurveCoefficients) -> Pair:
+def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
     """Compute the residual of a relative indentation d/c at a half angle, and its slope.
 
     The residual is ln d/(c + d) minus that of the load.
     """
-    angle = exp(unknown - _LOG_OFFSET) * LIMIT
+    angle = exp(log_angle - _LOG_OFFSET) * LIMIT
     sigma, rate = opening(angle, evaluate(angle, curve, ONE)[0])
     return log(sigma * (1 + 1 / load)), rate
 
 
-def _force_residual(unknown: Array, load: Array, curve: CurveCoefficients) -> Pair:
+def _force_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
     """Compute the residual of a dimensionless force at a half angle, and its slope.
 
     The residual is ln d/(c + d) minus that of the indentation F/secant, where secant is the ratio F/d.
     """
-    angle = exp(unknown - _LOG_OFFSET) * LIMIT
+    angle = exp(log_angle - _LOG_OFFSET) * LIMIT
     share, force = evaluate(angle, curve, TWO)
     sigma, rate = opening(angle, share)
     secant = exp(force[0]) * angle * angle * angle / sigma

@@ -190,8 +190,8 @@ class DeckBodies:
         return {**moduli, "BALL": (young * float(joint.socket_radius) / self.ball.radius, poisson)}
 
 
-def node_set(name: str, nodes: list[int]) -> Iterator[str]:
-    """Yield the lines of a named set of nodes."""
+def node_set_lines(name: str, nodes: list[int]) -> Iterator[str]:
+    """Yield the input-file lines of a named node set."""
     yield f"*NSET, NSET={name}"
     for start in range(0, len(nodes), _NUMBERS_PER_LINE):
         yield ", ".join(map(str, nodes[start : start + _NUMBERS_PER_LINE]))

@@ -34,7 +34,7 @@ from ....core.storage.atomic_files import write_text
 from ....problem.gaps import LinearGap
 from ....version import __version__
 from ..contact import MeshedContact
-from .bodies import TYPES, DeckBodies, DeckBody, faceting_gap, node_set
+from .bodies import TYPES, DeckBodies, DeckBody, faceting_gap, node_set_lines
 
 NAME, EXPECTED = "ballsocket", "expected.json"
 """Names of the deck for CalculiX, and of the file with the expected results."""
@@ -221,8 +221,8 @@ def mesh_lines(bodies: DeckBodies) -> Iterator[str]:
         yield from body.node_lines()
     for body in (bodies.socket, bodies.ball):
         yield from body.element_lines()
-    yield from node_set("BORE", bodies.socket.surface()["node"])
-    yield from node_set("ROUND", bodies.ball.surface()["node"])
+    yield from node_set_lines("BORE", bodies.socket.surface()["node"])
+    yield from node_set_lines("ROUND", bodies.ball.surface()["node"])
 
 
 def material_lines(bodies: DeckBodies) -> Iterator[str]:
@@ -253,7 +253,7 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
     socket, ball = bodies.socket, bodies.ball
     upright = [*socket.numbers(socket.on_axis & ~socket.fixed), *ball.numbers(ball.on_axis | ball.fixed)]
     seated, rolling = socket.fixed_directions & ~socket.fixed & ~socket.on_axis
-    yield from node_set("PUSHED", ball.numbers(ball.fixed_directions[0] & (ball.fixed | ~ball.on_axis)))
+    yield from node_set_lines("PUSHED", ball.numbers(ball.fixed_directions[0] & (ball.fixed | ~ball.on_axis)))
     yield from _polar_lines(socket, seated | rolling)
     for name, directions, nodes in (
         ("UPRIGHT", "1, 1", upright),
@@ -274,7 +274,7 @@ def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
     polar[inner] = polar[outer] = True
     numbers = socket.numbers(polar & ~socket.on_axis)
     if numbers:
-        yield from node_set("POLAR", numbers)
+        yield from node_set_lines("POLAR", numbers)
         yield from ("*TRANSFORM, NSET=POLAR, TYPE=C", "0., 0., 0., 0., 0., 1.")
     if len(inner):
         yield "*EQUATION"
@@ -286,7 +286,7 @@ def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
 def _boundary_lines(name: str, directions: str, nodes: list[int]) -> Iterator[str]:
     """Yield the lines of a named set of nodes and of its boundary condition."""
     if nodes:
-        yield from node_set(name, nodes)
+        yield from node_set_lines(name, nodes)
         yield from ("*BOUNDARY", f"{name}, {directions}")
 
 

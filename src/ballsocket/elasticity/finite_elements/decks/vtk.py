@@ -14,7 +14,7 @@ _CELLS = {4: "quad", 9: "quad9"}
 SUFFIXES = (".vtu", ".vtk")
 
 
-def check_suffix(path: Path) -> None:
+def check_vtk_path(path: Path) -> None:
     """Raise ValueError unless `path` has the suffix of a VTK format and its folder exists."""
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{str(path)!r} must end in {', '.join(SUFFIXES)}")
@@ -42,7 +42,7 @@ def write_vtk(section: Section, path: Path) -> None:
     ImportError
         meshio is not installed.
     """
-    check_suffix(path)
+    check_vtk_path(path)
     needs("fem", "meshio")
     import meshio
 

@@ -1,0 +1,262 @@
+"""Commands `map`, `optimise` and `sensitivity`: design studies of a joint without a study file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
+
+import typer
+
+from ..catalogue import named_model, reference
+from ..contact import Model
+from ..core.checks import require
+from ..files.joint_file import JointFile
+from ..output import study_plots, study_summary, study_terminal
+from ..problem import Joint
+from ..problem.cup import Cup
+from ..studies.axes import Span
+from ..studies.design import grid
+from ..studies.limits import Limit
+from ..studies.optimum import optimise as find_optimum
+from ..studies.parameters import LOADS
+from ..studies.pareto import pareto
+from ..studies.phrases import choice_of, limit_of, range_of, spread_of
+from ..studies.run import study
+from ..studies.sensitivity import sensitivity as find_sensitivity
+from ..studies.task import QUANTITIES, USUAL
+from ..studies.usual import check_known, usual
+from ..version import __version__
+from .options import (
+    JointName,
+    JointOptions,
+    ModelName,
+    OutputOptions,
+    drop_missing,
+    expand_groups,
+    read_load_option,
+)
+from .root import app, print_message
+
+_POINTS_HELP = "Number of values along each axis, 2 or more. Default: 41, or 21 for a slow model."
+LimitOption = Annotated[
+    list[str] | None,
+    typer.Option("--limit", help="Limit of a result or dimension: 'outer_radius<=26 mm'. Repeat for several."),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class PressOptions:
+    """Options of the model and the load of a design study."""
+
+    model: ModelName = None
+    force: Annotated[
+        str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
+    ] = None
+    indentation: Annotated[
+        str | None, typer.Option(help="Displacement of the ball after first contact: '40 um'. Not with --force.")
+    ] = None
+
+    def choose_model(self, file: JointFile, ends: Mapping[str, Any]) -> Model:
+        """Return the requested model, or the default one for joints between some ends, in the cup of the file.
+
+        Raises
+        ------
+        ValueError
+            The requested model has no result for any of these joints.
+        """
+        if self.model is None:
+            model = usual(file.joint, ends)
+            if model.name == reference.name:
+                print_message(f"model {model.name} is used, since none of these joints is in the tables of tabulated")
+        else:
+            model = named_model(self.model)
+            check_known(model, file.joint, ends)
+        return model.in_cup(file.cup)
+
+    def load(self, file: JointFile, parameters: Iterable[str]) -> dict[str, float]:
+        """Return the load in N or mm; empty if the load is one of the varied parameters."""
+        options = {"force": self.force, "indentation": self.indentation}
+        loads = [name for name in parameters if name in LOADS]
+        if loads and drop_missing(options):
+            raise ValueError(f"{loads[0]} varies, and a load is given too; one is needed")
+        return {} if loads else read_load_option(options, file)
+
+
+@app.command(name="map")
+@expand_groups
+def design_map(
+    *,
+    joint: JointName = None,
+    joint_options: JointOptions,
+    x: Annotated[
+        str, typer.Option(help="Parameter and range of the horizontal axis: 'ball_radius=11..23 mm'.")
+    ] = "ball_radius=11..23 mm",
+    y: Annotated[
+        str, typer.Option(help="Parameter and range of the vertical axis: 'clearance=50..200 um'.")
+    ] = "liner_thickness=3..15 mm",
+    points: Annotated[int | None, typer.Option(help=_POINTS_HELP)] = None,
+    press_options: PressOptions,
+    limit: LimitOption = None,
+    output: OutputOptions,
+) -> None:
+    """Map the contact over two parameters of a joint.
+
+    The table shows the smallest and largest peak pressure, contact area and half angle, and the share within the
+    limits. --figure draws the map.
+    """
+    output.check()
+    _check_points(points)
+    file = joint_options.read(joint)
+    limits = _limits(limit, file.cup)
+    ends = _unique((name, (low, high)) for name, low, high in map(range_of, (x, y)))
+    load, model = press_options.load(file, ends), press_options.choose_model(file, ends)
+    axes = {name: Span(low, high, points or _default_points(model)) for name, (low, high) in ends.items()}
+    result = study(model, file.joint, grid(**axes, **load), quantities=_quantities((), limits))
+    output.print(lambda: study_summary.map_summary(result, limits), lambda: study_terminal.print_map(result, limits))
+    output.draw(lambda: study_plots.design_map(result, limits))
+
+
+@app.command()
+@expand_groups
+def optimise(
+    *,
+    joint: JointName = None,
+    joint_options: JointOptions,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            help="Parameter and its range, sizes or materials: 'clearance=50..200 um', 'head_diameter=28,32,36 mm', "
+            "'liner=uhmwpe,pom'. Repeat for several."
+        ),
+    ],
+    minimise: Annotated[
+        list[str] | None,
+        typer.Option(help="Result to minimise. Default: max_pressure. Twice: the Pareto front of two results."),
+    ] = None,
+    press_options: PressOptions,
+    limit: LimitOption = None,
+    points: Annotated[int | None, typer.Option(help=f"For a front or a figure. {_POINTS_HELP}")] = None,
+    output: OutputOptions,
+) -> None:
+    """Find the best joint within limits, for one goal or two.
+
+    With two goals the result is the Pareto front: the joints that no other joint beats in both.
+    """
+    output.check()
+    _check_points(points)
+    file, goals = joint_options.read(joint), minimise or ["max_pressure"]
+    limits = _limits(limit, file.cup)
+    lists = [choice_of(phrase) for phrase in vary]
+    choices = _unique(choice for choice in lists if choice is not None)
+    phrases = [phrase for phrase, choice in zip(vary, lists, strict=True) if choice is None]
+    ranges = _unique((name, (low, high)) for name, low, high in map(range_of, phrases))
+    if output.figure is not None and len(goals) == 1 and len(ranges) != 2:
+        raise ValueError(f"a map has two axes, and {len(ranges)} numbers vary: no figure")
+    load = press_options.load(file, {**ranges, **choices})
+    model = press_options.choose_model(file, {**ranges, **choices})
+
+    def study_ranges(joint: Joint, fixed: Mapping[str, Any]) -> Any:
+        """Press a joint on a grid of all ranges."""
+        count = points or _default_points(model)
+        axes = {name: Span(low, high, count) for name, (low, high) in ranges.items()}
+        design = grid(**axes, **fixed, **load)
+        return study(model, joint, design, quantities=_quantities(goals, limits))
+
+    if len(goals) == 2:
+        _show_front(study_ranges(file.joint, choices), (goals[0], goals[1]), limits, output)
+        return
+    if len(goals) != 1:
+        raise ValueError(f"one result or two are minimised, got {len(goals)}")
+    best = find_optimum(model, file.joint, ranges, among=choices, minimise=goals[0], limits=limits, load=load)
+    output.print(
+        lambda: {"version": __version__, "model": model.name, **best.summary()},
+        lambda: study_terminal.print_optimum(best),
+    )
+    sizes = {name: value for name, value in best.point.items() if name in choices}
+    names = list(dict.fromkeys((*goals, *study_plots.SHOWN)))
+    output.draw(lambda: study_plots.design_map(study_ranges(best.joint, sizes), limits, names, best=best.point))
+
+
+def _show_front(result: Any, goals: tuple[str, str], limits: list[Limit], output: OutputOptions) -> None:
+    """Print and draw the Pareto front of two goals."""
+    front = pareto(result, goals, limits)
+    output.print(lambda: study_summary.front_summary(front), lambda: study_terminal.print_front(front))
+    output.draw(lambda: study_plots.front_figure(result, front, goals, limits))
+
+
+@app.command()
+@expand_groups
+def sensitivity(
+    *,
+    joint: JointName = None,
+    joint_options: JointOptions,
+    spread: Annotated[
+        list[str],
+        typer.Option(
+            help="Scatter of a parameter: tolerance 'clearance=0.10+-0.05 mm' (or ±; normal distribution, 3 "
+            "standard deviations to each end) or range 'liner_poisson=0.38..0.46' (uniform distribution). Repeat for "
+            "several."
+        ),
+    ],
+    press_options: PressOptions,
+    count: Annotated[int, typer.Option(help="Number of samples, a power of two.")] = 1024,
+    output: OutputOptions,
+) -> None:
+    """Compute which parameter's scatter matters most.
+
+    The table shows Sobol indices with their intervals, and elasticities (relative change of a result per relative
+    change of a parameter).
+    """
+    output.check()
+    file = joint_options.read(joint)
+    distributions = _unique(map(spread_of, spread))
+    means = {name: [float(distribution.frozen.mean())] for name, distribution in distributions.items()}
+    load, model = press_options.load(file, distributions), press_options.choose_model(file, means)
+    result = find_sensitivity(model, file.joint, distributions, count=count, load=load)
+    output.print(
+        lambda: {
+            "version": __version__,
+            "model": result.attrs["model"],
+            **study_summary.sensitivity_summary(result),
+        },
+        lambda: study_terminal.print_sensitivity(result),
+    )
+    output.draw(lambda: study_plots.sensitivity_figure(result))
+
+
+def _check_points(points: int | None) -> None:
+    if points is not None:
+        require("points", points, points > 1, "an axis has 2 values or more")
+
+
+def _default_points(model: Model) -> int:
+    """Return the number of values along an axis with which a map takes seconds."""
+    return 41 if model.seconds_a_press < 1e-3 else 21
+
+
+def _limits(phrases: list[str] | None, cup: Cup) -> list[Limit]:
+    """Parse limits from text; distances from the edge are those of the cup."""
+    return [replace(limit_of(phrase), cup=cup) for phrase in phrases or []]
+
+
+def _unique(pairs: Iterable[tuple[str, Any]]) -> dict[str, Any]:
+    """Return pairs of name and value as a dictionary.
+
+    Raises
+    ------
+    ValueError
+        A name occurs twice.
+    """
+    values: dict[str, Any] = {}
+    for name, value in pairs:
+        if name in values:
+            raise ValueError(f"{name} is given twice; one is needed")
+        values[name] = value
+    return values
+
+
+def _quantities(goals: Iterable[str], limits: Iterable[Limit]) -> list[str]:
+    """Return the results to compute: the default ones, the goals and the limited ones."""
+    limited = (limit.name for limit in limits if limit.name in QUANTITIES)
+    return list(dict.fromkeys((*USUAL, *goals, *limited)))

@@ -1,0 +1,352 @@
+"""Fields that every JSON answer has: validity, estimated errors, notes, sources and next steps."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import chain, pairwise
+from types import MappingProxyType
+from typing import Any
+
+import numpy
+import typer
+
+from ..catalogue import judge, listed_models, off_axis, reference
+from ..contact.closed_sphere import NOTED_CHANGE
+from ..core.quantities import QUANTITIES
+from ..core.sources import Source, bibliography, find_cited_keys
+from ..output.list_summary import source_summary
+from ..problem import Joint, Material
+from ..problem.dimensions import DIAMETERS, LENGTHS
+from ..problem.presets import joints, materials
+
+Answer = Mapping[str, Any]
+Arguments = Sequence[str]
+
+
+def echo_json(answer: Answer) -> None:
+    """Print one JSON object with provenance and next steps; a missing number is null.
+
+    Raises
+    ------
+    ArithmeticError
+        A number is infinite.
+    """
+    try:
+        text = json.dumps(add_provenance(answer, sys.argv[1:]), indent=2, allow_nan=False)
+    except ValueError as error:
+        raise ArithmeticError("a result is infinite") from error
+    typer.echo(text)
+
+
+def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
+    """Add `valid`, `error`, `notes`, `sources` and `next` to an answer that lacks them.
+
+    Parameters
+    ----------
+    answer : mapping
+        JSON answer of a command.
+    arguments : sequence of str
+        Name of the command and its arguments.
+
+    Returns
+    -------
+    dict
+        `valid` is true where the requested results are in the range of their models, and null where no result was
+        checked. `error` has estimated relative errors, by model where there are several, and null where none are known.
+        `notes` are sentences, `sources` publications with `key`, `text`, `doi`, and `next` steps with `command`, `why`.
+    """
+    results = answer.get("results", [])
+    requested = requested_results(results, arguments)
+    notes = [f"{result['model']}: {note}" for result in results for note in result["notes"]]
+    full = {
+        **answer,
+        "valid": answer.get("valid", all(result["valid"] for result in requested) if results else None),
+        "error": answer.get("error", _errors(results)),
+        "notes": answer.get("notes", notes),
+        "sources": [source_summary(source) for source in dict.fromkeys(_sources(answer))],
+    }
+    return {**full, "next": [step.summary() for step in next_steps(full, arguments)]}
+
+
+def _errors(results: Iterable[Answer]) -> dict[str, Any] | None:
+    """Return the estimated errors of results by model; None if there are none."""
+    return {result["model"]: result["error"] for result in results if result.get("error")} or None
+
+
+def _sources(part: Any) -> Iterator[Source]:
+    """Yield the publications of the models and presets in a part of an answer, and those that it cites."""
+    if isinstance(part, dict):
+        for key, value in part.items():
+            yield from _entry_sources(key, value)
+            yield from _sources(value)
+    elif isinstance(part, list):
+        for element in part:
+            yield from _sources(element)
+
+
+def _entry_sources(key: str, value: Any) -> Iterator[Source]:
+    """Yield the publications of one entry of an answer."""
+    if key == "model" and isinstance(value, str) and value in listed_models:
+        yield from listed_models[value].sources
+    elif key == "name" and isinstance(value, str):
+        yield from (Source(cited) for preset in _presets(value) for cited in find_cited_keys(preset.source))
+    elif key == "source" and isinstance(value, str):
+        yield from map(Source, find_cited_keys(value))
+    elif key == "sources" and isinstance(value, list):
+        cited_keys = (source["key"] if isinstance(source, dict) else source for source in value)
+        yield from (Source(cited) for cited in cited_keys if cited in bibliography())
+
+
+def _presets(name: str) -> Iterator[Joint | Material]:
+    """Yield the joints and materials with this full name."""
+    yield from (joint for joint in joints.values() if joint.name == name)
+    yield from (material for material in materials.values() if material.name == name)
+
+
+@dataclass(frozen=True)
+class NextStep:
+    """A command that is useful after an answer, and the reason."""
+
+    arguments: tuple[str, ...]
+    why: str
+
+    def summary(self) -> dict[str, str]:
+        """Return the step as a dictionary for JSON."""
+        return {"command": shlex.join(["ballsocket", *self.arguments]), "why": self.why}
+
+
+def next_steps(answer: Answer, arguments: Arguments) -> list[NextStep]:
+    """Return the commands that are useful after a JSON answer.
+
+    Parameters
+    ----------
+    answer : mapping
+        JSON answer with `valid` and `notes`.
+    arguments : sequence of str
+        Name of the command and its arguments.
+    """
+    steps = _NEXT_STEPS.get(arguments[0], _no_steps) if arguments else _no_steps
+    return list(steps(answer, [argument for argument in arguments if argument != "--json"]))
+
+
+def requested_results(results: Sequence[Answer], arguments: Arguments) -> list[Answer]:
+    """Return the results of the requested models, without the exact result that is always added."""
+    if "--all" in arguments:
+        return list(results)
+    return [result for result in results if result["model"] in arguments] or list(results[:1])
+
+
+def _no_steps(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    return iter(())
+
+
+def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest a valid model if the requested one is invalid, then a check, then the references."""
+    results = {result["model"]: result["valid"] for result in answer["results"]}
+    requested = [result["model"] for result in requested_results(answer["results"], arguments)]
+    valid_models = [name for name, valid in results.items() if valid is True]
+    bare = _without_options(arguments, "--model", "--all", *_OUTPUT_OPTIONS)
+    invalid = [name for name in requested if name not in valid_models]
+    if valid_models and invalid:
+        why = f"{invalid[0]} is outside its valid range here, {valid_models[0]} is valid: see the notes"
+        yield NextStep((*bare, "--model", valid_models[0]), why)
+    if not valid_models:
+        alternatives = [name for name in (reference.name, off_axis.name, judge.name) if name not in results]
+        why = "no model of this answer is valid here"
+        yield from (NextStep((*bare, "--model", name), why) for name in alternatives)
+    elif not {judge.name, off_axis.name} & set(results):
+        if any(map(_differs_on_hemisphere, answer["results"])):
+            why = "a hemisphere with a free rim differs from the closed sphere of this result: see the notes"
+            yield from (NextStep((*bare, "--model", name), why) for name in (judge.name, off_axis.name))
+        else:
+            yield NextStep((*bare, "--model", judge.name), "check by finite elements, with estimated errors")
+    yield from (NextStep(("cite", name), "references of the model") for name in valid_models[:1] if name in requested)
+
+
+def _differs_on_hemisphere(result: Answer) -> bool:
+    """Check if a result, or one of its points, differs by more than 1 % from that of a hemisphere."""
+    changes = numpy.array(list(result.get("hemisphere", {}).values()), dtype=float)
+    return bool((abs(changes) > NOTED_CHANGE).any())
+
+
+_OUTPUT_OPTIONS = ("--units", "--figure", "--section", "--view", "--vtk", "--report", "--tolerance")
+"""Options of the output, which the next step does not need."""
+
+
+def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest the exact model if a point is invalid, then the references."""
+    if answer["valid"] is not True and answer["model"] != reference.name:
+        why = f"{answer['model']} is outside its valid range at some points"
+        yield NextStep((*_without_options(arguments, "--model"), "--model", reference.name), why)
+    yield NextStep(("cite", answer["model"]), "references of the model")
+
+
+def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest a press of the best joint by every model."""
+    point = answer["point"] if "point" in answer else _point_of_least(answer)
+    chosen = [argument for part, name in answer.get("materials", {}).items() for argument in (f"--{part}", name)]
+    numbers = [argument for name, value in point.items() for argument in _as_option(name, value)]
+    has_load = any(name in point for name in ("force", "indentation"))
+    load = [] if has_load else _selected_options(arguments, "--force", "--indentation")
+    replaced = (option for option in _JOINT_OPTIONS if _dimensions_of_option(option) & set(map(_dimension_of, point)))
+    step = ("press", *_joint_arguments(_without_options(arguments, *replaced)), *chosen, *numbers, *load, "--all")
+    yield NextStep(step, "the best joint by every model")
+
+
+def _dimension_of(name: str) -> str:
+    """Return the dimension that a parameter determines: of a diameter, the radius."""
+    dimension = DIAMETERS.get(name, name)
+    return "liner_thickness" if dimension == "outer_radius" else dimension
+
+
+def _dimensions_of_option(option: str) -> set[str]:
+    """Return the dimensions that an option of the joint may determine."""
+    name = option.removeprefix("--").replace("-", "_")
+    return {_dimension_of(name), _dimension_of(f"liner_{name}")}
+
+
+def _point_of_least(answer: Answer) -> Answer:
+    """Return the point with the smallest peak pressure of a map, or of its first quantity."""
+    quantities = answer["quantities"]
+    point: Answer = quantities.get("max_pressure", next(iter(quantities.values())))[0]["at"]
+    return point
+
+
+def _as_option(name: str, value: float) -> Iterator[str]:
+    """Yield an option of `press` for a parameter, and its value with the unit."""
+    quantity = QUANTITIES.get(name)
+    unit = "" if quantity is None else quantity.unit.replace("mm2", "mm²").removeprefix("1")
+    yield f"--{name.removeprefix('liner_') if name in _LINER_PARAMETERS else name}".replace("_", "-")
+    yield f"{value:.6g} {unit}".strip()
+
+
+_LINER_PARAMETERS = ("liner_young", "liner_poisson")
+
+
+def _after_sensitivity(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest a press of the mean joint by every model."""
+    load = _selected_options(arguments, "--force", "--indentation")
+    yield NextStep(("press", *_joint_arguments(arguments), *load, "--all"), "the mean joint by every model")
+
+
+def _after_study(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest the study with all values in a file."""
+    if not _selected_options(arguments, "--out"):
+        yield NextStep((*arguments, "--out", "study.csv"), "all values, one row per point")
+
+
+def _after_orient(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest a press in the orientation with the largest edge distance."""
+    pairs = zip(chain(*answer["edge_distance"]), chain(*answer["tilt_deg"]), strict=True)
+    known = [(distance, tilt) for distance, tilt in pairs if distance is not None]
+    if known:
+        load = _selected_options(arguments, "--force", "--indentation", "--half-angle")
+        step = ("press", *_joint_arguments(arguments), *load, "--tilt", f"{max(known)[1]:.4g} deg")
+        yield NextStep(step, "the orientation with the largest distance to the rim")
+
+
+def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest the next experiment if parameters are not identifiable, else the samples of the posterior."""
+    if not answer["valid"]:
+        why = answer["notes"][0] if answer["notes"] else "not every parameter is identifiable"
+        yield NextStep((*arguments, "--experiment", "next.png"), why)
+    elif answer["posterior"] is None:
+        yield NextStep((*arguments, "--samples", "4000"), "samples of the posterior within the ranges")
+
+
+def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest the simulation with a report."""
+    if not _selected_options(arguments, "--report", "--patients"):
+        yield NextStep((*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear")
+
+
+def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest the check of a new pack."""
+    if _selected_options(arguments, "--check"):
+        return
+    folder = (_selected_options(arguments, "--out") or ["--out", "evidence"])[1]
+    yield NextStep(("evidence", "--check", folder), "computes everything again and lists the differences")
+
+
+def _after_calibrate(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest a press of the calibrated joint by every model."""
+    for name in _joint_name(arguments):
+        yield NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint")
+
+
+def _after_list(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest a press of the first listed joint, or the references of the first listed model."""
+    for name in list(answer.get("joints", {}))[:1]:
+        yield NextStep(("press", name, "--force", "3 kN", "--all"), "every model on that joint")
+    for model in answer.get("models", [])[:1]:
+        yield NextStep(("cite", model["name"]), "BibTeX")
+
+
+def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
+    """Return the file or preset of the joint, and the options that change it."""
+    return (*_joint_name(arguments), *_selected_options(arguments, *_JOINT_OPTIONS))
+
+
+_JOINT_OPTIONS = tuple(
+    f"--{name}".replace("_", "-")
+    for name in (*LENGTHS, "young", "poisson", "liner", "ball_young", "ball_poisson", "ball")
+)
+
+
+def _joint_name(arguments: Arguments) -> list[str]:
+    """Return the first argument that is neither the command, nor an option, nor the value of an option."""
+    return [
+        argument
+        for before, argument in pairwise(arguments)
+        if not argument.startswith("-") and (before is arguments[0] or "=" in before)
+    ][:1]
+
+
+def _without_options(arguments: Arguments, *options: str) -> list[str]:
+    """Return the arguments without some options and their values; `--all` has no value."""
+    remaining, skip = [], 0
+    for argument in arguments:
+        name, _, value = argument.partition("=")
+        if name in options:
+            skip = 0 if value or name == "--all" else 1
+        elif skip:
+            skip -= 1
+        else:
+            remaining.append(argument)
+    return remaining
+
+
+def _selected_options(arguments: Arguments, *options: str) -> list[str]:
+    """Return some options with their values."""
+    selected = []
+    for index, argument in enumerate(arguments):
+        name, _, value = argument.partition("=")
+        if name in options:
+            selected += [name, value or "".join(arguments[index + 1 : index + 2])]
+    return selected
+
+
+_NEXT_STEPS: Mapping[str, Callable[[Answer, Arguments], Iterator[NextStep]]] = MappingProxyType(
+    {
+        "press": _after_press,
+        "curve": _after_curve,
+        "map": _after_optimum,
+        "study": _after_study,
+        "optimise": lambda answer, arguments: (
+            _after_optimum(answer, arguments) if "value" in answer else _no_steps(answer, arguments)
+        ),
+        "sensitivity": _after_sensitivity,
+        "orient": _after_orient,
+        "identify": _after_identify,
+        "hip": _after_hip,
+        "evidence": _after_evidence,
+        "calibrate": _after_calibrate,
+        "models": _after_list,
+        "presets": _after_list,
+    }
+)
+"""Functions that yield the next steps, by the name of the command."""

@@ -1,0 +1,261 @@
+"""Options that several commands share: joint, load, model, output and worker processes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from copy import copy
+from dataclasses import dataclass, fields, is_dataclass
+from inspect import Parameter, Signature, signature
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
+
+import typer
+
+from ..core.checks import nearest, normalise_name
+from ..core.executors.processes import Engine, Processes
+from ..core.input_files import resolve_input
+from ..files.joint_file import JointFile, joint_of, read_joint, read_load, varied
+from ..output.save import check_format, save
+from ..problem.dimensions import LENGTHS
+from ..problem.presets import joints
+from .json_answers import echo_json
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+JointName = Annotated[str | None, typer.Argument(help="Joint file (TOML), or name of a preset.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, not a table.")]
+Workers = Annotated[
+    int | None, typer.Option(help="Number of worker processes on this machine. Default: 1, or as in the file.")
+]
+Scheduler = Annotated[
+    str | None, typer.Option(help="Address of a Dask scheduler that distributes the work: 'tcp://host:8786'.")
+]
+ModelName = Annotated[
+    str | None,
+    typer.Option(
+        help="Name of a model, see `ballsocket models`. Default: tabulated; exact for joints outside its tables."
+    ),
+]
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointOptions:
+    """Options of a joint; they replace single values of a joint file or preset."""
+
+    ball_radius: Annotated[str | None, typer.Option(help="Ball radius R1 in mm, or with a unit: '1.6 cm'.")] = None
+    head_diameter: Annotated[
+        str | None, typer.Option(help="Ball diameter 2 R1 in mm: '32 mm'. Not with --ball-radius.")
+    ] = None
+    clearance: Annotated[str | None, typer.Option(help="Radial clearance: socket minus ball radius, '0.1 mm'.")] = None
+    diametral_clearance: Annotated[
+        str | None, typer.Option(help="Twice the radial clearance: '0.2 mm'. Not with --clearance.")
+    ] = None
+    interference: Annotated[
+        str | None, typer.Option(help="Negative clearance of a preloaded joint: '0.02 mm'. Solved by model sphere.")
+    ] = None
+    liner_thickness: Annotated[
+        str | None, typer.Option(help="Thickness of the liner: '6 mm'; inf for a massive socket.")
+    ] = None
+    outer_radius: Annotated[
+        str | None, typer.Option(help="Outer radius of the liner: '24 mm'. Not with --liner-thickness.")
+    ] = None
+    outer_diameter: Annotated[
+        str | None, typer.Option(help="Outer diameter of the liner: '48 mm'. Not with --liner-thickness.")
+    ] = None
+    young: Annotated[str | None, typer.Option(help="Young's modulus of the liner in MPa, or with a unit: '1 GPa'.")] = (
+        None
+    )
+    poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the liner, from 0 to 0.5.")] = None
+    liner: Annotated[
+        str | None,
+        typer.Option(
+            help="Name of the liner material, see `ballsocket presets`. --young and --poisson replace its values."
+        ),
+    ] = None
+    ball_young: Annotated[
+        str | None, typer.Option(help="Young's modulus of the ball: '230 GPa'. Default: as in the file, or rigid.")
+    ] = None
+    ball_poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the ball, from 0 to 0.5.")] = None
+    ball: Annotated[
+        str | None,
+        typer.Option(
+            help="Name of the ball material, see `ballsocket presets`. --ball-young, --ball-poisson replace its values."
+        ),
+    ] = None
+
+    def tables(self) -> dict[str, dict[str, str]]:
+        """Return the options as tables of a joint file."""
+        lengths = {name: getattr(self, name) for name in LENGTHS if hasattr(self, name)}
+        liner = {"material": self.liner, "young": self.young, "poisson": self.poisson}
+        ball = {"material": self.ball, "young": self.ball_young, "poisson": self.ball_poisson}
+        tables = {"joint": drop_missing(lengths), "liner": drop_missing(liner), "ball": drop_missing(ball)}
+        return {name: table for name, table in tables.items() if table}
+
+    def read(self, name: str | None) -> JointFile:
+        """Read a joint from a file, a preset or the options alone; options replace single values.
+
+        Raises
+        ------
+        ValueError
+            Neither a name nor options, or a value that is not allowed.
+        """
+        tables = self.tables()
+        if name is None and not tables:
+            raise ValueError(
+                "a joint is needed: a file, a preset's name, or --ball-radius --clearance --liner-thickness ..."
+            )
+        if name is None:
+            return joint_of(tables)
+        return varied(named_joint(name), tables) if tables else named_joint(name)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadOptions:
+    """Options of a load; one of them replaces the load of the joint file."""
+
+    force: Annotated[
+        str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
+    ] = None
+    indentation: Annotated[
+        str | None, typer.Option(help="Displacement of the ball after first contact: '40 um'. Not with --force.")
+    ] = None
+    half_angle: Annotated[
+        str | None, typer.Option(help="Half angle of the contact in degrees: '40 deg'. Not with --force.")
+    ] = None
+
+    def read(self, file: JointFile) -> dict[str, float]:
+        """Read the load from the options, or take that of the joint file, in N, mm or rad."""
+        return read_load_option(vars(self), file)
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputOptions:
+    """Options of a command that prints one result and can draw it."""
+
+    figure: Annotated[Path | None, typer.Option(help="Write a figure to this file (.png, .svg, .pdf).")] = None
+    as_json: AsJson = False
+
+    def check(self) -> None:
+        """Raise ValueError for a figure format that cannot be written."""
+        if self.figure is not None:
+            check_format(self.figure)
+
+    def print(self, summary: Callable[[], dict[str, Any]], print_table: Callable[[], None]) -> None:
+        """Print the result as JSON or as a table."""
+        if self.as_json:
+            echo_json(summary())
+        else:
+            print_table()
+
+    def draw(self, draw: Callable[[], Figure]) -> None:
+        """Draw and write the figure if there is a file for it."""
+        if self.figure is not None:
+            save(draw(), self.figure)
+
+
+def drop_missing(options: dict[str, str | None]) -> dict[str, str]:
+    """Return the options that have a value."""
+    return {name: text for name, text in options.items() if text is not None}
+
+
+def read_load_option(options: dict[str, str | None], file: JointFile) -> dict[str, float]:
+    """Read the load from some options, or take that of the joint file, in N, mm or rad.
+
+    Raises
+    ------
+    ValueError
+        No load, several loads, or a value that is not allowed.
+    """
+    load = read_load(drop_missing(options)) or file.load
+    if not load:
+        names = [f"--{name.replace('_', '-')}" for name in options]
+        raise ValueError(f"a load is needed: {', '.join(names[:-1])} or {names[-1]}")
+    return load
+
+
+def named_joint(name: str) -> JointFile:
+    """Return the joint of a file, or the preset of that name.
+
+    Raises
+    ------
+    ValueError
+        No such file or preset.
+    """
+    if not name:
+        raise ValueError("the joint's name is empty")
+    path = resolve_input(Path(name))
+    if path.is_dir():
+        raise ValueError(f"{name!r} is a folder; a joint file is needed")
+    if path.exists():
+        return read_joint(path)
+    if normalise_name(name) in joints:
+        return JointFile(joints[normalise_name(name)], {})
+    if not path.parent.is_dir():
+        raise ValueError(f"{name!r} does not exist: there is no folder {str(path.parent)!r}")
+    raise ValueError(f"{name!r} is neither a file nor a preset{nearest(name, joints)}")
+
+
+def choose_executor(workers: int | None, scheduler: str | None, default: Engine) -> Engine:
+    """Return the executor that the options select, or the default."""
+    if scheduler is not None:
+        from ..core.executors.dask import Distributed
+
+        return Distributed(address=scheduler, workers=workers)
+    return default if workers is None else Processes(workers=workers)
+
+
+# --- groups of options in the signature of a command ---
+
+Command = Callable[..., None]
+
+
+def expand_groups(command: Command) -> Command:
+    """Return a command whose groups of options are expanded to single parameters, for typer.
+
+    typer makes an option of each parameter in the signature of a function. A group is a dataclass whose fields are
+    annotated like such parameters. The returned function has a signature in which the fields of each group replace the
+    group; called with their values, it builds the groups and calls the command.
+
+    A text in the annotation of a group, `mesh: Annotated[MeshOptions, "fem"]`, is put before the help of its options.
+    """
+    parameters = signature(command, eval_str=True).parameters.values()
+    groups = {
+        parameter.name: _group_type(parameter)[0] for parameter in parameters if is_dataclass(_group_type(parameter)[0])
+    }
+
+    def expanded_command(**options: Any) -> None:
+        """Build the groups from single options, and call the command."""
+        built = {
+            name: group(**{field.name: options.pop(field.name) for field in fields(group)})
+            for name, group in groups.items()
+        }
+        command(**options, **built)
+
+    expanded_command.__name__, expanded_command.__doc__ = command.__name__, command.__doc__
+    flat = [
+        option
+        for parameter in parameters
+        for option in (_group_options(parameter) if parameter.name in groups else (parameter,))
+    ]
+    expanded_command.__signature__ = Signature(flat)  # type: ignore[attr-defined]
+    return expanded_command
+
+
+def _group_type(parameter: Parameter) -> tuple[Any, str]:
+    """Return the type of a parameter, and the text in its annotation."""
+    if get_origin(parameter.annotation) is not Annotated:
+        return parameter.annotation, ""
+    kind, text = get_args(parameter.annotation)
+    return kind, text
+
+
+def _group_options(parameter: Parameter) -> Iterator[Parameter]:
+    """Return the fields of a group as single parameters."""
+    group, prefix = _group_type(parameter)
+    for field in signature(group, eval_str=True).parameters.values():
+        kind, option = get_args(field.annotation)
+        if prefix:
+            option = copy(option)
+            option.help = f"{prefix}: {option.help[0].lower()}{option.help[1:]}"
+        yield field.replace(annotation=Annotated[kind, option])

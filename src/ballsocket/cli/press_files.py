@@ -1,0 +1,174 @@
+"""Files that `press` writes: figures, meshes for other programs, and the report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..catalogue import judge, off_axis, reference
+from ..compare import Comparison, successful_contacts
+from ..core.storage.atomic_files import check_parent_folder, write_atomically
+from ..elasticity.finite_elements.contact import MeshedContact
+from ..elasticity.off_axis.contact import OffAxisContact
+from ..files.joint_file import JointFile
+from ..output.save import check_format, save
+from ..output.unit_systems import Units
+from ..studies.around import Around, around
+from ..studies.phrases import spread_of
+from .root import print_message
+
+_VIEW_FORMAT = ".png"
+_REPORT_FORMAT = ".html"
+
+
+@dataclass(frozen=True, kw_only=True)
+class FigureOptions:
+    """Options of figures, and of files for other programs."""
+
+    figure: Annotated[
+        Path | None,
+        typer.Option(help="Write a figure to this file (.png, .svg, .pdf); of the cup if sphere is the first model."),
+    ] = None
+    section: Annotated[
+        Path | None, typer.Option(help="fem: write a figure of mesh, stress and pressure (.png, .svg, .pdf).")
+    ] = None
+    view: Annotated[Path | None, typer.Option(help="sphere: write a three-dimensional picture of the cup (.png).")] = (
+        None
+    )
+    vtk: Annotated[
+        Path | None, typer.Option(help="fem: write meshes and fields (.vtu, .vtk); sphere: surfaces of bore and ball.")
+    ] = None
+
+    def check(self) -> None:
+        """Raise ValueError for a file format that cannot be written."""
+        for figure in (self.figure, self.section):
+            if figure is not None:
+                check_format(figure)
+        if self.view is not None and self.view.suffix.lower() != _VIEW_FORMAT:
+            raise ValueError(f"view {str(self.view)!r} must end in {_VIEW_FORMAT}")
+        if self.vtk is not None:
+            from ..elasticity.finite_elements.decks.vtk import check_vtk_path
+
+            check_vtk_path(self.vtk)
+
+    def check_models(self, models: Container[str]) -> None:
+        """Raise ValueError for a file that needs a model which is not among the named ones."""
+        has_mesh, has_view = judge.name in models, off_axis.name in models
+        if self.section is not None and not has_mesh:
+            raise ValueError(f"--section is for the finite elements: add --model {judge.name}")
+        if self.vtk is not None and not (has_mesh or has_view):
+            raise ValueError(f"--vtk is for the finite elements: add --model {judge.name}, or {off_axis.name}")
+        if self.view is not None and not has_view:
+            raise ValueError(f"--view is for contacts off the axis: add --model {off_axis.name}")
+
+    def write(self, comparison: Comparison, first_model: str) -> None:
+        """Write the files for the results; `first_model` is the name of the first requested model."""
+        contacts = successful_contacts(comparison)
+        if self.figure is not None and contacts:
+            _write_figure(contacts, first_model, self.figure)
+        loaded = {name: contact for name, contact in contacts.items() if contact.max_pressure > 0}
+        meshed, tilted = loaded.get(judge.name), loaded.get(off_axis.name)
+        _write(self.section, meshed, lambda contact, path: _write_section(contact, contacts.get(reference.name), path))
+        _write(self.view, tilted, _write_view)
+        if judge.name in comparison:
+            _write(self.vtk, meshed, _write_meshes)
+        else:
+            _write(self.vtk, tilted, _write_surfaces)
+
+
+def _write(path: Path | None, contact: Any, write: Callable[[Any, Path], None]) -> None:
+    """Write a file if it has a path; without a contact, print a message."""
+    if path is None:
+        return
+    if contact is None:
+        print_message("without a contact there is nothing to draw or write")
+        return
+    write(contact, path)
+
+
+def _write_figure(contacts: Mapping[str, Any], first_model: str, path: Path) -> None:
+    """Write a figure of all contacts, or of the cup alone if `sphere` is the first model."""
+    from ..output import quick_plot
+
+    alone = first_model == off_axis.name and first_model in contacts
+    save(quick_plot.plot({first_model: contacts[first_model]} if alone else contacts), path)
+
+
+def _write_section(contact: MeshedContact, exact: Any, path: Path) -> None:
+    """Write a figure of the meshed section with the exact pressure."""
+    from ..output.section_plot import section_figure
+
+    save(section_figure(contact, exact), path)
+
+
+def _write_meshes(contact: MeshedContact, path: Path) -> None:
+    """Write the meshes and fields of the finite elements for VTK."""
+    from ..elasticity.finite_elements.decks.vtk import write_vtk
+
+    write_vtk(contact.section, path)
+
+
+def _write_surfaces(contact: OffAxisContact, path: Path) -> None:
+    """Write the surfaces of bore and ball for VTK."""
+    from ..elasticity.off_axis.vtk import write_vtk
+
+    write_vtk(contact, path)
+
+
+def _write_view(contact: OffAxisContact, path: Path) -> None:
+    """Write a three-dimensional picture of the cup."""
+    from ..output.cup_view import save_view
+
+    save_view(contact, path)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportOptions:
+    """Options of the report, with the tolerances of the drawing."""
+
+    report: Annotated[Path | None, typer.Option(help="Write a report on one page to this file (.html).")] = None
+    tolerance: Annotated[
+        list[str] | None,
+        typer.Option(help="Tolerance in the report: 'clearance=0.1+-0.05 mm'. Repeat for several."),
+    ] = None
+
+    def check(self) -> None:
+        """Raise ValueError for another file format, a missing folder, or tolerances without a report."""
+        if self.report is None:
+            if self.tolerance:
+                raise ValueError(
+                    f"--tolerance {self.tolerance[0]!r} is for the report: add --report press{_REPORT_FORMAT}"
+                )
+            return
+        if self.report.suffix.lower() != _REPORT_FORMAT:
+            raise ValueError(f"report {str(self.report)!r} must end in {_REPORT_FORMAT}")
+        check_parent_folder(self.report)
+
+    def write(self, comparison: Comparison, file: JointFile, units: Units) -> None:
+        """Write the report if there is a file for it."""
+        if self.report is None:
+            return
+        from ..output.press_report import press_report
+
+        page = press_report(
+            comparison, file, _verdict_model(comparison), units, self._tolerance_study(comparison, file)
+        )
+        with write_atomically(self.report) as draft:
+            draft.write_text(page, encoding="utf-8")
+
+    def _tolerance_study(self, comparison: Comparison, file: JointFile) -> Around | None:
+        """Compute the effect of the tolerances; None for a tilted load and for a load without contact."""
+        if off_axis.name in comparison or not any(float(load) > 0 for load in file.load.values()):
+            return None
+        load = {name: float(value) for name, value in file.load.items()}
+        return around(file.joint, file.cup, load, dict(map(spread_of, self.tolerance or ())))
+
+
+def _verdict_model(comparison: Comparison) -> str:
+    """Return the model of the verdict: `sphere` or the exact one where they are valid, else the first."""
+    valid_models = [name for name in (off_axis.name, reference.name) if name in comparison and comparison[name].valid]
+    return valid_models[0] if valid_models else next(iter(comparison))

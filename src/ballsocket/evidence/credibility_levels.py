@@ -1,0 +1,283 @@
+"""Credibility levels that a record reaches, one function for each factor of ASME V&V 40-2018."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import inf
+from typing import Any
+
+from ..studies.parameters import LOADS
+from .applicability import APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY, IN_PART, WITHIN
+from .code_checks import ORDER_OF_ELEMENTS, OWN_TOLERANCE
+from .comparators import MEASURED
+from .matrix import NAMES, input_title, limit_text
+
+Record = Mapping[str, Any]
+"""Record of a pack, as in its JSON file."""
+
+
+@dataclass(frozen=True)
+class ReachedLevel:
+    """Level that a record reaches in a gradation: its letter, its support, and the missing evidence."""
+
+    level: str
+    supported: str
+    missing: str
+
+
+def software_level(record: Record) -> ReachedLevel:
+    """Assess the software quality assurance."""
+    run = [check for check in record["code_verification"] if check["passed"] is not None]
+    failed = [check["name"] for check in run if not check["passed"]]
+    supported = f"ballsocket {record['version']}, its libraries and {len(run)} checks run on this machine"
+    missing = "the list of known faults, judged for this context of use by a quality system of the user"
+    if failed:
+        return ReachedLevel("a", supported, f"failed checks: {', '.join(failed)}; {missing}")
+    return ReachedLevel("b", supported, missing)
+
+
+def code_level(record: Record) -> ReachedLevel:
+    """Assess the numerical code verification."""
+    checks = {check["name"]: check["passed"] for check in record["code_verification"]}
+    passed, failed, absent = ([name for name, state in checks.items() if state is s] for s in (True, False, None))
+    supported = f"{len(passed)} of {len(passed) + len(failed)} checks passed on this machine"
+    missing = [f"failed: {', '.join(failed)}"] if failed else []
+    missing += [f"not run: {', '.join(absent)}"] if absent else []
+    if failed or not passed:
+        return ReachedLevel("a", supported, "; ".join(missing) or "any check")
+    off_axis = record["model"]["name"] == "sphere"
+    if off_axis or not checks.get(OWN_TOLERANCE):
+        missing.append("an order of convergence of the solver in use, against an exact solution")
+        return ReachedLevel("b", supported, "; ".join(missing))
+    if not (checks.get(ORDER_OF_ELEMENTS) and _has_elements(record)):
+        missing.append("the observed order of a second method that solves the worst cases (finite elements)")
+        return ReachedLevel("c", supported, "; ".join(missing))
+    return ReachedLevel("d", supported, "; ".join(missing))
+
+
+def _has_elements(record: Record) -> bool:
+    """Check that finite elements solved a worst case."""
+    return any(method["name"].startswith("finite elements") for method in _valid_methods(record))
+
+
+def error_margins(record: Record) -> list[dict[str, Any]]:
+    """Compute the largest error bar of each limited number as a share of its margin to the limit.
+
+    The share is None where the number has no error bar, or no value. Above 1 the error could change a verdict.
+    """
+    return [_margin(limit, record) for limit in record["limits"] if limit["name"] in NAMES]
+
+
+def _margin(limit: Mapping[str, Any], record: Record) -> dict[str, Any]:
+    """Compute the largest error bar of one limited number as a share of its margin."""
+    key, ratios = NAMES[limit["name"]].key, []
+    for row in record["matrix"]:
+        value, error = row["numbers"].get(key), row["errors"].get(key)
+        if value is None or error is None:
+            return {"limit": limit_text(limit), "name": limit["name"], "share": None}
+        ends = [abs(value - end) for end in (limit["low"], limit["high"]) if end is not None]
+        ratios.append(error * abs(value) / min(ends) if min(ends) else inf)
+    largest = max(ratios, default=None)
+    return {"limit": limit_text(limit), "name": limit["name"], "share": None if largest == inf else largest}
+
+
+def _titles(names: Sequence[str]) -> str:
+    """Join the titles of numbers."""
+    return ", ".join(NAMES[name].title for name in names)
+
+
+def discretization_level(record: Record) -> ReachedLevel:
+    """Assess the discretization error."""
+    errors = [error for row in record["matrix"] for error in row["errors"].values()]
+    required, margins = record["required"]["accuracy"], error_margins(record)
+    if not errors:
+        return ReachedLevel("a", "no error bars", "an estimate of the discretization error")
+    supported = f"error bars in every case of the matrix, at most {_percent(max(errors))}"
+    known = [margin["share"] for margin in margins if margin["share"] is not None]
+    supported += f", and at most {_percent(max(known))} of the margin to a limit" if known else ""
+    without = [margin["name"] for margin in margins if margin["share"] is None]
+    if max(errors) > required:
+        return ReachedLevel("b", supported, f"error bars within the required {_percent(required)}")
+    if without:
+        return ReachedLevel("b", supported, f"an error bar for the {_titles(without)}, or a margin to the limit")
+    if not margins:
+        return ReachedLevel("c", supported, "limits against which the error could be judged")
+    if max(known) > 1:
+        return ReachedLevel("c", supported, "error bars below the margin to every limit: a verdict could change")
+    return ReachedLevel("d", supported, "")
+
+
+def solver_level(record: Record) -> ReachedLevel:
+    """Assess the numerical solver error."""
+    calculations, required = record["calculation"], record["required"]["accuracy"]
+    largest = max((max(calculation["deviation"].values(), default=0.0) for calculation in calculations), default=0.0)
+    alone = [calculation["worst_of"] for calculation in calculations if not calculation["deviation"]]
+    count = len(calculations)
+    supported = f"other methods of the same body differ by {_percent(largest)} at most, at {count} worst cases"
+    if len(alone) == count:
+        return ReachedLevel(
+            "a", "one method only", "a second method or other settings of the solver at the worst cases"
+        )
+    if alone or largest > required:
+        return ReachedLevel("b", supported, f"agreement within the required {_percent(required)} at every worst case")
+    names = [method["name"] for method in _valid_methods(record)]
+    if not any(name.startswith("CalculiX") for name in names):
+        return ReachedLevel("c", supported, "another program at the worst case (CalculiX, with finite_elements = true)")
+    return ReachedLevel("d", supported, "")
+
+
+def _valid_methods(record: Record) -> Iterator[Mapping[str, Any]]:
+    """Yield the valid methods of all worst cases."""
+    return (method for calculation in record["calculation"] for method in calculation["methods"] if method["valid"])
+
+
+def use_level(record: Record) -> ReachedLevel:
+    """Assess the use error."""
+    without = [item["name"] for item in record["inputs"] if not item["source"]]
+    supported = "the question file, which is checked on reading, and the call for every number"
+    missing = "a second person who compares drawing, inputs and the text of the question"
+    if without:
+        return ReachedLevel("a", supported, f"a source for the {_input_titles(without)}; {missing}")
+    return ReachedLevel("b", supported, missing)
+
+
+def _input_titles(names: Sequence[str]) -> str:
+    """Join the titles of inputs."""
+    return ", ".join(map(input_title, names))
+
+
+def form_level(record: Record) -> ReachedLevel:
+    """Assess the model form."""
+    bodies = {method["name"].split(" (")[0].split(",")[0] for method in _valid_methods(record)} - {"tabulated"}
+    rows = record["matrix"]
+    utilisations = [row["numbers"].get("utilisation") for row in rows]
+    invalid = sum(not row["valid"] for row in rows)
+    supported = f"linear elasticity of the bodies that the notes name, by {', '.join(sorted(bodies)) or 'no method'}"
+    unknown = "plasticity, creep and friction in the contact itself; see limits and assumptions"
+    missing = []
+    if invalid:
+        missing.append(f"{invalid} of {len(rows)} cases lie outside the range of the model")
+    if None in utilisations:
+        missing.append("strength not checked: no yield stress, or no result")
+    elif max(utilisations, default=0.0) > 1:
+        missing.append("von Mises stress exceeds the yield stress: the material is not elastic there")
+    level = "a" if len(bodies) < 2 else "b" if missing else "c"
+    if len(bodies) < 2:
+        missing.insert(0, "a second body or method at the worst cases")
+    return ReachedLevel(level, supported, "; ".join([*missing, unknown]))
+
+
+_KEY_INPUTS = ("ball_radius", "clearance", "liner_thickness", "liner_young", "liner_poisson")
+
+
+def inputs_level(record: Record) -> ReachedLevel:
+    """Assess the model inputs."""
+    known = {item["name"]: item for item in record["inputs"]}
+    fixed = [name for name in _KEY_INPUTS if name in known and not known[name]["tolerance"]]
+    without = [name for name, item in known.items() if not item["source"]]
+    missing = [f"a tolerance for the {_input_titles(fixed)}"] if fixed else []
+    missing += [f"a source for the {_input_titles(without)}"] if without else []
+    if not record["uncertainty"]:
+        return ReachedLevel("a", "sources of the inputs as stated", "; ".join(["tolerances, propagated", *missing]))
+    supported = "tolerances propagated about the worst case, with Sobol indices"
+    if missing:
+        return ReachedLevel("b", supported, "; ".join(missing))
+    return ReachedLevel("c", supported, "measured distributions, and the correlation of the inputs")
+
+
+def _comparators(record: Record) -> Sequence[Mapping[str, Any]]:
+    """Return the claims of other authors and the comparators."""
+    return [*record["claims"], *record["comparators"]]
+
+
+def _applying(record: Record, *verdicts: str) -> list[Mapping[str, Any]]:
+    """Return the comparators with one of the verdicts on their applicability; by default all that apply in part."""
+    verdicts = verdicts or (APPLIES, APPLIES_IN_PART)
+    return [comparator for comparator in _comparators(record) if comparator["applicability"]["verdict"] in verdicts]
+
+
+def samples_level(record: Record) -> ReachedLevel:
+    """Assess the test samples of the comparators."""
+    applying = _applying(record)
+    measured = [comparator for comparator in applying if MEASURED in comparator.get("kind", "")]
+    supported = f"{len(_comparators(record))} published results, {len(measured)} of them measured on joints like these"
+    missing = "measurements of the device itself"
+    return ReachedLevel("b" if measured else "a", supported, missing)
+
+
+_FORCE = "F/(E R1²)"
+
+
+def conditions_level(record: Record) -> ReachedLevel:
+    """Assess the test conditions of the comparators."""
+    where = [comparator["applicability"]["where"].get(_FORCE) for comparator in _applying(record)]
+    count = {reach: where.count(reach) for reach in (WITHIN, IN_PART)}
+    supported = f"the loads of the question lie within those of {count[WITHIN]} comparators that apply"
+    supported += f", in part within those of {count[IN_PART]}" if count[IN_PART] else ""
+    missing = "conditions of the device's own use, measured with their uncertainty"
+    if count[WITHIN]:
+        return ReachedLevel("c", supported, missing)
+    return ReachedLevel(
+        "b" if count[IN_PART] else "a", supported, f"a comparator at the loads of the question; {missing}"
+    )
+
+
+def equivalency_level(record: Record) -> ReachedLevel:
+    """Assess the equivalency of input parameters."""
+    applying = _applying(record)
+    assumed = [comparator for comparator in applying if comparator.get("assumed")]
+    supported = f"{len(applying) - len(assumed)} of {len(applying)} comparators that apply state all of their inputs"
+    if not applying or len(assumed) == len(applying):
+        return ReachedLevel("a", supported, "a comparator that applies and states all of its inputs")
+    if assumed or _applying(record, APPLIES_IN_PART):
+        return ReachedLevel("b", supported, "inputs of the same kind and range for every comparator")
+    return ReachedLevel("c", supported, "")
+
+
+def outputs_level(record: Record) -> ReachedLevel:
+    """Assess the output comparison."""
+    compared = [comparator for comparator in _applying(record) if comparator.get("numbers") or comparator.get("ours")]
+    supported = f"differences of {len(compared)} published results that apply, as numbers"
+    missing = "an experiment with stated uncertainty at the loads of the question"
+    return ReachedLevel("b" if compared else "a", supported, missing)
+
+
+_COMPARED = ("max_pressure", "half_angle", "area", "indentation")
+"""Quantities that comparators publish."""
+
+
+def quantities_level(record: Record) -> ReachedLevel:
+    """Assess the relevance of the quantities of interest."""
+    limited = [limit["name"] for limit in record["limits"] if limit["name"] in NAMES] or list(record["worst"])
+    names = list(dict.fromkeys(name for name in limited if name not in LOADS))
+    shared = [name for name in names if name in _COMPARED]
+    unpublished = [name for name in names if name not in _COMPARED]
+    supported = f"also published: {_titles(shared) or 'none of the limited numbers'}"
+    missing = f"a comparator for the {_titles(unpublished)}" if unpublished else ""
+    return ReachedLevel("c" if not unpublished and shared else "b" if shared else "a", supported, missing)
+
+
+def relevance_level(record: Record) -> ReachedLevel:
+    """Assess the relevance of the validation activities to the context of use."""
+    full, partial = _applying(record, APPLIES), _applying(record, APPLIES_IN_PART)
+    foreign = [_name(comparator) for comparator in _applying(record, DOES_NOT_APPLY)]
+    applying = [f"{_name(comparator)} ({comparator['applicability']['verdict']})" for comparator in (*full, *partial)]
+    missing = [f"not of these joints: {', '.join(foreign)}"] if foreign else []
+    supported = "; ".join(applying) or "no comparator has joints like these"
+    if not applying:
+        return ReachedLevel("a", supported, "; ".join(["a comparator of joints like these", *missing]))
+    missing.append("an argument that the comparators are relevant for the context of use")
+    if not full:
+        missing.insert(0, "a comparator whose range includes all cases of the question")
+    return ReachedLevel("c" if full else "b", supported, "; ".join(missing))
+
+
+def _name(comparator: Mapping[str, Any]) -> str:
+    """Return the title of a comparator, or the source of a claim."""
+    return str(comparator.get("title") or comparator["where"])
+
+
+def _percent(share: float) -> str:
+    """Format a share in percent."""
+    return f"{100 * share:.2g} %"

@@ -1,0 +1,108 @@
+"""Plan of an evidence pack: pieces of work with stored results, so that a stopped run is resumed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from functools import partial
+from hashlib import sha256
+from pathlib import Path
+from shutil import rmtree
+from typing import Any
+
+from ..core.storage.plan import Piece, Plan, Summary
+from .code_checks import CHECKS
+from .comparators import CLAIMS, PUBLISHED, claim
+from .matrix import WEAR, Case, Row, compute_rows, list_cases
+from .question import Question
+from .worst_case import compare_methods, propagate_tolerances, solve_with_calculix, wear_history, wear_rates
+
+_FIRST, _LATER, _DIGEST_LENGTH = "first", "later", 12
+_STORE_NAME = re.compile(rf"({_FIRST}|{_LATER})-[0-9a-f]{{{_DIGEST_LENGTH}}}")
+
+
+def plan(question: Question) -> Plan:
+    """Return the plan of the pieces that do not depend on the worst cases."""
+    cases = list_cases(question)
+    first = next(iter(question.axes))
+    blocks = [tuple(case for case in cases if case[first] == value) for value in question.axes[first]]
+    return Plan(
+        name=_store_names(question)[0],
+        parts={
+            "matrix": {
+                f"block {number}": partial(_row_summaries, question, block) for number, block in enumerate(blocks)
+            },
+            "wear_rates": {
+                f"block {number}": partial(wear_rates, question, block)
+                for number, block in enumerate(blocks)
+                if question.hip is not None
+            },
+            "code_verification": {name: Summary(check) for name, check in CHECKS.items()},
+            "claims": {name: partial(claim, name) for name in CLAIMS},
+            "comparators": {name: Summary(comparator) for name, comparator in PUBLISHED.items()},
+        },
+    )
+
+
+def plan_worst_cases(question: Question, worst: Mapping[str, Row]) -> Plan:
+    """Return the plan of the pieces for the worst cases."""
+    row = worst.get("max_pressure", next(iter(worst.values()), None))
+    parts: dict[str, Mapping[str, Piece]] = {
+        "rival": {} if row is None else {"": partial(_calculix_summaries, question, row.case)},
+        "calculation": {
+            f"case {number}": partial(_method_summaries, question, case)
+            for number, case in enumerate(distinct_cases(worst))
+        },
+        "uncertainty": {},
+        "wear": {},
+    }
+    if question.tolerances and row is not None:
+        parts["uncertainty"] = {"": partial(propagate_tolerances, question, row.case)}
+    if WEAR.name in worst:
+        parts["wear"] = {"": partial(wear_history, question, worst[WEAR.name].case)}
+    return Plan(name=_store_names(question)[1], parts=parts)
+
+
+def distinct_cases(worst: Mapping[str, Row]) -> list[Case]:
+    """Return the cases in which some number of a contact is worst, without repetition."""
+    cases = [row.case for name, row in worst.items() if name != WEAR.name]
+    return list({tuple(case.items()): case for case in cases}.values())
+
+
+def _row_summaries(question: Question, cases: Sequence[Case]) -> list[dict[str, Any]]:
+    """Compute several cases and return their summaries."""
+    return [row.summary() for row in compute_rows(question, cases)]
+
+
+def _method_summaries(question: Question, case: Case) -> list[dict[str, Any]]:
+    """Solve a case by all methods and return their summaries."""
+    return [method.summary() for method in compare_methods(question, case)]
+
+
+def _calculix_summaries(question: Question, case: Case) -> list[dict[str, Any]]:
+    """Solve a case with CalculiX and return its summary."""
+    return [method.summary() for method in solve_with_calculix(question, case)]
+
+
+def count_stored_pieces(question: Question, folder: Path) -> int:
+    """Count the stored results of a question from a stopped run."""
+    return sum(1 for name in _store_names(question) for path in (folder / name).glob("*.json"))
+
+
+def remove_stored_pieces(folder: Path) -> None:
+    """Remove the stored results of all questions from a folder, and the empty folder."""
+    for path in folder.glob("*-*"):
+        if _STORE_NAME.fullmatch(path.name):
+            rmtree(path, ignore_errors=True)
+    with suppress(OSError):
+        folder.rmdir()
+
+
+def _store_names(question: Question) -> tuple[str, str]:
+    """Return the folder names of both plans, with a digest of the question and of the files that it names."""
+    digest = sha256()
+    for path in question.files:
+        digest.update(path.read_bytes())
+    text = digest.hexdigest()[:_DIGEST_LENGTH]
+    return f"{_FIRST}-{text}", f"{_LATER}-{text}"

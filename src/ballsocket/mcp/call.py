@@ -1,0 +1,153 @@
+"""Command line of a call: the arguments of a tool, checked and restricted to the folder of the server."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from typer.models import ArgumentInfo
+
+from ..core.checks import check_names, known_name, needs, shown
+from ..core.input_files import AllowedFolders, resolve_path
+from ..core.storage.atomic_files import write_text
+from ..files.toml import MOST, read_toml
+from .tools import TOOLS, Commands, Tool, option, parameters
+
+_MAX_CHARACTERS = 300  # of a text
+_MAX_VALUES = 50  # of a list
+
+
+def command_line(name: str, arguments: Mapping[str, Any], folder: Path, commands: Commands) -> list[str]:
+    """Return the command and its arguments for a call of a tool.
+
+    Parameters
+    ----------
+    name : str
+        Name of the tool.
+    arguments : mapping
+        Arguments of the call.
+    folder : Path
+        Folder of the server: files outside are refused; the content of a file is written to it.
+    commands : mapping
+        Functions of the commands by name.
+
+    Raises
+    ------
+    ValueError
+        An argument is missing, unknown or not allowed.
+    OSError
+        The folder cannot be read or written.
+    """
+    tool = TOOLS[known_name("tool", name, TOOLS)]
+    offered = parameters(tool, commands)
+    check_names(arguments, (*offered, *(("file", "content") if tool.file else ())), f"in a call of {name}")
+    for parameter in tool.required:
+        if parameter not in arguments:
+            raise ValueError(f"{parameter} is missing: {option(offered[parameter]).help}")
+    operands, options = [], []
+    for parameter in (parameter for parameter in offered if arguments.get(parameter) is not None):
+        texts = _texts(parameter, arguments[parameter])
+        if isinstance(option(offered[parameter]), ArgumentInfo):
+            operands += [_checked_operand(text, folder) for text in texts]
+        else:
+            options += [f"--{parameter.replace('_', '-')}={text}" for text in texts]
+    if tool.file:
+        path = _file(tool, arguments, folder)
+        operands.append(_operand(path.relative_to(folder).as_posix()))
+        options += [f"{tool.writes}={path.stem}-pack"] if tool.writes else []
+    return [tool.command, *operands, *tool.fixed, *options, "--json"]
+
+
+def _texts(name: str, argument: Any) -> Iterator[str]:
+    """Yield the values of an argument as text.
+
+    Raises
+    ------
+    ValueError
+        A value is neither text nor a finite number, or too long, or there are too many.
+    """
+    values = argument if isinstance(argument, list) else [argument]
+    if len(values) > _MAX_VALUES:
+        raise ValueError(f"{name} has {len(values)} values: at most {_MAX_VALUES}")
+    for value in values:
+        if isinstance(value, bool) or not isinstance(value, str | int | float):
+            raise ValueError(f"{name} = {shown(value)} must be text with a unit, or a number in mm, N, MPa, degrees")
+        if isinstance(value, float) and not math.isfinite(value):
+            raise ValueError(f"{name} = {value} must be finite")
+        text = f"{value:.0f}" if isinstance(value, float) and value.is_integer() else str(value)
+        if len(text) > _MAX_CHARACTERS or not text.isprintable():
+            raise ValueError(f"{name} = {shown(value)} must be one line of at most {_MAX_CHARACTERS} characters")
+        yield text
+
+
+def _checked_operand(name: str, folder: Path) -> str:
+    """Check that a name stays inside the folder, and return it as an operand."""
+    if Path(name).is_absolute():
+        raise ValueError(f"{shown(name)} lies outside the folder of this server: name a file in that folder")
+    AllowedFolders((resolve_path(folder),)).resolve(folder / name, name)
+    return _operand(name)
+
+
+def _operand(name: str) -> str:
+    """Prefix a file name that begins like an option with the folder."""
+    return f"./{name}" if name.startswith("-") else name
+
+
+def _file(tool: Tool, arguments: Mapping[str, Any], folder: Path) -> Path:
+    """Return the file of a call, by name or from its content. The called process checks further file names."""
+    name, content = arguments.get("file"), arguments.get("content")
+    if (name is None) == (content is None):
+        raise ValueError(f"either a file is needed, or content: TOML about {tool.file}, or an object with its tables")
+    if content is None:
+        path = _existing_file(name, folder)
+    else:
+        path = _stored_content(_toml(content) if isinstance(content, Mapping) else content, folder)
+    for key in tool.forbidden:
+        if key in read_toml(path, tool.file, dict):
+            raise ValueError(f"{key} is not for this server: leave it out of the file")
+    return path
+
+
+def _existing_file(name: Any, folder: Path) -> Path:
+    """Return the path of a file in the folder."""
+    if not isinstance(name, str):
+        raise ValueError(f"file = {shown(name)} must be text")
+    path = folder / _checked_operand(next(_texts("file", name)), folder)
+    if not path.is_file():
+        raise ValueError(f"{shown(name)} does not exist in the folder of this server")
+    return path
+
+
+def _toml(content: Mapping[str, Any]) -> str:
+    """Write an object as TOML.
+
+    Raises
+    ------
+    ValueError
+        A value that TOML does not have.
+    ImportError
+        The writer of TOML is not installed.
+    """
+    needs("mcp", "tomli_w")
+    import tomli_w
+
+    try:
+        return tomli_w.dumps(content)
+    except (TypeError, AttributeError) as error:
+        raise ValueError("content has null or a key that is not text: leave out keys without a value") from error
+    except RecursionError as error:
+        raise ValueError("content is nested too deeply: a file has tables of keys") from error
+
+
+def _stored_content(content: Any, folder: Path) -> Path:
+    """Write content to a file of the folder that is named by its hash, and return the path."""
+    if not isinstance(content, str):
+        raise ValueError(f"content = {shown(content)} must be text in TOML, or an object")
+    raw = content.encode("utf-8", errors="replace")
+    if len(raw) > MOST:
+        raise ValueError(f"the content is larger than {MOST} bytes")
+    path = folder / f"asked-{sha256(raw).hexdigest()[:12]}.toml"
+    return path if path.is_file() else write_text(path, raw.decode("utf-8"))

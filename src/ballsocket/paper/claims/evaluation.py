@@ -1,0 +1,195 @@
+"""Claims of a publication: statements with the computed quantity, the expected values and the tolerance."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from math import inf
+from typing import Any
+
+from ...contact import Model
+from ...core.arrays import Numbers
+from ...problem import Joint
+
+Computed = Mapping[str, float]
+"""Computed numbers by name; a name ends in its unit."""
+
+Interval = tuple[float, float]
+"""Smallest and largest expected value."""
+
+ZERO: Interval = (0.0, 0.0)
+"""Expected value of a relative difference."""
+
+CLOSE, WIDE = 2.0, 5.0
+"""Default tolerances in percent: up to the first a claim holds, up to the second it holds within its deviation."""
+
+EXACTLY = (0.0, 0.0)
+"""Tolerances of a claim that is true or false."""
+
+
+class Verdict(Enum):
+    """Verdict on a claim."""
+
+    HOLDS = "holds"
+    WITHIN = "holds within"
+    FAILS = "does not hold"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """Result of a claim: its computed numbers and its verdict.
+
+    Attributes
+    ----------
+    name : str
+        Short name, for links.
+    where : str
+        Section or figure of the paper, or source of the numbers.
+    sentence : str
+        Statement in our words.
+    numbers : mapping of str to float
+        Computed numbers, by name with unit.
+    verdict : Verdict
+    miss : float
+        Largest deviation from the expected values, in `unit`.
+    unit : str
+    comment : str
+        Reason of the verdict, or conditions of the computation.
+    code : str
+        Python expression of the claim.
+    """
+
+    name: str
+    where: str
+    sentence: str
+    numbers: Computed
+    verdict: Verdict
+    miss: float = 0.0
+    unit: str = "%"
+    comment: str = ""
+    code: str = ""
+
+    @property
+    def text(self) -> str:
+        """Verdict in words: "holds", "holds within 3.3 %", "does not hold"."""
+        within = f" {self.miss:.2g} {self.unit}" if self.verdict is Verdict.WITHIN else ""
+        return self.verdict.value + within
+
+    def summary(self) -> dict[str, Any]:
+        """Return one dictionary for JSON."""
+        return {
+            "name": self.name,
+            "where": self.where,
+            "sentence": self.sentence,
+            "numbers": dict(self.numbers),
+            "verdict": self.verdict.value,
+            "text": self.text,
+            "comment": self.comment,
+            "code": self.code,
+        }
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Computed numbers of a claim whose condition needs more than these numbers."""
+
+    numbers: Computed
+    holds: bool
+    comment: str = ""
+
+
+Expected = Interval | Mapping[str, Interval] | Callable[[Computed], bool]
+"""Interval of all numbers, intervals of some numbers by name, or a condition on the numbers."""
+
+BY_EVALUATION: Expected = {}
+"""Expected values of a claim whose `Evaluation` states the condition."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Claim:
+    """Computable statement about contacts: one row of a table of claims.
+
+    Attributes
+    ----------
+    name : str
+        Short name, for links.
+    source : str
+        Section or figure of the paper, or another publication.
+    statement : str
+        Statement in our words.
+    quantity : callable
+        Function of the reference model that computes the numbers: a mapping, or an `Evaluation` with its own condition.
+        The reference takes the place of the finite elements of the paper.
+    expected : tuple of float, mapping of str to tuple of float, or callable
+        Interval of all numbers, intervals of some numbers, or a condition; by default 0, for relative differences.
+    tolerance : tuple of float
+        Largest deviation from the intervals for "holds" and for "holds within", in `unit`.
+    unit : str
+        Unit of the deviation.
+    comment : str or callable
+        Reason of the verdict, or a function of the computed numbers that states it.
+    joints : callable, optional
+        Function that returns the joints and the forces in N behind the claim, as arrays.
+    """
+
+    name: str
+    source: str
+    statement: str
+    quantity: Callable[[Model], Computed | Evaluation]
+    expected: Expected = ZERO
+    tolerance: tuple[float, float] = (CLOSE, WIDE)
+    unit: str = "%"
+    comment: str | Callable[[Computed], str] = ""
+    joints: Callable[[], tuple[Joint, Numbers]] | None = None
+
+    @property
+    def identifier(self) -> str:
+        """Name of the claim as a Python identifier."""
+        return self.name.replace("-", "_").replace(".", "_")
+
+    def __call__(self, reference: Model) -> Finding:
+        """Judge the claim with a reference model."""
+        return judge(self, reference)
+
+
+def judge(claim: Claim, reference: Model) -> Finding:
+    """Compute the numbers of a claim and compare them with the expected values."""
+    result = claim.quantity(reference)
+    evaluation = result if isinstance(result, Evaluation) else Evaluation(result, True)
+    miss = _deviation(claim.expected, evaluation)
+    close, wide = claim.tolerance
+    comment = claim.comment(evaluation.numbers) if callable(claim.comment) else claim.comment
+    return Finding(
+        name=claim.name,
+        where=claim.source,
+        sentence=claim.statement,
+        numbers=evaluation.numbers,
+        verdict=Verdict.HOLDS if miss <= close else Verdict.WITHIN if miss <= wide else Verdict.FAILS,
+        miss=miss,
+        unit=claim.unit,
+        comment=evaluation.comment or comment,
+        code=f"ballsocket.paper.claims.claim({claim.name!r})",
+    )
+
+
+def _deviation(expected: Expected, evaluation: Evaluation) -> float:
+    """Compute the largest distance of the numbers from the expected intervals; infinity for a false condition."""
+    if not evaluation.holds:
+        return inf
+    if callable(expected):
+        return 0.0 if expected(evaluation.numbers) else inf
+    numbers = evaluation.numbers
+    intervals = expected if isinstance(expected, Mapping) else dict.fromkeys(numbers, expected)
+    deviations = (max(low - numbers[name], numbers[name] - high, 0.0) for name, (low, high) in intervals.items())
+    return float(max(deviations, default=0.0))
+
+
+def percent(ratio: Any) -> float:
+    """Convert a ratio to percent."""
+    return 100.0 * float(ratio)
+
+
+def quantity_title(quantity: str) -> str:
+    """Return the name of a quantity in the words of the paper."""
+    return {"max_pressure": "peak pressure"}.get(quantity, quantity.replace("_", " "))

@@ -1,0 +1,277 @@
+"""Computed quantities behind the claims of the paper, as functions of the reference model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import cache
+
+import numpy
+
+from ...contact import Contact, Model
+from ...core.arrays import Numbers
+from ...elasticity.finite_elements.contact import MeshedContact
+from ...elasticity.finite_elements.model import FiniteElement
+from ...elasticity.finite_elements.spacing import Element, Uniform
+from ...identify.modulus import max_relative_error
+from ...models.foundation import Bartel, BondedLayer, HessForsbach, Vessel
+from ...models.half_space import Hertz
+from ...models.modulus import bonded_layer, spherical_vessel
+from .. import cases
+from ..table_3 import RATIOS, refit_table_3
+from .evaluation import Computed, Evaluation, percent, quantity_title
+
+COMPARED = ("indentation", "max_pressure", "half_angle")
+"""Compared quantities of a contact at a given force."""
+
+COMMON, STIFF = cases.POISSON[:4], cases.POISSON[4:]
+"""Poisson's ratios up to 0.45, and 0.49."""
+
+_LOW_FORCES = numpy.array([100.0, 200.0, 350.0, 500.0, 750.0, 1000.0])
+_FINE_ELEMENT_SIZE = 0.0315
+"""Element size in mm for twice as many elements: elements grow with depth, so this is less than 0.05/√2."""
+
+
+# Foundation modulus and kinematics (Sections 2 and 3.1)
+
+
+def unbounded_moduli(_: Model) -> Computed:
+    """Compute the growth of both older moduli from ν 0.499 to 0.4999."""
+    return {
+        f"{name}: K at 0.4999 over K at 0.499": float(modulus(cases.hip(0.4999)) / modulus(cases.hip(0.499)))
+        for name, modulus in (("Bartel", spherical_vessel), ("column", bonded_layer))
+    }
+
+
+def errors_of_linear_kinematics(_: Model) -> Computed:
+    """Compute the errors of Eq. (6) against Eq. (5), both with Bartel's modulus, over the joints of Table 1."""
+    joints = cases.outline()[-1]
+    families = (cases.with_clearance(joints, cases.CLEARANCES[index]) for index in (0, -1))
+    pairs = ((Vessel().press(f, force=cases.LOAD), Bartel().press(f, force=cases.LOAD)) for f in families)
+    worst = _largest_errors(pairs, COMPARED)
+    return {f"{quantity_title(name)}, worst, %": value for name, value in worst.items()}
+
+
+def _half_range(modulus: Numbers) -> float:
+    """Compute half the range of values, in percent of the middle of the range."""
+    return percent((modulus.max() - modulus.min()) / (modulus.max() + modulus.min()))
+
+
+def variation_over_force(reference: Model, poisson: Iterable[float], forces: Numbers = cases.LOADS) -> Computed:
+    """Compute the half range of p0/d over forces, for each Poisson's ratio."""
+    variations = {}
+    for ratio in poisson:
+        contact = reference.press(cases.hip(ratio), force=forces)
+        variations[f"ν {ratio:g}, ± %"] = _half_range(contact.max_pressure / contact.indentation)
+    return variations
+
+
+def variation_below_one_kilonewton(reference: Model) -> Evaluation:
+    """Compare the half range of p0/d over 100 N to 1 kN with that over 1 to 3 kN."""
+    below = variation_over_force(reference, cases.POISSON, _LOW_FORCES)
+    above = variation_over_force(reference, cases.POISSON)
+    exceptions = [name.split(",")[0] for name in below if below[name] <= above[name]]
+    return Evaluation(
+        {f"100 N to 1 kN, {name}": value for name, value in below.items()},
+        not exceptions,
+        f"Not at {' and '.join(exceptions)}, where it varies more above." if exceptions else "",
+    )
+
+
+def variation_over_clearance(reference: Model, poisson: Iterable[float]) -> Computed:
+    """Compute the half range of the mean p0/d over clearances, for each Poisson's ratio."""
+    variations = {}
+    for ratio in poisson:
+        joints = cases.joint(
+            head_radius=17.9, liner_thickness=6.75, clearance=numpy.array(cases.CLEARANCES), poisson=ratio
+        )
+        contact = reference.press(joints, force=cases.LOADS[:, None])
+        variations[f"ν {ratio:g}, ± %"] = _half_range((contact.max_pressure / contact.indentation).mean(axis=0))
+    return variations
+
+
+def stiffening_by_confinement(reference: Model) -> Evaluation:
+    """Compute K at ν 0.49 over K at ν 0.4, for two clearances and two thickness ratios."""
+    poisson = numpy.array([0.4, 0.49])
+    tight, loose = (
+        cases.joint(head_radius=17.9, clearance=clearance, liner_thickness=6.75, poisson=poisson)
+        for clearance in (0.05, 0.2)
+    )
+    thick, thin = (cases.by_ratio(numpy.array([ratio, ratio]), poisson) for ratio in (1.2, 7.5))
+    rise = {}
+    for name, joints in (("c 0.05 mm", tight), ("c 0.2 mm", loose), ("R2/L 1.2", thick), ("R2/L 7.5", thin)):
+        contact = reference.press(joints, force=cases.LOAD)
+        modulus = contact.max_pressure / contact.indentation
+        rise[f"K at ν 0.49 over K at 0.4, {name}"] = float(modulus[1] / modulus[0])
+    small, large, low, high = rise.values()
+    return Evaluation(rise, small > large and high > low)
+
+
+def errors_of_table_3(reference: Model, thin: bool) -> Evaluation:
+    """Compute the errors of the foundation modulus of Table 3, for thick (R2/L up to 4.1) or thin liners."""
+    chosen = (RATIOS > 4.1) if thin else (RATIOS <= 4.1)
+    columns = refit_table_3(reference)
+    ends = [percent(column.difference[-1]) for column in columns]
+    stiff = f"The published constants are {min(ends):.0f} to {max(ends):.0f} % too stiff at R2/L {RATIOS[-1]:g}."
+    worst = {f"ν {c.poisson:g}, worst, %": percent(abs(c.difference[chosen]).max()) for c in columns}
+    return Evaluation(worst, True, stiff if thin else "")
+
+
+# Agreement of the models with the reference (Section 3)
+
+
+def errors_of_a_rigid_ball(reference: Model) -> Computed:
+    """Compute the errors of a rigid head against a steel head at 3 kN, in percent."""
+    rigid, steel = (
+        reference.press(joint, force=cases.LOAD) for joint in (replace(cases.hip(), ball=None), cases.hip())
+    )
+    return {
+        f"{quantity_title(name)} of a rigid head, %": percent(getattr(rigid, name) / getattr(steel, name) - 1)
+        for name in COMPARED
+    }
+
+
+def _deviations(model: Model, reference: Model, poisson: float, names: Sequence[str]) -> dict[str, float]:
+    """Compute the deviations of a model from the reference in the hip of Figure 3 at 3 kN, in percent."""
+    contact, truth = (solver.press(cases.hip(poisson), force=cases.LOAD) for solver in (model, reference))
+    return {name: percent(getattr(contact, name) / getattr(truth, name) - 1) for name in names}
+
+
+def deviations_of(model: Model, reference: Model, poisson: float, text: str = "{}, %") -> Computed:
+    """Compute the deviations of a model in indentation and peak pressure at 3 kN, with a text for their names."""
+    deviations = _deviations(model, reference, poisson, COMPARED[:2])
+    return {text.format(quantity_title(name)): value for name, value in deviations.items()}
+
+
+def pressure_deviations(reference: Model, models: dict[str, Model], poisson: float) -> Computed:
+    """Compute the deviations of models in peak pressure at 3 kN, by the names of the models."""
+    names = COMPARED[1:2]
+    return {f"{name}, %": _deviations(m, reference, poisson, names)[names[0]] for name, m in models.items()}
+
+
+def deviations_of_bartel(reference: Model) -> Computed:
+    """Compute the deviation of Bartel's peak pressure for rising Poisson's ratios."""
+    return {
+        f"ν {poisson:g}, %": _deviations(Bartel(), reference, poisson, ("max_pressure",))["max_pressure"]
+        for poisson in (0.3, 0.4, 0.45, 0.46, 0.49)
+    }
+
+
+def _largest_errors(pairs: Iterable[tuple[Contact, Contact]], names: Sequence[str]) -> dict[str, float]:
+    """Compute the largest relative errors in percent over pairs of a contact and its reference."""
+    worst = dict.fromkeys(names, 0.0)
+    for contact, truth in pairs:
+        for name in names:
+            error = max_relative_error(getattr(contact, name), getattr(truth, name))
+            worst[name] = max(worst[name], percent(error))
+    return worst
+
+
+def errors_at_0_4(reference: Model) -> Computed:
+    """Compute the errors of the closed form at ν 0.4: at 3 kN, and of the force at indentations of 1 to 3 kN."""
+    model, joints = HessForsbach(), (*cases.series().values(), cases.hip())
+    at_force = ((model.press(j, force=cases.LOAD), reference.press(j, force=cases.LOAD)) for j in joints)
+    worst = _largest_errors(at_force, COMPARED[:2])
+    curves = ((joint, reference.press(joint, force=cases.LOADS[:, None])) for joint in joints)
+    at_depth = ((model.press(joint, indentation=curve.indentation), curve) for joint, curve in curves)
+    return {
+        "indentation at 3 kN, worst, %": worst["indentation"],
+        "peak pressure at 3 kN, worst, %": worst["max_pressure"],
+        "force at one indentation, worst, %": _largest_errors(at_depth, ("force",))["force"],
+    }
+
+
+def excess_half_angle(reference: Model) -> Computed:
+    """Compute the smallest and the largest excess of the closed form's half angle over the joints of Figure 5."""
+    excess: dict[str, float] = {}
+    for symbol, series, values in cases.named_series():
+        angle = reference.press(series, force=cases.LOAD).half_angle
+        ratios = HessForsbach().press(series, force=cases.LOAD).half_angle / angle - 1
+        excess |= {f"{symbol} {value:g} mm": percent(ratio) for value, ratio in zip(values, ratios, strict=True)}
+    least, largest = min(excess, key=excess.__getitem__), max(excess, key=excess.__getitem__)
+    return {f"least, at {least}, %": excess[least], f"most, at {largest}, %": excess[largest]}
+
+
+def errors_above_0_45(reference: Model) -> Computed:
+    """Compute the errors of the closed form at ν 0.46 and 0.49 on thick to thin liners, at 1 and 3 kN."""
+    ratios, forces = numpy.array([0.8, 1.2, 1.8, 2.8, 4.1, 5.8, 7.5]), cases.LOADS[[0, -1], None]
+    families = [cases.by_ratio(ratios, poisson) for poisson in (0.46, 0.49)]
+    pairs = ((HessForsbach().press(f, force=forces), reference.press(f, force=forces)) for f in families)
+    return {f"{quantity_title(name)}, worst, %": value for name, value in _largest_errors(pairs, COMPARED).items()}
+
+
+def errors_of_older_models(reference: Model) -> Computed:
+    """Compute the largest error of each older model in peak pressure over Table 1, at ν 0.4 and 0.45."""
+    families = [cases.outline(poisson)[-1] for poisson in (0.4, 0.45)]
+    truths = [reference.press(family, force=cases.LOAD) for family in families]
+    worst = {}
+    for model in (Bartel(), BondedLayer(), Hertz()):
+        pairs = ((model.press(f, force=cases.LOAD), truth) for f, truth in zip(families, truths, strict=True))
+        worst[f"{model.name}: peak pressure, worst, %"] = _largest_errors(pairs, ("max_pressure",))["max_pressure"]
+    return worst
+
+
+def changes_by_refinement(_: Model) -> Computed:
+    """Compute the changes from the paper's elements of 0.05 mm to twice as many, for a 12 mm head in 8 mm of liner."""
+    joint = cases.joint(head_radius=12.0, liner_thickness=8.0)
+    depth = HessForsbach().press(joint, force=cases.LOAD).indentation
+    coarse, fine = (dense_elements(size).press(joint, indentation=depth) for size in (0.05, _FINE_ELEMENT_SIZE))
+    return {
+        "elements": _element_count(coarse),
+        "twice as many": _element_count(fine),
+        **{
+            f"{quantity_title(name)}, %": percent(getattr(fine, name) / getattr(coarse, name) - 1)
+            for name in ("force", "half_angle", "max_pressure")
+        },
+    }
+
+
+def dense_elements(size: float = 0.05) -> FiniteElement:
+    """Create a model with four-node elements of one size in mm along the surfaces; the paper has 0.05 mm."""
+    return FiniteElement(spacing=Uniform(size=size), element=Element.BILINEAR, meshes=1)
+
+
+def _element_count(contact: Contact) -> float:
+    """Return the number of elements of a meshed contact."""
+    assert isinstance(contact, MeshedContact)
+    return float(contact.mesh.elements)
+
+
+# Influence of geometry (Figures 5 and 6)
+
+
+def stiffness_by_geometry(reference: Model) -> Evaluation:
+    """Compute the ratio of the stiffness at 3 kN between the ends of each series of Figure 5."""
+    stiffness = {name: reference.press(series, force=cases.LOAD).stiffness for name, series in cases.series().items()}
+    signs = {"clearance": -1, "head_radius": 1, "liner_thickness": -1}
+    ratios = {
+        f"stiffness at the largest over that at the smallest {quantity_title(name)}": float(values[-1] / values[0])
+        for name, values in stiffness.items()
+    }
+    return Evaluation(ratios, all(numpy.all(sign * numpy.diff(stiffness[name]) > 0) for name, sign in signs.items()))
+
+
+def pressure_by_clearance(reference: Model) -> Evaluation:
+    """Compute the ratios of peak pressure and half angle between the ends of the clearance series."""
+    contact = reference.press(cases.series()["clearance"], force=cases.LOAD)
+    monotonic = numpy.all(numpy.diff(contact.max_pressure) > 0) and numpy.all(numpy.diff(contact.half_angle) < 0)
+    ratios = {
+        "p0 at 0.2 over p0 at 0.05 mm": float(contact.max_pressure[-1] / contact.max_pressure[0]),
+        "ε at 0.2 over ε at 0.05 mm": float(contact.half_angle[-1] / contact.half_angle[0]),
+    }
+    return Evaluation(ratios, bool(monotonic))
+
+
+def minimum_over_table_1(reference: Model, quantity: str, text: str) -> Computed:
+    """Find the joint of Table 1 with the smallest peak pressure or area at 3 kN."""
+    radius, thickness, contact = _contacts_of_table_1(reference)
+    values = getattr(contact, quantity)
+    best = int(numpy.nanargmin(values))
+    return {text: float(values[best]), "at R1, mm": float(radius[best]), "at L, mm": float(thickness[best])}
+
+
+@cache
+def _contacts_of_table_1(reference: Model) -> tuple[Numbers, Numbers, Contact]:
+    """Return head radii and liner thicknesses in mm within the outer radii of Table 1, and the contacts at 3 kN."""
+    radius, thickness, joints = cases.outline(heads=13, liners=7)
+    return radius, thickness, reference.press(joints, force=cases.LOAD)

@@ -1,0 +1,99 @@
+"""Start of the program: imports on demand, the list of commands, and the help of each."""
+
+import re
+import subprocess
+import sys
+from importlib import import_module
+
+import pytest
+import typer
+
+from ballsocket.cli.root import app, load_commands
+from ballsocket.core.deprecation import MOVED
+
+from .command import run
+
+COMMANDS = load_commands()
+HEAVY = ("dask", "jinja2", "matplotlib", "mcp", "numba", "pandas", "panel", "pint", "scipy", "skfem", "xarray")
+ORDER = (
+    *("press", "curve", "orient", "map", "optimise", "sensitivity", "study", "hip", "models", "presets", "cite"),
+    *("identify", "calibrate", "evidence", "deck", "fmu", "export", "schema", "app", "serve-mcp", "reproduce"),
+)
+
+
+def modules_after(*words):
+    """Names of the modules that a process has loaded after a command."""
+    code = (
+        f"import sys; sys.argv = ['ballsocket', *{words!r}]\n"
+        "from ballsocket.cli import main\n"
+        "try: main()\n"
+        "finally: print(*sys.modules, file=sys.stderr)"
+    )
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8").stderr.split()
+
+
+def listed():
+    """Names and texts of the commands in the help."""
+    rows = run("--help", columns=80).stdout.partition("Commands:\n")[2]
+    return dict(re.findall(r"^  ([a-z-]+) +(.*)$", rows, flags=re.MULTILINE))
+
+
+@pytest.mark.parametrize(
+    ("words", "modules"),
+    [
+        (("press", "hip-36", "--force", "3 kN"), {"press", "press_files"}),
+        (("press", "hip-36", "--force", "3 kN", "--clearance", "80 um", "--young", "1 GPa", "--json"), {"press"}),
+        (("models",), {"lists"}),
+        (("--help",), set()),
+        (("pres",), set()),
+    ],
+    ids=["press", "options with units", "models", "help", "unknown"],
+)
+def test_a_command_imports_its_own_modules_and_no_heavy_package(words, modules):
+    loaded = modules_after(*words)
+    assert [name for name in HEAVY if name in loaded] == []
+    commands = {"deck", "design", "evidence", "export", "hip", "identify", "lists", "orient", "press", "press_files"}
+    own = {name.removeprefix("ballsocket.cli.") for name in loaded if name.startswith("ballsocket.cli.")}
+    assert modules <= own & commands <= {"press_files", *modules}
+
+
+def test_help_lists_the_commands_in_order_with_the_first_lines_of_their_docstrings():
+    assert tuple(listed()) == ORDER
+    first_lines = {name: command.__doc__.partition("\n")[0] for name, command in COMMANDS.items()}
+    assert listed() == {name: first_lines[name] for name in ORDER}
+    assert set(COMMANDS) - set(ORDER) == {"build-tables"}
+
+
+@pytest.mark.parametrize("name", [*ORDER, "build-tables"])
+def test_help_of_a_command_fits_80_columns_and_begins_with_its_purpose(name):
+    text = run(name, "-h", columns=80).stdout
+    assert max(map(len, text.split("\n"))) <= 80
+    assert text.split("\n\n")[1].strip() == COMMANDS[name].__doc__.partition("\n")[0]
+
+
+@pytest.mark.parametrize("name", [*ORDER, "build-tables"])
+def test_every_option_is_described_in_sentences(name):
+    for parameter in typer.main.get_command(app).commands[name].params:
+        assert re.match(r"(?:fem: |sphere: )?\w", parameter.help)
+        assert parameter.help.endswith(".") or parameter.name == "help"
+        assert not re.search(r"\b(?:asks?|told|so many|whoever|in place of|one's own)\b", parameter.help)
+
+
+def test_an_unknown_command_suggests_the_nearest_ones():
+    done = run("pres")
+    assert (done.returncode, done.stdout) == (2, "")
+    suggestion = r"( Did you mean 'press', 'presets'\?)?"  # since typer 0.20
+    assert re.fullmatch(rf"ballsocket: No such command 'pres'\.{suggestion}\n", done.stderr)
+
+
+def test_without_a_command_the_help_is_printed():
+    assert (run().returncode, run().stdout) == (0, run("--help").stdout)
+
+
+def test_a_command_runs_twice_in_one_process():
+    assert run("cite", "hertz").stdout == run("cite", "hertz").stdout != ""
+
+
+@pytest.mark.parametrize("path", [path for path in MOVED if path.startswith("ballsocket.cli.")])
+def test_old_paths_of_modules_are_importable(path):
+    assert import_module(path).__name__ == MOVED[path]

@@ -1,0 +1,170 @@
+"""Matrix of cases: order of the cases, worst rows, limits, and the texts of numbers and inputs."""
+
+import math
+
+import pytest
+
+pytest.importorskip("xarray", reason="the extra for studies is not installed")
+import ballsocket as bs
+from ballsocket.core.arrays import to_numpy
+from ballsocket.evidence import matrix
+from ballsocket.evidence.matrix import Row, check_limit, input_title, limit_text, list_cases, number, title_of
+from ballsocket.evidence.question import read_question
+from ballsocket.problem.cup import UP
+from ballsocket.studies.phrases import limit_of
+
+from .small_pack import QUESTION_TEXT
+
+pytestmark = pytest.mark.xdist_group("evidence")  # the pack is computed once
+
+
+def row(**numbers):
+    return Row({"force": 1.0}, numbers, {}, "OK", True)
+
+
+PRESSURES = (10.0, 19.5, 21.0, math.nan)
+LIMIT = limit_of("max_pressure <= 20 MPa")
+
+
+def test_a_limit_counts_violations_missing_results_and_marginal_cases():
+    rows = [row(max_pressure=pressure) for pressure in PRESSURES]
+    check = check_limit(LIMIT, rows, accuracy=0.05)
+    assert (check.beyond, check.unknown, check.marginal) == (1, 1, 1)
+    assert check.row is rows[2]
+    assert (check_limit(LIMIT, rows, accuracy=0.02).marginal, check_limit(LIMIT, rows, accuracy=0.03).marginal) == (
+        0,
+        1,
+    )
+    assert check.summary()["high"] == 20.0
+    assert check.summary()["low"] is None
+    with pytest.warns(DeprecationWarning, match="marginal"):
+        assert check.near == 1
+
+
+@pytest.mark.parametrize(
+    ("pressures", "verdict"),
+    [
+        ((10.0, 21.0, math.nan), "not kept"),
+        ((10.0, math.nan), "not known"),
+        ((), "not known"),
+        ((10.0, 19.5), "kept, but nearer than the required accuracy"),
+        ((10.0, 20.0), "kept, but nearer than the required accuracy"),
+        ((10.0,), "kept"),
+    ],
+)
+def test_verdict_of_a_limit(pressures, verdict):
+    rows = [row(max_pressure=pressure) for pressure in pressures]
+    assert check_limit(LIMIT, rows, accuracy=0.05).verdict == verdict
+
+
+def test_a_limit_may_have_a_lower_end_or_limit_a_parameter():
+    rows = [row(edge_distance=distance) for distance in (3.0, 0.5, 2.0)]
+    check = check_limit(limit_of("edge_distance >= 1 mm"), rows, accuracy=0.05)
+    assert (check.beyond, check.row) == (1, rows[1])
+    assert check_limit(limit_of("force <= 2 N"), rows, accuracy=0.05).verdict == "kept"
+
+
+def test_worst_row_has_the_largest_number_and_the_smallest_edge_distance():
+    rows = [
+        row(max_pressure=pressure, edge_distance=distance, wear_rate=math.nan)
+        for pressure, distance in ((1.0, 3.0), (5.0, 1.0), (math.nan, 2.0))
+    ]
+    worst = matrix.worst_rows(rows)
+    assert worst == {"max_pressure": rows[1], "edge_distance": rows[1]}
+
+
+def test_the_last_axis_varies_fastest(pack):
+    cases = list_cases(pack[0])
+    assert cases == [{"clearance": c, "force": f} for c in (0.05, 0.15) for f in (2000.0, 4000.0)]
+
+
+def test_edge_distance_is_that_of_the_cup_and_errors_are_those_of_the_solver(pack):
+    question, record, _ = pack
+    (first, *_) = record["matrix"]
+    contact = bs.Exact().press(bs.joints["hip-36"].replace(clearance=0.05), force=2000.0)
+    distance = question.file.cup.edge_distance(contact.joint.socket_radius, contact.half_angle, UP)
+    assert first["numbers"]["edge_distance"] == pytest.approx(float(to_numpy(distance)))
+    assert first["numbers"]["half_angle_deg"] == pytest.approx(math.degrees(contact.half_angle))
+    assert first["status"] == "OK"
+    assert set(first["errors"]) == {"force", "half_angle_deg", "indentation", "max_pressure"}
+    tolerances = matrix.known_errors(bs.Exact(tolerance=1e-3).press(bs.joints["hip-36"], force=2000.0))
+    assert all(0 <= error <= 1e-3 for error in map(float, tolerances.values()))
+
+
+def test_impossible_joints_have_a_status_and_no_numbers(tmp_path):
+    path = tmp_path / "asked.toml"
+    text = QUESTION_TEXT.replace('clearance = ["0.05 mm", "0.15 mm"]', 'outer_diameter = ["36.1 mm", "48 mm"]')
+    path.write_text(text, encoding="utf-8")
+    question = read_question(path)
+    rows = matrix.compute_rows(question, list_cases(question))
+    assert [r.status for r in rows] == ["NO_JOINT", "NO_JOINT", "OK", "OK"]
+    assert [r.valid for r in rows] == [False, False, True, True]
+    assert rows[0].summary()["numbers"]["max_pressure"] is None
+
+
+def test_off_axis_friction_torque_is_an_upper_bound(tmp_path):
+    path = tmp_path / "asked.toml"
+    text = QUESTION_TEXT.replace('clearance = ["0.05 mm", "0.15 mm"]', 'inclination = "40 deg"')
+    path.write_text(text.replace('force = ["2 kN", "4 kN"]', 'force = "4 kN"'), encoding="utf-8")
+    question = read_question(path)
+    (tilted,) = matrix.compute_rows(question, list_cases(question))
+    joint = bs.joints["hip-36"]
+    aligned = bs.Exact().press(joint, force=4000.0).friction_torque(0.06)
+    assert tilted.numbers["friction_torque"] >= 0.06 * joint.ball_radius * 4000.0
+    assert tilted.numbers["friction_torque"] == pytest.approx(aligned, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (None, "–"),
+        ("", "–"),
+        ("inf", "inf"),
+        (12345.678, "12346"),
+        (0.123456, "0.12346"),
+        (1.5e-7, "1.5e-07"),
+        (123456789.0, "123460000"),
+        (1.2e9, "1.2e+09"),
+        (-2.5e6, "-2500000"),
+        (2.0, "2"),
+    ],
+)
+def test_numbers_are_written_with_five_digits(value, text):
+    assert number(value) == text
+
+
+@pytest.mark.parametrize(
+    ("limit", "text"),
+    [
+        ({"name": "max_pressure", "low": None, "high": 15.0}, "largest pressure at most 15 MPa"),
+        ({"name": "edge_distance", "low": 1.0, "high": None}, "edge distance at least 1 mm"),
+        ({"name": "max_pressure", "low": 1.0, "high": 15.0}, "largest pressure at least 1 MPa and at most 15 MPa"),
+        (
+            {"name": "utilisation", "low": None, "high": 0.5},
+            "utilisation (von Mises stress over yield stress) at most 0.5",
+        ),
+    ],
+)
+def test_limits_are_written_with_title_and_unit(limit, text):
+    assert limit_text(limit) == text
+
+
+@pytest.mark.parametrize(
+    ("name", "title"),
+    [
+        ("liner_young", "Young's modulus of the liner"),
+        ("ball_poisson", "Poisson's ratio of the ball"),
+        ("liner_yield_stress", "yield stress of the liner"),
+        ("backing[0].thickness", "thickness of layer 1 behind the liner"),
+        ("backing[2].young", "Young's modulus of layer 3 behind the liner"),
+        ("friction.coefficient", "coefficient of friction"),
+        ("ball_radius", "ball radius"),
+    ],
+)
+def test_inputs_have_titles(name, title):
+    assert input_title(name) == title
+
+
+def test_titles_are_those_of_the_quantities():
+    assert title_of("max_pressure") == "largest pressure"
+    assert title_of("wear_rate") == "wear of a new bore, mm³ a million cycles"

@@ -1,0 +1,176 @@
+"""Calculations for the worst cases: methods, deviations, bands, CalculiX and wear."""
+
+from importlib.util import find_spec
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("xarray", reason="the extra for studies is not installed")
+import ballsocket as bs
+from ballsocket.evidence import worst_case
+from ballsocket.evidence.question import read_question
+from ballsocket.evidence.worst_case import compare_methods, largest_deviation, propagate_tolerances, solve_with_calculix
+from ballsocket.studies.sensitivity import sensitivity
+
+from ..places import EXAMPLES
+from .small_pack import QUESTION_TEXT
+
+pytestmark = pytest.mark.xdist_group("evidence")  # the pack is computed once
+
+CASE = {"clearance": 0.15, "force": 4000.0}
+
+
+def question_of(tmp_path, *replacements):
+    path = tmp_path / "asked.toml"
+    text = QUESTION_TEXT
+    for old, new in replacements:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text, encoding="utf-8")
+    return read_question(path)
+
+
+def method(numbers, valid=True, aligned=True):
+    return {"numbers": numbers, "valid": valid, "aligned": aligned}
+
+
+def test_largest_deviation_is_relative_to_the_first_method():
+    first = method({"a": 2.0, "b": 4.0, "c": 0.0})
+    assert largest_deviation([first, method({"a": 2.2, "c": 1.0}), method({"a": 1.7, "b": 4.0})]) == {
+        "a": pytest.approx(0.15),
+        "b": 0.0,
+    }
+    assert largest_deviation([first]) == {}
+    assert largest_deviation([first, method({"a": 9.0}, valid=False), method({"b": 9.0}, aligned=False)]) == {}
+
+
+def test_an_aligned_case_is_solved_by_three_methods(pack):
+    methods = compare_methods(pack[0], CASE)
+    assert [m.name for m in methods] == ["exact", "tabulated", "sphere (along the axis)"]
+    exact = bs.Exact().press(bs.joints["hip-36"].replace(clearance=0.15), force=4000.0)
+    summary = methods[0].summary()
+    assert summary["numbers"]["half_angle_deg"] == pytest.approx(np.degrees(exact.half_angle))
+    assert summary["numbers"]["area"] == pytest.approx(exact.area)
+    assert set(summary["errors"]) == {"force", "half_angle_deg", "indentation", "max_pressure"}
+    assert summary["valid"]
+    assert summary["aligned"]
+
+
+def test_a_tilted_case_is_also_solved_on_rings_of_half_the_width(tmp_path):
+    question = question_of(
+        tmp_path,
+        ('clearance = ["0.05 mm", "0.15 mm"]', 'inclination = "40 deg"'),
+        ('force = ["2 kN", "4 kN"]', 'force = "4 kN"'),
+    )
+    methods = compare_methods(question, {"inclination": np.radians(40.0), "force": 4000.0})
+    assert [(m.name, m.aligned) for m in methods] == [
+        ("sphere", False),
+        ("sphere, rings of half the width", False),
+        ("exact (along the axis)", True),
+        ("tabulated (along the axis)", True),
+        ("sphere (along the axis)", True),
+    ]
+    deviation = largest_deviation([m.summary() for m in methods])
+    assert 0 < deviation["max_pressure"] < 0.02
+    assert methods[0].numbers["max_pressure"] != methods[1].numbers["max_pressure"]
+    tilted, _, aligned, *_ = (m.numbers["max_pressure"] for m in methods)
+    assert tilted != aligned
+
+
+def test_a_band_contains_the_percentiles_of_the_tolerance(pack):
+    """The largest pressure falls with the modulus as it does in single contacts at the percentiles."""
+    result = propagate_tolerances(pack[0], CASE)
+    band = result["bands"]["max_pressure"]
+    joint = bs.joints["hip-36"].replace(clearance=0.15)
+    spread = pack[0].tolerances["liner_young"].frozen
+    ends = [
+        bs.Exact().press(joint.replace(liner=bs.Material(young=young, poisson=0.4)), force=4000.0).max_pressure
+        for young in spread.ppf([0.025, 0.5, 0.975])
+    ]
+    assert [band["low"], band["median"], band["high"]] == pytest.approx(sorted(map(float, ends)), rel=2e-3)
+    assert (result["samples"], result["seed"], band["answered"]) == (1024, 1, 1024)
+    assert (result["model"], result["aligned"]) == ("tabulated", False)
+    half_angle = result["bands"]["half_angle_deg"]
+    assert 40 < half_angle["low"] < half_angle["median"] < half_angle["high"] < 44
+
+
+def test_sobol_indices_are_those_of_the_study(pack):
+    question = pack[0]
+    result = propagate_tolerances(question, CASE)["sobol"]
+    joint = bs.joints["hip-36"].replace(clearance=0.15)
+    expected = sensitivity(
+        worst_case.Tabulated(),
+        joint,
+        question.tolerances,
+        quantities=("max_pressure", "half_angle"),
+        count=256,
+        load={"force": 4e3},
+    )
+    index = float(expected.total_order.sel(quantity="max_pressure", parameter="liner_young"))
+    assert result["max_pressure"] == {"liner_young": pytest.approx(index)}
+
+
+def test_bands_outside_the_tables_are_solved_exactly(tmp_path):
+    (tmp_path / "metal.toml").write_bytes((EXAMPLES / "metal_backed_hip.toml").read_bytes())
+    question = question_of(tmp_path, ("hip-36", "metal.toml"))
+    result = propagate_tolerances(question, CASE)
+    assert (result["model"], result["samples"]) == ("exact", 64)
+    assert result["bands"]["max_pressure"]["answered"] == 64
+
+
+def test_notes_state_values_in_the_units_of_files(tmp_path):
+    question = question_of(
+        tmp_path,
+        ('force = ["2 kN", "4 kN"]', 'half_angle = "50 deg"'),
+        ('liner_young = "750 +- 75 MPa"', 'half_angle = "40 +- 1 deg"'),
+    )
+    (note,) = propagate_tolerances(question, {"clearance": 0.1, "half_angle": np.radians(50.0)})["notes"]
+    assert note.startswith("half angle 50 ° of the worst case lies outside its tolerance of 39 to 41 °: ")
+
+
+@pytest.mark.skipif(find_spec("skfem") is None, reason="the extra for finite elements is not installed")
+def test_calculix_is_run_on_the_deck_of_the_case(pack, monkeypatch, tmp_path):
+    from ballsocket.elasticity.finite_elements.decks import calculix
+
+    question = question_of(tmp_path, ('joint = "hip-36"', 'joint = "hip-36"\nfinite_elements = true'))
+    decks = []
+
+    def run(folder):
+        decks.append([path.suffix for path in folder.iterdir()])
+        last = [0.0, 7.0]
+        return SimpleNamespace(indentation=last, force=last, half_angle=last, pole_pressure=[1.0, 9.0])
+
+    monkeypatch.setattr(calculix, "run", run)
+    monkeypatch.setattr(worst_case.shutil, "which", lambda name: f"/bin/{name}")
+    (result,) = solve_with_calculix(question, CASE)
+    assert (result.name, result.valid) == ("CalculiX", True)
+    assert result.numbers == {"indentation": 7.0, "force": 7.0, "half_angle": 7.0, "max_pressure": 9.0}
+    assert ".inp" in decks[0]
+
+    def fail(folder):
+        raise RuntimeError("ccx failed")
+
+    monkeypatch.setattr(calculix, "run", fail)
+    (result,) = solve_with_calculix(question, CASE)
+    assert (result.valid, result.notes) == (False, ("ccx failed",))
+    monkeypatch.setattr(worst_case.shutil, "which", lambda name: None)
+    assert solve_with_calculix(question, CASE) == []
+    assert solve_with_calculix(pack[0], CASE) == []  # the question requires no finite elements
+
+
+def test_hips_without_a_contact_have_no_wear_rate(monkeypatch, pack):
+    calls = []
+
+    class Hip:
+        @property
+        def first(self):
+            calls.append(1)
+            raise ValueError("no contact")
+
+    monkeypatch.setattr(worst_case, "read_hip", lambda path: None)
+    monkeypatch.setattr(worst_case, "_simulation", lambda *arguments: Hip())
+    question = SimpleNamespace(hip="hip.toml")
+    cases = [{"clearance": 0.1, "force": 1.0}, {"clearance": 0.1, "force": 2.0}, {"clearance": 0.2, "force": 1.0}]
+    assert worst_case.wear_rates(question, cases) == [None, None, None]
+    assert len(calls) == 2  # cases that differ only in their load are computed once

@@ -1,0 +1,240 @@
+"""Tools for assistants: schemas, refusals, command lines, and limits of a call."""
+
+import asyncio
+import json
+import os
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from ballsocket.cli.root import load_commands
+from ballsocket.cli.servers import LIMITED_PROGRAM
+from ballsocket.core.input_files import restriction_variables
+from ballsocket.mcp import call
+from ballsocket.mcp.run import run as run_tool
+from ballsocket.mcp.tools import TOOLS, schema
+
+from ..cli.command import run
+from ..places import EXAMPLES
+
+COMMANDS = load_commands()
+PRESS = {"joint": "hip-36", "force": "3 kN"}
+
+
+def command_line(name, arguments, folder):
+    """Return the command line of a call with the commands of the program."""
+    return call.command_line(name, arguments, folder, COMMANDS)
+
+
+@pytest.mark.parametrize("name", TOOLS)
+def test_a_tool_describes_its_arguments_and_offers_no_file_to_write(name):
+    properties = schema(TOOLS[name], COMMANDS)["properties"]
+    assert all(each["description"] for each in properties.values())
+    assert not {"figure", "out", "store", "section", "view", "vtk", "report", "scheduler"} & set(properties)
+
+
+def test_descriptions_of_numbers_state_units():
+    properties = schema(TOOLS["press"], COMMANDS)["properties"]
+    units = {"ball_radius": "[mm]", "force": "[N]", "young": "[MPa]", "half_angle": "[°]"}
+    assert all(unit in properties[name]["description"] for name, unit in units.items())
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments", "message"),
+    [
+        ("pres", {}, "tool 'pres' is not known; did you mean 'press'"),
+        ("press", {"forces": 1}, "'forces' in a call of press is not known; did you mean 'force'"),
+        ("press", {**PRESS, "figure": "x.png"}, "'figure' in a call of press is not known"),
+        ("press", {**PRESS, "force": True}, "force = True must be text with a unit, or a number"),
+        ("press", {**PRESS, "force": {"N": 1}}, "must be text with a unit"),
+        ("press", {**PRESS, "force": float("nan")}, "force = nan must be finite"),
+        ("press", {**PRESS, "force": "3\nkN"}, "must be one line of at most 300 characters"),
+        ("press", {**PRESS, "model": ["exact"] * 51}, "model has 51 values: at most 50"),
+        ("press", {**PRESS, "joint": "../hip.toml"}, "'../hip.toml' lies outside the folder of this server"),
+        ("press", {**PRESS, "joint": "/etc/passwd"}, "'/etc/passwd' lies outside the folder of this server"),
+        ("optimise", PRESS, "vary is missing"),
+        ("study", {}, "either a file is needed, or content: TOML about a study"),
+        ("study", {"file": "no.toml"}, "'no.toml' does not exist in the folder"),
+        ("study", {"content": "joint = 'hip-28'\nstore = 'x'"}, "store is not for this server"),
+        ("study", {"file": 3}, "file = 3 must be text"),
+        ("study", {"content": 3}, "content = 3 must be text in TOML, or an object"),
+        ("study", {"content": {"joint": None}}, "content has null or a key that is not text"),
+        ("study", {"content": {"joint": "hip-28", "store": "x"}}, "store is not for this server"),
+        ("study", {"content": "joint = 'hip-28'\n[engine]\nkind = 'dask'"}, "engine is not for this server"),
+        ("study", {"content": "joint = "}, "is not TOML"),
+        ("identify", {"content": "x" * 100_001}, "the content is larger than 100000 bytes"),
+    ],
+)
+def test_a_wrong_call_is_refused_with_the_reason(name, arguments, message, tmp_path):
+    with pytest.raises(ValueError, match=message):
+        command_line(name, arguments, tmp_path)
+
+
+def test_a_link_to_a_file_outside_the_folder_is_refused(tmp_path):
+    (tmp_path / "room").mkdir()
+    (tmp_path / "joint.toml").write_text("[joint]", encoding="utf-8")
+    try:
+        (tmp_path / "room" / "joint.toml").symlink_to(tmp_path / "joint.toml")
+    except OSError:
+        pytest.skip("no links here")
+    with pytest.raises(ValueError, match="lies outside the folder"):
+        command_line("press", {"joint": "joint.toml", "force": 1}, tmp_path / "room")
+
+
+def test_the_command_line_of_a_call_is_that_of_a_shell(tmp_path):
+    words = command_line("press", {**PRESS, "force": 3000.0, "model": ["hertz", "exact"]}, tmp_path)
+    assert words == ["press", "hip-36", "--force=3000", "--model=hertz", "--model=exact", "--json"]
+    assert command_line("press", {"joint": "--help"}, tmp_path)[1] == "./--help"
+    question = command_line("evidence", {"content": "question = 'q'"}, tmp_path)
+    assert question[1].endswith(".toml")
+    assert question[2] == f"--out={question[1].removesuffix('.toml')}-pack"
+    assert [path.name for path in tmp_path.iterdir()] == [question[1]]
+
+
+PADDING = "./" * 110
+OUTSIDE = {
+    "table": ("study", 'joint = "hip-28"\nmodel = "hertz"\n[table]\npath = "{}/points.csv"\n'),
+    "joint": ("study", 'joint = "{}/joint.toml"\n[axes]\nforce = 1000\n'),
+    "cycle": ("wear", 'joint = "hip-28"\n[cycle]\nfile = "{}/cycle.csv"\n[wear]\ncoefficient = 1e-6\n'),
+    "data": ("identify", 'joint = "hip-28"\n[free]\nclearance = "0.02..0.3 mm"\n[[data]]\nfile = "{}/points.csv"\n'),
+    "chain": ("study", 'joint = "hip-28"\n[table]\npath = "link/points.csv"\n# {}'),
+}
+
+
+@pytest.fixture
+def secret(tmp_path):
+    """Make a folder outside the server's folder, with readable files."""
+    folder = tmp_path / "secret"
+    folder.mkdir()
+    (folder / "points.csv").write_text("clearance_mm,force_N\n0.123,777\n", encoding="utf-8")
+    (folder / "joint.toml").write_text('[joint]\nball_radius = 12.3456\nclearance = "secret"\n', encoding="utf-8")
+    (folder / "cycle.csv").write_text("secret head, x\n" + "1,2\n" * 9, encoding="utf-8")
+    return folder
+
+
+@pytest.fixture
+def room(tmp_path, secret, monkeypatch):
+    """Make the folder of a server, and restrict this process to it like the processes of calls."""
+    folder = tmp_path / "room"
+    folder.mkdir()
+    (folder / "link").symlink_to(secret)
+    for name, value in restriction_variables((folder, Path(os.environ["BALLSOCKET_CACHE"]))).items():
+        monkeypatch.setenv(name, value)
+    return folder
+
+
+@pytest.mark.parametrize("kind", OUTSIDE)
+@pytest.mark.parametrize("form", ["padded", "absolute"])
+def test_files_named_by_files_stay_inside_the_folder(kind, form, room, secret):
+    name, content = OUTSIDE[kind]
+    path = f"{PADDING}../secret" if form == "padded" else f"/{PADDING}{str(secret)[1:]}"
+    done = run(*command_line(name, {"content": content.format(path)}, room), folder=room)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "lies outside the folder of this server" in done.stderr
+    assert not any(word in done.stderr for word in ("777", "0.123", "12.3456", "secret head"))
+
+
+def test_a_path_outside_the_folder_in_other_files_is_refused(room):
+    (room / "x.txt").write_text(OUTSIDE["cycle"][1].format("../secret"), encoding="utf-8")
+    question = (EXAMPLES / "evidence.toml").read_text(encoding="utf-8").split("[wear]")[0]
+    content = f'{question}\n[wear]\nfile = "x.txt"\n'
+    done = run(*command_line("evidence", {"content": content}, room), folder=room)
+    assert "lies outside the folder of this server" in done.stderr
+
+
+def test_a_process_of_a_call_is_restricted(tmp_path, secret):
+    room = tmp_path / "room"
+    room.mkdir()
+    name, content = OUTSIDE["table"]
+    words = command_line(name, {"content": content.format(f"{PADDING}../secret")}, room)
+    told = asyncio.run(run_tool([*LIMITED_PROGRAM, *words], room, 60.0))
+    assert told.answer is None
+    assert "lies outside the folder of this server" in told.refusal
+
+
+def test_a_file_named_like_an_option_is_read_as_a_file(tmp_path):
+    (tmp_path / "--help.toml").write_text('joint = "hip-28"\n[axes]\nforce = 1000\n', encoding="utf-8")
+    words = command_line("study", {"file": "--help.toml"}, tmp_path)
+    assert words[1] == "./--help.toml"
+
+
+def test_a_busy_process_ends_with_its_parent(tmp_path):
+    """The child is inside one instruction of Python, which lets no thread run, for hours."""
+    busy = (
+        "import os, sys; from ballsocket.core.executors.processes import exit_with_parent as leave; leave(); "
+        "print(os.getpid(), file=open('child', 'w'), flush=True); 9**9**9"
+    )
+    parent = (
+        "import asyncio, pathlib; from ballsocket.mcp import run; "
+        f"asyncio.run(run.run(['-c', {busy!r}], pathlib.Path(), 600.0))"
+    )
+    note = tmp_path / "child"
+    with subprocess.Popen([sys.executable, "-c", parent], cwd=tmp_path) as server:
+        while not (note.exists() and note.read_text(encoding="ascii").endswith("\n")):
+            assert server.poll() is None
+            time.sleep(0.05)
+        child = int(note.read_text(encoding="ascii"))
+        time.sleep(0.1)
+        assert is_running(child)
+        server.kill()
+    deadline = time.monotonic() + 10
+    while is_running(child) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not is_running(child)
+
+
+def is_running(process):
+    """Check if a process runs; a zombie does not count."""
+    status = Path(f"/proc/{process}/status")
+    return status.exists() and "State:\tZ" not in status.read_text(encoding="ascii")
+
+
+def test_a_call_beyond_the_time_limit_is_stopped(tmp_path):
+    long = command_line("sensitivity", {**PRESS, "model": "fem", "spread": ["clearance=0.05..0.15 mm"]}, tmp_path)
+    told = asyncio.run(run_tool([*LIMITED_PROGRAM, *long], tmp_path, 0.5))
+    assert (told.answer, told.refusal[:19]) == (None, "stopped after 0.5 s")
+
+
+def test_a_tool_returns_what_the_command_prints(tmp_path):
+    mcp = pytest.importorskip("mcp", reason="the extra for assistants is not installed")
+    from ballsocket.mcp.server import server
+
+    async def asked():
+        async with mcp.Client(server(tmp_path, 60.0, COMMANDS, LIMITED_PROGRAM)) as client:
+            listed = await client.list_tools()
+            half = await client.call_tool("press", {"joint": "hip-36", "force": 1e12, "model": ["bartel"]})
+            refusal = await client.call_tool("press", {"forces": 1})
+            return {each.name for each in listed.tools}, half, refusal
+
+    names, half, refusal = asyncio.run(asked())
+    assert names == set(TOOLS)
+    shell = run("press", "hip-36", "--force=1000000000000", "--model=bartel", "--json")
+    assert half.structured_content == json.loads(half.content[1].text) == json.loads(shell.stdout)
+    assert (half.is_error, f"ballsocket: {half.content[0].text}\n") == (True, shell.stderr)
+    assert refusal.is_error
+    assert refusal.content[0].text.startswith("'forces' in a call of press is not known")
+
+
+def test_content_may_be_an_object_that_follows_the_schema_of_the_file(tmp_path):
+    validator = pytest.importorskip("jsonschema").Draft202012Validator
+    for tool in TOOLS.values():
+        validator.check_schema(schema(tool, COMMANDS))
+    content = {"joint": "hip-28", "axes": {"force": ["1 kN", 2000], "liner": "uhmwpe"}}
+    study = validator(schema(TOOLS["study"], COMMANDS))
+    assert study.is_valid({"content": content})
+    assert study.is_valid({"content": 'joint = "hip-28"'})
+    assert not study.is_valid({"content": {**content, "axis": {"force": 1}}})
+    assert not study.is_valid({"content": {**content, "store": "x"}})
+    line = command_line("study", {"content": content}, tmp_path)
+    assert tomllib.loads((tmp_path / line[1]).read_text("utf-8")) == content
+    assert line[1:] == command_line("study", {"content": (tmp_path / line[1]).read_text("utf-8")}, tmp_path)[1:]
+
+
+def test_a_missing_extra_is_reported_with_the_install_command(tmp_path, monkeypatch):
+    monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
+    done = run("serve-mcp", "--folder", str(tmp_path))
+    assert (done.returncode, done.stderr) == (2, "ballsocket: mcp is not installed: pip install 'ballsocket[mcp]'\n")
