@@ -15,7 +15,7 @@ import pytest
 
 from ballsocket.core.executors import Distributed, Processes, Serial
 from ballsocket.core.executors import processes as module
-from ballsocket.core.executors.dask import _dask_blocks, local_cluster
+from ballsocket.core.executors.dask import _build_dataset, local_cluster
 from ballsocket.core.executors.processes import available_cores, limit_threads
 
 WORK = """
@@ -71,7 +71,7 @@ def test_every_executor_computes_every_piece_once(work):
 
 def test_no_pieces_start_no_worker(work, monkeypatch):
     monkeypatch.setattr(module, "ProcessPoolExecutor", None)
-    monkeypatch.setattr(Distributed, "_connect", None)
+    monkeypatch.setattr(Distributed, "_connect_client", None)
     for executor in (Serial(), Processes(workers=2), Distributed(workers=2)):
         assert list(executor.run(work.Square(), [])) == []
 
@@ -233,9 +233,9 @@ def test_a_worker_ends_with_its_parent(before):
 @pytest.mark.skipif(not hasattr(os, "O_ASYNC"), reason="signals of pipes of a system like Unix")
 def test_a_closed_pipe_is_recognized():
     receiver, sender = os.pipe()
-    assert not module._is_closed(receiver)
+    assert not module._is_pipe_closed(receiver)
     os.close(sender)
-    assert module._is_closed(receiver)
+    assert module._is_pipe_closed(receiver)
     os.close(receiver)
 
 
@@ -264,7 +264,7 @@ def test_an_error_on_a_dask_worker_is_raised(scheduler):
 
 def test_a_piece_is_a_task_of_dask():
     pytest.importorskip("dask")
-    blocks = _dask_blocks("plugin", [4, 5, 9])
+    blocks = _build_dataset("plugin", [4, 5, 9])
     assert blocks.chunksizes == {"block": (1, 1, 1)}
     assert blocks.result.dtype == object
 

@@ -207,7 +207,10 @@ def test_a_quantity_is_added_by_one_entry(tmp_path):
     before = table.read_text(encoding="utf-8")
     entry = re.search(r'    Quantity\("conformity".*?\),\n', before, flags=re.DOTALL)[0]
     table.write_text(
-        before.replace(entry, "").replace("CONTACT = _make_table(\n", f"CONTACT = _make_table(\n{entry}"), "utf-8"
+        before.replace(entry, "").replace(
+            "CONTACT = _make_quantity_table(\n", f"CONTACT = _make_quantity_table(\n{entry}"
+        ),
+        "utf-8",
     )
     env = {**os.environ, "PYTHONPATH": str(tmp_path), "COLUMNS": "200", "PYTHONIOENCODING": "utf-8"}
     done = subprocess.run([sys.executable, "-c", _ADDED], capture_output=True, encoding="utf-8", env=env, check=True)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.models.plane_layer import layer_ratio
+from ballsocket.models.plane_layer import kernel_deviation
 
 from ..extent import either
 from ..joints import HIP
@@ -157,8 +157,8 @@ def test_plane_layer_of_a_wide_contact_is_a_row_of_columns():
 def test_layer_kernel_has_its_limits_at_long_and_short_waves():
     """Φ -> 0 at long waves and 1 at short ones; incompressible layers let no long wave through: Φ ~ x³."""
     x = np.array([1e-6, 30.0])
-    np.testing.assert_allclose(1 + layer_ratio(x, np.float64(0.3)), [0.0, 1.0], atol=1e-5)
-    small = 1 + layer_ratio(np.array([1e-2, 2e-2]), np.float64(0.5))
+    np.testing.assert_allclose(1 + kernel_deviation(x, np.float64(0.3)), [0.0, 1.0], atol=1e-5)
+    small = 1 + kernel_deviation(np.array([1e-2, 2e-2]), np.float64(0.5))
     assert small[1] / small[0] == pytest.approx(8.0, rel=1e-2)
 
 

@@ -146,5 +146,5 @@ def build_tables(
     from ..elasticity.exact.tabulated import build as builder
 
     path = builder.SHIPPED if out is None else out
-    run = builder.check if check else builder.build_tables
+    run = builder.check_tables if check else builder.build_tables
     echo_path(path, f": {run(path, points=points, workers=workers)}")

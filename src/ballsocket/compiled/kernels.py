@@ -20,7 +20,7 @@ from ..elasticity.exact.tabulated.formulas import (
     Scale,
     angle_of_force,
     angle_of_indentation,
-    contact,
+    contact_quantities,
 )
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..models import kinematics, liner_compliance, refined_state
@@ -30,9 +30,9 @@ from ..models.liner_compliance import liner_coefficients
 from ..models.modulus import Formula
 from ..models.refined import RefinedSolution, make_solver_result, scaled_load
 from ..models.refined_state import ScaledContact, half_angle_of_force, half_angle_of_indentation, scaled_contact
-from ..models.table_3 import eq_18
+from ..models.table_3 import scaled_modulus
 from ..problem import Joint
-from .overloads import as_row, compile_loop, inline_formula, jit_formula, pick
+from .overloads import as_row, compile_loop, inline_formula, jit_formula, pick_element
 
 
 def solve_forces(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
@@ -41,13 +41,13 @@ def solve_forces(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple
     The arrays have the common shape of the joint and its loads.
     """
     shape = numpy.broadcast_shapes(*(numpy.shape(number) for number in (*joint.numbers(), force)))
-    inputs = [as_row(part, shape) for part in (*joint.numbers()[:5], force)]
+    inputs = [as_row(number, shape) for number in (*joint.numbers()[:5], force)]
     outputs = [numpy.empty(math.prod(shape)) for _ in range(3)]
-    codes = numpy.empty(math.prod(shape), dtype=numpy.int8)
+    status_codes = numpy.empty(math.prod(shape), dtype=numpy.int8)
     constants = tuple(float(number) for number in model.parameters)
-    foundation_kernel(model.modulus.formula, model.kinematics)(*inputs, *outputs, codes, *constants)
+    foundation_kernel(model.modulus.formula, model.kinematics)(*inputs, *outputs, status_codes, *constants)
     d, p0, angle = (output.reshape(shape) for output in outputs)
-    return d, p0, angle, codes.reshape(shape)
+    return d, p0, angle, status_codes.reshape(shape)
 
 
 @cache
@@ -60,27 +60,28 @@ def foundation_kernel(formula: Formula, motion: Kinematics) -> Any:
     indentation = inline_formula(motion.indentation)
     force_law = inline_formula(motion.force)
     versine = inline_formula(motion.versine)
-    ok, failed = numpy.int8(Status.OK), numpy.int8(Status.NOT_REACHED)
+    success, failed = numpy.int8(Status.OK), numpy.int8(Status.NOT_REACHED)
 
-    def run(R1, c, L, E, nu, F, d_out, p0_out, angle_out, status, *constants):  # type: ignore[no-untyped-def]
-        """Solve each contact for its force; write indentation, pole pressure, half angle and status."""
+    def solve_contacts(R1, c, L, E, nu, F, d_out, p0_out, angle_out, status, *constants):  # type: ignore[no-untyped-def]
+        """Solve each contact for its force; write indentation, pole pressure, half angle and status to arrays."""
         for i in range(d_out.size):
-            clearance, load = pick(c, i), pick(F, i)
-            R2 = pick(R1, i) + clearance
-            K = modulus(R2, pick(L, i), pick(E, i), pick(nu, i), *constants)
+            clearance, load = pick_element(c, i), pick_element(F, i)
+            R2 = pick_element(R1, i) + clearance
+            K = modulus(R2, pick_element(L, i), pick_element(E, i), pick_element(nu, i), *constants)
             d = indentation(R2, clearance, K, load)
             converged = abs(force_law(R2, clearance, K, d) - load) <= 1e-12 * load
             d = d if converged else math.nan
             d_out[i] = d
             p0_out[i] = K * d
             angle_out[i] = kinematics.angle_of(versine(R2, clearance, d))
-            status[i] = ok if converged else failed
+            status[i] = success if converged else failed
 
-    return compile_loop(run)
+    return compile_loop(solve_contacts)
 
 
 @overload(kinematics.angle_of, strict=False, jit_options={"forceinline": True})
 def _overload_angle_of(versine: Any) -> Callable[..., Any]:
+    """Replace `kinematics.angle_of` by a polynomial in compiled code."""
     return _angle_polynomial
 
 
@@ -116,8 +117,8 @@ def _angle_polynomial(versine: float) -> float:
 def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
     """Solve the model `Refined` in one compiled loop, for arrays of forces or indentations."""
     shape = numpy.broadcast_shapes(*(number.shape for number in (*joint.numbers(), load)))
-    widening = 1 + joint.liner_thickness / joint.socket_radius
-    inputs = (load, scaled_load(joint, kind, load), joint.liner.poisson, widening)
+    radius_ratio = 1 + joint.liner_thickness / joint.socket_radius
+    inputs = (load, scaled_load(joint, kind, load), joint.liner.poisson, radius_ratio)
     outputs = numpy.empty((1 + len(ScaledContact._fields), math.prod(shape)))
     _refined_kernel(kind)(*(as_row(number, shape) for number in inputs), outputs)
     edge, *state = (output.reshape(shape) for output in outputs)
@@ -131,35 +132,36 @@ def _refined_kernel(kind: str) -> Any:
     """Return the compiled loop over contacts of `Refined` for given forces or indentations."""
     solve = half_angle_of_force if kind == "force" else half_angle_of_indentation
 
-    def run(load, scaled, poisson, widening, outputs):  # type: ignore[no-untyped-def]
-        """Solve each contact; write its half angle and the fields of `ScaledContact`."""
+    def solve_contacts(load, scaled, poisson, radius_ratio, outputs):  # type: ignore[no-untyped-def]
+        """Solve each contact for its load; write its half angle and the fields of `ScaledContact` to `outputs`."""
         for i in range(outputs.shape[1]):
-            liner = liner_coefficients(pick(poisson, i), pick(widening, i))
-            edge = solve(pick(scaled, i), liner) if pick(load, i) > 0 else 0.0
+            liner = liner_coefficients(pick_element(poisson, i), pick_element(radius_ratio, i))
+            edge = solve(pick_element(scaled, i), liner) if pick_element(load, i) > 0 else 0.0
             state = scaled_contact(edge if edge > 0 else 1.0, liner)
             outputs[0, i] = edge
             outputs[1, i], outputs[2, i], outputs[3, i], outputs[4, i] = state[0], state[1], state[2], state[3]
             outputs[5, i], outputs[6, i], outputs[7, i] = state[4], state[5], state[6]
 
-    return compile_loop(run)
+    return compile_loop(solve_contacts)
 
 
 @overload(refined_state.log_compliances, strict=False)
 def _overload_log_compliances(half_angle: Any, liner: Any, waves: Any) -> Callable[..., Any]:
+    """Replace `log_compliances` by its scalar version in compiled code."""
     return refined_state.scalar_log_compliances
 
 
 def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> SolverResult:
     """Solve the model `Tabulated` in one compiled loop, for arrays of forces or indentations."""
 
-    def read(curves: JointCurves, load: Numbers) -> tuple[Numbers, ...]:
+    def read_curves(curves: JointCurves, load: Numbers) -> tuple[Numbers, ...]:
         """Compute half angle, indentation, force, pole pressure and stiffness of contacts: five arrays (contacts,)."""
         inputs = (curves.scaled_load(kind, load), curves.ratio, *curves.scale)
         outputs = numpy.empty((5, len(load)))
         _tabulated_kernel(kind)(*(as_row(number, load.shape) for number in inputs), curves.functions, outputs)
         return tuple(outputs)
 
-    return model.solve_with(joint, kind, load, read)
+    return model.solve_with_reader(joint, kind, load, read_curves)
 
 
 @cache
@@ -167,23 +169,24 @@ def _tabulated_kernel(kind: str) -> Any:
     """Return the compiled loop over contacts of `Tabulated` for given forces or indentations."""
     solve = angle_of_force if kind == "force" else angle_of_indentation
 
-    def run(load, ratio, clearance, area, compliance, series, outputs):  # type: ignore[no-untyped-def]
-        """Solve each contact; write half angle, indentation, force, pole pressure and stiffness."""
+    def solve_contacts(load, ratio, clearance, area, compliance, series, outputs):  # type: ignore[no-untyped-def]
+        """Solve each contact for its load; write half angle, indentation, force, pole pressure and stiffness."""
         step = 0 if series.shape[2] == 1 else 1
         functions = series[:, :, 0].copy()
         for i in range(outputs.shape[1]):
             functions[:] = series[:, :, step * i]
-            curve = CurveCoefficients(pick(ratio, i), functions, functions)
-            angle = solve(pick(load, i), curve)
-            scale = Scale(pick(clearance, i), pick(area, i), pick(compliance, i))
-            d, F, p0, stiffness, _ = contact(angle, curve, scale)
+            curve = CurveCoefficients(pick_element(ratio, i), functions, functions)
+            angle = solve(pick_element(load, i), curve)
+            scale = Scale(pick_element(clearance, i), pick_element(area, i), pick_element(compliance, i))
+            d, F, p0, stiffness, _ = contact_quantities(angle, curve, scale)
             outputs[0, i], outputs[1, i], outputs[2, i], outputs[3, i], outputs[4, i] = angle, d, F, p0, stiffness
 
-    return compile_loop(run)
+    return compile_loop(solve_contacts)
 
 
-@overload(formulas.evaluate, strict=False)
+@overload(formulas.evaluate_table_functions, strict=False)
 def _overload_evaluate(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
+    """Implement the evaluation of the first one, two or three tabulated functions in compiled code."""
     if rows.count == 1:
         return lambda angle, curve, rows: _evaluate_table_functions(angle, curve)[:1]
     if rows.count == 2:
@@ -213,12 +216,16 @@ def _evaluate_table_functions(angle, curve):  # type: ignore[no-untyped-def]
         force_slope += c[1, k] * rise
         pole_slope += c[2, k] * rise
         U, U_next = U_next, twice * U_next - U
-    widening = formulas.angle_derivative(angle, root, curve.ratio)
-    return (opening, widening * opening_slope), (force, widening * force_slope), (pole, widening * pole_slope)
+    rate = formulas.angle_derivative(angle, root, curve.ratio)
+    return (
+        (opening, rate * opening_slope),
+        (force, rate * force_slope),
+        (pole, rate * pole_slope),
+    )
 
 
 for _formula in (
-    eq_18,
+    scaled_modulus,
     kinematics.linear_indentation,
     kinematics.linear_force,
     kinematics.linear_stiffness,
@@ -232,10 +239,10 @@ for _long_formula in (
     liner_compliance.log_compliance,
     liner_compliance._scaled_polynomial,
     liner_compliance.log_compliance_any_wave,
-    liner_compliance._log_compliance_near,
+    liner_compliance._log_compliance_near_one,
     liner_compliance._reduced_polynomial,
     liner_compliance._decay_mean,
-    liner_compliance._polynomial,
+    liner_compliance._evaluate_polynomial,
     refined_state.scalar_log_compliances,
     refined_state.log_slopes,
     refined_state._log_compliance,
@@ -251,7 +258,7 @@ for _long_formula in (
     chebyshev.angle_root,
     formulas.angle_derivative,
     formulas.opening,
-    formulas.contact,
+    formulas.contact_quantities,
     formulas._solve_angle,
     formulas._indentation_residual,
     formulas._force_residual,

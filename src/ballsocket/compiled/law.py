@@ -123,11 +123,14 @@ class _LawType(types.Type):
 
 @typeof_impl.register(CompiledLaw)
 def _law_type(law: CompiledLaw, _: Any) -> _LawType:
+    """Return the numba type of a compiled law."""
     return _LawType(law.function, typeof(law.numbers))
 
 
 @register_model(_LawType)
 class _LawModel(models.StructModel):
+    """Numba data model of `_LawType`: a structure of the numbers of the law."""
+
     def __init__(self, manager: Any, kind: _LawType) -> None:
         super().__init__(manager, kind, [("numbers", kind.numbers)])
 
@@ -137,6 +140,7 @@ make_attribute_wrapper(_LawType, "numbers", "numbers")
 
 @unbox(_LawType)
 def _unbox_law(kind: _LawType, value: Any, context: Any) -> NativeValue:
+    """Convert a `CompiledLaw` of Python to its form in compiled code."""
     numbers = context.pyapi.object_getattr_string(value, "numbers")
     native = context.unbox(kind.numbers, numbers)
     context.pyapi.decref(numbers)
@@ -147,11 +151,12 @@ def _unbox_law(kind: _LawType, value: Any, context: Any) -> NativeValue:
 
 @overload_method(_LawType, "__call__")
 def _overload_call(law, indentation):  # type: ignore[no-untyped-def]
+    """Implement the call `law(indentation)` in compiled code."""
     function = law.function
     return lambda law, indentation: function(indentation, *law.numbers)
 
 
 @lower_builtin(_LawType, _LawType, types.Any)
 def _lower_call(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-    """Generate the machine code of a call of a law; numba requests this separately from the type."""
+    """Generate the machine code of a call `law(indentation)`, which numba requests separately from the type."""
     return context.compile_internal(builder, _overload_call(*signature.args), signature, arguments)

@@ -95,6 +95,7 @@ class Compiled(ModelWrapper):
         return contact
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve the contacts of `Refined` or `Tabulated` in a compiled loop, if all arrays are float64."""
         if kind != "half_angle" and all(map(_is_float64, (*joint.numbers(), load))):
             if isinstance(self.model, Refined):
                 return kernels.solve_refined(joint, kind, load)
@@ -103,8 +104,10 @@ class Compiled(ModelWrapper):
         return super()._solve(joint, kind, load)
 
     def _law(self, joint: Joint) -> CompiledLaw:
+        """Return the compiled force law of a joint."""
         return compiled_law(super()._law(joint))
 
 
 def _is_float64(number: Any) -> bool:
+    """Check if a value is a NumPy array of float64."""
     return isinstance(number, numpy.ndarray) and number.dtype == numpy.float64

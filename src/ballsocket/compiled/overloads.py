@@ -28,89 +28,103 @@ def compile_loop(function: Callable[..., Any]) -> Any:
 
 
 def as_row(number: Any, shape: tuple[int, ...]) -> Any:
-    """Convert an array to one row of the common shape, and a number to a float."""
+    """Broadcast an array to a common shape and flatten it to one row; convert a number to a float."""
     if numpy.ndim(number) == 0:
         return float(number)
     expanded = number if number.shape == shape else numpy.broadcast_to(number, shape)
     return numpy.ascontiguousarray(expanded).reshape(-1)
 
 
-def pick(values: Any, i: int) -> Any:
-    """Return element i of an array, or a number itself, which holds for every i."""
+def pick_element(values: Any, i: int) -> Any:
+    """Return element i of an array; a number is returned itself, because it holds for every i."""
     return values[i] if isinstance(values, numpy.ndarray) else values
 
 
-@overload(pick, strict=False, jit_options={"forceinline": True})
-def _pick(values: Any, i: Any) -> Callable[..., Any]:
+@overload(pick_element, strict=False, jit_options={"forceinline": True})
+def _overload_pick_element(values: Any, i: Any) -> Callable[..., Any]:
+    """Implement `pick_element` for arrays and for numbers in compiled code."""
     if isinstance(values, types.Array):
         return lambda values, i: values[i]
     return lambda values, i: values
 
 
 @overload(arrays.sqrt, strict=False)
-def _sqrt(x: Any) -> Callable[..., Any]:
+def _overload_sqrt(x: Any) -> Callable[..., Any]:
+    """Implement `arrays.sqrt` for numbers in compiled code."""
     return lambda x: math.sqrt(x)
 
 
 @overload(arrays.exp, strict=False)
-def _exp(x: Any) -> Callable[..., Any]:
+def _overload_exp(x: Any) -> Callable[..., Any]:
+    """Implement `arrays.exp` for numbers in compiled code."""
     return lambda x: math.exp(x)
 
 
 @overload(arrays.log, strict=False)
-def _log(x: Any) -> Callable[..., Any]:
+def _overload_log(x: Any) -> Callable[..., Any]:
+    """Implement `arrays.log` for numbers in compiled code."""
     return lambda x: math.log(x)
 
 
 @overload(arrays.log1p, strict=False)
-def _log1p(x: Any) -> Callable[..., Any]:
+def _overload_log1p(x: Any) -> Callable[..., Any]:
+    """Implement `arrays.log1p` for numbers in compiled code."""
     return lambda x: math.log1p(x)
 
 
 @overload(arrays.sin, strict=False)
-def _sin(x: Any) -> Callable[..., Any]:
+def _overload_sin(x: Any) -> Callable[..., Any]:
+    """Implement `arrays.sin` for numbers in compiled code."""
     return lambda x: math.sin(x)
 
 
 @overload(arrays.cos, strict=False)
-def _cos(x: Any) -> Callable[..., Any]:
+def _overload_cos(x: Any) -> Callable[..., Any]:
+    """Implement `arrays.cos` for numbers in compiled code."""
     return lambda x: math.cos(x)
 
 
 @overload(arrays.asin, strict=False)
-def _asin(x: Any) -> Callable[..., Any]:
+def _overload_asin(x: Any) -> Callable[..., Any]:
+    """Implement `arrays.asin` for numbers in compiled code."""
     return lambda x: math.asin(x)
 
 
 @overload(arrays.atan2, strict=False)
-def _atan2(y: Any, x: Any) -> Callable[..., Any]:
+def _overload_atan2(y: Any, x: Any) -> Callable[..., Any]:
+    """Implement `arrays.atan2` for numbers in compiled code."""
     return lambda y, x: math.atan2(y, x)
 
 
 @overload(arrays.where, strict=False)
-def _where(condition: Any, yes: Any, no: Any) -> Callable[..., Any]:
+def _overload_where(condition: Any, yes: Any, no: Any) -> Callable[..., Any]:
+    """Implement `arrays.where` for numbers in compiled code."""
     return lambda condition, yes, no: yes if condition else no
 
 
 @overload(arrays.clip, strict=False)
-def _clip(x: Any, low: Any, high: Any) -> Callable[..., Any]:
+def _overload_clip(x: Any, low: Any, high: Any) -> Callable[..., Any]:
+    """Implement `arrays.clip` for numbers in compiled code."""
     return lambda x, low, high: min(max(x, low), high)
 
 
 @overload(arrays.all_true, strict=False)
-def _truth(condition: Any) -> Callable[..., Any]:
+def _overload_all_true(condition: Any) -> Callable[..., Any]:
+    """Implement `arrays.all_true` for numbers in compiled code."""
     return lambda condition: condition
 
 
 @overload(arrays.logical_not, strict=False)
-def _false(condition: Any) -> Callable[..., Any]:
+def _overload_logical_not(condition: Any) -> Callable[..., Any]:
+    """Implement `arrays.logical_not` for numbers in compiled code."""
     return lambda condition: not condition
 
 
 @overload(roots.increasing_root, strict=False)
-def _increasing_root(
+def _overload_increasing_root(
     law: Any, target: Any, low: Any, high: Any, start: Any, arguments: Any = (), steps: Any = 60, tolerance: Any = 1e-8
 ) -> Callable[..., Any]:
+    """Implement `roots.increasing_root` for numbers in compiled code."""
     return lambda law, target, low, high, start, arguments=(), steps=60, tolerance=1e-8: roots.scalar_increasing_root(
         law, target, low, high, start, arguments, steps, tolerance
     )

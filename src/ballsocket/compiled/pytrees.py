@@ -23,28 +23,30 @@ from ..problem import Joint, Layer, Material, make_unchecked
 Leaves = tuple[Any, ...]
 
 
-def _register(cls: Any, leaves: tuple[str, ...], fixed: tuple[str, ...]) -> None:
+def _register_pytree(cls: Any, leaves: tuple[str, ...], fixed: tuple[str, ...]) -> None:
     """Register a class as a JAX pytree: `leaves` are its children, `fixed` its static data."""
 
-    def flatten(instance: Any) -> tuple[Leaves, Leaves]:
+    def flatten_instance(instance: Any) -> tuple[Leaves, Leaves]:
+        """Return the children and the static data of an instance."""
         return tuple(getattr(instance, name) for name in leaves), tuple(getattr(instance, name) for name in fixed)
 
-    def unflatten(fixed_values: Leaves, values: Leaves) -> Any:
+    def unflatten_instance(fixed_values: Leaves, values: Leaves) -> Any:
+        """Make an instance from its static data and its children."""
         names = (*leaves, *fixed)
         return make_unchecked(cls, **dict(zip(names, (*values, *fixed_values), strict=True)))
 
-    register_pytree_node(cls, flatten, unflatten)
+    register_pytree_node(cls, flatten_instance, unflatten_instance)
 
 
-_register(Material, ("young", "poisson", *STRESS_LIMITS), ("name", "source"))
-_register(Layer, ("thickness", "material"), ())
-_register(
+_register_pytree(Material, ("young", "poisson", *STRESS_LIMITS), ("name", "source"))
+_register_pytree(Layer, ("thickness", "material"), ())
+_register_pytree(
     Joint,
     ("ball_radius", "clearance", "liner_thickness", "liner", "ball", "backing"),
     ("support", "name", "source"),
 )
-_register(TableSolution, ("joint", "angle", "values"), ("file",))
-_register(LayerSolution, ("joint", "width"), ("widest",))
-_register(RefinedSolution, ("joint", "edge"), ())
-_register(ClosedFormSolution, ("joint", "indentation"), ("model",))
-_register(Contact, ("laws", "joint", "force", "indentation", "status"), ("model",))
+_register_pytree(TableSolution, ("joint", "angle", "values"), ("file",))
+_register_pytree(LayerSolution, ("joint", "width"), ("widest",))
+_register_pytree(RefinedSolution, ("joint", "edge"), ())
+_register_pytree(ClosedFormSolution, ("joint", "indentation"), ("model",))
+_register_pytree(Contact, ("laws", "joint", "force", "indentation", "status"), ("model",))

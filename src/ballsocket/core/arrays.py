@@ -38,7 +38,7 @@ def is_plain_number(value: Any) -> bool:
 
 
 def namespace(*values: Array) -> Any:
-    """Return the array library (NumPy, JAX, PyTorch, ...) of some values; NumPy for plain numbers.
+    """Return the array library of the given values, such as NumPy or JAX; NumPy for plain numbers.
 
     Raises
     ------
@@ -58,8 +58,8 @@ def namespace(*values: Array) -> Any:
 def _make_elementwise(name: str, scalar_function: Callable[[float], float]) -> Callable[[Array], Array]:
     """Make an elementwise function, such as `exp`, for Python numbers and arrays of any library."""
 
-    def function(x: Array) -> Array:
-        """Evaluate the function of x; infinite or NaN where `math` raises an error."""
+    def elementwise_function(x: Array) -> Array:
+        """Evaluate the function at each element of x; infinite or NaN where `math` raises an error."""
         if type(x) is not float:
             return getattr(namespace(x), name)(x)
         try:
@@ -68,8 +68,8 @@ def _make_elementwise(name: str, scalar_function: Callable[[float], float]) -> C
             with numpy.errstate(all="ignore"):
                 return float(getattr(numpy, name)(x))
 
-    function.__name__ = name
-    return function
+    elementwise_function.__name__ = name
+    return elementwise_function
 
 
 exp = _make_elementwise("exp", math.exp)
@@ -113,7 +113,7 @@ def atan2(y: Array, x: Array) -> Array:
 
 
 def where(condition: Array, if_true: Array, if_false: Array) -> Array:
-    """Return the elements of `if_true` where a mask is true, and of `if_false` elsewhere."""
+    """Select the elements of `if_true` where a mask is true, and of `if_false` elsewhere."""
     if type(condition) is bool and type(if_true) is float and type(if_false) is float:
         return if_true if condition else if_false
     return namespace(condition, if_true, if_false).where(condition, if_true, if_false)
@@ -171,7 +171,7 @@ def all_true(condition: Array) -> bool | None:
 
 
 def stop_gradient(x: Array) -> Array:
-    """Exclude `x` from automatic differentiation: return it as a constant."""
+    """Return `x` as a constant for automatic differentiation: its derivative is 0."""
     if array_api_compat.is_torch_array(x):
         return x.detach()
     if array_api_compat.is_jax_array(x):
@@ -188,24 +188,24 @@ def to_common_arrays(*values: Array) -> tuple[Array, ...]:
 
     Lists and integers become floats. Plain numbers without an array become NumPy float64 scalars.
     """
-    listed = [numpy.asarray(value) if isinstance(value, list | tuple) else value for value in values]
-    xp = namespace(*listed)
-    arrays = [value for value in listed if not is_plain_number(value)]
-    floating = [value for value in arrays if xp.isdtype(value.dtype, "real floating")]
-    dtype = xp.result_type(*floating) if floating else xp.asarray(1.0).dtype
+    converted = [numpy.asarray(value) if isinstance(value, list | tuple) else value for value in values]
+    xp = namespace(*converted)
+    arrays = [value for value in converted if not is_plain_number(value)]
+    float_arrays = [value for value in arrays if xp.isdtype(value.dtype, "real floating")]
+    dtype = xp.result_type(*float_arrays) if float_arrays else xp.asarray(1.0).dtype
     device = array_api_compat.device(arrays[0]) if arrays else None
 
-    def convert(value: Array) -> Array:
+    def convert_value(value: Array) -> Array:
         """Convert one value to the common library, dtype and device."""
         if is_plain_number(value):
             return xp.asarray(float(value), dtype=dtype, device=device)
         return value if value.dtype == dtype else xp.astype(value, dtype)
 
-    return tuple(convert(value) for value in listed)
+    return tuple(convert_value(value) for value in converted)
 
 
 def broadcast(x: Array, *values: Array) -> Array:
-    """Broadcast `x` to the common shape of `x` and some values; return a float if all are floats."""
+    """Broadcast `x` to the common shape of `x` and other values; return a float if all are floats."""
     if type(x) is float and all(type(value) is float for value in values):
         return x
     shape = numpy.broadcast_shapes(*(tuple(getattr(value, "shape", ())) for value in (x, *values)))

@@ -52,14 +52,14 @@ def require(name: str, value: Array, valid: Array, allowed: str) -> None:
 
 def first_invalid(value: Array, valid: Array) -> float:
     """Return the first element of `value` where `valid` is false."""
-    if not _shape(value):
+    if not _array_shape(value):
         return value
     return float(namespace(value).reshape(value, (-1,))[_find_first_false(valid)[0]])
 
 
 def _format_invalid_element(value: Array, valid: Array) -> str:
     """Format index and value of the first invalid element for a message, with the number of further ones."""
-    shape = _shape(value)
+    shape = _array_shape(value)
     if not shape:
         return f" = {shown(value) if isinstance(value, int) else format(float(value), 'g')}"
     first, count = _find_first_false(valid)
@@ -71,7 +71,7 @@ def _format_invalid_element(value: Array, valid: Array) -> str:
     return f"[{', '.join(map(str, reversed(index)))}] = {first_invalid(value, valid):g}{further}"
 
 
-def _shape(value: Array) -> tuple[int, ...]:
+def _array_shape(value: Array) -> tuple[int, ...]:
     """Return the shape of an array; () for a number."""
     return tuple(getattr(value, "shape", ()))
 
@@ -109,7 +109,7 @@ def check_numeric(name: str, value: Any) -> Array:
 def check_number(name: str, value: Any) -> float:
     """Check that a value is a single number, and return it as a float; raise TypeError otherwise."""
     number = check_numeric(name, value)
-    if _shape(number):
+    if _array_shape(number):
         raise TypeError(f"{name} must be one number, got {shown(value)}")
     return float(number)
 
@@ -132,7 +132,7 @@ def check_vectors(name: str, value: Any, axes: str) -> Array:
 
 
 def _check_integer(name: str, value: float) -> float:
-    """Check that an integer fits into a float, and return it; raise ValueError otherwise."""
+    """Return an integer as a float; raise ValueError if it is too large for a float."""
     try:
         float(value)
     except OverflowError as error:

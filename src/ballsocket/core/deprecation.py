@@ -198,7 +198,7 @@ def register_old_paths() -> None:
         sys.meta_path.insert(0, _MovedModules())
 
 
-def _warn(old: str, new: str) -> None:
+def _warn_renamed(old: str, new: str) -> None:
     """Issue a DeprecationWarning that states the new name."""
     warnings.warn(f"{old} is deprecated: use {new}; removed in 2.0", DeprecationWarning, stacklevel=3)
 
@@ -209,15 +209,15 @@ def renamed_names(module: str, names: dict[str, str]) -> Callable[[str], Any]:
     `names` maps each old name to the present one, in the same module or with the path of another.
     """
 
-    def resolve(name: str) -> Any:
+    def resolve_old_name(name: str) -> Any:
         """Return a function or class by its old name, with a warning."""
         if name not in names:
             raise AttributeError(f"module {module!r} has no attribute {name!r}")
-        _warn(f"{module}.{name}", names[name])
+        _warn_renamed(f"{module}.{name}", names[name])
         path, _, attribute = names[name].rpartition(".")
         return getattr(import_module(path or module), attribute)
 
-    return resolve
+    return resolve_old_name
 
 
 class RenamedAttribute:
@@ -233,7 +233,7 @@ class RenamedAttribute:
         self._old = name
 
     def __get__(self, instance: Any, owner: type) -> Any:
-        _warn(f"{owner.__name__}.{self._old}", self._new)
+        _warn_renamed(f"{owner.__name__}.{self._old}", self._new)
         return getattr(owner if instance is None else instance, self._new)
 
 
@@ -243,23 +243,23 @@ def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]
     Example: `@renamed_arguments(listen="progress")`.
     """
 
-    def decorate(function: Callable[P, T]) -> Callable[P, T]:
-        """Wrap a function that translates old argument names."""
+    def accept_old_names(function: Callable[P, T]) -> Callable[P, T]:
+        """Wrap a function so that it accepts the old names of its arguments."""
 
         @functools.wraps(function)
-        def wrapper(*args: P.args, **kwargs: P.kwargs) -> T:
-            """Call the function with the new names of its arguments."""
+        def call_with_new_names(*args: P.args, **kwargs: P.kwargs) -> T:
+            """Call the function after translation of old argument names to the new ones."""
             for old in names.keys() & kwargs.keys():
                 new = names[old]
                 if new in kwargs:
                     raise TypeError(f"{function.__name__}() got both {new!r} and its old name {old!r}")
-                _warn(f"argument {old!r} of {function.__name__}()", repr(new))
+                _warn_renamed(f"argument {old!r} of {function.__name__}()", repr(new))
                 kwargs[new] = kwargs.pop(old)
             return function(*args, **kwargs)
 
-        return wrapper
+        return call_with_new_names
 
-    return decorate
+    return accept_old_names
 
 
 def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
@@ -268,24 +268,24 @@ def renamed_fields(**names: str) -> Callable[[type[T]], type[T]]:
     An old name of a field replaces the value under the new name, which `dataclasses.replace` passes as well.
     """
 
-    def decorate(owner: type[T]) -> type[T]:
-        """Wrap the initialiser of a class, and add its old attribute names."""
+    def accept_old_names(owner: type[T]) -> type[T]:
+        """Make a dataclass accept the old names of its fields, attributes and methods."""
         initialise: Any = owner.__init__
         arguments = {old: new for old, new in names.items() if new in owner.__dict__.get("__dataclass_fields__", {})}
 
         @functools.wraps(initialise)
-        def wrapper(self: T, *args: Any, **kwargs: Any) -> None:
-            """Initialise the dataclass with the new names of its fields."""
+        def call_with_new_names(self: T, *args: Any, **kwargs: Any) -> None:
+            """Initialise the dataclass after translation of old field names to the new ones."""
             for old in arguments.keys() & kwargs.keys():
-                _warn(f"argument {old!r} of {owner.__name__}()", repr(arguments[old]))
+                _warn_renamed(f"argument {old!r} of {owner.__name__}()", repr(arguments[old]))
                 kwargs[arguments[old]] = kwargs.pop(old)
             initialise(self, *args, **kwargs)
 
-        setattr(owner, "__init__", wrapper)  # noqa: B010 (mypy refuses to assign to a method)
+        setattr(owner, "__init__", call_with_new_names)  # noqa: B010 (mypy refuses to assign to a method)
         for old, new in names.items():
             attribute = RenamedAttribute(new)
             attribute.__set_name__(owner, old)
             setattr(owner, old, attribute)
         return owner
 
-    return decorate
+    return accept_old_names

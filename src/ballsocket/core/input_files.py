@@ -35,7 +35,7 @@ class AllowedFolders:
     folders: tuple[Path, ...]
 
     def resolve(self, path: Path, name: str) -> Path:
-        """Resolve symbolic links and ".." in a path, and check that the folders contain it.
+        """Resolve symbolic links and ".." in a path, and check that it lies in the allowed folders.
 
         `name` replaces the path in the message.
 

@@ -57,7 +57,7 @@ def _is_poisson_ratio(x: Array) -> Array:
 
 
 def _angle_limits(subject: str, low: float, high: float) -> dict[str, Any]:
-    """Make the arguments `allows` and `allowed` of an angle between two limits in degrees."""
+    """Make the arguments `allows` and `allowed` of a `Quantity` for angles between two limits in degrees."""
     minimum, maximum = radians(low), radians(high)
     allowed = f"{subject} is {low:g} to {high:g} degrees, which are {minimum:.4g} to {maximum:.4g} radians"
     return {"allows": lambda x: (x >= minimum) & (x <= maximum), "allowed": allowed}
@@ -169,17 +169,17 @@ class Quantity:
         return f"; {degrees_hint(value)}"
 
 
-def _make_table(*quantities: Quantity) -> Mapping[str, Quantity]:
+def _make_quantity_table(*quantities: Quantity) -> Mapping[str, Quantity]:
     """Make a read-only table of quantities by name."""
     return MappingProxyType({quantity.name: quantity for quantity in quantities})
 
 
 def _make_body_quantities(body: str, symbols: tuple[str, str, str]) -> Mapping[str, Quantity]:
-    """Make the moduli and yield stress of one body, such as "liner_young".
+    """Make the quantities of one body, such as "liner_young": its elastic constants and its yield stress.
 
     `symbols` are those of E, ν and σy.
     """
-    return _make_table(
+    return _make_quantity_table(
         *(
             replace(quantity, name=f"{body}_{quantity.name}", symbol=symbol, title=f"{quantity.title} of the {body}")
             for quantity, symbol in zip((*MATERIAL.values(), STRENGTH["yield_stress"]), symbols, strict=True)
@@ -188,7 +188,7 @@ def _make_body_quantities(body: str, symbols: tuple[str, str, str]) -> Mapping[s
 
 
 # fmt: off
-CONTACT = _make_table(
+CONTACT = _make_quantity_table(
     Quantity("force", "F", "normal force", Kind.FORCE, "Force along the axis of the load.", allows=_is_not_negative,
              allowed="a force (N) is 0 or more and finite"),
     Quantity("indentation", "d", "indentation", Kind.LENGTH,
@@ -215,7 +215,7 @@ CONTACT = _make_table(
 )
 """Printed quantities of a contact, in this order."""
 
-DERIVED = _make_table(
+DERIVED = _make_quantity_table(
     Quantity("pressure_integral", "∫p dA", "pressure integral", Kind.FORCE,
              "Integral of the pressure over the area, regardless of direction. Friction and wear need it."),
     Quantity("indentation_ratio", "d/L", "indentation ratio", Kind.NUMBER, "Indentation over liner thickness."),
@@ -237,7 +237,7 @@ DERIVED = _make_table(
 )
 """Quantities derived from joint, cup and contact."""
 
-JOINT = _make_table(
+JOINT = _make_quantity_table(
     Quantity("ball_radius", "R1", "ball radius", Kind.LENGTH, "Radius of the ball, the femoral head.",
              allows=_is_positive, allowed="a radius (mm) is above 0 and finite"),
     Quantity("head_diameter", "2 R1", "head diameter", Kind.LENGTH, "Twice the radius of the ball.",
@@ -262,14 +262,14 @@ JOINT = _make_table(
 )
 """The dimensions of a joint."""
 
-FIT = _make_table(
+FIT = _make_quantity_table(
     Quantity("interference", "-c", "interference", Kind.LENGTH,
              "Excess R1 - R2 of the ball's radius over the socket's in a preloaded joint, in place of a clearance.",
              allows=_is_positive, allowed="an interference (mm) is above 0 and finite"),
 )
 """Alternative to the clearance for a joint that is preloaded without a load."""
 
-MATERIAL = _make_table(
+MATERIAL = _make_quantity_table(
     Quantity("young", "E", "Young's modulus", Kind.MODULUS, "Stress over strain of a bar in tension.",
              allows=_is_positive, allowed="Young's modulus (MPa) is above 0 and finite"),
     Quantity("poisson", "ν", "Poisson's ratio", Kind.NUMBER,
@@ -278,14 +278,14 @@ MATERIAL = _make_table(
 )
 """Elastic constants of a material."""
 
-LINEARITY = _make_table(
+LINEARITY = _make_quantity_table(
     Quantity("proportional_limit", "σp", "proportional limit", Kind.MODULUS,
              "Stress up to which strain is proportional to stress. Above it the secant modulus is lower than E.",
              allows=_is_positive, allowed="a proportional limit (MPa) is above 0 and finite"),
 )
 """Optional proportional limit of a material."""
 
-STRENGTH = _make_table(
+STRENGTH = _make_quantity_table(
     Quantity("yield_stress", "σy", "yield stress", Kind.MODULUS,
              "Von Mises stress at which a material begins to yield. Optional; contacts are compared with it.",
              allows=_is_positive, allowed="a yield stress (MPa) is above 0 and finite"),
@@ -301,7 +301,7 @@ STRENGTH = _make_table(
 STRESS_LIMITS = MappingProxyType({**LINEARITY, **STRENGTH})
 """Stress limits of a material."""
 
-BEARING = _make_table(
+BEARING = _make_quantity_table(
     Quantity("von_mises", "σv", "von Mises stress", Kind.MODULUS,
              "Largest von Mises stress in the liner: computed by models that solve for the stresses, else a "
              "fraction of the largest pressure that is fitted to the exact solution."),
@@ -311,21 +311,21 @@ BEARING = _make_table(
 )
 """Stresses of a contact relative to the strengths."""
 
-FIELD = _make_table(
+FIELD = _make_quantity_table(
     Quantity("angle", "φ", "polar angle", Kind.ANGLE, "Angle from the axis of the load, at the centre of the socket.",
              allows=_is_within_half_turn, allowed="a polar angle lies between -pi and pi, in radians"),
     Quantity("pressure", "p", "contact pressure", Kind.MODULUS, "Pressure of the ball on the socket at a polar angle."),
 )
 """Quantities that vary along a contact."""
 
-LAYER = _make_table(
+LAYER = _make_quantity_table(
     Quantity("thickness", "", "thickness", Kind.LENGTH,
              "Thickness of a layer behind the liner; `inf` is a massive body.",
              allows=_is_positive_or_infinite, allowed="a thickness (mm) is above 0; inf is a massive body"),
 )
 """Dimension of a layer behind the liner."""
 
-CUP = _make_table(
+CUP = _make_quantity_table(
     Quantity("arc_of_cover", "", "arc of cover", Kind.ANGLE, "Angle from rim to rim of the cup; 180° is a hemisphere.",
              **_angle_limits("an arc of cover", 40.0, 340.0)),
     Quantity("chamfer", "", "chamfer", Kind.LENGTH,
@@ -340,7 +340,7 @@ CUP = _make_table(
 )
 """Rim and orientation of a cup."""
 
-AIM = _make_table(
+AIM = _make_quantity_table(
     Quantity("tilt", "γ", "tilt", Kind.ANGLE, "Angle between the load and the axis of the cup.",
              **_angle_limits("a tilt", 0.0, 180.0)),
     Quantity("azimuth", "", "azimuth", Kind.ANGLE,

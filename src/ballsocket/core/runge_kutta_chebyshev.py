@@ -62,7 +62,7 @@ def max_step_length(spectral_radius: float) -> float:
 
 
 @lru_cache(maxsize=_MAX_STAGES)
-def _coefficients(stages: int) -> tuple[tuple[float, ...], ...]:
+def _stage_coefficients(stages: int) -> tuple[tuple[float, ...], ...]:
     """Compute the coefficients (μ, ν, μ~, γ~) of all Runge-Kutta-Chebyshev stages."""
     w0 = 1 + _DAMPING / stages**2
     T, D, S = [1.0, w0], [0.0, 1.0], [0.0, 0.0]  # Chebyshev polynomials at w0, their first and second derivatives
@@ -93,7 +93,7 @@ def integrate_step(rate: Rate, values: Numbers, slope: Numbers, length: float, s
     stages : int
         Number of stages; see `stage_count`.
     """
-    (_, _, first_mu_tilde, _), *further_stages = _coefficients(stages)
+    (_, _, first_mu_tilde, _), *further_stages = _stage_coefficients(stages)
     previous, current = values, values + first_mu_tilde * length * slope
     for mu, nu, mu_tilde, gamma in further_stages:
         following = (

@@ -76,31 +76,31 @@ def cite(*used: Any) -> str:
     >>> "10.3390/app112311170" in bs.cite(bs.HessForsbach())
     True
     """
-    keys = dict.fromkeys(key for item in used for key in _list_keys(item))
+    keys = dict.fromkeys(key for item in used for key in _list_bibtex_keys(item))
     return "\n\n".join(bibliography()[key] for key in keys)
 
 
-def _list_keys(item: Any) -> list[str]:
+def _list_bibtex_keys(item: Any) -> list[str]:
     """List the BibTeX keys of an item; raise TypeError if the item cannot be cited."""
     if isinstance(item, Source):
         return [item.key]
     if isinstance(item, type) or not any(hasattr(item, mark) for mark in ("sources", "source", "model")):
         raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_format_item(item)}")
-    keys = list(_collect_keys(item))
+    keys = list(_yield_bibtex_keys(item))
     if not keys and hasattr(item, "source"):
         raise TypeError(f"no known publication is named in the source of {item}: {item.source!r}")
     return keys
 
 
-def _collect_keys(item: Any) -> Iterator[str]:
+def _yield_bibtex_keys(item: Any) -> Iterator[str]:
     """Yield the BibTeX keys of an item, its model, joint, materials and layers."""
     yield from (source.key for source in getattr(item, "sources", ()))
     yield from find_cited_keys(str(getattr(item, "source", "")))
     for layer in getattr(item, "backing", ()):
-        yield from _collect_keys(layer)
+        yield from _yield_bibtex_keys(layer)
     for attribute in ("model", "joint", "liner", "ball", "material"):
         if getattr(item, attribute, None) is not None:
-            yield from _collect_keys(getattr(item, attribute))
+            yield from _yield_bibtex_keys(getattr(item, attribute))
 
 
 def find_cited_keys(text: str) -> Iterator[str]:

@@ -170,10 +170,10 @@ class Promise:
     quantities: tuple[str, ...] = ("indentation", "max_pressure")
 
     def __str__(self) -> str:
-        return f"within {100 * self.within:g} % in {' and '.join(map(_symbol, self.quantities))}"
+        return f"within {100 * self.within:g} % in {' and '.join(map(_symbol_of, self.quantities))}"
 
 
-def _symbol(name: str) -> str:
+def _symbol_of(name: str) -> str:
     """Return the symbol of a quantity."""
     return QUANTITIES[name].symbol
 
@@ -199,7 +199,7 @@ class NeverValid(Range):
 
 
 def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
-    """Return a mask of the joints inside the domain of a model or modulus.
+    """Check which joints lie in the domain of a model or modulus: return a mask, true for these joints.
 
     The mask is true for an empty array of joints.
 
@@ -276,7 +276,7 @@ def infinite_layer_share(contact: Any) -> Array:
 
 
 def body_remarks(socket: str, ball: str) -> tuple[Remark, Remark]:
-    """Make the remarks on a model's assumed shapes of an infinite outer layer and of a soft ball."""
+    """Make two remarks: on the shapes that a model assumes for an infinite outer layer and for a soft ball."""
     spaces = (
         f"the infinite layer is {socket}; between a full space around a closed sphere (exact) and a half space around "
         "a hemisphere (fem) d differs by more than 2 %, up to 26 % in massive sockets and 55 % in bone behind a shell, "

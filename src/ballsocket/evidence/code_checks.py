@@ -19,7 +19,7 @@ from ..core.arrays import Numbers
 from ..core.deprecation import renamed_fields, renamed_names
 from ..elasticity.exact.model import Exact
 from ..elasticity.finite_elements.elasticity import ElasticBlock
-from ..elasticity.finite_elements.mesh import Block, block
+from ..elasticity.finite_elements.mesh import Block, mesh_block
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.surfaces import ClosedShell
 from ..models.foundation import RadialFoundation
@@ -225,7 +225,7 @@ INNER, OUTER = 1.0, 1.4
 def shell_block(order: int, elements: int = 6, poisson: float = 0.3, end: float = numpy.pi / 2) -> ElasticBlock:
     """Create a thick shell with Young's modulus 1 from the axis to a polar angle, with `elements` over the wall."""
     angle, radius = numpy.linspace(0.0, end, 2 * elements + 1), numpy.linspace(INNER, OUTER, elements + 1)
-    return ElasticBlock(block=block(angle, [radius], order), young=numpy.ones(1), poisson=numpy.array([poisson]))
+    return ElasticBlock(block=mesh_block(angle, [radius], order), young=numpy.ones(1), poisson=numpy.array([poisson]))
 
 
 def polar_components(elastic: ElasticBlock, across: Numbers, along: Numbers) -> Numbers:
@@ -245,7 +245,7 @@ def strain_energy_error(order: int) -> float:
     trace = 2 * a + b
     density = G * (2 * a * a + b * b - trace**2 / 3) + K * trace**2 / 2
     volume = 2 * numpy.pi / 3 * (OUTER**3 - INNER**3) * (1 - numpy.cos(end))
-    return float(abs(displacement @ (elastic.matrix() @ displacement) / 2 / (density * volume) - 1))
+    return float(abs(displacement @ (elastic.stiffness_matrix() @ displacement) / 2 / (density * volume) - 1))
 
 
 def thick_sphere_error(order: int, elements: int, poisson: float) -> float:
@@ -261,7 +261,7 @@ def thick_sphere_error(order: int, elements: int, poisson: float) -> float:
     fixed[2 * mesh.number[[0, -1]]] = True  # the axis, and the plane of symmetry
     fixed[2 * mesh.number[:, -1]] = fixed[2 * mesh.number[:, -1] + 1] = True
     displacement = numpy.zeros(len(fixed))
-    displacement[~fixed] = spsolve(elastic.matrix()[~fixed][:, ~fixed], pressure_forces(mesh)[~fixed])
+    displacement[~fixed] = spsolve(elastic.stiffness_matrix()[~fixed][:, ~fixed], pressure_forces(mesh)[~fixed])
     k = INNER / OUTER
     modulus = (2 * (1 - 2 * poisson) + (1 + poisson) * k**3) / ((1 + poisson) * (1 - 2 * poisson) * (1 - k**3))
     error = displacement[2 * mesh.number[:, 0] + 1] * modulus - 1

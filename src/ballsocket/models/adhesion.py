@@ -82,6 +82,7 @@ class AdhesiveSocket(ClosedForm):
 
     @property
     def validity(self) -> tuple[Range, ...]:
+        """Validity ranges of modulus and strains, and the limit η = 1 of the adhesion number."""
         why = "from 1 on the full hemisphere adheres without load, and the result depends on the rim"
         return (
             *self.modulus.validity,
@@ -111,7 +112,7 @@ class AdhesiveSocket(ClosedForm):
         return float(pull) if isinstance(pull, float) else pull
 
     def _force_factor(self, joint: Joint) -> Array:
-        """Compute the factor 2π R2² K in N/mm² between the scaled force in mm and the force in N."""
+        """Compute the factor 2π R2² K in N/mm that converts the scaled force in mm to the force in N."""
         return 2 * pi * joint.socket_radius**2 * self.modulus.evaluate(joint)
 
     def force(self, joint: Joint, indentation: Array) -> Array:
@@ -121,7 +122,7 @@ class AdhesiveSocket(ClosedForm):
         return self._force_factor(joint) * _scaled_stiffness(indentation, joint.clearance, self.critical_stretch(joint))
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
-        # springs less surfaces, from d = 0 on
+        """Compute the energy in N mm: elastic energy of the springs less that of adhesion, from d = 0 on."""
         c, d, u = joint.clearance, indentation, self.critical_stretch(joint)
         e = safe_divisor(c + d)
         partial = d * d * (d / e) / 3 - u * u * (d / e) * (1 - 2 * u / (3 * safe_divisor(c)))
@@ -142,9 +143,10 @@ class AdhesiveSocket(ClosedForm):
         return increasing_root(_scaled_force_and_stiffness, scaled, low, high, start, arguments=(c, stretch))
 
     def half_angle(self, joint: Joint, indentation: Array) -> Array:
-        return angle_of(_edge_cosine(indentation, joint.clearance, self.critical_stretch(joint))[1])
+        return angle_of(_edge_cosine_and_versine(indentation, joint.clearance, self.critical_stretch(joint))[1])
 
     def indentation_of_half_angle(self, joint: Joint, half_angle: Array) -> Array:
+        """Compute the indentation d in mm of a half angle in rad; NaN if it would be negative."""
         versine = versine_of(half_angle)
         d = (joint.clearance * versine - self.critical_stretch(joint)) / (1 - versine)
         return where((d >= 0) & (joint.clearance > 0), d, float("nan"))
@@ -159,11 +161,11 @@ class AdhesiveSocket(ClosedForm):
         """Compute the pressure p(φ) in MPa, negative (tension) near the edge and 0 outside the contact."""
         versine = versine_of(angle)
         u = linear_displacement(joint.socket_radius, joint.clearance, indentation, versine)
-        _, edge = _edge_cosine(indentation, joint.clearance, self.critical_stretch(joint))
+        _, edge = _edge_cosine_and_versine(indentation, joint.clearance, self.critical_stretch(joint))
         return where(versine <= edge, self.modulus.evaluate(joint) * u, 0.0)
 
 
-def _edge_cosine(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
+def _edge_cosine_and_versine(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
     """Compute cos ε and 1 - cos ε at the edge of the adhering region; cos ε is 0 if the full hemisphere adheres.
 
     ε is the half angle of the contact, with the springs under tension included.
@@ -175,14 +177,14 @@ def _edge_cosine(d: Array, c: Array, stretch: Array) -> tuple[Array, Array]:
 def _scaled_force(d: Array, c: Array, stretch: Array) -> Array:
     """Compute the scaled force F/(2π R2² K) in mm of an adhesive contact."""
     # F/(2π R2² K) = e (1 - k³)/3 - c (1 - k²)/2, with m = 1 - k taken out
-    k, m = _edge_cosine(d, c, stretch)
+    k, m = _edge_cosine_and_versine(d, c, stretch)
     return m * (d * (1 + k) / 2 - (c + d) * m * (1 + 2 * k) / 6)
 
 
 def _scaled_stiffness(d: Array, c: Array, stretch: Array) -> Array:
     """Compute the scaled stiffness, the derivative of the scaled force by the indentation."""
     # the edge moves: dF/de + dF/dk dk/de
-    k, m = _edge_cosine(d, c, stretch)
+    k, m = _edge_cosine_and_versine(d, c, stretch)
     return m * (1 + k + k * k) / 3 - k * k * stretch / safe_divisor(c + d)
 
 

@@ -80,11 +80,12 @@ class ClosedForm(Model):
             return self.force(joint, indentation)
         edge = self.half_angle(joint, indentation)
 
-        def ring(x: float) -> Array:
+        def ring_integrand(x: float) -> Array:
+            """Compute the integrand p sin φ d(φ/ε)/dx on the ring at φ = ε sin(πx/2)."""
             angle = edge * sin(pi / 2 * x)  # removes the square root at the edge
             return self.pressure(joint, indentation, angle) * arrays.sin(angle) * (pi / 2 * cos(pi / 2 * x))
 
-        return 2 * pi * joint.socket_radius**2 * edge * arrays.integral(ring, 40)
+        return 2 * pi * joint.socket_radius**2 * edge * arrays.integral(ring_integrand, 40)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
         """Compute the indentation d in mm of a contact force in N, by Newton's method.
@@ -98,8 +99,8 @@ class ClosedForm(Model):
         goal = arrays.log(arrays.safe_divisor(force)) - known
         steep, flat = goal / 2.5, goal / 0.4
 
-        def law(log_ratio: Array) -> tuple[Array, Array]:
-            """Compute ln of the force relative to that at `scale`, and its slope, at d = `scale` exp(log_ratio)."""
+        def log_force(log_ratio: Array) -> tuple[Array, Array]:
+            """Compute ln of the force F(d)/F(scale) and its slope by ln d, at d = `scale` exp(log_ratio)."""
             d = scale * arrays.exp(log_ratio)
             F = self.force(joint, d)
             return arrays.log(F) - known, d * self.stiffness(joint, d) / F
@@ -107,7 +108,7 @@ class ClosedForm(Model):
         shape = (steep, flat, known)
         low = arrays.broadcast(where(goal > 0, steep, flat), *shape)
         high = arrays.broadcast(where(goal > 0, flat, steep), *shape)
-        root = increasing_root(law, arrays.broadcast(goal, *shape), low, high, low + (high - low) / 4)
+        root = increasing_root(log_force, arrays.broadcast(goal, *shape), low, high, low + (high - low) / 4)
         return where(force > 0, scale * arrays.exp(root), 0.0 * root)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
@@ -135,6 +136,7 @@ class ClosedForm(Model):
         )
 
     def _law(self, joint: Joint) -> ForceLaw:
+        """Return the force law of a joint in closed form."""
         return ClosedLaw(model=self, joint=joint)
 
 
@@ -160,11 +162,11 @@ class ClosedLaw:
 def _law_property(law: str) -> Any:
     """Make a property that evaluates one law of the model for the solved joint and indentation."""
 
-    def value(self: ClosedFormSolution) -> Array:
+    def evaluate_law(self: ClosedFormSolution) -> Array:
         return getattr(self.model, law)(self.joint, self.indentation)
 
-    value.__doc__ = getattr(ClosedForm, law).__doc__
-    return property(value)
+    evaluate_law.__doc__ = getattr(ClosedForm, law).__doc__
+    return property(evaluate_law)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -72,6 +72,7 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.force(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def stiffness(self, joint: Joint, indentation: Array) -> Array:
+        """Compute the contact stiffness dF/dd in N/mm at an indentation in mm."""
         return self.kinematics.stiffness(
             joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
         )
@@ -80,6 +81,7 @@ class RadialFoundation(ClosedForm):
         return self.kinematics.energy(joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation)
 
     def pressure_integral(self, joint: Joint, indentation: Array) -> Array:
+        """Compute the integral of the pressure over the contact area in N."""
         return self.kinematics.pressure_integral(
             joint.socket_radius, joint.clearance, self.modulus.evaluate(joint), indentation
         )
@@ -101,11 +103,13 @@ class RadialFoundation(ClosedForm):
         return self.modulus.evaluate(joint) + 0.0 * indentation
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         u = self.kinematics.displacement(joint.socket_radius, joint.clearance, indentation, versine_of(angle))
         inside = (u > 0) & (cos(angle) > 0)
         return where(inside, self.modulus.evaluate(joint) * u, 0.0)
 
     def _law(self, joint: Joint) -> ForceLaw:
+        """Return the force law of a joint from the formulas of its kinematics."""
         R2, c, K = joint.socket_radius, joint.clearance, float(self.modulus.evaluate(joint))
         return FoundationLaw(kinematics=self.kinematics, socket_radius=R2, clearance=c, modulus=K)
 

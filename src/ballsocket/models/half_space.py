@@ -57,7 +57,7 @@ class HalfSpace(ClosedForm):
         return power(indentation / self._gap_coefficient(joint), 1 / (2 * self.order))
 
     def force(self, joint: Joint, indentation: Array) -> Array:
-        # F = 2 E* d a 2n/(2n + 1)
+        """Compute the contact force F = 2 E* d a 2n/(2n + 1) in N at an indentation in mm."""
         n = self.order
         return 4 * n / (2 * n + 1) * joint.effective_modulus * indentation * self._contact_radius(joint, indentation)
 
@@ -66,11 +66,12 @@ class HalfSpace(ClosedForm):
         return 2 * joint.effective_modulus * self._contact_radius(joint, indentation)
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
-        # F ~ d^(1 + 1/2n)
+        """Compute the elastic energy in N mm, the integral of the force F ~ d^(1 + 1/2n)."""
         n = self.order
         return 2 * n / (4 * n + 1) * self.force(joint, indentation) * indentation
 
     def indentation(self, joint: Joint, force: Array) -> Array:
+        """Compute the indentation d in mm of a contact force in N."""
         n = self.order
         profile = self._gap_coefficient(joint)
         radius = power(force * ((2 * n + 1) / (4 * n)) / (joint.effective_modulus * profile), 1 / (2 * n + 1))
@@ -83,7 +84,7 @@ class HalfSpace(ClosedForm):
         return self._gap_coefficient(joint) * (half_angle * joint.socket_radius) ** (2 * self.order)
 
     def pole_pressure(self, joint: Joint, indentation: Array) -> Array:
-        # p0 = (E*/π) 2n/(2n - 1) d/a, with d/a = κ A a^(2n - 1)
+        """Compute the pressure p0 = (E*/π) 2n/(2n - 1) d/a at the pole in MPa, with d/a = κ A a^(2n - 1)."""
         n = self.order
         slope = self._gap_coefficient(joint) * self._contact_radius(joint, indentation) ** (2 * n - 1)
         return joint.effective_modulus / pi * (2 * n / (2 * n - 1)) * slope

@@ -38,26 +38,26 @@ def linear_versine(R2: Array, c: Array, d: Array) -> Array:
 
 
 def linear_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
-    """Compute the indentation d from the versine 1 - cos ε of the half angle for linear kinematics."""
+    """Compute the indentation d in mm from the versine 1 - cos ε of the half angle for linear kinematics."""
     # Eq. (8) solved for d; without clearance every load has the same half angle
     return where(c > 0, c * versine / safe_divisor(1 - versine), nan)
 
 
 def linear_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
-    """Compute the radial displacement of the springs at the versine m = 1 - cos φ for linear kinematics."""
+    """Compute the radial displacement u of the springs in mm at the versine m = 1 - cos φ for linear kinematics."""
     # Eq. (6): u = d cos φ - c (1 - cos φ), with m = 1 - cos φ
     return d - (c + d) * m
 
 
 def linear_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the contact force from the indentation for linear kinematics."""
+    """Compute the contact force F in N from the indentation d for linear kinematics."""
     # Eq. (13): F = π R2² K/3 [2d - c + c (c/(c + d))²]
     e = safe_divisor(c + d)
     return (pi / 3) * K * R2**2 * (d * d * (3 * c + 2 * d) / (e * e))
 
 
 def linear_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the contact stiffness dF/dd for linear kinematics."""
+    """Compute the contact stiffness dF/dd in N/mm for linear kinematics."""
     # slope of Eq. (13)
     e = safe_divisor(c + d)
     x = c / e
@@ -65,19 +65,19 @@ def linear_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
 
 
 def linear_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the elastic energy of the springs for linear kinematics."""
+    """Compute the elastic energy of the springs in N mm for linear kinematics."""
     # integral of Eq. (13), which is also the energy of the springs
     return (pi / 3) * K * R2**2 * d * d * (d / safe_divisor(c + d))
 
 
 def linear_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the integral of the pressure over the contact area for linear kinematics."""
+    """Compute the integral of the pressure over the contact area, in N, for linear kinematics."""
     # ∫ p dA = 2π R2² K ∫ u sin φ dφ
     return pi * K * R2**2 * d * (d / safe_divisor(c + d))
 
 
 def linear_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
-    """Compute the indentation d from the contact force for linear kinematics."""
+    """Compute the indentation d in mm from the contact force F for linear kinematics."""
     # Eq. (13) solved for d: a cubic. The first guess is exact at both ends (d << c and d >> c) and within
     # 3.1 % elsewhere; two Halley steps (on 2z - 3 + 1/z² = q, z = 1 + d/c) reduce that to 1e-18.
     s = 1.5 * F / (pi * R2**2 * K)
@@ -101,32 +101,32 @@ def cosine_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
 
 
 def cosine_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
-    """Compute the radial spring displacement at the versine m = 1 - cos φ for cosine kinematics, without clearance."""
+    """Compute the radial spring displacement u in mm at the versine m = 1 - cos φ for cosine kinematics."""
     return linear_displacement(R2, 0.0 * c, d, m)
 
 
 def cosine_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the contact force from the indentation for cosine kinematics, without clearance."""
+    """Compute the contact force F in N from the indentation d for cosine kinematics, without clearance."""
     return linear_force(R2, 0.0 * c, K, d)
 
 
 def cosine_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the contact stiffness dF/dd for cosine kinematics, without clearance."""
+    """Compute the contact stiffness dF/dd in N/mm for cosine kinematics, without clearance."""
     return linear_stiffness(R2, 0.0 * c, K, d)
 
 
 def cosine_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the elastic energy of the springs for cosine kinematics, without clearance."""
+    """Compute the elastic energy of the springs in N mm for cosine kinematics, without clearance."""
     return linear_energy(R2, 0.0 * c, K, d)
 
 
 def cosine_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the integral of the pressure over the contact area for cosine kinematics, without clearance."""
+    """Compute the integral of the pressure over the contact area, in N, for cosine kinematics, without clearance."""
     return linear_pressure_integral(R2, 0.0 * c, K, d)
 
 
 def cosine_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
-    """Compute the indentation d from the contact force for cosine kinematics, without clearance."""
+    """Compute the indentation d in mm from the contact force F for cosine kinematics, without clearance."""
     # F = (2π/3) K R2² d
     return 1.5 * F / (pi * R2**2 * K)
 
@@ -138,7 +138,7 @@ def circular_versine(R2: Array, c: Array, d: Array) -> Array:
 
 
 def circular_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Array:
-    """Compute the indentation d from the versine 1 - cos ε for exact kinematics.
+    """Compute the indentation d in mm from the versine 1 - cos ε of the half angle for exact kinematics.
 
     Beyond the largest half angle the result is NaN.
     """
@@ -149,7 +149,7 @@ def circular_indentation_of_versine(R2: Array, c: Array, versine: Array) -> Arra
 
 
 def circular_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
-    """Compute the radial displacement of the springs at the versine m = 1 - cos φ for exact kinematics."""
+    """Compute the radial displacement u of the springs in mm at the versine m = 1 - cos φ for exact kinematics."""
     # Eq. (5): u = e cos φ + sqrt(R1² - e² sin² φ) - R2, with m = 1 - cos φ
     e = c + d
     R1 = R2 - c
@@ -158,7 +158,7 @@ def circular_displacement(R2: Array, c: Array, d: Array, m: Array) -> Array:
 
 
 def circular_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the contact force for exact kinematics; NaN if the ball's centre leaves the socket."""
+    """Compute the contact force F in N for exact kinematics; NaN if the ball's centre leaves the socket."""
     # Eq. (11) with Eq. (5): F = 2π R2² K {e (1 - k³)/3 + [R1³ - (R2 - e k)³]/(3 e²) - R2 (1 - k²)/2}, k = cos ε,
     # which is a Laurent polynomial in e with a double root at first touch. The ball's centre stays inside the socket.
     e = safe_divisor(c + d)
@@ -167,7 +167,7 @@ def circular_force(R2: Array, c: Array, K: Array, d: Array) -> Array:
 
 
 def circular_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the contact stiffness dF/dd for exact kinematics."""
+    """Compute the contact stiffness dF/dd in N/mm for exact kinematics."""
     # slope of the force
     e = safe_divisor(c + d)
     x = c / e
@@ -175,20 +175,20 @@ def circular_stiffness(R2: Array, c: Array, K: Array, d: Array) -> Array:
 
 
 def circular_energy(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the elastic energy of the springs for exact kinematics."""
+    """Compute the elastic energy of the springs in N mm for exact kinematics."""
     # integral of the force
     return (pi / 12) * K * R2 * d * d * (d / safe_divisor(c + d)) * (4 * (R2 - c) - d)
 
 
 def circular_pressure_integral(R2: Array, c: Array, K: Array, d: Array) -> Array:
-    """Compute the integral of the pressure over the contact area for exact kinematics."""
+    """Compute the integral of the pressure over the contact area, in N, for exact kinematics."""
     # ∫ p dA = 2π R2² K ∫ u dm over 0..versine by Gauss-Legendre with 8 points: u is nearly linear in m
     versine = circular_versine(R2, c, d)
     return 2 * pi * K * R2**2 * versine * integral(lambda x: circular_displacement(R2, c, d, x * versine), 8)
 
 
 def circular_indentation(R2: Array, c: Array, K: Array, F: Array) -> Array:
-    """Compute the indentation d from the contact force for exact kinematics, by Newton's method."""
+    """Compute the indentation d in mm from the contact force F for exact kinematics, by Newton's method."""
     # The force is less than that of Eq. (13), so the linear result is a lower bound; the force is nearly linear in d
     # there and Newton's method converges from that side. NaN where the ball's centre would leave the socket.
     d = linear_indentation(R2, c, K, F)

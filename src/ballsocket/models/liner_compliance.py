@@ -80,7 +80,7 @@ def log_compliance(k: Array, liner: Liner) -> Pair:
 def _scaled_polynomial(
     q: Array, Q: Array, y: Array, shrunk: Array, decay: Array, coefficients: tuple[Array, ...]
 ) -> Pair:
-    """Evaluate a polynomial of the modal compliance, N or D, divided by b^2q, and its slope by Q.
+    """Evaluate numerator N or denominator D of the modal compliance, divided by b^2q, and its slope by Q = q².
 
     `shrunk` is y² b^-4, and `decay` is the slope of -ln y.
     """
@@ -105,12 +105,12 @@ def log_compliance_any_wave(k: Array, liner: Liner) -> Pair:
     if arrays.all_true(arrays.logical_not(is_near)):
         return log_compliance(k, liner)
     value, slope = log_compliance(where(is_near, 2.0, k), liner)
-    value_near, slope_near = _log_compliance_near(k, liner)
+    value_near, slope_near = _log_compliance_near_one(k, liner)
     return where(is_near, value_near, value), where(is_near, slope_near, slope)
 
 
-def _log_compliance_near(k: Array, liner: Liner) -> Pair:
-    """Compute the log modal compliance and its slope near q = 1, with the factor q - 1 divided out of N and D."""
+def _log_compliance_near_one(k: Array, liner: Liner) -> Pair:
+    """Compute the log modal compliance and its slope by ln k near q = 1, where N and D share the factor q - 1."""
     nu = liner.poisson
     k0, g, t = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 4 * nu
     q = sqrt(k * k + 0.25)
@@ -144,7 +144,7 @@ def _reduced_polynomial(
     grown_first: tuple[Array, ...],
     decayed_last: tuple[Array, ...],
 ) -> Pair:
-    """Evaluate a polynomial of the modal compliance, N or D, divided by b^2q (q - 1), and its slope by q.
+    """Evaluate numerator N or denominator D of the modal compliance, divided by b^2q (q - 1), with its slope by q.
 
     f(q) b^2q with the first of the middle terms, and f(-q) b^-2q with the last, are q - 1 times polynomials of q - ½.
     With those and z = (1 - y)/(q - 1) the result is
@@ -156,10 +156,10 @@ def _reduced_polynomial(
     z, z_slope = z * rate, z_slope * rate * rate
     e2, e1, e0, o1, o0 = coefficients[:5]
     back, back_slope = (e2 * Q + e1) * Q + e0 - q * (o1 * Q + o0), 2 * q * (2 * e2 * Q + e1) - 3 * o1 * Q - o0
-    P, P_slope = _polynomial(Q, first)
-    M, M_slope = _polynomial(Q, middle)
-    G, G_slope = _polynomial(q - 0.5, grown_first)
-    H, H_slope = _polynomial(q - 0.5, decayed_last)
+    P, P_slope = _evaluate_polynomial(Q, first)
+    M, M_slope = _evaluate_polynomial(Q, middle)
+    G, G_slope = _evaluate_polynomial(q - 0.5, grown_first)
+    H, H_slope = _evaluate_polynomial(q - 0.5, decayed_last)
     inner = (q + 1) * M + liner.shrink * (H - z * back)
     inner_slope = M + (q + 1) * 2 * q * M_slope + liner.shrink * (H_slope - z_slope * back - z * back_slope)
     value = G - z * P + y * liner.shrink * inner
@@ -178,14 +178,14 @@ def _decay_mean(x: Array) -> Pair:
     """
     small = (x > -0.05) & (x < 0.05)
     safe = where(small, 1.0, x)
-    series, series_slope = _polynomial(x, _DECAY)
+    series, series_slope = _evaluate_polynomial(x, _DECAY)
     decayed = exp(-safe)
     mean = (1 - decayed) / safe
     return where(small, series, mean), where(small, series_slope, (decayed - mean) / safe)
 
 
-def _polynomial(x: Array, coefficients: tuple[Array, ...]) -> Pair:
-    """Evaluate a polynomial of x and its slope; coefficients start with the highest power."""
+def _evaluate_polynomial(x: Array, coefficients: tuple[Array, ...]) -> Pair:
+    """Evaluate a polynomial and its slope at x; the coefficients start with the highest power."""
     value, slope = coefficients[0] + 0.0 * x, 0.0 * x
     for coefficient in coefficients[1:]:
         slope = slope * x + value

@@ -71,6 +71,7 @@ class LiuReconstruction(ClosedForm):
         return self._force_factor(joint) * (indentation / e) * (1 + joint.clearance / e)
 
     def energy(self, joint: Joint, indentation: Array) -> Array:
+        """Compute the elastic energy in N mm, the integral of the force over the indentation."""
         # ∫ s²/(c + s) ds: by quadrature where the closed form cancels
         c, d = joint.clearance, indentation
         closed = d * d / 2 - c * d + c * c * log(1 + d / safe_divisor(c))
@@ -78,7 +79,7 @@ class LiuReconstruction(ClosedForm):
         return self._force_factor(joint) * where(d < c, d * d * d * series, closed)
 
     def indentation(self, joint: Joint, force: Array) -> Array:
-        # d² - s d - s c = 0
+        """Compute the indentation d in mm of a force in N, the root of d² - s d - s c = 0."""
         s = force / self._force_factor(joint)
         return (s + sqrt(s * (s + 4 * joint.clearance))) / 2
 
@@ -98,12 +99,14 @@ class LiuReconstruction(ClosedForm):
         return self.foundation_modulus(joint, indentation) * indentation
 
     def foundation_modulus(self, joint: Joint, indentation: Array) -> Array:
+        """Compute the foundation modulus K = p0/d in MPa/mm at an indentation in mm."""
         # F = (2/3) π a² p0; F and a² share the factor d/(c + d)
         c, d = joint.clearance, indentation
         ratio = where(c + d > 0, (c + d) / safe_divisor(2 * c + d), 1.0)
         return 1.5 * self._force_factor(joint) * ratio / (pi * joint.socket_radius**2)
 
     def pressure(self, joint: Joint, indentation: Array, angle: Array) -> Array:
+        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         square = sin(angle) ** 2 / safe_divisor(self._squared_sine(joint, indentation))
         inside = (square < 1) & (angle < pi / 2) & (indentation > 0)
         return where(inside, self.pole_pressure(joint, indentation) * sqrt(clip(1 - square, 0.0, 1.0)), 0.0)

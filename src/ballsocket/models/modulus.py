@@ -16,7 +16,7 @@ from ..core.deprecation import RenamedAttribute
 from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, RIGID_BALL, Promise, Range, check_domain
 from ..problem import Joint
-from .table_3 import eq_18, table_formula
+from .table_3 import scaled_modulus, table_formula
 
 Formula = Callable[..., Array]
 """Function that computes K from R2, L, E, ν and the constants of the modulus."""
@@ -104,7 +104,7 @@ def layer_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
 
 def polynomial_formula(R2: Array, L: Array, E: Array, nu: Array, c1: Array, c2: Array, c3: Array) -> Array:
     """Compute the foundation modulus K in MPa/mm from the polynomial of Eq. (18) in R2/L."""
-    return E / R2 * eq_18((c1, c2, c3), R2 / L)
+    return E / R2 * scaled_modulus((c1, c2, c3), R2 / L)
 
 
 def corrected_vessel_formula(R2: Array, L: Array, E: Array, nu: Array, a0: Array, a1: Array, a2: Array) -> Array:
@@ -115,7 +115,7 @@ def corrected_vessel_formula(R2: Array, L: Array, E: Array, nu: Array, a0: Array
 
 
 def constant_formula(R2: Array, L: Array, E: Array, nu: Array, K: Array) -> Array:
-    """Return a constant foundation modulus in MPa/mm, broadcast to the shape of the joint."""
+    """Broadcast a constant foundation modulus in MPa/mm to the shape of the joint."""
     return K + 0.0 * R2
 
 

@@ -42,6 +42,7 @@ class PinInHole(ModelInfo):
 
     @property
     def validity(self) -> tuple[Range, ...]:
+        """Validity ranges: pin and plate of one material, and an infinite plate."""
         same = "pin and plate of one material (a rigid pin is none)"
         massive = "an infinite plate"
         return (
@@ -86,7 +87,7 @@ class PinInHole(ModelInfo):
         with numpy.errstate(all="ignore"):
             stiffness = joint.liner.young / (1 - joint.liner.poisson**2) * joint.clearance
             if kind == "line_load":
-                line_load, angle = load, 2 * atan(sqrt(_squared_tangent(stiffness, load)))
+                line_load, angle = load, 2 * atan(sqrt(_solve_squared_tangent(stiffness, load)))
             else:
                 reached = stiffness / _flexibility(tan(load / 2) ** 2)
                 line_load, angle = where((stiffness > 0) | (load == 0), reached, numpy.nan), load
@@ -150,19 +151,20 @@ def _flexibility(s: Array) -> Array:
     return (2 - log(1 + s) - 2 * s * s) / (pi * (1 + s) * safe_divisor(s))
 
 
-def _squared_tangent(stiffness: Array, load: Array) -> Array:
+def _solve_squared_tangent(stiffness: Array, load: Array) -> Array:
     """Solve for the squared half-angle tangent β² = tan²(ε/2) of a line load; `stiffness` is E1 c."""
     ratio = stiffness / safe_divisor(load)
 
-    def law(s: Array) -> tuple[Array, Array]:
+    def load_residual(s: Array) -> tuple[Array, Array]:
+        """Compute the residual of the line load and its slope at s = tan²(ε/2)."""
         value = log(1 + s) + 2 * s * s - 2 + pi * (s + s * s) * ratio
         return value, 1 / (1 + s) + 4 * s + pi * (1 + 2 * s) * ratio
 
     ratio = broadcast(ratio, load)
     start = 2 / (pi * ratio + 2.4)  # right for light loads, at most 4 % off
-    root = increasing_root(law, 0.0 * ratio, 0.0 * ratio, 0.0 * ratio + 1.0, start)
+    root = increasing_root(load_residual, 0.0 * ratio, 0.0 * ratio, 0.0 * ratio + 1.0, start)
     return where(load > 0, root, 0.0 * root)
 
 
-PERFECT_FIT = float(2 * atan(sqrt(_squared_tangent(numpy.float64(0.0), numpy.float64(1.0)))))
+PERFECT_FIT = float(2 * atan(sqrt(_solve_squared_tangent(numpy.float64(0.0), numpy.float64(1.0)))))
 """Half angle in rad without clearance: 84.83 degrees."""

@@ -106,7 +106,7 @@ class PlaneLayer(Model):
         )
 
 
-def layer_ratio(x: Array, poisson: Array) -> Array:
+def kernel_deviation(x: Array, poisson: Array) -> Array:
     """Compute the kernel Φ(x) - 1 of a bonded layer, the deviation of its response from that of a half-space.
 
     Φ = [2 k0 sinh 2x - 4x]/[2 k0 cosh 2x + 1 + k0² + 4x²], k0 = 3 - 4ν, and x is the wave number times L.
@@ -144,13 +144,13 @@ class LayerSolution:
     def _weighted_kernel(self) -> Array:
         """Kernel Φ - 1 at the quadrature points of the wave number, times their weights."""
         _, _, k, wk = self._quadrature_points
-        return layer_ratio(k, self.joint.liner.poisson[..., None]) * wk
+        return kernel_deviation(k, self.joint.liner.poisson[..., None]) * wk
 
     @cached_property
-    def _transforms(self) -> tuple[Array, Array, Array, Array]:
-        """Integrals of h1 and h2 (last axis): cosine transform, edge value h(1), ∫ h dx and ∫ h x² dx.
+    def _solution_integrals(self) -> tuple[Array, Array, Array, Array]:
+        """Integrals of both solutions h1 and h2 (last axis): cosine transform, edge value, mean and second moment.
 
-        The transform is ∫ h cos(k x α) dx.
+        The transform is ∫ h cos(k x α) dx, the edge value h(1), the mean ∫ h dx and the second moment ∫ h x² dx.
 
         They are computed in blocks, since the waves of all contacts together may exceed the memory.
         """
@@ -160,15 +160,15 @@ class LayerSolution:
         flat_width, flat_kernel = xp.reshape(self.width, (-1,)), xp.reshape(kernel, (-1, k.shape[0]))
         count, size = flat_width.shape[0], max(1, _BLOCK // (k.shape[0] * x.shape[0]))
         spans = [slice(first, min(first + size, count)) for first in range(0, max(count, 1), size)]
-        blocks = [self._solve_block(flat_width[span], flat_kernel[span, :]) for span in spans]
+        blocks = [self._solve_contact_block(flat_width[span], flat_kernel[span, :]) for span in spans]
         joined = (xp.concat(part, axis=0) if len(blocks) > 1 else part[0] for part in zip(*blocks, strict=True))
         transform, edge, mean, second = (xp.reshape(part, (*self.width.shape, *part.shape[1:])) for part in joined)
         return transform, edge, mean, second
 
-    def _solve_block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
+    def _solve_contact_block(self, width: Array, kernel: Array) -> tuple[Array, Array, Array, Array]:
         """Solve the integral equations of a block of contacts for h1 and h2, and compute their integrals.
 
-        The four arrays are those of `_transforms`.
+        The four arrays are those of `_solution_integrals`.
         """
         xp = arrays.namespace(width)
         x, wx, k, _ = self._quadrature_points
@@ -188,7 +188,7 @@ class LayerSolution:
     @cached_property
     def _scaled_indentation(self) -> Array:
         """Scaled indentation δ = d R*/a²."""
-        edge = self._transforms[1]
+        edge = self._solution_integrals[1]
         return edge[..., 1] / edge[..., 0]
 
     @property
@@ -206,10 +206,13 @@ class LayerSolution:
         """Plane compliance C = 2(1 - ν²)/E in 1/MPa."""
         return 2 * (1 - self.joint.liner.poisson**2) / self.joint.liner.young
 
-    def _scaled_slope(self, x: Array) -> Array:
-        """Compute the scaled slope -H'(x)/x in units of a²/(R* C): 4/π on a half-space."""
+    def _pressure_density(self, x: Array) -> Array:
+        """Compute the dimensionless pressure density -H'(x)/x at the relative radius x; 4/π on a half-space.
+
+        It has the unit a²/(R* C). The pressure is the integral of -H'(x) over the radius.
+        """
         xp = arrays.namespace(self.width)
-        kernel, k, transform = self._weighted_kernel, self._quadrature_points[2], self._transforms[0]
+        kernel, k, transform = self._weighted_kernel, self._quadrature_points[2], self._solution_integrals[0]
         wave = k * self.width[..., None]
         phase = wave * x[..., None]
         sinc = where(phase > 1e-4, sin(phase) / safe_divisor(phase), 1 - phase * phase / 6)
@@ -220,16 +223,16 @@ class LayerSolution:
     @cached_property
     def force_and_indentation(self) -> tuple[Array, Array]:
         """Force F in N and indentation d in mm."""
-        mean = self._transforms[2]
+        mean = self._solution_integrals[2]
         delta, a = self._scaled_indentation, self._contact_radius
         force = 2 * pi * a**3 / (self._compliance * self._effective_radius) * (delta * mean[..., 0] - mean[..., 1])
         return force, delta * a * a / self._effective_radius
 
     @cached_property
     def radius_derivatives(self) -> tuple[Array, Array]:
-        """Derivatives dF/da in N/mm and dd/da by the contact radius: a wider contact adds a flat punch."""
-        steep = self._scaled_slope(self.width**0)
-        deepening = self._contact_radius / self._effective_radius * steep / self._transforms[1][..., 0]
+        """Derivatives of force (N/mm) and of indentation by the contact radius a: dF/da and dd/da."""
+        steep = self._pressure_density(self.width**0)
+        deepening = self._contact_radius / self._effective_radius * steep / self._solution_integrals[1][..., 0]
         return self.stiffness * deepening, deepening
 
     @property
@@ -238,12 +241,12 @@ class LayerSolution:
 
     @property
     def stiffness(self) -> Array:
-        return 2 * pi * self._contact_radius * self._transforms[2][..., 0] / self._compliance
+        return 2 * pi * self._contact_radius * self._solution_integrals[2][..., 0] / self._compliance
 
     @property
     def energy(self) -> Array:
-        # half of ∫ p (d - r²/2R*) dA
-        second, delta, a = self._transforms[3], self._scaled_indentation, self._contact_radius
+        """Elastic energy in N mm, half of ∫ p (d - r²/2R*) dA."""
+        second, delta, a = self._solution_integrals[3], self._scaled_indentation, self._contact_radius
         force, d = self.force_and_indentation
         moment = 4 * pi * a**5 / (self._compliance * self._effective_radius) * (delta * second[..., 0] - second[..., 1])
         return (d * force - moment / (2 * self._effective_radius)) / 2
@@ -270,10 +273,11 @@ class LayerSolution:
         return self.force_and_indentation[0]
 
     def pressure(self, angle: Array) -> Array:
+        """Compute the contact pressure p(φ) in MPa at a polar angle in rad; 0 outside the contact."""
         # ∫ -H'(s)/sqrt(s² - r²) ds over r..a, with s² = r² + (a² - r²) y²
         position = angle * self.joint.socket_radius / safe_divisor(self._contact_radius)
         remainder = clip(1 - position * position, 0.0, 1.0)
-        total = integral(lambda y: self._scaled_slope(sqrt(position * position + remainder * y * y)), 32)
+        total = integral(lambda y: self._pressure_density(sqrt(position * position + remainder * y * y)), 32)
         scale = self._contact_radius / (self._effective_radius * self._compliance)
         return where(position < 1, scale * sqrt(remainder) * total, 0.0)
 

@@ -90,14 +90,14 @@ class RefinedSolution:
     edge: Array
 
     @cached_property
-    def _liner(self) -> Liner:
+    def _joint_liner(self) -> Liner:
         """Compliance coefficients of the liner."""
-        return _liner(self.joint)
+        return _joint_liner(self.joint)
 
     @cached_property
     def _scaled_contact(self) -> ScaledContact:
         """Dimensionless contact quantities at the half angle."""
-        return scaled_contact(safe_divisor(self.edge), self._liner)
+        return scaled_contact(safe_divisor(self.edge), self._joint_liner)
 
     def _zero_without_load(self, value: Array) -> Array:
         """Replace values of contacts without load by 0."""
@@ -108,7 +108,7 @@ class RefinedSolution:
         """Secant stiffness F/d in N/mm."""
         return self.joint.liner.young * self.joint.socket_radius * self._scaled_contact.secant
 
-    def loads(self, kind: str, load: Array) -> tuple[Array, Array]:
+    def force_and_indentation(self, kind: str, load: Array) -> tuple[Array, Array]:
         """Compute the force F in N and the indentation d in mm from the applied load.
 
         The applied load is returned unchanged.
@@ -120,7 +120,7 @@ class RefinedSolution:
         return self._zero_without_load(d * self._secant_stiffness), self._zero_without_load(d)
 
     def relative_residual(self, indentation: Array) -> Array:
-        """Compute the relative error of the half angle that solves for an indentation in mm."""
+        """Compute the relative error of the solved half angle from the prescribed indentation in mm."""
         d = self._scaled_contact.indentation
         error = abs(1 - indentation / (self.joint.clearance * d)) / self._scaled_contact.indentation_rate
         return where(self.edge > 0, error, 0.0)
@@ -136,6 +136,7 @@ class RefinedSolution:
 
     @cached_property
     def stiffness(self) -> Array:
+        """Tangent stiffness dF/dd in N/mm."""
         return self._zero_without_load(
             self._secant_stiffness * (1 + self._scaled_contact.secant_rate / self._scaled_contact.indentation_rate)
         )
@@ -148,14 +149,15 @@ class RefinedSolution:
         rate = self._scaled_contact.indentation_rate / edge
         width = arrays.log(1 + rate * edge)
 
-        def work(x: float) -> Array:
+        def work_rate(x: float) -> Array:
+            """Compute the scaled work per unit of x, a coordinate that is dense near the edge."""
             growth = arrays.exp(width * x)
             angle = edge - (growth - 1) / rate
-            contact = scaled_contact(angle, self._liner)
+            contact = scaled_contact(angle, self._joint_liner)
             return contact.secant * contact.indentation**2 * contact.indentation_rate / angle * (growth * width / rate)
 
         scale = self.joint.liner.young * self.joint.socket_radius * self.joint.clearance**2
-        return self._zero_without_load(scale * integral(work, 24))
+        return self._zero_without_load(scale * integral(work_rate, 24))
 
     @property
     def _modulus(self) -> Array:
@@ -178,7 +180,7 @@ class RefinedSolution:
 
     @property
     def max_pressure(self) -> Array:
-        return self.pole_pressure * self._profile(self._peak_position)
+        return self.pole_pressure * self._pressure_ratio(self._peak_position)
 
     @property
     def max_pressure_angle(self) -> Array:
@@ -186,7 +188,7 @@ class RefinedSolution:
 
     @property
     def _squared_sine(self) -> Array:
-        """Squared sine sin²(ε/2) of half the half angle."""
+        """Squared sine sin²(ε/2), with the half angle ε of the contact."""
         return sin(safe_divisor(self.edge) / 2) ** 2
 
     @cached_property
@@ -204,13 +206,13 @@ class RefinedSolution:
         ring = 4 * pi * self.joint.socket_radius**2 * self._squared_sine
         return ring * self.pole_pressure * (2 / 3 + 4 * self._shape_coefficient / 15)
 
-    def _profile(self, y: Array) -> Array:
+    def _pressure_ratio(self, y: Array) -> Array:
         """Compute the pressure ratio p/p0 at the position y = sin²(φ/2)/sin²(ε/2), 0 to 1."""
         return arrays.sqrt(clip(1 - y, 0.0, 1.0)) * (1 + self._shape_coefficient * y)
 
     def pressure(self, angle: Array) -> Array:
         y = sin(clip(angle, -pi, pi) / 2) ** 2 / self._squared_sine
-        return where(y < 1, self.pole_pressure * self._profile(y), self._zero_without_load(0.0 * y))
+        return where(y < 1, self.pole_pressure * self._pressure_ratio(y), self._zero_without_load(0.0 * y))
 
 
 def _mask_half_angle(joint: Joint, half_angle: Array) -> Array:
@@ -223,7 +225,7 @@ def _mask_half_angle(joint: Joint, half_angle: Array) -> Array:
 def _solve_half_angle(joint: Joint, kind: str, load: Array) -> Array:
     """Solve for the half angle in rad of a force or an indentation; NaN beyond the largest half angle."""
     half_angle_of = half_angle_of_force if kind == "force" else half_angle_of_indentation
-    return where(load > 0, half_angle_of(scaled_load(joint, kind, load), _liner(joint)), 0.0 * load)
+    return where(load > 0, half_angle_of(scaled_load(joint, kind, load), _joint_liner(joint)), 0.0 * load)
 
 
 def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
@@ -233,8 +235,8 @@ def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
 
 
 def make_solver_result(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
-    """Make the solver result of a solution, with its convergence check."""
-    force, indentation = solution.loads(kind, load)
+    """Make the solver result of solved contacts, with a check of their convergence."""
+    force, indentation = solution.force_and_indentation(kind, load)
     return SolverResult(
         laws=solution,
         force=force,
@@ -247,7 +249,7 @@ def make_solver_result(solution: RefinedSolution, kind: str, load: Array) -> Sol
     )
 
 
-def _liner(joint: Joint) -> Liner:
+def _joint_liner(joint: Joint) -> Liner:
     """Return the compliance coefficients of a joint's liner."""
     nu, b = joint.liner.poisson, 1 + joint.liner_thickness / joint.socket_radius
     return _liner_of_numbers(nu, b) if type(nu) is float and type(b) is float else liner_coefficients(nu, b)

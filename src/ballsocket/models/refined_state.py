@@ -161,7 +161,10 @@ ValueAndSlopes = tuple[Array, Array, Array, Array, Array]
 
 
 def _log_compliance(c2: Array, s: Array, v: Array, w: Array, S: Array, fit: Fit) -> ValueAndSlopes:
-    """Compute the log compliance ln χ of the contact, and its slopes by s, v, w and S; by ln c the slope is 1."""
+    """Compute the log compliance ln χ of the contact, with its derivatives by s, v, w and S = sin²(ε/2).
+
+    `log_slopes` explains s, v and w. The derivative by ln c is 1.
+    """
     A1, A2, A3 = fit.gamma
     G1, G2, G3, G4 = fit.level
     return (
@@ -174,7 +177,7 @@ def _log_compliance(c2: Array, s: Array, v: Array, w: Array, S: Array, fit: Fit)
 
 
 def _edge_displacement(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
-    """Compute the relative edge displacement λ = u(ε)/d and its slopes by s, v, w and S."""
+    """Compute the relative edge displacement λ = u(ε)/d, with its derivatives by s, v, w and S = sin²(ε/2)."""
     L1, L2, L3, L4, L5, L6, L7, L8, L9, L10 = fit
     by_s = 0.5 + L3 * v + L4 * w + S * (L9 + L10 * v)
     by_w = L1 + L5 * S + L8 * v * v
@@ -188,7 +191,7 @@ def _edge_displacement(s: Array, v: Array, w: Array, S: Array, fit: tuple[float,
 
 
 def _pressure_exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float, ...]) -> ValueAndSlopes:
-    """Compute the exponent m of the pressure profile and its slopes by s, v, w and S."""
+    """Compute the exponent m of the pressure profile, with its derivatives by s, v, w and S = sin²(ε/2)."""
     M1, M2, M3, M4, M5 = fit
     by_s = -0.5 + S * (M4 + M5 * v)
     return (
@@ -201,7 +204,7 @@ def _pressure_exponent(s: Array, v: Array, w: Array, S: Array, fit: tuple[float,
 
 
 def angle_derivative(value_and_slopes: ValueAndSlopes, slopes: tuple[Array, Array, Array, Array]) -> Array:
-    """Compute the derivative of a formula by ln ε, by the chain rule over s, v, w and S."""
+    """Compute the derivative of a formula by ln ε from its derivatives by s, v, w and S, by the chain rule."""
     return (
         value_and_slopes[1] * slopes[0]
         + value_and_slopes[2] * slopes[1]
@@ -236,7 +239,7 @@ def _solve_half_angle(residual: Increasing, load: Array, log_estimate: Array, li
 
 
 def _indentation_residual(log_angle: Array, load: Array, liner: Liner) -> Pair:
-    """Compute the residual of an indentation at a trial half angle, and its slope.
+    """Compute the residual of the indentation at a trial half angle, and its slope by ln ε.
 
     The residual is ln x/(1 + x), x = d/c, less its value at the load.
     """
@@ -247,7 +250,7 @@ def _indentation_residual(log_angle: Array, load: Array, liner: Liner) -> Pair:
 
 
 def _force_residual(log_angle: Array, load: Array, liner: Liner) -> Pair:
-    """Compute the residual of a force at a trial half angle, and its slope.
+    """Compute the residual of the force at a trial half angle, and its slope by ln ε.
 
     The residual is ln x/(1 + x), x = d/c, less its value at the load over the secant stiffness.
     """

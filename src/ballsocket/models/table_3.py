@@ -40,7 +40,7 @@ Row = tuple[float, ...]
 """Row of numbers."""
 
 
-def _cubics() -> tuple[Row, Row, Row, Any]:
+def _interpolate_constants() -> tuple[Row, Row, Row, Any]:
     """Compute the monotone cubics in ν that interpolate Table 3.
 
     Returns knots, widths, (C1, C2, C3) at the first knot, and for each interval and constant the coefficients of the
@@ -53,21 +53,21 @@ def _cubics() -> tuple[Row, Row, Row, Any]:
     slopes = _monotone_slopes(knots, values)
     second = (3 * rise - 2 * slopes[:, :-1] - slopes[:, 1:]) / width
     third = (slopes[:, :-1] + slopes[:, 1:] - 2 * rise) / width**2
-    rows = [[_row(part[:, i]) for part in (slopes, second, third)] for i in range(len(width))]
-    return _row(knots), _row(width), _row(values[:, 0]), tuple(map(tuple, rows))
+    rows = [[_float_tuple(part[:, i]) for part in (slopes, second, third)] for i in range(len(width))]
+    return _float_tuple(knots), _float_tuple(width), _float_tuple(values[:, 0]), tuple(map(tuple, rows))
 
 
-def _row(values: Numbers) -> Row:
+def _float_tuple(values: Numbers) -> Row:
     """Convert an array to a tuple of floats."""
     return tuple(map(float, values))
 
 
-(_X1, _X2, _X3, _X4, _), (_W1, _W2, _W3, _W4), _START, _CUBICS = _cubics()
+(_X1, _X2, _X3, _X4, _), (_W1, _W2, _W3, _W4), _START, _CUBICS = _interpolate_constants()
 (_A1, _B1, _C1), (_A2, _B2, _C2), (_A3, _B3, _C3), (_A4, _B4, _C4) = _CUBICS
 
 
-def eq_18(constants: tuple[Array, ...], ratio: Array) -> Array:
-    """Compute the scaled foundation modulus K R2/E from the thickness ratio R2/L, Eq. (18) of the paper."""
+def scaled_modulus(constants: tuple[Array, ...], ratio: Array) -> Array:
+    """Compute the scaled foundation modulus K R2/E from the thickness ratio R2/L by Eq. (18) of the paper."""
     return constants[0] + ratio * (constants[1] + ratio * constants[2])
 
 
@@ -78,9 +78,9 @@ def table_formula(R2: Array, L: Array, E: Array, nu: Array) -> Array:
     x = R2 / L
     t1, t2 = clip(nu - _X1, 0.0, _W1), clip(nu - _X2, 0.0, _W2)
     t3, t4 = clip(nu - _X3, 0.0, _W3), clip(nu - _X4, 0.0, _W4)
-    scaled = eq_18(_START, x)
-    scaled = scaled + t1 * (eq_18(_A1, x) + t1 * (eq_18(_B1, x) + t1 * eq_18(_C1, x)))
-    scaled = scaled + t2 * (eq_18(_A2, x) + t2 * (eq_18(_B2, x) + t2 * eq_18(_C2, x)))
-    scaled = scaled + t3 * (eq_18(_A3, x) + t3 * (eq_18(_B3, x) + t3 * eq_18(_C3, x)))
-    scaled = scaled + t4 * (eq_18(_A4, x) + t4 * (eq_18(_B4, x) + t4 * eq_18(_C4, x)))
+    scaled = scaled_modulus(_START, x)
+    scaled = scaled + t1 * (scaled_modulus(_A1, x) + t1 * (scaled_modulus(_B1, x) + t1 * scaled_modulus(_C1, x)))
+    scaled = scaled + t2 * (scaled_modulus(_A2, x) + t2 * (scaled_modulus(_B2, x) + t2 * scaled_modulus(_C2, x)))
+    scaled = scaled + t3 * (scaled_modulus(_A3, x) + t3 * (scaled_modulus(_B3, x) + t3 * scaled_modulus(_C3, x)))
+    scaled = scaled + t4 * (scaled_modulus(_A4, x) + t4 * (scaled_modulus(_B4, x) + t4 * scaled_modulus(_C4, x)))
     return E / R2 * scaled

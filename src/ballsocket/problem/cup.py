@@ -149,7 +149,7 @@ class Cup:
         return x, y, z
 
     def tilted(self, angle: float) -> Cup:
-        """Return this cup with a given angle in rad between its axis and a vertical load.
+        """Return a copy of the cup, tilted by an angle in rad between its axis and a vertical load.
 
         The angle is at most π/2.
         """

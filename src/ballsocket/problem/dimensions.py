@@ -121,7 +121,7 @@ def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], 
     numbers = {name: LENGTHS[name].check(value) for name, value in lengths.items()}
     check_unique_lengths(numbers)
     if not current:
-        _check_enough(numbers)
+        _check_sufficient_lengths(numbers)
     stored = derive_lengths(numbers, current, shell)
     for name in ("outer_radius", "outer_diameter"):
         if name in numbers:
@@ -148,12 +148,12 @@ def derive_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], s
     known = {**current, **radii}
     if "socket_radius" in radii:
         if "clearance" in radii:
-            known["ball_radius"] = _difference(radii["socket_radius"], radii["clearance"])
+            known["ball_radius"] = _subtract_lengths(radii["socket_radius"], radii["clearance"])
         else:
-            known["clearance"] = _difference(radii["socket_radius"], known["ball_radius"])
+            known["clearance"] = _subtract_lengths(radii["socket_radius"], known["ball_radius"])
     if "outer_radius" in radii:
         socket = radii.get("socket_radius", known["ball_radius"] + known["clearance"])
-        known["liner_thickness"] = _difference(radii["outer_radius"], socket + shell)
+        known["liner_thickness"] = _subtract_lengths(radii["outer_radius"], socket + shell)
     return {name: known[name] for name in STORED_LENGTHS}
 
 
@@ -172,7 +172,7 @@ def check_unique_lengths(names: Iterable[str]) -> None:
         raise ValueError(f"{outer} and liner_thickness are one too many: either fixes the other")
 
 
-def _check_enough(names: Iterable[str]) -> None:
+def _check_sufficient_lengths(names: Iterable[str]) -> None:
     """Check that the given lengths define a new joint; raise ValueError otherwise."""
     names_by_length = {_EQUIVALENTS.get(name, name): name for name in names}
     if not ("liner_thickness" in names_by_length or "outer_radius" in names_by_length):
@@ -183,7 +183,7 @@ def _check_enough(names: Iterable[str]) -> None:
         raise ValueError(f"two of ball_radius, socket_radius, clearance are needed, got {got}")
 
 
-def _difference(larger: Array, smaller: Array) -> Array:
+def _subtract_lengths(larger: Array, smaller: Array) -> Array:
     """Subtract two lengths, and round plain numbers to the digits of the larger: 18 - 17.9 is 0.1."""
     if not (is_plain_number(larger) and is_plain_number(smaller) and 0 < larger < float("inf")):
         return larger - smaller

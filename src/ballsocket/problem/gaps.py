@@ -57,7 +57,7 @@ class LinearGap:
         return -1.5 * d * numpy.sin(1.5 * t) - self.clearance * clearance_term
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the Abel transform A[∂u/∂d](t) of the derivative of the displacement by the indentation."""
+        """Compute the Abel transform A[∂u/∂d](t), the change of A[u] per unit of the indentation d."""
         return numpy.cos(1.5 * t) + 0.0 * d
 
     deepening = RenamedAttribute("indentation_derivative")
@@ -99,13 +99,13 @@ class CircularGap:
         return _abel_transform_slope(t, lambda w: self._gap_derivatives(w, d))
 
     def indentation_derivative(self, t: Numbers, d: Numbers) -> Numbers:
-        """Compute the Abel transform A[∂u/∂d](t) of the derivative of the displacement by the indentation."""
+        """Compute the Abel transform A[∂u/∂d](t), the change of A[u] per unit of the indentation d."""
         return _abel_transform(t, lambda w: self._indentation_derivatives(w, d))
 
     deepening = RenamedAttribute("indentation_derivative")
 
     def _gap_derivatives(self, w: Numbers, d: Numbers | float) -> tuple[Numbers, Numbers, Numbers]:
-        """Compute the displacement u and its first two derivatives with respect to w; NaN beyond the ball."""
+        """Compute the displacement u in mm and its first two derivatives by w = 1 - cos φ; NaN beyond the ball."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         dropped = e * e * w * (2 - w)
         root = numpy.sqrt(R1 * R1 - dropped)
@@ -113,7 +113,7 @@ class CircularGap:
         return d - e * w - dropped / (R1 + root), -e - tilt, (e * e - tilt * tilt) / root
 
     def _indentation_derivatives(self, w: Numbers, d: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute ∂u/∂d and its derivative with respect to w."""
+        """Compute the derivative ∂u/∂d by the indentation, and the derivative of ∂u/∂d by w = 1 - cos φ."""
         R1, e = self.socket_radius - self.clearance, self.clearance + d
         sine = w * (2 - w)
         root = numpy.sqrt(R1 * R1 - e * e * sine)

@@ -109,10 +109,10 @@ class Joint(Dimensions):
         layers = _check_backing(backing)
         set_fields(self, **resolve_lengths(lengths, {}, _shell_thickness(layers)))
         set_fields(self, liner=liner, ball=ball, backing=layers, support=support, name=name, source=source)
-        for name, inner in self._thicknesses()[:-1]:
+        for name, inner in self._named_thicknesses()[:-1]:
             require(name, inner, inner < inf, "only the outermost layer may be infinite, and there is one behind this")
 
-    def _thicknesses(self) -> list[tuple[str, Array]]:
+    def _named_thicknesses(self) -> list[tuple[str, Array]]:
         """List names and thicknesses in mm of the liner and the layers behind it."""
         layers = [(f"backing[{number}].thickness", layer.thickness) for number, layer in enumerate(self.backing)]
         return [("liner_thickness", self.liner_thickness), *layers]
@@ -149,7 +149,7 @@ class Joint(Dimensions):
         )
         if self.support is Support.FIXED:
             return softest
-        _, outermost = self._thicknesses()[-1]
+        _, outermost = self._named_thicknesses()[-1]
         if is_plain_number(outermost):
             return softest if outermost == inf else inf + softest
         return where(outermost < inf, inf, softest)
@@ -251,7 +251,7 @@ class Joint(Dimensions):
         return self if all(type(number) is float for number in numbers) else self.with_numbers(map(float, numbers))
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the joint for JSON, in mm and MPa.
+        """Return the joint as a dictionary for JSON, in mm and MPa.
 
         Arrays become lists, and infinity the text "inf".
         """

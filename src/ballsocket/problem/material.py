@@ -75,7 +75,7 @@ class Material:
         return make_unchecked(Material, **{**vars(self), "young": young, "poisson": poisson})
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the material for JSON, in MPa."""
+        """Return the material as a dictionary for JSON, in MPa."""
         numbers = {"young": self.young, "poisson": self.poisson, **self.stress_limits}
         return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
 
@@ -126,7 +126,7 @@ class Layer:
         return make_unchecked(Layer, thickness=thickness, material=self.material.with_numbers(young, poisson))
 
     def summary(self) -> dict[str, Any]:
-        """Return a dictionary of the layer for JSON, in mm and MPa."""
+        """Return the layer as a dictionary for JSON, in mm and MPa."""
         return {"thickness": to_list(self.thickness), **self.material.summary()}
 
     def __str__(self) -> str:

@@ -413,7 +413,7 @@ def test_errors_grow_with_the_slopes_of_a_point_contact():
     }
     pressures = {"force": 2 * e, "indentation": 2.5 * e, "half_angle": e}
     for kind, values in expected.items():
-        errors = load_curve.errors(kind, state)
+        errors = load_curve.estimate_errors(kind, state)
         for name, value in values.items():
             np.testing.assert_allclose(errors[name], value, err_msg=f"{kind} {name}")
         for name in ("max_pressure", "pole_pressure", "stiffness", "pressure_integral"):
@@ -446,7 +446,7 @@ def test_windows_of_knots_surround_their_half_angles():
 @pytest.mark.parametrize("index", [0, 3, 6])
 def test_a_refined_search_lies_between_the_neighbours_of_the_largest_value(index):
     values = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0, 8.0])
-    finer = subsurface._refined_points(values, index)
+    finer = subsurface._refine_points_around(values, index)
     assert len(finer) == 9
     assert finer[4] == values[index]
     assert finer[0] == values[max(index - 1, 0)]

@@ -55,12 +55,12 @@ def test_every_joint_is_fitted_by_series(joint):
     assert isinstance(state, ChebyshevState)
     series = state.series
     assert series.is_accurate
-    assert (series.truncation < 1e-6).all()
+    assert (series.truncation_error < 1e-6).all()
     knots = series.knots.half_angle
-    values, slopes = series.evaluate_functions(knots)
+    values, slopes = series.evaluate_dimensionless_functions(knots)
     np.testing.assert_allclose(values, chebyshev_curve._dimensionless_quantities(series.knots), rtol=1e-9, atol=1e-9)
     middle, step = knots[8:-4], 1e-5
-    above, below = (series.evaluate_functions(middle * np.exp(side * step))[0][:2] for side in (1, -1))
+    above, below = (series.evaluate_dimensionless_functions(middle * np.exp(side * step))[0][:2] for side in (1, -1))
     np.testing.assert_allclose(slopes[:, 8:-4], (above - below) / (2 * step), rtol=1e-4, atol=1e-6)
 
 

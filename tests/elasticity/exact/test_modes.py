@@ -167,11 +167,11 @@ def test_a_socket_is_massive_beyond_its_reach(ratio, back):
     else:
         socket = Socket(radius=18.0, shells=(shell,), support=back)
     for tolerance in (1e-3, 1e-6, 1e-12):
-        n = np.arange(socket.reach(tolerance), socket.reach(1e-17) + 5)
+        n = np.arange(socket.backing_degree(tolerance), socket.backing_degree(1e-17) + 5)
         assert abs(socket.excess(n) - massive(shell).excess(n)).max() <= tolerance
-    n = np.arange(socket.reach(1e-17), 3000)
+    n = np.arange(socket.backing_degree(1e-17), 3000)
     np.testing.assert_array_equal(socket.compliance(n), massive(shell).compliance(n))
-    assert massive(shell).reach() == 0
+    assert massive(shell).backing_degree() == 0
 
 
 @pytest.mark.parametrize("support", Support)
@@ -420,7 +420,7 @@ def test_bodies_are_made_of_plain_floats():
         (lambda: LINED.compliance([2, -1]), r"degrees\[1\] = -1 is not allowed"),
         (lambda: LINED.fields([2], [17.9, 18.0]), r"radii\[0\] = 17.9 is not allowed: .* r = 18 to 24.75 mm"),
         (lambda: LINED.fields([2], 25.0), "is not allowed"),
-        (lambda: LINED.reach(0.0), "tolerance = 0 is not allowed"),
+        (lambda: LINED.backing_degree(0.0), "tolerance = 0 is not allowed"),
     ],
 )
 def test_messages_state_the_allowed_values(call, message):

@@ -29,7 +29,7 @@ def random(count, seed, **more):
 @pytest.mark.parametrize(("elastic", "rtol"), [(False, 1e-5), (True, 2e-4)])
 def test_random_joints_agree_with_the_exact_solution(elastic, rtol):
     angle, numbers = random(either(quick=60, long=300), 1, elastic=elastic)
-    joint = build_tables.joint_of(*numbers, clearance=0.02)
+    joint = build_tables.make_joints(*numbers, clearance=0.02)
     exact = bs.Exact(tolerance=1e-8).press(joint, half_angle=angle)
     good = exact.status == bs.Status.OK
     assert good.mean() > 0.99
@@ -69,7 +69,7 @@ def test_the_pressure_profile_agrees_with_the_exact_solution(joint, half_angle):
 @pytest.mark.parametrize("elastic", [False, True])
 def test_forces_and_indentations_are_inverse(elastic):
     angle, numbers = random(2000, 3, elastic=elastic)
-    joint, model = build_tables.joint_of(*numbers), bs.Tabulated()
+    joint, model = build_tables.make_joints(*numbers), bs.Tabulated()
     contact = model.press(joint, half_angle=angle)
     again = model.press(joint, force=contact.force)
     assert np.all(again.status == bs.Status.OK)
@@ -154,7 +154,7 @@ def test_the_builder_reproduces_the_shipped_profile():
 
 
 def test_the_report_names_the_joint_of_the_largest_error():
-    report = build_tables.check(points=either(quick=20, long=50), workers=1)
+    report = build_tables.check_tables(points=either(quick=20, long=50), workers=1)
     assert max(worst.error for worst in report.rigid) < 1e-5
     assert "pressure_integral" in str(report)
     assert "R2/L" in str(report)
@@ -163,7 +163,7 @@ def test_the_report_names_the_joint_of_the_largest_error():
 def test_coordinates_and_angles_are_inverse():
     place, ratio = np.linspace(-0.9, 1.0, 9), np.array([[0.2], [20.0]])
     np.testing.assert_allclose(
-        chebyshev.angle_coordinate(chebyshev.angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
+        chebyshev.angle_coordinate(chebyshev.half_angle_at(place, ratio), ratio), np.tile(place, (2, 1)), rtol=1e-9
     )
 
 
@@ -171,7 +171,7 @@ def test_coordinates_and_angles_are_inverse():
 def test_a_file_without_tables_is_refused_before_any_computation(content, tmp_path):
     (tmp_path / "tables.npz").write_bytes(content)
     with pytest.raises(ValueError, match="tables.npz holds no tables"):
-        build_tables.check(tmp_path / "tables.npz", workers=0)
+        build_tables.check_tables(tmp_path / "tables.npz", workers=0)
     np.savez(tmp_path / "tables.npz", rigid=np.ones(3))
     with pytest.raises(ValueError, match="tables.npz holds no tables"):
         bs.Tabulated(file=str(tmp_path / "tables.npz")).press(bs.joints["hip-28"], force=1.0)
@@ -191,15 +191,15 @@ def test_builder_coordinates_invert_those_of_the_tables():
     assert poisson[[0, -1]] == pytest.approx(chebyshev.POISSON[:: 1 if poisson[0] < 0 else -1])
     assert ratio[[0, -1]] == pytest.approx(chebyshev.THICKNESS_RATIO)
     for place in (-1.0, 0.2, 1.0):
-        share = build_tables._share_at(place, 0.4, 3.0)
+        share = build_tables._ball_share_at(place, 0.4, 3.0)
         assert chebyshev.ball_coordinate(share, 0.4, 3.0) == pytest.approx(place, abs=1e-10)
-    assert build_tables._share_at(1.0, 0.4, 3.0) == pytest.approx(chebyshev.MAX_BALL_SHARE)
+    assert build_tables._ball_share_at(1.0, 0.4, 3.0) == pytest.approx(chebyshev.MAX_BALL_SHARE)
 
 
 def test_sampled_functions_are_those_of_the_exact_solution():
     liner, angle = (0.4, 18.0 / 6.75), np.radians([10.0, 40.0])
     state = build_tables._solve_state(liner, angle, 40)
-    joint = build_tables.joint_of(0.4, 18.0 / 6.75, 0.0, 0.3)
+    joint = build_tables.make_joints(0.4, 18.0 / 6.75, 0.0, 0.3)
     exact = bs.Exact(tolerance=1e-9).press(joint, half_angle=angle)
     np.testing.assert_allclose(state.indentation * 0.005, exact.indentation, rtol=1e-7)
     np.testing.assert_allclose(state.force * 0.005, exact.force, rtol=1e-7)
@@ -232,7 +232,7 @@ def test_a_small_table_interpolates_its_function():
     spec = build_tables._TableSpec(sample=sample, counts=(3, 4), order=4, single=False)
     stored = spec.fit(lambda function, liners, chunksize: map(function, liners))
     assert stored.shape == (3, 4, 1, 1, 2, 2)
-    table = chebyshev.compress(stored, angles=5)
+    table = chebyshev.compress_coefficients(stored, angles=5)
     nu, ratio = np.array([0.3]), np.array([2.5])
     coordinates = [chebyshev.poisson_coordinate(nu), chebyshev.thickness_coordinate(ratio)]
     values = table.coefficients_at(coordinates)[:, :, 0]
@@ -258,14 +258,14 @@ def test_orders_of_products_are_limited():
 def test_balls_are_interpolated_in_their_shrinkage():
     balls = (0.15, 0.27, 0.38)
     values = np.array([[1.0 + 2.0 * chebyshev.ball_shrinkage(nu)] for nu in balls])
-    series = build_tables._in_ball_shrinkage(balls, values)
+    series = build_tables._shrinkage_coefficients(balls, values)
     np.testing.assert_allclose(series[:, 0], [1.0, 2.0, 0.0], atol=1e-12)
 
 
 def test_exact_values_of_the_check_have_the_units_of_the_joint():
     numbers = (np.radians(40.0), 0.4, 2.5, 0.01, 0.3)
     expected = dict(zip(build_tables.QUANTITIES, build_tables._solve_exact(numbers), strict=True))
-    joint = build_tables.joint_of(*numbers[1:])
+    joint = build_tables.make_joints(*numbers[1:])
     assert joint.clearance_ratio == pytest.approx(0.005)
     contact = bs.Exact(tolerance=1e-9).press(joint, half_angle=numbers[0])
     for name in ("indentation", "force", "pole_pressure", "energy", "pressure_integral", "half_angle"):

@@ -495,7 +495,9 @@ def test_the_penalty_reduces_the_force_by_less_than_a_thousandth(tmp_path):
     forces = []
     for name, factor in (("own", 1.0), ("stiff", 20.0)):
         path = made.write(tmp_path / name)
-        path.write_text(path.read_text().replace(f"\n{made.slope:.6g}\n", f"\n{factor * made.slope:.6g}\n"))
+        path.write_text(
+            path.read_text().replace(f"\n{made.contact_penalty:.6g}\n", f"\n{factor * made.contact_penalty:.6g}\n")
+        )
         forces.append(ccx.run(path.parent).force[0])
     assert 1e-4 < forces[1] / forces[0] - 1 < 1e-3
 

@@ -23,7 +23,7 @@ ORDERS = pytest.mark.parametrize("order", [1, 2], ids=["bilinear", "biquadratic"
 @ORDERS
 def test_a_translation_along_the_axis_has_no_energy(order):
     elastic = shell_block(order, end=1.1)
-    K = elastic.matrix()
+    K = elastic.stiffness_matrix()
     moved = polar_components(elastic, np.zeros(elastic.block.number.size), np.ones(elastic.block.number.size))
     assert abs(K @ moved).max() < 1e-12 * abs(K).max()
     assert abs(K - K.T).max() < 1e-12 * abs(K).max()
@@ -58,17 +58,19 @@ def test_condensed_compliance_equals_that_of_the_complete_system(order, interfac
     resolution = Resolution(size=0.2, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=order, halvings=1)
     body = socket_body(shape, resolution)
     forces = np.random.default_rng(1).normal(size=len(body.contact))
-    K = body.elastic.matrix().tolil()
+    K = body.elastic.stiffness_matrix().tolil()
     load = np.zeros(K.shape[0])
-    load[body.normals] = forces
+    load[body.normal_unknowns] = forces
     for unknown in np.flatnonzero(body.fixed_unknowns | (K.tocsr().diagonal() == 0)):
         K[unknown] = 0
         K[unknown, unknown] = 1
         load[unknown] = 0
     whole = spsolve(K.tocsc(), load)
-    np.testing.assert_allclose(body.compliance() @ forces, whole[body.normals], rtol=1e-8, atol=1e-9 * abs(whole).max())
+    np.testing.assert_allclose(
+        body.compliance() @ forces, whole[body.normal_unknowns], rtol=1e-8, atol=1e-9 * abs(whole).max()
+    )
     moved = body.displacements(forces)
-    np.testing.assert_allclose(moved[body.contact, 1], whole[body.normals], atol=1e-9 * abs(whole).max())
+    np.testing.assert_allclose(moved[body.contact, 1], whole[body.normal_unknowns], atol=1e-9 * abs(whole).max())
 
 
 def test_sliding_layers_move_together_across_and_freely_along_the_interface():
@@ -115,7 +117,7 @@ def test_bonded_layers_of_one_material_are_one_layer():
         socket_body(SocketShape(layers=layers, **ends), resolution)
         for layers in (((1.5, 1.0, 0.3),), ((1.2, 1.0, 0.3), (1.5, 1.0, 0.3)))
     )
-    forces = pressure_forces(one.elastic.block)[one.normals] * np.cos(one.elastic.block.angle) ** 4
+    forces = pressure_forces(one.elastic.block)[one.normal_unknowns] * np.cos(one.elastic.block.angle) ** 4
     np.testing.assert_allclose(one.compliance() @ forces, two.compliance() @ forces, rtol=1e-3, atol=1e-4)
 
 

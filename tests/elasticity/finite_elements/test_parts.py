@@ -222,7 +222,7 @@ def test_points_are_bisected_and_joined():
 @pytest.mark.parametrize("order", [1, 2])
 def test_a_block_numbers_its_nodes_elements_and_layers(order):
     layers = [np.array([1.0, 1.1, 1.3]), np.array([1.3, 1.5])]
-    bonded, sliding = (mesh.block(np.linspace(0.0, 1.0, 4), layers, order, cut) for cut in ((), (1,)))
+    bonded, sliding = (mesh.mesh_block(np.linspace(0.0, 1.0, 4), layers, order, cut) for cut in ((), (1,)))
     assert bonded.radius.shape == (3 * order + 1, 3 * order + 1)
     assert sliding.radius.shape == (3 * order + 1, 3 * order + 2)
     assert bonded.elements.shape == ((order + 1) ** 2, 9)
@@ -485,11 +485,11 @@ def test_the_gap_of_a_solved_contact_is_open_and_its_pressure_positive(pair):
 
 def test_a_bracket_spans_its_class_and_the_next_four(curve):
     for number in (0, 3):
-        bracket = curve._bracket(number, load_curve.COARSE)
+        bracket = curve._contact_bracket(number, load_curve.COARSE)
         assert curve.classes[number + 5] < bracket.low < curve.classes[number + 4]
         assert curve.classes[number] <= bracket.high <= 1.12 * curve.classes[number]
-    assert curve._bracket(0, load_curve.COARSE).high == curve.classes[0]
-    assert curve._bracket(3, load_curve.COARSE) is curve._bracket(3, load_curve.COARSE)
+    assert curve._contact_bracket(0, load_curve.COARSE).high == curve.classes[0]
+    assert curve._contact_bracket(3, load_curve.COARSE) is curve._contact_bracket(3, load_curve.COARSE)
 
 
 def test_loads_are_solved_on_the_mesh_of_their_class(curve):
@@ -528,7 +528,9 @@ def test_a_bracket_ends_before_the_perfect_fit(soft_pair, count):
     """
     gap = LinearGap(clearance=0.1, socket_radius=18.0)
     fit = perfect_fit(soft_pair, gap)
-    assert fit == pytest.approx(curve_of(bs.Exact(), replace(RIGID, liner_thickness=inf)).widest, abs=radians(0.3))
+    assert fit == pytest.approx(
+        curve_of(bs.Exact(), replace(RIGID, liner_thickness=inf)).widest_angle, abs=radians(0.3)
+    )
     ratio = 1.001
     low = fit / ratio ** (count - 0.5)
     bracket = ContactBracket(pair=soft_pair, gap=gap, low=low, high=low * ratio**9)

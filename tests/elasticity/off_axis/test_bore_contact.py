@@ -50,7 +50,7 @@ def test_forces_are_in_equilibrium_with_the_loads():
     assert solution.converged.all()
     error = np.linalg.norm(BORE.force(solution.pressure) - LOADS, axis=1)
     assert (error <= 1e-6 * np.linalg.norm(LOADS, axis=1)).all()
-    again = BORE.solve_displacement(solution.displacement)
+    again = BORE.solve_displaced(solution.displacement)
     assert again.pressure == pytest.approx(solution.pressure, abs=1e-3)
     assert again.converged.all()
 
@@ -80,11 +80,11 @@ def test_search_needs_few_iterations(grid, trials, monkeypatch):
 def test_blocks_of_balls_do_not_change_the_solution(monkeypatch):
     together = solve_force(BORE, LOADS, START, HELD)
     monkeypatch.setattr(bore_contact, "_BATCH_CELLS", 2 * FINE.rings * FINE.meridians)
-    assert [len(block) for block in BORE.blocks(np.arange(5))] == [2, 2, 1]
+    assert [len(block) for block in BORE.split_into_blocks(np.arange(5))] == [2, 2, 1]
     separate = solve_force(BORE, LOADS, START, HELD)
     assert separate.displacement == pytest.approx(together.displacement, abs=1e-6)
     monkeypatch.setattr(bore_contact, "_BATCH_CELLS", 1)
-    assert [len(block) for block in BORE.blocks(np.arange(2))] == [1, 1]
+    assert [len(block) for block in BORE.split_into_blocks(np.arange(2))] == [1, 1]
 
 
 def test_balls_excluded_from_the_search_stay_at_their_start():
@@ -148,10 +148,10 @@ def test_preloaded_ball_without_a_load_stays_centred_in_a_symmetric_bore():
 
 
 def test_coarser_bore_has_twice_the_width():
-    coarse = BORE.coarser
+    coarse = BORE.coarser_bore
     assert coarse.compliance.grid.meridians == FINE.meridians / 2
     assert coarse.gap.grid is coarse.compliance.grid
     assert coarse.area == BORE.area == 18.0**2
     field = np.ones((1, coarse.compliance.grid.rings, coarse.compliance.grid.meridians))
     assert BORE.force(BORE.refine(field)) == pytest.approx(coarse.force(field), abs=0.2)
-    assert bore_of(COARSE).coarser is None
+    assert bore_of(COARSE).coarser_bore is None

@@ -75,13 +75,13 @@ def test_springs_have_their_modulus_with_and_without_a_ball():
 @pytest.mark.parametrize("surface", [bs.ClosedShell(), bs.Springs()])
 def test_coarse_compliance_has_nearly_the_uniform_stiffness(surface):
     compliance = make_compliance(surface, RIGID, CUP, BORE)
-    coarse = compliance.coarser
+    coarse = compliance.coarser_compliance
     assert coarse.grid.rings == (BORE.rings + 1) // 2
     assert coarse.uniform_stiffness == pytest.approx(compliance.uniform_stiffness, rel=0.02)
     pressure = np.ones((1, coarse.grid.rings, coarse.grid.meridians))
     fine = compliance.displacement(BORE.refine(pressure))
     assert coarse.displacement(pressure) == pytest.approx(BORE.coarsen(fine), rel=1e-6)
-    assert make_compliance(surface, RIGID, CUP, even_grid(pi / 2, radians(6.0))).coarser is None
+    assert make_compliance(surface, RIGID, CUP, even_grid(pi / 2, radians(6.0))).coarser_compliance is None
 
 
 def test_stiff_compliances_scale_with_youngs_modulus():

@@ -117,13 +117,13 @@ def test_error_of_a_prescribed_half_angle_grows_with_the_slope_of_each_quantity(
 
 
 def test_prescribed_half_angle_needs_few_steps(monkeypatch):
-    calls, solve = [], BoreContact.solve_displacement
+    calls, solve = [], BoreContact.solve_displaced
 
     def count(self, displacement):
         calls.append(len(displacement))
         return solve(self, displacement)
 
-    monkeypatch.setattr(BoreContact, "solve_displacement", count)
+    monkeypatch.setattr(BoreContact, "solve_displaced", count)
     angle = np.array([0.3, 0.5, 0.7])
     contact = COARSE.press(RIGID, half_angle=angle, tilt=0.2)
     assert contact.half_angle == pytest.approx(angle, abs=radians(4.0))

@@ -47,7 +47,7 @@ def test_ray_that_misses_the_ball_has_a_large_gap():
 @pytest.mark.parametrize("kind", [bs.LinearGap, bs.CircularGap])
 def test_slope_is_the_derivative_of_the_overlap(kind):
     gap, h = gap_field(kind), 1e-5
-    slope = np.broadcast_to(gap.slope(DISPLACEMENT), (3, 3, GRID.rings, GRID.meridians))
+    slope = np.broadcast_to(gap.overlap_slope(DISPLACEMENT), (3, 3, GRID.rings, GRID.meridians))
     for axis in range(3):
         step = h * np.eye(3)[axis]
         difference = (gap.overlap(DISPLACEMENT + step) - gap.overlap(DISPLACEMENT - step)) / (2 * h)
@@ -57,9 +57,9 @@ def test_slope_is_the_derivative_of_the_overlap(kind):
 def test_coarser_gap_averages_the_depth():
     grid = even_grid(1.4, 1.4 / 30)
     gap = GapField(grid=grid, clearance=0.1, socket_radius=18.0, depth=grid.middles[2], kind=bs.LinearGap)
-    coarse = gap.on_coarser(grid.coarser)
+    coarse = gap.on_coarser_grid(grid.coarser_grid)
     assert coarse.depth == pytest.approx(grid.coarsen(grid.middles[2]))
-    assert (coarse.grid, coarse.clearance, coarse.kind) == (grid.coarser, 0.1, bs.LinearGap)
+    assert (coarse.grid, coarse.clearance, coarse.kind) == (grid.coarser_grid, 0.1, bs.LinearGap)
 
 
 def test_initial_displacement_carries_the_load_on_springs_in_a_full_sphere():

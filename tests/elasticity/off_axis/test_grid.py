@@ -42,7 +42,7 @@ def test_properties_of_a_small_grid():
     assert cells.width == pytest.approx(0.4)
     assert cells.polar == pytest.approx([0.1, 0.4])
     assert cells.azimuth == pytest.approx(np.arange(1, 12, 2) * pi / 6)
-    assert cells.coarser is None
+    assert cells.coarser_grid is None
     with pytest.raises(ValueError, match="read-only"):
         cells.centroids[0, 0, 0] = 1.0
 
@@ -71,7 +71,7 @@ def test_grids_have_a_smallest_number_of_rings_and_meridians():
 
 @pytest.mark.parametrize("cells", [FINE, ODD], ids=["even", "odd"])
 def test_coarsening_preserves_integrals_and_inverts_refinement(cells):
-    coarse = cells.coarser
+    coarse = cells.coarser_grid
     assert coarse.rings == (cells.rings + 1) // 2
     assert coarse.meridians == cells.meridians // 2
     assert coarse.reach == cells.reach
@@ -87,7 +87,7 @@ def test_coarsening_preserves_integrals_and_inverts_refinement(cells):
 @pytest.mark.parametrize("cells", [FINE, ODD], ids=["even", "odd"])
 def test_coarse_matrices_are_means_of_the_fine_operator(cells):
     """For low harmonics: refine the pressures, apply the fine operator, and average the displacements."""
-    coarse, random = cells.coarser, np.random.default_rng(4)
+    coarse, random = cells.coarser_grid, np.random.default_rng(4)
     matrices = random.normal(size=(cells.max_harmonic + 1, cells.rings, cells.rings))
     low = cells.meridians // 4
     matrices[low:] = 0.0
@@ -100,10 +100,10 @@ def test_coarse_matrices_are_means_of_the_fine_operator(cells):
 
 
 def test_few_rings_or_unpaired_meridians_are_not_coarsened():
-    assert Grid(edges=np.linspace(0.0, 1.3, 24), meridians=44).coarser is None
-    assert Grid(edges=np.linspace(0.0, 1.3, 25), meridians=44).coarser is not None
-    assert Grid(edges=FINE.edges, meridians=34).coarser is None
-    assert Grid(edges=FINE.edges, meridians=36).coarser is not None
+    assert Grid(edges=np.linspace(0.0, 1.3, 24), meridians=44).coarser_grid is None
+    assert Grid(edges=np.linspace(0.0, 1.3, 25), meridians=44).coarser_grid is not None
+    assert Grid(edges=FINE.edges, meridians=34).coarser_grid is None
+    assert Grid(edges=FINE.edges, meridians=36).coarser_grid is not None
 
 
 def test_integral_of_a_product_is_exact_for_uniform_fields():

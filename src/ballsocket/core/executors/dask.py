@@ -79,8 +79,8 @@ class Distributed:
         needs("study", "dask", "distributed", "xarray")
         from distributed import KilledWorker, as_completed, futures_of
 
-        with self._connect() as client, _send_work(client, work) as plugin_name:
-            blocks = client.persist(_dask_blocks(plugin_name, numbers), retries=self.retries)
+        with self._connect_client() as client, _send_work(client, work) as plugin_name:
+            blocks = client.persist(_build_dataset(plugin_name, numbers), retries=self.retries)
             completed = as_completed(futures_of(blocks), with_results=True)
             del blocks  # a worker frees each result after it has been received
             try:
@@ -91,8 +91,8 @@ class Distributed:
                 raise RuntimeError(f"the workers of a piece died too often: {error}") from error
 
     @contextmanager
-    def _connect(self) -> Iterator[Client]:
-        """Connect to the scheduler, or to a new cluster on this machine, until the end of the block."""
+    def _connect_client(self) -> Iterator[Client]:
+        """Yield a Dask client of the scheduler at `address`, or of a new cluster on this machine."""
         from distributed import Client
 
         if self.address is not None:
@@ -148,7 +148,7 @@ def _send_work(client: Client, work: Work) -> Iterator[str]:
         client.unregister_worker_plugin(name)
 
 
-def _dask_blocks(plugin_name: str, numbers: Sequence[int]) -> xarray.Dataset:
+def _build_dataset(plugin_name: str, numbers: Sequence[int]) -> xarray.Dataset:
     """Build a Dask dataset with one piece per chunk, whose computed elements are (number, result)."""
     import xarray
 

@@ -132,7 +132,7 @@ def available_cores() -> int:
 def _submit_until_worker_dies(
     pool: ProcessPoolExecutor, pending: deque[int], max_queued: int
 ) -> Iterator[tuple[int, Any]]:
-    """Submit the pending pieces, and yield (number, completed future) of each.
+    """Submit pending pieces to worker processes; yield the number and completed future of each piece.
 
     It stops when a worker process has died. The affected pieces have `_WORKER_DIED` in place of a future.
     """
@@ -217,11 +217,11 @@ def exit_with_parent() -> None:
         signal.signal(signal.SIGIO, signal.SIG_DFL)
         fcntl.fcntl(pipe, fcntl.F_SETOWN, os.getpid())
         fcntl.fcntl(pipe, fcntl.F_SETFL, fcntl.fcntl(pipe, fcntl.F_GETFL) | os.O_ASYNC)
-        if _is_closed(pipe):
+        if _is_pipe_closed(pipe):
             os._exit(_PARENT_ENDED)  # the parent ended before the signal was set
 
 
-def _is_closed(pipe: int) -> bool:
+def _is_pipe_closed(pipe: int) -> bool:
     """Check if the other end of a pipe is closed."""
     poll = select.poll()
     poll.register(pipe, select.POLLHUP)

@@ -53,7 +53,7 @@ def read_arrays(path: Path) -> dict[str, Numbers]:
             with ZipFile(stream) as archive:
                 damaged = archive.testzip()  # NumPy accepts a damaged, smaller shape without this test
                 n_members = len(archive.infolist())
-            if damaged is not None or n_members != _count_members(stream):
+            if damaged is not None or n_members != _count_zip_members(stream):
                 raise ValueError(f"{path.name} is damaged")
             stream.seek(0)
             with numpy.load(stream, allow_pickle=False) as file:
@@ -62,7 +62,7 @@ def read_arrays(path: Path) -> dict[str, Numbers]:
         raise ValueError(f"{path.name} is damaged") from error
 
 
-def _count_members(stream: BinaryIO) -> int:
+def _count_zip_members(stream: BinaryIO) -> int:
     """Read the number of members from the end record of a zip archive.
 
     A damaged archive lists fewer members than it has.
@@ -84,7 +84,7 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
         Computes the array.
     """
     path = cache_folder() / f"cup-{sha256(f'{_CACHE_VERSION} {key!r}'.encode()).hexdigest()[:32]}.npz"
-    array = _read_cached(path)
+    array = _read_cached_array(path)
     if array is None:
         array = compute()
         with suppress(OSError):
@@ -105,7 +105,7 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ballsocket"
 
 
-def _read_cached(path: Path) -> Numbers | None:
+def _read_cached_array(path: Path) -> Numbers | None:
     """Read a cached array; return None if the file is missing or damaged."""
     try:
         return read_arrays(path)["rings"]

@@ -73,18 +73,18 @@ def make_draft_folder(path: Path) -> Iterator[Path]:
     prefix = f".{path.name[:_PREFIX_LENGTH]}."
     with suppress(OSError):
         for folder in path.parent.iterdir():
-            if folder.name.startswith(prefix) and is_draft_folder(folder.name) and _is_abandoned(folder):
+            if folder.name.startswith(prefix) and is_draft_folder(folder.name) and _is_abandoned_draft(folder):
                 rmtree(folder, ignore_errors=True)
     try:
         temporary_folder = TemporaryDirectory(prefix=prefix, suffix=_DRAFT_SUFFIX, dir=path.parent)
     except OSError as error:  # the error names the path of the caller instead of the draft folder
         raise OSError(error.errno, error.strerror, str(path)) from error
-    with temporary_folder as name, _lock(Path(name)):
+    with temporary_folder as name, _lock_folder(Path(name)):
         yield Path(name)
 
 
 @contextmanager
-def _lock(folder: Path) -> Iterator[bool]:
+def _lock_folder(folder: Path) -> Iterator[bool]:
     """Lock a folder until the end of the block, and yield True; yield False if this is impossible."""
     if fcntl is None:
         yield False
@@ -99,9 +99,9 @@ def _lock(folder: Path) -> Iterator[bool]:
         os.close(descriptor)
 
 
-def _is_abandoned(folder: Path) -> bool:
+def _is_abandoned_draft(folder: Path) -> bool:
     """Check if the process that made a draft folder has ended."""
-    with _lock(folder) as locked:
+    with _lock_folder(folder) as locked:
         return locked and time.time() - folder.stat().st_mtime > _MIN_AGE
 
 

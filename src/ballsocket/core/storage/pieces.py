@@ -26,7 +26,7 @@ class PieceStore(ABC):
 
     @abstractmethod
     def save(self, number: int, result: Any) -> Any:
-        """Store the result of a piece, and return the value for the calling process.
+        """Store the result of a piece of work; return the value to send back to the calling process.
 
         Raises
         ------

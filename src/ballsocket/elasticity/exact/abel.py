@@ -85,9 +85,9 @@ class AbelState(PeakPressure):
         """Weights of a right-hand side that give the integral term of the contact equation at the edge."""
         return (self._operators[0][:, -1:] @ self._inverse)[:, 0]
 
-    def _edge_value(self, side: Numbers) -> Numbers:
+    def _solve_edge_value(self, right_side: Numbers) -> Numbers:
         """Compute the solution of the even contact equation at the edge, H(ε), from its right-hand side."""
-        return 2 / pi * (side[:, -1] - numpy.sum(self._edge_weights * side[:, :-1], axis=-1))
+        return 2 / pi * (right_side[:, -1] - numpy.sum(self._edge_weights * right_side[:, :-1], axis=-1))
 
     @cached_property
     def indentation(self) -> Numbers:
@@ -98,9 +98,10 @@ class AbelState(PeakPressure):
         d = numpy.zeros_like(self.half_angle)[:, None]
         for _ in range(self.gap.steps):
             residual, slope = (
-                side(self._target_angles, d) for side in (self.gap.transform, self.gap.indentation_derivative)
+                right_side(self._target_angles, d)
+                for right_side in (self.gap.transform, self.gap.indentation_derivative)
             )
-            step = (self._edge_value(residual) / self._edge_value(slope))[:, None]
+            step = (self._solve_edge_value(residual) / self._solve_edge_value(slope))[:, None]
             d = d - step
             if not numpy.any(abs(step) > 1e-13 * abs(d)):
                 break
@@ -112,24 +113,24 @@ class AbelState(PeakPressure):
         return self.gap.indentation_derivative(self._target_angles, self.indentation[:, None])
 
     @cached_property
-    def _G(self) -> tuple[Numbers, Numbers]:  # noqa: N802
-        """Solution G = -H' of the odd contact equation in mm, at the quadrature points and at the edge."""
-        side = -self.gap.slope(self._target_angles, self.indentation[:, None])
+    def _odd_solution(self) -> tuple[Numbers, Numbers]:
+        """Solution G in mm of the odd contact equation, at the quadrature points and at the edge; G = -H'."""
+        right_side = -self.gap.slope(self._target_angles, self.indentation[:, None])
         odd = self._operators[1]
-        inside = numpy.linalg.solve(odd[:, :-1], side[:, :-1, None])[..., 0]
-        return inside, 2 / pi * (side[:, -1] - numpy.sum(odd[:, -1] * inside, axis=-1))
+        inside = numpy.linalg.solve(odd[:, :-1], right_side[:, :-1, None])[..., 0]
+        return inside, 2 / pi * (right_side[:, -1] - numpy.sum(odd[:, -1] * inside, axis=-1))
 
     @cached_property
     def error(self) -> Numbers:
         """Relative error of the solution: difference between H and the integral of G, over the largest H."""
-        side = self.gap.transform(self._point_angles, self.indentation[:, None])
-        H = (self._inverse @ side[..., None])[..., 0]
-        steps = self._G[0] * (self.grid.slope[self.grid.points :] * self.half_angle[:, None])
+        right_side = self.gap.transform(self._point_angles, self.indentation[:, None])
+        H = (self._inverse @ right_side[..., None])[..., 0]
+        steps = self._odd_solution[0] * (self.grid.slope[self.grid.points :] * self.half_angle[:, None])
         return numpy.max(abs(H - steps @ self.grid.integral_to_edge.T), axis=-1) / numpy.max(abs(H), axis=-1)
 
-    def _integrate(self, factor: Numbers) -> Numbers:
-        """Integrate a factor times the solution G/C over [0, ε]."""
-        return numpy.sum(self._weights * factor * self._G[0], axis=-1) / self.kernel.compliance
+    def _integrate_solution(self, factor: Numbers) -> Numbers:
+        """Integrate a factor times the solution G over [0, ε], divided by the compliance C."""
+        return numpy.sum(self._weights * factor * self._odd_solution[0], axis=-1) / self.kernel.compliance
 
     @property
     def _squared_radius(self) -> float:
@@ -139,15 +140,15 @@ class AbelState(PeakPressure):
     @cached_property
     def force(self) -> Numbers:
         """Force F in N."""
-        return 4 * pi / 3 * self._squared_radius * self._integrate(numpy.sin(1.5 * self._point_angles))
+        return 4 * pi / 3 * self._squared_radius * self._integrate_solution(numpy.sin(1.5 * self._point_angles))
 
     @cached_property
     def pole_pressure(self) -> Numbers:
         """Pressure p0 at the pole in MPa."""
-        return self._integrate(0.5 / numpy.sin(self._point_angles / 2))
+        return self._integrate_solution(0.5 / numpy.sin(self._point_angles / 2))
 
     @property
-    def decreases(self) -> Numbers:
+    def pressure_decreases(self) -> Numbers:
         """True for each contact whose pressure certainly decreases from the pole to the edge.
 
         Since p = 2 sqrt(Δ)/C ∫ g dz with g = G/sin s (see `pressure`), the pressure decreases where
@@ -155,19 +156,21 @@ class AbelState(PeakPressure):
         """
         s = self._point_angles
         half_chord = numpy.sin(self.half_angle / 2)[:, None] ** 2 - numpy.sin(s / 2) ** 2
-        return numpy.all(numpy.diff(self._G[0] / numpy.sin(s) * numpy.sqrt(half_chord), axis=-1) < 0, axis=-1)
+        return numpy.all(
+            numpy.diff(self._odd_solution[0] / numpy.sin(s) * numpy.sqrt(half_chord), axis=-1) < 0, axis=-1
+        )
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
         """Largest pressure of each contact in MPa, and its polar angle in rad."""
-        if self.decreases.all():
+        if self.pressure_decreases.all():
             return self.pole_pressure, 0.0 * self.half_angle
         return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, ROUNDING)
 
     @cached_property
     def pressure_integral(self) -> Numbers:
         """Integral of the pressure over the contact area, ∫ p dA, in N."""
-        return 4 * pi * self._squared_radius * self._integrate(numpy.sin(self._point_angles / 2))
+        return 4 * pi * self._squared_radius * self._integrate_solution(numpy.sin(self._point_angles / 2))
 
     @cached_property
     def stiffness(self) -> Numbers:
@@ -185,14 +188,14 @@ class AbelState(PeakPressure):
 
         It follows from the balance of a deeper punch and a wider contact at the edge.
         """
-        return self._G[1] / self._edge_value(self._indentation_transform)
+        return self._odd_solution[1] / self._solve_edge_value(self._indentation_transform)
 
     @cached_property
     def energy(self) -> Numbers:
         """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
         if not self.gap.conservative:
             return self._integrate_work()
-        gap_work = 16 * pi / 3 * self._squared_radius * self._integrate(numpy.sin(self._point_angles / 2) ** 3)
+        gap_work = 16 * pi / 3 * self._squared_radius * self._integrate_solution(numpy.sin(self._point_angles / 2) ** 3)
         return (self.indentation * self.force - self.gap.clearance * gap_work) / 2
 
     def _integrate_work(self) -> Numbers:
@@ -209,17 +212,17 @@ class AbelState(PeakPressure):
         size = self.grid.points
         y, w = (part[size:] for part in self.grid.nodes)
         P = numpy.polynomial.legendre.legvander(y, 2 * size - 1)[:, ::2]
-        return (self._G[0] / numpy.sin(self._point_angles)) @ (w[:, None] * P * (4 * numpy.arange(size) + 1))
+        return (self._odd_solution[0] / numpy.sin(self._point_angles)) @ (w[:, None] * P * (4 * numpy.arange(size) + 1))
 
     def pressure(self, angle: Numbers) -> Numbers:
         """Compute the contact pressure p(φ) in MPa at polar angles (any, loads); 0 outside the contact."""
-        return pressure_of(self.half_angle, self.expansion.T, angle) / self.kernel.compliance
+        return scaled_pressure(self.half_angle, self.expansion.T, angle) / self.kernel.compliance
 
-    def single(self, number: int) -> AbelState:
+    def single_contact(self, number: int) -> AbelState:
         """Return the contact with index `number`."""
         return replace(self, intervals=Intervals(half_angle=self.half_angle[number : number + 1], grid=self.grid))
 
-    def modes(self, count: int) -> Numbers:
+    def pressure_modes(self, count: int) -> Numbers:
         """Compute the pressure modes p_n in MPa for degrees n below `count`.
 
         They are the coefficients of p = Σ p_n P_n(cos φ), in the shape (loads, count).
@@ -244,18 +247,18 @@ class AbelState(PeakPressure):
         weights = numpy.tile(w / panels, panels) * pi / 2 * numpy.cos(pi / 2 * y)
         blocks = -(-count // _MODES_PER_BLOCK)
         start, step = numpy.arange(blocks)[:, None] * _MODES_PER_BLOCK + 0.5, numpy.arange(_MODES_PER_BLOCK)[:, None]
-        modes = numpy.empty((len(self.half_angle), blocks, _MODES_PER_BLOCK))
-        for contact_modes, angle, series in zip(modes, self.half_angle, self.expansion, strict=True):
+        pressure_modes = numpy.empty((len(self.half_angle), blocks, _MODES_PER_BLOCK))
+        for contact_modes, angle, series in zip(pressure_modes, self.half_angle, self.expansion, strict=True):
             s = angle * numpy.sin(pi / 2 * y)
-            G = angle * weights * numpy.sin(s) * _even_series(series, y)
+            G = angle * weights * numpy.sin(s) * _evaluate_even_series(series, y)
             # sin((start + step) s) is a sum of products: one sine for each start and step, not for each mode
             contact_modes[:] = (G * numpy.sin(start * s)) @ numpy.cos(step * s).T
             contact_modes[:] += (G * numpy.cos(start * s)) @ numpy.sin(step * s).T
-        return modes.reshape(len(modes), -1)[:, :count] / self.kernel.compliance
+        return pressure_modes.reshape(len(pressure_modes), -1)[:, :count] / self.kernel.compliance
 
 
-def pressure_of(half_angle: Numbers, expansion: Numbers, angle: Numbers) -> Numbers:
-    """Compute the pressure times the compliance, C p(φ) in mm, from the Legendre coefficients of G/sin s.
+def scaled_pressure(half_angle: Numbers, expansion: Numbers, angle: Numbers) -> Numbers:
+    """Compute C p(φ) in mm, the pressure times the compliance C, from the Legendre coefficients of G/sin s.
 
     `angle` has the shape (any, contacts), `expansion` (terms, contacts).
 
@@ -270,7 +273,7 @@ def pressure_of(half_angle: Numbers, expansion: Numbers, angle: Numbers) -> Numb
         z = numpy.sin(pi / 2 * node)  # removes the logarithmic singularity at the edge
         s = 2 * numpy.arcsin(numpy.sqrt(numpy.clip(inner + width * z * z, 0.0, 1.0)))
         y = 2 / pi * numpy.arcsin(numpy.clip(s / half_angle, 0.0, 1.0))
-        total += weight * pi / 2 * numpy.cos(pi / 2 * node) * _even_series(expansion, y)
+        total += weight * pi / 2 * numpy.cos(pi / 2 * node) * _evaluate_even_series(expansion, y)
     return numpy.where(inside, 2 * numpy.sqrt(width) * total, 0.0)
 
 
@@ -280,7 +283,7 @@ ROUNDING = 1e-9
 _MODES_PER_BLOCK = 64
 
 
-def _even_series(coefficients: Numbers, y: Numbers) -> Numbers:
+def _evaluate_even_series(coefficients: Numbers, y: Numbers) -> Numbers:
     """Evaluate a series of even Legendre polynomials P_2k at y, by Clenshaw's recurrence in y²."""
     square = y * y
     following, current = 0.0, coefficients[-1]
@@ -295,7 +298,7 @@ def _even_series(coefficients: Numbers, y: Numbers) -> Numbers:
 
 
 def _recurrence_factor(n: int, square: Numbers) -> Numbers:
-    """Compute the factor A y² + B in the recurrence of even Legendre polynomials.
+    """Compute the factor A y² + B of P_2k in the recurrence of even Legendre polynomials.
 
     The recurrence is P_n+2 = (A y² + B) P_n + D P_n-2.
     """
@@ -305,7 +308,7 @@ def _recurrence_factor(n: int, square: Numbers) -> Numbers:
 
 
 def _recurrence_offset(n: int) -> float:
-    """Compute the coefficient D in the recurrence of even Legendre polynomials.
+    """Compute the coefficient D of P_2k-2 in the recurrence of even Legendre polynomials.
 
     The recurrence is P_n+2 = (A y² + B) P_n + D P_n-2.
     """

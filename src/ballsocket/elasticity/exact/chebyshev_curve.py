@@ -18,11 +18,17 @@ from ...contact.peak_pressure import PeakPressure, find_peak_pressure
 from ...contact.per_joint import JointContacts
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
-from .abel import ROUNDING, AbelState, pressure_of
+from .abel import ROUNDING, AbelState, scaled_pressure
 from .kernel import Kernel
-from .load_curve import LoadCurve, errors, log_slope
+from .load_curve import LoadCurve, estimate_errors, log_slope
 from .subsurface import StressCurve
-from .tabulated.chebyshev import angle_at, angle_root, chebyshev_points, chebyshev_polynomials, coefficients
+from .tabulated.chebyshev import (
+    angle_root,
+    chebyshev_coefficients,
+    chebyshev_points,
+    chebyshev_polynomials,
+    half_angle_at,
+)
 from .tabulated.formulas import angle_derivative
 
 _TERMS, _POINTS, _ATTEMPTS = 32, 28, 4
@@ -75,12 +81,12 @@ class ChebyshevCurve:
         angle = (
             positive_load
             if kind == "half_angle"
-            else _evaluate_in_blocks(lambda block: self._solve_angle(kind, block), positive_load)
+            else _evaluate_contacts_in_blocks(lambda block: self._solve_angle(kind, block), positive_load)
         )
-        reached = angle <= self.curve.widest
-        state = ChebyshevState(series=self, half_angle=numpy.where(reached, angle, self.curve.widest))
+        reachable = angle <= self.curve.widest_angle
+        state = ChebyshevState(series=self, half_angle=numpy.where(reachable, angle, self.curve.widest_angle))
         return JointContacts(
-            load=load, touching=touching, state=state, reached=reached, error=self._errors(kind, state)
+            load=load, touching=touching, state=state, reached=reachable, error=self._errors(kind, state)
         )
 
     def _errors(self, kind: str, state: ChebyshevState) -> dict[str, Numbers]:
@@ -88,23 +94,23 @@ class ChebyshevCurve:
         # near the perfect fit X depends strongly on the half angle, but the half angle hardly on a load
         sensitivity = 1.0 if kind == "half_angle" else _MAX_LOG_SLOPE / log_slope(kind, state)
         series_error = sensitivity * state.displacement_error + self.curve.kernel.tolerance
-        return {name: series_error * (name != kind) + error for name, error in errors(kind, state).items()}
+        return {name: series_error * (name != kind) + error for name, error in estimate_errors(kind, state).items()}
 
     @cached_property
     def _widest_coordinate(self) -> float:
         """Coordinate of the half angle of the widest contact, from 0 to 1."""
-        return float(angle_root(self.curve.widest, self.curve.ratio))
+        return float(angle_root(self.curve.widest_angle, self.curve.ratio))
 
     @cached_property
     def _chebyshev_coefficients(self) -> Numbers:
         """Chebyshev coefficients (rows, terms) of the dimensionless functions, then of the slopes of logarithms."""
-        series = coefficients(_dimensionless_quantities(self.knots), 1)
+        series = chebyshev_coefficients(_dimensionless_quantities(self.knots), 1)
         slopes = numpy.zeros_like(series[:LOG_FUNCTIONS])
         slopes[:, :-1] = numpy.polynomial.chebyshev.chebder(series[:LOG_FUNCTIONS], axis=1)
         return numpy.concatenate([series, slopes])
 
     @cached_property
-    def truncation(self) -> Numbers:
+    def truncation_error(self) -> Numbers:
         """Estimated truncation error of the Chebyshev series of each function."""
         return _TAIL_TERMS * numpy.max(abs(self._chebyshev_coefficients[:-LOG_FUNCTIONS, -_TAIL_TERMS:]), axis=1)
 
@@ -128,12 +134,14 @@ class ChebyshevCurve:
         The shape is (Legendre, Chebyshev), without negligible Legendre terms. G is explained in `abel`.
         """
         reach = self.curve.gap.clearance + self.knots.indentation
-        scaled = coefficients((self.knots.expansion / reach[:, None]).T, 1)
+        scaled = chebyshev_coefficients((self.knots.expansion / reach[:, None]).T, 1)
         return scaled[numpy.cumsum(abs(scaled[::-1]).max(axis=1))[::-1] > ROUNDING * abs(scaled).max()]
 
-    def evaluate_functions(self, angle: Numbers) -> tuple[Numbers, Numbers]:
-        """Evaluate the functions (functions, contacts) at half angles, and the slopes of both logarithms by ln ε."""
-        rows = _evaluate_in_blocks(lambda block: self._chebyshev_coefficients @ self.evaluate_polynomials(block), angle)
+    def evaluate_dimensionless_functions(self, angle: Numbers) -> tuple[Numbers, Numbers]:
+        """Evaluate the dimensionless functions (functions, contacts) at half angles, with both log slopes by ln ε."""
+        rows = _evaluate_contacts_in_blocks(
+            lambda block: self._chebyshev_coefficients @ self.evaluate_polynomials(block), angle
+        )
         slope = angle_derivative(angle, angle_root(angle, self.curve.ratio), self.curve.ratio) / self._widest_coordinate
         return rows[:-LOG_FUNCTIONS], rows[-LOG_FUNCTIONS:] * slope
 
@@ -151,13 +159,13 @@ class ChebyshevCurve:
     @cached_property
     def _start_angles(self) -> Numbers:
         """Half angles in rad of the initial estimates, dense near a point contact and near the perfect fit."""
-        widest = self.curve.widest
+        widest = self.curve.widest_angle
         small, last = numpy.geomspace(_MIN_START, 0.98 * widest, _STARTS), numpy.geomspace(0.02, 1e-8, _STARTS // 4)
         return numpy.concatenate([small, widest * (1 - last[1:]), [widest]])
 
     @cached_property
     def _start_loads(self) -> dict[str, Numbers]:
-        """Logarithms of force and indentation at the initial estimates of the half angle."""
+        """Logarithms of force and indentation, by name, at the half angles of the initial estimates."""
         state = ChebyshevState(series=self, half_angle=self._start_angles)
         return {kind: numpy.log(getattr(state, kind)) for kind in _POWERS}
 
@@ -169,7 +177,7 @@ class ChebyshevCurve:
         for _ in range(_NEWTON_STEPS):
             state = ChebyshevState(series=self, half_angle=angle)
             step = (numpy.log(getattr(state, kind)) - goal) / log_slope(kind, state)
-            angle = numpy.minimum(angle * numpy.exp(-step), self.curve.widest)
+            angle = numpy.minimum(angle * numpy.exp(-step), self.curve.widest_angle)
         return numpy.where(goal <= start_loads[-1] + _ROUNDING, angle, inf)
 
 
@@ -182,21 +190,21 @@ class ChebyshevState(PeakPressure):
 
     @property
     def kernel(self) -> Kernel:
-        """Kernel of the joint."""
+        """Kernel of the joint's contact equation."""
         return self.series.curve.kernel
 
     @property
     def gap(self) -> Gap:
-        """Gap function of the joint."""
+        """Gap between ball and socket, as a function of angle and indentation."""
         return self.series.curve.gap
 
     @cached_property
-    def _functions(self) -> tuple[Numbers, Numbers]:
+    def _function_values(self) -> tuple[Numbers, Numbers]:
         """Values of the dimensionless functions, and slopes of both logarithms by ln ε.
 
         The order is that of `_dimensionless_quantities`.
         """
-        return self.series.evaluate_functions(self.half_angle)
+        return self.series.evaluate_dimensionless_functions(self.half_angle)
 
     @cached_property
     def _relative_indentation(self) -> tuple[Numbers, Numbers]:
@@ -204,7 +212,7 @@ class ChebyshevState(PeakPressure):
 
         The ratio is 1 at the perfect fit.
         """
-        ratio = numpy.exp(self._functions[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
+        ratio = numpy.exp(self._function_values[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
         return ratio, 1 - ratio
 
     @property
@@ -225,7 +233,7 @@ class ChebyshevState(PeakPressure):
     @cached_property
     def indentation_slope(self) -> Numbers:
         """Derivative dd/dε of the indentation with respect to the half angle, in mm/rad."""
-        rate = self._functions[1][0] / self.half_angle + 1 / numpy.tan(self.half_angle / 2)
+        rate = self._function_values[1][0] / self.half_angle + 1 / numpy.tan(self.half_angle / 2)
         return self._total_displacement * self._relative_indentation[0] * rate / self._relative_indentation[1]
 
     @cached_property
@@ -237,28 +245,28 @@ class ChebyshevState(PeakPressure):
     def force(self) -> Numbers:
         """Force F in N."""
         radius = self.gap.socket_radius * self.half_angle
-        dimensionless_force = numpy.exp(self._functions[0][1])
+        dimensionless_force = numpy.exp(self._function_values[0][1])
         return dimensionless_force * self._pressure_scale * radius * radius
 
     @cached_property
     def pole_pressure(self) -> Numbers:
         """Pressure p0 at the pole in MPa."""
-        return self._functions[0][2] * self._pressure_scale
+        return self._function_values[0][2] * self._pressure_scale
 
     @cached_property
     def stiffness(self) -> Numbers:
         """Tangent stiffness dF/dd in N/mm."""
-        return self._functions[0][3] * self.gap.socket_radius**2 * self.half_angle / self.kernel.compliance
+        return self._function_values[0][3] * self.gap.socket_radius**2 * self.half_angle / self.kernel.compliance
 
     @cached_property
     def energy(self) -> Numbers:
         """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
-        return self._functions[0][4] * self.force * self.indentation
+        return self._function_values[0][4] * self.force * self.indentation
 
     @cached_property
     def pressure_integral(self) -> Numbers:
         """Integral of the pressure over the contact area, ∫ p dA, in N."""
-        return self._functions[0][5] * self.force
+        return self._function_values[0][5] * self.force
 
     @cached_property
     def error(self) -> Numbers:
@@ -266,10 +274,13 @@ class ChebyshevState(PeakPressure):
 
         The half angle ε and the total displacement X count as exact.
         """
-        truncation, values = self.series.truncation[:, None], abs(self._functions[0][LOG_FUNCTIONS:])
+        truncation_error, values = (
+            self.series.truncation_error[:, None],
+            abs(self._function_values[0][LOG_FUNCTIONS:]),
+        )
         return (
-            numpy.max(truncation[:LOG_FUNCTIONS])
-            + numpy.max(truncation[LOG_FUNCTIONS:] / values, axis=0)
+            numpy.max(truncation_error[:LOG_FUNCTIONS])
+            + numpy.max(truncation_error[LOG_FUNCTIONS:] / values, axis=0)
             + numpy.max(self.series.knots.error)
         )
 
@@ -279,20 +290,20 @@ class ChebyshevState(PeakPressure):
 
         It equals that of the distance to the perfect fit.
         """
-        return self.series.truncation[0] * self._relative_indentation[0] / self._relative_indentation[1]
+        return self.series.truncation_error[0] * self._relative_indentation[0] / self._relative_indentation[1]
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:
         """Largest pressure of each contact in MPa, and its polar angle in rad."""
-        if self.series.knots.decreases.all():
+        if self.series.knots.pressure_decreases.all():
             return self.pole_pressure, 0.0 * self.half_angle
         return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_RIPPLE)
 
-    def largest_von_mises(self, reached: Numbers) -> Numbers:
+    def largest_von_mises(self, reachable: Numbers) -> Numbers:
         """Interpolate the largest von Mises stress in the liner for each contact in the mask, NaN for the others."""
-        angle = self.half_angle[reached]
+        angle = self.half_angle[reachable]
         values = numpy.full(len(self.half_angle), numpy.nan)
-        values[reached] = self.series.stress_curve.stress_ratio(angle) * self.max_pressure[reached]
+        values[reachable] = self.series.stress_curve.stress_ratio(angle) * self.max_pressure[reachable]
         return values
 
     @cached_property
@@ -302,11 +313,11 @@ class ChebyshevState(PeakPressure):
 
     def pressure(self, angle: Numbers) -> Numbers:
         """Compute the contact pressure p(φ) in MPa at polar angles (any, contacts); 0 outside the contact."""
-        return pressure_of(self.half_angle, self._expansion, angle) * (
+        return scaled_pressure(self.half_angle, self._expansion, angle) * (
             self._total_displacement / self.kernel.compliance
         )
 
-    def single(self, number: int) -> AbelState:
+    def single_contact(self, number: int) -> AbelState:
         """Solve the contact with index `number` exactly."""
         return self.series.curve.state(self.half_angle[number : number + 1], self.series.knots.grid.points)
 
@@ -315,22 +326,22 @@ def fit_curve(curve: LoadCurve) -> LoadCurve | ChebyshevCurve:
     """Fit Chebyshev series to a load curve to its tolerance; return the load curve itself if the fit fails."""
     terms, points = _TERMS, _POINTS
     with numpy.errstate(all="ignore"):
-        for _ in range(_ATTEMPTS if curve.widest > 0 else 0):
+        for _ in range(_ATTEMPTS if curve.widest_angle > 0 else 0):
             candidate = ChebyshevCurve(curve=curve, knots=curve.state(_knot_angles(curve, terms), points))
             if candidate.is_accurate:
                 return candidate
-            needs_terms = numpy.max(candidate.truncation) > numpy.max(candidate.knots.error)
+            needs_terms = numpy.max(candidate.truncation_error) > numpy.max(candidate.knots.error)
             terms, points = (terms * 3 // 2, points) if needs_terms else (terms, points * 3 // 2)
     return curve
 
 
 def _knot_angles(curve: LoadCurve, terms: int) -> Numbers:
     """Compute half angles in rad at Chebyshev points up to the widest contact."""
-    widest_root = float(angle_root(curve.widest, curve.ratio))
-    return angle_at(widest_root * (1 + chebyshev_points(terms)) - 1, curve.ratio)
+    widest_root = float(angle_root(curve.widest_angle, curve.ratio))
+    return half_angle_at(widest_root * (1 + chebyshev_points(terms)) - 1, curve.ratio)
 
 
-def _evaluate_in_blocks(function: Callable[[Numbers], Numbers], contacts: Numbers) -> Numbers:
+def _evaluate_contacts_in_blocks(function: Callable[[Numbers], Numbers], contacts: Numbers) -> Numbers:
     """Evaluate a function of contacts (contacts,) in blocks that fit into the cache."""
     if len(contacts) <= _BLOCK:
         return function(contacts)

@@ -19,19 +19,19 @@ _MAX_TERMS = 30  # of the power series, which converge like (x/2π)²
 
 
 def logarithm_coefficients(a: Numbers) -> Numbers:
-    """Compute the coefficients of the polynomial g in x², which multiplies ln|x|."""
+    """Compute the coefficients of g(x²), the factor of ln|x| in the closed form of the kernel."""
     return numpy.array([-a[0], a[2] / 2, -a[4] / 24])
 
 
 def distance_coefficients(a: Numbers) -> Numbers:
-    """Compute the coefficients of the polynomial h in x², which multiplies |x|."""
+    """Compute the coefficients of h(x²), the factor of |x| in the closed form of the kernel."""
     return -pi / 2 * numpy.array([a[1], -a[3] / 6, a[5] / 120])
 
 
 def smooth_coefficients(a: Numbers, reach: float) -> Numbers:
-    """Compute the coefficients of the power series s in x², truncated for x up to `reach`."""
+    """Compute the coefficients of s(x²), the smooth part of the closed form, accurate for x up to `reach`."""
     terms = min(_MAX_TERMS, 4 + ceil(log(1e-17) / log(max((reach / (2 * pi)) ** 2, 1e-9))))
-    return _power_series()[:terms] @ a
+    return _power_series_matrix()[:terms] @ a
 
 
 _BERNOULLI_NUMBERS = (1 / 6, -1 / 30, 1 / 42, -1 / 30, 5 / 66, -691 / 2730, 7 / 6)  # B_2, B_4, ...
@@ -49,8 +49,8 @@ def _zeta(s: int) -> float:
 
 
 @cache
-def _power_series() -> Numbers:
-    """Compute the matrix from the kernel's coefficients a_1 .. a_6 to those of the power series s."""
+def _power_series_matrix() -> Numbers:
+    """Compute the matrix that converts the kernel's coefficients a_1 .. a_6 to those of the power series s."""
     k = numpy.arange(1, _MAX_TERMS - 2)
     series = (1 - 2.0 ** (1 - 2 * k)) * numpy.array([_zeta(2 * int(n)) for n in k]) / k * (2 * pi) ** (-2.0 * k)
     twice = series / ((2 * k + 1) * (2 * k + 2))

@@ -142,18 +142,18 @@ class ElasticContact(SolvedContact):
         bounded = numpy.all([numpy.isfinite(values) for values in changes.values()], axis=0)
         unaffected = (negligible & bounded) | arrays.to_numpy(self._failed)
         if not unaffected.all() and bounded.all() and self.joint.strengths() and self._is_single:
-            changes["von Mises"] = numpy.array(self._hemisphere_von_mises)
+            changes["von Mises"] = numpy.array(self._hemisphere_von_mises_change)
         return self._note_on_invalid_points(unaffected, _describe_changes(changes))
 
     @property
     def _is_single(self) -> bool:
-        """True for one contact that is wide enough for a sum of modes."""
+        """True for a single contact whose half angle is large enough for a sum of modes."""
         return prod(self.laws.shape) == 1 and bool(self.single_state.half_angle[0] >= MIN_HALF_ANGLE)
 
     @property
-    def _hemisphere_von_mises(self) -> float:
-        """Relative change of the largest von Mises stress on a hemisphere."""
-        state: AbelState = self.single_state.single(0)
+    def _hemisphere_von_mises_change(self) -> float:
+        """Relative change of the largest von Mises stress in the liner, from the closed sphere to a hemisphere."""
+        state: AbelState = self.single_state.single_contact(0)
         factor = 1 + float(arrays.to_numpy(self.hemisphere["half_angle"]).item())
         return von_mises_change(state, float(state.half_angle[0]) * factor)
 
@@ -186,17 +186,17 @@ class ElasticContact(SolvedContact):
         if arrays.all_true(arrays.isfinite(upper) | self._failed) is not False:
             return lower, upper
         estimate = self._mask_failed(
-            lambda: self.laws.combine_by_index(lambda position, piece: self._estimate_von_mises(piece))
+            lambda: self.laws.combine_by_index(lambda position, contacts: self._estimate_von_mises(contacts))
         )
         return (1 - VON_MISES_TOLERANCE) * estimate, (1 + VON_MISES_TOLERANCE) * estimate
 
-    def _estimate_von_mises(self, piece: JointContacts) -> numpy.ndarray:
+    def _estimate_von_mises(self, contacts: JointContacts) -> numpy.ndarray:
         """Estimate the largest von Mises stress in the liner in MPa for the contacts of one joint."""
-        return estimate_von_mises(piece.state)
+        return estimate_von_mises(contacts.state)
 
-    def _joint_von_mises(self, position: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
+    def _joint_von_mises(self, position: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
         """Compute the largest von Mises stress in the liner in MPa for the contacts of one joint."""
-        return largest_von_mises(piece.state, piece.reached)
+        return largest_von_mises(contacts.state, contacts.reached)
 
     def summary(self) -> dict[str, Any]:
         """Return the contact as a dictionary for JSON, with error estimates and the changes on a hemisphere."""
@@ -206,7 +206,7 @@ class ElasticContact(SolvedContact):
     @property
     def _interior_state(self) -> AbelState:
         """Solved state of a single contact; several contacts or a narrow one raise ValueError."""
-        state: AbelState = self.single_state.single(0)
+        state: AbelState = self.single_state.single_contact(0)
         width = float(state.half_angle[0])
         require(
             "half_angle",
@@ -221,13 +221,13 @@ class ElasticContact(SolvedContact):
 class CurveContact(ElasticContact):
     """Contact of the elastic solution with an interpolated largest stress in the liner, to about 1e-3."""
 
-    def _estimate_von_mises(self, piece: JointContacts) -> numpy.ndarray:
-        return self._joint_von_mises(numpy.empty(0), piece)
+    def _estimate_von_mises(self, contacts: JointContacts) -> numpy.ndarray:
+        return self._joint_von_mises(numpy.empty(0), contacts)
 
-    def _joint_von_mises(self, position: numpy.ndarray, piece: JointContacts) -> numpy.ndarray:
-        if isinstance(piece.state, ChebyshevState):
-            return piece.state.largest_von_mises(piece.reached)
-        return super()._joint_von_mises(position, piece)
+    def _joint_von_mises(self, position: numpy.ndarray, contacts: JointContacts) -> numpy.ndarray:
+        if isinstance(contacts.state, ChebyshevState):
+            return contacts.state.largest_von_mises(contacts.reached)
+        return super()._joint_von_mises(position, contacts)
 
 
 def _hemisphere_changes(contacts: JointContacts) -> numpy.ndarray:

@@ -82,8 +82,8 @@ class FreeFace:
         return radii, weights * steps, functions[0], functions[1]
 
     @cached_property
-    def _stiffness(self) -> Numbers:
-        """Stiffness matrix of the hemispherical socket over 2π, for the coefficients of u_r and then of u_φ.
+    def _stiffness_matrix(self) -> Numbers:
+        """Stiffness matrix of the hemispherical socket over 2π, for the coefficients of u_r, then those of u_φ.
 
         The displacements are u_r = f(r) P(cos φ) and u_φ = f(r) sin φ P(cos φ).
         """
@@ -97,9 +97,11 @@ class FreeFace:
         hoop, g = Q_rate + Q_cot, slope * r[:, None]
 
         def integrate_polar(a: Numbers, b: Numbers) -> Numbers:
+            """Integrate products of polar functions a and b over cos φ: (a, b)."""
             return a.T @ (weight[:, None] * b)
 
         def integrate_radial(a: Numbers, b: Numbers, factor: Numbers) -> Numbers:
+            """Integrate products of radial functions a and b, times a factor, over the radius: (a, b)."""
             return a.T @ ((w * factor)[:, None] * b)
 
         # rr, rp, pp: blocks of the radial, mixed and polar displacement coefficients
@@ -123,7 +125,7 @@ class FreeFace:
         return numpy.block([[rr, rp], [rp.T, pp]])
 
     @cached_property
-    def _loads(self) -> Numbers:
+    def _load_vectors(self) -> Numbers:
         """Load vectors over 2π per unit of each pressure mode p_n: (functions, modes).
 
         They are the work of the reversed tractions -t of the equator on each function.
@@ -139,18 +141,18 @@ class FreeFace:
         return numpy.concatenate([numpy.kron(work, corner) for work in (sideways, meridional)], axis=1).T
 
     @cached_property
-    def solution(self) -> Numbers:
+    def displacement_coefficients(self) -> Numbers:
         """Coefficients of the additional displacements u_r and u_φ per unit of each pressure mode p_n.
 
         The shape is (2, radial functions, polar functions, modes).
         """
-        return numpy.linalg.solve(self._stiffness, self._loads).reshape(2, -1, POLAR_TERMS, MODES)
+        return numpy.linalg.solve(self._stiffness_matrix, self._load_vectors).reshape(2, -1, POLAR_TERMS, MODES)
 
     def liner_stress(self, pressure: Numbers, angle: Numbers) -> Stress:
         """Compute the additional stresses in the liner in MPa from pressure modes: (angles, `liner_radii`)."""
         shell, count = self.socket.shells[0], len(self.liner_radii)
         r, _, f, slope, _ = (part[:count] for part in self._radial_functions)
-        radial, sideways = self.solution @ pressure
+        radial, sideways = self.displacement_coefficients @ pressure
         P, P_rate, Q, Q_rate, Q_cot = _polar_functions(numpy.cos(angle))
         radial_displacement = P @ (f @ radial).T
         strain_r = P @ (slope @ radial).T
@@ -176,7 +178,7 @@ class FreeFace:
     @cached_property
     def bore_displacement(self) -> Numbers:
         """Legendre coefficients of the additional radial displacement of the bore, per unit of p_n: (terms, modes)."""
-        return _full_range_matrix() @ self.solution[0, 0]
+        return _full_range_matrix() @ self.displacement_coefficients[0, 0]
 
 
 def _shifted_legendre(x: Numbers, count: int) -> tuple[Numbers, Numbers]:

@@ -44,16 +44,16 @@ class HemisphereGap(LinearGap):
 
     def slope(self, t: Numbers, d: Numbers) -> Numbers:
         """Compute the derivative of the Abel transform of the displacement, dA[u]/dt, in mm/rad."""
-        return super().slope(t, d) + self._sum_waves(numpy.sin, t, self._orders)
+        return super().slope(t, d) + self._sum_waves(numpy.sin, t, self._wave_numbers)
 
     @property
-    def _orders(self) -> Numbers:
+    def _wave_numbers(self) -> Numbers:
         """Wave numbers n + ½ of the modes."""
         return numpy.arange(self.extra.shape[1]) + 0.5
 
     def _sum_waves(self, wave: numpy.ufunc, t: Numbers, factor: Numbers) -> Numbers:
         """Sum the cosines or sines of the additional displacement at t, times a factor for each mode."""
-        total: Numbers = numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._orders))
+        total: Numbers = numpy.einsum("in,itn->it", self.extra * factor, wave(t[..., None] * self._wave_numbers))
         return total
 
 
@@ -103,13 +103,13 @@ def solve_on_hemisphere(closed: AbelState, extra_response: Numbers) -> AbelState
     """
     iterates = [numpy.zeros((len(closed.half_angle), MODES)), low_pressure_modes(closed) @ extra_response.T]
     for _ in range(_ITERATIONS):
-        iterates.append(low_pressure_modes(_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
-    return _hemisphere_state(closed, _extrapolate(numpy.stack(iterates, axis=-1)))
+        iterates.append(low_pressure_modes(_make_hemisphere_state(closed, iterates[-1])) @ extra_response.T)
+    return _make_hemisphere_state(closed, _extrapolate_iterates(numpy.stack(iterates, axis=-1)))
 
 
 def low_pressure_modes(state: AbelState) -> Numbers:
     """Compute the pressure modes p_n in MPa of the lowest degrees: (contacts, MODES)."""
-    waves, sines = _waves(tuple(state.half_angle.tolist()))
+    waves, sines = _quadrature_waves(tuple(state.half_angle.tolist()))
     size = state.grid.points
     series = state.expansion @ _even_legendre(size)
     modes: Numbers = numpy.einsum("cy,cyn->cn", series * sines, waves) / state.kernel.compliance
@@ -117,8 +117,8 @@ def low_pressure_modes(state: AbelState) -> Numbers:
 
 
 @lru_cache(maxsize=16)
-def _waves(angles: tuple[float, ...]) -> tuple[Numbers, Numbers]:
-    """Compute the sines and weights of the integral that gives the pressure modes p_n.
+def _quadrature_waves(angles: tuple[float, ...]) -> tuple[Numbers, Numbers]:
+    """Compute the sines and weights of the quadrature that gives the pressure modes p_n.
 
     The sines are sin((n + ½) s) at quadrature points s of each contact. The weights include sin s.
     """
@@ -137,7 +137,7 @@ def _even_legendre(count: int) -> Numbers:
     return even
 
 
-def _hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
+def _make_hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
     """Make the contacts on a hemisphere from the additional displacements of the surfaces."""
     gap = closed.gap
     return HemisphereState(
@@ -148,7 +148,7 @@ def _hemisphere_state(closed: AbelState, extra: Numbers) -> AbelState:
     )
 
 
-def _extrapolate(iterates: Numbers) -> Numbers:
+def _extrapolate_iterates(iterates: Numbers) -> Numbers:
     """Extrapolate the iterates of linear fixed-point maps to their limit.
 
     The method is reduced-rank extrapolation, a least-squares fit of differences. `iterates` has the shape
@@ -184,10 +184,10 @@ class ContactSeries:
 
     @cached_property
     def _slopes(self) -> dict[str, Numbers]:
-        """Derivatives of the logarithms by ln ε at the given contacts, from parabolas through three points."""
+        """Slopes of the logarithmic quantities by ln ε at the contacts, from parabolas through three points."""
         return {name: numpy.gradient(y, self.x, edge_order=2) for name, y in self.logs.items()}
 
-    def values(self, x: Numbers) -> dict[str, Numbers]:
+    def interpolate_logarithms(self, x: Numbers) -> dict[str, Numbers]:
         """Compute the logarithms of indentation, force, largest pressure and stiffness at x = ln ε.
 
         The result also has the derivative d ln F/dx as "slope".
@@ -230,24 +230,24 @@ class Hemisphere:
     kernel: Kernel
 
     @cached_property
-    def _curve(self) -> LoadCurve:
+    def _load_curve(self) -> LoadCurve:
         """Load curve of the joint with unit clearance."""
         gap = LinearGap(clearance=1.0, socket_radius=self.kernel.socket.radius)
         return LoadCurve(kernel=self.kernel, gap=gap, tolerance=_TOLERANCE)
 
     @cached_property
-    def _response(self) -> Numbers:
+    def _extra_response(self) -> Numbers:
         """Additional displacement of both surfaces per mode of pressure, in mm/MPa."""
         return hemisphere_response(self.kernel.socket, self.kernel.ball)
 
     @cached_property
     def _knot_bodies(self) -> Bodies | None:
         """Contacts of both bodies at all tabulated half angles."""
-        return self._solve_bodies(self._curve.knots)
+        return self._solve_bodies(self._load_curve.knots)
 
     @cached_property
-    def _windows(self) -> dict[int, Bodies | None]:
-        """Contacts of both bodies around half angles solved so far, by the index of the first one."""
+    def _cached_windows(self) -> dict[int, Bodies | None]:
+        """Contacts of both bodies solved so far, by the index of the first of their half angles."""
         return {}
 
     def _bodies_around(self, half_angle: Numbers) -> Bodies | None:
@@ -261,20 +261,20 @@ class Hemisphere:
         try:
             if window is None:
                 return self._knot_bodies
-            if window.start not in self._windows:
-                closed = self._curve.knots_in(window)
-                self._windows[window.start] = self._knot_bodies if closed is None else self._solve_bodies(closed)
-            return self._windows[window.start]
+            if window.start not in self._cached_windows:
+                closed = self._load_curve.knots_in(window)
+                self._cached_windows[window.start] = self._knot_bodies if closed is None else self._solve_bodies(closed)
+            return self._cached_windows[window.start]
         except numpy.linalg.LinAlgError:
             return None
 
     def _solve_bodies(self, closed: AbelState) -> Bodies | None:
         """Solve the hemisphere at the half angles of contacts on the closed sphere; make the series of both."""
-        free = solve_on_hemisphere(closed, self._response)
+        free = solve_on_hemisphere(closed, self._extra_response)
         clearance, angle = closed.gap.clearance, closed.half_angle
         quantity_sets = [{name: getattr(state, name) for name in ("indentation", "force")} for state in (closed, free)]
         for quantities, state in zip(quantity_sets, (closed, free), strict=True):
-            quantities["max_pressure"] = _max_pressure(state)
+            quantities["max_pressure"] = _estimate_max_pressure(state)
         valid = numpy.min([value > 0 for value in quantity_sets[1].values()], axis=0)
         valid[1:] &= numpy.diff(quantity_sets[1]["force"]) > 0  # rounding can break this close to the perfect fit
         count = int(numpy.argmin(numpy.append(valid, False)))
@@ -298,13 +298,13 @@ class Hemisphere:
                 return dict.fromkeys(CHANGES, numpy.full(half_angle.shape, nan))
             closed, free = bodies
             x = numpy.log(numpy.maximum(half_angle, numpy.exp(closed.x[0])))
-            before = closed.values(x)
-            knots = free.values(free.x)["force"]
+            before = closed.interpolate_logarithms(x)
+            knots = free.interpolate_logarithms(free.x)["force"]
             free_x = numpy.interp(before["force"], knots, free.x)
             for _ in range(_NEWTON_STEPS):
-                after = free.values(free_x)
+                after = free.interpolate_logarithms(free_x)
                 free_x = numpy.clip(free_x + (before["force"] - after["force"]) / after["slope"], free.x[0], free.x[-1])
-            after = {**free.values(free_x), "half_angle": free_x}
+            after = {**free.interpolate_logarithms(free_x), "half_angle": free_x}
             before["half_angle"] = x  # compared as logarithms, as all others
             inside = (abs(after["force"] - before["force"]) < _RELATIVE_TOLERANCE) & (x <= closed.x[-1])
             return {name: numpy.where(inside, numpy.expm1(after[name] - before[name]), nan) for name in CHANGES}
@@ -316,9 +316,9 @@ CHANGES = ("indentation", "half_angle", "max_pressure", "stiffness")
 _MIN_CONTACTS, _MAX_SHARE, _NEWTON_STEPS, _RELATIVE_TOLERANCE, _TOLERANCE = 4, 1 - 1e-9, 4, 1e-3, 1e-3
 
 
-def _max_pressure(state: AbelState) -> Numbers:
+def _estimate_max_pressure(state: AbelState) -> Numbers:
     """Estimate the largest pressure in MPa: that at the pole, or the largest at a few angles."""
-    if state.decreases.all():
+    if state.pressure_decreases.all():
         return state.pole_pressure
     return state.pressure(state.half_angle * numpy.linspace(0.0, 0.95, 20)[:, None]).max(axis=0)
 

@@ -56,7 +56,7 @@ class Intervals:
     grid: QuadratureGrid
 
     def closed_form_operators(self, a: Numbers) -> Operators:
-        """Compute the integral operators of the part of the kernel in closed form, from its coefficients a_1 .. a_6."""
+        """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
         grid, edge = self.grid, self.half_angle[:, None, None]
         square = numpy.multiply(edge, grid.distance, out=workspace_array("square", (edge.size, *grid.distance.shape)))
         square *= square
@@ -74,7 +74,7 @@ class Intervals:
         return left + right, right - left
 
     def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
-        """Add the integral operators of the rest of the kernel, a sum of cosines with weights r_n, in place."""
+        """Add the integral operators of the kernel's remainder, a sum of cosines with weights r_n, in place."""
         size = max(1, _BLOCK // (_wave_panels(self.half_angle, self.grid, len(remainder)).count * len(remainder)))
         for first in range(0, len(self.half_angle), size):
             block = slice(first, first + size)
@@ -107,12 +107,12 @@ class CachedIntervals:
         return {}
 
     def closed_form_operators(self, a: Numbers) -> Operators:
-        """Compute the integral operators of the part of the kernel in closed form, from its coefficients a_1 .. a_6."""
+        """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
         even, odd = self._unit_operators
         return even @ a, odd @ a
 
     def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
-        """Add the integral operators of the rest of the kernel, a sum of cosines with weights r_n, in place."""
+        """Add the integral operators of the kernel's remainder, a sum of cosines with weights r_n, in place."""
         if len(remainder) > _CACHED_COUNTS[-1]:
             self._intervals.add_remainder(remainder, operators)
             return
@@ -148,10 +148,10 @@ def _waves_and_integration_matrices(
     """
     edge = half_angle[:, None]
     panels = _wave_panels(half_angle, grid, count)
-    even, odd = _waves("targets", edge * grid.position, count)
+    even, odd = _cosines_and_sines("targets", edge * grid.position, count)
     odd *= edge[..., None]
     even *= edge[..., None]
-    panel_cosines, panel_sines = _waves("sources", edge * panels.position, count)
+    panel_cosines, panel_sines = _cosines_and_sines("sources", edge * panels.position, count)
     shape = (len(half_angle), count, grid.points)
     even_integrals = numpy.matmul(
         panel_cosines.swapaxes(-1, -2), _even_interpolation(grid, panels), out=workspace_array("even integrals", shape)
@@ -167,7 +167,7 @@ def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Pane
     return _panels_with_points(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
 
 
-def _waves(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
+def _cosines_and_sines(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
     """Compute cos and sin of (n + ½) angle for n below count, in workspace arrays of this name."""
     waves = workspace_array("waves", (*angle.shape, count), complex)
     waves[..., 0] = numpy.exp(0.5j * angle)

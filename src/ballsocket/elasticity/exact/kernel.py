@@ -58,7 +58,7 @@ class Kernel:
         """Remainders r_n of ρ_n after the closed forms, from n = 0 to the last one above the tolerance."""
         a = self.expansion
         tail = (abs(a[ORDER]) / (ORDER * self.tolerance)) ** (1 / ORDER)
-        q = numpy.arange(max(ceil(tail), self.socket.reach(self.tolerance), 24)) + 0.5
+        q = numpy.arange(max(ceil(tail), self.socket.backing_degree(self.tolerance), 24)) + 0.5
         return self.excess((q - 0.5).astype(int)) - sum(a[j] * q ** -(j + 1.0) for j in range(ORDER))
 
     def operators(self, intervals: Intervals | CachedIntervals) -> Operators:

@@ -73,7 +73,7 @@ class LoadCurve:
             state, residual = self._solve(kind, positive_load, self._clip_angles(angle), points)
             reached = (state.half_angle <= LIMIT) & (state.half_angle < self._max_computed_angle) & _is_contact(state)
             floor = residual + self.kernel.tolerance
-            error = {name: error + floor for name, error in errors(kind, state).items()}
+            error = {name: error + floor for name, error in estimate_errors(kind, state).items()}
             if not any(numpy.any(values[reached] > self.tolerance) for values in error.values()):
                 break
             angle = numpy.where(angle <= self._max_computed_angle, state.half_angle, angle)
@@ -126,7 +126,7 @@ class LoadCurve:
         return self.gap.socket_radius / self.kernel.socket.shells[0].thickness
 
     @property
-    def widest(self) -> float:
+    def widest_angle(self) -> float:
         """Largest half angle in rad with a solution."""
         return min(LIMIT, self._max_computed_angle)
 
@@ -201,7 +201,7 @@ def log_slope(kind: str, state: CurvePoints) -> Numbers:
     return deepening / state.indentation if kind == "indentation" else deepening * state.stiffness / state.force
 
 
-def errors(kind: str, state: CurvePoints) -> dict[str, Numbers]:
+def estimate_errors(kind: str, state: CurvePoints) -> dict[str, Numbers]:
     """Estimate the relative error of each quantity at the applied load."""
     state_error = _SAFETY * state.error
     slopes = {name: log_slope(name, state) for name in _LAWS}

@@ -110,6 +110,7 @@ class Exact(Model):
     reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
+        """Solve the contacts of all joints and loads on the load curve of each joint."""
         solution = solve_per_joint(
             self, joint, load, lambda plain_joint, loads: curve_of(self, plain_joint).press(kind, loads)
         )
@@ -120,7 +121,7 @@ _NEAR_HEMISPHERE = NearHemisphere()
 
 
 def make_solver_result(solution: CombinedSolution, tolerance: float, load: Array) -> SolverResult:
-    """Make the solver result of a solution; errors beyond the tolerance count as not converged."""
+    """Make the solver result of solved contacts; errors beyond the tolerance count as not converged."""
     return SolverResult(
         laws=solution,
         force=solution.force,

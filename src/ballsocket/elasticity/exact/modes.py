@@ -118,18 +118,18 @@ class Socket:
         P = 2 * (1 - nu) * n * n + (4 - 5 * nu) * n + (1 - nu)
         Q = (n + 2) * (n * n + n + 1 - nu * (2 * n + 1))
         c = numpy.asarray(self.asymptote / (2 * (1 - nu)) * P / Q)
-        layered = n < self.reach(_NEGLIGIBLE)
+        layered = n < self.backing_degree(_NEGLIGIBLE)
         if layered.any():
-            c[layered] = -self.radius * self._layers(n[layered])[0].compliance[0, 0]
+            c[layered] = -self.radius * self._supported_layers(n[layered])[0].compliance[0, 0]
         return c
 
     def excess(self, degrees: ArrayLike) -> numpy.ndarray:
         """Compute the relative excess of each modal compliance over its limit, ρ_n = c_n (n + ½)/C - 1."""
         n = _check_degrees(degrees)
         rho = homogeneous_excess(n + 0.5, self.shells[0].poisson)
-        layered = n < self.reach(_NEGLIGIBLE)
+        layered = n < self.backing_degree(_NEGLIGIBLE)
         if layered.any():
-            correction = self._layers(n[layered])[0].layer_correction[0, 0]
+            correction = self._supported_layers(n[layered])[0].layer_correction[0, 0]
             rho[layered] -= self.radius * correction * (n[layered] + 0.5) / self.asymptote
         return rho
 
@@ -138,12 +138,12 @@ class Socket:
 
         They are those of an infinite socket of the innermost material.
 
-        That series converges for n >= 2; the contribution of the layers is exponentially small, see `reach`.
+        That series converges for n >= 2; the contribution of the layers is exponentially small, see `backing_degree`.
         """
         return homogeneous_expansion(self.shells[0].poisson, order)
 
-    def reach(self, tolerance: float = 1e-12) -> int:
-        """Compute the degree from which the backing of the liner changes ρ_n by less than `tolerance`."""
+    def backing_degree(self, tolerance: float = 1e-12) -> int:
+        """Compute the degree n from which the backing of the liner changes ρ_n by less than `tolerance`."""
         require("tolerance", tolerance, 0 < tolerance < 1, "a tolerance must lie between 0 and 1")
         shell = self.shells[0]
         if isinf(shell.thickness):
@@ -167,30 +167,30 @@ class Socket:
             A radius in the bore or beyond the outermost surface.
         """
         n, r = numpy.atleast_1d(_check_degrees(degrees)), numpy.atleast_1d(numpy.asarray(radii, dtype=float))
-        bounds = self._bounds
+        bounds = self._interface_radii
         inside = (r >= bounds[0] * (1 - _ROUNDING)) & (r <= bounds[-1] * (1 + _ROUNDING))
         require("radii", r, inside, f"the socket reaches from r = {bounds[0]:g} to {bounds[-1]:g} mm")
         r = numpy.clip(r, bounds[0], bounds[-1])
         layer_of = numpy.maximum(numpy.searchsorted(bounds, r) - 1, 0)
         load = numpy.stack([-self.radius + 0 * n, 0 * n])[:, None]
         values = numpy.empty((7, len(n), len(r)))
-        for number, layer in enumerate(self._layers(n)):
+        for number, layer in enumerate(self._supported_layers(n)):
             columns = layer_of == number
             values[:, :, columns] = layer.fields(load, r[columns])
             load = layer.outer_traction(load)
         return Fields(**dict(zip(Fields.__dataclass_fields__, values, strict=True)))
 
     @property
-    def _bounds(self) -> numpy.ndarray:
+    def _interface_radii(self) -> numpy.ndarray:
         """Radii in mm of the bore, of the interfaces and of the outermost surface."""
         return numpy.cumsum([self.radius, *(shell.thickness for shell in self.shells)])
 
-    def _layers(self, n: numpy.ndarray) -> list[SupportedLayer]:
+    def _supported_layers(self, n: numpy.ndarray) -> list[SupportedLayer]:
         """Return the layers from the bore outwards, each with the condition that its backing imposes."""
         is_free = self.support is Support.FREE and not isinf(self.shells[-1].thickness)
         condition = free_surface_condition(n) if is_free else fixed_surface_condition()
         layers: list[SupportedLayer] = []
-        for shell, inner in zip(self.shells[::-1], self._bounds[-2::-1], strict=True):
+        for shell, inner in zip(self.shells[::-1], self._interface_radii[-2::-1], strict=True):
             layers.insert(0, SupportedLayer(**vars(shell), inner=float(inner), n=n, condition=condition))
             condition = UNIT, -layers[0].compliance
         return layers
@@ -269,8 +269,8 @@ def socket_of(joint: Joint) -> Socket:
     >>> socket_of(bs.joints["hip-28"]).shells
     (Shell(thickness=5.0, young=1000.0, poisson=0.4),)
     """
-    liner = _shell(joint.liner_thickness, joint.liner)
-    backing = (_shell(layer.thickness, layer.material) for layer in joint.backing)
+    liner = _make_shell(joint.liner_thickness, joint.liner)
+    backing = (_make_shell(layer.thickness, layer.material) for layer in joint.backing)
     return Socket(radius=float(joint.socket_radius), shells=(liner, *backing), support=joint.support)
 
 
@@ -283,7 +283,7 @@ def ball_of(joint: Joint) -> ElasticBall | None:
     )
 
 
-def _shell(thickness: Array, material: Material) -> Shell:
+def _make_shell(thickness: Array, material: Material) -> Shell:
     """Make the shell of a layer from its thickness in mm and its material."""
     return Shell(thickness=float(thickness), young=float(material.young), poisson=float(material.poisson))
 
@@ -317,7 +317,7 @@ def asymptote_of(radius: float, young: float, poisson: float) -> float:
     return 2 * (1 - poisson**2) * radius / young
 
 
-def _polynomials(nu: float) -> tuple[list[float], list[float]]:
+def _excess_polynomials(nu: float) -> tuple[list[float], list[float]]:
     """Compute numerator and denominator of ρ_n in an infinite socket, in falling powers of q = n + ½.
 
     The numerator begins with q², the denominator with q³. A ball has -q in place of q.
@@ -332,13 +332,13 @@ def homogeneous_excess(q: Numbers, nu: float) -> Numbers:
 
     The excess is ρ_n = c_n (n + ½)/C - 1.
     """
-    numerator, _ = _polynomials(nu)
+    numerator, _ = _excess_polynomials(nu)
     return numpy.asarray(numpy.polyval(numerator, q) / ((q + 1.5) * (q * (q - 2 * nu) + 0.75)))
 
 
 def homogeneous_expansion(nu: float, order: int) -> Numbers:
     """Compute the coefficients a_1, ..., a_order of ρ_n in powers of 1/q, for an infinite socket."""
-    numerator, denominator = _polynomials(nu)
+    numerator, denominator = _excess_polynomials(nu)
     a = [0.0, 0.0, 0.0]
     for j in range(order):
         earlier = denominator[1] * a[-1] + denominator[2] * a[-2] + denominator[3] * a[-3]

@@ -17,7 +17,7 @@ from .free_face import free_face_of
 from .hemisphere import hemisphere_response, low_pressure_modes, solve_on_hemisphere
 from .intervals import Intervals
 from .load_curve import LoadCurve
-from .tabulated.chebyshev import angle_at, angle_root
+from .tabulated.chebyshev import angle_root, half_angle_at
 
 MIN_HALF_ANGLE = radians(1.0)
 """Half angle in rad of the narrowest contact whose interior is computed."""
@@ -30,7 +30,7 @@ def surface_displacement(state: AbelState, angle: Numbers) -> Numbers:
     """Compute the outward radial displacement of the socket's surface in mm for one contact; shape of `angle`."""
     count = _mode_count(state, 0.0)
     amplitudes = _taper_modes(state, count) * state.kernel.socket.compliance(numpy.arange(count))
-    return (amplitudes @ _legendre(angle.ravel(), count)[0]).reshape(angle.shape)
+    return (amplitudes @ _legendre_and_slopes(angle.ravel(), count)[0]).reshape(angle.shape)
 
 
 def stress(state: AbelState, angle: Numbers, depth: Numbers) -> Stress:
@@ -45,10 +45,11 @@ def _sum_stresses(state: AbelState, angle: Numbers, depth: Numbers, count: int) 
     angles, column = numpy.unique(angle.ravel(), return_inverse=True)
     depths, row = numpy.unique(depth.ravel(), return_inverse=True)
     fields = state.kernel.socket.fields(numpy.arange(count), state.gap.socket_radius + depths)
-    P, slope = _legendre(angles, count)
+    P, slope = _legendre_and_slopes(angles, count)
     modes = _taper_modes(state, count)
 
     def sum_modes(field: Numbers, wave: Numbers) -> Numbers:
+        """Sum the modes of a stress field times their waves along the meridian, at the points."""
         table = (modes[:, None] * field).T @ wave  # depths by angles
         return table[row.ravel(), column.ravel()].reshape(angle.shape)
 
@@ -67,7 +68,7 @@ def find_peak_stress(state: AbelState, thickness: float) -> Peak:
     for _ in range(_SEARCH_ROUNDS):
         values = stress(state, angles[:, None], depths).von_mises
         i, j = numpy.unravel_index(numpy.argmax(values), values.shape)
-        angles, depths = _refined_points(angles, int(i)), _refined_points(depths, int(j))
+        angles, depths = _refine_points_around(angles, int(i)), _refine_points_around(depths, int(j))
         maximum = Peak(
             von_mises=float(values[i, j]), depth=float(depths[_HALF_INTERVALS]), angle=float(angles[_HALF_INTERVALS])
         )
@@ -75,7 +76,7 @@ def find_peak_stress(state: AbelState, thickness: float) -> Peak:
 
 
 def _search_grid(state: AbelState, thickness: float) -> tuple[Numbers, Numbers]:
-    """Make the first search grid: angles (rad) to slightly beyond the edge, and depths (mm)."""
+    """Make the first grid to search for the largest stress: angles (rad) to beyond the edge, and depths (mm)."""
     angles = float(state.half_angle[0]) * numpy.linspace(0.0, 1.3, 27)
     deepest = min(thickness, 3 * state.gap.socket_radius * float(numpy.sin(state.half_angle[0])))
     return angles, deepest * numpy.linspace(0.0, 1.0, 26)
@@ -88,7 +89,7 @@ def estimate_von_mises(state: AbelState) -> Numbers:
     """
     values = state.max_pressure * ball_stress_ratio(state.kernel.socket.shells[0].poisson)
     for number in numpy.flatnonzero(state.half_angle >= MIN_HALF_ANGLE):
-        contact = state.single(int(number))
+        contact = state.single_contact(int(number))
         angles, depths = _search_grid(contact, contact.kernel.socket.shells[0].thickness)
         count = _mode_count(contact, 0.0) // _FEWER_MODES
         values[number] = _sum_stresses(contact, angles[::2, None], depths[::2], count).von_mises.max()
@@ -123,25 +124,25 @@ def von_mises_change(closed: AbelState, half_angle: float) -> float:
     return same_force * float(total.von_mises.max() / before.von_mises.max()) - 1
 
 
-def largest_von_mises(state: AbelState, reached: Numbers) -> Numbers:
+def largest_von_mises(state: AbelState, reachable: Numbers) -> Numbers:
     """Compute the largest von Mises stress in the liner in MPa for the contacts in a mask, NaN for others.
 
     A narrow contact has the stress of a half-space under Hertz' pressure.
     """
     liner = state.kernel.socket.shells[0]
     values = numpy.full(len(state.half_angle), numpy.nan)
-    for number in numpy.flatnonzero(reached):
+    for number in numpy.flatnonzero(reachable):
         if state.half_angle[number] < MIN_HALF_ANGLE:  # a half-space
             values[number] = state.max_pressure[number] * ball_stress_ratio(liner.poisson)
         else:
-            values[number] = find_peak_stress(state.single(int(number)), liner.thickness).von_mises
+            values[number] = find_peak_stress(state.single_contact(int(number)), liner.thickness).von_mises
     return values
 
 
 _HALF_INTERVALS, _SEARCH_ROUNDS = 4, 4
 
 
-def _refined_points(values: Numbers, i: int) -> Numbers:
+def _refine_points_around(values: Numbers, i: int) -> Numbers:
     """Make a finer row of points between the two neighbours of index i."""
     low, high = values[max(i - 1, 0)], values[min(i + 1, len(values) - 1)]
     below = numpy.linspace(low, values[i], _HALF_INTERVALS + 1)
@@ -149,7 +150,7 @@ def _refined_points(values: Numbers, i: int) -> Numbers:
 
 
 def _mode_count(state: AbelState, depth: float) -> int:
-    """Choose the number of modes for the stresses of one contact at a depth in mm.
+    """Choose the number of modes to sum for the stresses of one contact at a depth in mm.
 
     It resolves the contact, and is smaller where modes decay like (1 + depth/R2)^-n.
     """
@@ -165,10 +166,10 @@ def _taper_modes(state: AbelState, count: int) -> Numbers:
     """
     n = numpy.arange(count)
     taper = numpy.cos(numpy.pi * numpy.clip(n / count - 0.5, 0.0, 0.5)) ** 2
-    return state.modes(count)[0] * taper
+    return state.pressure_modes(count)[0] * taper
 
 
-def _legendre(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
+def _legendre_and_slopes(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
     """Compute the Legendre polynomials P_n(cos φ) and their derivatives by cos φ: (count, angles)."""
     x, n = numpy.cos(angle), numpy.arange(count)[:, None]
     P, slope = numpy.empty((count, len(x))), numpy.zeros((count, len(x)))
@@ -205,36 +206,37 @@ class StressCurve:
     @cached_property
     def _widest_coordinate(self) -> float:
         """Coordinate of the half angle of the widest contact, from 0 to 1."""
-        return float(angle_root(self.curve.widest, self._thickness_ratio))
+        return float(angle_root(self.curve.widest_angle, self._thickness_ratio))
 
     def stress_ratio(self, angle: Numbers) -> Numbers:
         """Interpolate the ratio of the largest von Mises stress to the largest pressure at half angles."""
         position = numpy.clip(
-            (angle_root(angle, self._thickness_ratio) - self._coordinates[0]) / self._coordinates[1],
+            (angle_root(angle, self._thickness_ratio) - self._first_coordinate_and_step[0])
+            / self._first_coordinate_and_step[1],
             0.0,
             _STRESS_INTERVALS - 1e-9,
         )
         first, fraction = position.astype(int), position % 1
-        low, high = (self._solved_ratios(number) for number in (first, first + 1))
+        low, high = (self._stress_ratios_at(number) for number in (first, first + 1))
         return low + fraction * (high - low)
 
     @property
-    def _coordinates(self) -> tuple[float, float]:
-        """First coordinate of the half angles at which stresses are solved, and the step between them."""
+    def _first_coordinate_and_step(self) -> tuple[float, float]:
+        """First coordinate of the half angles at which stresses are solved, and the coordinate step to the next."""
         first = min(float(angle_root(MIN_HALF_ANGLE, self._thickness_ratio)), self._widest_coordinate)
         return first, (self._widest_coordinate - first) / _STRESS_INTERVALS
 
-    def _solved_ratios(self, numbers: Numbers) -> Numbers:
-        """Return the stress ratios at half angles by their indices."""
+    def _stress_ratios_at(self, numbers: Numbers) -> Numbers:
+        """Return the stress ratios at the half angles of these indices."""
         unique, positions = numpy.unique(numbers, return_inverse=True)
-        return numpy.array([self._solve_ratio(int(number)) for number in unique])[positions.ravel()]
+        return numpy.array([self._solve_stress_ratio(int(number)) for number in unique])[positions.ravel()]
 
-    def _solve_ratio(self, number: int) -> float:
-        """Return the stress ratio at the half angle of this index; it is solved at its first use."""
+    def _solve_stress_ratio(self, number: int) -> float:
+        """Return the stress ratio at the half angle of this index: solve it once, then read it from the cache."""
         if number not in self._cached_ratios:
-            coordinate = self._coordinates[0] + number * self._coordinates[1]
-            angle = float(angle_at(2 * coordinate - 1, self._thickness_ratio))
-            state = self.curve.state(numpy.array([min(angle, self.curve.widest)]), self.points)
+            coordinate = self._first_coordinate_and_step[0] + number * self._first_coordinate_and_step[1]
+            angle = float(half_angle_at(2 * coordinate - 1, self._thickness_ratio))
+            state = self.curve.state(numpy.array([min(angle, self.curve.widest_angle)]), self.points)
             self._cached_ratios[number] = float((largest_von_mises(state, numpy.array([True])) / state.max_pressure)[0])
         return self._cached_ratios[number]
 

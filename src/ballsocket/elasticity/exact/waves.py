@@ -31,17 +31,17 @@ UNIT: Matrix = numpy.eye(2)[:, :, None]
 
 
 def _matmul(a: Matrix, b: Matrix) -> Matrix:
-    """Multiply the 2×2 matrices of each degree."""
+    """Multiply the 2×2 matrices of each degree n."""
     return a[:, :1] * b[:1] + a[:, 1:] * b[1:]
 
 
 def _inverse(a: Matrix) -> Matrix:
-    """Invert the 2×2 matrices of each degree."""
+    """Invert the 2×2 matrices of each degree n."""
     return numpy.array([[a[1, 1], -a[0, 1]], [-a[1, 0], a[0, 0]]]) / (a[0, 0] * a[1, 1] - a[0, 1] * a[1, 0])
 
 
-def _outer(column: tuple[numpy.ndarray, ...], row: tuple[numpy.ndarray, ...]) -> Matrix:
-    """Compute the outer product of a column and a row for each degree."""
+def _outer_product(column: tuple[numpy.ndarray, ...], row: tuple[numpy.ndarray, ...]) -> Matrix:
+    """Compute the outer product of a column and a row for each degree n."""
     return numpy.array(column)[:, None] * numpy.array(row)
 
 
@@ -82,7 +82,7 @@ class Wave:
         return cls(N=N, K=K, power=numpy.where(zero, single_power, power))
 
     def propagate(self, x: float | numpy.ndarray, u: Matrix) -> Matrix:
-        """Compute the displacements at the logarithmic distance x = -ln κ, over which the wave decays from u."""
+        """Compute the displacements of a wave after its decay from u over a logarithmic distance x of radii."""
         return numpy.exp(-self.power * x) * (u + numpy.expm1(-2 * x) / 2 * _matmul(self.N, u))
 
     def decay_deficit(self, x: float) -> Matrix:
@@ -90,7 +90,7 @@ class Wave:
         decay = self.power * x
         return -numpy.expm1(-decay) * UNIT - expm1(-2 * x) / 2 * numpy.exp(-decay) * self.N
 
-    def evaluate(self, x: numpy.ndarray, u: Matrix) -> tuple[Matrix, Matrix]:
+    def evaluate_fields(self, x: numpy.ndarray, u: Matrix) -> tuple[Matrix, Matrix]:
         """Compute displacements and tractions r σ at several logarithmic distances x, on a new last axis."""
         wave = Wave(N=self.N[..., None], K=self.K[..., None], power=self.power[:, None])
         displacements = wave.propagate(x, u[..., None])
@@ -105,8 +105,8 @@ def growing_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
     compressibility = 1 - 2 * nu
     denominator = numpy.maximum(n + compressibility * (2 * n + 1), _MIN_DENOMINATOR)
     weight = (2 - nu - compressibility * n) / denominator
-    N = _outer(((n + 1) * (n - 2 + 4 * nu), n + 5 - 4 * nu), (-1 / denominator, n / denominator))
-    K = (n - 1) * UNIT + _outer((n + 1, -1 + 0 * n), (weight, -n * weight))
+    N = _outer_product(((n + 1) * (n - 2 + 4 * nu), n + 5 - 4 * nu), (-1 / denominator, n / denominator))
+    K = (n - 1) * UNIT + _outer_product((n + 1, -1 + 0 * n), (weight, -n * weight))
     return Wave.from_matrices(n, N, K * _twice_shear(young, nu), power=n - 1, single_power=1)
 
 
@@ -118,8 +118,8 @@ def decaying_wave(n: numpy.ndarray, young: float, nu: float) -> Wave:
     compressibility = 1 - 2 * nu
     denominator = n + 1 + compressibility * (2 * n + 1)
     weight = (3 * (1 - nu) + compressibility * n) / denominator
-    N = _outer((-n - 1, 1 + 0 * n), ((n - 4 + 4 * nu) / denominator, n * (n + 3 - 4 * nu) / denominator))
-    K = -(n + 2) * UNIT + _outer((n, 1 + 0 * n), (weight, (n + 1) * weight))
+    N = _outer_product((-n - 1, 1 + 0 * n), ((n - 4 + 4 * nu) / denominator, n * (n + 3 - 4 * nu) / denominator))
+    K = -(n + 2) * UNIT + _outer_product((n, 1 + 0 * n), (weight, (n + 1) * weight))
     return Wave.from_matrices(n, N, K * _twice_shear(young, nu), power=n, single_power=2)
 
 
@@ -159,7 +159,7 @@ class SupportedLayer:
 
     @cached_property
     def _transmission(self) -> Matrix:
-        """Decaying wave at the outer surface, per unit of it at the inner surface."""
+        """Decaying wave at the outer surface, per unit of decaying wave at the inner surface."""
         return self._decaying_wave.propagate(self._log_ratio, UNIT)
 
     @cached_property
@@ -204,30 +204,30 @@ class SupportedLayer:
         departure = UNIT - _matmul(_inverse(self._decaying_wave.K), self._growing_wave.K)
         return _matmul(departure, _matmul(self._inner_reflection, self._traction_response))
 
-    def _waves(self, load: Matrix) -> tuple[Matrix, Matrix]:
+    def _wave_amplitudes(self, traction: Matrix) -> tuple[Matrix, Matrix]:
         """Compute the growing wave at the outer surface and the decaying wave at the inner surface.
 
-        `load` is the traction r σ on the inner surface.
+        `traction` is the traction r σ on the inner surface.
         """
-        decaying = _matmul(self._traction_response, load)
+        decaying = _matmul(self._traction_response, traction)
         return _matmul(self._outer_reflection, _matmul(self._transmission, decaying)), decaying
 
-    def outer_traction(self, load: Matrix) -> Matrix:
+    def outer_traction(self, traction: Matrix) -> Matrix:
         """Compute the traction r σ on the outer surface from that on the inner surface."""
-        growing, decaying = self._waves(load)
+        growing, decaying = self._wave_amplitudes(traction)
         return _matmul(self._growing_wave.K, growing) + _matmul(
             self._decaying_wave.K, _matmul(self._transmission, decaying)
         )
 
-    def fields(self, load: Matrix, r: numpy.ndarray) -> numpy.ndarray:
+    def fields(self, traction: Matrix, r: numpy.ndarray) -> numpy.ndarray:
         """Compute displacements and stresses at radii r (mm) from the traction r σ on the inner surface.
 
         The rows are the seven components of `Fields`.
         """
-        growing, decaying = self._waves(load)
+        growing, decaying = self._wave_amplitudes(traction)
         x = numpy.log(r / self.inner)
-        grown = self._growing_wave.evaluate(numpy.maximum(self._log_ratio - x, 0.0), growing)
-        inward = self._decaying_wave.evaluate(x, decaying)
+        grown = self._growing_wave.evaluate_fields(numpy.maximum(self._log_ratio - x, 0.0), growing)
+        inward = self._decaying_wave.evaluate_fields(x, decaying)
         (u_r, u_phi), (s_rr, s_rphi) = (a[:, 0] + b[:, 0] for a, b in zip(grown, inward, strict=True))
         # Hooke: hoop strains (u_r P + u_φ P'')/r and (u_r P + u_φ cot φ P')/r, P'' = -n (n + 1) P - cot φ P'
         nu, bent = self.poisson, (self.n * (self.n + 1))[:, None] * u_phi

@@ -16,7 +16,7 @@ from ...core.arrays import Numbers
 from ...problem import Support
 from .condensation import CondensedBody
 from .elasticity import ElasticBlock
-from .mesh import Block, block
+from .mesh import Block, mesh_block
 from .shapes import Resolution, SocketShape, ball_corners
 
 
@@ -39,7 +39,7 @@ def socket_body(shape: SocketShape, resolution: Resolution) -> CondensedBody:
 
 def socket_block(shape: SocketShape, angle: Numbers, radii: list[Numbers], order: int) -> Block:
     """Mesh the socket from the corners of its elements; a sliding liner has separate nodes."""
-    return block(angle, radii, order, (1,) if shape.slides and len(radii) > 1 else ())
+    return mesh_block(angle, radii, order, (1,) if shape.slides and len(radii) > 1 else ())
 
 
 def socket_elastic(shape: SocketShape, mesh: Block) -> ElasticBlock:
@@ -51,7 +51,7 @@ def socket_elastic(shape: SocketShape, mesh: Block) -> ElasticBlock:
 def ball_body(poisson: float, resolution: Resolution) -> CondensedBody:
     """Mesh the ball with radius and Young's modulus 1 as an elastic body that is loaded on its surface."""
     angle, radii = ball_corners(resolution)
-    mesh = block(angle, [radii], resolution.order)
+    mesh = mesh_block(angle, [radii], resolution.order)
     fixed_unknowns = _axis_mask(mesh)
     fixed_unknowns[2 * mesh.number[-1]] = True  # the equator stays plane
     elastic = ElasticBlock(block=mesh, young=numpy.ones(1), poisson=numpy.array([poisson]))

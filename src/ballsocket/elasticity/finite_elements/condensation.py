@@ -38,7 +38,7 @@ class CondensedBody:
     contact: Numbers
 
     @property
-    def normals(self) -> Numbers:
+    def normal_unknowns(self) -> Numbers:
         """Indices of the unknowns that are normal displacements of contact nodes."""
         return 2 * self.contact + 1
 
@@ -52,17 +52,17 @@ class CondensedBody:
         rank[nested_dissection(grid, block.order)] = numpy.arange(grid.size)
         node_rank = rank[grid[:, block.level]].ravel()
         free = numpy.unique(self.elastic.element_unknowns)
-        free = free[~self.fixed_unknowns[free] & ~numpy.isin(free, self.normals)]
-        return numpy.concatenate([free[numpy.argsort(node_rank[free // 2], kind="stable")], self.normals])
+        free = free[~self.fixed_unknowns[free] & ~numpy.isin(free, self.normal_unknowns)]
+        return numpy.concatenate([free[numpy.argsort(node_rank[free // 2], kind="stable")], self.normal_unknowns])
 
-    def _factors(self) -> Any:
+    def _factorize_stiffness(self) -> Any:
         """Compute the LU factors of the stiffness matrix in the order of elimination."""
-        ordered = self.elastic.matrix()[self._elimination_order][:, self._elimination_order].tocsc()
+        ordered = self.elastic.stiffness_matrix()[self._elimination_order][:, self._elimination_order].tocsc()
         return splu(ordered, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
     def compliance(self) -> Numbers:
         """Compute the compliance matrix of the contact nodes: normal displacements by unit normal forces."""
-        factors, count = self._factors(), len(self.contact)
+        factors, count = self._factorize_stiffness(), len(self.contact)
         stiffness = factors.L[-count:, -count:].toarray() @ factors.U[-count:, -count:].toarray()
         return numpy.linalg.inv((stiffness + stiffness.T) / 2)
 
@@ -71,7 +71,7 @@ class CondensedBody:
         load = numpy.zeros(len(self._elimination_order))
         load[-len(self.contact) :] = forces
         solution = numpy.zeros(len(self.fixed_unknowns))
-        solution[self._elimination_order] = self._factors().solve(load)
+        solution[self._elimination_order] = self._factorize_stiffness().solve(load)
         for column in self.elastic.block.sliding:
             number = self.elastic.block.number
             solution[2 * number[:, column + 1] + 1] = solution[2 * number[:, column] + 1]

@@ -53,7 +53,7 @@ class MeshedContact(SolvedContact):
         lower, upper = super().von_mises_bounds
         return (lower, upper) if self.model.cup == Cup() else (0.0 * lower, upper + inf)
 
-    def _joint_von_mises(self, index: Numbers, piece: JointContacts) -> Numbers:
+    def _joint_von_mises(self, index: Numbers, contacts: JointContacts) -> Numbers:
         """Compute the largest von Mises stress in the liner in MPa for the contacts of one joint."""
         from .section import section
 
@@ -63,7 +63,7 @@ class MeshedContact(SolvedContact):
             else section(
                 joint_at(self.joint, self.laws.shape, int(index[0])), self.model.cup, contact
             ).peak_stress.von_mises
-            for contact in piece.state.solved
+            for contact in contacts.state.solved
         ]
         return numpy.array(values, dtype=float)
 
@@ -85,10 +85,12 @@ class MeshedContact(SolvedContact):
 
     @property
     def _plain_joint(self) -> Joint:
+        """Joint with plain numbers."""
         return self.joint.with_numbers([float(to_numpy(number).item()) for number in self.joint.numbers()])
 
     @property
     def _solved(self) -> Solved:
+        """Solved contact on its meshes; ValueError if the load has no solution."""
         solved: Solved | None = self.single_state.solved[0]
         if solved is None:
             raise ValueError("displacements and stresses need a contact with a solution")

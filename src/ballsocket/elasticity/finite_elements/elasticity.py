@@ -86,14 +86,14 @@ class ElasticBlock:
         """Shear and bulk modulus of each layer, in the unit of `young`."""
         return self.young / (2 * (1 + self.poisson)), self.young / (3 * (1 - 2 * self.poisson))
 
-    def matrix(self) -> csc_matrix:
+    def stiffness_matrix(self) -> csc_matrix:
         """Assemble the stiffness matrix, from displacements to forces on full rings."""
         size = 2 * self.block.number.size
         count = self.element_unknowns.shape[1]
         K = numpy.empty((len(self.element_unknowns), count, count))
         elements = numpy.arange(len(self.element_unknowns))
         for chunk in self.chunks(elements):
-            K[chunk] = self._stiffness(elements[chunk])
+            K[chunk] = self._element_stiffness(elements[chunk])
         rows, columns = numpy.broadcast_arrays(self.element_unknowns[:, :, None], self.element_unknowns[:, None, :])
         positions = (rows.ravel().astype(numpy.int32), columns.ravel().astype(numpy.int32))
         return coo_matrix((K.ravel(), positions), shape=(size, size)).tocsc()
@@ -103,12 +103,12 @@ class ElasticBlock:
         for first in range(0, len(elements), _CHUNK):
             yield slice(first, first + _CHUNK)
 
-    def _stiffness(self, element_indices: Numbers) -> Numbers:
+    def _element_stiffness(self, element_indices: Numbers) -> Numbers:
         """Compute the stiffness matrices of elements.
 
         They integrate the energy density 2G (|ε|² - tr²/3) + K tr². In its last term the change of volume is projected.
         """
-        points, weights = integration(self.block.order)
+        points, weights = element_quadrature(self.block.order)
         strains = self.strains(element_indices, points)
         volume = strains.volume * weights
         shear, bulk = (modulus[self.block.layers[element_indices]][:, None] * volume for modulus in self.moduli)
@@ -123,10 +123,10 @@ class ElasticBlock:
 
         They are evaluated at points of the unit square (2, points).
         """
-        quadrature_points, weights = integration(self.block.order)
+        quadrature_points, weights = element_quadrature(self.block.order)
         integrated = self.gradients(element_indices, quadrature_points)
         evaluated = integrated if points is quadrature_points else self.gradients(element_indices, points)
-        swelling = self.project(
+        swelling = self.project_volume(
             element_indices,
             integrated.coordinates,
             integrated.volume * weights,
@@ -137,7 +137,7 @@ class ElasticBlock:
             coordinates=evaluated.coordinates, strain=evaluated.strain, swelling=swelling, volume=evaluated.volume
         )
 
-    def project(
+    def project_volume(
         self,
         element_indices: Numbers,
         coordinates: Numbers,
@@ -145,7 +145,7 @@ class ElasticBlock:
         trace: Numbers,
         other_coordinates: Numbers | None = None,
     ) -> Numbers:
-        """Project the change of volume of elements onto polynomials, by weighted least squares.
+        """Project the volume change in elements onto polynomials, by weighted least squares.
 
         Parameters
         ----------
@@ -156,13 +156,13 @@ class ElasticBlock:
             Weights of the points.
         trace : array (elements, points, unknowns)
         """
-        Q = self._polynomials(element_indices, coordinates)
+        Q = self._volume_polynomials(element_indices, coordinates)
         weighted = (Q * volume[..., None]).swapaxes(1, 2)
-        target = Q if other_coordinates is None else self._polynomials(element_indices, other_coordinates)
+        target = Q if other_coordinates is None else self._volume_polynomials(element_indices, other_coordinates)
         return target @ numpy.linalg.solve(weighted @ Q, weighted @ trace)
 
-    def _polynomials(self, element_indices: Numbers, coordinates: Numbers) -> Numbers:
-        """Evaluate the polynomials of the change of volume in elements: (elements, points, polynomials).
+    def _volume_polynomials(self, element_indices: Numbers, coordinates: Numbers) -> Numbers:
+        """Evaluate the polynomials of the volume change in elements: (elements, points, polynomials).
 
         They are 1 for order 1; 1, ρ and z about the middle of the element for order 2.
         """
@@ -176,7 +176,7 @@ class ElasticBlock:
 
     def gradients(self, element_indices: Numbers, points: Numbers) -> Gradients:
         """Compute the strains per unknown of some elements, at points of the unit square (2, points)."""
-        shapes, slopes, det = self.cartesian(element_indices, points)
+        shapes, slopes, det = self.cartesian_shape_functions(element_indices, points)
         elements = self.block.elements[:, element_indices]
         coordinates = numpy.einsum("cne,nq->ceq", self.block.nodes[:, elements], shapes)
         strain = numpy.zeros((*det.shape, 4, 2, len(elements)))  # of (ρ, z)
@@ -194,8 +194,8 @@ class ElasticBlock:
             volume=2 * pi * coordinates[0] * abs(det),
         )
 
-    def cartesian(self, element_indices: Numbers, points: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-        """Compute shape functions of elements, their derivatives by ρ and z, and Jacobian determinants.
+    def cartesian_shape_functions(self, element_indices: Numbers, points: Numbers) -> tuple[Numbers, Numbers, Numbers]:
+        """Compute the shape functions of elements, their derivatives by ρ and z, and Jacobian determinants.
 
         The shapes are (nodes, points), (elements, points, 2, nodes) and (elements, points).
         """
@@ -218,7 +218,7 @@ def shape_functions(order: int, points: Numbers) -> tuple[Numbers, Numbers]:
 _RULES: dict[int, tuple[Numbers, Numbers]] = {}
 
 
-def integration(order: int) -> tuple[Numbers, Numbers]:
+def element_quadrature(order: int) -> tuple[Numbers, Numbers]:
     """Return the quadrature points (2, points) and weights (points,) of an element's energy, 2 by 2 or 3 by 3."""
     if order not in _RULES:
         from skfem import ElementQuad1

@@ -32,24 +32,24 @@ class FullContact:
         displacement = self.pair.integrate_with_shapes(self.gap.displacement(self.pair.points[0], self.indentation))
         return self.pair.whitening.T @ (self.pair.whitening @ displacement)
 
-    def _integrate(self, values: Numbers) -> float:
+    def _integrate_pressure(self, values: Numbers) -> float:
         """Integrate the pressure times values at the quadrature points over the contact area."""
         return float(self.pressures @ self.pair.integrate_with_shapes(values))
 
     @cached_property
     def force(self) -> float:
         """Force F in N."""
-        return self._integrate(numpy.cos(self.pair.points[0]))
+        return self._integrate_pressure(numpy.cos(self.pair.points[0]))
 
     @property
     def strain_energy(self) -> float:
         """Strain energy ½ ∫ p u dA in N mm."""
-        return self._integrate(self.gap.displacement(self.pair.points[0], self.indentation)) / 2
+        return self._integrate_pressure(self.gap.displacement(self.pair.points[0], self.indentation)) / 2
 
     @property
     def pressure_integral(self) -> float:
         """Integral of the pressure over the contact area, ∫ p dA, in N."""
-        return self._integrate(numpy.ones_like(self.pair.points[0]))
+        return self._integrate_pressure(numpy.ones_like(self.pair.points[0]))
 
     @property
     def tension(self) -> float:

@@ -20,7 +20,7 @@ from ...core.arrays import Numbers, gauss_legendre
 from ...problem import Support
 from .bodies import socket_block, socket_elastic
 from .condensation import nested_dissection
-from .elasticity import ElasticBlock, integration
+from .elasticity import ElasticBlock, element_quadrature
 from .mesh import Block
 from .shapes import Resolution, SocketShape
 from .surfaces import lagrange
@@ -72,7 +72,7 @@ class Harmonics:
             ∫ cos² mφ dφ/2π; symmetric. For a bore of radius 1 and a liner of Young's modulus 1.
         """
         loads = self._ring_loads(edges)
-        return numpy.stack([self._compliance(m, loads) for m in degrees])
+        return numpy.stack([self._harmonic_compliance(m, loads) for m in degrees])
 
     def _ring_loads(self, edges: Numbers) -> Numbers:
         """Compute the nodal forces on the bore by unit pressure on each ring: (nodes, rings)."""
@@ -84,10 +84,10 @@ class Harmonics:
         inside = (angle[:, None] > low) & (angle[:, None] < high)
         return lagrange(corners, self._block.order, angle).T @ (inside * weights[:, None])
 
-    def _compliance(self, m: int, loads: Numbers) -> Numbers:
+    def _harmonic_compliance(self, m: int, loads: Numbers) -> Numbers:
         """Compute the compliance matrix between rings (rings, rings) for one harmonic m."""
         order, count = self._elimination_order(m)
-        constant, linear, quadratic = self._matrices
+        constant, linear, quadratic = self._stiffness_matrices
         matrix = (constant + m * linear + m * m * quadratic)[order][:, order].tocsc()
         factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         lower, upper = factors.L[-count:, -count:].toarray(), factors.U[-count:, -count:].toarray()
@@ -104,7 +104,7 @@ class Harmonics:
         node_rank = rank[grid[:, block.level]].ravel()
         normals = 3 * self.bore + 1
         normals = normals[~self._fixed_unknowns(m)[normals]]
-        free = numpy.unique(self._unknowns)
+        free = numpy.unique(self._element_unknowns)
         free = free[~self._fixed_unknowns(m)[free] & ~numpy.isin(free, normals)]
         return numpy.concatenate([free[numpy.argsort(node_rank[free // 3], kind="stable")], normals]), len(normals)
 
@@ -130,7 +130,7 @@ class Harmonics:
         return is_fixed.ravel()
 
     @cached_property
-    def _unknowns(self) -> Numbers:
+    def _element_unknowns(self) -> Numbers:
         """Indices of each element's unknowns (elements, unknowns); layers that slide on each other share u_r."""
         shared = numpy.arange(3 * self._block.number.size)
         for column in self._block.sliding:
@@ -139,10 +139,10 @@ class Harmonics:
         return numbers.transpose(1, 0, 2).reshape(self._block.elements.shape[1], -1)
 
     @cached_property
-    def _matrices(self) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
+    def _stiffness_matrices(self) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
         """Stiffness matrices K0, K1 and K2 of the powers of m."""
         size = 3 * self._block.number.size
-        rows, columns = numpy.broadcast_arrays(self._unknowns[:, :, None], self._unknowns[:, None, :])
+        rows, columns = numpy.broadcast_arrays(self._element_unknowns[:, :, None], self._element_unknowns[:, None, :])
         positions = rows.ravel(), columns.ravel()
         constant, linear, quadratic = (
             coo_matrix((K.ravel(), positions), shape=(size, size)).tocsc() for K in self._element_matrices()
@@ -155,35 +155,36 @@ class Harmonics:
         They integrate the energy density 2G (|ε|² - tr²/3) + K tr².
         """
         elements = numpy.arange(self._block.elements.shape[1])
-        points, weights = integration(self._block.order)
+        points, weights = element_quadrature(self._block.order)
         gradients = self.elastic.gradients(elements, points)
         volume = gradients.volume * weights
         shear, bulk = (modulus[self._block.layers][:, None] * volume for modulus in self.elastic.moduli)
-        plain, azimuthal = self._strains(gradients.strain, points, gradients.coordinates[0])
+        plain, azimuthal = self._harmonic_strains(gradients.strain, points, gradients.coordinates[0])
         traces = plain[..., :2, :].sum(axis=-2) + plain[..., _HOOP, :], azimuthal[..., _HOOP, :]
-        swelling = [self.elastic.project(elements, gradients.coordinates, volume, trace) for trace in traces]
+        swelling = [self.elastic.project_volume(elements, gradients.coordinates, volume, trace) for trace in traces]
         rows = [
             _merge_strain_axes(strain * (_SCALE * numpy.sqrt(shear)[..., None, None])) for strain in (plain, azimuthal)
         ]
         drops = [trace * numpy.sqrt(2 / 3 * shear)[..., None] for trace in traces]
         swells = [projection * numpy.sqrt(bulk)[..., None] for projection in swelling]
 
-        def multiply(i: int, j: int) -> Numbers:
+        def multiply_strains(i: int, j: int) -> Numbers:
+            """Compute the strain energy matrix between the strain terms i and j of each element."""
             products = (factors[i].swapaxes(1, 2) @ factors[j] for factors in (rows, swells, drops))
             strain, swell, drop = products
             return strain + swell - drop
 
-        mixed = multiply(0, 1)
-        return multiply(0, 0), mixed + mixed.swapaxes(1, 2), multiply(1, 1)
+        mixed = multiply_strains(0, 1)
+        return multiply_strains(0, 0), mixed + mixed.swapaxes(1, 2), multiply_strains(1, 1)
 
-    def _strains(self, axisymmetric: Numbers, points: Numbers, rho: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the strains per unknown (elements, points, 6, unknowns): terms without m, and per m.
+    def _harmonic_strains(self, axisymmetric: Numbers, points: Numbers, rho: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute the strains per unknown (elements, points, 6, unknowns): terms without m, and terms per unit of m.
 
         The components are ε_ρρ, ε_zz, γ_ρz, ε_φφ, γ_ρφ and γ_zφ.
 
         `axisymmetric` holds the first four components by the unknowns along angle and radius.
         """
-        shapes, slopes, _ = self.elastic.cartesian(numpy.arange(len(rho)), points)
+        shapes, slopes, _ = self.elastic.cartesian_shape_functions(numpy.arange(len(rho)), points)
         count = len(shapes)
         over_radius = shapes.T / rho[..., None]
         phi = self._block.angle[self._block.elements // self._block.radius.shape[1]].T[:, None]

@@ -78,7 +78,7 @@ class MeshedLoadCurve:
         if kind == "half_angle":
             return min(sum(load <= edge for edge in self.classes[1:]), last)
         for start in range(0, last, _STRIDE):
-            bracket = self._bracket(start, COARSE)
+            bracket = self._contact_bracket(start, COARSE)
             angle = bracket.estimate_angle(kind, load)
             if angle is not None:
                 return min(sum(angle <= edge for edge in self.classes[1:]), last)
@@ -86,8 +86,8 @@ class MeshedLoadCurve:
                 return start
         return last
 
-    def _bracket(self, number: int, mesh: int) -> ContactBracket:
-        """Return the contacts on the mesh of a class, from a cache: of this class and a few narrower ones."""
+    def _contact_bracket(self, number: int, mesh: int) -> ContactBracket:
+        """Return the contacts on the mesh of a class of half angles and of a few narrower classes, from a cache."""
         if (number, mesh) not in self._cached_brackets:
             low = self.classes[min(number + _STRIDE, len(self.classes) - 1)] / _CLASS_MARGIN
             high = min(_CLASS_MARGIN * self.classes[number], self.classes[0])
@@ -103,7 +103,7 @@ class MeshedLoadCurve:
 
     def _solve_contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
         """Solve one contact on the mesh of a class; None for a load outside the range of the class."""
-        bracket = self._bracket(number, mesh)
+        bracket = self._contact_bracket(number, mesh)
         if kind == "half_angle":
             contact = (
                 partial_contact(bracket.pair, self.gap, load)
@@ -150,26 +150,28 @@ class MeshedStates(PeakPressure):
     def __getattr__(self, name: str) -> Numbers:
         if name not in QUANTITIES:
             raise AttributeError(name)
-        return self._values(_LAWS.get(name, attrgetter(name)))
+        return self._evaluate_contacts(_LAWS.get(name, attrgetter(name)))
 
-    def _values(self, law: Callable[[Solved], float]) -> Numbers:
-        """Compute a quantity of each contact by a function; NaN for missing contacts."""
+    def _evaluate_contacts(self, law: Callable[[Solved], float]) -> Numbers:
+        """Evaluate a function of each contact; NaN for missing contacts."""
         return numpy.array([numpy.nan if contact is None else law(contact) for contact in self.solved])
 
     @property
     def at_rim(self) -> Numbers:
         """Flag of each contact: 1 if it fills the socket, else 0."""
-        return self._values(lambda contact: float(isinstance(contact, FullContact)))
+        return self._evaluate_contacts(lambda contact: float(isinstance(contact, FullContact)))
 
     @property
     def not_round(self) -> Numbers:
         """Flag of each contact: 1 if tension or overlap shows that its area is not round, else 0."""
-        return self._values(lambda contact: float(contact.tension > _MAX_TENSION or contact.overlap > _MAX_OVERLAP))
+        return self._evaluate_contacts(
+            lambda contact: float(contact.tension > _MAX_TENSION or contact.overlap > _MAX_OVERLAP)
+        )
 
     @property
     def edge_element(self) -> Numbers:
         """Length of the elements at the edge of each contact, as a fraction of its half angle."""
-        return self._values(lambda contact: contact.edge_element / contact.half_angle)
+        return self._evaluate_contacts(lambda contact: contact.edge_element / contact.half_angle)
 
     @cached_property
     def largest(self) -> tuple[Numbers, Numbers]:

@@ -52,7 +52,7 @@ class ContactBracket:
         return self._samples_and_fit[0]
 
     @cached_property
-    def _curves(self) -> dict[str, PchipInterpolator]:
+    def _interpolators(self) -> dict[str, PchipInterpolator]:
         """Interpolating functions from ln(load) to ln ε, by the kind of load."""
         angles = numpy.log([contact.half_angle for contact in self._samples])
         return {
@@ -70,7 +70,7 @@ class ContactBracket:
             return None
         if load > getattr(self._samples[-1], kind):  # the perfect fit lies before the next sample
             return self._samples[-1].half_angle * (self.high / self.low) ** (0.5 / (_SAMPLES - 1))
-        return float(numpy.exp(self._curves[kind](numpy.log(load))))
+        return float(numpy.exp(self._interpolators[kind](numpy.log(load))))
 
     def solve(self, kind: str, load: float) -> PartialContact | None:
         """Solve the contact under a "force" or "indentation"; None for a load outside the range."""
@@ -90,7 +90,7 @@ class ContactBracket:
         The unknown is the logarithm of the half angle.
         """
         goal = numpy.log(load)
-        angle, rise = float(self._curves[kind](goal)), float(self._curves[kind](goal, 1))
+        angle, rise = float(self._interpolators[kind](goal)), float(self._interpolators[kind](goal, 1))
         contact, residual = self._solve_residual(kind, goal, angle)
         for _ in range(_SECANT_STEPS):
             if abs(residual) < _LOAD_TOLERANCE:
@@ -110,6 +110,7 @@ class ContactBracket:
         """Solve the contact under a load by Brent's method between two half angles (rad)."""
 
         def residual(angle: float) -> float:
+            """Compute the difference between 1 and a power of the load ratio at a half angle; 1 without contact."""
             contact = partial_contact(self.pair, self.gap, angle)
             return float(1 - (load / getattr(contact, kind)) ** 0.25) if is_pressed(contact) else 1.0
 

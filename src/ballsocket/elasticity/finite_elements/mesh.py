@@ -82,7 +82,7 @@ class Block:
         return numpy.cumsum(inside)
 
 
-def block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tuple[int, ...] = ()) -> Block:
+def mesh_block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tuple[int, ...] = ()) -> Block:
     """Mesh a spherical block from the corners of its elements.
 
     Parameters
@@ -114,7 +114,7 @@ def block(angle: Numbers, layers: list[Numbers], order: int, sliding_layers: tup
 
 
 def add_midpoints(corners: Numbers, order: int) -> Numbers:
-    """Add a node midway between adjacent corners along the first axis, for order 2 only."""
+    """Add the midpoints between adjacent corners along the first axis, for elements of order 2 only."""
     return corners if order == 1 else bisect_intervals(corners)
 
 

@@ -132,7 +132,7 @@ class FiniteElement(Model):
         raise TypeError("finite elements are too noisy for a law, because each load has its own mesh: use exact")
 
     def in_cup(self, cup: Cup) -> FiniteElement:
-        """Return this model with another cup."""
+        """Return a copy of the model with another cup."""
         return replace(self, cup=cup)
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:

@@ -38,7 +38,7 @@ class PartialContact:
 
     @cached_property
     def _edge_functions(self) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-        """Pressure functions at the edge of the contact, at quadrature points.
+        """Edge functions of the pressure at quadrature points, with angles, weights and slope.
 
         The arrays are angles in rad, weights of ∫ dA in mm², edge functions (2, angles), and the slope of t in ε.
         """
@@ -74,7 +74,7 @@ class PartialContact:
 
     @cached_property
     def _edge_moments(self) -> tuple[Numbers, Numbers]:
-        """Mean displacements per pressure function, weighted with the edge functions and with the slope of t.
+        """Mean displacements per pressure function: weighted with the edge functions, and with the slope of t by ε.
 
         The shapes are (2, functions) and (functions,).
         """
@@ -119,11 +119,11 @@ class PartialContact:
 
     @cached_property
     def _slope_pressures(self) -> Numbers:
-        """Pressures in MPa whose displacements equal those of the slope of t as a pressure."""
+        """Pressures in MPa that displace the surfaces like a pressure equal to the slope of t by ε."""
         return self._solve_pressures(self._edge_moments[1])
 
     def _edge_residual(self, displacement: Numbers, edge_displacement: Numbers) -> float:
-        """Compute the remaining gap that determines the indentation: its mean weighted with the slope of t."""
+        """Compute the mean remaining gap, weighted with the slope of t by ε; the indentation makes it 0."""
         _, weights, _, slope = self._edge_functions
         return float(
             (weights * slope) @ edge_displacement

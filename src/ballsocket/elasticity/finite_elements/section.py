@@ -146,7 +146,7 @@ class _LoadedBody:
     descent: float
 
     @cached_property
-    def _displacements(self) -> Numbers:
+    def _node_displacements(self) -> Numbers:
         """Displacements u_φ and u_r of the nodes as fractions of the radius, shape (nodes, 2)."""
         return self.body.displacements(self.forces / (self.young * self.loaded_radius**2))
 
@@ -154,7 +154,7 @@ class _LoadedBody:
         """Yield the parts of the body, one for each layer from the inside out."""
         block = self.body.elastic.block
         phi = numpy.repeat(block.angle, block.radius.shape[1])
-        u_phi, u_r = self.loaded_radius * self._displacements.T
+        u_phi, u_r = self.loaded_radius * self._node_displacements.T
         sine, cosine = numpy.sin(phi), numpy.cos(phi)
         displacement = numpy.stack([u_phi * cosine + u_r * sine, u_phi * sine - u_r * cosine - self.descent])
         across, below = self.radius * block.nodes
@@ -192,7 +192,7 @@ class _LoadedBody:
         element_indices = numpy.flatnonzero(block.layers == layer)
         stresses = numpy.empty((4, len(element_indices), len(block.elements)))
         points, extrapolation = _superconvergent_points(block.order)
-        flat = self._displacements.ravel()
+        flat = self._node_displacements.ravel()
         for chunk in elastic.chunks(element_indices):
             strains = elastic.strains(element_indices[chunk], points)
             u = flat[elastic.element_unknowns[element_indices[chunk]]]

@@ -51,8 +51,8 @@ class Adapted:
     growth: float = 1.3
 
     def __post_init__(self) -> None:
-        good = isinstance(self.elements, int) and self.elements >= 24 and self.elements % 2 == 0
-        require("elements", self.elements, good, "the number of elements along a contact must be even and at least 24")
+        valid = isinstance(self.elements, int) and self.elements >= 24 and self.elements % 2 == 0
+        require("elements", self.elements, valid, "the number of elements along a contact must be even and at least 24")
         _check_growth(self.growth)
 
     def classes(self, reach: float, radius: float) -> tuple[float, ...]:

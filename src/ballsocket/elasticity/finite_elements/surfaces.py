@@ -114,7 +114,7 @@ class SurfacePair:
         return tuple((self._weighted_shapes @ surface.shapes(self.points[0])).toarray().T for surface in self.surfaces)
 
     @cached_property
-    def matrix(self) -> Numbers:
+    def compliance_matrix(self) -> Numbers:
         """Compliance matrix of both bodies between shape functions of the pressure, in mm³/MPa.
 
         Its entries are ∫ φ_i (displacement by φ_j) dA.
@@ -126,5 +126,5 @@ class SurfacePair:
     @cached_property
     def whitening(self) -> Numbers:
         """Inverse W of the matrix' Cholesky factor, A⁻¹ = WᵀW; its leading blocks serve narrower contacts."""
-        factor = cholesky(self.matrix, lower=True)
+        factor = cholesky(self.compliance_matrix, lower=True)
         return solve_triangular(factor, numpy.eye(len(factor)), lower=True)

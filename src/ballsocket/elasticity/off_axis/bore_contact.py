@@ -63,12 +63,12 @@ class BoreContact:
         return numpy.ascontiguousarray((self.area * grid.normals * grid.areas).reshape(3, -1).T)
 
     @cached_property
-    def coarser(self) -> BoreContact | None:
+    def coarser_bore(self) -> BoreContact | None:
         """Same ball and bore in cells twice as wide, or None if the grid has few rings."""
-        compliance = self.compliance.coarser
+        compliance = self.compliance.coarser_compliance
         if compliance is None:
             return None
-        return replace(self, compliance=compliance, gap=self.gap.on_coarser(compliance.grid))
+        return replace(self, compliance=compliance, gap=self.gap.on_coarser_grid(compliance.grid))
 
     def refine(self, fields: Numbers) -> Numbers:
         """Transfer fields from the cells of the coarser grid to those of this grid: (..., rings, meridians)."""
@@ -79,10 +79,10 @@ class BoreContact:
         force: Numbers = pressure.reshape(len(pressure), len(self._force_weights)) @ self._force_weights
         return force
 
-    def solve_displacement(self, displacement: Numbers) -> EquilibriumBatch:
-        """Solve the contacts of a ball at prescribed displacements (batch, 3) in mm."""
+    def solve_displaced(self, displacement: Numbers) -> EquilibriumBatch:
+        """Solve one contact for each prescribed displacement (batch, 3) of the ball in mm."""
         pressure, converged = self.zero_pressure(len(displacement)), numpy.zeros(len(displacement), dtype=bool)
-        for block in self.blocks(numpy.arange(len(displacement))):
+        for block in self.split_into_blocks(numpy.arange(len(displacement))):
             solution = solve_pressure(self.compliance, self.gap.overlap(displacement[block]))
             pressure[block], converged[block] = solution.pressure, solution.converged
         return EquilibriumBatch(displacement=displacement, pressure=pressure, converged=converged)
@@ -92,10 +92,10 @@ class BoreContact:
     ) -> Numbers:
         """Compute the derivative of pressures by the displacement in MPa/mm: (batch, 3, rings, meridians)."""
         shape = (len(pressure), 3, *pressure.shape[1:])
-        slope = numpy.broadcast_to(self.gap.slope(displacement), shape).reshape(-1, *shape[2:])
+        overlap_slope = numpy.broadcast_to(self.gap.overlap_slope(displacement), shape).reshape(-1, *shape[2:])
         touching = numpy.broadcast_to((pressure > 0)[:, None], shape).reshape(-1, *shape[2:])
         initial = None if start is None else start.reshape(-1, *shape[2:])
-        return solve_pressure_change(self.compliance, touching, slope, initial, tolerance).reshape(shape)
+        return solve_pressure_change(self.compliance, touching, overlap_slope, initial, tolerance).reshape(shape)
 
     def tangent(self, sensitivity: Numbers) -> Numbers:
         """Compute the tangent stiffness of contact and tether in N/mm: (batch, 3, 3).
@@ -105,7 +105,7 @@ class BoreContact:
         tangent = sensitivity.reshape(len(sensitivity), 3, len(self._force_weights)) @ self._force_weights
         return tangent.swapaxes(1, 2) + self.tether
 
-    def blocks(self, indices: Numbers) -> list[Numbers]:
+    def split_into_blocks(self, indices: Numbers) -> list[Numbers]:
         """Split the indices of contacts into blocks that fit into the processor's cache."""
         grid = self.compliance.grid
         size = max(_BATCH_CELLS // (grid.rings * grid.meridians), 1)

@@ -94,14 +94,14 @@ class Compliance:
         return self.stiffness(displacement)
 
     @cached_property
-    def coarser(self) -> Compliance | None:
+    def coarser_compliance(self) -> Compliance | None:
         """Compliance in cells twice as wide, or None if the grid has few rings."""
-        cells = self.grid.coarser
+        cells = self.grid.coarser_grid
         if cells is None:
             return None
         if isinstance(self.softness, UniformOperator):
             return replace(self, grid=cells)
-        return _from_matrices(cells, self.grid.coarsen_matrices(self.softness.matrices))
+        return _make_from_matrices(cells, self.grid.coarsen_matrices(self.softness.matrices))
 
     @cached_property
     def uniform_stiffness(self) -> float:
@@ -110,7 +110,7 @@ class Compliance:
         return float(self.grid.integrate_product(self.pressure(unit), unit)[0] / self.grid.ring_areas.sum())
 
 
-def _from_matrices(grid: Grid, matrices: Numbers) -> Compliance:
+def _make_from_matrices(grid: Grid, matrices: Numbers) -> Compliance:
     """Make a compliance from its matrices, with an inverse in single precision.
 
     The inverse only guides the iteration; the compliance decides when it ends.
@@ -141,7 +141,7 @@ def make_compliance(surface: Surface, joint: Joint, cup: Cup, grid: Grid) -> Com
     matrices = surface.rings(joint, cup, grid)
     if ball is not None:
         matrices = matrices + grid.average_over_cells(sphere_rings(ball.compliance, grid))
-    return _from_matrices(grid, matrices)
+    return _make_from_matrices(grid, matrices)
 
 
 _CACHE: OrderedDict[tuple[object, ...], Compliance] = OrderedDict()

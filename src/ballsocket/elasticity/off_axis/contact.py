@@ -37,12 +37,12 @@ class OffAxisContact(SolvedContact):
 
     _inside: ClassVar[str] = "pressure maps"
 
-    def _joint_von_mises(self, indices: Numbers, piece: JointContacts) -> Numbers:
+    def _joint_von_mises(self, indices: Numbers, contacts: JointContacts) -> Numbers:
         """Estimate the largest von Mises stress in the liner in MPa from half angle and largest pressure.
 
         Stresses below the surface are not solved.
         """
-        joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), piece.state
+        joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), contacts.state
         estimate = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         return numpy.asarray(estimate * state.max_pressure)
 
@@ -69,7 +69,7 @@ class OffAxisContact(SolvedContact):
     @cached_property
     def stiffness_matrix(self) -> Array:
         """Tangent stiffness: derivative of the force vector by the displacement in N/mm, (..., 3, 3), symmetric."""
-        rows = self.laws.combine(lambda piece: piece.state.tangent.reshape(9, -1), (9,))
+        rows = self.laws.combine(lambda contacts: contacts.state.tangent.reshape(9, -1), (9,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3))
 
@@ -81,7 +81,7 @@ class OffAxisContact(SolvedContact):
     @cached_property
     def edge_loaded(self) -> Array:
         """True where the contact reaches the end of the bore."""
-        loaded = self.laws.combine(lambda piece: piece.state.edge_loaded) == 1
+        loaded = self.laws.combine(lambda contacts: contacts.state.edge_loaded) == 1
         return bool(loaded) if self._is_plain else loaded
 
     @cached_property
@@ -92,7 +92,7 @@ class OffAxisContact(SolvedContact):
         """
         from .load_cases import edge_margins  # slow to import
 
-        return self._mask_failed(lambda: self.laws.combine(lambda piece: edge_margins(piece.state)))
+        return self._mask_failed(lambda: self.laws.combine(lambda contacts: edge_margins(contacts.state)))
 
     @property
     def edge_distance(self) -> Array:
@@ -111,7 +111,7 @@ class OffAxisContact(SolvedContact):
     @property
     def tilt(self) -> Array:
         """Angle in rad between the pole of the dome and the direction of the load."""
-        return self._match_load(self.laws.combine(lambda piece: polar_angle(piece.state.axes.T)))
+        return self._match_load(self.laws.combine(lambda contacts: polar_angle(contacts.state.axes.T)))
 
     @property
     def _patch(self) -> ContactPatch:
@@ -153,7 +153,7 @@ class OffAxisContact(SolvedContact):
         if self._is_plain and self.status is Status.DISLOCATED:
             notes.append(self._dislocation_note)
         if not self._all_points_failed:
-            unbounded = self.laws.combine(lambda piece: piece.state.unbounded) == 1
+            unbounded = self.laws.combine(lambda contacts: contacts.state.unbounded) == 1
             notes += self._note_on_invalid_points(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
             notes += self._note_on_invalid_points(
                 ~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _RIM_NOTE
@@ -166,14 +166,14 @@ class OffAxisContact(SolvedContact):
         tilt, reach = (degrees(float(angle)) for angle in (self.tilt, self.model.reach_of(self.joint)))
         if tilt > reach:
             return f"the load points {tilt:.1f}° from the dome's pole, and the bore ends at {reach:.1f}°"
-        (_, piece), *_ = self.laws.pieces
-        centre = piece.state.displacement[:, 0]
+        (_, contacts), *_ = self.laws.pieces
+        centre = contacts.state.displacement[:, 0]
         distance, polar = float(numpy.linalg.norm(centre)), degrees(float(polar_angle(centre)))
         return f"the ball's centre moved {distance:.3g} mm from the bore's, {polar:.1f}° from the dome's pole"
 
     def _collect_vector(self, name: str) -> Array:
-        """Collect a vector of all contacts by its name (..., 3), NaN where there is no solution."""
-        rows = self.laws.combine(lambda piece: getattr(piece.state, name), (3,))
+        """Collect a named vector of all contacts: (..., 3), NaN where there is no solution."""
+        rows = self.laws.combine(lambda contacts: getattr(contacts.state, name), (3,))
         rows = arrays.where(self._failed, numpy.nan, rows)
         return arrays.namespace(rows).moveaxis(rows, 0, -1)
 

@@ -212,11 +212,13 @@ class ContactStates:
         errors = {name: _MIN_ERROR + factor * square for name, factor in _PRESSURE_ERRORS.items()}
         errors |= {name: _MIN_ERROR + factor * numpy.sqrt(square) for name, factor in _EDGE_ERRORS.items()}
         if load_kind == "half_angle":
-            return {name: errors[name] + exponent * errors[load_kind] for name, exponent in self._exponents().items()}
+            return {
+                name: errors[name] + exponent * errors[load_kind] for name, exponent in self._angle_exponents().items()
+            }
         errors[load_kind] = 0.0 * square
         return {name: errors[name] for name in QUANTITIES}
 
-    def _exponents(self) -> dict[str, Numbers]:
+    def _angle_exponents(self) -> dict[str, Numbers]:
         """Compute the logarithmic derivative of each quantity by the half angle, for a contact on springs.
 
         On springs the indentation grows as 1/cos ε - 1.

@@ -168,7 +168,7 @@ class TiltedDeck:
         require("scale", self.scale, 0 < self.scale <= 1, "a scale lies above 0 and is at most 1")
 
     @cached_property
-    def _shape(self) -> SocketShape:
+    def _socket_shape(self) -> SocketShape:
         """Meridian section of the cup, in units of its bore's radius."""
         return socket_shape(self.joint, self.cup)
 
@@ -176,7 +176,7 @@ class TiltedDeck:
     def _layer_radii(self) -> list[Numbers]:
         """Radii of the corners in each layer, in mm."""
         inner, first, radii = 1.0, self.element_size, []
-        for outer, _, _ in self._shape.layers:
+        for outer, _, _ in self._socket_shape.layers:
             if outer == inf:
                 raise ValueError("a tilted deck has layers of finite thickness: give the outermost one a thickness")
             layer = graded_points(inner, outer, min(first, (outer - inner) / 3), 1.5, (outer - inner) / 3)
@@ -193,7 +193,7 @@ class TiltedDeck:
     def socket(self) -> SphericalBlock:
         """Mesh of the cup, without a chamfer: the bore ends on a cone where the chamfer begins."""
         return SphericalBlock(
-            polar=self._divide_angles(self._shape.reach),
+            polar=self._divide_angles(self._socket_shape.reach),
             azimuth=self._divide_angles(pi),
             radius=join_points(self._layer_radii),
             centre=numpy.zeros(3),
@@ -208,7 +208,7 @@ class TiltedDeck:
             polar=self.socket.polar,
             azimuth=self.socket.azimuth,
             radius=numpy.array([(1 - _SKIN_THICKNESS) * radius, radius]),
-            centre=clearance * self._direction,
+            centre=clearance * self._displacement_direction,
             offset=(self.socket.last_number, sum(1 for _ in self.socket.elements())),
         )
 
@@ -217,7 +217,7 @@ class TiltedDeck:
         return numpy.linspace(0.0, end, max(round(end / self.element_size), 4) + 1)
 
     @property
-    def _direction(self) -> Numbers:
+    def _displacement_direction(self) -> Numbers:
         """Unit vector of the displacement in the cup's frame."""
         return numpy.array([sin(self.tilt), 0.0, cos(self.tilt)])
 
@@ -270,7 +270,7 @@ class TiltedDeck:
     def _material_lines(self) -> Iterator[str]:
         """Yield the input-file lines of the materials and sections of all layers and of the ball's skin."""
         liner = float(self.joint.liner.young)
-        materials = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._shape.layers)}
+        materials = {f"LAYER{i}": (young * liner, nu) for i, (_, young, nu) in enumerate(self._socket_shape.layers)}
         materials["SKIN"] = 1e3 * liner, 0.3  # almost rigid
         for name, (young, nu) in materials.items():
             yield from (f"*MATERIAL, NAME={name}", "*ELASTIC", f"{young:.12g}, {nu:.12g}")
@@ -290,14 +290,14 @@ class TiltedDeck:
         yield from ("*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "LINED, PRESSED")
         number = self.socket.number
         plane = numpy.concatenate([number[:, 0].ravel(), number[:, -1].ravel()])
-        yield from _node_set("MIRROR", plane)
-        yield from _node_set("OUTSIDE", number[:, :, -1].ravel())
-        yield from _node_set("PUSHED", self.ball.number.ravel())
+        yield from _node_set_lines("MIRROR", plane)
+        yield from _node_set_lines("OUTSIDE", number[:, :, -1].ravel())
+        yield from _node_set_lines("PUSHED", self.ball.number.ravel())
         yield from ("*BOUNDARY", "MIRROR, 2, 2", "OUTSIDE, 1, 3", "PUSHED, 1, 3")
 
     def _step_lines(self) -> Iterator[str]:
         """Yield the lines of the load step that displaces the ball."""
-        x, _, z = self.scale * self.indentation * self._direction
+        x, _, z = self.scale * self.indentation * self._displacement_direction
         yield from ("*STEP, INC=100", "*STATIC", "1., 1.", "*BOUNDARY")
         yield from (f"PUSHED, 1, 1, {x:.13g}", f"PUSHED, 3, 3, {z:.13g}")
         yield from ("*NODE PRINT, NSET=PUSHED, TOTALS=ONLY", "RF", "*END STEP")
@@ -320,7 +320,7 @@ def _element_lines(body: SphericalBlock, set_name: Callable[[int], str]) -> Iter
             yield ", ".join(map(str, row[start:end])) + ("," if end < len(row) else "")
 
 
-def _node_set(name: str, nodes: Numbers) -> Iterator[str]:
+def _node_set_lines(name: str, nodes: Numbers) -> Iterator[str]:
     """Yield the lines of a named set of nodes; the number 0 is omitted."""
     yield f"*NSET, NSET={name}"
     numbers = sorted({int(node) for node in nodes if node})

@@ -47,7 +47,7 @@ _NEGLIGIBLE_DAMPING = 1e-10
 """Fraction of the trace below which damping ends."""
 
 _STATE_NAMES = (
-    *("load", "size", "displacement", "pressure", "sensitivity", "force", "tangent", "residual", "potential"),
+    *("load", "force_scale", "displacement", "pressure", "sensitivity", "force", "tangent", "residual", "potential"),
     *("tolerance", "damping", "separation", "used_tolerance", "converged", "stale"),
 )
 """Arrays of `_NewtonSearch` with one entry per ball."""
@@ -75,10 +75,10 @@ def solve_force(
         displacement=start.copy(), pressure=bore.zero_pressure(count), converged=numpy.zeros(count, dtype=bool)
     )
     preload = bore.area * bore.compliance.uniform_stiffness * max(-bore.gap.clearance, 0.0)
-    size = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
-    for block in bore.blocks(numpy.flatnonzero(held)):
+    force_scale = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
+    for block in bore.split_into_blocks(numpy.flatnonzero(held)):
         initial = None if pressure is None else pressure[block]
-        result = _solve_block(bore, load[block], size[block], start[block], initial)
+        result = _solve_block(bore, load[block], force_scale[block], start[block], initial)
         solution.displacement[block], solution.pressure[block] = result.displacement, result.pressure
         solution.converged[block] = result.converged
     return solution
@@ -107,34 +107,34 @@ class _SearchResult:
     sensitivity: Numbers
     tangent: Numbers
 
-    def store(self, indices: Numbers, search: _NewtonSearch, mask: Numbers) -> None:
-        """Copy the results of the balls in a mask from a running search."""
+    def store_results(self, indices: Numbers, search: _NewtonSearch, mask: Numbers) -> None:
+        """Copy the results of the balls in a mask from a search that is in progress."""
         for name in ("displacement", "pressure", "converged", "sensitivity", "tangent"):
             getattr(self, name)[indices] = getattr(search, name)[mask]
 
 
 def _solve_block(
-    bore: BoreContact, load: Numbers, size: Numbers, start: Numbers, pressure: Numbers | None
+    bore: BoreContact, load: Numbers, force_scale: Numbers, start: Numbers, pressure: Numbers | None
 ) -> _SearchResult:
-    """Solve the equilibrium of one block of balls; `size` (batch,) in N scales the residual forces."""
+    """Solve the equilibrium of one block of balls; `force_scale` (batch,) in N scales the residual forces."""
     coarse = None
-    if pressure is None and bore.coarser is not None:
-        coarse = _solve_coarse(bore, bore.coarser, load, size, start)
-    return _search(_NewtonSearch(bore, load, size, start, pressure, coarse), _MAX_ITERATIONS)
+    if pressure is None and bore.coarser_bore is not None:
+        coarse = _solve_coarse(bore, bore.coarser_bore, load, force_scale, start)
+    return _iterate_search(_NewtonSearch(bore, load, force_scale, start, pressure, coarse), _MAX_ITERATIONS)
 
 
 def _solve_coarse(
-    bore: BoreContact, coarser: BoreContact, load: Numbers, size: Numbers, start: Numbers
+    bore: BoreContact, coarser: BoreContact, load: Numbers, force_scale: Numbers, start: Numbers
 ) -> _SearchResult:
     """Solve the equilibrium in cells twice as wide, and transfer it to the cells of the bore."""
-    search = _NewtonSearch(coarser, load, size, start, None, tolerance=_COARSE_FORCE_TOLERANCE)
-    result = _search(search, _MAX_COARSE_ITERATIONS)
+    search = _NewtonSearch(coarser, load, force_scale, start, None, tolerance=_COARSE_FORCE_TOLERANCE)
+    result = _iterate_search(search, _MAX_COARSE_ITERATIONS)
     pressure, sensitivity = (bore.refine(field) for field in (result.pressure, result.sensitivity))
     displacement = numpy.where(result.converged[:, None], result.displacement, start)
     return replace(result, displacement=displacement, pressure=pressure, sensitivity=sensitivity)
 
 
-def _search(search: _NewtonSearch, max_iterations: int) -> _SearchResult:
+def _iterate_search(search: _NewtonSearch, max_iterations: int) -> _SearchResult:
     """Iterate a search until all balls have converged, or up to a number of iterations."""
     result = _SearchResult(
         displacement=search.displacement.copy(),
@@ -147,12 +147,12 @@ def _search(search: _NewtonSearch, max_iterations: int) -> _SearchResult:
     for number in range(max_iterations):
         search.evaluate_trial()
         finished = search.converged | (number == max_iterations - 1)
-        result.store(active[finished], search, finished)
-        search.select(~finished)
+        result.store_results(active[finished], search, finished)
+        search.select_balls(~finished)
         active = active[~finished]
         if not len(active):
             break
-        search.advance()
+        search.advance_trial()
     return result
 
 
@@ -163,14 +163,14 @@ class _NewtonSearch:
         self,
         bore: BoreContact,
         load: Numbers,
-        size: Numbers,
+        force_scale: Numbers,
         start: Numbers,
         pressure: Numbers | None,
         coarse: _SearchResult | None = None,
         tolerance: float = _FORCE_TOLERANCE,
     ) -> None:
         """Initialise the search at the displacements `start`, or from the search in wide cells."""
-        self.bore, self.load, self.size, self.force_tolerance = bore, load, size, tolerance
+        self.bore, self.load, self.force_scale, self.force_tolerance = bore, load, force_scale, tolerance
         count, grid = len(load), bore.compliance.grid
         cells = grid.rings, grid.meridians
         self.displacement, self.trial, self.initial_pressure = start.copy(), start, pressure
@@ -196,7 +196,7 @@ class _NewtonSearch:
         solution = solve_pressure(self.bore.compliance, overlap, self.initial_pressure, self.tolerance)
         tether_force = self.trial @ self.bore.tether
         force = self.bore.force(solution.pressure) + tether_force
-        residual = numpy.linalg.norm(self.load - force, axis=1) / self.size
+        residual = numpy.linalg.norm(self.load - force, axis=1) / self.force_scale
         work = numpy.einsum("bk,bk->b", self.trial, self.load - tether_force / 2)
         potential = self.bore.area * solution.energy - work
         separation = numpy.minimum(overlap.max(axis=(1, 2)), 0.0)
@@ -211,7 +211,7 @@ class _NewtonSearch:
         stronger = numpy.maximum(30 * self.damping, _MIN_DAMPING)
         weaker = numpy.where(self.damping > _NEGLIGIBLE_DAMPING, self.damping / 10, 0.0)
         self.damping = numpy.where(better, weaker, stronger)
-        self._accept(
+        self._accept_trials(
             better,
             force=force,
             residual=residual,
@@ -220,7 +220,7 @@ class _NewtonSearch:
             separation=separation,
         )
 
-    def _accept(self, mask: Numbers, **values: Numbers) -> None:
+    def _accept_trials(self, mask: Numbers, **values: Numbers) -> None:
         """Set the balls of a mask to their trial displacements, with the values computed there."""
         for name, value in {**values, "displacement": self.trial, "used_tolerance": self.tolerance}.items():
             getattr(self, name)[mask] = value[mask]
@@ -235,14 +235,14 @@ class _NewtonSearch:
             outer = vector[mask, :, None] * vector[mask, None, :]
             J[mask] += sign * outer / scale[mask, None, None]
 
-    def select(self, mask: Numbers) -> None:
-        """Remove the balls outside a mask (batch,) from the search."""
+    def select_balls(self, mask: Numbers) -> None:
+        """Continue the search with only the balls in a mask (batch,)."""
         if mask.all():
             return
         for name in _STATE_NAMES:
             setattr(self, name, getattr(self, name)[mask])
 
-    def advance(self) -> None:
+    def advance_trial(self) -> None:
         """Compute the next trial displacements: Newton's step, or a step back to the bore after separation."""
         if self.stale.any():
             stale = self.stale
@@ -251,7 +251,7 @@ class _NewtonSearch:
                 self.displacement[stale], self.pressure[stale], start
             )
             self.tangent[stale] = self.bore.tangent(self.sensitivity[stale])
-        along = self.load / self.size[:, None]
+        along = self.load / self.force_scale[:, None]
         return_step = -1.1 * self.separation[:, None] * along
         step = numpy.where(self.separation[:, None] < 0, return_step, self._newton_step())
         self.trial = self.displacement + step

@@ -34,7 +34,7 @@ class GapField:
     depth: Numbers
     kind: type[LinearGap] | type[CircularGap]
 
-    def on_coarser(self, grid: Grid) -> GapField:
+    def on_coarser_grid(self, grid: Grid) -> GapField:
         """Return this gap on the next coarser grid."""
         return replace(self, grid=grid, depth=self.grid.coarsen(self.depth))
 
@@ -55,8 +55,8 @@ class GapField:
         overlap = along - self.clearance - self.depth - (ball * ball - square) / (ball + root)
         return numpy.where(square > 0, overlap, -self.socket_radius)  # the ray misses the ball
 
-    def slope(self, displacement: Numbers) -> Numbers:
-        """Compute the derivative of the overlap by the ball's displacement: (batch or 1, 3, rings, meridians)."""
+    def overlap_slope(self, displacement: Numbers) -> Numbers:
+        """Compute the derivative of the overlap by the displacement of the ball: (batch or 1, 3, rings, meridians)."""
         normals = self.grid.normals[None]
         if self.kind is LinearGap:
             return normals

@@ -108,7 +108,7 @@ class Grid:
         return centroids
 
     def average_over_cells(self, ring_matrices: Numbers) -> Numbers:
-        """Convert compliance matrices between rings, ∫ u dA for each m, to those between cells, mean u.
+        """Convert compliance matrices between rings (∫ u dA for each m) to matrices between cells (mean u).
 
         The mean over the width of a cell attenuates cos mφ twice: in the pressure and in the displacement. Waves around
         the pole that are shorter than two rings get the compliance of waves of two rings. The grid does not resolve
@@ -124,7 +124,7 @@ class Grid:
         return cells
 
     @cached_property
-    def coarser(self) -> Grid | None:
+    def coarser_grid(self) -> Grid | None:
         """Grid of cells twice as wide, or None if this grid has few rings.
 
         The last ring stays alone if the number of rings is odd.
@@ -145,7 +145,7 @@ class Grid:
         return numpy.repeat(numpy.repeat(fields, 2, axis=-2)[..., : self.rings, :], 2, axis=-1)
 
     def coarsen_matrices(self, matrices: Numbers) -> Numbers:
-        """Convert compliance matrices between cells, one per m, to those between cells of the coarser grid."""
+        """Convert compliance matrices between cells, one for each m, to matrices between cells of the coarser grid."""
         starts = numpy.arange(0, self.rings, 2)
         m = numpy.arange(self.meridians // 4 + 1)
         rows = numpy.add.reduceat(matrices[: len(m)] * self.ring_areas[:, None], starts, axis=1)

@@ -39,9 +39,9 @@ beyond its end; one that ends behind it holds any load.
 
 
 def _solve_indentations(bore: BoreContact, indentation: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
-    """Solve the contacts of balls displaced along axes by clearance plus indentation (mm)."""
+    """Solve the contacts of balls that are displaced by clearance plus indentation (mm) along axes."""
     clearance = bore.gap.clearance
-    equilibrium = bore.solve_displacement(axes * (clearance + indentation)[:, None])
+    equilibrium = bore.solve_displaced(axes * (clearance + indentation)[:, None])
     separated = ~(equilibrium.pressure > 0).any(axis=(1, 2))
     distance = (clearance + indentation) / bore.gap.socket_radius
     dislocated = numpy.asarray((separated & (distance > _MAX_FREE_DISPLACEMENT)) | (distance > 1))
@@ -159,22 +159,24 @@ def edge_margins(states: ContactStates) -> Numbers:
     displacement, back towards the dome until the contact just touches the end.
     """
     margins = _patch_margins(states)
-    cut = numpy.flatnonzero((states.edge_loaded == 1) & states.equilibrium.converged)
-    if len(cut):
-        margins[cut] = numpy.minimum(_rim_contact_tilts(states, cut) - polar_angle(states.axes[cut].T), 0.0)
+    cut_indices = numpy.flatnonzero((states.edge_loaded == 1) & states.equilibrium.converged)
+    if len(cut_indices):
+        margins[cut_indices] = numpy.minimum(
+            _rim_contact_tilts(states, cut_indices) - polar_angle(states.axes[cut_indices].T), 0.0
+        )
     return margins
 
 
-def _rim_contact_tilts(states: ContactStates, cut: Numbers) -> Numbers:
+def _rim_contact_tilts(states: ContactStates, cut_indices: Numbers) -> Numbers:
     """Compute the tilts of the loads in rad at which contacts just touch the end of the bore.
 
-    `cut` has the indices of contacts that the rim cuts off.
+    `cut_indices` has the indices of contacts that the rim cuts off.
     """
-    x, y, _ = states.axes[cut].T
+    x, y, _ = states.axes[cut_indices].T
     worn = bool(states.bore.gap.depth.any())  # otherwise all meridians are the same
     azimuth = numpy.arctan2(y, x) if worn else 0.0 * x
-    rows, group = numpy.unique(numpy.stack([states.load[cut], azimuth]), axis=1, return_inverse=True)
-    group, tilt, level = group.ravel(), polar_angle(states.axes[cut].T), _max_rim_levels(states)[cut]
+    rows, group = numpy.unique(numpy.stack([states.load[cut_indices], azimuth]), axis=1, return_inverse=True)
+    group, tilt, level = group.ravel(), polar_angle(states.axes[cut_indices].T), _max_rim_levels(states)[cut_indices]
     smallest = numpy.array([numpy.flatnonzero(group == i)[tilt[group == i].argmin()] for i in range(rows.shape[1])])
     load, azimuth = rows
     return _solve_rim_contact(states, load, azimuth, tilt[smallest], level[smallest])[group]
@@ -193,12 +195,13 @@ def _solve_rim_contact(
         Tilts in rad at which the rim is loaded, and the levels there in mm.
     """
 
-    def solve(indices: Numbers, tilt: Numbers) -> ContactStates:
+    def solve_tilted(indices: Numbers, tilt: Numbers) -> ContactStates:
+        """Solve the contacts of these indices at tilts in rad."""
         axes = unit_vectors(tilt, azimuth[indices]).T
         return states.solve(states.bore, load[indices], axes, states.edges)
 
     indices, low = numpy.arange(len(load)), numpy.full(len(load), _POLE_TILT)
-    axial = solve(indices, low)
+    axial = solve_tilted(indices, low)
     filled = ~axial.equilibrium.converged | (axial.edge_loaded == 1)
     low_level, high_level, root = _max_rim_levels(axial), high_level.copy(), low.copy()
     margin = _patch_margins(axial)
@@ -210,7 +213,7 @@ def _solve_rim_contact(
         below, above = low_level[active], high_level[active]
         tilt = (low[active] * above - high[active] * below) / (above - below)
         tilt = numpy.where(guess[active] < high[active], guess[active], tilt)  # excludes NaN and infinity
-        trial = solve(active, tilt)
+        trial = solve_tilted(active, tilt)
         level, trial_margin = _max_rim_levels(trial), _patch_margins(trial)
         with numpy.errstate(divide="ignore", invalid="ignore"):
             secant = tilt + trial_margin * (tilt - low[active]) / (margin[active] - trial_margin)
@@ -228,7 +231,7 @@ def _solve_rim_contact(
         touching = numpy.minimum(tilt + trial_margin, high[active])
         root[active] = numpy.where(free & (trial_margin < _TILT_TOLERANCE), touching, interpolated)
         active = active[abs(root[active] - tilt) > _TILT_TOLERANCE]
-    return numpy.where(filled, _missing_angles(axial), root)
+    return numpy.where(filled, _overhang_angles(axial), root)
 
 
 def _patch_margins(states: ContactStates) -> Numbers:
@@ -245,8 +248,8 @@ def _max_rim_levels(states: ContactStates) -> Numbers:
     return largest
 
 
-def _missing_angles(states: ContactStates) -> Numbers:
-    """Compute the negative angles in rad by which the undeformed overlap extends beyond the bore."""
+def _overhang_angles(states: ContactStates) -> Numbers:
+    """Compute the angle in rad by which the undeformed overlap extends beyond the bore, as a negative number."""
     distance = numpy.linalg.norm(states.equilibrium.displacement, axis=1)
     cosine = states.bore.gap.clearance / numpy.where(distance > 0, distance, 1e-300)
     angle = states.bore.compliance.grid.reach - numpy.arccos(numpy.clip(cosine, -1.0, 1.0))

@@ -149,7 +149,7 @@ class Sphere(Model):
         raise TypeError("sphere has no force law: its rings are too coarse near first touch; use exact")
 
     def in_cup(self, cup: Cup) -> Sphere:
-        """Return this model with another cup."""
+        """Return a copy of the model with another cup."""
         return replace(self, cup=cup)
 
     def press(
@@ -243,7 +243,7 @@ class Sphere(Model):
         return self if direction is None else replace(self, direction=direction)
 
     def with_orientation(self, inclination: Array | None = None, anteversion: Array | None = None) -> Sphere:
-        """Return this model with the load's direction of a cup at other orientations (rad).
+        """Return a copy of the model with the load direction that a cup at other orientations (rad) has.
 
         Arrays of orientations are many cups. The cups are equal in their own frames, so their orientations are
         directions of the load on one cup.

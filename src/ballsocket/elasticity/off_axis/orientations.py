@@ -54,44 +54,44 @@ class Orientations:
     contacts: tuple[OffAxisContact, ...]
     seconds: float
 
-    def _collect(self, quantity: Callable[[OffAxisContact], Array]) -> Numbers:
+    def _collect_quantity(self, quantity: Callable[[OffAxisContact], Array]) -> Numbers:
         """Collect a quantity of all contacts by a function: (inclinations, anteversions)."""
         return numpy.stack([arrays.to_numpy(quantity(contact)) for contact in self.contacts])
 
     @cached_property
     def status(self) -> Numbers:
         """Outcome of each press, as a number of `Status`."""
-        return self._collect(lambda contact: contact.status)
+        return self._collect_quantity(lambda contact: contact.status)
 
     @cached_property
     def valid(self) -> Numbers:
         """True where the model is valid."""
-        return self._collect(lambda contact: contact.valid)
+        return self._collect_quantity(lambda contact: contact.valid)
 
     @cached_property
     def tilt(self) -> Numbers:
         """Angle in rad between the load and the cup's axis."""
-        return self._collect(lambda contact: contact.tilt)
+        return self._collect_quantity(lambda contact: contact.tilt)
 
     @cached_property
     def edge_distance(self) -> Numbers:
         """Arc in mm from the contact to the rim, negative for edge loading; see `OffAxisContact.edge_distance`."""
-        return self._collect(lambda contact: contact.edge_distance)
+        return self._collect_quantity(lambda contact: contact.edge_distance)
 
     @cached_property
     def edge_loaded(self) -> Numbers:
         """True where the contact reaches the rim."""
-        return self._collect(lambda contact: contact.edge_loaded)
+        return self._collect_quantity(lambda contact: contact.edge_loaded)
 
     @cached_property
     def max_pressure(self) -> Numbers:
         """Largest pressure in MPa; infinite where the end of the bore indents the ball."""
-        return self._collect(lambda contact: contact.max_pressure)
+        return self._collect_quantity(lambda contact: contact.max_pressure)
 
     @cached_property
     def half_angle(self) -> Numbers:
         """Half angle in rad of a round contact of the same area."""
-        return self._collect(lambda contact: contact.half_angle)
+        return self._collect_quantity(lambda contact: contact.half_angle)
 
     @cached_property
     def held(self) -> Numbers:

@@ -107,20 +107,22 @@ class Preload:
         start = self.equilibrium.displacement @ numpy.array(self.model.cup.frame)
 
         def is_closed(distance: float) -> bool:
+            """Check if the bore touches the ball everywhere at a distance in mm from equilibrium."""
             return _touches_everywhere(self.displace(start + distance * vector / numpy.linalg.norm(vector)))
 
-        return self._bisect(is_closed)
+        return self._bisect_length(is_closed)
 
     def wear_depth_to_loosen(self) -> float:
         """Compute the uniform wear of the bore in mm at which the unloaded ball first loses contact in any cell."""
 
         def is_closed(depth: float) -> bool:
+            """Check if the bore touches the ball everywhere at a uniform wear depth in mm."""
             worn = replace(self.model, worn=BoreDeviation(of=lambda n: depth + 0.0 * n[2]))
             return _touches_everywhere(worn.press(self.joint, force=0.0))  # type: ignore[arg-type]
 
-        return self._bisect(is_closed)
+        return self._bisect_length(is_closed)
 
-    def _bisect(self, is_closed: Callable[[float], bool]) -> float:
+    def _bisect_length(self, is_closed: Callable[[float], bool]) -> float:
         """Find the largest length in mm at which the contact is closed, or 0 if it is open at 0."""
         low, high = 0.0, _MAX_INTERFERENCES * float(self.joint.interference)
         if not is_closed(low):

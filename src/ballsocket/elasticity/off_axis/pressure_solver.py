@@ -76,10 +76,10 @@ def solve_pressure(
         if finished.any() or number == _MAX_ITERATIONS - 1:
             pressure[active], converged[active], energy[active] = iteration.pressure, finished, iteration.energy
             active = active[~finished]
-            iteration.select(~finished)
+            iteration.select_contacts(~finished)
         if not len(active):
             break
-        iteration.advance()
+        iteration.advance_pressures()
     return PressureSolution(pressure=pressure, converged=converged, energy=energy, iterations=number)
 
 
@@ -129,15 +129,15 @@ class _ConjugateGradients:
         converged: Numbers = self.relative_residual <= tolerance
         return converged
 
-    def select(self, mask: Numbers) -> None:
-        """Remove the contacts outside a mask (batch,) from the iteration."""
+    def select_contacts(self, mask: Numbers) -> None:
+        """Continue the iteration with only the contacts in a mask (batch,)."""
         if mask.all():
             return
         names = ("overlap", "pressure", "max_overlap", "displacement", "is_single", "direction", "previous_residual")
         for name in (*names, "descent", "touching", "residual", "relative_residual"):
             setattr(self, name, getattr(self, name)[mask])
 
-    def advance(self) -> None:
+    def advance_pressures(self) -> None:
         """Make one conjugate-gradient step, and set negative pressures to 0."""
         integrate = self.compliance.grid.integrate_product
         gradient = numpy.where(self.residual != 0, self.compliance.pressure(self.residual), 0)

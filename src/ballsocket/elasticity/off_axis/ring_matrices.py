@@ -82,11 +82,12 @@ def sphere_rings(compliance: ModalCompliance, grid: Grid) -> Numbers:
     modal = compliance(numpy.arange(count + 1))
     limit = modal[-1]  # compliance of all higher modes
 
-    def compute(m: Numbers) -> Numbers:
+    def compute_harmonics(m: Numbers) -> Numbers:
+        """Compute the compliance matrices between rings for harmonics m."""
         integrals = legendre_ring_integrals(grid, m, count)
         return 2 * pi * (integrals * (modal - limit)) @ integrals.swapaxes(1, 2) + limit * numpy.diag(grid.ring_areas)
 
-    return interpolate_harmonics(compute, grid.max_harmonic)
+    return interpolate_harmonics(compute_harmonics, grid.max_harmonic)
 
 
 def legendre_ring_integrals(grid: Grid, m: Numbers, max_degree: int) -> Numbers:
@@ -142,8 +143,9 @@ def _unit_cup_rings(shape: SocketShape, edges: tuple[float, ...], max_harmonic: 
     """Compute or load the compliance matrices between rings for a bore of radius 1 and a liner of modulus 1."""
     rings = numpy.array(edges)
 
-    def compute() -> Numbers:
+    def compute_matrices() -> Numbers:
+        """Compute the compliance matrices between rings of all harmonics by finite elements."""
         meridian = socket_harmonics(shape, rings)
         return interpolate_harmonics(lambda m: meridian.ring_compliance(rings, m), max_harmonic)
 
-    return cached_array((shape, edges, max_harmonic), compute)
+    return cached_array((shape, edges, max_harmonic), compute_matrices)

@@ -72,7 +72,7 @@ class Scan(InterpolatedDeviation):
         The depth stays between the smallest and the largest of these points, also beyond the end of the scan.
         """
         count = min(_NEIGHBOURS, len(self.deviation))
-        distance, index = self._tree.query(numpy.moveaxis(directions, 0, -1), k=count)
+        distance, index = self._search_tree.query(numpy.moveaxis(directions, 0, -1), k=count)
         scale = distance[..., -1:]
         weights = (1 - 0.999 * (distance / scale) ** 2) ** 2  # small for the farthest: continuous when it changes
         offsets = numpy.moveaxis((self.directions[:, index] - directions[..., None]) / scale, 0, -1)
@@ -85,7 +85,7 @@ class Scan(InterpolatedDeviation):
         return depth
 
     @cached_property
-    def _tree(self) -> Any:
+    def _search_tree(self) -> Any:
         """Search tree for the nearest measured directions."""
         from scipy.spatial import cKDTree  # slow to import
 
@@ -207,9 +207,10 @@ def _fit_sphere(points: Numbers) -> tuple[Numbers, float]:
     linear = numpy.linalg.lstsq(rows, (points**2).sum(axis=1), rcond=None)[0]
     start = numpy.append(linear[:3], numpy.sqrt(max(linear[3] + linear[:3] @ linear[:3], 1e-12)))
 
-    def distances(x: Numbers) -> Numbers:
+    def distance_residuals(x: Numbers) -> Numbers:
+        """Compute the distances of the points from the sphere with centre x[:3] and radius x[3]."""
         residuals: Numbers = numpy.linalg.norm(points - x[:3], axis=1) - x[3]
         return residuals
 
-    solution = least_squares(distances, start).x
+    solution = least_squares(distance_residuals, start).x
     return solution[:3], float(solution[3])

@@ -57,7 +57,7 @@ class EdgeRelation:
 
 
 def elastic_edges(joint: Joint, grid: Grid, bounded: bool) -> EdgeRelation:
-    """Return the relation of pressure and gap near the edge of a contact of elastic bodies.
+    """Return the relation between pressure and gap near the contact edge of elastic bodies.
 
     At the distance s from the edge the pressure falls as s^(1/2), and the gap opens as s^(3/2).
     """
@@ -68,7 +68,7 @@ def elastic_edges(joint: Joint, grid: Grid, bounded: bool) -> EdgeRelation:
 
 
 def spring_edges(modulus: float, grid: Grid) -> EdgeRelation:
-    """Return the relation of pressure and gap near the edge of a contact on springs.
+    """Return the relation between pressure and gap near the contact edge on springs.
 
     `modulus` is in MPa/mm. Pressure and gap are one linear function.
     """
@@ -83,7 +83,7 @@ class Surface(Protocol):
         ...
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation of pressure and gap that locates the edge of a contact."""
+        """Return the relation between pressure and gap that locates the edge of a contact between cells."""
         ...
 
 
@@ -102,7 +102,7 @@ class RealCup:
         return grid.average_over_cells(cup_rings(joint, cup, grid))
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation of pressure and gap that locates the edge of a contact."""
+        """Return the relation between pressure and gap that locates the edge of a contact between cells."""
         return elastic_edges(joint, grid, bounded=cup.chamfer == 0)
 
 
@@ -117,7 +117,7 @@ class ClosedShell:
         return grid.average_over_cells(sphere_rings(socket_of(joint).compliance, grid))
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation of pressure and gap that locates the edge of a contact."""
+        """Return the relation between pressure and gap that locates the edge of a contact between cells."""
         return elastic_edges(joint, grid, bounded=False)
 
 
@@ -139,5 +139,5 @@ class Springs:
         return numpy.broadcast_to(diagonal, (grid.max_harmonic + 1, *diagonal.shape))
 
     def edges(self, joint: Joint, cup: Cup, grid: Grid) -> EdgeRelation:
-        """Return the relation of pressure and gap that locates the edge of a contact."""
+        """Return the relation between pressure and gap that locates the edge of a contact between cells."""
         return spring_edges(float(self.modulus(joint)), grid)

@@ -102,7 +102,7 @@ def build_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: i
                 stored[name] = spec.fit(pool.map)
         with draft.open("wb") as stream:
             numpy.savez_compressed(stream, allow_pickle=False, **stored)
-    return check(path, points=points, workers=workers)
+    return check_tables(path, points=points, workers=workers)
 
 
 @contextmanager
@@ -136,7 +136,7 @@ def _ratio_at(coordinate: Numbers) -> Numbers:
     return numpy.exp((low + high + coordinate * (high - low)) / 2) - chebyshev.RATIO_SHIFT
 
 
-def _share_at(coordinate: float, poisson: float, ratio: float) -> float:
+def _ball_share_at(coordinate: float, poisson: float, ratio: float) -> float:
     """Compute the ball's share of the compliance from its table coordinate."""
     scale = chebyshev.ball_scale(poisson, ratio)
     return float(scale * numpy.expm1((coordinate + 1) / 2 * numpy.log1p(chebyshev.MAX_BALL_SHARE / scale)))
@@ -159,7 +159,7 @@ def _solve_state(
 
 
 def _tabulated_functions(state: AbelState) -> Numbers:
-    """Compute the three tabulated functions of contacts, which `formulas` explains."""
+    """Compute the three tabulated functions of contacts: opening, force and pole pressure."""
     angle, d, C = state.half_angle, state.indentation, state.kernel.compliance
     opening = d / (1 + d) / (2 * numpy.sin(angle / 2) ** 2)
     load, pole = state.force / angle**3, state.pole_pressure / angle
@@ -170,17 +170,17 @@ def _profile_coefficients(state: AbelState) -> Numbers:
     """Compute the Chebyshev coefficients of the pressure profile p/(p0 sqrt(1 - v)) in 2v - 1."""
     v = (1 + chebyshev.chebyshev_points(_PROFILE_POINTS)[:, None]) / 2
     angle = 2 * numpy.arcsin(numpy.sqrt(v) * numpy.sin(state.half_angle / 2))
-    return chebyshev.coefficients(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
+    return chebyshev.chebyshev_coefficients(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
 
 
-def _sample_rigid(
+def _sample_rigid_ball(
     liner: _LinerParameters, *, function: Callable[[AbelState], Numbers], angles: int, points: int
 ) -> Numbers:
-    """Sample a function of contacts with a rigid ball at Chebyshev points of the half angle."""
-    return function(_solve_state(liner, chebyshev.angle_at(chebyshev.chebyshev_points(angles), liner[1]), points))
+    """Sample a function of contacts with a rigid ball, at Chebyshev points of the half angle."""
+    return function(_solve_state(liner, chebyshev.half_angle_at(chebyshev.chebyshev_points(angles), liner[1]), points))
 
 
-def _sample_ball(
+def _sample_ball_change(
     liner: _LinerParameters,
     *,
     function: Callable[[AbelState], Numbers],
@@ -189,19 +189,20 @@ def _sample_ball(
     shares: int,
     balls: Sequence[float],
 ) -> Numbers:
-    """Sample the change of a function by elastic balls, over the table's share coordinate.
+    """Sample the change of a function by elastic balls, divided by the table coordinate of the ball's share.
 
     The balls have several shares of the compliance and several ν.
     """
-    angle = chebyshev.angle_at(chebyshev.chebyshev_points(angles), liner[1])
+    angle = chebyshev.half_angle_at(chebyshev.chebyshev_points(angles), liner[1])
     rigid = function(_solve_state(liner, angle, points))
 
-    def change(coordinate: float, ball_poisson: float) -> Numbers:
-        state = _solve_state(liner, angle, points, _share_at(coordinate, *liner), ball_poisson)
+    def function_change(coordinate: float, ball_poisson: float) -> Numbers:
+        """Compute the change of the function by an elastic ball, divided by (1 + coordinate)/2."""
+        state = _solve_state(liner, angle, points, _ball_share_at(coordinate, *liner), ball_poisson)
         return (function(state) - rigid) * (2 / (1 + coordinate))
 
     return numpy.array(
-        [[change(float(coordinate), nu) for nu in balls] for coordinate in chebyshev.chebyshev_points(shares)]
+        [[function_change(float(coordinate), nu) for nu in balls] for coordinate in chebyshev.chebyshev_points(shares)]
     )
 
 
@@ -216,7 +217,7 @@ class _TableSpec:
     balls: tuple[float, ...] = ()
 
     def fit(self, map_function: Callable[..., Any]) -> Numbers:
-        """Compute the coefficients of the table: (ν, R2/L, ball share, ball ν, function, angle).
+        """Compute the coefficients of this table: (ν, R2/L, ball share, ball ν, function, angle).
 
         `map_function` applies a function to all liners.
         """
@@ -228,16 +229,16 @@ class _TableSpec:
         sampled = numpy.array(list(map_function(self.sample, liners, chunksize=4)))
         values = sampled.reshape(*self.counts, *((1, 1) if not self.balls else ()), *sampled.shape[1:])
         for axis in (0, 1, 2, 5):
-            values = chebyshev.coefficients(values, axis)
+            values = chebyshev.chebyshev_coefficients(values, axis)
         if self.balls:
-            values = numpy.moveaxis(_in_ball_shrinkage(self.balls, numpy.moveaxis(values, 3, 0)), 0, 3)
+            values = numpy.moveaxis(_shrinkage_coefficients(self.balls, numpy.moveaxis(values, 3, 0)), 0, 3)
         orders = numpy.ogrid[tuple(slice(n) for n in values.shape[:4])]
         total = orders[0] + orders[1] + 2 * orders[2] + 2 * orders[3]
         values = numpy.where((total <= self.order)[..., None, None], values, 0.0)
         return values.astype(numpy.float32 if self.single else numpy.float64)
 
 
-def _in_ball_shrinkage(balls: tuple[float, ...], values: Numbers) -> Numbers:
+def _shrinkage_coefficients(balls: tuple[float, ...], values: Numbers) -> Numbers:
     """Compute the Chebyshev coefficients in the ball's shrinkage, from values (balls, ...)."""
     basis = numpy.polynomial.chebyshev.chebvander(chebyshev.ball_shrinkage(numpy.array(balls)), len(balls) - 1)
     return numpy.tensordot(numpy.linalg.inv(basis), values, 1)
@@ -245,24 +246,28 @@ def _in_ball_shrinkage(balls: tuple[float, ...], values: Numbers) -> Numbers:
 
 _TABLE_SPECS = {
     "rigid": _TableSpec(
-        sample=partial(_sample_rigid, function=_tabulated_functions, angles=32, points=40),
+        sample=partial(_sample_rigid_ball, function=_tabulated_functions, angles=32, points=40),
         counts=(19, 21),
         order=33,
         single=False,
     ),
     "ball": _TableSpec(
         sample=partial(
-            _sample_ball, function=_tabulated_functions, angles=24, points=30, shares=_SHARE_POINTS, balls=_BALLS
+            _sample_ball_change, function=_tabulated_functions, angles=24, points=30, shares=_SHARE_POINTS, balls=_BALLS
         ),
         counts=(15, 16),
         order=22,
         balls=_BALLS,
     ),
     "profile": _TableSpec(
-        sample=partial(_sample_rigid, function=_profile_coefficients, angles=24, points=30), counts=(12, 13), order=16
+        sample=partial(_sample_rigid_ball, function=_profile_coefficients, angles=24, points=30),
+        counts=(12, 13),
+        order=16,
     ),
     "profile_ball": _TableSpec(
-        sample=partial(_sample_ball, function=_profile_coefficients, angles=20, points=28, shares=3, balls=_BALLS[1:2]),
+        sample=partial(
+            _sample_ball_change, function=_profile_coefficients, angles=20, points=28, shares=3, balls=_BALLS[1:2]
+        ),
         counts=(9, 10),
         order=14,
         balls=_BALLS[1:2],
@@ -273,12 +278,12 @@ _TABLE_SPECS = {
 # Checks
 
 
-def check(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
+def check_tables(path: Path | str = SHIPPED, *, points: int = 10_000, workers: int = 2) -> TableAccuracy:
     """Compare the tables in a file with solutions of the contact equation for random contacts.
 
     Half angles are 2 to 80 degrees, ν is 0 to 0.499, and R2/L is 0.2 to 20.
     """
-    chebyshev.tables(str(path))  # raises an error at once for a file without tables
+    chebyshev.load_tables(str(path))  # raises an error at once for a file without tables
     rigid, elastic = random_contacts(points, seed=2021), random_contacts(max(points // 5, 1), seed=2022, elastic=True)
     with _process_pool(workers) as pool:
         known = [
@@ -302,7 +307,7 @@ def random_contacts(count: int, *, seed: int, elastic: bool = False) -> tuple[Nu
     return angle, poisson, ratio, softness, random.uniform(0.2, 0.35, count)
 
 
-def joint_of(
+def make_joints(
     poisson: Numbers, ratio: Numbers, softness: Numbers, ball_poisson: Numbers, *, clearance: float = _CLEARANCE
 ) -> Joint:
     """Make joints with R2 = E = 1 from arrays of parameters; `softness` is E/E_ball, 0 for rigid balls."""
@@ -312,7 +317,7 @@ def joint_of(
 
 
 def _solve_exact(numbers: tuple[float, ...]) -> list[float]:
-    """Compute `QUANTITIES` of one contact from the contact equation, with R2 = E = 1."""
+    """Compute the checked quantities of one contact from the contact equation, with R2 = E = 1."""
     angle, poisson, ratio, softness, ball_poisson = map(float, numbers)
     plane = (1 - ball_poisson**2) / (1 - poisson**2) * softness * (1 - _CLEARANCE)
     state = _solve_state((poisson, ratio), numpy.array([angle]), 40, plane / (1 + plane), ball_poisson)
@@ -324,7 +329,7 @@ def _largest_errors(model: table.Tabulated, numbers: tuple[Numbers, ...], exact:
     """Find the largest errors of a model against exact values, by half angle and by force."""
     known = dict(zip(QUANTITIES, exact, strict=True))
     known["stiffness"] = known["stiffness"] / _CLEARANCE
-    joint = joint_of(*numbers[1:])
+    joint = make_joints(*numbers[1:])
     by_angle, by_force = model.press(joint, half_angle=numbers[0]), model.press(joint, force=known["force"])
     results = [(name, getattr(by_angle, name), known[name], "") for name in BY_ANGLE]
     results += [(name, getattr(by_force, name), known[name], " by force") for name in BY_FORCE]

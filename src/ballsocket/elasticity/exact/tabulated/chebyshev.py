@@ -49,7 +49,7 @@ def poisson_coordinate(poisson: Array) -> Array:
 
 
 def thickness_coordinate(ratio: Array) -> Array:
-    """Compute the table coordinate of R2/L, a shifted logarithm from -1 to 1."""
+    """Compute the table coordinate of the ratio R2/L, from -1 to 1; it is a shifted logarithm."""
     low, high = (log(end + RATIO_SHIFT) for end in THICKNESS_RATIO)
     return (2 * ln(ratio + RATIO_SHIFT) - low - high) / (high - low)
 
@@ -71,7 +71,7 @@ def angle_root(angle: Array, ratio: Array) -> Array:
     return sqrt(log1p(scale * angle) / log1p(scale * LIMIT))
 
 
-def angle_at(coordinate: Array, ratio: Array) -> Array:
+def half_angle_at(coordinate: Array, ratio: Array) -> Array:
     """Compute the half angle ε in rad from its table coordinate."""
     scale, share = ANGLE_SCALE * (1 + ratio), (1 + coordinate) / 2
     return (exp(share * share * ln(1 + scale * LIMIT)) - 1) / scale
@@ -130,7 +130,7 @@ class ChebyshevTable:
 
 
 def _apply_factors(matrix: Array, *factors: Array) -> Array:
-    """Multiply a matrix by the products of all rows of several factors, for each joint.
+    """Multiply a matrix by the outer product of the columns of several factors, for each joint.
 
     The matrix has the shape (rows, products), each factor (rows, joints or 1).
     Factors that all joints share are multiplied first, which makes a sweep of one material three times as fast.
@@ -167,7 +167,7 @@ def chebyshev_points(count: int) -> Numbers:
     return -numpy.cos(pi * (numpy.arange(count) + 0.5) / count)
 
 
-def coefficients(values: Numbers, axis: int) -> Numbers:
+def chebyshev_coefficients(values: Numbers, axis: int) -> Numbers:
     """Compute the Chebyshev coefficients of the polynomial through values at `chebyshev_points`."""
     count = values.shape[axis]
     angles = pi * (numpy.arange(count) + 0.5) / count
@@ -178,12 +178,12 @@ def coefficients(values: Numbers, axis: int) -> Numbers:
 
 def chebyshev_values(coordinate: float, count: int) -> numpy.ndarray:
     """Compute the Chebyshev polynomials T_0 ... T_count-1 at one coordinate."""
-    return numpy.cos(_orders(count) * math.acos(min(max(coordinate, -1.0), 1.0)))
+    return numpy.cos(_polynomial_orders(count) * math.acos(min(max(coordinate, -1.0), 1.0)))
 
 
 @cache
-def _orders(count: int) -> numpy.ndarray:
-    """Return the orders 0 ... count - 1 as floats."""
+def _polynomial_orders(count: int) -> numpy.ndarray:
+    """Return the orders of the Chebyshev polynomials, 0 to count - 1, as floats."""
     return numpy.arange(count, dtype=float)
 
 
@@ -196,7 +196,7 @@ def convert_like(values: numpy.ndarray, like: Array) -> Array:
 
 
 @cache
-def tables(file: str = "") -> dict[str, ChebyshevTable]:
+def load_tables(file: str = "") -> dict[str, ChebyshevTable]:
     """Load the tables of a file by their names, from a cache.
 
     The names are "rigid" for a rigid ball, "ball" for the change by an elastic one, and "profile" and "profile_ball"
@@ -218,10 +218,10 @@ def tables(file: str = "") -> dict[str, ChebyshevTable]:
     if set(stored) != {*WITH_BALL, *WITH_BALL.values()}:
         raise ValueError(f"{file} holds no tables")
     angles = {ball: stored[name].shape[-1] for name, ball in WITH_BALL.items()}
-    return {name: compress(values, angles.get(name, 0)) for name, values in stored.items()}
+    return {name: compress_coefficients(values, angles.get(name, 0)) for name, values in stored.items()}
 
 
-def compress(coefficients: numpy.ndarray, angles: int = 0) -> ChebyshevTable:
+def compress_coefficients(coefficients: numpy.ndarray, angles: int = 0) -> ChebyshevTable:
     """Compress coefficients (ν, R2/L, ball share, ball ν, function, angle) to a table with at least `angles` angles.
 
     Negligible singular values are omitted.

@@ -16,11 +16,11 @@ from .chebyshev import (
     ball_coordinate,
     ball_shrinkage,
     convert_like,
+    load_tables,
     poisson_coordinate,
-    tables,
     thickness_coordinate,
 )
-from .formulas import CurveCoefficients, Scale, angle_of_force, angle_of_indentation, contact
+from .formulas import CurveCoefficients, Scale, angle_of_force, angle_of_indentation, contact_quantities
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,29 +61,33 @@ class JointCurves:
         return 2 * (1 - liner.poisson**2) * self.joint.socket_radius / liner.young * (1 + self._softness)
 
     @property
-    def _is_plain(self) -> bool:
+    def _has_plain_joint(self) -> bool:
         """True for one joint of Python numbers, whose coefficients have no axis of joints."""
         return type(self.joint.clearance) is float
 
-    def series(self, name: str) -> Array:
+    def table_series(self, name: str) -> Array:
         """Compute coefficients (functions, angles, joints) of the table `name`, with the change by an elastic ball."""
         if self.shared is not None:
-            return self._take_shared(self.shared.series(name))
-        nu, stored = self.joint.liner.poisson, tables(self.file)
+            return self._take_shared(self.shared.table_series(name))
+        nu, stored = self.joint.liner.poisson, load_tables(self.file)
         coordinates = [poisson_coordinate(nu), thickness_coordinate(self.ratio)]
-        evaluate = ChebyshevTable.coefficients_of_one if self._is_plain else ChebyshevTable.coefficients_at
-        total = evaluate(stored[name], coordinates)
+        evaluate_coefficients = (
+            ChebyshevTable.coefficients_of_one if self._has_plain_joint else ChebyshevTable.coefficients_at
+        )
+        coefficients = evaluate_coefficients(stored[name], coordinates)
         if self.joint.ball is not None:
             share = self._softness / (1 + self._softness)
             soft = ball_coordinate(share, nu, self.ratio)
-            added = evaluate(stored[WITH_BALL[name]], [*coordinates, soft, ball_shrinkage(self.joint.ball.poisson)])
-            total = total + (1 + soft) / 2 * added
-        return total
+            added = evaluate_coefficients(
+                stored[WITH_BALL[name]], [*coordinates, soft, ball_shrinkage(self.joint.ball.poisson)]
+            )
+            coefficients = coefficients + (1 + soft) / 2 * added
+        return coefficients
 
     @cached_property
     def functions(self) -> Array:
-        """Chebyshev coefficients of the three tabulated functions, which `formulas` explains."""
-        return self.series("rigid") if self.shared is None else self._take_shared(self.shared.functions)
+        """Chebyshev coefficients of the three tabulated functions: opening, force and pole pressure."""
+        return self.table_series("rigid") if self.shared is None else self._take_shared(self.shared.functions)
 
     @cached_property
     def slopes(self) -> Array:
@@ -91,14 +95,16 @@ class JointCurves:
         if self.shared is not None:
             return self._take_shared(self.shared.slopes)
         xp = arrays.namespace(self.functions)
-        derivative = convert_like(_derivative(self.functions.shape[1]), self.functions)
+        derivative = convert_like(_derivative_matrix(self.functions.shape[1]), self.functions)
         return xp.stack([derivative @ self.functions[row, ...] for row in range(3)])
 
     @cached_property
     def curve(self) -> CurveCoefficients:
         """Chebyshev coefficients of the tabulated functions and of their derivatives."""
-        if self._is_plain:
-            stacked = numpy.concatenate([self.functions, self.functions @ _derivative(self.functions.shape[1]).T])
+        if self._has_plain_joint:
+            stacked = numpy.concatenate(
+                [self.functions, self.functions @ _derivative_matrix(self.functions.shape[1]).T]
+            )
             return CurveCoefficients(self.ratio, stacked, stacked)
         return CurveCoefficients(self.ratio, self.functions, self.slopes)
 
@@ -108,12 +114,12 @@ class JointCurves:
         R2 = self.joint.socket_radius
         return Scale(self.joint.clearance, R2 * R2, self.compliance)
 
-    def contact(self, angle: Array) -> tuple[Array, ...]:
-        """Compute indentation, force, pole pressure, stiffness and dd/d(ln ε) at half angles above 0.
+    def contact_quantities(self, angle: Array) -> tuple[Array, ...]:
+        """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε) at half angles above 0.
 
         The units are mm, N, MPa, N/mm and mm.
         """
-        return contact(angle, self.curve, self.scale)
+        return contact_quantities(angle, self.curve, self.scale)
 
     def scaled_load(self, kind: str, load: Array) -> Array:
         """Compute the dimensionless load: F C/(R2² c) of a force, d/c of an indentation."""
@@ -132,7 +138,7 @@ def plain_joint_curves(file: str, joint: Joint) -> JointCurves:
 
 
 @cache
-def _derivative(count: int) -> numpy.ndarray:
+def _derivative_matrix(count: int) -> numpy.ndarray:
     """Compute the matrix from the Chebyshev coefficients of a function to those of its derivative."""
     square = numpy.zeros((count, count))
     square[:-1] = numpy.polynomial.chebyshev.chebder(numpy.eye(count))

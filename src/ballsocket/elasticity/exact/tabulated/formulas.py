@@ -54,8 +54,8 @@ class Scale(NamedTuple):
     """C in mm/MPa."""
 
 
-def evaluate(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> tuple[Pair, ...]:
-    """Evaluate the tabulated functions in `rows` and their slopes by ln ε at half angles above 0."""
+def evaluate_table_functions(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> tuple[Pair, ...]:
+    """Evaluate the tabulated functions in `rows`, with their slopes by ln ε, at half angles above 0."""
     root = angle_root(angle, curve.ratio)
     coordinate, widening = 2 * root - 1, angle_derivative(angle, root, curve.ratio)
     if type(angle) is float:
@@ -85,17 +85,19 @@ def angle_derivative(angle: Array, root: Array, ratio: Array) -> Array:
 
 
 def opening(angle: Array, share: Pair) -> Pair:
-    """Compute the relative indentation σ = d/(c + d) and d ln σ/d ln ε from the first tabulated function."""
+    """Compute the relative indentation σ = d/(c + d) and its log slope by ln ε from the first tabulated function."""
     half = sin(angle / 2)
     return exp(share[0]) * 2 * half * half, share[1] + angle * cos(angle / 2) / half
 
 
-def contact(angle: Array, curve: CurveCoefficients, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute indentation, force, pole pressure, stiffness and dd/d(ln ε) at half angles above 0.
+def contact_quantities(
+    angle: Array, curve: CurveCoefficients, scale: Scale
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε) at half angles above 0.
 
     The units are mm, N, MPa, N/mm and mm.
     """
-    share, load, pole = evaluate(angle, curve, ALL)
+    share, load, pole = evaluate_table_functions(angle, curve, ALL)
     sigma, rate = opening(angle, share)
     reach = scale.clearance / (1 - sigma)
     outer = sigma * rate / (1 - sigma)
@@ -123,22 +125,22 @@ def _solve_angle(residual: Increasing, load: Array, log_estimate: Array, curve: 
 
 
 def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of a relative indentation d/c at a half angle, and its slope.
+    """Compute the residual of the relative indentation d/c at a trial half angle, and its slope by ln ε.
 
     The residual is ln d/(c + d) minus that of the load.
     """
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
-    sigma, rate = opening(angle, evaluate(angle, curve, ONE)[0])
+    sigma, rate = opening(angle, evaluate_table_functions(angle, curve, ONE)[0])
     return log(sigma * (1 + 1 / load)), rate
 
 
 def _force_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of a dimensionless force at a half angle, and its slope.
+    """Compute the residual of the dimensionless force at a trial half angle, and its slope by ln ε.
 
     The residual is ln d/(c + d) minus that of the indentation F/secant, where secant is the ratio F/d.
     """
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
-    share, force = evaluate(angle, curve, TWO)
+    share, force = evaluate_table_functions(angle, curve, TWO)
     sigma, rate = opening(angle, share)
     secant = exp(force[0]) * angle * angle * angle / sigma
     return log(sigma * (1 + secant / load)), rate + (force[1] + 3 - rate) * secant / (secant + load)

@@ -14,7 +14,7 @@ from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
 from ....problem import Joint
 from .chebyshev import POISSON, THICKNESS_RATIO
-from .solution import CurveReader, curve_reader, solution_of
+from .solution import CurveReader, curve_reader, solve_with_tables
 
 
 def _ball_poisson(contact: Any) -> Array:
@@ -81,14 +81,14 @@ class Tabulated(Model):
     promise: ClassVar[Promise] = Promise(within=2e-4, quantities=("indentation", "half_angle", "max_pressure"))
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
-        return self.solve_with(joint, kind, load, curve_reader(kind))
+        return self.solve_with_reader(joint, kind, load, curve_reader(kind))
 
-    def solve_with(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
-        """Solve the contacts for loads of one kind with a function that reads the curves of joints.
+    def solve_with_reader(self, joint: Joint, kind: str, load: Array, read: CurveReader) -> SolverResult:
+        """Solve the contacts for loads of one kind with a function that evaluates the curves of joints.
 
         `read` is such a function, see `curve_reader`.
         """
-        solution = solution_of(self.file, joint, load, read)
+        solution = solve_with_tables(self.file, joint, load, read)
         d, F, _, _ = solution.values
         return SolverResult(
             laws=solution,

@@ -65,7 +65,7 @@ class TableSolution:
     @cached_property
     def energy(self) -> Array:
         """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
-        (energy,) = _read_in_blocks(self.file, self.joint, self.angle, _integrate_work)
+        (energy,) = _compute_in_blocks(self.file, self.joint, self.angle, _integrate_work)
         return where(self.angle > 0, energy, 0.0 * self.angle)
 
     @property
@@ -83,7 +83,7 @@ class TableSolution:
 
         The argument is 2v - 1 with v = sin²(φ/2)/sin²(ε/2).
         """
-        (series,) = _read_in_blocks(self.file, self.joint, self.angle, _profile_coefficients)
+        (series,) = _compute_in_blocks(self.file, self.joint, self.angle, _profile_coefficients)
         return series
 
     @cached_property
@@ -95,7 +95,7 @@ class TableSolution:
         q = [self._profile_coefficients[k, ...] for k in range(self._profile_coefficients.shape[0])]
         _, F, p0, _ = self.values
         height = sin(safe_divisor(self.angle) / 2) ** 2
-        plain, tilted = _moments(len(q))
+        plain, tilted = _profile_moments(len(q))
         carries = [even - 2 * height * odd for even, odd in zip(plain, tilted, strict=True)]
         pole_correction = 1 - arrays.weighted_sum(q, [(-1.0) ** k for k in range(len(q))])
         target = F / safe_divisor(4 * pi * self.joint.socket_radius**2 * p0 * height)
@@ -110,12 +110,12 @@ class TableSolution:
         pole_correction, tilt = self._profile_correction
         half, height = sin(angle / 2), sin(safe_divisor(self.angle) / 2) ** 2
         v = half * half / height
-        total = _clenshaw(self._profile_coefficients, clip(2 * v - 1, -1.0, 1.0)) + pole_correction + tilt * v
+        total = _evaluate_series(self._profile_coefficients, clip(2 * v - 1, -1.0, 1.0)) + pole_correction + tilt * v
         inside = (v < 1) & (abs(angle) < pi) & (self.angle > 0)
         return where(inside, self.values[2] * sqrt(clip(1 - v, 0.0, 1.0)) * clip(total, 0.0, inf), 0.0)
 
 
-def _clenshaw(series: Array, x: Array) -> Array:
+def _evaluate_series(series: Array, x: Array) -> Array:
     """Evaluate the Chebyshev series Σ series[k] T_k(x) by Clenshaw's recurrence."""
     following = current = 0.0 * x
     for k in range(series.shape[0] - 1, 0, -1):
@@ -125,7 +125,7 @@ def _clenshaw(series: Array, x: Array) -> Array:
 
 def _profile_coefficients(curves: JointCurves, angle: Array) -> tuple[Array]:
     """Compute the Chebyshev coefficients of the pressure profile at half angles."""
-    series = curves.series("profile")
+    series = curves.table_series("profile")
     if series.ndim == 2:
         return (series @ chebyshev_values(angle_coordinate(angle, curves.ratio), series.shape[1]),)
     waves = chebyshev_polynomials(angle_coordinate(angle, curves.ratio), series.shape[1])
@@ -139,14 +139,14 @@ def _integrate_work(curves: JointCurves, angle: Array) -> tuple[Array]:
     """
     total = 0.0 * angle
     for node, weight in zip(*gauss_legendre(32), strict=True):
-        _, F, _, _, deepening = curves.contact(angle * math.sin(pi / 2 * node) ** 2)
+        _, F, _, _, deepening = curves.contact_quantities(angle * math.sin(pi / 2 * node) ** 2)
         total = total + pi * weight / math.tan(pi / 2 * node) * F * deepening
     return (total,)
 
 
 @cache
-def _moments(size: int) -> tuple[list[float], list[float]]:
-    """Compute the moments ∫ sqrt(1 - v) f dv and ∫ sqrt(1 - v) f v dv over [0, 1] of profile functions f.
+def _profile_moments(size: int) -> tuple[list[float], list[float]]:
+    """Compute two moments of each profile function f: ∫ sqrt(1 - v) f dv and ∫ sqrt(1 - v) f v dv over [0, 1].
 
     The functions are f = T_0(2v - 1) ... T_size-1 and f = v.
     """
@@ -160,12 +160,12 @@ CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
 """Function of the curves of joints and the loads of contacts (contacts,) that returns arrays (contacts,)."""
 
 
-def solution_of(file: str, joint: Joint, load: Array, read: CurveReader) -> TableSolution:
-    """Solve the contacts for loads; NaN beyond the tables.
+def solve_with_tables(file: str, joint: Joint, load: Array, compute_quantities: CurveReader) -> TableSolution:
+    """Solve contacts for loads with the tables; NaN beyond the range of the tables.
 
-    `read` returns ε, d, F, p0 and dF/dd from the curves of joints and the loads.
+    `compute_quantities` returns ε, d, F, p0 and dF/dd from the curves of joints and the loads.
     """
-    values = _read_in_blocks(file, joint, load, read)
+    values = _compute_in_blocks(file, joint, load, compute_quantities)
     fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
     angle, d, F, p0, stiffness = (
         where(broadcast(load, value) > 0, where(fits, value, float("nan")), 0.0) for value in values
@@ -174,27 +174,27 @@ def solution_of(file: str, joint: Joint, load: Array, read: CurveReader) -> Tabl
 
 
 def curve_reader(kind: str) -> CurveReader:
-    """Return the function that computes ε, d, F, p0 and dF/dd from curves and loads of one kind."""
+    """Return a function that computes half angle, d, F, p0 and dF/dd from curves and loads of one kind."""
 
-    def read(curves: JointCurves, load: Array) -> tuple[Array, ...]:
+    def compute_quantities(curves: JointCurves, load: Array) -> tuple[Array, ...]:
         angle = where(load <= LIMIT, load, float("nan")) if kind == "half_angle" else curves.angle(kind, load)
-        return (angle, *curves.contact(angle)[:4])
+        return (angle, *curves.contact_quantities(angle)[:4])
 
-    return read
+    return compute_quantities
 
 
-def _read_in_blocks(file: str, joint: Joint, load: Array, read: CurveReader) -> tuple[Array, ...]:
-    """Apply `read` to contacts block by block; the results have the shape of the contacts.
+def _compute_in_blocks(file: str, joint: Joint, load: Array, compute_quantities: CurveReader) -> tuple[Array, ...]:
+    """Compute quantities of contacts block by block with a function of curves; keep the shape of the contacts.
 
     A load that is not positive is replaced by a small one.
     """
     if type(load) is float:
-        return read(plain_joint_curves(file, joint), load if load > 0 else SMALL_LOAD)
+        return compute_quantities(plain_joint_curves(file, joint), load if load > 0 else SMALL_LOAD)
     xp, numbers = arrays.namespace(load), joint.numbers()
     shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
     if not prod(shape):  # read one contact for the shape, and remove it
         unit_load = xp.ones((1,), dtype=load.dtype)
-        single = read(JointCurves(file, joint.with_numbers([unit_load for _ in numbers])), unit_load)
+        single = compute_quantities(JointCurves(file, joint.with_numbers([unit_load for _ in numbers])), unit_load)
         return tuple(xp.reshape(part[..., :0], (*part.shape[:-1], *shape)) for part in single)
     is_single_joint = all(prod(part.shape) == 1 for part in numbers)
     shared, indices = (None, None) if is_single_joint else _shared_curves(file, joint, shape)
@@ -209,7 +209,7 @@ def _read_in_blocks(file: str, joint: Joint, load: Array, read: CurveReader) -> 
         block_indices = None if indices is None else indices[block]
         parts = [part if part.shape[0] == 1 else part[block] for part in flat]
         curves = all_curves if is_single_joint else JointCurves(file, joint.with_numbers(parts), shared, block_indices)
-        results.append(read(curves, loads[block]))
+        results.append(compute_quantities(curves, loads[block]))
     joined = (xp.concat(parts, axis=-1) if len(parts) > 1 else parts[0] for parts in zip(*results, strict=True))
     return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)
 

@@ -13,7 +13,7 @@ from ....core.arrays import Numbers
 from ....problem import Joint, Material
 from ..bodies import ball_body, socket_body
 from ..contact import MeshedContact
-from ..mesh import Block, block
+from ..mesh import Block, mesh_block
 from ..shapes import socket_shape
 from ..surfaces import SurfacePair
 from ..tangent import Solved
@@ -59,23 +59,23 @@ class DeckBody:
         return numpy.where(used, self.nodes_before + numpy.cumsum(used), 0)
 
     @property
-    def nodes(self) -> int:
-        """Number of nodes of the body in the deck."""
+    def node_count(self) -> int:
+        """Number of the body's nodes in the deck."""
         return int(numpy.count_nonzero(self.number))
 
-    def numbers(self, mask: Numbers) -> list[int]:
+    def node_numbers(self, mask: Numbers) -> list[int]:
         """Return the deck's numbers of the nodes in a mask (nodes,), without those in the middle of elements."""
         return self.number[mask & (self.number > 0)].tolist()
 
     @cached_property
-    def on_axis(self) -> Numbers:
+    def axis_nodes(self) -> Numbers:
         """Mask of the nodes on the load axis."""
         mask = numpy.zeros(self.block.number.size, dtype=bool)
         mask[self.block.number[0]] = True
         return mask
 
     @property
-    def fixed(self) -> Numbers:
+    def fixed_nodes(self) -> Numbers:
         """Mask of the nodes that are fixed in both directions."""
         return self.fixed_directions[0] & self.fixed_directions[1]
 
@@ -156,7 +156,7 @@ class DeckBodies:
             contact=contact,
             radius=float(self.joint.socket_radius) - clearance,
             drop=clearance,
-            nodes_before=self.socket.nodes,
+            nodes_before=self.socket.node_count,
             elements_before=self.socket.block.elements.shape[1],
         )
 
@@ -169,7 +169,7 @@ class DeckBodies:
         """Mesh a rigid ball as one fixed layer of elements, which match the bore's and extend one element further."""
         corners = self.solved.pair.angle
         corners = numpy.append(corners, 2 * corners[-1] - corners[-2])
-        mesh = block(corners, [numpy.array([1 - _RING_THICKNESS, 1.0])], self.solved.pair.resolution.order)
+        mesh = mesh_block(corners, [numpy.array([1 - _RING_THICKNESS, 1.0])], self.solved.pair.resolution.order)
         return mesh, numpy.ones((2, mesh.number.size), dtype=bool), mesh.number[:, -1]
 
     @property

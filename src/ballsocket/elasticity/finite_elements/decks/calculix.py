@@ -65,7 +65,7 @@ def run(folder: Path, *, threads: int = 1) -> CcxAnswer:
     """
     folder = Path(folder)
     process = run_calculix(folder, threads)
-    answer = read(folder)
+    answer = read_results(folder)
     if numpy.isnan(answer.force).all():
         raise RuntimeError(f"ccx ended with {process.returncode} before the first step did: {last_output(process)}")
     return answer
@@ -103,7 +103,7 @@ def last_output(process: subprocess.CompletedProcess[str]) -> str:
     return "; ".join([line.strip() for line in process.stdout.splitlines() if line.strip()][-_OUTPUT_LINES:])
 
 
-def read(folder: Path) -> CcxAnswer:
+def read_results(folder: Path) -> CcxAnswer:
     """Read the results of CalculiX's last run in a folder."""
     deck = json.loads((folder / EXPECTED).read_text(encoding="ascii"))
     dat = folder / f"{NAME}.dat"
@@ -130,41 +130,41 @@ class _Surfaces:
     pressures: dict[int, float]
 
     @property
-    def _angle(self) -> Numbers:
+    def _bore_angles(self) -> Numbers:
         """Polar angles of the bore's nodes in rad, from the pole outwards."""
         return numpy.array(self.deck["bore"]["angle"])
 
-    def _displacements(self, name: str, rows: Numbers) -> Numbers:
-        """Return displacements across the axis and along it in mm, shape (2, nodes), from the pole outwards."""
+    def _surface_displacements(self, name: str, rows: Numbers) -> Numbers:
+        """Return the displacements of a surface in mm, across and along the axis: (2, nodes), from the pole on."""
         rows_by_node = {int(node): row for row, node in enumerate(rows[:, 0])}
         return rows[[rows_by_node[node] for node in self.deck[name]["node"]], 1:3].T / self.deck["scale"]
 
     @property
     def indentation(self) -> float:
         """Indentation in mm: the displacement of the ball's equator."""
-        return -float(self._displacements("round", self.ball)[1, -1])
+        return -float(self._surface_displacements("round", self.ball)[1, -1])
 
     @property
     def gap(self) -> Numbers:
         """Gap in mm between the bore's nodes and the ball."""
-        angle, clearance = self._angle, self.deck["joint"]["clearance"]
+        angle, clearance = self._bore_angles, self.deck["joint"]["clearance"]
         ball = [
             numpy.interp(angle, self.deck["round"]["angle"], displacement)
-            for displacement in self._displacements("round", self.ball)
+            for displacement in self._surface_displacements("round", self.ball)
         ]
-        across, up = self._displacements("bore", self.bore) - ball
+        across, up = self._surface_displacements("bore", self.bore) - ball
         return across * numpy.sin(angle) - up * numpy.cos(angle) + clearance * 2 * numpy.sin(angle / 2) ** 2
 
     @property
     def half_angle(self) -> float:
         """Half angle of the contact in rad."""
-        return edge_angle(self._angle, self.gap / self.indentation)
+        return edge_angle(self._bore_angles, self.gap / self.indentation)
 
     @property
     def pole_pressure(self) -> float:
         """Pressure at the pole in MPa."""
         pressures = numpy.array([self.pressures[node] for node in self.deck["bore"]["node"]])
-        return pressure_at_pole(self._angle, pressures / self.deck["scale"], self.half_angle)
+        return pressure_at_pole(self._bore_angles, pressures / self.deck["scale"], self.half_angle)
 
 
 def edge_angle(angle: Numbers, gap: Numbers) -> float:
@@ -213,7 +213,7 @@ def read_contact_pressures(frd: Path) -> dict[int, dict[int, float]]:
 
 
 def _split_by_step(path: Path, head: str) -> dict[int, str]:
-    """Split a file at its headers; return the text after each by the index of its step.
+    """Split a file at its headers; return the text after each header, by the index of the load step.
 
     A header without a time ends the previous text. A step may end in a second increment of zero length at nearly the
     same time: the later one counts.

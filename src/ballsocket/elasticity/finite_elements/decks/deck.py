@@ -105,9 +105,9 @@ class Deck:
     def text(self) -> str:
         """Return the deck as ASCII text."""
         bodies = self._bodies
-        lines = [*self._title(), *mesh_lines(bodies), *material_lines(bodies)]
-        lines += [*contact_lines(bodies, self.slope), *support_lines(bodies)]
-        for depth in self._depths:
+        lines = [*self._title_lines(), *mesh_lines(bodies), *material_lines(bodies)]
+        lines += [*contact_lines(bodies, self.contact_penalty), *support_lines(bodies)]
+        for depth in self._indentations:
             lines += step_lines(-self.scale * depth)
         return "\n".join(lines) + "\n"
 
@@ -126,7 +126,7 @@ class Deck:
         """
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        write_text(folder / EXPECTED, json.dumps(self._record(), indent=1) + "\n", encoding="ascii")
+        write_text(folder / EXPECTED, json.dumps(self._expected_record(), indent=1) + "\n", encoding="ascii")
         return write_text(folder / f"{NAME}.inp", self.text(), encoding="ascii")
 
     @cached_property
@@ -139,9 +139,9 @@ class Deck:
     @cached_property
     def expected(self) -> dict[str, Numbers]:
         """Expected results at each step (steps,) by name, with indentation in mm, force in N, pressures in MPa."""
-        contact = self.contact.model.press(self._bodies.joint, indentation=self._depths)
+        contact = self.contact.model.press(self._bodies.joint, indentation=self._indentations)
         return {
-            "indentation": self._depths,
+            "indentation": self._indentations,
             "force": contact.force,
             "max_pressure": contact.max_pressure,
             "pole_pressure": contact.pole_pressure,
@@ -149,7 +149,7 @@ class Deck:
         }
 
     @property
-    def slope(self) -> float:
+    def contact_penalty(self) -> float:
         """Contact penalty in MPa/mm.
 
         The bodies overlap by pressure over slope. The slope is 2000 times the largest ratio of pressure to indentation,
@@ -159,16 +159,16 @@ class Deck:
         return _PENALTY_FACTOR * float(numpy.nanmax(self.expected["max_pressure"] / self.expected["indentation"]))
 
     @property
-    def _depths(self) -> Numbers:
+    def _indentations(self) -> Numbers:
         """Indentations of the steps in mm."""
         return float(self._bodies.solved.indentation) * numpy.arange(1, self.steps + 1) / self.steps
 
-    def _rows(self) -> list[list[float]]:
+    def _expected_rows(self) -> list[list[float]]:
         """Return the expected results as one row for each step."""
         return numpy.stack(list(self.expected.values()), axis=-1).tolist()
 
-    def _record(self) -> dict[str, Any]:
-        """Return the content of `expected.json`."""
+    def _expected_record(self) -> dict[str, Any]:
+        """Return the content of the file `expected.json`."""
         return {
             "ballsocket": __version__,
             "joint": self._bodies.joint.summary(),
@@ -176,7 +176,7 @@ class Deck:
             "element": TYPES[self._bodies.solved.pair.resolution.order],
             "steps": [
                 {name: None if numpy.isnan(value) else value for name, value in zip(self.expected, row, strict=True)}
-                for row in self._rows()
+                for row in self._expected_rows()
             ],
             "bore": self._bodies.socket.surface(),
             "round": self._bodies.ball.surface(),
@@ -184,14 +184,14 @@ class Deck:
 
     # --- comments at the top ---
 
-    def _title(self) -> Iterator[str]:
+    def _title_lines(self) -> Iterator[str]:
         """Yield the comment lines at the top of the deck."""
-        for sentence in self._sentences():
+        for sentence in self._description_sentences():
             yield from (f"** {line}" for line in wrap(sentence, _LINE_WIDTH))
-        for number, row in enumerate(self._rows(), 1):
+        for number, row in enumerate(self._expected_rows(), 1):
             yield f"** {number:4d}" + "".join(f"{value:16.7g}" for value in row)
 
-    def _sentences(self) -> Iterator[str]:
+    def _description_sentences(self) -> Iterator[str]:
         """Yield sentences that describe the deck."""
         cup = self.contact.model.cup
         joint = str(self._bodies.joint).encode("ascii", "replace").decode()
@@ -232,8 +232,8 @@ def material_lines(bodies: DeckBodies) -> Iterator[str]:
         yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}"
 
 
-def contact_lines(bodies: DeckBodies, slope: float) -> Iterator[str]:
-    """Yield the lines of the contact surfaces and of the contact, whose penalty `slope` is in MPa/mm.
+def contact_lines(bodies: DeckBodies, contact_penalty: float) -> Iterator[str]:
+    """Yield the lines of the contact surfaces and of the contact, whose penalty `contact_penalty` is in MPa/mm.
 
     The surfaces extend to the last pressure node; the ball's is one element longer.
     """
@@ -242,7 +242,7 @@ def contact_lines(bodies: DeckBodies, slope: float) -> Iterator[str]:
     yield "*SURFACE, NAME=PRESSED, TYPE=ELEMENT"
     yield from (f"{element}, {_OUTSIDE}" for element in bodies.ball.contact_elements(bodies.reach, strip=-1, extra=1))
     yield from ("*SURFACE INTERACTION, NAME=TOUCH", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR")
-    yield from (f"{slope:.6g}", "*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "LINED, PRESSED")
+    yield from (f"{contact_penalty:.6g}", "*CONTACT PAIR, INTERACTION=TOUCH, TYPE=SURFACE TO SURFACE", "LINED, PRESSED")
 
 
 def support_lines(bodies: DeckBodies) -> Iterator[str]:
@@ -251,15 +251,20 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
     They act along x and y on the axis and for fixed nodes of the ball, elsewhere along radius and angle.
     """
     socket, ball = bodies.socket, bodies.ball
-    upright = [*socket.numbers(socket.on_axis & ~socket.fixed), *ball.numbers(ball.on_axis | ball.fixed)]
-    seated, rolling = socket.fixed_directions & ~socket.fixed & ~socket.on_axis
-    yield from node_set_lines("PUSHED", ball.numbers(ball.fixed_directions[0] & (ball.fixed | ~ball.on_axis)))
+    upright = [
+        *socket.node_numbers(socket.axis_nodes & ~socket.fixed_nodes),
+        *ball.node_numbers(ball.axis_nodes | ball.fixed_nodes),
+    ]
+    seated, rolling = socket.fixed_directions & ~socket.fixed_nodes & ~socket.axis_nodes
+    yield from node_set_lines(
+        "PUSHED", ball.node_numbers(ball.fixed_directions[0] & (ball.fixed_nodes | ~ball.axis_nodes))
+    )
     yield from _polar_lines(socket, seated | rolling)
     for name, directions, nodes in (
         ("UPRIGHT", "1, 1", upright),
-        ("FIXED", "1, 2", socket.numbers(socket.fixed)),
-        ("SEATED", "2, 2", socket.numbers(seated)),
-        ("ROLLING", "1, 1", socket.numbers(rolling)),
+        ("FIXED", "1, 2", socket.node_numbers(socket.fixed_nodes)),
+        ("SEATED", "2, 2", socket.node_numbers(seated)),
+        ("ROLLING", "1, 1", socket.node_numbers(rolling)),
     ):
         yield from _boundary_lines(name, directions, nodes)
 
@@ -272,14 +277,14 @@ def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
     inner, outer = socket.sliding
     polar = fixed_directions.copy()
     polar[inner] = polar[outer] = True
-    numbers = socket.numbers(polar & ~socket.on_axis)
+    numbers = socket.node_numbers(polar & ~socket.axis_nodes)
     if numbers:
         yield from node_set_lines("POLAR", numbers)
         yield from ("*TRANSFORM, NSET=POLAR, TYPE=C", "0., 0., 0., 0., 0., 1.")
     if len(inner):
         yield "*EQUATION"
     for inner_node, outer_node in zip(inner, outer, strict=True):
-        direction = 2 if socket.on_axis[inner_node] else 1
+        direction = 2 if socket.axis_nodes[inner_node] else 1
         yield from ("2", f"{socket.number[inner_node]}, {direction}, 1., {socket.number[outer_node]}, {direction}, -1.")
 
 
