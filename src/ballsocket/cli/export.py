@@ -11,7 +11,7 @@ from typing import Annotated
 
 import typer
 
-from ..catalogue import named_model, usual
+from ..catalogue import named_model
 from ..core.checks import known_name
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
@@ -19,6 +19,7 @@ from ..export.target import ExportJob
 from ..export.targets import TARGETS
 from ..files.joint_file import JointFile
 from ..problem.cup import Cup
+from ..studies.usual import usual
 from .options import JointName, JointOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 
