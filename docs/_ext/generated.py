@@ -16,6 +16,8 @@ from ballsocket.core.sources import Source, bibliography
 from ballsocket.evidence.applicability import range_text
 from ballsocket.evidence.comparators import PUBLISHED
 from ballsocket.evidence.validity import measure, models_with_promise
+from ballsocket.files.schema_keys import Key, keys_of
+from ballsocket.mcp.file_kinds import FILE_TABLES, file_table
 from ballsocket.paper.plan import quick_plan
 from ballsocket.reports.accuracy_table import markdown
 from ballsocket.reports.paper_report import write_report
@@ -43,6 +45,7 @@ def write(folder: Path) -> None:
         "elsewhere": _claims(results["elsewhere"]),
         "commands": _commands(),
         "comparators": "\n".join(_comparator(make()) for make in PUBLISHED.values()),
+        "file_keys": "\n".join(_file_keys(kind) for kind in FILE_TABLES),
         "glossary": _glossary(QUANTITIES.values()),
         "joints": _presets(bs.joints),
         "materials": _presets(bs.materials, lambda name: f"`{name}`, in Python `{name.replace('-', '_').upper()}`"),
@@ -126,6 +129,40 @@ def _word(quantity) -> str:
     units = (f" in {inside}" if inside else "") + (f", shown in {' and '.join(read)}" if read else "")
     rule = f" {quantity.allowed[0].upper()}{quantity.allowed[1:]}." if quantity.allowed else ""
     return f"{quantity.title}\n  {names}{units}. {quantity.meaning}{rule}"
+
+
+# --- files ---
+
+_TITLES = {
+    "joint": "Joint files",
+    "hip": "Hip files",
+    "study": "Study files",
+    "identify": "Identification files",
+    "evidence": "Question files",
+}
+
+
+def _file_keys(kind: str) -> str:
+    """Return the keys of a kind of file, table by table; tables that joint files have too are left out of others."""
+    keys = keys_of(file_table(kind))
+    joint = [] if kind == "joint" else keys_of(file_table("joint"))
+    heads = [
+        head for head in dict.fromkeys(key.table for key in keys) if not head or _of(keys, head) != _of(joint, head)
+    ]
+    parts = [f"## {_TITLES[kind]}", *(_key_table(head, _of(keys, head)) for head in heads)]
+    shared = [f"`{head}`" for head in dict.fromkeys(key.table for key in keys) if head not in heads]
+    return "\n\n".join([*parts, *([f"As in joint files: {', '.join(shared)}."] if shared else [])]) + "\n"
+
+
+def _of(keys: list[Key], head: str) -> list[Key]:
+    """Return the keys of one table."""
+    return [key for key in keys if key.table == head]
+
+
+def _key_table(head: str, keys: list[Key]) -> str:
+    """Return the keys of one table with their values, defaults and meanings."""
+    rows = [(f"`{key.name}`", key.values, f"`{key.default}`" if key.default else "", key.meaning) for key in keys]
+    return f"### {f'`{head}`' if head else 'At the top'}\n\n{_table(('key', 'value', 'default', 'meaning'), rows)}"
 
 
 # --- presets, statuses, publications ---

@@ -166,7 +166,7 @@ def test_arrays_are_no_joint_file():
         ("shown=exact,frob", "'frob' as shown is not known"),
         ("map_model=fem", "'fem' as map_model is not known"),
         ("name=" + "x" * 9000, "the link is longer than 8000 characters"),
-        ("joint.ball_radius=1e999", "the liner needs a material"),
+        ("joint.ball_radius=1e999", "ball_radius = '1e999' is too large a number"),
         (
             "joint.ball_radius=__import__('os')&joint.clearance=1&joint.liner_thickness=2&liner.material=pom",
             "is not a length",

@@ -9,7 +9,8 @@ import pytest
 import ballsocket as bs
 from ballsocket.hip import Frame, Mix, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
-from ballsocket.hip.cycle_file import KEYS, TableOptions, parse_cycle, read_cycle
+from ballsocket.hip.cycle_file import TableOptions, parse_cycle, read_cycle
+from ballsocket.hip.cycle_schema import CycleKeys
 from ballsocket.hip.cycle_tables import parse_head, read_table
 from ballsocket.hip.kinematics import rotation_matrices, sliding_distance
 
@@ -531,7 +532,7 @@ def test_tables_beside_a_hip_file(tmp_path):
             parsed(tmp_path, **words | {key: value})
     with pytest.raises(ValueError, match="closing = 0.6 is not allowed"):
         parsed(tmp_path, **words | {"closing": 0.6})
-    with pytest.raises(ValueError, match="side 'lef' is not known; did you mean 'left'"):
+    with pytest.raises(ValueError, match="side = 'lef' is not known; did you mean 'left'"):
         parsed(tmp_path, **words | {"side": "lef"})
 
 
@@ -556,7 +557,7 @@ def test_tables_beside_a_hip_file(tmp_path):
 )
 def test_parameters_of_simulators_have_units(words, check):
     assert check(parsed(**words))
-    assert words.keys() <= set(KEYS)
+    assert words.keys() <= set(CycleKeys.__struct_encode_fields__)
 
 
 @pytest.mark.parametrize(

@@ -75,7 +75,8 @@ def _values(field: inspect.Field) -> str:
         return expected(field.encode_name, field.type)
     if issubclass(customs[0], QuantityValue):
         return customs[0].kind.example
-    return (customs[0].__doc__ or "").split(".\n")[0].rstrip(".")
+    text = (customs[0].__doc__ or "").split(".\n")[0].rstrip(".")
+    return text[:1].lower() + text[1:]
 
 
 def _default(field: inspect.Field) -> str:
