@@ -91,7 +91,7 @@ def test_a_long_message_shows_its_beginning_and_its_end():
     [(0.0, "3 of 12, 1.5/s"), (inf, "3 of 12, 1.5/s"), (0.01, "3 of 12, 1.5/s, 0:00:01 left")],
 )
 def test_progress_of_a_study_shows_the_remaining_time_when_it_is_known(left, text):
-    assert study._progress_text(SimpleNamespace(done=3, points=12, rate=1.5, left=left)) == text
+    assert study._progress_text(SimpleNamespace(n_done=3, n_points=12, rate=1.5, seconds_left=left)) == text
 
 
 @pytest.mark.parametrize(
