@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections import defaultdict
 from inspect import signature
 from pathlib import Path
 from typing import Any
@@ -17,20 +18,18 @@ import ballsocket as bs
 from ballsocket.cli.json_answers import add_provenance
 from ballsocket.cli.root import app, load_commands
 from ballsocket.core.quantities import QUANTITIES
-from ballsocket.evidence.question import FILE_KEYS as OF_EVIDENCE
-from ballsocket.files.joint_file import KEYS as OF_A_JOINT
-from ballsocket.hip.config import FILE_KEYS as OF_A_HIP
-from ballsocket.identify.file import FILE_KEYS as OF_DATA
-from ballsocket.studies.file import FILE_KEYS as OF_A_STUDY
+from ballsocket.files.schema import Table
+from ballsocket.files.schema_keys import keys_of
+from ballsocket.mcp.file_kinds import file_table
 
 PROMISED = Path(__file__).with_name("promised.json")
 LOAD = {"force": 3000.0}
 FILES = {
-    "joint file": OF_A_JOINT,
-    "study file": OF_A_STUDY,
-    "hip file": OF_A_HIP,
-    "file of data": OF_DATA,
-    "question of evidence": OF_EVIDENCE,
+    "joint": "joint file",
+    "study": "study file",
+    "hip": "hip file",
+    "identify": "file of data",
+    "evidence": "question of evidence",
 }
 
 
@@ -61,9 +60,7 @@ def present() -> dict[str, Any]:
         "units": {each.name: each.unit for each in QUANTITIES.values()},
         "statuses": {status.name: int(status) for status in bs.Status},
         "commands": _commands(),
-        "keys of files": {
-            file: {table or "top": sorted(keys) for table, keys in of.items()} for file, of in FILES.items()
-        },
+        "keys of files": {title: _keys(file_table(kind)) for kind, title in FILES.items()},
         "keys of JSON": {
             "of every command": sorted(add_provenance({}, ())),
             "of an answer": sorted(answer),
@@ -72,6 +69,14 @@ def present() -> dict[str, Any]:
             "of a tilted contact": sorted(tilted.to_dict()),
         },
     }
+
+
+def _keys(table: type[Table]) -> dict[str, list[str]]:
+    """Return the keys of a kind of file by the names of its tables, and the tables at its top."""
+    keys = defaultdict(set, top=set(table.__struct_encode_fields__))
+    for key in keys_of(table):
+        keys[key.table.strip("[]") or "top"].add(key.name)
+    return {name: sorted(names) for name, names in keys.items()}
 
 
 def _parameters(thing: Any) -> list[str]:

@@ -229,12 +229,8 @@ class Question:
 def read_question(path: str | Path) -> Question:
     """Read a question file.
 
-    At the top: `question` and `context_of_use` in words; a joint as in study files; `finite_elements` (true or false,
-    the default). Tables: `risk` with `influence` and `consequence`, each "low", "medium" or "high"; `required` with
-    `accuracy` ("10 %") and `limits` (a list, as "max_pressure <= 20 MPa"); `matrix`, with a number or a list for each
-    parameter of a study, a load among them; `tolerances`, as `clearance = "0.1 +- 0.05 mm"`; `sources`, a text for
-    inputs by name; `friction` with a `coefficient`; `wear` with the `file` of a hip in use. Numbers are text with a
-    unit or bare in mm, N, MPa, degrees. Paths are taken from the file's own folder.
+    The joint is described as in joint files, or named. The page "Keys of files" of the reference lists all tables and
+    keys. Paths are relative to the folder of the file.
 
     Raises
     ------

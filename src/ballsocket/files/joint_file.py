@@ -144,16 +144,8 @@ class JointFile:
 def read_joint(path: str | Path) -> JointFile:
     """Read a joint file.
 
-    The file is TOML. The table `joint` has two of `ball_radius`, `socket_radius` and `clearance` (or `head_diameter`,
-    `diametral_clearance` in their places), and `liner_thickness` (or `outer_radius`, `outer_diameter`: of the liner, or
-    of the shell right behind it). The tables `liner` and, for a deformable ball, `ball` have a `material` by name, or
-    `young` and `poisson`, or both; numbers win. The limits `proportional_limit`, `yield_stress`, `fatigue_limit` and
-    `allowable_pressure` are optional. The table `load` has one of `force`, `indentation` and `half_angle`. The backing
-    of the liner is rigid, or an array of tables `[[backing]]` from the liner outwards, each with a `thickness` and a
-    material; `support` in the table `joint` states whether its outermost surface is "fixed" (the default) or "free".
-    The table `cup` has `arc_of_cover`, `chamfer` and `interface` ("bonded" or "sliding"), and the orientation
-    `inclination`, `anteversion` and `side` ("right" or "left"). Values are text with a unit ("16 mm", "3 kN", "1 GPa",
-    "40 deg") or bare numbers in mm, N, MPa, degrees.
+    The page "Keys of files" of the reference lists all tables and keys. Values are text with a unit ("16 mm", "3 kN",
+    "1 GPa", "40 deg") or bare numbers in mm, N, MPa, degrees.
 
     Returns
     -------

@@ -240,6 +240,7 @@ def with_keys(keys: Mapping[str, Any]) -> Callable[[type[TableType]], type[Table
 
     Examples
     --------
+    >>> from ballsocket.files.tables import read_table
     >>> @with_keys({"gap": Annotated[Length, meaning("gap of the test")]})
     ... class TestTable(Table, frozen=True, kw_only=True):
     ...     name: Text | None = None

@@ -65,21 +65,8 @@ class HipFile:
 def read_hip(path: str | Path) -> HipFile:
     """Read a hip file.
 
-    Tables: `joint`, `liner`, `ball`, `backing` and `cup` as in joint files (`joint` may be the name of a preset or of a
-    joint file); in `cup` a `tilt` from the load may take the place of inclination and anteversion. `cycle` has a `name`
-    (see `named_cycle`), with what its machine takes (`force`, `amplitude`, `mismatch`, `stiffness`, `swing_load`), or a
-    `file` or several (see `read_cycle`), with `side`, `frame`, `force_on`, `from`, `to`, `closing` and the name of a
-    `motion`; and `instants`, `rotation_order`, `body_weight`, `times_body_weight`. In its place an array of tables
-    `activity` takes the same, each with how often it is done: `per_year`, or its `share` of `cycles_per_year`. `wear`
-    has a `law` (a name of `WEAR_LAWS`: "archard", "energy", "area", "cross-shear") with its numbers, such as the
-    `coefficient`, the `ball_coefficient` of a ball that wears too, `contact` ("springs", "shell", "cup"), the `model`
-    with these springs, `ring_width`. `creep`, which may be empty, has a `law` (a name of `CREEP_LAWS`: "logarithmic",
-    unverified, or "kelvin-voigt" with `compliances` in 1/MPa and `times` in s), a `confinement` ("unconfined" or
-    "constrained") and `seconds_per_cycle`. `film` has `viscosity`
-    in Pa s, `ball_roughness`, `cup_roughness`, `friction`. `uncertainty` lists the quantities that differ between
-    patients (`coefficient`, `clearance`, `inclination`, `anteversion` or `tilt`, `body_weight`, `cycles_per_year`),
-    each by a distribution as in study files, with `count` (of samples, a power of two) and `seed`. At the top:
-    `cycles`, `report_at` (a list), or of activities `years` and `report_years`; `body_weight`.
+    The joint is described as in joint files, or named: a preset, or a joint file in the same folder. The page "Keys of
+    files" of the reference lists all tables and keys. Paths are relative to the folder of the file.
 
     Raises
     ------

@@ -219,16 +219,9 @@ class IdentifyFile:
 def read_identify(path: str | Path) -> IdentifyFile:
     """Read an identification file (TOML).
 
-    - At the top: `model` by name, by default "tabulated"; `scatter` ("normal", or "heavy-tailed" for outliers); and the
-      joint as in study files.
-    - `[free]`: unknowns with two ends, "0.02..0.3 mm", or with a distribution, `{mean, deviation}` or
-      `{median, factor}`. The names are those of the joint and of the model.
-    - `[[data]]` with a `file` (CSV, heads with units), its measured `quantities`, its `load`, and `gaps` ("refuse",
-      "leave-out"). Paths are relative to the folder of the TOML file.
-    - `[[data]]` with a `quantity`, `values` (one or a list) and its load; a "frequency" needs its `mass`.
-    - Both kinds of data have `uncertainty` ("1 um", "2 %"), `load_uncertainty`, `saturation` and `machine`.
-    - `[machine.NAME]`: `compliance`, `offset` and `drift` per reading, each a number or two ends. Readings are counted
-      by rows of the file, or by `order`.
+    It has the joint as in study files, the unknowns in `[free]`, and each set of data in `[[data]]`: a `file`, or a
+    `quantity` with its `values` and its load. The page "Keys of files" of the reference lists all tables and keys.
+    Paths are relative to the folder of the file.
 
     Raises
     ------

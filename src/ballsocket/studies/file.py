@@ -160,15 +160,9 @@ class StudyFile:
 def read_study(path: str | Path) -> StudyFile:
     """Read a study file.
 
-    Tables: `axes`, a parameter each, with a number, a list, or `{from, to, count}`, and `liner` or `ball` with a list
-    of materials by name; `samples`, with `count`, `seed`,
-    `method` ("sobol", "latin-hypercube") and for each parameter that scatters `{low, high}`, `{mean, deviation}` (with
-    `low` and `high` where it is cut off), `{median, factor}` (a factor of one standard deviation) or
-    `{nominal, plus_minus}`; `table`, with the `path` of a CSV or Parquet file.
-    At the top: `model` (by name), `joint` (a joint file or a preset by name, or a table as in joint files, with
-    `liner`, `ball`, `backing`), `quantities`, `store` (a folder), and a table `engine` with `kind` ("serial",
-    "processes", "dask"), `workers`, `address`. Numbers are text with a unit or bare in mm, N, MPa, degrees. Paths are
-    taken from the file's own folder.
+    The design is the product of `[axes]`, `[samples]` and the rows of a `[table]`. The joint is described as in joint
+    files, or named. The page "Keys of files" of the reference lists all tables and keys. Paths are relative to the
+    folder of the file.
 
     Raises
     ------
