@@ -44,7 +44,7 @@ from ballsocket.files.joint_toml import tables_of
 from ballsocket.files.units import parse
 from ballsocket.studies.design import check_values, grid
 from ballsocket.studies.limits import LIMITED_NAMES as LIMITED
-from ballsocket.studies.metadata import described
+from ballsocket.studies.metadata import variable_attributes
 from ballsocket.studies.parameters import PARAMETERS
 from ballsocket.studies.task import QUANTITIES as ANSWERS
 
@@ -118,7 +118,7 @@ def test_a_study_is_labelled_as_the_table_says():
     for name in (*ANSWERS, "clearance"):
         quantity = QUANTITIES[name]
         words = {"long_name": quantity.title, "symbol": quantity.symbol, "units": quantity.unit}
-        assert found[name].attrs == described(name) == words
+        assert found[name].attrs == variable_attributes(name) == words
 
 
 _WRONG = {
@@ -219,7 +219,7 @@ def test_a_quantity_is_added_by_one_entry(tmp_path):
     assert list(told["summary"])[1] == "conformity"
     assert ["conformity", f"{told['summary']['conformity']:.6g}"] in map(str.split, told["repr"].splitlines())
     assert "<td>conformity" in told["html"].replace(" style='text-align:left'", "")
-    assert told["study"] == described("conformity")
+    assert told["study"] == variable_attributes("conformity")
     assert told["same"]
     assert told["label"] == "conformity c/d"
     assert any(line.split()[:2] == ["model", "c/d"] for line in rest)

@@ -12,7 +12,7 @@ from ballsocket.hip import Lubricant
 from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
 from ballsocket.hip.film import film_thickness
-from ballsocket.hip.simulation import _halving_error, check_cycles
+from ballsocket.hip.simulation import _relative_discretization_error, check_cycles
 from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, neighbours_in_subset, spring_foundation
 
 from .test_wear import hip
@@ -208,9 +208,9 @@ def test_lubricants_outside_their_limits_are_refused(name):
 
 def test_numerical_errors_follow_from_halved_steps():
     ratio = 1 / (1 - 2**-1.5)
-    assert _halving_error([1.0, 1.1, 1.2]) == pytest.approx(ratio * 0.2 / 1.2)
-    assert _halving_error([1.0, 0.9, 1.0]) == pytest.approx(ratio * 0.2)
-    assert _halving_error([0.0, 0.0, 0.0]) == 0.0
+    assert _relative_discretization_error([1.0, 1.1, 1.2]) == pytest.approx(ratio * 0.2 / 1.2)
+    assert _relative_discretization_error([1.0, 0.9, 1.0]) == pytest.approx(ratio * 0.2)
+    assert _relative_discretization_error([0.0, 0.0, 0.0]) == 0.0
 
 
 def test_cycle_counts_are_sorted_and_end_with_the_total():
