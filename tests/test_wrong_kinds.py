@@ -125,7 +125,7 @@ def test_a_damaged_label_of_a_store_names_the_store(tmp_path):
     pytest.importorskip("zarr")
     bs.study(bs.HessForsbach(), HIP, force=[1.0, 2.0], store=tmp_path / "store")
     (tmp_path / "store" / "indentation" / "zarr.json").write_bytes(b"{\xb5}")
-    with pytest.raises(ValueError, match="store is a damaged store: .*; run its study again to mend it"):
+    with pytest.raises(ValueError, match="store is a damaged store: .*; run its study again to repair it"):
         bs.studies.read(tmp_path / "store")
     again = bs.study(bs.HessForsbach(), HIP, force=[1.0, 2.0], store=tmp_path / "store")
     assert numpy.isfinite(again.indentation).all()

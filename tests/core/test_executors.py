@@ -246,7 +246,7 @@ def test_a_closed_pipe_is_recognized():
 def scheduler():
     """Return the address of a Dask scheduler with a worker in this process."""
     distributed = pytest.importorskip("distributed")
-    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None, "silence_logs": 50}
+    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
     with distributed.LocalCluster(processes=False, **options) as cluster:
         yield cluster.scheduler_address
 
