@@ -29,14 +29,7 @@ _END_TOLERANCE = 1e-6  # distance in theta from the end of a range
 class IdentificationResult(FittedModel):
     """Result of an identification: estimates, bands, notes and the next measurement.
 
-    Attributes
-    ----------
-    misfit : Misfit
-        Data, model and unknowns.
-    best : FitResult
-        Point of the smallest misfit.
-    information : Information
-        Information at that point, and profile intervals of the unknowns.
+    The fields are those of `FittedModel`.
     """
 
     told = RenamedAttribute("identifiable")
