@@ -159,12 +159,14 @@ MOVED = {
     **{f"ballsocket.sphere.{old}": f"ballsocket.elasticity.off_axis.{new}" for old, new in _OFF_AXIS_MODULES.items()},
     **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.load" for name in ("brushed", "touch")},
     **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.reaction" for name in ("rim", "smooth")},
-    "ballsocket.dynamics.carried": "ballsocket.dynamics.stateful_motion",
-    "ballsocket.dynamics.drop_test": "ballsocket.dynamics.rebound",
+    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.simulation" for name in ("carried", "stateful_motion")},
+    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.damping" for name in ("drop_test", "rebound")},
     "ballsocket.dynamics.prony": "ballsocket.dynamics.viscoelastic",
     "ballsocket.dynamics.sticking": "ballsocket.dynamics.potential",
-    "ballsocket.dynamics.watch": "ballsocket.dynamics.validity_monitor",
-    "ballsocket.dynamics.side_curves": "ballsocket.dynamics.element",
+    **{
+        f"ballsocket.dynamics.{name}": "ballsocket.dynamics.element"
+        for name in ("side_curves", "validity_monitor", "watch")
+    },
     **{f"ballsocket.cli.{name}": "ballsocket.cli.json_answers" for name in ("answers", "next_steps")},
     **{f"ballsocket.cli.{name}": "ballsocket.cli.options" for name in ("engine", "groups", "words")},
     **{f"ballsocket.cli.{name}": "ballsocket.cli.elasticity_options" for name in ("elements", "off_axis")},
@@ -179,8 +181,8 @@ MOVED = {
     **{f"ballsocket.cli.tools.{name}": "ballsocket.mcp.tools" for name in ("schema", "table")},
     "ballsocket.export.recording": "ballsocket.export.c_element",
     "ballsocket.export.slopes": "ballsocket.export.recorder",
-    "ballsocket.export.tables": "ballsocket.export.targets",
-    "ballsocket.export.trusted": "ballsocket.export.validity_depth",
+    **{f"ballsocket.export.{name}": "ballsocket.export.targets" for name in ("tables", "target")},
+    **{f"ballsocket.export.{name}": "ballsocket.dynamics.element" for name in ("trusted", "validity_depth")},
     "ballsocket.export.fmu.cross_check": "ballsocket.export.fmu.variables",
     "ballsocket.export.fmu.description": "ballsocket.export.fmu.fmu",
 }
