@@ -19,9 +19,7 @@ def test_an_angle_is_written_with_the_digits_that_were_typed(degrees):
     assert Angle(radians(degrees)).write(with_unit=False) == degrees
 
 
-@pytest.mark.parametrize(
-    "angle", [1.8906655686558533, -3.058855722527143, 2.590331057056523, pi / 3]
-)
+@pytest.mark.parametrize("angle", [1.8906655686558533, -3.058855722527143, 2.590331057056523, pi / 3])
 def test_a_written_angle_is_read_back_to_the_last_bit(angle):
     """The nearest degrees of these angles give another angle; a neighbour gives the same."""
     assert radians(Angle(angle).write(with_unit=False)) == angle
