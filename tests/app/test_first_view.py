@@ -15,7 +15,7 @@ pytest.importorskip("tomli_w")
 from ballsocket.app.drawing import petals
 from ballsocket.app.page import Page
 from ballsocket.app.words import accuracy_sentence, estimate_von_mises, most_used, verdict_sentence
-from ballsocket.reports.joint_section import gap_factor
+from ballsocket.reports.section_plots import gap_factor
 
 from .asking import does, edits, trouble
 

@@ -23,7 +23,7 @@ from ..files.joint_file import JointFile
 from ..problem.cup import Cup, Side
 from ..reports.figure_files import figure_bytes
 from ..reports.orientation_results import orientation_figure
-from ..reports.section_plot import section_figure
+from ..reports.section_plots import section_figure
 from .running import CachedRun, Reached, Report
 
 INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))

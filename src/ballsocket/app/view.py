@@ -13,8 +13,8 @@ from ..contact import Contact
 from ..core.checks import check_names
 from ..files.joint_file import JointFile
 from ..files.joint_toml import toml_of
-from ..reports.joint_report import joint_report
 from ..reports.pages import picture
+from ..reports.press_report import joint_report
 from ..reports.unit_systems import Units
 from .channel import Channel
 from .screen import Screen

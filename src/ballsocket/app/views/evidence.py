@@ -11,7 +11,7 @@ from typing import Any
 
 from ...core.checks import check_names, shown
 from ...evidence.matrix import title_of
-from ...reports.evidence_text import case_text, value_text
+from ...reports.evidence_parts import case_text, value_text
 from ...reports.pages import items, table
 from ..evidence_pack import EVIDENCE_SECONDS, EvidencePack, EvidenceQuestion, count_cases, gather_pack
 from ..fields import Field, segments, words
