@@ -11,7 +11,6 @@ import numpy
 
 from ..core.deprecation import RenamedAttribute
 from ..core.plotting import load_plot
-from .estimates import Estimate
 from .experiment import Experiment, experiment
 from .fit import FittedModel
 from .information import Estimate
