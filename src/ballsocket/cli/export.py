@@ -19,7 +19,7 @@ from ..export.target import ExportJob
 from ..export.targets import TARGETS
 from ..files.joint_file import JointFile
 from ..problem.cup import Cup
-from ..studies.default_model import default_model
+from ..studies.run import default_model
 from .options import JointName, JointOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 

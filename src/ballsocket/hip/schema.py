@@ -20,7 +20,7 @@ from ..files.schema import (
     meaning,
     with_keys,
 )
-from ..studies.scatter import DISTRIBUTION_SCHEMA
+from ..studies.file import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
 from .cycle_schema import CycleTables
 from .law_fields import Law

@@ -12,7 +12,7 @@ from ..core.quantities import CONTACT
 from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
-from ..studies.local_uncertainty import LocalUncertainty
+from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from . import press_plots
 from .joint_report import joint_report
