@@ -11,16 +11,18 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.executors import Serial
 from ballsocket.core.storage import array_files
-from ballsocket.core.storage.array_files import cache_folder, cached_array, read_arrays, write_arrays
 from ballsocket.core.storage.atomic_files import (
+    cache_folder,
+    cached_array,
     check_parent_folder,
     is_draft_folder,
     make_draft_folder,
+    read_arrays,
+    write_arrays,
     write_atomically,
     write_text,
 )
-from ballsocket.core.storage.fingerprint import check_worker_code, fingerprint, hash_inputs
-from ballsocket.core.storage.pieces import PieceRun, PieceStore
+from ballsocket.core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
 
 SECONDS_AGO = {"young": 30.0, "old": 90.0}
 

@@ -16,8 +16,7 @@ from ..core.checks import check_names, check_text, require, shown
 from ..core.input_files import open_input, packed_files, record_inputs, resolve_input
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
-from ..files.joint_file import JointFile, JointTables
-from ..files.named_joint import joint_in
+from ..files.joint_file import JointFile, JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,

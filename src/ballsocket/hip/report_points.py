@@ -11,8 +11,8 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.storage.array_files import read_arrays, write_arrays
-from ..core.storage.fingerprint import hash_inputs
+from ..core.storage.atomic_files import read_arrays, write_arrays
+from ..core.storage.pieces import hash_inputs
 from .ball_wear import map_counterface
 from .hip_setup import HipSetup
 from .history import Report

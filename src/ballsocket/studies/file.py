@@ -13,8 +13,7 @@ from ..core.checks import check_names
 from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
-from ..files.joint_file import JointTables
-from ..files.named_joint import joint_in
+from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
