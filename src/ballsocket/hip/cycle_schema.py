@@ -3,28 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar
 
 import msgspec
 
 from ..files.joint_file import JointTables
-from ..files.schema import Force, Parsed, PlainNumber, QuantityValue, Table, Texts, Value, Word, meaning, with_keys
+from ..files.schema import (
+    Force,
+    Parsed,
+    PlainNumber,
+    QuantityValue,
+    Table,
+    Texts,
+    WholeNumber,
+    Word,
+    meaning,
+    with_keys,
+)
 from ..problem.cup import Side
-from .cycle import DEFAULT_STEPS, check_step_count
+from .cycle import DEFAULT_STEPS, MAX_STEPS, MIN_STEPS
 from .cycle_registry import CYCLES
 from .kinematics import parse_rotation_order
 from .waveforms import DEFAULT_CLOSURE
 
 
-class Steps(Value, int):
+class Steps(WholeNumber):
     """Number of time steps of a cycle."""
 
-    schema: ClassVar[Mapping[str, Any]] = {"type": "integer"}
-
-    @classmethod
-    def read(cls, name: str, value: Any) -> Self:
-        """Convert a number of time steps."""
-        return cls(check_step_count(value, name))
+    limits = (MIN_STEPS, MAX_STEPS)
 
 
 class RotationOrder(Parsed):

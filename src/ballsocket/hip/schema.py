@@ -16,6 +16,7 @@ from ..files.schema import (
     Table,
     Text,
     Value,
+    WholeNumber,
     Word,
     meaning,
     with_keys,
@@ -65,17 +66,10 @@ _MAX_INTEGER = 1 << 20
 """Largest number of samples and largest seed."""
 
 
-class SampleNumber(Value, int):
+class SampleNumber(WholeNumber):
     """Whole number."""
 
-    schema: ClassVar[Mapping[str, Any]] = {"type": "integer", "minimum": 0, "maximum": _MAX_INTEGER}
-
-    @classmethod
-    def read(cls, name: str, value: Any) -> Self:
-        """Convert a whole number."""
-        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _MAX_INTEGER:
-            raise ValueError(f"{name} = {shown(value)} is not allowed: it must be an integer from 0 to {_MAX_INTEGER}")
-        return cls(value)
+    limits = (0, _MAX_INTEGER)
 
 
 class LawNumber(Parsed):

@@ -24,7 +24,7 @@ from ..core.checks import check_names, known_name, needs, shown
 from ..core.executors.processes import available_cores
 from ..core.input_files import AllowedFolders, resolve_path, restriction_variables
 from ..core.storage.atomic_files import cache_folder, write_text
-from ..files.toml import MOST, read_toml
+from ..files.toml import MAX_FILE_SIZE, read_toml
 from .tools import TOOLS, Commands, Tool, option, parameters
 
 _MAX_CHARACTERS = 300  # of a text
@@ -158,8 +158,8 @@ def _stored_content(content: Any, folder: Path) -> Path:
     if not isinstance(content, str):
         raise ValueError(f"content = {shown(content)} must be text in TOML, or an object")
     raw = content.encode("utf-8", errors="replace")
-    if len(raw) > MOST:
-        raise ValueError(f"the content is larger than {MOST} bytes")
+    if len(raw) > MAX_FILE_SIZE:
+        raise ValueError(f"the content is larger than {MAX_FILE_SIZE} bytes")
     path = folder / f"asked-{sha256(raw).hexdigest()[:12]}.toml"
     return path if path.is_file() else write_text(path, raw.decode("utf-8"))
 
