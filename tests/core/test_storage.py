@@ -10,7 +10,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.executors import Serial
-from ballsocket.core.storage import array_files
+from ballsocket.core.storage import atomic_files
 from ballsocket.core.storage.atomic_files import (
     cache_folder,
     cached_array,
@@ -228,7 +228,7 @@ def test_the_oldest_cached_arrays_are_removed_above_the_size_limit(cache, monkey
         os.utime(newest, (1000.0 + number, 1000.0 + number))
     size = newest.stat().st_size
     (cache / "mine.txt").write_bytes(bytes(10 * size))
-    monkeypatch.setattr(array_files, "_MAX_CACHE_SIZE", 2 * size)
+    monkeypatch.setattr(atomic_files, "_MAX_CACHE_SIZE", 2 * size)
     cached_array("new", lambda: np.zeros(100))
     times = sorted(path.stat().st_mtime for path in cache.glob("cup-*"))
     assert len(times) == 2

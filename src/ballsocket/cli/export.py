@@ -16,8 +16,7 @@ from ..catalogue import named_model
 from ..core.checks import known_name
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
-from ..export.target import ExportJob
-from ..export.targets import TARGETS
+from ..export.targets import TARGETS, ExportJob
 from ..files.joint_file import JointFile, read_aim
 from ..problem.cup import Cup
 from ..reports.reference_terminal import print_rival, print_tilted_rival

@@ -17,7 +17,7 @@ from ..core.executors.processes import Engine, Serial
 from ..core.storage.atomic_files import read_arrays, write_arrays, write_text
 from ..core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
 from ..studies.axes import SampleAxis
-from .report_points import make_checkpoint
+from .simulation import make_checkpoint
 from .variability import (
     ANGLES,
     RESULT_UNITS,
