@@ -169,8 +169,8 @@ def test_a_busy_process_ends_with_its_parent(tmp_path):
         "print(os.getpid(), file=open('child', 'w'), flush=True); 9**9**9"
     )
     parent = (
-        "import asyncio, pathlib; from ballsocket.mcp import run; "
-        f"asyncio.run(run.run(['-c', {busy!r}], pathlib.Path(), 600.0))"
+        "import asyncio, pathlib; from ballsocket.mcp.call import run; "
+        f"asyncio.run(run(['-c', {busy!r}], pathlib.Path(), 600.0))"
     )
     note = tmp_path / "child"
     with subprocess.Popen([sys.executable, "-c", parent], cwd=tmp_path) as server:
