@@ -19,8 +19,8 @@ from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..export.targets import TARGETS, ExportJob
 from ..files.joint_file import JointFile, read_aim
 from ..problem.cup import Cup
-from ..reports.reference_terminal import print_rival, print_tilted_rival
-from ..studies.default_model import default_model
+from ..reports.accuracy_results import print_rival, print_tilted_rival
+from ..studies.run import default_model
 from .elasticity_options import CupOptions, MeshOptions, solve_mesh
 from .options import JointName, JointOptions, LoadOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message

@@ -184,7 +184,7 @@ def _in_degrees(angle: float) -> float:
     """Return the degrees that a file reads as exactly this angle (rad), a round number if there is one."""
     nearest = degrees(angle)
     above, below = nextafter(nearest, inf), nextafter(nearest, -inf)
-    candidates = (round(nearest, 9), nearest, above, below, nextafter(above, inf), nextafter(below, -inf))
+    candidates = (round(nearest, 9), nearest, above, below)
     return next((number for number in candidates if radians(number) == angle), nearest)
 
 

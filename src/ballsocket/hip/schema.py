@@ -27,7 +27,7 @@ from ..files.schema import (
     with_keys,
 )
 from ..problem.cup import Side
-from ..studies.scatter import DISTRIBUTION_SCHEMA
+from ..studies.file import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
 from .cycle import DEFAULT_STEPS, MAX_STEPS, MIN_STEPS
 from .cycle_registry import CYCLES
