@@ -13,7 +13,7 @@ import numpy
 from scipy.interpolate import make_interp_spline
 
 from ...core.arrays import Numbers, gauss_legendre
-from ...core.storage.array_files import cached_array
+from ...core.storage.atomic_files import cached_array
 from ...problem import Joint
 from ...problem.cup import Cup
 from ..finite_elements.harmonics import socket_harmonics
