@@ -36,7 +36,11 @@ def deck(
         ),
     ] = 1e-3,
     tilt: Annotated[
-        str | None, typer.Option(help="Angle between load and cup axis: '45 deg'. Writes a three-dimensional model.")
+        str | None,
+        typer.Option(
+            help="Angle between load and cup axis in degrees: '45 deg'. Writes a three-dimensional model. "
+            "Default: 0 deg."
+        ),
     ] = None,
     cup: CupOptions,
     mesh: MeshOptions,

@@ -38,7 +38,10 @@ class ForceElementOptions:
         typer.Option(help="Coefficient of restitution, 0 to 1, with --impact-speed. Not with --hysteresis."),
     ] = None
     impact_speed: Annotated[
-        float | None, typer.Option(help="Impact speed in mm/s at which the restitution was measured.")
+        float | None,
+        typer.Option(
+            help="Impact speed in mm/s at which the restitution was measured. Default: none, with --hysteresis."
+        ),
     ] = None
     friction: Annotated[float | None, typer.Option(help="Coefficient of friction. Default: no friction.")] = None
 
