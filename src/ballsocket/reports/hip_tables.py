@@ -178,8 +178,8 @@ def print_hip(history: History) -> None:
         print_columns(terminal, _contact_table(history))
     for line in _film_lines(history):
         print_folded(terminal, line, "")
-    accuracy = f"volume within {100 * history.error.volume:.2g} % of the same model in the finest steps"
-    print_folded(terminal, f"{accuracy}, in {history.steps} blocks", "dim")
+    accuracy = f"estimated numerical error of the volume {100 * history.error.volume:.2g} %"
+    print_folded(terminal, f"{accuracy}, {history.steps} blocks of cycles", "dim")
     print_notes(history.notes)
 
 

@@ -198,7 +198,7 @@ _ROWS = 5
 def print_identified(result: IdentificationResult, posterior: Posterior | None) -> None:
     """Print the unknowns with their bands, products, fit, sensitivity to machine errors, and the next measurement."""
     terminal, information = console(), result.information
-    print_folded(terminal, f"{result.model.name} through {_data_text(result)}", "bold")
+    print_folded(terminal, f"{result.model.name} fitted to {_data_text(result)}", "bold")
     print_columns(terminal, _table(result, posterior))
     rank = f"rank {information.rank} of {len(result.transform.names)}, condition {information.condition:.2g}"
     print_folded(terminal, f"information of {rank}; {_scatter_text(result)}", "")
@@ -221,7 +221,7 @@ def _scatter_text(result: IdentificationResult) -> str:
     """Describe the scatter of the data against their uncertainties."""
     if result.freedom <= 0:
         return "as many values as unknowns: the quality of the fit cannot be tested"
-    return f"the data scatter {result.spread:.2f} times as far as their uncertainties say"
+    return f"scatter of the data {result.spread:.2f} times the stated uncertainties"
 
 
 def _sampling_text(posterior: Posterior) -> str:
