@@ -129,11 +129,18 @@ class DirectionOptions:
     """Options of the load's direction, and of the rings of the model `sphere`."""
 
     tilt: Annotated[
-        str | None, typer.Option(help="Angle between load and cup axis in degrees: '45 deg'. Solved by model sphere.")
+        str | None,
+        typer.Option(
+            help="Angle between load and cup axis in degrees: '45 deg'. Solved by model sphere. "
+            "Default: as in the file, or 0 deg."
+        ),
     ] = None
     direction: Annotated[
         str | None,
-        typer.Option(help="Direction of the load 'x,y,z' in the body: right, front, up. Solved by model sphere."),
+        typer.Option(
+            help="Direction of the load 'x,y,z' in the body: right, front, up. Solved by model sphere. "
+            "Default: as in the file."
+        ),
     ] = None
     ring_width: Annotated[
         str | None,

@@ -40,7 +40,10 @@ class ForceElementOptions:
         typer.Option(help="Coefficient of restitution, 0 to 1, with --impact-speed. Not with --hysteresis."),
     ] = None
     impact_speed: Annotated[
-        float | None, typer.Option(help="Impact speed in mm/s at which the restitution was measured.")
+        float | None,
+        typer.Option(
+            help="Impact speed in mm/s at which the restitution was measured. Default: none, with --hysteresis."
+        ),
     ] = None
     friction: Annotated[float | None, typer.Option(help="Coefficient of friction. Default: no friction.")] = None
 
@@ -173,7 +176,11 @@ def deck(
         ),
     ] = 1e-3,
     tilt: Annotated[
-        str | None, typer.Option(help="Angle between load and cup axis: '45 deg'. Writes a three-dimensional model.")
+        str | None,
+        typer.Option(
+            help="Angle between load and cup axis in degrees: '45 deg'. Writes a three-dimensional model. "
+            "Default: 0 deg."
+        ),
     ] = None,
     cup: CupOptions,
     mesh: MeshOptions,

@@ -133,7 +133,7 @@ class ReportOptions:
     report: Annotated[Path | None, typer.Option(help="Write a report on one page to this file (.html).")] = None
     tolerance: Annotated[
         list[str] | None,
-        typer.Option(help="Tolerance in the report: 'clearance=0.1+-0.05 mm'. Repeat for several."),
+        typer.Option(help="Tolerance in the report: 'clearance=0.1+-0.05 mm'. Repeat for several. Default: none."),
     ] = None
 
     def check(self) -> None:

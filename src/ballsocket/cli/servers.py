@@ -26,7 +26,9 @@ def explorer(
     ] = "127.0.0.1",
     origin: Annotated[
         list[str] | None,
-        typer.Option(help="Address 'host:port' that browsers on other machines use. Repeat for several."),
+        typer.Option(
+            help="Address 'host:port' that browsers on other machines use. Repeat for several. Default: none."
+        ),
     ] = None,
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:

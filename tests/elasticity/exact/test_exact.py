@@ -326,7 +326,7 @@ def test_the_perfect_fit_limits_the_half_angle():
     contact = bs.Exact().press(massive, half_angle=np.radians([82.75, 83.5, 84.0]))
     np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OK, bs.Status.NOT_REACHED])
     assert np.isnan(contact.max_pressure[2])
-    assert "less where the ball fills its socket before" in contact.notes[0]
+    assert "or less if the ball fills its socket first" in contact.notes[0]
     for name in ("force", "indentation"):
         back = bs.Exact().press(massive, **{name: getattr(contact, name)[:2]})
         np.testing.assert_allclose(back.half_angle, contact.half_angle[:2], rtol=1e-9)

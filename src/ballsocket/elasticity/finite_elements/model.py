@@ -118,8 +118,8 @@ class FiniteElement(Model):
         "cut off at the plane of the socket's rim", "half a one on its equator"
     )
     reach: ClassVar[str] = (
-        "half angles up to half the arc of cover, at most 88°, less where the ball fills its socket before or "
-        "leaves the pole, and not narrower than a few elements"
+        "half angles up to half the arc of cover, at most 88°, or less if the ball fills its socket first or "
+        "leaves the pole; the contact must be wider than a few elements"
     )
 
     @property
