@@ -10,7 +10,7 @@ from ..catalogue import judge, reference
 from ..contact import Contact
 from ..contact.describe import to_summary
 from ..core.validity import OutsideDomainError
-from ..elasticity.finite_elements.contact import MeshedContact
+from ..elasticity.finite_elements.model import MeshedContact
 from ..files.joint_file import JointFile
 from ..reports.figure_files import figure_bytes
 from ..reports.section_plot import section_figure

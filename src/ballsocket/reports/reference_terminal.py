@@ -17,7 +17,7 @@ from ..studies.calibration import Calibration
 from .terminal import console, print_folded
 
 if TYPE_CHECKING:
-    from ..elasticity.finite_elements.decks.calculix import CcxAnswer
+    from ..elasticity.finite_elements.calculix import CcxAnswer
 
 
 def print_calibration(fit: Calibration) -> None:

@@ -9,7 +9,7 @@ import numpy
 from ..catalogue import judge, reference
 from ..contact import Contact
 from ..core.quantities import FIELD
-from ..elasticity.finite_elements.contact import MeshedContact
+from ..elasticity.finite_elements.model import MeshedContact
 from .style import BLUE, LEGEND, finish, in_matplotlib, line_of
 
 if TYPE_CHECKING:

@@ -10,8 +10,7 @@ import numpy
 
 from ...contact import Contact, Model
 from ...core.arrays import Numbers
-from ...elasticity.finite_elements.contact import MeshedContact
-from ...elasticity.finite_elements.model import FiniteElement
+from ...elasticity.finite_elements.model import FiniteElement, MeshedContact
 from ...elasticity.finite_elements.spacing import Element, Uniform
 from ...models.foundation import Bartel, BondedLayer, HessForsbach, Vessel
 from ...models.half_space import Hertz
