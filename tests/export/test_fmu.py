@@ -241,7 +241,7 @@ def test_the_declarations_are_those_of_the_standard(version, fmpy, tmp_path):
         (tmp_path / name).write_text(text, encoding="utf-8")
     official = ("-DFMI_HEADERS", "-isystem", str(files("fmpy") / "c-code"), "-Wall", "-Wextra", "-Werror")
     for options in (official, ("-pedantic-errors", "-Wall", "-Wextra", "-Werror")):
-        assert shared_library(made.about.sources, tmp_path / "hip.so", tmp_path, options).exists()
+        assert shared_library(made.information.sources, tmp_path / "hip.so", tmp_path, options).exists()
 
 
 @needs_compiler

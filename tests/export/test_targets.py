@@ -16,10 +16,10 @@ from scipy.integrate import solve_ivp
 import ballsocket as bs
 from ballsocket.cli.export import ForceElementOptions, identifier
 from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
+from ballsocket.dynamics.element import valid_depth
 from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.law_fit import expression_fit, fit_depth, power_fit
-from ballsocket.export.validity_depth import valid_depth
 from ballsocket.files.joint_file import JointFile
 
 from ..cli.command import run

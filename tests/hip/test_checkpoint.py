@@ -7,7 +7,7 @@ import pytest
 
 from ballsocket.core.storage.array_files import read_arrays, write_arrays
 from ballsocket.hip import Archard, CustomWearLaw, logarithmic
-from ballsocket.hip.report_points import make_checkpoint, make_report
+from ballsocket.hip.simulation import make_checkpoint, make_report
 from ballsocket.hip.wear_integrator import WearIntegrator
 
 from .test_wear import K, hip

@@ -10,9 +10,9 @@ import ballsocket as bs
 from ballsocket.hip import Frame, Mix, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import TableOptions, parse_cycle, read_cycle
-from ballsocket.hip.cycle_schema import CycleKeys
 from ballsocket.hip.cycle_tables import parse_head, read_table
 from ballsocket.hip.kinematics import rotation_matrices, sliding_distance
+from ballsocket.hip.schema import CycleKeys
 
 from ..cli.command import run
 from ..places import EXAMPLES

@@ -23,9 +23,10 @@ from ballsocket.hip import (
 )
 from ballsocket.hip.cycle import check_step_count
 from ballsocket.hip.cycle_registry import CYCLES
+from ballsocket.hip.cycle_tables import monotone_periodic
 from ballsocket.hip.in_vivo import check_body_weight
 from ballsocket.hip.kinematics import sliding_distance
-from ballsocket.hip.waveforms import half_cosines, monotone_periodic
+from ballsocket.hip.simulator_cycles import half_cosines
 
 UP = np.array([0.0, 0.0, 1.0])
 PHASES = np.linspace(0.0, 1.0, 41)

@@ -264,7 +264,7 @@ def test_the_cost_is_infinite_without_a_result():
 @pytest.mark.long
 def test_jax_computes_the_derivatives_of_the_results():
     pytest.importorskip("jax")
-    from ballsocket.identify.jax_derivatives import by_tracing
+    from ballsocket.identify.misfit import by_tracing
 
     model = forward(Measured(quantity="force", values=[1.0, 1.0], uncertainty=1.0, indentation=[0.01, 0.03]))
     results, slopes = by_tracing(model, TRANSFORM, THETA)

@@ -74,7 +74,7 @@ def test_a_prior_distribution_of_the_coefficient_counts_as_knowledge():
 
 def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
     pytest.importorskip("jax")
-    from ballsocket.identify.jax_derivatives import by_tracing
+    from ballsocket.identify.misfit import by_tracing
 
     misfit = bs.identify(MODEL, JOINT, torques(), RANGE).misfit
     theta = misfit.transform.to_theta([0.06])

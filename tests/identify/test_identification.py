@@ -6,7 +6,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
 from ballsocket.identify.experiment import Candidate, experiment
-from ballsocket.identify.jax_derivatives import by_tracing
+from ballsocket.identify.misfit import by_tracing
 from ballsocket.identify.synthetic import draw_data_sets, trials
 from ballsocket.reports.identify_results import fit_figure
 from ballsocket.studies import LogNormal, Normal

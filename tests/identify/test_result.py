@@ -246,6 +246,6 @@ def test_earlier_modules_have_their_names():
     assert Identified is IdentificationResult
     assert Own is observables.CustomObservable
     assert oscillation is observables.oscillation
-    assert by_tracing.__module__ == "ballsocket.identify.jax_derivatives"
+    assert by_tracing.__module__ == "ballsocket.identify.misfit"
     with pytest.warns(DeprecationWarning, match="Identified is deprecated"):
         assert parameters.Identified is IdentificationResult

@@ -9,6 +9,7 @@ from scipy import stats
 
 from ballsocket.identify import HeavyTailed
 from ballsocket.identify.bands import compute_bands, profile_ends, scatter_ratio
+from ballsocket.identify.fit import find_best_fit, minimise_misfit
 from ballsocket.identify.information import (
     MAX_WIDTH_RATIO,
     QUANTILE_95,
@@ -18,7 +19,6 @@ from ballsocket.identify.information import (
     ProfileEnd,
 )
 from ballsocket.identify.misfit import FitResult
-from ballsocket.identify.search import find_best_fit, minimise_misfit
 from ballsocket.identify.unknowns import ParameterTransform, Unknown
 from ballsocket.studies import Normal, Rectangular
 

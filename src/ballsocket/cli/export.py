@@ -15,8 +15,7 @@ from ..catalogue import named_model
 from ..core.checks import known_name
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
-from ..export.target import ExportJob
-from ..export.targets import TARGETS
+from ..export.targets import TARGETS, ExportJob
 from ..files.joint_file import JointFile
 from ..problem.cup import Cup
 from ..studies.default_model import default_model

@@ -3,12 +3,22 @@
 from ..core.deprecation import renamed_names
 from . import restitution as relations
 from .bristles import Bristles
-from .damping import Damping, Flores, Gonthier, HuntCrossley, LankaraniNikravesh, Restitution, damping_from_restitution
+from .damping import (
+    Damping,
+    DampingEstimate,
+    Flores,
+    Gonthier,
+    HuntCrossley,
+    LankaraniNikravesh,
+    Restitution,
+    damping_from_restitution,
+    from_bounces,
+    from_restitution,
+)
 from .element import ForceElement
 from .friction import Friction
 from .load import ContactState, Load
 from .motion import Motion
-from .rebound import DampingEstimate, from_bounces, from_restitution
 from .simulation import simulate
 from .viscoelastic import Prony, Viscoelastic
 

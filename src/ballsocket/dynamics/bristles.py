@@ -89,11 +89,8 @@ def bristle_forces(
 ) -> tuple[Deflections, Deflections, Array]:
     """Compute friction force, deflection rates and dissipated power of bristles, per unit of normal force.
 
-    Friction force and power are divided by the normal force.
-
-    Friction and power are divided by the normal force.
-
-    The friction has three components across the load and one about it, a moment divided by the lever ρ.
+    Friction force and power are divided by the normal force. The friction has three components across the load and
+    one about it, a moment divided by the lever ρ.
     """
     slip_components = slip.x + slip.bx, slip.y + slip.by, slip.z + slip.bz, sqrt(slip.lever_squared) * slip.spin
     deflection_x, deflection_y, deflection_z, deflection_arc = deflection

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
+from math import inf
 from typing import Any
 
 import numpy
 
-from ..contact import Model
+from ..contact import Contact, Model
 from ..contact.assembly import check_joint
-from ..contact.law import CurveLaw, fit_curve_law
+from ..contact.law import CurveLaw
 from ..core import arrays
-from ..core.arrays import Array, to_common_arrays, where
+from ..core.arrays import Array, concrete_values, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
 from ..core.deprecation import RenamedAttribute
+from ..core.validity import Range
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
@@ -23,7 +26,7 @@ from .damping import Damping
 from .friction import Friction
 from .load import Load, add_bristle_loads
 from .matrices import join_vector
-from .potential import Potential, adhesion_potential, energy_derivatives_of_array, potential_of
+from .potential import Potential, adhesion_potential, evaluate_curve, fit_quantity_curve, potential_of
 from .reaction import (
     NO_CONTACT,
     BallCentre,
@@ -34,7 +37,8 @@ from .reaction import (
     force_and_moment,
     remove_tension_damping,
 )
-from .validity_monitor import ValidityMonitor
+
+_log = logging.getLogger("ballsocket.dynamics")
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
 _ZERO_DEFLECTION = (0.0, 0.0, 0.0, 0.0)
@@ -243,17 +247,17 @@ class ForceElement:
     @cached_property
     def curves(self) -> tuple[CurveLaw, CurveLaw]:
         """Fitted curves of half angle (rad) and largest pressure (MPa) over the indentation (mm)."""
-        return _fit_quantity_curve(self.model, self.joint, "half_angle"), _fit_quantity_curve(
+        return fit_quantity_curve(self.model, self.joint, "half_angle"), fit_quantity_curve(
             self.model, self.joint, "max_pressure"
         )
 
     def half_angle(self, indentation: Array) -> Array:
         """Compute the half angle of the contact in rad at an indentation in mm; 0 without contact."""
-        return _evaluate_curve(self.curves[0], indentation)
+        return evaluate_curve(self.curves[0], indentation)
 
     def max_pressure(self, indentation: Array) -> Array:
         """Compute the largest contact pressure in MPa at an indentation in mm; 0 without contact."""
-        return _evaluate_curve(self.curves[1], indentation)
+        return evaluate_curve(self.curves[1], indentation)
 
 
 def components(value: Any, name: str = "a state") -> Vector:
@@ -284,18 +288,82 @@ def _split_components(value: Any) -> Vector:
     return value[..., 0], value[..., 1], value[..., 2]
 
 
-def _fit_quantity_curve(model: Model, joint: Joint, quantity: str) -> CurveLaw:
-    """Fit a curve to a contact quantity over the indentation, from almost 0 to the socket radius."""
-    joint = joint.with_floats()
-    shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
-    return fit_curve_law(
-        lambda depths: getattr(model.press(joint, indentation=depths), quantity), shallowest, joint.socket_radius
-    )
+@dataclass
+class ValidityMonitor:
+    """Monitor that logs one warning when an indentation first leaves the validity range of a model.
+
+    Contacts below the range do not count, because every impact passes through them.
+
+    Attributes
+    ----------
+    model : Model
+    joint : Joint
+    wall : float
+        Largest indentation in mm that wall thickness and model allow.
+    limit : float
+        Largest indentation in mm that needs no check; infinite after the warning.
+    """
+
+    model: Model
+    joint: Joint
+    wall: float
+    limit: float = 0.0
+
+    def check_array(self, indentation: Array) -> None:
+        """Check the largest of some indentations in mm, and log a warning if the model is invalid there."""
+        depths = concrete_values(indentation) if self.limit < inf else None
+        if depths is not None and depths.size:
+            self.check(float(numpy.max(depths, initial=0.0, where=depths <= self.wall)))
+
+    def check(self, indentation: float) -> None:
+        """Check an indentation in mm, and log a warning if the model is invalid there.
+
+        Indentations beyond the wall are reported by the status of the load instead.
+        """
+        if not self.limit < indentation <= self.wall:
+            return
+        contact = self._contact_at(indentation)
+        if not self._exceeds_validity_range(contact):
+            self.limit = self._find_valid_indentation(indentation)
+            return
+        self.limit = inf
+        _log.warning("%s at an indentation of %.3g mm: %s", self.model.name, indentation, "; ".join(contact.notes))
+
+    def _find_valid_indentation(self, depth: float) -> float:
+        """Find an indentation in mm, `depth` or larger, at which the model is valid."""
+        deeper = min(max(2 * depth, 1e-3 * self.wall), self.wall)
+        for _ in range(6):
+            if not self._exceeds_validity_range(self._contact_at(deeper)):
+                return deeper
+            deeper = (depth + deeper) / 2
+        return depth
+
+    def _contact_at(self, indentation: float) -> Contact:
+        """Compute the contact at an indentation in mm."""
+        return self.model.press(self.joint, indentation=indentation)
+
+    def _exceeds_validity_range(self, contact: Contact) -> bool:
+        """Check if a contact is invalid for a reason other than its small size."""
+        return not contact.valid and not all(
+            map(partial(_is_satisfied_by_larger_contact, contact), contact._validity_ranges)
+        )
 
 
-def _evaluate_curve(curve: CurveLaw, indentation: Array) -> Array:
-    """Evaluate a fitted curve at indentations in mm; 0 without contact, NaN beyond the end of the curve."""
-    if type(indentation) is float:
-        return curve(indentation)[0]
-    ends = curve.shallowest, curve.deepest, curve.first, curve.density
-    return where(indentation > 0.0, energy_derivatives_of_array(indentation, *ends, curve.pieces)[0], 0.0)
+def _is_satisfied_by_larger_contact(contact: Contact, limit: Range) -> bool:
+    """Check if a contact, or a larger contact, lies inside a range."""
+    increases_with_size = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
+    return bool(limit.holds(contact)) or (increases_with_size and bool(limit.quantity_of(contact) < limit.low))
+
+
+_DEPTHS = 129
+"""Number of indentations at which validity is evaluated."""
+
+
+def valid_depth(element: ForceElement) -> float:
+    """Find the largest indentation in mm at which the contact model is valid; 0 if no indentation is valid.
+
+    Lower limits of the contact size are ignored: every contact passes through them at first touch.
+    """
+    depths = numpy.geomspace(1e-3 * element.wall, element.wall, _DEPTHS)
+    valid = element.model.press(element.joint.with_floats(), indentation=depths).valid
+    return float(max(depths[valid], default=0.0))

@@ -246,3 +246,20 @@ def adhesion_potential(model: AdhesiveSocket, joint: Joint) -> AdhesionPotential
         "it must be below 1; otherwise the entire hemisphere sticks, and the rim determines the separation",
     )
     return AdhesionPotential(model=model, joint=float_joint, deepest=float_joint.socket_radius)
+
+
+def fit_quantity_curve(model: Model, joint: Joint, quantity: str) -> CurveLaw:
+    """Fit a curve to a contact quantity over the indentation, from almost 0 to the socket radius."""
+    joint = joint.with_floats()
+    shallowest = 1e-6 * (joint.clearance or joint.socket_radius)
+    return fit_curve_law(
+        lambda depths: getattr(model.press(joint, indentation=depths), quantity), shallowest, joint.socket_radius
+    )
+
+
+def evaluate_curve(curve: CurveLaw, indentation: Array) -> Array:
+    """Evaluate a fitted curve at indentations in mm; 0 without contact, NaN beyond the end of the curve."""
+    if type(indentation) is float:
+        return curve(indentation)[0]
+    ends = curve.shallowest, curve.deepest, curve.first, curve.density
+    return where(indentation > 0.0, energy_derivatives_of_array(indentation, *ends, curve.pieces)[0], 0.0)

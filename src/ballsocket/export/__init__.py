@@ -1,8 +1,7 @@
 """Force elements for other programs: C sources, FMUs, and files for multibody codes."""
 
 from .c_element import CElement
-from .target import ExportJob, Target
-from .targets import TARGETS
+from .targets import TARGETS, ExportJob, Target
 
 Job = ExportJob
 """Name of `ExportJob` in version 1.0."""

@@ -10,7 +10,7 @@ import numpy
 from ..contact import Model
 from ..core.arrays import Numbers
 from ..dynamics import ForceElement
-from .validity_depth import valid_depth
+from ..dynamics.element import valid_depth
 
 _SAMPLES = 400
 """Number of indentations of a fit."""

@@ -19,7 +19,7 @@ from ..core.storage.atomic_files import write_text
 from ..core.storage.fingerprint import check_worker_code, fingerprint, hash_inputs
 from ..core.storage.pieces import PieceRun, PieceStore
 from ..studies.axes import SampleAxis
-from .report_points import make_checkpoint
+from .simulation import make_checkpoint
 from .variability import (
     ANGLES,
     RESULT_UNITS,

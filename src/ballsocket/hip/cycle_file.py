@@ -17,19 +17,24 @@ from ..files.tables import read_table as read_schema
 from ..problem.cup import Side
 from .cycle import DEFAULT_STEPS, Cycle, Frame, PhaseFunction
 from .cycle_registry import CYCLES, named_cycle
-from .cycle_schema import ActivityTable, CycleKeys, CycleTables, FrameName, LoadedPart
-from .cycle_tables import ANGLES, FORCES, HipColumns, combine_columns, extract_hip_columns, read_table
-from .in_vivo import check_body_weight
-from .kinematics import rotation_matrices
-from .mix import Activity, Mix
-from .waveforms import (
+from .cycle_tables import (
+    ANGLES,
     DEFAULT_CLOSURE,
+    FORCES,
+    HipColumns,
     check_closed,
+    combine_columns,
+    extract_hip_columns,
     monotone_periodic,
     phases_and_duration,
+    read_table,
     select_time_range,
     time_column,
 )
+from .in_vivo import check_body_weight
+from .kinematics import rotation_matrices
+from .mix import Activity, Mix
+from .schema import ActivityTable, CycleKeys, CycleTables, FrameName, LoadedPart
 
 __getattr__ = renamed_names(__name__, {"Reading": "TableOptions"})
 

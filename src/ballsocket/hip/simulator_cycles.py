@@ -13,7 +13,6 @@ from ..core.deprecation import renamed_arguments
 from ..core.kinds import Kind
 from .cycle import DEFAULT_STEPS, Cycle, CycleDefinition, CycleParameter, PhaseFunction, Spring
 from .kinematics import parse_rotation_order
-from .waveforms import half_cosines
 
 _ISO_TILT = radians(30.0)
 _ISO_FORCE = (numpy.array([0, 12, 32, 50, 62, 100]) / 100, numpy.array([300.0, 3000.0, 1500.0, 3000.0, 300.0, 300.0]))
@@ -28,6 +27,13 @@ _MISMATCH_NOTE = (
 )
 _ISO_NOTE = "the key points of ISO 14242-1 are as quoted in the literature; the standard itself was not read"
 _TWO_AXIS_NOTE = "the waveform of the two-axis simulator is a typical one, not that of a specific machine"
+
+
+def half_cosines(phases: Numbers, knots: Numbers, values: Numbers) -> Numbers:
+    """Interpolate between values at knots of a cycle by half cosines, with zero slope at each knot."""
+    interval = numpy.clip(numpy.searchsorted(knots, phases, side="right") - 1, 0, len(knots) - 2)
+    fraction = (phases - knots[interval]) / (knots[interval + 1] - knots[interval])
+    return values[interval] + (values[interval + 1] - values[interval]) * (1 - numpy.cos(pi * fraction)) / 2
 
 
 def _iso_14242_1_force(phases: Numbers) -> Numbers:

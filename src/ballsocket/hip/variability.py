@@ -18,8 +18,7 @@ from ..studies.distributions import Distribution
 from .contact_checks import utilisation_and_validity
 from .cycle import Cycle
 from .history import Report
-from .report_points import check_total_wear, make_report
-from .simulation import HipSimulation
+from .simulation import HipSimulation, check_total_wear, make_report
 from .wear_integrator import WearIntegrator
 from .wear_law import with_coefficient
 

@@ -7,17 +7,15 @@ import sys
 
 from ..studies.calibration import Calibration, as_constant, as_corrected_vessel, as_polynomial, calibrate
 from . import observables
-from .estimates import Estimate, Product
 from .identification import identify
-from .information import Information
+from .information import Estimate, Information, Product
 from .machine import Machine
-from .machine_errors import MachineError
 from .measured import MEASURED, Measured
-from .model_numbers import ModelNumber
 from .observables import CustomObservable, oscillation, sliding_torque
 from .registry import MACHINE_ERRORS, MODEL_NUMBERS, OBSERVABLE_NUMBERS
 from .result import IdentificationResult
 from .scatter import HeavyTailed, NormalScatter
+from .unknown_kinds import MachineError, ModelNumber
 
 Identified = IdentificationResult
 Own = CustomObservable

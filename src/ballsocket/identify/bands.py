@@ -9,9 +9,9 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import renamed_names
+from .fit import minimise_misfit
 from .information import QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
 from .misfit import FitResult, Misfit
-from .search import minimise_misfit
 from .unknowns import Unknown
 
 _SIGNIFICANCE = 0.05  # probability of the scatter below which Student's quantile applies

@@ -15,13 +15,13 @@ from ..core.checks import shown
 from ..core.deprecation import renamed_names
 from ..problem import Joint
 from .bands import compute_bands
+from .fit import find_best_fit
 from .forward_model import ForwardModel
 from .measured import Measured
 from .misfit import FitResult, Misfit, Slopes, by_differences
 from .registry import OBSERVABLE_NUMBERS
 from .result import IdentificationResult
 from .scatter import NormalScatter, ScatterModel
-from .search import find_best_fit
 from .unknowns import ParameterTransform, Prior, Unknown, collect_unknowns
 
 _NORMAL = NormalScatter()
@@ -59,7 +59,7 @@ def identify(
     scatter : ScatterModel
         `NormalScatter()`, or `HeavyTailed()` for data with outliers.
     slopes : callable
-        Derivatives: `by_differences`, or `by_tracing` with JAX (`ballsocket.identify.jax_derivatives`).
+        Derivatives: `by_differences`, or `by_tracing` with JAX (`ballsocket.identify.misfit`).
     seed : int
         Seed of the search for a start.
 
@@ -170,5 +170,5 @@ def _check_observables(data: Sequence[Measured], names: set[str]) -> None:
 
 __getattr__ = renamed_names(
     __name__,
-    {"Identified": "IdentificationResult", "Estimate": "ballsocket.identify.estimates.Estimate"},
+    {"Identified": "IdentificationResult", "Estimate": "ballsocket.identify.information.Estimate"},
 )

@@ -9,8 +9,8 @@ from typing import Any
 
 from ..core.checks import nearest, require, shown
 from ..core.deprecation import RenamedAttribute
-from .machine_errors import MachineError
 from .registry import MACHINE_ERRORS
+from .unknown_kinds import MachineError
 
 NumberOrRange = float | tuple[float, float]
 """A known number, or the lower and upper end of an unknown one."""

@@ -11,9 +11,8 @@ from types import MappingProxyType
 
 from ..core.quantities import Quantity
 from ..studies.parameters import AIMS, LOADS, PARAMETERS
-from .machine_errors import COMPLIANCE, DRIFT, OFFSET, MachineError
-from .model_numbers import WORK_OF_ADHESION, ModelNumber
 from .observables import FRICTION_COEFFICIENT
+from .unknown_kinds import COMPLIANCE, DRIFT, OFFSET, WORK_OF_ADHESION, MachineError, ModelNumber
 
 _MODEL_NUMBERS = (
     WORK_OF_ADHESION,

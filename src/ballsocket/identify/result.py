@@ -10,9 +10,9 @@ from typing import Any
 import numpy
 
 from ..core.deprecation import RenamedAttribute
-from .estimates import Estimate
 from .experiment import Experiment, experiment
 from .fit import FittedModel
+from .information import Estimate
 from .measured import MEASURED
 from .posterior import Posterior, posterior
 from .sensitivity import Sensitivity, sensitivities

@@ -11,9 +11,9 @@ import numpy
 from ..core.arrays import Numbers
 from .fit import FittedModel
 from .machine import Machine
-from .machine_errors import MachineError
 from .measured import Measured
 from .registry import MACHINE_ERRORS
+from .unknown_kinds import MachineError
 
 _DEFAULT_NAME = "(machine)"  # name of an unnamed machine
 _RELATIVE_STEP = 1e-2  # finite-difference step over the size of an error

@@ -11,9 +11,8 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import renamed_arguments, renamed_names
 from .bands import compute_bands
-from .fit import FittedModel
+from .fit import FittedModel, find_best_fit
 from .measured import Measured
-from .search import find_best_fit
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,8 +18,8 @@ from ..core.kinds import Kind
 from ..core.quantities import Quantity
 from ..studies.distributions import Distribution, LogNormal, Normal, Rectangular
 from .machine import Machine
-from .model_numbers import ModelNumber
 from .registry import FREE_NUMBERS, MACHINE_ERRORS, MODEL_NUMBERS
+from .unknown_kinds import ModelNumber
 
 Prior = Any
 """Prior of an unknown as a caller states it: two ends, (0.02, 0.3), or a distribution."""

@@ -15,12 +15,13 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from ...core.checks import require
 from ...core.storage.atomic_files import write_atomically
 from ...dynamics import ForceElement
+from ...dynamics.element import valid_depth
 from ...version import __version__
 from ..c_element import CElement, fill_template
 from ..c_text import c_number
 from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library
+from ..targets import ExportJob
 from ..tunable import TUNABLES
-from ..validity_depth import valid_depth
 from .variables import STEP, STOP, UNITS, Variable, variables
 
 _ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)
@@ -181,12 +182,28 @@ def _xml_bytes(root: Element) -> bytes:
 
 @dataclass(frozen=True, kw_only=True)
 class Standard:
-    """Version of the FMI standard, with its C wrapper, folder names of binaries, and description file."""
+    """Version of the FMI standard: its description file, folder names of binaries, and words of the C template.
+
+    Attributes
+    ----------
+    version : str
+    folder : function
+        Returns the folder name of the binaries of a platform.
+    describe : function
+        Returns the file `modelDescription.xml`.
+    words : dict
+        Words in which the C functions of the versions differ, by their placeholders.
+    """
 
     version: str
-    wrapper: str
     folder: Callable[[Platform], str]
     describe: Callable[[UnitInformation, Sequence[Variable]], bytes]
+    words: Mapping[str, str]
+
+    @property
+    def number(self) -> str:
+        """Main number of the version, 2 or 3."""
+        return self.version[0]
 
 
 def _fmi2_folder_name(platform: Platform) -> str:
@@ -195,8 +212,30 @@ def _fmi2_folder_name(platform: Platform) -> str:
 
 
 STANDARDS: Mapping[int, Standard] = {
-    2: Standard(version="2.0", wrapper="fmi2.c", folder=_fmi2_folder_name, describe=fmi2_description),
-    3: Standard(version="3.0", wrapper="fmi3.c", folder=str, describe=fmi3_description),
+    2: Standard(
+        version="2.0",
+        folder=_fmi2_folder_name,
+        describe=fmi2_description,
+        words={
+            "handle": "Component",
+            "token": "GUIDs",
+            "state": "state",
+            "deserialize": "DeSerializeFMUstate",
+            "derivatives": "Derivatives",
+        },
+    ),
+    3: Standard(
+        version="3.0",
+        folder=str,
+        describe=fmi3_description,
+        words={
+            "handle": "Instance",
+            "token": "instantiation tokens",
+            "state": "State",
+            "deserialize": "DeserializeFMUState",
+            "derivatives": "ContinuousStateDerivatives",
+        },
+    ),
 }
 
 
@@ -245,43 +284,33 @@ class Fmu:
     @cached_property
     def sources(self) -> Mapping[str, str]:
         """Texts of the C source files of the FMU, by file name."""
-        values = {
-            "name": self.name,
-            "NAME": self.name.upper(),
-            "version": __version__,
-            "guid": self.guid,
-            **self._template_values,
-        }
-        return self._program_texts | {
-            name: fill_template(name, **values) for name in ("fmu_core.h", self.standard.wrapper)
-        }
+        standard, numbers = self.standard, {"standard": self.standard.version, "fmi": self.standard.number}
+        values = {**self._job.template_context, **standard.words, **numbers, **self._numbers, "guid": self.guid}
+        return {**self._job.program_texts(), f"fmi{standard.number}.c": fill_template("fmi.c", **values)}
 
     @cached_property
     def guid(self) -> str:
         """Unique identifier that links description and binary; it changes with every number of the FMU."""
-        parts = (*self._program_texts.values(), *self._template_values.values(), self.standard.version, self.name)
+        context = self._job.template_context
+        numbers = (context["parameters"], context["units"], *self._numbers.values())
+        parts = (*self._job.program_texts().values(), *numbers, self.standard.version, self.name)
         return f"{{{UUID(bytes=sha256(''.join(parts).encode()).digest()[:16])}}}"
 
     @cached_property
-    def _program_texts(self) -> dict[str, str]:
-        """Texts of the C header and source of the force element, by file name."""
-        program = CElement(element=self.element, name=self.name)
-        return {f"{self.name}.h": program.header, f"{self.name}.c": program.source}
+    def _job(self) -> ExportJob:
+        """Export of the element to C, up to its largest valid indentation."""
+        return ExportJob(element=self.element, name=self.name, depth=valid_depth(self.element))
 
     @cached_property
-    def _template_values(self) -> dict[str, str]:
-        """Numbers and texts for the placeholders in the template of the C wrapper, by name."""
-        element, constants = self.element, self.element.constants
-        deepest = valid_depth(element)
-        validity_message = f"{element.model.name} is not valid beyond an indentation of {deepest:.4g} mm"
+    def _numbers(self) -> dict[str, str]:
+        """Start values, and the limit of validity with its message, for placeholders of the C template."""
+        element, depth = self.element, self._job.depth
         return {
-            "parameters": str(len(TUNABLES)),
-            "units": ", ".join(c_number(parameter.si) for parameter in TUNABLES),
             "starts": ", ".join(
-                c_number(getattr(constants, parameter.constant) * parameter.si) for parameter in TUNABLES
+                c_number(getattr(element.constants, number.constant) * number.si) for number in TUNABLES
             ),
-            "valid": c_number(element.joint.with_floats().clearance + deepest),
-            "beyond": validity_message,
+            "valid": c_number(element.joint.with_floats().clearance + depth),
+            "beyond": f"{element.model.name} is not valid beyond an indentation of {depth:.4g} mm",
         }
 
     @property
