@@ -32,7 +32,7 @@ OWN_FILES = {
     "models/table_3.py": "a table of the package",
     "core/storage/array_files.py": "writes arrays",
     "reports/paper_report.py": "a picture that it has just drawn",
-    "paper/claims/elsewhere.py": "a table of the package",
+    "paper/cases.py": "a table of the package",
     "core/storage/plan.py": "pieces of a run",
     "core/sources.py": "the bibliography of the package",
     "elasticity/off_axis/deck.py": "results in a folder of decks, named by its user in Python",
@@ -95,7 +95,7 @@ def test_other_modules_do_not_read_files_by_names_of_users():
     """Readers of other packages that take a path get one that was checked."""
     readers = {name for name, tree in MODULES.items() if called(tree) & {"ZipFile", "ParquetFile"}}
     assert readers == {
-        "app/evidencing.py",
+        "app/evidence_pack.py",
         "export/fmu/fmu.py",
         "core/storage/array_files.py",
         "files/columns.py",

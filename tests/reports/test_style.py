@@ -12,7 +12,7 @@ from ballsocket.compare import force_curves
 from ballsocket.paper.curves import figure_3_or_4
 from ballsocket.paper.plan import ELEMENTS, quick_plan
 from ballsocket.reports import style
-from ballsocket.reports.paper_plots import draw
+from ballsocket.reports.paper_report import draw
 from ballsocket.reports.press_plots import press_figure
 from ballsocket.reports.style import INK, LineStyle, line_of
 
@@ -99,7 +99,7 @@ def test_the_explorer_draws_a_model_as_the_press_does(pressed):
     page.view.show(page.screen)
     curves = re.findall(
         r'stroke="([^"]+)" data-name="([^"]+)" stroke-width="\S+"(?: stroke-dasharray="([^"]+)")?/>',
-        page.channel.told("#press-charts"),
+        page.channel.shown_value("#press-charts"),
     )
     assert {name for _, name, _ in curves} == set(pressed)
     for colour, name, dash in curves:

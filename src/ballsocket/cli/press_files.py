@@ -17,8 +17,8 @@ from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..reports.figure_files import check_format, save
 from ..reports.unit_systems import Units
+from ..studies.derivatives import LocalUncertainty, local_uncertainty
 from ..studies.expressions import parse_distribution
-from ..studies.local_uncertainty import LocalUncertainty, local_uncertainty
 from .root import print_message
 
 _VIEW_FORMAT = ".png"
@@ -100,7 +100,7 @@ def _write_figure(contacts: Mapping[str, Any], first_model: str, path: Path) -> 
 
 def _write_section(contact: MeshedContact, exact: Any, path: Path) -> None:
     """Write a figure of the meshed section with the exact pressure."""
-    from ..reports.section_plot import section_figure
+    from ..reports.section_plots import section_figure
 
     save(section_figure(contact, exact), path)
 
