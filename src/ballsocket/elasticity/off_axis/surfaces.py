@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy
 
 from ...core.arrays import Numbers, gauss_legendre
-from ...core.storage.array_files import cached_array
+from ...core.storage.atomic_files import cached_array
 from ...models.modulus import Modulus, hess_forsbach
 from ...problem import Joint
 from ...problem.cup import Cup
