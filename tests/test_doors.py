@@ -25,7 +25,7 @@ OWN_FILES = {
     "export/c_element.py": "templates of the package",
     "export/compiler.py": "a library that it has just compiled",
     "export/fmu/fmu.py": "a library that it has just compiled",
-    "elasticity/finite_elements/decks/calculix.py": "results in a folder of decks, named by its user in Python",
+    "elasticity/finite_elements/calculix.py": "results in a folder of decks, named by its user in Python",
     "core/storage/pieces.py": "the source of the package; pieces of a run",
     "hip/cohort.py": "labels of a store",
     "models/refined_state.py": "a table of the package",

@@ -199,8 +199,8 @@ def deck(
     contact, _ = solve_mesh(mesh.model(cup.apply_to(file.cup), meshes=1), file.joint, load)
     if contact.status.failed:
         raise ValueError("; ".join(contact.notes))
-    from ..elasticity.finite_elements.decks.calculix import run as run_ccx
-    from ..elasticity.finite_elements.decks.deck import deck_of
+    from ..elasticity.finite_elements.calculix import run as run_ccx
+    from ..elasticity.finite_elements.deck import deck_of
 
     made = deck_of(contact, steps=steps, scale=scale)
     echo_path(made.write(out), f": {contact.mesh.elements} elements, {steps} steps")
