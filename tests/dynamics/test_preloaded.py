@@ -101,7 +101,7 @@ def test_states_beyond_the_table_have_a_status_and_no_load(element):
     ("arguments", "error", "said"),
     [
         ({"joint": HIP}, ValueError, "interference = .* is not allowed"),
-        ({"model": bs.Sphere()}, ValueError, "arc_of_cover in degrees = 180 is not allowed: above 180"),
+        ({"model": bs.Sphere()}, ValueError, "arc_of_cover = 3.14159 is not allowed: a preloaded socket"),
         ({"model": bs.Exact()}, TypeError, "model must be Sphere"),
         ({"friction": Bristles(coefficient=0.1, stiffness=1e3)}, TypeError, "bristles are not supported"),
         ({"damping": 0.1}, TypeError, "damping must be Damping"),

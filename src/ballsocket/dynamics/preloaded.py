@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import degrees, inf, pi
+from math import inf, pi
 from typing import Any, NamedTuple
 
 import numpy
@@ -20,8 +20,8 @@ from ..contact.assembly import check_joint
 from ..contact.law import CurveLaw
 from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, isfinite, sqrt, to_common_arrays, where
-from ..core.checks import check_number, check_vectors, require, shown
-from ..elasticity.off_axis import Sphere
+from ..core.checks import check_vectors, shown
+from ..elasticity.off_axis import Preload, Sphere
 from ..problem import Joint
 from .bristles import Bristles
 from .damping import Damping
@@ -124,13 +124,10 @@ def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
     ValueError
         A joint without an interference; a socket that does not hold its ball.
     """
-    interference = -float(joint.clearance)
-    require("interference", interference, interference > 0, "a preloaded joint has an interference above 0")
-    arc = model.cup.arc_of_cover
-    require("arc_of_cover in degrees", degrees(arc), arc > pi, "above 180, a socket holds a preloaded ball")
-    equilibrium: Any = model.press(joint, force=0.0)
+    equilibrium: Any = Preload(model=model, joint=joint).equilibrium
     if equilibrium.status.failed:
         raise ValueError(f"the preloaded ball has no equilibrium in its socket: {'; '.join(equilibrium.notes)}")
+    interference = -float(joint.clearance)
     offset, stiffness = float(equilibrium.displacement[2]), equilibrium.stiffness_matrix
     limit = max(_LARGEST_STRAIN * float(min(joint.liner_thickness, joint.socket_radius)), 2.0 * interference)
     distances = numpy.geomspace(_SHALLOWEST * interference, limit, _PIECES + 1)
@@ -443,7 +440,6 @@ class PreloadedElement:
             if not (isinstance(value, kind) or (value is None and name != "model")):
                 reason = "; bristles are not supported in a preloaded joint" if isinstance(value, Bristles) else ""
                 raise TypeError(f"{name} must be {kind.__name__}, got {shown(value)}{reason}")
-        check_number("interference", self.joint.interference)
         object.__setattr__(self, "table", tabulate_preload(self.model, self.joint))
         object.__setattr__(self, "constants", self._collect_constants())
 

@@ -72,7 +72,7 @@ class Preload:
         interference = check_number("interference", self.joint.interference)
         require("interference", interference, interference > 0, "a preloaded joint has an interference above 0")
         arc = self.model.cup.arc_of_cover
-        require("arc_of_cover", arc, arc > numpy.pi, "a preloaded socket reaches beyond the equator, above pi radians")
+        require("arc_of_cover", arc, arc > pi, "a preloaded socket reaches beyond the equator, above 180 deg (pi)")
 
     @cached_property
     def equilibrium(self) -> OffAxisContact:
