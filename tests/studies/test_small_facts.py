@@ -86,6 +86,7 @@ def test_a_limit_that_depends_on_one_axis_fills_the_plane():
 def test_rows_of_a_table_are_combined_with_samples(tmp_path):
     (tmp_path / "rows.csv").write_text("force\n1000\n2000\n")
     (tmp_path / "study.toml").write_text(
-        'joint = "hip-36"\n[table]\npath = "rows.csv"\n[samples]\ncount = 4\nclearance = { low = "0.08 mm", high = "0.12 mm" }\n'
+        'joint = "hip-36"\n[table]\npath = "rows.csv"\n[samples]\ncount = 4\n'
+        'clearance = { low = "0.08 mm", high = "0.12 mm" }\n'
     )
     assert read_study(tmp_path / "study.toml").design.shape == (2, 4)
