@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, replace
 from math import degrees, pi
 from typing import Annotated, Any
@@ -20,7 +20,8 @@ from ..dynamics import Friction
 from ..elasticity.off_axis import PullOut
 from ..elasticity.off_axis import pull_out as compute_pull_out
 from ..files.joint_file import JointFile
-from ..problem.cup import UP
+from ..problem import Joint
+from ..problem.cup import UP, Cup
 from ..problem.presets import long_term_note
 from ..reports.terminal import print_curve, print_press
 from ..reports.unit_systems import Units
@@ -89,11 +90,33 @@ class FrictionOptions:
         typer.Option(help="Coefficient of static friction, for the breakaway torque. Default: --friction."),
     ] = None
 
+    pull_out: Annotated[
+        bool,
+        typer.Option("--pull-out", help="sphere: add the largest force while the ball is pulled out of its cup."),
+    ] = False
+
+    def check(self) -> None:
+        """Raise ValueError for a negative coefficient, and for static friction without, or below, sliding friction."""
+        if self.friction is not None:
+            Friction(coefficient=self.friction, static_coefficient=self.static_friction)
+        elif self.static_friction is not None:
+            raise ValueError("--static-friction needs the coefficient of sliding friction: add --friction")
+
+    def check_pull_out(self, models: Container[str], assumed_arc: bool) -> None:
+        """Raise ValueError for a pull-out force without the model `sphere`, or without an arc of cover."""
+        if self.pull_out and off_axis.name not in models:
+            raise ValueError(f"--pull-out is solved by the model {off_axis.name}: add --model {off_axis.name}")
+        if self.pull_out and assumed_arc:
+            raise ValueError(
+                "--pull-out needs the arc of cover: add --arc-of-cover, or arc_of_cover in [cup] of the file"
+            )
+
     def torques(self, contact: Contact) -> dict[str, Any]:
         """Compute the friction torques of a contact in N mm, with their coefficients; empty without friction."""
         if self.friction is None:
             return {}
-        sliding, static = self.coefficients
+        friction = Friction(coefficient=self.friction, static_coefficient=self.static_friction)
+        sliding, static = friction.coefficient, friction.breakaway_coefficient
         across, along = (contact.friction_torque(1.0, axis_angle) for axis_angle in (pi / 2, 0.0))
         return {
             "coefficient": sliding,
@@ -103,20 +126,6 @@ class FrictionOptions:
             "running_torque_about_load": sliding * along,
             "breakaway_torque_about_load": static * along,
         }
-
-    @property
-    def coefficients(self) -> tuple[float, float]:
-        """Coefficients of sliding and of static friction.
-
-        Raises
-        ------
-        ValueError
-            A negative coefficient; static friction without, or below, sliding friction.
-        """
-        if self.friction is None:
-            raise ValueError("--static-friction needs the coefficient of sliding friction: add --friction")
-        friction = Friction(coefficient=self.friction, static_coefficient=self.static_friction)
-        return friction.coefficient, friction.breakaway_coefficient
 
     def remark(self, name: str, contact: Contact, units: Units) -> str:
         """Return one line with the friction torques of a contact."""
@@ -152,10 +161,6 @@ def press(
     direction_options: DirectionOptions,
     cup_options: CupOptions,
     mesh: Annotated[MeshOptions, "fem"],
-    pull_out: Annotated[
-        bool,
-        typer.Option("--pull-out", help="sphere: add the largest force while the ball is pulled out of its cup."),
-    ] = False,
     meshes: Annotated[
         int | None, typer.Option(min=1, max=2, help="fem: number of meshes; 1 gives no error estimate. Default: 2.")
     ] = None,
@@ -174,20 +179,18 @@ def press(
     file = joint_options.read(joint)
     load = load_options.read(file)
     direction, remarks = direction_options.read(file), []
-    if (friction_options.friction, friction_options.static_friction) != (None, None):
-        friction_options.coefficients  # noqa: B018 - raises for wrong coefficients
+    friction_options.check()
     stated_cup = cup_options.apply_to(file.cup)
     cup = stated_cup.around_ball(file.joint.clearance)
-    if cup is not stated_cup:
-        remarks.append(f"arc of cover {degrees(cup.arc_of_cover):g}° assumed for a preloaded joint; set --arc-of-cover")
+    assumed_arc = cup is not stated_cup
+    assumptions = _preload_assumptions(file.joint, cup if assumed_arc else None)
     cup = tilted_cup(cup, direction)
-    if pull_out and cup is not stated_cup:
-        raise ValueError("--pull-out needs the arc of cover: add --arc-of-cover, or arc_of_cover in [cup] of the file")
-    needs_sphere = pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
+    needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
     models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
     if model_options.has_finite_elements and direction:
         raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
     files.check_models(models)
+    friction_options.check_pull_out(models, assumed_arc)
     if off_axis.name not in models:
         direction_options.refuse()
     if off_axis.name in models:
@@ -200,13 +203,12 @@ def press(
     comparison = _compare(replace(file, cup=cup), load, models)
     if off_axis.name in comparison:
         remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds))
-    if file.joint.clearance < 0:
-        remarks += filter(None, [long_term_note(file.joint.liner)])
     if friction_options.friction is not None:
         contacts = successful_contacts(comparison)
         remarks += [friction_options.remark(name, contacts[name], units) for name in models if name in contacts]
+    remarks += assumptions
     pulled = None
-    if pull_out and off_axis.name in models:
+    if friction_options.pull_out:
         pulled = compute_pull_out(timed.model, file.joint, friction_options.friction or 0.0)
         remarks += _pull_out_remarks(pulled, units)
     files.write(comparison, next(iter(models)))
@@ -217,10 +219,21 @@ def press(
             result["friction"] = (
                 friction_options.torques(comparison[result["model"]]) if result["model"] in comparison else None
             )
+        if assumptions:
+            summary["assumptions"] = assumptions
         echo_json(summary if pulled is None else {**summary, "pull_out": pulled.summary()})
     else:
         print_press(comparison, remarks, units)
     _exit_on_failure(comparison, models)
+
+
+def _preload_assumptions(joint: Joint, assumed_cup: Cup | None) -> list[str]:
+    """Return sentences on an assumed cup and on the long-term modulus of a preloaded joint; empty for a clearance."""
+    if joint.clearance >= 0:
+        return []
+    arc = "" if assumed_cup is None else f"{degrees(assumed_cup.arc_of_cover):g}°"
+    cover = f"arc of cover {arc} assumed for a preloaded joint; set --arc-of-cover" if arc else ""
+    return list(filter(None, (cover, long_term_note(joint.liner))))
 
 
 def _pull_out_remarks(pulled: PullOut, units: Units) -> list[str]:

@@ -14,7 +14,7 @@ from ..contact import Contact, Model
 from ..contact.assembly import check_joint
 from ..contact.law import CurveLaw
 from ..core import arrays
-from ..core.arrays import Array, concrete_values, to_common_arrays, where
+from ..core.arrays import Array, concrete_values, is_plain_number, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.validity import Range
@@ -104,6 +104,8 @@ class ForceElement:
             value = getattr(self, name)
             if not (isinstance(value, kind) or (value is None and name != "model")):
                 raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(value)}")
+        if is_plain_number(self.joint.clearance) and self.joint.clearance < 0:
+            raise ValueError(f"clearance = {self.joint.clearance:g}: a preloaded joint needs a PreloadedElement")
         smoothing = check_number("smoothing", self.smoothing)
         potential = self._elastic_energy()
         clearance = float(self.joint.clearance)
