@@ -32,7 +32,7 @@ from .elasticity_options import (
     tilted_cup,
 )
 from .json_answers import echo_json
-from .options import AsJson, JointName, JointOptions, LoadOptions, expand_groups
+from .options import AsJson, JointName, JointNames, JointOptions, LoadOptions, UnitSystem, expand_groups
 from .press_files import FigureOptions, ReportOptions
 from .root import FAILURE, app, print_message
 
@@ -70,17 +70,25 @@ class ModelOptions:
         return {name: elastic.get(name) or catalogue[name] for name in self.names or [default]}
 
 
+@dataclass(kw_only=True)
+class PressedJoint:
+    """Results of one joint of the command, with remarks on their computation."""
+
+    file: JointFile
+    comparison: Comparison
+    models: Mapping[str, Model]
+    remarks: list[str]
+
+
 @app.command()
 @expand_groups
 def press(
     *,
-    joint: JointName = None,
+    joint: JointNames = None,
     joint_options: JointOptions,
     load_options: LoadOptions,
     model_options: ModelOptions,
-    units: Annotated[
-        Units, typer.Option(case_sensitive=False, help="Units of the table; JSON is always in mm, N, MPa.")
-    ] = Units.SI,
+    units: UnitSystem = Units.SI,
     as_json: AsJson = False,
     files: FigureOptions,
     report: ReportOptions,
@@ -95,6 +103,7 @@ def press(
 
     The table compares the chosen models with the exact solution. The finite elements (--model fem) also include rims,
     chamfers and sliding liners. The model sphere solves loads at an angle to the cup's axis (--tilt, --direction).
+    Several joints are pressed one after the other; --report puts them on one page.
 
     Exit status: 0 success, 2 wrong input, 3 an iteration did not converge or no model has a result.
     """
@@ -102,34 +111,48 @@ def press(
         refuse_mesh_options({**vars(mesh), "meshes": meshes})
     files.check()
     report.check()
-    file = joint_options.read(joint)
-    load = load_options.read(file)
-    direction, remarks = direction_options.read(file), []
-    cup = tilted_cup(cup_options.apply_to(file.cup), direction)
-    needs_sphere = direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
-    models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
-    if model_options.has_finite_elements and direction:
-        raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
-    files.check_models(models)
-    if off_axis.name not in models:
-        direction_options.refuse()
-    if off_axis.name in models:
-        timed: Any = TimedModel(sphere_in_cup(direction_options.model(), cup, direction))
-        models[off_axis.name] = timed
-    if model_options.has_finite_elements:
-        fem = mesh.model(cup, meshes or 2)
-        models[judge.name] = fem
-        remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
-    comparison = _compare(replace(file, cup=cup), load, models)
-    if off_axis.name in comparison:
-        remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds))
-    files.write(comparison, next(iter(models)))
-    report.write(comparison, replace(file, cup=cup, load=load, aim=direction), units)
+    names: list[str | None] = list(joint or [None])
+    files.check_single(len(names))
+
+    def press_joint(name: str | None) -> PressedJoint:
+        """Press one joint by the requested models."""
+        file = joint_options.read(name)
+        load = load_options.read(file)
+        direction, remarks = direction_options.read(file), []
+        stated_cup = cup_options.apply_to(file.cup)
+        cup = tilted_cup(stated_cup, direction)
+        needs_sphere = direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
+        models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
+        if model_options.has_finite_elements and direction:
+            raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
+        files.check_models(models)
+        if off_axis.name not in models:
+            direction_options.refuse()
+        if off_axis.name in models:
+            timed: Any = TimedModel(sphere_in_cup(direction_options.model(), cup, direction))
+            models[off_axis.name] = timed
+        if model_options.has_finite_elements:
+            fem = mesh.model(cup, meshes or 2)
+            models[judge.name] = fem
+            remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
+        comparison = _compare(replace(file, cup=cup), load, models)
+        if off_axis.name in comparison:
+            remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds, units))
+        computed = replace(file, cup=stated_cup, load=load, aim=direction)
+        return PressedJoint(file=computed, comparison=comparison, models=models, remarks=remarks)
+
+    joints = [press_joint(name) for name in names]
+    for pressed in joints:
+        files.write(pressed.comparison, next(iter(pressed.models)), units)
+    report.write([report.design(pressed.comparison, pressed.file, pressed.models) for pressed in joints], units)
     if as_json:
-        echo_json(comparison.summary())
+        summaries = [pressed.comparison.summary() for pressed in joints]
+        echo_json(summaries[0] if len(summaries) == 1 else {"joints": summaries})
     else:
-        print_press(comparison, remarks, units)
-    _exit_on_failure(comparison, models)
+        for pressed in joints:
+            print_press(pressed.comparison, pressed.remarks, units)
+    for pressed in joints:
+        _exit_on_failure(pressed.comparison, pressed.models)
 
 
 def _compare(file: JointFile, load: Mapping[str, float], models: Mapping[str, Model]) -> Comparison:

@@ -102,6 +102,10 @@ class Units(StrEnum):
         unit = self.length_unit
         return f"{millimetres * unit.factor:.4g} {unit.text}"
 
+    def short_length(self, millimetres: float) -> str:
+        """Write a length (mm) to 0.1 mm or to 0.001 in."""
+        return f"{millimetres / _INCH:.3f} in" if self is Units.IMPERIAL else f"{millimetres:.1f} mm"
+
     @property
     def length_unit(self) -> Unit:
         """Unit of dimensions: mm or inches."""
