@@ -201,7 +201,7 @@ def sphere_remark(contact: Any, seconds: float, units: Units = Units.SI) -> str:
     return f"{off_axis.name}: {position}; {cost}; error of the rings: {_error_text(contact)}"
 
 
-def _rim_text(contact: OffAxisContact, units: Units) -> str:
+def _rim_text(contact: OffAxisContact, units: Units = Units.SI) -> str:
     """Return the distance of the contact from the rim as text."""
     distance = contact.edge_distance
     return (

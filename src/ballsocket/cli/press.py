@@ -144,7 +144,8 @@ def press(
     joints = [press_joint(name) for name in names]
     for pressed in joints:
         files.write(pressed.comparison, next(iter(pressed.models)), units)
-    report.write([report.design(pressed.comparison, pressed.file, pressed.models) for pressed in joints], units)
+    designs = [report.design(pressed.comparison, pressed.file, pressed.models, units) for pressed in joints]
+    report.write(designs, units)
     if as_json:
         summaries = [pressed.comparison.summary() for pressed in joints]
         echo_json(summaries[0] if len(summaries) == 1 else {"joints": summaries})

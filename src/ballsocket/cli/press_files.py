@@ -166,7 +166,7 @@ class ReportOptions:
                 raise ValueError(f"{name} has {names.count(name)} tolerances; one is needed")
         return dict(parsed)
 
-    def design(self, comparison: Comparison, file: JointFile, models: Iterable[str]) -> Any:
+    def design(self, comparison: Comparison, file: JointFile, models: Iterable[str], units: Units) -> Any:
         """Return a design of the report with the effect of its tolerances; None without a report."""
         if self.report is None:
             return None
@@ -177,7 +177,7 @@ class ReportOptions:
             file=file,
             leading=_verdict_model(comparison),
             uncertainty=self._tolerance_study(comparison, file),
-            command=self._command(comparison, models),
+            command=self._command(comparison, models, units),
         )
 
     def write(self, designs: Sequence[Any], units: Units) -> None:
@@ -186,15 +186,18 @@ class ReportOptions:
             return
         from ..reports.press_report import designs_report
 
-        write_page(designs_report(designs, units), self.report)
+        write_page(designs_report(designs, units), self.report, units.paper)
 
-    def _command(self, comparison: Comparison, models: Iterable[str]) -> str:
-        """Return the options that compute the results from the joint file: models, rings and tolerances."""
+    def _command(self, comparison: Comparison, models: Iterable[str], units: Units) -> str:
+        """Return the options that compute the results from the joint file: models, rings, tolerances and units."""
         words = [f"--model {name}" for name in models]
         contact = comparison.get(off_axis.name)
         if contact is not None and contact.model.ring_width != off_axis.ring_width:
             words.append(f'--ring-width "{degrees(contact.model.ring_width):.6g} deg"')
-        return " ".join([*words, *(f'--tolerance "{text}"' for text in self.tolerance or ())])
+        words += [f'--tolerance "{text}"' for text in self.tolerance or ()]
+        words += ["--report again.html"] if self.tolerance else []
+        words += [f"--units {units}"] if units is not Units.SI else []
+        return " ".join(words)
 
     def _tolerance_study(self, comparison: Comparison, file: JointFile) -> LocalUncertainty | None:
         """Compute the effect of the tolerances; None without contact, and off the axis without tolerances."""

@@ -51,7 +51,7 @@ def cup_figure(contact: OffAxisContact, units: Units = Units.SI) -> Figure:
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     _ = contact.single_state
-    figure = Figure(figsize=(11.0, 5.2), layout=ConstrainedLayoutEngine(rect=(0.0, 0.07, 1.0, 0.93)))
+    figure = Figure(figsize=(11.0, 5.2), layout=ConstrainedLayoutEngine(rect=(0.0, 0.09, 1.0, 0.91)))
     map_axes, section_axes = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     filled = draw_map(map_axes, contact, units)
     bar = figure.colorbar(filled, ax=map_axes, shrink=0.8, pad=0.02, format="%g", ticks=list(filled.levels)[1:])

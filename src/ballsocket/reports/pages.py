@@ -64,8 +64,16 @@ def check_page_path(path: Path) -> None:
         _weasyprint()
 
 
-def write_page(page: str, path: Path) -> None:
-    """Write a page as HTML or, printed on A4 or Letter, as PDF, according to the ending of `path`.
+def write_page(page: str, path: Path, paper: str = "A4") -> None:
+    """Write a page as HTML, or printed as PDF, according to the ending of `path`.
+
+    Parameters
+    ----------
+    page : str
+        HTML that needs no other file.
+    path : Path
+    paper : str
+        Size of the sheets of a PDF: "A4" or "letter".
 
     Raises
     ------
@@ -77,14 +85,17 @@ def write_page(page: str, path: Path) -> None:
     check_page_path(path)
     with write_atomically(path) as draft:
         if path.suffix.lower() == ".pdf":
-            draft.write_bytes(pdf_of(page))
+            draft.write_bytes(pdf_of(page, paper))
         else:
             draft.write_text(page, encoding="utf-8")
 
 
-def pdf_of(page: str) -> bytes:
-    """Print a page as PDF; nothing outside the page is loaded."""
-    document: bytes = _weasyprint().HTML(string=page, url_fetcher=_fetch).write_pdf()
+def pdf_of(page: str, paper: str = "A4") -> bytes:
+    """Print a page as PDF on sheets of a size; nothing outside the page is loaded."""
+    weasyprint = _weasyprint()
+    sheets = weasyprint.CSS(string=f"@page {{ size: {paper} }}")
+    inside = weasyprint.urls.URLFetcher(allowed_protocols=("data",))
+    document: bytes = weasyprint.HTML(string=page, url_fetcher=inside).write_pdf(stylesheets=[sheets])
     return document
 
 
@@ -104,13 +115,6 @@ def _weasyprint() -> Any:
             "WeasyPrint finds no Pango library here; install Pango, or write .html and print it from a browser"
         ) from error
     return weasyprint
-
-
-def _fetch(address: str, *_: Any, **options: Any) -> Any:
-    """Return the content of an address inside the page; ValueError for any other."""
-    if not address.startswith("data:"):
-        raise ValueError(f"{address[:80]!r} is not inside the page")
-    return _weasyprint().default_url_fetcher(address, **options)
 
 
 def logo_address(path: Path) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from hashlib import sha256
-from math import degrees, isfinite
+from math import degrees, inf, isfinite
 from pathlib import Path
 
 from ..compare import Comparison, successful_contacts
@@ -23,6 +23,7 @@ from ..problem import Material
 from ..problem.cup import Cup
 from ..studies.local_uncertainty import LocalUncertainty
 from ..studies.parameters import PARAMETERS
+from ..studies.task import EDGE_DISTANCE
 from . import press_plots
 from .pages import logo_address, render_page, render_part, svg_address, trusted_html
 from .section_plots import joint_section
@@ -128,13 +129,18 @@ def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, da
     details = next((design.file.report for design in designs if design.file.report != ReportDetails()), ReportDetails())
     if len(designs) == 1:
         (design,) = designs
-        return _page(design.title, _design_sections(design, units), details, day, press_lede(design.contact, units))
+        return _page(design.title, _design_sections(design, units), details, day, _lede(design, units))
     sections: TitledHtml = {"comparison": ("Comparison", _comparison(designs, units))}
     for number, design in enumerate(designs, 1):
         parts = [(title, html) for title, html in _design_sections(design, units).values()]
-        html = render_part(_TEMPLATE, "design", trusted_html(press_lede(design.contact, units)), _trusted(parts))
+        html = render_part(_TEMPLATE, "design", trusted_html(_lede(design, units)), _trusted(parts))
         sections[f"design-{number}"] = (design.title, html)
     return _page(f"{len(designs)} designs", sections, details, day)
+
+
+def _lede(design: PressedDesign, units: Units) -> str:
+    """Return the verdicts on a design as HTML."""
+    return press_lede(design.contact, units, design.uncertainty)
 
 
 def _trusted(parts: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -261,30 +267,43 @@ def _material(material: Material, units: Units) -> str:
     return f"{material.name or 'a material'}: {', '.join(numbers)}"
 
 
+_ORIENTATION = ("inclination", "anteversion")
+"""Angles of a cup in the body."""
+
+
 def _cup(cup: Cup, units: Units) -> Iterator[tuple[str, str, str]]:
     """Yield title and value of each dimension of the cup."""
     for name, quantity in CUP.items():
+        if name in _ORIENTATION and not cup.oriented:
+            continue
         number = float(getattr(cup, name))
         yield quantity.title, units.length(number) if name == "chamfer" else units.text_of(quantity, number), ""
     yield "liner on its backing", cup.interface.value, ""
 
 
-def press_lede(contact: Contact, units: Units = Units.SI) -> str:
+def press_lede(contact: Contact, units: Units = Units.SI, uncertainty: LocalUncertainty | None = None) -> str:
     """Return the largest pressure of a contact with the verdicts on strength and rim in words, as HTML."""
     verdict = assess_strength(contact)
     pressure, load = (_number(contact, name, units) for name in ("max_pressure", "force"))
-    verdicts = [(units.sentence(verdict.words), _VERDICT_STYLES[verdict.bears]), *_rim_verdict(contact, units)]
+    verdicts = [
+        (units.sentence(verdict.words), _VERDICT_STYLES[verdict.bears]),
+        *_rim_verdict(contact, units, uncertainty),
+    ]
     return render_part(_TEMPLATE, "lede", pressure, load, contact.model.name, verdicts)
 
 
-def _rim_verdict(contact: Contact, units: Units) -> list[tuple[str, str]]:
+def _rim_verdict(contact: Contact, units: Units, uncertainty: LocalUncertainty | None = None) -> list[tuple[str, str]]:
     """Return the verdict on the rim with its style; empty for a contact along the axis."""
     if not isinstance(contact, OffAxisContact) or contact.status.failed:
         return []
     distance = units.short_length(abs(float(contact.edge_distance)))
     if contact.edge_loaded:
         return [(f"edge loading: the contact reaches the rim, which cuts off {distance} of it", "fails")]
-    return [(f"no edge loading: the contact ends {distance} from the rim", "holds")]
+    verdict = f"no edge loading: the contact ends {distance} from the rim (CPER)"
+    least = uncertainty.band.get(EDGE_DISTANCE, (inf,))[0] if uncertainty else inf
+    if least > 0:
+        return [(verdict, "holds")]
+    return [(verdict, "holds"), ("edge loading is possible within the tolerances", "nearly")]
 
 
 def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str, str]]:
@@ -322,9 +341,9 @@ def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
     parts = (f"{units.length(float(thickness))} {material.name or 'liner'}" for thickness, material in layers)
     yield "liner and backing", " on ".join(parts)
     yield "ball", "rigid" if joint.ball is None else joint.ball.name or "elastic"
-    angles = ("inclination", "anteversion")
-    cup = (f"{degrees(float(getattr(file.cup, name))):.3g}° {name}" for name in angles)
-    yield "cup", ", ".join(cup) if file.cup.oriented else "load along its axis"
+    angles = [f"{degrees(float(getattr(file.cup, name))):.3g}° {name}" for name in _ORIENTATION if file.cup.oriented]
+    angles += [f"load {degrees(file.aim['tilt']):.3g}° from its axis"] if "tilt" in file.aim else []
+    yield "cup", ", ".join(angles) or "load along its axis"
     yield "load", ", ".join(units.text_of(PARAMETERS[name], float(value)) for name, value in file.load.items())
     yield "model", contact.model.name
     for name in ("max_pressure", "half_angle", "indentation", "area"):
@@ -333,7 +352,8 @@ def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
     yield "edge distance (CPER)", units.short_length(float(contact.edge_distance)) if off_axis else "-"
     ratio = number_text(contact.utilisation, 3, "-") if joint.strengths() else "-"
     yield f"{QUANTITIES['utilisation'].title} {QUANTITIES['utilisation'].symbol}", ratio
-    yield "verdict", "; ".join([units.sentence(verdict.words), *(text for text, _ in _rim_verdict(contact, units))])
+    rim = (text for text, _ in _rim_verdict(contact, units, design.uncertainty))
+    yield "verdict", "; ".join([units.sentence(verdict.words), *rim])
 
 
 def press_sections(
@@ -350,7 +370,8 @@ def press_sections(
 def _number(contact: Contact, name: str, units: Units) -> str:
     """Write a quantity of a contact with its unit."""
     column = next(column for column in units.columns if column.attribute == name)
-    return f"{number_text(column.values_of(contact), 4, 'no result')} {column.unit}"
+    gap = "" if column.unit == "°" else " "
+    return f"{number_text(column.values_of(contact), 4, 'no result')}{gap}{column.unit}"
 
 
 def _results(comparison: Comparison, units: Units) -> str:

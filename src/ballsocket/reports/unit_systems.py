@@ -95,6 +95,11 @@ class Units(StrEnum):
     SI = "SI"
     IMPERIAL = "imperial"
 
+    @property
+    def paper(self) -> str:
+        """Usual paper of the system: A4 or letter."""
+        return "letter" if self is Units.IMPERIAL else "A4"
+
     def length(self, millimetres: float) -> str:
         """Write a length (mm) in mm or in inches."""
         if isinf(millimetres):
@@ -104,7 +109,8 @@ class Units(StrEnum):
 
     def short_length(self, millimetres: float) -> str:
         """Write a length (mm) to 0.1 mm or to 0.001 in."""
-        return f"{millimetres / _INCH:.3f} in" if self is Units.IMPERIAL else f"{millimetres:.1f} mm"
+        length, digits = (millimetres / _INCH, 3) if self is Units.IMPERIAL else (millimetres, 1)
+        return f"{round(length, digits) + 0.0:.{digits}f} {self.length_unit.text}"
 
     @property
     def length_unit(self) -> Unit:

@@ -15,7 +15,7 @@ from .default_model import default_model
 from .derivatives import Derivatives, elasticities, press_quantities
 from .design import check_values, sample
 from .distributions import Distribution, check_nominal
-from .parameters import AIMS, LOADS, PARAMETERS, nominal_value
+from .parameters import AIMS, LOADS, PARAMETERS, check_aims, nominal_value
 from .task import EDGE_DISTANCE
 
 REPORTED_QUANTITIES = ("max_pressure", "half_angle", "indentation", "area", "stiffness")
@@ -83,6 +83,8 @@ def local_uncertainty(
     ValueError
         An unknown name, a load of 0, joints without a result, or a joint or load outside its own tolerances.
     """
+    model = default_model(joint, {name: [number] for name, number in load.items()}).in_cup(cup)
+    check_aims(model, tolerances)
     for name, distribution in tolerances.items():
         value = load.get(name) if name in LOADS else nominal_value(joint, name)
         if value is not None:
@@ -90,7 +92,6 @@ def local_uncertainty(
     numbers = {name: float(getattr(joint, name)) for name in _VARIED_LENGTHS}
     numbers |= {"liner_young": float(joint.liner.young), "liner_poisson": float(joint.liner.poisson)}
     point = {name: number for name, number in numbers.items() if 0 < number < numpy.inf}
-    model = default_model(joint, {name: [number] for name, number in load.items()}).in_cup(cup)
     changes = elasticities(model, joint, REPORTED_QUANTITIES, {**point, **load})
     bands = _compute_bands(joint, cup, load, tolerances) if tolerances else {}
     return LocalUncertainty(model=model.name, changes=changes, band=bands)
