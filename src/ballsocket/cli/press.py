@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
@@ -111,7 +111,7 @@ def press(
         refuse_mesh_options({**vars(mesh), "meshes": meshes})
     files.check()
     report.check()
-    names: list[str | None] = list(joint or [None])
+    names: Sequence[str | None] = joint or [None]
     files.check_single(len(names))
 
     def press_joint(name: str | None) -> PressedJoint:

@@ -13,15 +13,15 @@ import typer
 from ..catalogue import judge, off_axis, reference
 from ..compare import Comparison, successful_contacts
 from ..core.checks import check_names
-from ..elasticity.finite_elements.contact import MeshedContact
+from ..elasticity.finite_elements.model import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..reports.figure_files import check_format, save
 from ..reports.pages import check_page_path, write_page
 from ..reports.unit_systems import Units
+from ..studies.derivatives import LocalUncertainty, local_uncertainty, off_axis_uncertainty
 from ..studies.distributions import Distribution
 from ..studies.expressions import parse_distribution
-from ..studies.local_uncertainty import LocalUncertainty, local_uncertainty, off_axis_uncertainty
 from ..studies.parameters import PARAMETERS
 from .root import print_message
 
@@ -54,7 +54,7 @@ class FigureOptions:
         if self.view is not None and self.view.suffix.lower() != _VIEW_FORMAT:
             raise ValueError(f"view {str(self.view)!r} must end in {_VIEW_FORMAT}")
         if self.vtk is not None:
-            from ..elasticity.finite_elements.decks.vtk import check_vtk_path
+            from ..elasticity.finite_elements.section import check_vtk_path
 
             check_vtk_path(self.vtk)
 
@@ -116,7 +116,7 @@ def _write_section(contact: MeshedContact, exact: Any, path: Path) -> None:
 
 def _write_meshes(contact: MeshedContact, path: Path) -> None:
     """Write the meshes and fields of the finite elements for VTK."""
-    from ..elasticity.finite_elements.decks.vtk import write_vtk
+    from ..elasticity.finite_elements.section import write_vtk
 
     write_vtk(contact.section, path)
 
@@ -144,7 +144,7 @@ class ReportOptions:
     ] = None
     tolerance: Annotated[
         list[str] | None,
-        typer.Option(help="Tolerance in the report: 'clearance=0.1+-0.05 mm'. Repeat for several."),
+        typer.Option(help="Tolerance in the report: 'clearance=0.1+-0.05 mm'. Repeat for several. Default: none."),
     ] = None
 
     def check(self) -> None:
@@ -191,9 +191,9 @@ class ReportOptions:
     def _command(self, comparison: Comparison, models: Iterable[str], units: Units) -> str:
         """Return the options that compute the results from the joint file: models, rings, tolerances and units."""
         words = [f"--model {name}" for name in models]
-        contact = comparison.get(off_axis.name)
-        if contact is not None and contact.model.ring_width != off_axis.ring_width:
-            words.append(f'--ring-width "{degrees(contact.model.ring_width):.6g} deg"')
+        model: Any = comparison[off_axis.name].model if off_axis.name in comparison else off_axis
+        if model.ring_width != off_axis.ring_width:
+            words.append(f'--ring-width "{degrees(model.ring_width):.6g} deg"')
         words += [f'--tolerance "{text}"' for text in self.tolerance or ()]
         words += ["--report again.html"] if self.tolerance else []
         words += [f"--units {units}"] if units is not Units.SI else []

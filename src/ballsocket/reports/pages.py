@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ..core.checks import needs
 from ..core.input_files import open_input
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
-from ..core.storage.fingerprint import fingerprint
+from ..core.storage.pieces import fingerprint
 from .figure_files import figure_bytes
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from ..files.joint_file import JointFile, ReportDetails
 from ..files.joint_toml import toml_of
 from ..problem import Material
 from ..problem.cup import Cup
-from ..studies.local_uncertainty import LocalUncertainty
+from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
@@ -348,8 +348,8 @@ def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
     yield "model", contact.model.name
     for name in ("max_pressure", "half_angle", "indentation", "area"):
         yield CONTACT[name].title, _number(contact, name, units)
-    off_axis = isinstance(contact, OffAxisContact) and not contact.status.failed
-    yield "edge distance (CPER)", units.short_length(float(contact.edge_distance)) if off_axis else "-"
+    located = isinstance(contact, OffAxisContact) and not contact.status.failed
+    yield "edge distance (CPER)", units.short_length(float(getattr(contact, EDGE_DISTANCE))) if located else "-"
     ratio = number_text(contact.utilisation, 3, "-") if joint.strengths() else "-"
     yield f"{QUANTITIES['utilisation'].title} {QUANTITIES['utilisation'].symbol}", ratio
     rim = (text for text, _ in _rim_verdict(contact, units, design.uncertainty))
