@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import degrees, pi
 from typing import Annotated, Any
@@ -39,7 +39,7 @@ from .elasticity_options import (
     tilted_cup,
 )
 from .json_answers import echo_json
-from .options import AsJson, JointName, JointOptions, LoadOptions, expand_groups
+from .options import AsJson, JointName, JointNames, JointOptions, LoadOptions, UnitSystem, expand_groups
 from .press_files import FigureOptions, ReportOptions
 from .root import FAILURE, app, print_message
 
@@ -143,18 +143,46 @@ class FrictionOptions:
         )
 
 
+@dataclass(kw_only=True)
+class PressedJoint:
+    """Results of one joint of the command, with remarks on their computation.
+
+    Attributes
+    ----------
+    assumptions : list of str
+        Sentences on what was assumed for a preloaded joint.
+    pulled : PullOut or None
+        Pull-out force, if it was asked for.
+    """
+
+    file: JointFile
+    comparison: Comparison
+    models: Mapping[str, Model]
+    remarks: list[str]
+    assumptions: list[str]
+    pulled: PullOut | None
+
+    def summary(self, friction: FrictionOptions) -> dict[str, Any]:
+        """Return the results as plain data, with the friction torques and the pull-out force if asked for."""
+        summary = self.comparison.summary()
+        for result in summary["results"] if friction.friction is not None else ():
+            contact = self.comparison.get(result["model"])
+            result["friction"] = None if contact is None else friction.torques(contact)
+        if self.assumptions:
+            summary["assumptions"] = self.assumptions
+        return summary if self.pulled is None else {**summary, "pull_out": self.pulled.summary()}
+
+
 @app.command()
 @expand_groups
 def press(
     *,
-    joint: JointName = None,
+    joint: JointNames = None,
     joint_options: JointOptions,
     load_options: LoadOptions,
     friction_options: FrictionOptions,
     model_options: ModelOptions,
-    units: Annotated[
-        Units, typer.Option(case_sensitive=False, help="Units of the table; JSON is always in mm, N, MPa.")
-    ] = Units.SI,
+    units: UnitSystem = Units.SI,
     as_json: AsJson = False,
     files: FigureOptions,
     report: ReportOptions,
@@ -169,6 +197,7 @@ def press(
 
     The table compares the chosen models with the exact solution. The finite elements (--model fem) also include rims,
     chamfers and sliding liners. The model sphere solves loads at an angle to the cup's axis (--tilt, --direction).
+    Several joints are pressed one after the other; --report puts them on one page.
 
     Exit status: 0 success, 2 wrong input, 3 an iteration did not converge or no model has a result.
     """
@@ -176,55 +205,68 @@ def press(
         refuse_mesh_options({**vars(mesh), "meshes": meshes})
     files.check()
     report.check()
-    file = joint_options.read(joint)
-    load = load_options.read(file)
-    direction, remarks = direction_options.read(file), []
     friction_options.check()
-    stated_cup = cup_options.apply_to(file.cup)
-    cup = stated_cup.around_ball(file.joint.clearance)
-    assumed_arc = cup is not stated_cup
-    assumptions = _preload_assumptions(file.joint, cup if assumed_arc else None)
-    cup = tilted_cup(cup, direction)
-    needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
-    models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
-    if model_options.has_finite_elements and direction:
-        raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
-    files.check_models(models)
-    friction_options.check_pull_out(models, assumed_arc)
-    if off_axis.name not in models:
-        direction_options.refuse()
-    if off_axis.name in models:
-        timed: Any = TimedModel(sphere_in_cup(direction_options.model(), cup, direction))
-        models[off_axis.name] = timed
-    if model_options.has_finite_elements:
-        fem = mesh.model(cup, meshes or 2)
-        models[judge.name] = fem
-        remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
-    comparison = _compare(replace(file, cup=cup), load, models)
-    if off_axis.name in comparison:
-        remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds))
-    if friction_options.friction is not None:
-        contacts = successful_contacts(comparison)
-        remarks += [friction_options.remark(name, contacts[name], units) for name in models if name in contacts]
-    remarks += assumptions
-    pulled = None
-    if friction_options.pull_out:
-        pulled = compute_pull_out(timed.model, file.joint, friction_options.friction or 0.0)
-        remarks += _pull_out_remarks(pulled, units)
-    files.write(comparison, next(iter(models)))
-    report.write(comparison, replace(file, cup=cup, load=load, aim=direction), units)
+    names: Sequence[str | None] = joint or [None]
+    files.check_single(len(names))
+
+    def press_joint(name: str | None) -> PressedJoint:
+        """Press one joint by the requested models."""
+        file = joint_options.read(name)
+        load = load_options.read(file)
+        direction, remarks = direction_options.read(file), []
+        stated_cup = cup_options.apply_to(file.cup)
+        held_cup = stated_cup.around_ball(file.joint.clearance)
+        assumed_arc = held_cup is not stated_cup
+        assumptions = _preload_assumptions(file.joint, held_cup if assumed_arc else None)
+        cup = tilted_cup(held_cup, direction)
+        needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
+        models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
+        if model_options.has_finite_elements and direction:
+            raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
+        files.check_models(models)
+        friction_options.check_pull_out(models, assumed_arc)
+        if off_axis.name not in models:
+            direction_options.refuse()
+        if off_axis.name in models:
+            timed: Any = TimedModel(sphere_in_cup(direction_options.model(), cup, direction))
+            models[off_axis.name] = timed
+        if model_options.has_finite_elements:
+            fem = mesh.model(cup, meshes or 2)
+            models[judge.name] = fem
+            remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
+        comparison = _compare(replace(file, cup=cup), load, models)
+        if off_axis.name in comparison:
+            remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds, units))
+        if friction_options.friction is not None:
+            contacts = successful_contacts(comparison)
+            remarks += [friction_options.remark(name, contacts[name], units) for name in models if name in contacts]
+        remarks += assumptions
+        pulled = None
+        if friction_options.pull_out:
+            pulled = compute_pull_out(timed.model, file.joint, friction_options.friction or 0.0)
+            remarks += _pull_out_remarks(pulled, units)
+        return PressedJoint(
+            file=replace(file, cup=held_cup, load=load, aim=direction),
+            comparison=comparison,
+            models=models,
+            remarks=remarks,
+            assumptions=assumptions,
+            pulled=pulled,
+        )
+
+    joints = [press_joint(name) for name in names]
+    for pressed in joints:
+        files.write(pressed.comparison, next(iter(pressed.models)), units)
+    designs = [report.design(pressed.comparison, pressed.file, pressed.models, units) for pressed in joints]
+    report.write(designs, units)
     if as_json:
-        summary = comparison.summary()
-        for result in summary["results"] if friction_options.friction is not None else ():
-            result["friction"] = (
-                friction_options.torques(comparison[result["model"]]) if result["model"] in comparison else None
-            )
-        if assumptions:
-            summary["assumptions"] = assumptions
-        echo_json(summary if pulled is None else {**summary, "pull_out": pulled.summary()})
+        summaries = [pressed.summary(friction_options) for pressed in joints]
+        echo_json(summaries[0] if len(summaries) == 1 else {"joints": summaries})
     else:
-        print_press(comparison, remarks, units)
-    _exit_on_failure(comparison, models)
+        for pressed in joints:
+            print_press(pressed.comparison, pressed.remarks, units)
+    for pressed in joints:
+        _exit_on_failure(pressed.comparison, pressed.models)
 
 
 def _preload_assumptions(joint: Joint, assumed_cup: Cup | None) -> list[str]:
