@@ -10,6 +10,10 @@ _ASSUMED_MEMORY = 4_000_000_000
 """Memory in bytes that is assumed if the system does not state it."""
 
 
+_GROUPED_COUNT = 10_000
+"""Count from which digits are grouped."""
+
+
 def check_memory(subject: str, size: float) -> None:
     """Check that `size` bytes fit into the available memory.
 
@@ -40,6 +44,11 @@ def available_disk_space(path: Path) -> int:
     while not folder.exists():
         folder = folder.parent
     return shutil.disk_usage(folder).free
+
+
+def count_text(count: int) -> str:
+    """Format a count with no-break spaces between groups of three digits, such as "14 800"; plain below 10000."""
+    return str(count) if abs(count) < _GROUPED_COUNT else f"{count:,}".replace(",", "\xa0")
 
 
 def size_text(size: float) -> str:

@@ -17,7 +17,7 @@ from ..contact.assembly import check_joint
 from ..core.checks import check_names, needs, shown
 from ..core.deprecation import renamed_fields
 from ..core.executors.processes import Engine, Serial
-from ..core.memory import available_disk_space, available_memory, size_text
+from ..core.memory import available_disk_space, available_memory, count_text, size_text
 from ..core.storage.pieces import PieceRun
 from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
@@ -26,7 +26,7 @@ from ..problem import Joint
 from .design import Design, check_values, grid, is_number
 from .metadata import make_dataset
 from .parameters import LOADS, check_aims, press_arguments
-from .store import BlockStore, StudyStore, read
+from .store import BlockStore, StudyStore, check_store, read
 from .task import DEFAULT_QUANTITIES, DTYPES, EDGE_DISTANCE, QUANTITIES, Blocks, Task, points_per_block
 
 if TYPE_CHECKING:
@@ -136,6 +136,8 @@ def study(
     11.27
     """
     needs("study", "xarray", "zarr")
+    if store is not None:
+        check_store(store)
     _check_types(model, joint, design)
     if not callable(getattr(engine, "run", None)) or isinstance(engine, type):
         raise TypeError(f"engine must be an Engine, such as Serial() or Processes(workers=2), got {shown(engine)}")
@@ -200,7 +202,7 @@ def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> 
         """Raise ValueError if the free space is smaller than a size in bytes."""
         if size > free:
             raise ValueError(
-                f"{count:.3g} points take about {size_text(size)} and {duration} on one core, and there are "
+                f"{count_text(count)} points take about {size_text(size)} and {duration} on one core, and there are "
                 f"{size_text(free)} {hint}"
             )
 
