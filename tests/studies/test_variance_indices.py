@@ -150,17 +150,11 @@ def test_impossible_correlations_are_refused(correlation, message):
 
 
 def test_a_power_of_correlated_log_normal_parameters_has_analytic_first_order_indices():
-    """Hertz: δ = const F^(2/3) c^(1/3); log δ is linear, and the shares of δ itself follow from its normal logarithm."""
+    """Hertz: δ is a power of force and modulus; its logarithm is normal, from which the shares of δ follow."""
     spread = {"force": LogNormal(median=1000.0, factor=1.1), "liner_young": LogNormal(median=1000.0, factor=1.2)}
-    found = sensitivity(
-        bs.Hertz(),
-        half_space,
-        spread,
-        quantities=["indentation"],
-        count=1024,
-        correlation={("force", "liner_young"): 0.5},
-    ).sel(quantity="indentation")
-    matrix = copula_matrix(list(spread), {("force", "liner_young"): 0.5})
+    pair = {("force", "liner_young"): 0.5}
+    indices = sensitivity(bs.Hertz(), HIP, spread, quantities=["indentation"], count=1024, correlation=pair)
+    found, matrix = indices.sel(quantity="indentation"), copula_matrix(list(spread), pair)
     slopes = found.elasticity.values * numpy.log([1.1, 1.2])
     variance = slopes @ matrix @ slopes
     first = numpy.expm1((slopes @ matrix) ** 2) / numpy.expm1(variance)

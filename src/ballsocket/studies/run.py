@@ -38,6 +38,9 @@ _SERIAL = Serial()
 
 _TABULATED, _EXACT_CURVE = Tabulated(), ExactCurve()
 
+_MANY_HOURS = 100.0
+"""Number of hours that is written without digits after the point."""
+
 _COPIES = 3
 """Copies of the values along an axis in memory: as drawn, as scaled, as labels."""
 
@@ -218,7 +221,9 @@ def _duration_text(hours: float) -> str:
     """Format a duration in hours, with seconds or minutes if it is short."""
     if hours < 1 / 60:
         return f"{3600 * hours:.2g} s"
-    return f"{60 * hours:.2g} minutes" if hours < 1 else f"{hours:.3g} hours"
+    if hours < 1:
+        return f"{60 * hours:.2g} minutes"
+    return f"{hours:.3g} hours" if hours < _MANY_HOURS else f"{count_text(round(hours))} hours"
 
 
 def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.ndarray]:
