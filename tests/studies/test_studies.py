@@ -389,9 +389,7 @@ def test_what_would_be_ignored_is_refused(tmp_path):
 
 
 def test_too_many_points_are_refused_with_size_and_time(tmp_path):
-    with pytest.raises(
-        ValueError, match="1\xa0000\xa0000\xa0000\xa0000 points take about .* TB and .* hours on one core"
-    ):
+    with pytest.raises(ValueError, match="1 000 000 000 000 points take about .* TB and .* hours on one core"):
         bs.study(bs.HessForsbach(), HIP, force=Span(1.0, 2.0, 10**12))
     wide = {"force": Span(1.0, 2.0, 10**7), "clearance": Span(0.05, 0.1, 10**6)}
     with pytest.raises(ValueError, match="on the disk of the store"):
@@ -536,7 +534,7 @@ def test_remote_stores_are_addresses_and_never_local_folders(tmp_path, monkeypat
 
 
 def test_counts_are_integers_with_spaces():
-    assert [count_text(count) for count in (7, 9999, 14800, 10**6)] == ["7", "9999", "14\xa0800", "1\xa0000\xa0000"]
+    assert [count_text(count) for count in (7, 9999, 14800, 10**6)] == ["7", "9999", "14 800", "1 000 000"]
 
 
 def test_a_stored_study_is_read_by_xarray_alone(tmp_path):

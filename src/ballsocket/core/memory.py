@@ -47,8 +47,8 @@ def available_disk_space(path: Path) -> int:
 
 
 def count_text(count: int) -> str:
-    """Format a count with no-break spaces between groups of three digits, such as "14 800"; plain below 10000."""
-    return str(count) if abs(count) < _GROUPED_COUNT else f"{count:,}".replace(",", "\xa0")
+    """Format a count with spaces between groups of three digits, such as "14 800"; plain below 10000."""
+    return str(count) if abs(count) < _GROUPED_COUNT else f"{count:,}".replace(",", " ")
 
 
 def size_text(size: float) -> str:

@@ -277,9 +277,14 @@ def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Des
     if tables.samples is not None:
         samples = tables.samples
         spreads = parsed_values(samples, content["samples"])
-        settings = {"seed": int(samples.seed), "method": Method(samples.method)}
-        correlation = parse_correlations(samples.correlation or ())
-        design = sample(int(samples.count), **settings, correlation=correlation, **spreads) * design
+        drawn = sample(
+            int(samples.count),
+            seed=int(samples.seed),
+            method=Method(samples.method),
+            correlation=parse_correlations(samples.correlation or ()),
+            **spreads,
+        )
+        design = drawn * design
     if tables.table is not None:
         path = _filled("path", tables.table.path)
         check_local(path)

@@ -176,7 +176,7 @@ def shapley_effects(
         rows += [1 - explained[_without(range(dimension), index)] for index in range(dimension)]
         return numpy.stack([*rows, *_shapley_values(explained, dimension)], axis=-1)
 
-    arrays = {}
+    arrays: dict[str, Numbers] = {}
     for name, results in _with_intervals(numpy.stack(terms), indices, confidence, seed).items():
         blocks = numpy.split(results, 3, axis=-1)
         arrays |= {f"{order}{name}": block for order, block in zip(_CORRELATED_ORDERS, blocks, strict=True)}
