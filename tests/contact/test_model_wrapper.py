@@ -16,11 +16,11 @@ ATTRIBUTES = (
 )
 OLD_NAMES = {
     "catalogue.theories": "listed_models",
-    "contact.contact.Pressed": "ballsocket.contact.model_info.ModelInfo",
+    "contact.contact.Pressed": "ballsocket.contact.outcome.ModelInfo",
     "contact.law.Law": "ForceLaw",
     "contact.model.Covered": "RimLimited",
     "contact.model.Wrapped": "ModelWrapper",
-    "contact.model_info.Theory": "ModelInfo",
+    "contact.outcome.Theory": "ModelInfo",
     "contact.strength.ELASTIC": "MAX_ELASTIC_UTILISATION",
     "contact.strength.share": "von_mises_ratio",
     "contact.verdict.shares": "strength_uses",

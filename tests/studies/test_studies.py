@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 import ballsocket as bs
 from ballsocket.core.executors import Processes, Serial
 from ballsocket.core.executors.dask import Distributed
-from ballsocket.core.memory import count_text
+from ballsocket.core.executors.processes import count_text
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
@@ -336,7 +336,7 @@ def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, 
 
     parquet.write_table(pyarrow.table({"force": np.ones(10**6)}), tmp_path / "rows.parquet")
     (tmp_path / "rows.csv").write_text("force\n" + "1\n" * 10**5, encoding="utf-8")
-    monkeypatch.setattr("ballsocket.core.memory.available_memory", lambda: 10**6)
+    monkeypatch.setattr("ballsocket.core.executors.processes.available_memory", lambda: 10**6)
     with pytest.raises(ValueError, match=r"1e\+06 rows of rows.parquet take about 24 MB, and there are 1 MB of memory"):
         table(tmp_path / "rows.parquet")
     with pytest.raises(ValueError, match="rows of rows.csv take about .* and there are 1 MB of memory"):

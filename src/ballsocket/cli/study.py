@@ -13,7 +13,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
-from ..core.memory import count_text
+from ..core.executors.processes import count_text
 from ..reports import study_plots, study_tables
 from ..reports.figure_files import check_format, save
 from ..studies.export import check_suffix, export

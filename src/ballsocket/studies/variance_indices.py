@@ -11,7 +11,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.memory import check_memory
+from ..core.executors.processes import check_memory
 from .distributions import Distribution, normal_quantiles, probabilities_of
 
 SampledFunction = Callable[[Numbers], Numbers]
