@@ -231,7 +231,7 @@ def sensitivity(
         list[str] | None,
         typer.Option(
             help="Rank correlation of two scattered parameters: 'clearance, liner_young = 0.5'. Repeat for several. "
-            "The result then has Shapley effects."
+            "The result then has Shapley effects. Default: independent parameters."
         ),
     ] = None,
     second_order: Annotated[
