@@ -20,7 +20,7 @@ from ..files.units import as_given
 from ..reports.orientation_results import orientation_figure, print_orientations
 from ..studies.expressions import parse_ends
 from .elasticity_options import CupOptions, DirectionOptions
-from .options import JointName, JointOptions, LoadOptions, OutputOptions, drop_missing, expand_groups
+from .options import JointName, JointPartOptions, LoadOptions, OutputOptions, drop_missing, expand_groups
 from .root import FAILURE, app, print_message
 
 
@@ -74,7 +74,7 @@ class OrientationOptions:
 def orient(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
+    joint_options: JointPartOptions,
     load: LoadOptions,
     orientation: OrientationOptions,
     cup: CupOptions,

@@ -25,6 +25,8 @@ from .elasticity_options import (
     MeshOptions,
     TimedModel,
     mesh_remark,
+    orientation_remark,
+    orientation_summary,
     refuse_mesh_options,
     solve_mesh,
     sphere_in_cup,
@@ -105,7 +107,10 @@ def press(
     file = joint_options.read(joint)
     load = load_options.read(file)
     direction, remarks = direction_options.read(file), []
-    cup = tilted_cup(cup_options.apply_to(file.cup), direction)
+    oriented_cup = cup_options.apply_to(file.cup)
+    cup = tilted_cup(oriented_cup, direction)
+    if oriented_cup.oriented and "tilt" not in direction:
+        remarks.append(orientation_remark(oriented_cup))
     needs_sphere = direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
     models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
     if model_options.has_finite_elements and direction:
@@ -126,7 +131,8 @@ def press(
     files.write(comparison, next(iter(models)))
     report.write(comparison, replace(file, cup=cup, load=load, aim=direction), units)
     if as_json:
-        echo_json(comparison.summary())
+        angles = orientation_summary(oriented_cup)
+        echo_json({**comparison.summary(), **({"orientation": angles} if angles else {})})
     else:
         print_press(comparison, remarks, units)
     _exit_on_failure(comparison, models)
