@@ -15,8 +15,8 @@ from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import AngleDefinition, Cup, Interface, Side
 from ..problem.dimensions import STORED_LENGTHS, resolve_lengths
-from ..problem.presets import joints, materials, named_material
-from .schema import Angle, Force, Length, PlainNumber, Stress, Table, Text, Value, meaning
+from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
+from .schema import Angle, Force, Length, PlainNumber, Stress, Table, Text, Value, choices_schema, meaning
 from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
@@ -47,6 +47,11 @@ class MaterialName(Text):
     """Name of a preset material."""
 
     choices = tuple(materials)
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of the names and further names of the presets."""
+        return choices_schema((*materials, *MATERIAL_ALIASES))
 
 
 class MaterialTable(Table, frozen=True, kw_only=True):
