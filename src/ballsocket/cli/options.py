@@ -11,17 +11,29 @@ from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import typer
 
+from ..catalogue import listed_models
 from ..core.checks import nearest, normalise_name
 from ..core.executors.processes import Engine, Processes
 from ..core.input_files import resolve_input
 from ..files.joint_file import JointFile, joint_of, read_cup, read_joint, read_load, varied
 from ..problem.dimensions import LENGTHS
-from ..problem.presets import joints
+from ..problem.presets import joints, materials
 from ..reports.figure_files import check_format, save
 from .json_answers import echo_json
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+def complete_material(start: str) -> list[str]:
+    """List the preset materials whose names have this start, for a shell."""
+    return [name for name in materials if name.startswith(start.lower())]
+
+
+def complete_model(start: str) -> list[str]:
+    """List the models whose names have this start, for a shell."""
+    return [name for name in listed_models if name.startswith(start.lower())]
+
 
 JointName = Annotated[
     str | None,
@@ -38,7 +50,8 @@ Scheduler = Annotated[
 ModelName = Annotated[
     str | None,
     typer.Option(
-        help="Name of a model, see `ballsocket models`. Default: tabulated; exact for joints outside its tables."
+        help="Name of a model, see `ballsocket models`. Default: tabulated; exact for joints outside its tables.",
+        autocompletion=complete_model,
     ),
 ]
 
@@ -80,7 +93,8 @@ class JointPartOptions:
         str | None,
         typer.Option(
             help="Name of the material of a shell right behind the liner: 'titanium'. Its thickness follows from "
-            "--outer-diameter and --liner-thickness, or is --shell-thickness."
+            "--outer-diameter and --liner-thickness, or is --shell-thickness.",
+            autocompletion=complete_material,
         ),
     ] = None
     shell_thickness: Annotated[str | None, typer.Option(help="Thickness of the shell in mm: '2 mm'.")] = None
@@ -91,7 +105,8 @@ class JointPartOptions:
     liner: Annotated[
         str | None,
         typer.Option(
-            help="Name of the liner material, see `ballsocket presets`. --young and --poisson replace its values."
+            help="Name of the liner material, see `ballsocket presets`. --young and --poisson replace its values.",
+            autocompletion=complete_material,
         ),
     ] = None
     ball_young: Annotated[
@@ -104,7 +119,8 @@ class JointPartOptions:
     ball: Annotated[
         str | None,
         typer.Option(
-            help="Name of the ball material, see `ballsocket presets`. --ball-young, --ball-poisson replace its values."
+            help="Name of the ball material, see `ballsocket presets`. --ball-young and --ball-poisson replace it.",
+            autocompletion=complete_material,
         ),
     ] = None
 

@@ -34,7 +34,7 @@ from .elasticity_options import (
     tilted_cup,
 )
 from .json_answers import echo_json
-from .options import AsJson, JointName, JointOptions, LoadOptions, expand_groups
+from .options import AsJson, JointName, JointOptions, LoadOptions, complete_model, expand_groups
 from .press_files import FigureOptions, ReportOptions
 from .root import FAILURE, app, print_message
 
@@ -49,7 +49,8 @@ class ModelOptions:
         list[str] | None,
         typer.Option(
             help="Name of a model (see `ballsocket models`), fem or sphere. "
-            f"Repeat for several. Default: {DEFAULT_MODEL}."
+            f"Repeat for several. Default: {DEFAULT_MODEL}.",
+            autocompletion=complete_model,
         ),
     ] = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
