@@ -56,7 +56,9 @@ class OrientationOptions:
     ] = None
     limit: Annotated[
         list[str] | None,
-        typer.Option(help="Limit of edge_distance, max_pressure or half_angle: 'edge_distance>=1 mm'. Repeatable."),
+        typer.Option(
+            help="Limit of edge_distance, max_pressure or half_angle: 'edge_distance>=1 mm'. Repeat for several. Default: no limit."
+        ),
     ] = None
     ring_width: Annotated[
         str | None,
@@ -152,10 +154,10 @@ def orient(
     cup: CupOptions,
     output: OutputOptions,
 ) -> None:
-    """Map edge distance and peak pressure over cup orientations, and find those within limits.
+    """Map edge distance and peak pressure over cup orientations.
 
     The load has a fixed direction in the body while the cup rotates through inclinations and anteversions. The model
-    sphere (linear elasticity) solves every orientation.
+    sphere (linear elasticity) solves every orientation. --limit finds the orientations within limits.
 
     Exit status: 0 success, 2 wrong input, 3 no orientation has a result.
     """

@@ -101,7 +101,7 @@ _MATERIALS: dict[str, Material] = {
 }
 
 _ALIASES = {
-    "uhmwpe": ("uhmw-pe", "pe-uhmw", "conventional-pe", "conventional-uhmwpe", "conventional-polyethylene"),
+    "uhmwpe": ("pe-uhmw", "conventional-pe", "conventional-uhmwpe", "conventional-polyethylene"),
     "crosslinked-pe": (
         *("xlpe", "hxlpe", "xpe", "hxpe", "hxl", "x-uhmwpe", "xl-uhmwpe", "crosslinked-uhmwpe"),
         *("crosslinked-polyethylene", "highly-crosslinked-pe", "highly-crosslinked-uhmwpe"),
