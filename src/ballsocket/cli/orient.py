@@ -57,7 +57,8 @@ class OrientationOptions:
     limit: Annotated[
         list[str] | None,
         typer.Option(
-            help="Limit of edge_distance, max_pressure or half_angle: 'edge_distance>=1 mm'. Repeat for several. Default: no limit."
+            help="Limit of edge_distance, max_pressure or half_angle: 'edge_distance>=1 mm'. Repeat for several. "
+            "Default: no limit."
         ),
     ] = None
     ring_width: Annotated[

@@ -232,8 +232,9 @@ def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
     if tables.shell is not None:
         if joint.backing:
             raise ValueError("the joint has layers behind its liner already; change them in its file")
-        shell, changes = _shell(tables.shell, lengths, changes, {name: getattr(joint, name) for name in STORED_LENGTHS})
-        changes["backing"] = (shell,)
+        current = {name: getattr(joint, name) for name in STORED_LENGTHS}
+        shell, remaining = _shell(tables.shell, lengths, changes, current)
+        changes = {**remaining, "backing": (shell,)}
     for part, material in (("liner", tables.liner), ("ball", tables.ball)):
         if material is not None:
             changes[part] = _material(part, material, getattr(joint, part))
@@ -285,9 +286,9 @@ def cup_of(table: CupTable, base: Cup = DEFAULT_CUP) -> Cup:
     changes |= quantities_of(table, "arc_of_cover", "chamfer")
     angles = quantities_of(table, "inclination", "anteversion")
     with as_given(written_in(table)):
-        if table.orientation is None and table.pelvic_tilt is None:
-            return replace(base, **changes, **angles)
-        return replace(base, **changes, **_radiographic_angles(table, angles, base))
+        if table.orientation is not None or table.pelvic_tilt is not None:
+            angles = _radiographic_angles(table, angles, base)
+        return replace(base, **{**changes, **angles})
 
 
 def _radiographic_angles(table: CupTable, angles: Mapping[str, float], base: Cup) -> dict[str, float]:

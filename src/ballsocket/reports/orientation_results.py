@@ -201,7 +201,7 @@ def print_orientations(orientations: Orientations, limits: Sequence[Limit] = ())
     fields = {DERIVED["edge_distance"]: orientations.edge_distance, CONTACT["max_pressure"]: orientations.max_pressure}
     for quantity, values in fields.items():
         terminal.print(Text(f"{quantity.label()}, anteversion by inclination"))
-        print_columns(terminal, _table(orientations, values, within_limits(orientations, limits)))
+        print_columns(terminal, _table(orientations, values, limits))
     for line in _limit_remarks(orientations, limits) if limits else ():
         print_folded(terminal, line, "bold")
     for line in _remarks(orientations):
@@ -239,14 +239,15 @@ def _limit_text(limit: Limit) -> str:
     return " and ".join(f"{limit.name} {sign} {end * unit.factor:g} {unit.text}" for sign, end in ends if isfinite(end))
 
 
-def _table(orientations: Orientations, values: Numbers, within: Numbers) -> Table:
+def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit]) -> Table:
     """Make the table of a field: anteversion by inclination; a star marks values outside the limits."""
+    within = within_limits(orientations, limits)
     columns = range(len(orientations.inclination))
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for head in ("", *(_degree_text(orientations.inclination[i]) for i in columns)):
         table.add_column(head, justify="right", no_wrap=True)
     for j in range(len(orientations.anteversion)):
-        cells = (_cell(orientations, values, i, j, "" if within[i, j] else "*") for i in columns)
+        cells = (_cell(orientations, values, i, j, "*" if limits and not within[i, j] else "") for i in columns)
         table.add_row(Text(_degree_text(orientations.anteversion[j]), style="bold"), *cells)
     return table
 
