@@ -32,6 +32,8 @@ from .elasticity_options import (
     MeshOptions,
     TimedModel,
     mesh_remark,
+    orientation_remark,
+    orientation_summary,
     refuse_mesh_options,
     solve_mesh,
     sphere_in_cup,
@@ -39,7 +41,16 @@ from .elasticity_options import (
     tilted_cup,
 )
 from .json_answers import echo_json
-from .options import AsJson, JointName, JointNames, JointOptions, LoadOptions, UnitSystem, expand_groups
+from .options import (
+    AsJson,
+    JointName,
+    JointNames,
+    JointOptions,
+    LoadOptions,
+    UnitSystem,
+    complete_model,
+    expand_groups,
+)
 from .press_files import FigureOptions, ReportOptions
 from .root import FAILURE, app, print_message
 
@@ -54,7 +65,8 @@ class ModelOptions:
         list[str] | None,
         typer.Option(
             help="Name of a model (see `ballsocket models`), fem or sphere. "
-            f"Repeat for several. Default: {DEFAULT_MODEL}."
+            f"Repeat for several. Default: {DEFAULT_MODEL}.",
+            autocompletion=complete_model,
         ),
     ] = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
@@ -151,6 +163,8 @@ class PressedJoint:
     ----------
     assumptions : list of str
         Sentences on what was assumed for a preloaded joint.
+    orientation : dict
+        Inclination and anteversion of the cup by each definition, in degrees; empty for a cup without orientation.
     pulled : PullOut or None
         Pull-out force, if it was asked for.
     """
@@ -160,6 +174,7 @@ class PressedJoint:
     models: Mapping[str, Model]
     remarks: list[str]
     assumptions: list[str]
+    orientation: dict[str, Any]
     pulled: PullOut | None
 
     def summary(self, friction: FrictionOptions) -> dict[str, Any]:
@@ -168,9 +183,9 @@ class PressedJoint:
         for result in summary["results"] if friction.friction is not None else ():
             contact = self.comparison.get(result["model"])
             result["friction"] = None if contact is None else friction.torques(contact)
-        if self.assumptions:
-            summary["assumptions"] = self.assumptions
-        return summary if self.pulled is None else {**summary, "pull_out": self.pulled.summary()}
+        pull_out = None if self.pulled is None else self.pulled.summary()
+        further = {"assumptions": self.assumptions, "orientation": self.orientation, "pull_out": pull_out}
+        return {**summary, **{key: part for key, part in further.items() if part}}
 
 
 @app.command()
@@ -218,6 +233,8 @@ def press(
         held_cup = stated_cup.around_ball(file.joint.clearance)
         assumed_arc = held_cup is not stated_cup
         assumptions = _preload_assumptions(file.joint, held_cup if assumed_arc else None)
+        orientation = {} if "tilt" in direction else orientation_summary(stated_cup)
+        remarks += [orientation_remark(stated_cup)] if orientation else []
         cup = tilted_cup(held_cup, direction)
         needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
         models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
@@ -251,6 +268,7 @@ def press(
             models=models,
             remarks=remarks,
             assumptions=assumptions,
+            orientation=orientation,
             pulled=pulled,
         )
 
