@@ -15,6 +15,7 @@ from .contact import Contact, Model
 from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count_text, number_text
 from .core.arrays import Array, to_list, where
 from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
+from .core.display import html_table
 from .core.plotting import load_plot
 from .core.quantities import HEADLINE
 from .core.sources import Source
@@ -149,10 +150,8 @@ class Comparison(Mapping[str, Contact]):
         return "\n".join([str(self.joint), *lines, *self.notes()])
 
     def _repr_html_(self) -> str:
-        cells = "".join(f"<th>{escape(text)}</th>" for text in COLUMN_HEADS)
-        rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in self.rows())
         notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.notes())
-        return f"<div>{escape(str(self.joint))}</div><table><tr>{cells}</tr>{rows}</table>{notes}"
+        return f"<div>{escape(str(self.joint))}</div>{html_table(COLUMN_HEADS, self.rows())}{notes}"
 
 
 def relative_deviation(value: Array, truth: Array) -> Array:

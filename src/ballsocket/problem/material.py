@@ -7,12 +7,13 @@ from typing import Any
 
 from ..core.arrays import Array, to_list
 from ..core.checks import shown
+from ..core.display import OneLine, html_list
 from ..core.quantities import LAYER, MATERIAL, STRENGTH, STRESS_LIMITS
 from .values import make_unchecked, set_fields, short_text
 
 
-@dataclass(frozen=True, kw_only=True)
-class Material:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Material(OneLine):
     """Linear elastic, isotropic material.
 
     Parameters
@@ -79,13 +80,22 @@ class Material:
         numbers = {"young": self.young, "poisson": self.poisson, **self.stress_limits}
         return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
 
+    def _repr_html_(self) -> str:
+        elastic = {name: getattr(self, name) for name in MATERIAL}
+        rows = [
+            (quantity.title, f"{short_text(value)} {quantity.unit}".removesuffix(" 1"))
+            for name, value in {**elastic, **self.stress_limits}.items()
+            for quantity in [{**MATERIAL, **STRESS_LIMITS}[name]]
+        ]
+        return html_list(self.name or "material", [*rows, *([("source", self.source)] if self.source else [])])
+
     def __str__(self) -> str:
         numbers = f"E {short_text(self.young)} MPa, nu {short_text(self.poisson)}"
         return f"{self.name} ({numbers})" if self.name else numbers
 
 
-@dataclass(frozen=True, kw_only=True)
-class Layer:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Layer(OneLine):
     """Layer behind the liner: a metal shell, cement or bone.
 
     Parameters

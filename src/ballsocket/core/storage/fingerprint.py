@@ -7,6 +7,7 @@ from hashlib import sha256
 from pathlib import Path
 
 from ...version import __version__
+from ..display import full_repr
 
 _SUFFIXES = {".py", ".npz", ".toml", ".csv", ".html", ".css"}
 
@@ -43,5 +44,5 @@ def check_worker_code(code: str) -> None:
 
 
 def hash_inputs(*inputs: object) -> str:
-    """Compute the SHA-256 digest of the `repr` of inputs, as 64 hexadecimal characters."""
-    return sha256(repr(inputs).encode()).hexdigest()
+    """Compute the SHA-256 digest of the `full_repr` of inputs, as 64 hexadecimal characters."""
+    return sha256(full_repr(inputs).encode()).hexdigest()
