@@ -51,6 +51,13 @@ class AdhesiveSocket(ClosedForm):
     -----
     Forces may be negative at small indentations, where adhesion holds the ball. A press by force finds the stable state
     for forces of zero or more.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.AdhesiveSocket().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.06
     """
 
     work_of_adhesion: Array = 5e-5

@@ -32,6 +32,13 @@ class RadialFoundation(ClosedForm):
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (4)-(13). The closed form for exact kinematics, which the
     paper calls numerical, is derived in the docs (theory).
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.RadialFoundation().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.06
     """
 
     modulus: Modulus = hess_forsbach
@@ -156,6 +163,18 @@ def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as t
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (18).
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.HessForsbach().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.06
     """
     return RadialFoundation()
 
@@ -169,6 +188,18 @@ def Vessel() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (14).
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.Vessel().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.68
     """
     return RadialFoundation(modulus=spherical_vessel)
 
@@ -179,6 +210,18 @@ def Bartel() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Bartel et al. 1985, doi 10.1115/1.3138540; the closed form is derived in the docs (theory).
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.Bartel().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.77
     """
     return RadialFoundation(modulus=spherical_vessel, kinematics=exact_kinematics)
 
@@ -189,6 +232,18 @@ def BondedLayer() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (15); Johnson 1985.
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.BondedLayer().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    18.01
     """
     return RadialFoundation(modulus=bonded_layer)
 
@@ -201,6 +256,18 @@ def BondedLayerExact() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Askari & Andersen 2018, doi 10.1177/0954411918810044.
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.BondedLayerExact().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    18.1
     """
     return RadialFoundation(modulus=bonded_layer, kinematics=exact_kinematics)
 
@@ -213,5 +280,17 @@ def CosineLimit() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6) and (13) with c = 0.
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.CosineLimit().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    7.2
     """
     return RadialFoundation(kinematics=cosine_kinematics)

@@ -36,6 +36,13 @@ class LiuReconstruction(ClosedForm):
     References
     ----------
     Liu, Zhang & Yang 2006, doi 10.1115/1.2162872, after Heß & Forsbach 2021, doi 10.3390/app112311170, section 2.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.LiuReconstruction().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    8.65
     """
 
     coefficient: float = 0.5
