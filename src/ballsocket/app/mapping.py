@@ -20,11 +20,10 @@ from ..core.validity import OutsideDomainError, check_domain
 from ..files.joint_file import JointFile
 from ..problem import Joint
 from ..problem.dimensions import DIAMETERS
-from ..studies.default_model import default_model, joint_of_arrays
 from ..studies.design import Span, grid
 from ..studies.limits import Limit, allowed, margin_on_plane
 from ..studies.parameters import LOADS, PARAMETERS, press_arguments
-from ..studies.run import study
+from ..studies.run import default_model, joint_of_arrays, study
 from .numbers import NUMBERS
 from .reading import Reading
 from .screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen

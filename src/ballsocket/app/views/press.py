@@ -19,7 +19,7 @@ from ...reports.figure_files import figure_bytes
 from ...reports.press_plots import press_figure
 from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
-from ...studies.local_uncertainty import LocalUncertainty, local_uncertainty
+from ...studies.derivatives import LocalUncertainty, local_uncertainty
 from ..chart import swatch
 from ..controls import fields_of, tilt_of
 from ..drawing import LinerStresses, liner_stresses, painted_stresses
