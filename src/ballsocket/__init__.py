@@ -16,7 +16,7 @@ from .catalogue import catalogue
 from .compare import compare
 from .contact import Contact, Model
 from .core.deprecation import present_module_path, register_old_paths
-from .core.sources import cite
+from .core.sources import Source, cite
 from .core.validity import OutsideDomainError, Range, Status
 from .dynamics.element import ForceElement
 from .elasticity.exact.exact_curve import ExactCurve
@@ -148,6 +148,7 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "ClosedForm",
     "Model",
     "RadialFoundation",
+    "Source",
     "as_constant",
     "as_corrected_vessel",
     "as_polynomial",

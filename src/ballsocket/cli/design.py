@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..catalogue import named_model, reference
+from ..catalogue import reference
 from ..contact import Model
 from ..core.checks import require
 from ..files.joint_file import JointFile
@@ -26,6 +26,7 @@ from ..studies.run import check_model_domain, default_model, study
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import DEFAULT_QUANTITIES, QUANTITIES
 from ..version import __version__
+from .model_file import requested_model
 from .options import (
     JointName,
     JointOptions,
@@ -69,7 +70,7 @@ class PressOptions:
             if model.name == reference.name:
                 print_message(f"model {model.name} is used, since none of these joints is in the tables of tabulated")
         else:
-            model = named_model(self.model)
+            model = requested_model(self.model)
             check_model_domain(model, file.joint, ends)
         return model.in_cup(file.cup)
 

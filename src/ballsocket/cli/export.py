@@ -11,7 +11,6 @@ from typing import Annotated
 
 import typer
 
-from ..catalogue import named_model
 from ..core.checks import known_name
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
@@ -19,6 +18,7 @@ from ..export.targets import TARGETS, ExportJob
 from ..files.joint_file import JointFile
 from ..problem.cup import Cup
 from ..studies.run import default_model
+from .model_file import requested_model
 from .options import JointName, JointOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 
@@ -49,7 +49,7 @@ class ForceElementOptions:
         ValueError
             The model has no force law, or a value is not allowed.
         """
-        model = default_model(file.joint, {}) if self.model is None else named_model(self.model)
+        model = default_model(file.joint, {}) if self.model is None else requested_model(self.model)
         friction = None if self.friction is None else Friction(coefficient=self.friction)
         cup = None if file.cup == Cup() else file.cup
         try:

@@ -7,12 +7,13 @@ from math import nan
 
 from ..contact.law import ForceLaw, finite_or_nan
 from ..core.arrays import Array, cos, where
+from ..core.checks import shown
 from ..core.sources import Source
 from ..core.validity import SMALL_STRAIN, Promise, Range
 from ..problem import Joint
 from .closed_form import ClosedForm
 from .kinematics import Kinematics, angle_of, cosine_kinematics, exact_kinematics, linear_kinematics, versine_of
-from .modulus import Modulus, bonded_layer, hess_forsbach, spherical_vessel
+from .modulus import Modulus, as_modulus, bonded_layer, hess_forsbach, spherical_vessel
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,9 +22,9 @@ class RadialFoundation(ClosedForm):
 
     Parameters
     ----------
-    modulus : Modulus
+    modulus : Modulus or function
         Foundation modulus: `hess_forsbach` (default), `spherical_vessel`, `bonded_layer`, `polynomial(...)`,
-        `constant(...)`.
+        `constant(...)`, or a function that computes K in MPa/mm of a joint.
     kinematics : Kinematics
         Shape of the ball: `linear_kinematics` (Eq. 6, default), `exact_kinematics` (Eq. 5) or
         `cosine_kinematics` (Eq. 6 without clearance).
@@ -39,10 +40,21 @@ class RadialFoundation(ClosedForm):
     >>> contact = bs.RadialFoundation().press(bs.joints["hip-28"], force=3000.0)
     >>> round(contact.max_pressure, 2)  # MPa
     17.06
+    >>> def winkler(joint):
+    ...     return 1.5 * joint.liner.young / joint.liner_thickness
+    >>> round(bs.RadialFoundation(modulus=winkler).press(bs.joints["hip-28"], force=3000.0).max_pressure, 2)
+    15.76
     """
 
     modulus: Modulus = hess_forsbach
     kinematics: Kinematics = linear_kinematics
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "modulus", as_modulus(self.modulus))
+        if not isinstance(self.kinematics, Kinematics):
+            raise TypeError(
+                f"kinematics must be a Kinematics, such as bs.linear_kinematics, got {shown(self.kinematics)}"
+            )
 
     @property
     def name(self) -> str:
@@ -57,6 +69,11 @@ class RadialFoundation(ClosedForm):
     def sources(self) -> tuple[Source, ...]:
         related = _RELATED_SOURCES.get((self.modulus.name, self.kinematics.name), ())
         return (*self.modulus.sources, *self.kinematics.sources, *related)
+
+    @property
+    def source(self) -> str:
+        """Source of a custom modulus, as text; empty for a published one."""
+        return self.modulus.source
 
     @property
     def domain(self) -> tuple[Range, ...]:
