@@ -92,7 +92,7 @@ def test_iso_cycles_prescribe_the_tilt_of_the_cup_and_a_second():
         assert degrees(cycle.cup_tilt) == pytest.approx(30.0)
         assert (cycle.n_steps, cycle.duration, cycle.frame) == (16, 1.0, Frame.BODY)
         assert cycle.seconds == pytest.approx(np.full(16, 1 / 16))
-        assert "the standard itself was not read" in cycle.notes[0]
+        assert "not from the standard itself" in cycle.notes[0]
     for make in (two_axis, rocking, constant_load):
         assert make().cup_tilt is None
 

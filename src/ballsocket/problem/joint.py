@@ -15,8 +15,7 @@ from ..core.display import OneLine, html_list
 from ..core.kinds import Choice
 from ..core.quantities import JOINT
 from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
-from .material import Layer, Material
-from .values import elementwise_maximum, make_unchecked, set_fields, short_text
+from .material import Layer, Material, elementwise_maximum, make_unchecked, set_fields, short_text
 
 
 class Support(Choice):

@@ -12,7 +12,7 @@ from rich.table import Table
 from ..hip.bands import INFLUENCED_RESULTS, Bands
 from ..hip.contact_checks import largest_utilisation
 from ..hip.history import History
-from .terminal import console, print_folded
+from .terminal import console, print_columns, print_folded
 
 _WEAR_UNITS = {
     "cycles": "million",
@@ -168,18 +168,18 @@ def print_hip(history: History) -> None:
         "",
     )
     print_folded(terminal, f"unworn: {first.volume:.4g} mm³ and {first.depth:.4g} mm a million cycles", "")
-    terminal.print(_wear_table(history))
+    print_columns(terminal, _wear_table(history))
     if history.use.ball_wear is not None:
         last = history.last
         ball_wear = f"{last.ball_volume:.4g} mm³ and {last.ball_depth:.3g} mm"
         print_folded(terminal, f"the ball: {ball_wear} after {last.cycles / 1e6:g} million cycles", "")
     print_folded(terminal, contact_line(history), "")
     if len(history.use.unworn_checks) > 1:
-        terminal.print(_contact_table(history))
+        print_columns(terminal, _contact_table(history))
     for line in _film_lines(history):
         print_folded(terminal, line, "")
-    accuracy = f"volume within {100 * history.error.volume:.2g} % of the same model in the finest steps"
-    print_folded(terminal, f"{accuracy}, in {history.steps} blocks", "dim")
+    accuracy = f"estimated numerical error of the volume {100 * history.error.volume:.2g} %"
+    print_folded(terminal, f"{accuracy}, {history.steps} blocks of cycles", "dim")
     print_notes(history.notes)
 
 
@@ -189,12 +189,12 @@ def print_bands(bands: Bands) -> None:
     print_folded(terminal, f"{band_summary(bands)} lie between", "bold")
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for head in band_units(bands):
-        table.add_column(head, justify="right", overflow="fold")
+        table.add_column(head, justify="right")
     table.add_row(*band_units(bands).values(), style="dim")
     tail = (1 - bands.level) / 2
     for row in band_rows(bands, (tail, 1 - tail)):
         table.add_row(*row)
-    terminal.print(table)
+    print_columns(terminal, table)
     for line in (*rim_lines(bands), band_contact_line(bands), *sobol_lines(bands)):
         print_folded(terminal, line, "")
     print_notes(bands.notes)
