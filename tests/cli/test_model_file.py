@@ -30,6 +30,12 @@ def catalogued(): return bs.Hertz()
 class Unfinished(bs.ClosedForm): pass
 class Nameless(type(bs.Hertz())):
     name = ""
+class Twice(type(bs.Hertz())):
+    name = "twice"
+    def stiffness(self, joint, indentation): return 2 * super().stiffness(joint, indentation)
+class Lossy(type(bs.Hertz())):
+    name = "lossy"
+    def energy(self, joint, indentation): return 0.9 * super().energy(joint, indentation)
 '''
 
 
@@ -70,6 +76,8 @@ def test_models_of_a_file_press_as_in_python(name, folder):
         ("own.py:catalogued", "is named 'hertz', as a model of ballsocket; give it another name"),
         ("own.py:Unfinished", "failed: TypeError: Can't instantiate abstract class Unfinished"),
         ("own.py:Nameless", "name of own.py:Nameless must be text, got ''"),
+        ("own.py:Twice", "but the derivative of its force is 2.552e+04: correct one of them"),
+        ("own.py:Lossy", "but the derivative of its energy is 900: correct one of them"),
         ("none.py:winkler", "none.py' does not exist"),
         ("fails.py:x", "model file fails.py failed in line 2: ZeroDivisionError: division by zero"),
         ("wrong.py:x", "model file wrong.py failed in line 1: SyntaxError"),

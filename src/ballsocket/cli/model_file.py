@@ -25,7 +25,10 @@ from ..problem.presets import joints
 _FORM = re.compile(r"(?P<path>.+\.py):(?P<name>[^:]*)")
 
 _TRIAL_JOINT, _TRIAL_FORCE = joints["hip-28"], 1000.0
-"""Joint and force (N) that a custom model presses once when it is loaded."""
+"""Joint and force (N) that a custom model presses when it is loaded."""
+
+_TRIAL_STEP, _TRIAL_TOLERANCE = 1e-3, 0.01
+"""Relative step of the derivatives of the trial press, and their allowed relative error."""
 
 
 _LOADED: dict[str, Path] = {}
@@ -128,7 +131,7 @@ def _make_model(value: Any, text: str, path: Path) -> Model:
         if not isinstance(value, Model):
             raise ValueError(f"{text} is not a model: {shown(value)}; it must be {kinds}")
         _check_description(value, text)
-        value.press(_TRIAL_JOINT, force=_TRIAL_FORCE)
+        _check_laws(value, text)
     except OutsideDomainError:
         pass  # the model may be for other joints
     except ValueError as error:
@@ -156,6 +159,21 @@ def _check_description(model: Model, text: str) -> None:
         value = getattr(model, attribute)
         if not isinstance(value, tuple):
             raise ValueError(f"{attribute} of {text} must be a tuple, which may be empty, got {shown(value)}")
+
+
+def _check_laws(model: Model, text: str) -> None:
+    """Press the trial joint; check that the stiffness and the force are derivatives of the force and the energy."""
+    contact = model.press(_TRIAL_JOINT, force=_TRIAL_FORCE)
+    d, step = float(contact.indentation), _TRIAL_STEP * float(contact.indentation)
+    low, high = (model.press(_TRIAL_JOINT, indentation=d + change) for change in (-step, step))
+    for law, derivative in (("force", "stiffness"), ("energy", "force")):
+        slope = float(getattr(high, law) - getattr(low, law)) / (2 * step)
+        value = float(getattr(contact, derivative))
+        if abs(slope - value) > _TRIAL_TOLERANCE * abs(value):
+            raise ValueError(
+                f"{derivative} of {text} is {value:.4g} at an indentation of {d:.4g} mm, "
+                f"but the derivative of its {law} is {slope:.4g}: correct one of them"
+            )
 
 
 def _failure(error: BaseException, path: Path) -> str:

@@ -6,7 +6,7 @@ Directions are those of the patient's body: x to the right, y to the front, z up
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, pi, sin
+from math import cos, degrees, pi, sin
 
 from ..core import arrays
 from ..core.arrays import Array, is_plain_number
@@ -110,6 +110,12 @@ class Cup:
             if not isinstance(getattr(self, name), kind):
                 choices = " or ".join(map(str, kind))
                 raise TypeError(f"{name} must be {choices}, got {shown(getattr(self, name))}")
+
+    def __str__(self) -> str:
+        angles = ("arc_of_cover", "inclination", "anteversion")
+        texts = [f"{CUP[name].title} {degrees(getattr(self, name)):.4g}°" for name in angles]
+        chamfer = [f"chamfer {self.chamfer:g} mm"] if self.chamfer else []
+        return ", ".join([*texts, *chamfer, f"{self.interface.value} liner", f"{self.side.value} side"])
 
     @property
     def rim(self) -> float:
