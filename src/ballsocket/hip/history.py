@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from html import escape
 from itertools import chain
 from math import degrees
 from typing import Any
@@ -13,6 +14,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_names
+from ..core.display import OneLine, html_table
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes
 from .film import Lubricant
 from .hip_setup import HipSetup
@@ -20,8 +22,8 @@ from .law_fields import law_summary
 from .rim import ClosestApproach, RimDistance
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Report:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Report(OneLine):
     """Results of a wear simulation after a number of cycles.
 
     Attributes
@@ -92,6 +94,10 @@ class Report:
         """Distance of each contact from the rim, with azimuth and pressure."""
         return RimDistance(distance=self.edge_distance, azimuth=self.edge_place, pressure=self.edge_pressure)
 
+    def __str__(self) -> str:
+        numbers = f"{self.volume:.4g} mm³ worn, penetration {self.penetration:.4g} mm"
+        return f"after {self.cycles:g} cycles: {numbers}, largest pressure {self.max_pressure:.4g} MPa"
+
     def summary(self) -> dict[str, Any]:
         """Return the report as a dictionary for JSON, in mm, MPa and mm³."""
         return {
@@ -127,8 +133,8 @@ class NumericalError:
     depth: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class History:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class History(OneLine):
     """Results of a wear simulation: reports at several cycle counts.
 
     Attributes
@@ -219,6 +225,21 @@ class History:
                 count = len(frame.loaded)
                 return (_AT_RIM.format(stage, worst.steps_at_rim, count, worst.location, worst.pressure),)
         return ()
+
+    def __str__(self) -> str:
+        joint, count = self.use.joint, len(self.reports)
+        state = "" if self.converged else "; not converged"
+        return f"of {joint.name or joint.dimensions}, {count} report{'s' * (count > 1)}, last {self.last}{state}"
+
+    def _repr_html_(self) -> str:
+        heads = ("cycles", "volume [mm³]", "depth [mm]", "penetration [mm]", "pmax [MPa]", "edge distance [mm]")
+        rows = []
+        for report in self.reports:
+            edge = report.edge_distance.min() if len(report.edge_distance) else numpy.nan
+            values = (report.cycles, report.volume, report.depth, report.penetration, report.max_pressure, edge)
+            rows.append([f"{value:.4g}" for value in values])
+        notes = "".join(f"<div>{escape(note)}</div>" for note in self.notes)
+        return f"<div>{escape(str(self.use))}</div>{html_table(heads, rows)}{notes}"
 
     def summary(self) -> dict[str, Any]:
         """Return the results as a dictionary for JSON."""
