@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 
 import ballsocket as bs
 from ballsocket.dynamics import Gonthier, simulate
-from ballsocket.reports.dynamics_plots import energy_balance
+from ballsocket.reports.press_plots import energy_balance
 
 SHAKING, FREQUENCY, MASS = 400.0, 25.0, 3.0  # N, Hz, kg
 SPRINGS = {500.0: "#0072B2", 300.0: "#009E73", 0.0: "#D55E00"}  # N, from new to worn out

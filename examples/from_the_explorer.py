@@ -15,7 +15,7 @@ from ballsocket.app.screen import START, MapAxis, link_of
 from ballsocket.files.joint_file import JointFile
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.reports.figure_files import save
-from ballsocket.reports.section_plot import section_figure
+from ballsocket.reports.section_plots import section_figure
 from ballsocket.studies import Span, allowed, design_map, limit_of
 
 PAGE = "http://127.0.0.1:5006/?"

@@ -32,7 +32,7 @@ OWN_FILES = {
     "models/table_3.py": "a table of the package",
     "core/storage/array_files.py": "writes arrays",
     "reports/paper_report.py": "a picture that it has just drawn",
-    "paper/claims/elsewhere.py": "a table of the package",
+    "paper/cases.py": "a table of the package",
     "core/storage/plan.py": "pieces of a run",
     "core/sources.py": "the bibliography of the package",
     "elasticity/off_axis/deck.py": "results in a folder of decks, named by its user in Python",

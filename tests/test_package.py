@@ -14,7 +14,7 @@ from ballsocket.catalogue import judge, listed_models, off_axis
 from ballsocket.contact.describe import COLUMNS
 from ballsocket.core.sources import bibliography
 from ballsocket.dynamics import Bristles, Motion, Viscoelastic, relations
-from ballsocket.paper.claims import elsewhere
+from ballsocket.paper.claims import table
 
 from .joints import HIP
 from .places import ROOT
@@ -136,7 +136,7 @@ def test_a_source_without_a_publication_is_refused_alone_and_skipped_in_a_contac
 
 def test_every_publication_is_cited():
     unused = set(bibliography()) - set(keys(*listed_models.values(), *CITABLE))
-    unused -= {source.key for source in elsewhere.SOURCES}
+    unused -= {source.key for source in table.SOURCES}
     unused -= {source.key for used in (*relations.relations, Bristles, Motion, Viscoelastic) for source in used.sources}
     assert unused == set()
 

@@ -77,7 +77,7 @@ from .problem.presets import (
     joints,
     materials,
 )
-from .reports.registration import register_plots
+from .reports.figure_files import register_plots
 from .studies.run import study
 from .version import __version__ as __version__
 

@@ -16,7 +16,7 @@ from ballsocket.app.drawing import petals
 from ballsocket.app.headline import nearness
 from ballsocket.app.page import Page
 from ballsocket.app.verdict import about_von_mises, most_used, sentence
-from ballsocket.reports.joint_section import gap_factor
+from ballsocket.reports.section_plots import gap_factor
 
 from .asking import does, edits, trouble
 

@@ -12,7 +12,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.paper.accuracy import accuracies, paper_joints
-from ballsocket.reports import accuracy_table
+from ballsocket.reports import accuracy_results
 
 from ..places import CONTRIBUTING, ROOT
 
@@ -65,7 +65,7 @@ def test_a_new_model_has_a_row_of_the_accuracy_table(package, monkeypatch):
     place.loader.exec_module(module)
     joints = paper_joints(16)
     rows = accuracies({"mattress": module.Mattress(), "hertz": bs.Hertz()}, joints, joints)
-    assert "| `mattress` | " in accuracy_table.markdown([row.summary() for row in rows])
+    assert "| `mattress` | " in accuracy_results.markdown([row.summary() for row in rows])
 
 
 STRAYS = {

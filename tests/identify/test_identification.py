@@ -8,7 +8,6 @@ from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
 from ballsocket.identify.experiment import Candidate, experiment
 from ballsocket.identify.misfit import by_tracing
 from ballsocket.identify.synthetic import draw_data_sets, trials
-from ballsocket.reports.identify_results import fit_figure
 from ballsocket.studies import LogNormal, Normal
 
 RIGID = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
@@ -302,7 +301,7 @@ def test_a_custom_observable_is_read_from_contacts():
     result = identified(vibrations, measured("area"))
     assert result.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
     assert draw_data_sets(result, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
-    assert fit_figure(result).axes[0].get_ylabel() == "frequency of oscillation f [Hz]"
+    assert result.plot().axes[0].get_ylabel() == "frequency of oscillation f [Hz]"
 
 
 def test_the_uncertainty_of_a_load_is_divided_by_the_stiffness():

@@ -10,11 +10,10 @@ import ballsocket as bs
 from ballsocket.core.storage.plan import Plan
 from ballsocket.paper import cases, claims, curves
 from ballsocket.paper.accuracy import FORCES, accuracies, edge_joints, paper_joints
-from ballsocket.paper.claims import elsewhere
 from ballsocket.paper.claims.evaluation import EXACTLY, Claim, Evaluation, Verdict, judge
-from ballsocket.paper.figure import Figure
+from ballsocket.paper.curves import Figure
 from ballsocket.paper.plan import full_plan, quick_plan
-from ballsocket.reports import accuracy_table
+from ballsocket.reports import accuracy_results
 
 from .. import extent
 from ..places import DATA, ROOT
@@ -76,7 +75,7 @@ def test_claims_of_other_authors_hold(ledger):
 def test_calculix_table_is_the_reference_file():
     cases_of_file = json.loads((DATA / "calculix.json").read_text(encoding="utf-8"))["cases"]
     forces = [step["force"] for case in cases_of_file for step in case["linearised"]]
-    np.testing.assert_array_equal(elsewhere.calculix()["force"], forces)
+    np.testing.assert_array_equal(cases.calculix()["force"], forces)
 
 
 @pytest.mark.long
@@ -156,7 +155,7 @@ def test_largest_errors_of_the_models_are_unchanged():
 def test_the_readme_has_the_error_of_the_largest_pressure(row):
     """Median and worst error in percent are the last cell of the model's row."""
     error = row["errors"]["max_pressure"]
-    cell = " / ".join(dict.fromkeys(accuracy_table.percent(error[name]) for name in ("median", "worst")))
+    cell = " / ".join(dict.fromkeys(accuracy_results.percent(error[name]) for name in ("median", "worst")))
     (line,) = re.findall(rf"^\| `{row['model']}` \|.*$", README.read_text(encoding="utf-8"), flags=re.MULTILINE)
     assert line.endswith(f" | {cell} |")
 
@@ -289,11 +288,11 @@ def test_a_comment_is_a_text_or_follows_from_the_numbers():
 
 def test_claims_are_found_by_name_and_by_the_name_of_their_function_in_version_1_0():
     from ballsocket.paper.claims.agreement import overestimated_pressure
+    from ballsocket.paper.claims.elsewhere import half_angles_of_jin
 
     assert claim_of({}).identifier == "a_claim_of_0_4"
     assert overestimated_pressure is claims.claim("overestimated-pressure")
-    with pytest.warns(DeprecationWarning, match="half_angles_of_jin"):
-        assert elsewhere.half_angles_of_jin is claims.claim("half-angles-of-jin")
+    assert half_angles_of_jin is claims.claim("half-angles-of-jin")
     with pytest.raises(KeyError, match="claim 'wide-half-angel' is not known; did you mean 'wide-half-angle'"):
         claims.claim("wide-half-angel")
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):

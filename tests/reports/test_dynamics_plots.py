@@ -5,7 +5,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.dynamics import Damping, Prony, Viscoelastic, simulate
-from ballsocket.reports.dynamics_plots import energy_balance, loop_figure, motion_figure
+from ballsocket.reports.press_plots import energy_balance, loop_figure, motion_figure
 
 from ..joints import HIP
 

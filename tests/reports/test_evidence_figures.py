@@ -8,7 +8,7 @@ import pytest
 from ballsocket import read_joint
 from ballsocket.evidence.matrix import NAMES, WEAR
 from ballsocket.problem import presets
-from ballsocket.reports import evidence_figures as figures
+from ballsocket.reports import evidence_parts as figures
 
 from ..places import EXAMPLES
 

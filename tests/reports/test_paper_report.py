@@ -8,7 +8,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.paper import claims, curves
 from ballsocket.paper.plan import quick_plan
-from ballsocket.reports import accuracy_table
+from ballsocket.reports import accuracy_results
 from ballsocket.reports.paper_report import write_report
 
 from ..places import DATA
@@ -52,4 +52,4 @@ def test_beside_the_report_lie_its_numbers(report):
         worst = max(csv.DictReader(stream), key=lambda row: float(row["worst"]))
     assert worst["model"] == "cosine-limit"
     assert json.loads((report.parent / "accuracy.json").read_text(encoding="utf-8")) == ACCURACY
-    assert (report.parent / "accuracy.md").read_text(encoding="utf-8") == accuracy_table.markdown(ACCURACY)
+    assert (report.parent / "accuracy.md").read_text(encoding="utf-8") == accuracy_results.markdown(ACCURACY)

@@ -11,8 +11,8 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.files.joint_file import JointFile
-from ballsocket.reports.joint_section import gap_factor, joint_section
 from ballsocket.reports.press_report import press_report
+from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
 from ballsocket.studies.local_uncertainty import local_uncertainty

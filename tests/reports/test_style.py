@@ -12,7 +12,7 @@ from ballsocket.compare import force_curves
 from ballsocket.paper.curves import figure_3_or_4
 from ballsocket.paper.plan import ELEMENTS, quick_plan
 from ballsocket.reports import style
-from ballsocket.reports.paper_plots import draw
+from ballsocket.reports.paper_report import draw
 from ballsocket.reports.press_plots import press_figure
 from ballsocket.reports.style import INK, LineStyle, line_of
 

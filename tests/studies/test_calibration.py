@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.paper.table_3 import RATIOS, refit_table_3
+from ballsocket.paper.cases import RATIOS, refit_table_3
 from ballsocket.studies.calibration import max_relative_error
 
 from ..cli.command import run

@@ -11,7 +11,7 @@ import numpy
 
 from ..contact import Contact
 from ..files.joint_file import JointFile
-from ..reports.joint_section import gap_factor, radii_of
+from ..reports.section_plots import gap_factor, radii_of
 from . import svg
 from .pressing import profile
 

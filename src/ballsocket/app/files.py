@@ -12,8 +12,8 @@ from typing import Any
 from ..core.checks import check_names
 from ..files.joint_file import JointFile
 from ..files.joint_toml import toml_of
-from ..reports.joint_report import joint_report
 from ..reports.pages import picture
+from ..reports.press_report import joint_report
 from ..reports.unit_systems import Units
 from .view import Document
 

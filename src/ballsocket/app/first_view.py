@@ -10,7 +10,7 @@ from ..contact import Contact
 from ..core.kinds import Unit
 from ..core.quantities import Quantity
 from ..files.joint_file import JointFile
-from ..reports.joint_section import gap_factor, radii_of
+from ..reports.section_plots import gap_factor, radii_of
 from . import svg
 from .drawing import DrawingFrame, ball, heat, layers, painted
 from .fields import Field

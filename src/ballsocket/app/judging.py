@@ -13,7 +13,7 @@ from ..core.validity import OutsideDomainError
 from ..elasticity.finite_elements.contact import MeshedContact
 from ..files.joint_file import JointFile
 from ..reports.figure_files import figure_bytes
-from ..reports.section_plot import section_figure
+from ..reports.section_plots import section_figure
 from .running import Reached, Told
 
 _SHARES = (0.25, 0.5, 0.75, 1.0)

@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from ..files.joint_file import JointFile, read_aim
-from ..reports.reference_terminal import print_rival, print_tilted_rival
+from ..reports.accuracy_results import print_rival, print_tilted_rival
 from .elasticity_options import CupOptions, MeshOptions, solve_mesh
 from .options import JointName, JointOptions, LoadOptions, expand_groups
 from .root import app, echo_path

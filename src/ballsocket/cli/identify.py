@@ -17,11 +17,11 @@ from ..identify import calibrate as fit_modulus
 from ..identify.file import read_identify
 from ..identify.posterior import Posterior
 from ..identify.result import IdentificationResult
-from ..paper.table_3 import refit_table_3
+from ..paper.cases import refit_table_3
 from ..reports import identify_results
+from ..reports.accuracy_results import print_calibration, print_table_3
 from ..reports.figure_files import check_format, save
 from ..reports.identify_results import print_identified
-from ..reports.reference_terminal import print_calibration, print_table_3
 from ..studies.calibration import FORCES, Form
 from ..version import __version__
 from .json_answers import echo_json

@@ -100,7 +100,7 @@ def _write_figure(contacts: Mapping[str, Any], first_model: str, path: Path) -> 
 
 def _write_section(contact: MeshedContact, exact: Any, path: Path) -> None:
     """Write a figure of the meshed section with the exact pressure."""
-    from ..reports.section_plot import section_figure
+    from ..reports.section_plots import section_figure
 
     save(section_figure(contact, exact), path)
 

@@ -187,7 +187,7 @@ def _in_degrees(angle: float) -> float:
     """Return the degrees that a file reads as exactly this angle (rad), a round number if there is one."""
     near = degrees(angle)
     above, below = nextafter(near, inf), nextafter(near, -inf)
-    candidates = (round(near, 9), near, above, below, nextafter(above, inf), nextafter(below, -inf))
+    candidates = (round(near, 9), near, above, below)
     return next((number for number in candidates if radians(number) == angle), near)
 
 

@@ -10,6 +10,11 @@ from typing import Any
 import numpy
 
 from ..core.deprecation import RenamedAttribute
+<<<<<<< HEAD
+from ..core.plotting import load_plot
+from .estimates import Estimate
+=======
+>>>>>>> main
 from .experiment import Experiment, experiment
 from .fit import FittedModel
 from .information import Estimate
@@ -66,6 +71,15 @@ class IdentificationResult(FittedModel):
     def posterior(self, samples: int = 4000, seed: int = 0) -> Posterior:
         """Draw samples from the posterior distribution of the unknowns by Markov chains."""
         return posterior(self, samples, seed)
+
+    def plot(self) -> Any:
+        """Plot measured values beside the fitted model, and the residuals.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        return load_plot("identification")(self)
 
     def summary(self) -> dict[str, Any]:
         """Return the result as a dictionary for JSON, in mm, N, MPa and rad."""

@@ -1,18 +1,107 @@
-"""Parameter sets of the figures of the paper (doi 10.3390/app112311170): steel on 1 GPa, lengths in mm, loads in N."""
+"""Joints and loads of the paper (doi 10.3390/app112311170) and of other publications; Table 3 fitted again."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from importlib.resources import files
+from io import StringIO
+from typing import Any
 
 import numpy
 
-from ..core.arrays import Numbers
+from ..contact import Model
+from ..core.arrays import Array, Numbers
 from ..core.quantities import JOINT
+from ..models.modulus import polynomial
+from ..models.table_3 import table_3
 from ..problem import Joint, Material
-from ..problem.presets import STEEL
+from ..problem.presets import COCR, CROSSLINKED_PE, STEEL, UHMWPE
+from ..studies.calibration import Calibration, as_polynomial, calibrate
 from .accuracy import RANGES, THICKNESS
-from .table_3 import paper_joint
+
+RATIOS = numpy.array([0.73, 1.0, 1.35, 1.8, 2.3, 2.8, 3.4, 4.1, 4.9, 5.8, 6.7, 7.7])
+"""Ratios R2/L over which Table 3 is refitted."""
+
+
+def paper_joint(poisson: Array, ratios: Array = RATIOS) -> Joint:
+    """Create joints from R2/L in the ranges of Table 1: outer radius 24 mm, clearance 0.1 mm, steel on 1 GPa."""
+    socket = 24.0 * ratios / (1 + ratios)
+    return Joint(
+        ball_radius=socket - 0.1,
+        clearance=0.1,
+        liner_thickness=24.0 - socket,
+        liner=Material(young=1000.0, poisson=poisson),
+        ball=STEEL,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TableColumn:
+    """Column of Table 3: the constants of the paper and ours.
+
+    `difference` is the relative difference of the paper's K from the reference at each of `RATIOS`. `paper_error` has
+    the largest errors of the closed form with the paper's K; `calibration.error` has those with ours.
+    """
+
+    poisson: float
+    paper: tuple[float, float, float]
+    ours: tuple[float, float, float]
+    difference: numpy.ndarray
+    paper_error: dict[str, float]
+    calibration: Calibration
+
+    def summary(self) -> dict[str, Any]:
+        """Return one dictionary for JSON."""
+        return {
+            "poisson": self.poisson,
+            "paper": list(self.paper),
+            "ours": list(self.ours),
+            "thickness_ratio": RATIOS.tolist(),
+            "difference": self.difference.tolist(),
+            "residual": self.calibration.residual.tolist(),
+            "spread_over_load": self.calibration.spread,
+            "error": self.calibration.error,
+            "paper_error": self.paper_error,
+        }
+
+
+def refit_table_3(reference: Model | None = None) -> tuple[TableColumn, ...]:
+    """Fit Table 3 again, by default to `Exact()`."""
+    return tuple(refit_column(poisson, reference) for poisson in table_3()["poisson"])
+
+
+def refit_column(poisson: float, reference: Model | None = None) -> TableColumn:
+    """Fit one column of Table 3 again, for one of its Poisson's ratios.
+
+    Raises
+    ------
+    ValueError
+        A Poisson's ratio that Table 3 does not have.
+    """
+    published = table_3()
+    if poisson not in published["poisson"]:
+        raise ValueError(f"poisson = {poisson!r} has no column in Table 3; allowed: {published['poisson']}")
+    column = published["poisson"].index(poisson)
+    paper = _three(published[name][column] for name in ("C1", "C2", "C3"))
+    joint = paper_joint(poisson)
+    fit = calibrate(joint, form=as_polynomial, reference=reference)
+    theirs = replace(fit, modulus=polynomial(*paper))
+    return TableColumn(
+        poisson=poisson,
+        paper=paper,
+        ours=_three(fit.modulus.constants),
+        difference=theirs.residual,
+        paper_error=theirs.error,
+        calibration=fit,
+    )
+
+
+def _three(numbers: Iterable[Any]) -> tuple[float, float, float]:
+    """Convert three numbers to floats."""
+    first, second, third = (float(number) for number in numbers)
+    return first, second, third
+
 
 POISSON = (0.30, 0.35, 0.40, 0.45, 0.49)
 """Poisson's ratios of Table 3 and Figure 2."""
@@ -91,3 +180,61 @@ def with_clearance(joints: Joint, clearance: float) -> Joint:
 def scaled_modulus(contact_pressure: Numbers, indentation: Numbers, socket_radius: Numbers) -> Numbers:
     """Compute the dimensionless modulus K~ = p0 R2/(d E), Eq. (17), for a liner of 1000 MPa."""
     return contact_pressure * socket_radius / (indentation * 1000.0)
+
+
+# Joints of other publications
+
+
+def calculix() -> Numbers:
+    """Read the results of CalculiX: one row a load, with the columns of `data/calculix.csv` (mm, N, MPa, degrees)."""
+    text = (files("ballsocket") / "data" / "calculix.csv").read_text(encoding="utf-8")
+    rows = StringIO("\n".join(line for line in text.splitlines() if not line.startswith("#")))
+    return numpy.genfromtxt(rows, delimiter=",", names=True, dtype=None, encoding="utf-8")
+
+
+def joints_of_calculix(table: Numbers) -> Joint:
+    """Create the joints of rows of the CalculiX table, as arrays."""
+    return Joint(
+        ball_radius=table["ball_radius"],
+        clearance=table["clearance"],
+        liner_thickness=table["liner_thickness"],
+        liner=Material(young=1000.0, poisson=table["poisson"]),
+        ball=STEEL,
+    )
+
+
+def calculix_joints() -> tuple[Joint, Numbers]:
+    """Return the joints and forces in N of CalculiX."""
+    table = calculix()
+    return joints_of_calculix(table), table["force"]
+
+
+JIN_HEADS = {"22 mm head": (11.0, 10.0), "28 mm head": (14.0, 8.0), "32 mm head": (16.0, 6.0)}
+"""Head radius and liner thickness in mm. Representative: the abstract does not name the pairs."""
+
+JIN_CLEARANCES, JIN_FORCE = numpy.array([0.1, 0.15]), 2500.0
+
+
+def jin_joints() -> tuple[Joint, Numbers]:
+    """Return the joints and the force in N of Jin et al. 1999."""
+    radii, thicknesses = (numpy.array(column)[:, None] for column in zip(*JIN_HEADS.values(), strict=True))
+    joints = Joint(ball_radius=radii, clearance=JIN_CLEARANCES, liner_thickness=thicknesses, liner=UHMWPE, ball=COCR)
+    return joints, numpy.array(JIN_FORCE)
+
+
+PLANK = (
+    ("22 mm, 5 mm thick", 11.0, 5.0),
+    ("28 mm, 5 mm thick", 14.0, 5.0),
+    ("28 mm, 3 mm thick", 14.0, 3.0),
+    ("38 mm, 3 mm thick", 19.0, 3.0),
+    ("46 mm, 3 mm thick", 23.0, 3.0),
+)
+PLANK_CLEARANCE, PLANK_FORCE = 0.1, 3000.0
+
+
+def plank_joints() -> tuple[Joint, Numbers]:
+    """Return the joints and the force in N of Plank et al. 2007."""
+    heads, thicknesses = (numpy.array(column)[:, None] for column in list(zip(*PLANK, strict=True))[1:])
+    liner = Material(young=numpy.array([UHMWPE.young, CROSSLINKED_PE.young]), poisson=UHMWPE.poisson)
+    joints = Joint(ball_radius=heads, clearance=PLANK_CLEARANCE, liner_thickness=thicknesses, liner=liner, ball=COCR)
+    return joints, numpy.array(PLANK_FORCE)

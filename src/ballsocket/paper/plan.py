@@ -14,9 +14,9 @@ from ..elasticity.exact.model import Exact
 from ..elasticity.finite_elements.model import FiniteElement
 from . import cases, curves
 from .accuracy import accuracies
+from .cases import refit_column
 from .claims import CLAIMS, ELSEWHERE, MESHED_CLAIMS, MESHED_ELSEWHERE, Claim, Finding, claim
 from .claims.quantities import dense_elements
-from .table_3 import refit_column
 
 ELEMENTS = "finite elements"
 """Name of the finite-element model in tables and figures."""

@@ -10,8 +10,8 @@ from typing import Any
 from ..evidence.folder import RECORD
 from ..evidence.matrix import KEYS, NAMES, input_title, limit_text, number, title_of
 from ..evidence.requirements import MET, NOT_MET, UNKNOWN
-from . import evidence_figures as figures
-from .evidence_text import (
+from . import evidence_parts as figures
+from .evidence_parts import (
     Record,
     band_text,
     case_text,

@@ -1,18 +1,18 @@
-"""Figures as files and as bytes."""
+"""Figures as files and as bytes, and their registration as methods of results."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ..core.plotting import Plot, register_plot
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
 
 FORMATS = ("png", "svg", "pdf")
 """Endings of the files that `save` writes."""
@@ -66,3 +66,42 @@ def default_style() -> Iterator[None]:
     with rc_context():
         rcdefaults()
         yield
+
+
+STUDY_PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure")
+"""Plots that `ballsocket.studies` offers."""
+
+
+def register_plots() -> None:
+    """Register the plots of this room; matplotlib is imported when the first of them is loaded."""
+    register_plot("contacts", _load_contact_plot)
+    register_plot("identification", _load_fit_figure)
+    for name in STUDY_PLOTS:
+        register_plot(name, _study_plot_loader(name))
+
+
+def _load_contact_plot() -> Plot:
+    """Import and return the plot of contacts."""
+    from .press_plots import plot
+
+    return plot
+
+
+def _load_fit_figure() -> Plot:
+    """Import and return the plot of identifications."""
+    from .identify_results import fit_figure
+
+    return fit_figure
+
+
+def _study_plot_loader(name: str) -> Callable[[], Plot]:
+    """Make a function that imports a plot of studies by its name."""
+
+    def load() -> Plot:
+        """Import and return the plot."""
+        from . import study_plots
+
+        plot: Plot = getattr(study_plots, name)
+        return plot
+
+    return load

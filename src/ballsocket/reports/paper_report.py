@@ -1,28 +1,34 @@
-"""Page of the recomputed paper, and the files beside it: figures, their numbers, and the accuracy of all models."""
+"""Page of the recomputed paper with its figures, their numbers, and the accuracy of all models."""
 
 from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from io import StringIO
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy
+
+from ..catalogue import judge
 from ..core.executors.processes import Engine, Serial
 from ..core.kinds import Unit
 from ..core.quantities import JOINT
 from ..core.storage.atomic_files import write_atomically, write_text
+from ..models.foundation import HessForsbach
 from ..paper.accuracy import RANGES, THICKNESS
-from ..paper.figure import Figure
-from ..paper.table_3 import RATIOS
-from . import accuracy_table
+from ..paper.cases import OUTER_RADII, RATIOS
+from ..paper.curves import FIT, Figure, Map, Panel
+from ..paper.plan import ELEMENTS
+from . import accuracy_results
 from .pages import data_address, render_page
-from .paper_plots import draw, heat_map
+from .style import LEGEND, finish, in_matplotlib, line_of
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Drawing
 
 _SERIAL = Serial()
@@ -102,7 +108,7 @@ class _DrawFigure:
     def __call__(self, index: int) -> bytes:
         """Write the figure as PNG, SVG and CSV, and return the PNG."""
         if index == len(self.figures):
-            return _write_picture("accuracy", heat_map(self.rows), self.folder)
+            return _write_picture("accuracy", accuracy_results.heat_map(self.rows), self.folder)
         name, figure = self.figures[index]
         write_text(self.folder / f"{name}.csv", _csv_text(figure))
         return _write_picture(name, draw(figure), self.folder)
@@ -137,8 +143,8 @@ def _csv_text(figure: Figure) -> str:
 
 def _write_accuracy(rows: Sequence[Row], folder: Path) -> None:
     """Write the accuracy of all models as Markdown, CSV and JSON."""
-    write_text(folder / "accuracy.md", accuracy_table.markdown(rows))
-    write_text(folder / "accuracy.csv", accuracy_table.table(rows))
+    write_text(folder / "accuracy.md", accuracy_results.markdown(rows))
+    write_text(folder / "accuracy.csv", accuracy_results.table(rows))
     write_text(folder / "accuracy.json", json.dumps(rows, indent=1) + "\n")
 
 
@@ -178,7 +184,7 @@ def _fit_table(name: str, columns: Sequence[Row]) -> Table:
     for i, ratio in enumerate(RATIOS):
         differences = (f"{100 * column['difference'][i]:+.1f} %" for column in columns)
         rows.append((f"the paper's K against ours at R2/L {ratio:g}", *differences))
-    for quantity, head in accuracy_table.HEADS.items():
+    for quantity, head in accuracy_results.HEADS.items():
         for owner, key in (("the paper's", "paper_error"), ("our", "error")):
             errors = (f"{100 * column[key][quantity]:.1f} %" for column in columns)
             rows.append((f"closed form with {owner} K: {head}, worst", *errors))
@@ -187,7 +193,7 @@ def _fit_table(name: str, columns: Sequence[Row]) -> Table:
 
 def _accuracy(rows: Iterable[Row], png: bytes) -> dict[str, Any]:
     """Return the accuracy of every model and quantity, with the joint of the largest error."""
-    heads = accuracy_table.HEADS
+    heads = accuracy_results.HEADS
     return {
         "address": data_address(png),
         "heads": tuple(heads.values()),
@@ -195,7 +201,7 @@ def _accuracy(rows: Iterable[Row], png: bytes) -> dict[str, Any]:
             {
                 "model": row["model"],
                 "errors": [
-                    (accuracy_table.spread(row["errors"][name]), accuracy_table.place(row["errors"][name]))
+                    (accuracy_results.spread(row["errors"][name]), accuracy_results.place(row["errors"][name]))
                     for name in heads
                 ],
                 "answered": f"{100 * row['answered']:.3g} %",
@@ -204,3 +210,150 @@ def _accuracy(rows: Iterable[Row], png: bytes) -> dict[str, Any]:
             for row in rows
         ],
     }
+
+
+_MODELS = {ELEMENTS: judge.name, FIT: HessForsbach().name}
+"""Catalogue names of models with another name in the paper's figures."""
+
+_WIDTH = 10.8  # inches: the width of a page, with letters of the size of its text
+
+
+def draw(figure: Figure) -> Drawing:
+    """Draw one of the paper's figures."""
+    from matplotlib.figure import Figure as Drawing
+
+    parts: list[Panel | Map] = [*figure.panels, *figure.maps]
+    rows = -(-len(parts) // figure.columns)
+    drawing = Drawing()
+    for axes, part in zip(
+        _grid(drawing, rows, figure.columns, bottom_margin=0.95 if figure.panels else 0.55), parts, strict=False
+    ):
+        axes.set_visible(True)
+        if isinstance(part, Map):
+            _draw_map(axes, part)
+            continue
+        _draw_panel(axes, part)
+        if not _have_same_cases(figure.panels):
+            _name_cases(axes, part)
+    _name_models(drawing, figure)
+    return drawing
+
+
+def _grid(drawing: Drawing, rows: int, columns: int, bottom_margin: float) -> Iterator[Axes]:
+    """Yield hidden axes of equal size; fixed margins save the seconds of a layout engine."""
+    left_margin, column_gap, right_margin, top_margin, row_gap = 0.75, 0.75, 0.15, 0.35, 0.85
+    width = (_WIDTH - left_margin - right_margin - (columns - 1) * column_gap) / columns
+    height = 0.72 * width
+    height_of_figure = top_margin + rows * height + (rows - 1) * row_gap + bottom_margin
+    drawing.set_size_inches(_WIDTH, height_of_figure)
+    drawing.subplots_adjust(
+        left=left_margin / _WIDTH,
+        right=1 - right_margin / _WIDTH,
+        top=1 - top_margin / height_of_figure,
+        bottom=bottom_margin / height_of_figure,
+        wspace=column_gap / width,
+        hspace=row_gap / height,
+    )
+    for axes in drawing.subplots(rows, columns, squeeze=False).ravel():
+        axes.set_visible(False)
+        yield axes
+
+
+def _name_models(drawing: Drawing, figure: Figure) -> None:
+    """Add a legend of the models below, and of the cases if all panels have the same."""
+    from matplotlib.lines import Line2D
+
+    lines = [line for panel in figure.panels for line in panel.lines]
+    if not lines:
+        return
+    models, cases = (
+        list(dict.fromkeys(names)) for names in zip(*((line.model, line.case) for line in lines), strict=True)
+    )
+    styles = {model: _style(model) if len(cases) == 1 else {**_style(model), "color": "0.3"} for model in models}
+    if len(cases) > 1 and _have_same_cases(figure.panels):
+        styles |= {case: {"color": colour, "linewidth": 4.0} for case, colour in _case_colours(cases).items()}
+    handles = [Line2D([], [], label=name, **style) for name, style in styles.items()]
+    drawing.legend(handles=handles, loc="lower center", ncols=min(len(handles), 8), **LEGEND)
+
+
+def _have_same_cases(panels: Sequence[Panel]) -> bool:
+    """Return whether all panels have the same cases."""
+    return len({frozenset(line.case for line in panel.lines) for panel in panels}) == 1
+
+
+def _draw_panel(axes: Axes, panel: Panel) -> None:
+    """Draw the lines of a panel."""
+    cases = list(dict.fromkeys(line.case for line in panel.lines))
+    for line in panel.lines:
+        colour = {} if len(cases) == 1 else {"color": _case_colours(cases)[line.case]}
+        axes.plot(line.x, line.y, **{**_style(line.model), **colour})
+    finish(axes, panel.x, panel.y)
+    axes.locator_params(nbins=5)
+    axes.set_title(panel.title, fontsize=10)
+    _limit(axes, panel)
+
+
+def _limit(axes: Axes, panel: Panel) -> None:
+    """Start axes at zero where the lines nearly do, and cut off values beyond the panel."""
+    lines = [line for line in panel.lines if line.model != "hertz"]
+    longest = max(line.x[-1] for line in lines)
+    if min(line.x[0] for line in panel.lines) < 0.1 * longest:
+        axes.set_xlim(left=0.0)
+    if panel.highest is not None:
+        axes.set_ylim(0.0, panel.highest)
+        axes.set_xlim(0.0, 1.15 * longest)
+    else:
+        axes.set_ylim(0.0, 1.1 * max(max(line.y) for line in lines))
+
+
+def _name_cases(axes: Axes, panel: Panel) -> None:
+    """Add a legend of the cases to a panel."""
+    from matplotlib.lines import Line2D
+
+    cases = dict.fromkeys(line.case for line in panel.lines)
+    handles = [Line2D([], [], label=case, color=colour) for case, colour in _case_colours(list(cases)).items()]
+    axes.legend(handles=handles, frameon=False, fontsize=8)
+
+
+def _case_colours(cases: Sequence[str]) -> dict[str, Any]:
+    """Return a colour for each case, from dark to light, distinguishable in grey."""
+    from matplotlib import colormaps
+
+    return dict(zip(cases, colormaps["viridis"](numpy.linspace(0.0, 0.82, len(cases))), strict=True))
+
+
+def _style(model: str) -> dict[str, Any]:
+    """Return the line style of a model; circles for the finite elements, which coincide with other lines."""
+    style = in_matplotlib(line_of(_MODELS.get(model, model)), 1.6)
+    if model != ELEMENTS:
+        return style
+    return {**style, "linestyle": "", "marker": "o", "markersize": 3.5, "markerfacecolor": "none", "markevery": 3}
+
+
+def _draw_map(axes: Axes, field: Map) -> None:
+    """Draw filled contours of a map with numbers on its lines."""
+    values = numpy.array([[numpy.nan if value is None else value for value in row] for row in field.z], dtype=float)
+    colours = _about_zero() if field.about_zero else {"cmap": "viridis", "levels": 9}
+    filled = axes.contourf(field.x, field.y, values, **colours)
+    lines = axes.contour(field.x, field.y, values, levels=filled.levels, colors="black", linewidths=0.5, linestyles="-")
+    for text in axes.clabel(lines, fontsize=7):
+        text.set_bbox({"facecolor": "white", "edgecolor": "none", "alpha": 0.75, "pad": 0.6})
+    radius = numpy.array(field.x)
+    for outer in OUTER_RADII:
+        axes.plot(radius, outer - radius, color="black", linestyle=":", linewidth=1.5)
+    axes.set_ylim(field.y[0], field.y[-1])
+    axes.set_xlabel(field.x_label)
+    axes.set_ylabel(field.y_label)
+    axes.set_title(field.title, fontsize=10)
+
+
+_ENDS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
+_LEVELS = (*(-end for end in reversed(_ENDS)), *_ENDS)
+
+
+def _about_zero() -> dict[str, Any]:
+    """Return contour levels that all maps share, so that a colour means the same error in each."""
+    from matplotlib.colors import SymLogNorm
+
+    norm = SymLogNorm(linthresh=1.0, vmin=-300.0, vmax=300.0)
+    return {"levels": _LEVELS, "cmap": "RdBu_r", "norm": norm, "extend": "both"}

@@ -10,7 +10,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.arrays import gauss_legendre
 from ballsocket.elasticity.finite_elements.shapes import Resolution
-from ballsocket.reports.section_plot import section_figure
+from ballsocket.reports.section_plots import section_figure
 
 from ...extent import either, some
 from ...joints import HIP

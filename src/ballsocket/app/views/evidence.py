@@ -12,7 +12,7 @@ from typing import Any
 from ...core.checks import check_names, shown
 from ...evidence.matrix import title_of
 from ...files.joint_file import JointFile
-from ...reports.evidence_text import case_text, value_text
+from ...reports.evidence_parts import case_text, value_text
 from ...reports.pages import items, table
 from ..asked import Asked
 from ..evidencing import LONGEST, Packed, cases_of, packed

@@ -11,9 +11,8 @@ from typing import Any
 
 from ...contact import Model
 from ...core.checks import nearest, shown
-from .elsewhere import ELSEWHERE, MESHED_ELSEWHERE
 from .evaluation import Claim, Finding, Verdict, judge
-from .table import CLAIMS, MESHED_CLAIMS
+from .table import CLAIMS, ELSEWHERE, MESHED_CLAIMS, MESHED_ELSEWHERE
 
 _BY_NAME = {claim.name: claim for claim in (*CLAIMS, *MESHED_CLAIMS, *ELSEWHERE, *MESHED_ELSEWHERE)}
 _BY_IDENTIFIER = {claim.identifier: claim for claim in _BY_NAME.values()}

@@ -10,15 +10,19 @@ import numpy
 
 from ...contact import Contact, Model
 from ...core.arrays import Numbers
+from ...elasticity.exact.contact import ElasticContact
+from ...elasticity.exact.model import Exact
 from ...elasticity.finite_elements.contact import MeshedContact
 from ...elasticity.finite_elements.model import FiniteElement
 from ...elasticity.finite_elements.spacing import Element, Uniform
 from ...models.foundation import Bartel, BondedLayer, HessForsbach, Vessel
 from ...models.half_space import Hertz
 from ...models.modulus import bonded_layer, spherical_vessel
+from ...problem import Joint, Material
+from ...problem.presets import COCR, CROSSLINKED_PE, UHMWPE
 from ...studies.calibration import max_relative_error
 from .. import cases
-from ..table_3 import RATIOS, refit_table_3
+from ..cases import RATIOS, refit_table_3
 from .evaluation import Computed, Evaluation, percent, quantity_title
 
 COMPARED = ("indentation", "max_pressure", "half_angle")
@@ -275,3 +279,75 @@ def _contacts_of_table_1(reference: Model) -> tuple[Numbers, Numbers, Contact]:
     """Return head radii and liner thicknesses in mm within the outer radii of Table 1, and the contacts at 3 kN."""
     radius, thickness, joints = cases.outline(heads=13, liners=7)
     return radius, thickness, reference.press(joints, force=cases.LOAD)
+
+
+# Results of others
+
+DEPTH, PRESSURE, ANGLE = "indentation off by, %", "peak pressure off by, %", "half angle off by, °"
+"""Names of the errors against CalculiX."""
+
+
+def errors_of_elements(_: Model) -> Computed:
+    """Compute the errors of our elements against CalculiX: 19 joints under five to nine loads, with a free rim."""
+    return _errors_in_table(FiniteElement(meshes=1), cases.calculix())
+
+
+def errors_of_exact(_: Model) -> Computed:
+    """Compute the errors of the exact solution (full ball, closed shell) against CalculiX."""
+    table = cases.calculix()
+    compressible = table["poisson"] < 0.47
+    stiff = _errors_in_table(Exact(), table[~compressible])
+    return {
+        **_errors_in_table(Exact(), table[compressible]),
+        **{f"at ν 0.49 {name}": value for name, value in stiff.items()},
+    }
+
+
+def _errors_in_table(model: Model, table: Numbers) -> dict[str, float]:
+    """Compute the largest errors of a model in rows of the CalculiX table."""
+    contact = model.press(cases.joints_of_calculix(table), force=table["force"])
+    depth, pressure = (
+        percent(max_relative_error(getattr(contact, name), table[name])) for name in ("indentation", "max_pressure")
+    )
+    angle = float(numpy.max(abs(numpy.degrees(contact.half_angle) - table["half_angle_deg"])))
+    return {DEPTH: depth, PRESSURE: pressure, ANGLE: angle}
+
+
+def half_angles_of_jin(reference: Model) -> Computed:
+    """Compute the half angles in degrees of Jin et al. 1999: 2.5 kN, 1000 MPa, ν 0.4."""
+    angles = {}
+    for name, (radius, thickness) in cases.JIN_HEADS.items():
+        joints = Joint(
+            ball_radius=radius, clearance=cases.JIN_CLEARANCES, liner_thickness=thickness, liner=UHMWPE, ball=COCR
+        )
+        half_angle = numpy.degrees(reference.press(joints, force=cases.JIN_FORCE).half_angle)
+        for clearance, angle in zip(cases.JIN_CLEARANCES, half_angle, strict=True):
+            angles[f"{name}, L {thickness:g}, c {clearance:g}, °"] = float(angle)
+    return angles
+
+
+def stresses_of_plank(_: Model) -> Evaluation:
+    """Compute the largest von Mises stress at the surface of conventional and crosslinked liners, with `Exact`."""
+    stress = {
+        (name, liner): _surface_stress(radius, thickness, liner)
+        for name, radius, thickness in cases.PLANK
+        for liner in (UHMWPE, CROSSLINKED_PE)
+    }
+    lower_in_crosslinked = all(stress[name, CROSSLINKED_PE] < stress[name, UHMWPE] for name, *_ in cases.PLANK)
+    smallest_head = stress[cases.PLANK[0][0], UHMWPE]
+    lower_under_large_heads = all(stress[name, CROSSLINKED_PE] < smallest_head for name, *_ in cases.PLANK[-2:])
+    return Evaluation(
+        {f"{name}, {liner.name}, MPa": value for (name, liner), value in stress.items()},
+        lower_in_crosslinked and lower_under_large_heads,
+    )
+
+
+def _surface_stress(radius: float, thickness: float, liner: Material) -> float:
+    """Compute the largest von Mises stress in MPa at the surface of the liner, over the contact."""
+    joint = Joint(
+        ball_radius=radius, clearance=cases.PLANK_CLEARANCE, liner_thickness=thickness, liner=liner, ball=COCR
+    )
+    contact = Exact().press(joint, force=cases.PLANK_FORCE)
+    assert isinstance(contact, ElasticContact)
+    angles = numpy.linspace(0.0, 0.98, 15) * float(contact.half_angle)
+    return float(numpy.max(contact.stress(angle=angles, depth=0.0).von_mises))

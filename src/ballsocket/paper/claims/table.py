@@ -1,4 +1,4 @@
-"""Tables of claims: every checkable statement of the paper, in the order of the paper."""
+"""Tables of claims: every checkable statement of the paper in its order, and of other authors."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ from functools import partial
 from itertools import pairwise
 from math import inf
 
+from ...core.sources import Source
 from ...models.foundation import Bartel, BondedLayer, HessForsbach
 from ...models.half_space import Hertz
+from .. import cases
 from . import quantities
 from .evaluation import BY_EVALUATION, EXACTLY, ZERO, Claim, Computed, percent
 
@@ -238,3 +240,59 @@ MESHED_CLAIMS: tuple[Claim, ...] = (
     ),
 )
 """Claims of the paper that need finite elements with every reference model."""
+
+SOURCES = (Source("jin1999"), Source("plank2007"))
+"""Sources of the numbers, besides CalculiX."""
+
+ELSEWHERE: tuple[Claim, ...] = (
+    Claim(
+        name="exact-agrees-with-calculix",
+        source="CalculiX 2.20: half a ball on its equator, a hemispherical liner with a free rim",
+        statement="Neither the rim nor the half ball matter for pressure and contact angle (ν up to 0.45).",
+        quantity=quantities.errors_of_exact,
+        expected={quantities.PRESSURE: (0.0, 0.2), quantities.ANGLE: (0.0, 0.2)},
+        tolerance=EXACTLY,
+        comment="The indentation of half a ball counts its equator's own displacement; a thick liner that is nearly "
+        "incompressible deforms through its rim.",
+        joints=cases.calculix_joints,
+    ),
+    Claim(
+        name="half-angles-of-jin",
+        source=f"{SOURCES[0].authors_and_year}, abstract",
+        statement="The half angle lies between 40° and 50° at 2.5 kN for all heads and cups of that time.",
+        quantity=quantities.half_angles_of_jin,
+        expected=(40.0, 50.0),
+        tolerance=(0.5, 5.0),
+        unit="°",
+        comment="Their pairs are not listed in the abstract; these are heads of 22 to 32 mm with usual liners and "
+        "clearances. Half as much clearance again is 4 to 5° less.",
+        joints=cases.jin_joints,
+    ),
+    Claim(
+        name="ordering-of-plank",
+        source=f"{SOURCES[1].authors_and_year}, abstract",
+        statement="Von Mises stress at the surface is lower in crosslinked liners at every size, and in those of 3 mm "
+        "under heads of 38 and 46 mm lower than in conventional ones of 5 mm under a 22 mm head.",
+        quantity=quantities.stresses_of_plank,
+        expected=BY_EVALUATION,
+        comment="At 3 kN, 0.1 mm of clearance, by the exact solution. The abstract names neither load nor moduli: that "
+        "the softer liner has the lower stress follows from our 750 against 1000 MPa, the ordering by size does not.",
+        joints=cases.plank_joints,
+    ),
+)
+"""Claims of other authors."""
+
+MESHED_ELSEWHERE: tuple[Claim, ...] = (
+    Claim(
+        name="elements-agree-with-calculix",
+        source="CalculiX 2.20: another program's elements, another treatment of contact",
+        statement="An independent finite-element program finds the same as ours: 19 joints, 127 loads.",
+        quantity=quantities.errors_of_elements,
+        expected={quantities.DEPTH: ZERO, quantities.PRESSURE: ZERO},
+        tolerance=(0.3, 1.0),
+        comment="Stated of those runs: indentation to 0.06 %, force 0.1 %, peak pressure 0.05 %, half angle 0.1°, "
+        "half as much again at ν 0.49.",
+        joints=cases.calculix_joints,
+    ),
+)
+"""Claims of other authors that need finite elements with every reference model."""
