@@ -59,7 +59,7 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
         checked. `error` has estimated relative errors, by model where there are several, and null where none are known.
         `notes` are sentences, `sources` publications with `key`, `text`, `doi`, and `next` steps with `command`, `why`.
     """
-    results = answer.get("results", [])
+    results = [result for result in answer.get("results", []) if "model" in result]
     requested = requested_results(results, arguments)
     notes = [f"{result['model']}: {note}" for result in results for note in result["notes"]]
     full = {

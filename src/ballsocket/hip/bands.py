@@ -178,7 +178,12 @@ class Bands:
     @property
     def nominal_notes(self) -> tuple[str, ...]:
         """Sentences on the simulation of the nominal patient: contact model, cycle, cup and laws."""
-        checks = [(f"nominal {self.noun.removesuffix('s')}, in the first cycle", self.variability.coarse_simulation.unworn_checks)]
+        checks = [
+            (
+                f"nominal {self.noun.removesuffix('s')}, in the first cycle",
+                self.variability.coarse_simulation.unworn_checks,
+            )
+        ]
         return (*list_check_notes(checks), *self.variability.use.notes)
 
     @property
@@ -207,7 +212,9 @@ class Bands:
         """Sentence on the number of patients whose liner is worn through."""
         depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
         n_worn_through = int((depth > self.variability.use.joint.liner_thickness).sum())
-        return (f"{n_worn_through} of {self.n_patients} {self.noun} wear their liner through",) if n_worn_through else ()
+        return (
+            (f"{n_worn_through} of {self.n_patients} {self.noun} wear their liner through",) if n_worn_through else ()
+        )
 
     @property
     def _validity_note(self) -> tuple[str, ...]:

@@ -370,8 +370,8 @@ _EDGE_LOADING = (
 )
 _WORN_TO_RIM = (
     "worn to the rim: {} the worn bore fits the ball and touches it up to the rim in {} of {} instants; this is not "
-    "edge loading: under the same loads the unworn contact ends {:.3g} mm before the rim. The pressure in the outermost "
-    "ring is at most {:.3g} MPa"
+    "edge loading, since under the same loads the unworn contact ends {:.3g} mm before the rim; the pressure in the "
+    "outermost ring is at most {:.3g} MPa"
 )
 _NOT_CONVERGED = "a contact did not balance its load: the results of this run are invalid"
 

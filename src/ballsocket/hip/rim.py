@@ -119,7 +119,7 @@ class RimDistance:
         Largest pressure in MPa in the outermost ring of cells.
     edge_loaded : array of bool (loaded,), optional
         Contacts that reach the rim and are edge loading, not wear: the unworn bore's contact reaches the rim under the
-        same load, or the pressure is largest at the rim. None for an unworn bore: all contacts that reach the rim.
+        same load, or the largest pressure of the cycle is at the rim. None for an unworn bore: all contacts that reach the rim.
     """
 
     distance: Numbers
@@ -149,19 +149,19 @@ class RimDistance:
         )
 
 
-def mask_edge_loading(worn: RimDistance, unworn: RimDistance, max_pressure: Numbers) -> Numbers:
+def mask_edge_loading(worn: RimDistance, unworn: RimDistance, max_pressure: float) -> Numbers:
     """Find the contacts of a worn bore that are edge loading: (loaded,).
 
     A worn bore that fits the ball touches it up to the rim in every instant. Edge loading is a contact at the rim for
     one of two reasons. The load points so close to the rim that the contact of the unworn bore reaches it too. Or the
-    pressure is largest at the rim.
+    largest pressure of the cycle is at the rim.
 
     Parameters
     ----------
     worn, unworn : RimDistance
         Contacts of the worn and of the unworn bore under the same loads.
-    max_pressure : array (loaded,)
-        Largest pressure in MPa of each contact of the worn bore.
+    max_pressure : float
+        Largest pressure in MPa of the worn bore in the cycle.
     """
     at_rim = worn.distance <= 0
     largest_at_rim = (worn.pressure > 0) & (worn.pressure >= max_pressure)

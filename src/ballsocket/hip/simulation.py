@@ -214,7 +214,7 @@ def make_report(integrator: WearIntegrator) -> Report:
         edge_distance=edge.distance,
         edge_place=edge.azimuth,
         edge_pressure=edge.pressure,
-        edge_loaded=mask_edge_loading(edge, unworn_edge, contacts.pressure.max(axis=1, initial=0.0)),
+        edge_loaded=mask_edge_loading(edge, unworn_edge, float(contacts.pressure.max(initial=0.0))),
         crept=creep_depth.reshape(grid_shape),
         creep_depth=float(creep_depth.max()),
         ball_wear=integrator.ball,

@@ -10,11 +10,7 @@ from typing import Any
 import numpy
 
 from ..core.deprecation import RenamedAttribute
-<<<<<<< HEAD
 from ..core.plotting import load_plot
-from .estimates import Estimate
-=======
->>>>>>> main
 from .experiment import Experiment, experiment
 from .fit import FittedModel
 from .information import Estimate
