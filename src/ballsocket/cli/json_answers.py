@@ -260,7 +260,7 @@ def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     """Suggest the simulation with a report."""
-    if not _selected_options(arguments, "--report", "--patients"):
+    if not _selected_options(arguments, "--report", "--patients") and "results" not in answer:
         yield NextStep((*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear")
 
 

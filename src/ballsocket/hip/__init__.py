@@ -21,7 +21,7 @@ from .simulator_cycles import (
 )
 from .uncertainty import population, uncertainty
 from .variability import PatientVariability
-from .wear_laws import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
+from .wear_laws import WEAR_FACTORS, Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 
 AreaLaw = ContactAreaWear
 EnergyLaw = FrictionEnergyWear
@@ -31,6 +31,7 @@ Ladder = KelvinVoigtChain
 Scatter = PatientVariability
 
 __all__ = [
+    "WEAR_FACTORS",
     "Activity",
     "Archard",
     "AreaLaw",

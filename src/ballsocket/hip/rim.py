@@ -119,7 +119,8 @@ class RimDistance:
         Largest pressure in MPa in the outermost ring of cells.
     edge_loaded : array of bool (loaded,), optional
         Contacts that reach the rim and are edge loading, not wear: the unworn bore's contact reaches the rim under the
-        same load, or the largest pressure of the cycle is at the rim. None for an unworn bore: all contacts that reach the rim.
+        same load, or the largest pressure of the cycle is at the rim. None for an unworn bore: all contacts that reach
+        the rim.
     """
 
     distance: Numbers

@@ -34,7 +34,7 @@ from .cycle_tables import DEFAULT_CLOSURE
 from .kinematics import parse_rotation_order
 from .law_fields import Law
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES
-from .wear_laws import BALL_COEFFICIENT, WEAR_LAWS
+from .wear_laws import BALL_COEFFICIENT, WEAR_FACTORS, WEAR_LAWS
 
 
 class Steps(Value, int):
@@ -252,6 +252,9 @@ class WearTable(Table, frozen=True, kw_only=True):
     """Wear law, with the numbers of all registered laws, and the foundation of the contacts."""
 
     law: Annotated[WearLawName | None, meaning("wear law")] = None
+    material: Annotated[
+        Text | None, meaning(f"material of a published coefficient, in its place: {', '.join(WEAR_FACTORS)}")
+    ] = None
     contact: Annotated[ContactName, meaning("foundation of the socket")] = ContactName("springs")
     model: Annotated[SpringModel | None, meaning("model with the springs; hess-forsbach by default")] = None
     ring_width: Annotated[Angle | None, meaning("width of the rings of the wear map; 3 degrees by default")] = None
