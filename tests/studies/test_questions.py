@@ -12,7 +12,6 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.catalogue import named_model
-from ballsocket.studies.default_model import default_model
 from ballsocket.studies.derivatives import elasticities, finite_differences, jax_derivatives
 from ballsocket.studies.design import Span
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
@@ -21,6 +20,7 @@ from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, allowed, joint_dimension
 from ballsocket.studies.optimisation import optimise
 from ballsocket.studies.pareto import pareto
+from ballsocket.studies.run import default_model
 from ballsocket.studies.sensitivity import sensitivity
 
 from ..cli.command import run

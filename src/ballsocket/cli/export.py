@@ -18,7 +18,7 @@ from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..export.targets import TARGETS, ExportJob
 from ..files.joint_file import JointFile
 from ..problem.cup import Cup
-from ..studies.default_model import default_model
+from ..studies.run import default_model
 from .options import JointName, JointOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 

@@ -17,8 +17,8 @@ from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..reports.figure_files import check_format, save
 from ..reports.unit_systems import Units
+from ..studies.derivatives import LocalUncertainty, local_uncertainty
 from ..studies.expressions import parse_distribution
-from ..studies.local_uncertainty import LocalUncertainty, local_uncertainty
 from .root import print_message
 
 _VIEW_FORMAT = ".png"

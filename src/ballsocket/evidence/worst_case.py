@@ -27,9 +27,9 @@ from ..hip.simulation import HipSimulation
 from ..hip.uncertainty import uncertainty
 from ..problem import Joint
 from ..studies.axes import Method
-from ..studies.default_model import default_model
 from ..studies.design import sample
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, press_arguments
+from ..studies.run import default_model
 from ..studies.sensitivity import sensitivity
 from .matrix import Case, known_errors
 from .question import ALMOST_ALL, Question

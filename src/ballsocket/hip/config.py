@@ -24,7 +24,7 @@ from ..files.units import parse
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from ..studies.distributions import check_nominal
-from ..studies.scatter import Read, distribution_of
+from ..studies.file import Read, distribution_of
 from .creep_law import CreepLaw
 from .creep_laws import read_creep_law
 from .cycle_file import cycle_of

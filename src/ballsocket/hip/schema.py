@@ -26,7 +26,7 @@ from ..files.schema import (
     with_keys,
 )
 from ..problem.cup import Side
-from ..studies.scatter import DISTRIBUTION_SCHEMA
+from ..studies.file import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
 from .cycle import DEFAULT_STEPS, check_step_count
 from .cycle_registry import CYCLES

@@ -34,8 +34,7 @@ from ..files.toml import read_toml
 from ..files.units import parse
 from ..problem import Joint
 from ..studies.expressions import parse_ends
-from ..studies.file import ModelName
-from ..studies.scatter import DISTRIBUTION_SCHEMA, distribution_of
+from ..studies.file import DISTRIBUTION_SCHEMA, ModelName, distribution_of
 from .columns import Gaps, parse_uncertainty, read_measured
 from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange

@@ -1,18 +1,19 @@
-"""Study files: TOML with units that describes a model, a joint and a design of cases."""
+"""Study files: TOML with units that describes a model, a joint and a design of cases; distributions in files."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from ..catalogue import named_models
 from ..contact import Model
-from ..core.checks import check_names
+from ..core.checks import check_names, shown
 from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
+from ..core.kinds import Kind
 from ..files.joint_file import JointTables
 from ..files.named_joint import joint_in
 from ..files.schema import (
@@ -29,13 +30,69 @@ from ..files.schema import (
 )
 from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
-from ..files.units import parse
+from ..files.units import as_given, parse
 from ..problem import Joint
 from ..problem.presets import materials, named_material
 from .axes import Method, Span
 from .design import Design, grid, sample, table
+from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 from .parameters import PARAMETERS
-from .scatter import ScatteredNumber
+
+Read = Callable[[str, Any], float]
+"""Function from name and value of a number in a file to the number."""
+
+_DISTRIBUTIONS: tuple[tuple[tuple[str, ...], Callable[..., Distribution]], ...] = (
+    (("low", "high"), Rectangular),
+    (("mean", "deviation"), Normal),
+    (("mean", "deviation", "low"), Normal),
+    (("mean", "deviation", "high"), Normal),
+    (("mean", "deviation", "low", "high"), Normal),
+    (("median", "factor"), LogNormal),
+    (("nominal", "plus_minus"), tolerance),
+)
+"""Keys of the tables, and the distributions that they describe."""
+
+DISTRIBUTION_SCHEMA: Mapping[str, Any] = {
+    "type": "object",
+    "properties": dict.fromkeys(dict.fromkeys(key for keys, _ in _DISTRIBUTIONS for key in keys), QUANTITY_SCHEMA),
+    "additionalProperties": False,
+}
+"""JSON schema of a distribution."""
+
+
+class ScatteredNumber(Parsed):
+    """Distribution `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`."""
+
+    schema: ClassVar[Mapping[str, Any]] = DISTRIBUTION_SCHEMA
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> Distribution:
+        """Convert a distribution."""
+        return distribution_of(name, value, lambda key, number: parse(key, number, cls.kind))
+
+
+def distribution_of(name: str, content: Any, read: Read) -> Distribution:
+    """Create a distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
+
+    Raises
+    ------
+    ValueError
+        Other keys, or numbers that are not allowed.
+    """
+    for keys, make in _DISTRIBUTIONS:
+        if isinstance(content, Mapping) and set(content) == set(keys):
+            numbers = {key: _number(f"{name}.{key}", content[key], read) for key in keys}
+            with as_given(content, f"{name}."):
+                return make(**numbers)
+    raise ValueError(
+        f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, "
+        "{median, factor}, or {nominal, plus_minus}"
+    )
+
+
+def _number(name: str, value: Any, read: Read) -> float:
+    """Read a number of a distribution; a factor has no unit."""
+    return parse(name, value, Kind.NUMBER) if name.endswith(".factor") else read(name, value)
 
 
 class ModelName(Word):
