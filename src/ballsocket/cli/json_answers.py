@@ -254,7 +254,7 @@ def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     if not answer["valid"]:
         why = answer["notes"][0] if answer["notes"] else "not every parameter is identifiable"
         yield NextStep((*arguments, "--experiment", "next.png"), why)
-    elif answer["posterior"] is None:
+    elif "posterior" in answer and answer["posterior"] is None:
         yield NextStep((*arguments, "--samples", "4000"), "samples of the posterior within the ranges")
 
 

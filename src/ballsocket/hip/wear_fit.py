@@ -22,7 +22,7 @@ from .wear_law import coefficient_field, with_coefficient
 WEAR_QUANTITIES: Mapping[str, str] = MappingProxyType(
     {"volume": "mm³", "depth": "mm", "penetration": "mm", "radiographic_penetration": "mm"}
 )
-"""Measured quantities with their units: worn volume, deepest wear, displacement of the ball, and that in a radiograph."""
+"""Measured quantities with units: worn volume, deepest wear, displacement of the ball, and that in a radiograph."""
 
 RATES = ("initial", "steady", "mean")
 """Kinds of rates: of the new bore, between two cycle counts, and from the new bore to a cycle count."""
@@ -171,7 +171,7 @@ class MeasuredWear:
         return numpy.full(len(self), _MILLION * (totals(end) - start) / (end - begin))
 
     def other_readings(self) -> Iterator[MeasuredWear]:
-        """Yield this rate as rates of other kinds: of the new bore, of the second million, from 5 to 10 million cycles."""
+        """Yield this rate as those of other kinds: of the new bore, of the second million, from 5 to 10 million."""
         if self.quantity in ("volume", "depth"):
             yield replace(self, rate="initial", begin=None, end=None)
         for begin, end in ((1e6, 2e6), (5e6, 1e7)):
@@ -222,6 +222,11 @@ class WearFit:
     readings: Mapping[str, float]
 
     @property
+    def law_name(self) -> str:
+        """Name of the wear law, such as "archard"."""
+        return str(getattr(self.simulation.wear, "name", type(self.simulation.wear).__name__))
+
+    @property
     def unit(self) -> str:
         """Unit of the coefficient, such as mm³/(N m)."""
         field = coefficient_field(self.simulation.wear)
@@ -253,8 +258,8 @@ class WearFit:
         elif self.noise_estimated:
             share = float((self.uncertainty / _join(self.data)).mean())
             yield (
-                f"no uncertainty was stated: it is estimated from the scatter, {100 * share:.2g} % of each value (k = 1), "
-                "and the band is by Student's quantile"
+                f"no uncertainty was stated: it is estimated from the scatter, {100 * share:.2g} % of each value "
+                "(k = 1), and the band is by Student's quantile"
             )
         if self.widening > _MIN_NOTED_WIDENING:
             yield f"the data scatter more than stated: the band is {self.widening:.3g} times as wide"

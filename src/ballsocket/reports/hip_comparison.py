@@ -1,9 +1,10 @@
-"""Wear of several hips side by side: table in a terminal, figure, and CSV file."""
+"""Wear of several hips side by side, and the fit of a wear coefficient: tables, figures, CSV file."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,6 +13,7 @@ import numpy
 from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..hip.bands import Bands
 from ..hip.history import History
+from ..hip.wear_fit import WEAR_QUANTITIES, WearFit
 from .hip_tables import print_notes, table_with_units
 from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
 from .terminal import console, print_folded
@@ -148,6 +150,73 @@ def _notes_with_names(runs: Sequence[HipRun]) -> dict[str, list[str]]:
         for note in dict.fromkeys((*run.history.notes, *(run.bands.notes if run.bands else ()))):
             notes.setdefault(note, []).append(run.name)
     return notes
+
+
+def print_wear_fit(fit: WearFit) -> None:
+    """Print a fitted wear coefficient with its band, its value for each kind of rate, and the measured wear."""
+    terminal, use = console(), fit.simulation
+    print_folded(terminal, f"{use.joint}; {use.cycle.name}: coefficient of the wear law {fit.law_name!r}", "bold")
+    band = f"{fit.low:.4g} to {fit.high:.4g}" if isfinite(fit.high) else "-"
+    table = table_with_units({"": "", "best": fit.unit, "95 %": fit.unit}, left=("",))
+    table.add_row("coefficient", f"{fit.coefficient:.4g}", band)
+    terminal.print(table)
+    if fit.readings:
+        print_folded(terminal, "the same number as a rate of another kind:", "")
+        readings = table_with_units({"rate": "", "coefficient": fit.unit}, left=("rate",))
+        for description, coefficient in fit.readings.items():
+            readings.add_row(description, f"{coefficient:.4g}")
+        terminal.print(readings)
+    terminal.print(_measured_table(fit))
+    print_notes(fit.notes)
+
+
+def _measured_table(fit: WearFit) -> Any:
+    """Make the table of measured and simulated wear."""
+    table = table_with_units({"measured": "", "value": "", "fit": "", "unit": ""}, left=("measured", "unit"))
+    for measured, results in zip(fit.data, fit.results, strict=True):
+        cycles = [""] * len(measured) if measured.rate else [f" after {count:g} cycles" for count in measured.cycles]
+        for value, result, count in zip(measured.values, results, cycles, strict=True):
+            title = measured.description if measured.rate else f"{measured.quantity.replace('_', ' ')}{count}"
+            table.add_row(title, f"{value:.4g}", f"{result:.4g}", measured.unit)
+    return table
+
+
+def wear_fit_figure(fit: WearFit) -> Figure:
+    """Draw the fitted simulation over the cycles, with the measured totals and rates."""
+    from matplotlib.figure import Figure
+
+    quantities = list(dict.fromkeys(measured.quantity for measured in fit.data))
+    figure = Figure(figsize=(4.8 * len(quantities), 4.2), layout="constrained")
+    for axes, quantity in zip(figure.subplots(1, len(quantities), squeeze=False)[0], quantities, strict=True):
+        _draw_fit(axes, fit, quantity)
+        axes.set_xlim(left=0)
+        axes.set_ylim(bottom=0)
+        finish(axes, "million cycles", f"{quantity.replace('_', ' ')} [{WEAR_QUANTITIES[quantity]}]")
+        axes.legend(**LEGEND)
+    return figure
+
+
+def _draw_fit(axes: Axes, fit: WearFit, quantity: str) -> None:
+    """Draw one quantity of the fitted simulation with its measured values."""
+    rows = fit.history.table()
+    column = f"{quantity}_{'mm3' if quantity == 'volume' else 'mm'}"
+    cycles = [0.0, *(row["cycles"] / 1e6 for row in rows)]
+    totals = [0.0, *(row[column] for row in rows)]
+    axes.plot(cycles, totals, color=BLUE, label=f"coefficient {fit.coefficient:.3g} {fit.unit}")
+    for index, measured in enumerate(fit.data):
+        colour = _COLOURS[1 + index % (len(_COLOURS) - 1)]
+        if measured.quantity != quantity:
+            continue
+        if measured.rate is None:
+            axes.plot(measured.cycles / 1e6, measured.values, "o", color=colour, label="measured")
+            continue
+        begin, end = (measured.begin or 0.0) / 1e6, (measured.end or 1e6) / 1e6
+        for number, value in enumerate(measured.values):
+            start = float(numpy.interp(begin, cycles, totals))
+            line = [start, start + value * (end - begin)]
+            axes.plot(
+                [begin, end], line, "--", color=colour, label=None if number else f"measured {measured.rate} rate"
+            )
 
 
 def check_table(path: Path) -> None:
