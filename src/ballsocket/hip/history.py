@@ -365,7 +365,7 @@ _WORN_THIN = (
 )
 _FIRST_CYCLE, _AFTER_CYCLES = "in the first cycle", "after {:g} cycles"
 _EDGE_LOADING = (
-    "edge loading: {} the load presses the ball on the rim in {} of {} instants, most at {}; "
+    "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}; "
     "the pressure in the outermost ring is at most {:.3g} MPa"
 )
 _WORN_TO_RIM = (

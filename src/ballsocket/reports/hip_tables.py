@@ -228,7 +228,7 @@ def lubricant_line(history: History) -> str:
         f"roughness Ra {1e3 * lubricant.ball_roughness:g} µm (ball) and {1e3 * lubricant.cup_roughness:g} µm (cup)"
     )
     return (
-        f"film and friction: viscosity {1e3 * lubricant.viscosity:g} mPa s, {roughness}, coefficient of friction "
+        f"assumed for film and friction: viscosity {1e3 * lubricant.viscosity:g} mPa s, {roughness}, coefficient of friction "
         f"{lubricant.friction:g}"
     )
 
