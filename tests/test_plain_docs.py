@@ -6,17 +6,10 @@ from . import plain_text
 from .places import ROOT
 from .rooms import shown
 
-_NOT_YET = {"docs/explanation": "design.md"}
-"""Pages that are not yet rewritten, by folder. Remove a name when its page has no findings."""
-
-NOT_YET = tuple(f"{folder}/{name}" for folder, names in _NOT_YET.items() for name in names.split())
-
 
 @pytest.mark.parametrize("path", plain_text.files(), ids=shown)
 def test_pages_and_examples_are_in_plain_english(path):
     """See `plain_text` for the rules; `python -m tests.plain_text PAGE` prints the findings."""
-    if shown(path) in NOT_YET:
-        pytest.skip("not yet rewritten")
     result = plain_text.findings(path)
     assert not result, "\n".join(map(str, result))
 

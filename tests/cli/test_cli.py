@@ -173,7 +173,7 @@ def test_the_table_is_not_wider_than_the_terminal(columns):
     assert re.search(r"^model .* pmax .*valid", done.stdout, flags=re.MULTILINE)
     for name in bs.catalogue:
         assert re.search(rf"^{name} .* (yes|no)", done.stdout, flags=re.MULTILINE)
-    assert ("█" in done.stdout) == (columns >= 80)
+    assert ("█" in done.stdout) == (columns >= 100)
 
 
 @pytest.mark.parametrize("words", [("models",), ("presets",)])

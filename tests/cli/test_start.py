@@ -3,13 +3,16 @@
 import re
 import subprocess
 import sys
+from dataclasses import fields
 from importlib import import_module
 
 import pytest
 import typer
 
+from ballsocket.cli.options import JointOptions
 from ballsocket.cli.root import app, load_commands
 from ballsocket.core.deprecation import MOVED
+from ballsocket.core.quantities import QUANTITIES
 
 from .command import run
 
@@ -77,6 +80,26 @@ def test_every_option_is_described_in_sentences(name):
         assert re.match(r"(?:fem: |sphere: )?\w", parameter.help)
         assert parameter.help.endswith(".") or parameter.name == "help"
         assert not re.search(r"\b(?:asks?|told|so many|whoever|in place of|one's own)\b", parameter.help)
+
+
+JOINT_OPTIONS = {field.name for field in fields(JointOptions)}
+"""Options whose default is the joint file or the preset, as the help of the argument states."""
+
+SIZES = re.compile(r"ring_width|arc_of_cover|chamfer|element_size|tilt|hysteresis|impact_speed|longest|thickness")
+UNIT = re.compile(r" in (mm|MPa|N|degrees|s/mm|mm/s|seconds)\b|'\d+ mm'|\d kN|\d deg")
+
+
+@pytest.mark.parametrize("name", [*ORDER, "build-tables"])
+def test_every_option_states_its_unit_and_its_default(name):
+    for option in typer.main.get_command(app).commands[name].params:
+        text, quantity = option.help, QUANTITIES.get(option.name)
+        if SIZES.fullmatch(option.name) or (quantity and quantity.unit not in ("", "1")):
+            assert UNIT.search(text), f"--{option.name} has no unit: {text}"
+        if option.name == "joint" and name != "calibrate":
+            assert "options of the joint replace its values" in text
+        elif option.name not in JOINT_OPTIONS and not (option.required or option.default is not None):
+            stated = r"Default|^(fem: |sphere: )?[Ww]rite |Not with --|^Show this"
+            assert re.search(stated, text), f"--{option.name} has no default: {text}"
 
 
 def test_an_unknown_command_suggests_the_nearest_ones():

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.storage.plan import Plan
+from ballsocket.core.storage.pieces import Plan
 from ballsocket.evidence import matrix
 from ballsocket.evidence import pack as pack_module
 from ballsocket.evidence.code_checks import CHECKS

@@ -225,7 +225,7 @@ def test_the_table_has_a_row_for_each_patient(tmp_path):
     assert columns["peak_utilisation_at_1000"] == [0.3, 0.5]
     assert columns["peak_utilisation_at_5e+06"] == [0.3, 0.6]
     assert columns["valid_at_5e+06"] == [1.0, 0.0]
-    assert columns["edge_loaded_at_5e+06"] == [1.0, 1.0]
+    assert columns["edge_loaded_at_5e+06"] == [1.0, 0.0]
     assert len(columns) == 3 + 2 * (len(RESULT_UNITS) + 3)
     names, first, second = write_csv(tmp_path / "a.csv", run, cohort).read_text(encoding="utf-8").splitlines()
     assert names.split(",") == list(columns)

@@ -92,7 +92,7 @@ def test_iso_cycles_prescribe_the_tilt_of_the_cup_and_a_second():
         assert degrees(cycle.cup_tilt) == pytest.approx(30.0)
         assert (cycle.n_steps, cycle.duration, cycle.frame) == (16, 1.0, Frame.BODY)
         assert cycle.seconds == pytest.approx(np.full(16, 1 / 16))
-        assert "the standard itself was not read" in cycle.notes[0]
+        assert "not from the standard itself" in cycle.notes[0]
     for make in (two_axis, rocking, constant_load):
         assert make().cup_tilt is None
 
@@ -167,6 +167,18 @@ def test_rocking_slides_the_circle_of_its_cone_under_a_sine():
     assert rocking(order="zyx").rotations == pytest.approx(rocking().rotations, abs=0)
     with pytest.raises(ValueError, match="rotation_order = 'xx' is not allowed"):
         rocking(order="xx")
+
+
+def test_force_and_amplitude_scale_the_machines():
+    usual, scaled = flexion(40), flexion(40, peak=1500.0, amplitude=radians(43.0))
+    assert scaled.forces == pytest.approx(usual.forces / 2)
+    middle = radians(3.5)
+    phases = np.linspace(0.0, 1.0, 9)
+    assert scaled.angles(phases)[0] - middle == pytest.approx(2 * (usual.angles(phases)[0] - middle))
+    assert np.ptp(two_axis(amplitude=radians(30.0)).angles(PHASES), axis=1) == pytest.approx(np.radians([60, 12, 0]))
+    machines = ("flexion", "biaxial-rocking", "two-axis", "constant-load")
+    for name in machines:
+        assert {parameter.key for parameter in CYCLES[name].parameters} == {"force", "amplitude"}
 
 
 def test_constant_load_has_one_force_and_a_cosine_of_flexion():

@@ -15,7 +15,7 @@ from ..catalogue import judge, reference
 from ..contact import Contact
 from ..contact.describe import to_summary
 from ..core.validity import OutsideDomainError
-from ..elasticity.finite_elements.contact import MeshedContact
+from ..elasticity.finite_elements.model import MeshedContact
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis import Orientations, Sphere, orient
 from ..elasticity.off_axis.contact import OffAxisContact

@@ -40,7 +40,9 @@ from .root import app, print_message
 _POINTS_HELP = "Number of values along each axis, 2 or more. Default: 41, or 21 for a slow model."
 LimitOption = Annotated[
     list[str] | None,
-    typer.Option("--limit", help="Limit of a result or dimension: 'outer_radius<=26 mm'. Repeat for several."),
+    typer.Option(
+        "--limit", help="Limit of a result or dimension: 'outer_radius<=26 mm'. Repeat for several. Default: no limit."
+    ),
 ]
 
 
@@ -53,7 +55,10 @@ class PressOptions:
         str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
     ] = None
     indentation: Annotated[
-        str | None, typer.Option(help="Displacement of the ball after first contact: '40 um'. Not with --force.")
+        str | None,
+        typer.Option(
+            help="Displacement of the ball after first contact in mm, or with a unit: '40 um'. Not with --force."
+        ),
     ] = None
 
     def choose_model(self, file: JointFile, ends: Mapping[str, Any]) -> Model:

@@ -18,8 +18,7 @@ from ..contact.per_joint import SolvedContact
 from ..core.checks import known_name, require
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, LOADS
-from ..elasticity.finite_elements.contact import MeshedContact
-from ..elasticity.finite_elements.model import FiniteElement
+from ..elasticity.finite_elements.model import FiniteElement, MeshedContact
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Uniform
 from ..elasticity.off_axis.contact import OffAxisContact
@@ -129,11 +128,18 @@ class DirectionOptions:
     """Options of the load's direction, and of the rings of the model `sphere`."""
 
     tilt: Annotated[
-        str | None, typer.Option(help="Angle between load and cup axis in degrees: '45 deg'. Solved by model sphere.")
+        str | None,
+        typer.Option(
+            help="Angle between load and cup axis in degrees: '45 deg'. Solved by model sphere. "
+            "Default: as in the file, or 0 deg."
+        ),
     ] = None
     direction: Annotated[
         str | None,
-        typer.Option(help="Direction of the load 'x,y,z' in the body: right, front, up. Solved by model sphere."),
+        typer.Option(
+            help="Direction of the load 'x,y,z' in the body: right, front, up. Solved by model sphere. "
+            "Default: as in the file."
+        ),
     ] = None
     ring_width: Annotated[
         str | None,

@@ -14,7 +14,7 @@ from rich.progress import Progress
 
 from ..core.checks import needs
 from ..core.executors.processes import Engine, Processes
-from ..core.storage.fingerprint import fingerprint
+from ..core.storage.pieces import fingerprint
 from ..evidence.comparison import compare
 from ..evidence.folder import WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
 from ..evidence.pack import Listener, gather_evidence
@@ -33,17 +33,25 @@ if TYPE_CHECKING:
 
 @app.command()
 def evidence(
-    question: Annotated[Path | None, typer.Argument(help="Question file (TOML).")] = None,
+    question: Annotated[Path | None, typer.Argument(help="Question file (TOML). Default: none, with --check.")] = None,
     out: Annotated[Path, typer.Option(help="Output folder; created if it does not exist.")] = Path("evidence"),
     check: Annotated[
-        Path | None, typer.Option(help="Folder of an evidence pack: compute everything again and list the differences.")
+        Path | None,
+        typer.Option(
+            help="Folder of an evidence pack: compute everything again and list the differences. Default: write a pack."
+        ),
     ] = None,
     sign: Annotated[
-        Path | None, typer.Option(help="File of an OpenSSH private key (Ed25519) that signs the checksums of the pack.")
+        Path | None,
+        typer.Option(
+            help="File of an OpenSSH private key (Ed25519) that signs the checksums of the pack. Default: no signature."
+        ),
     ] = None,
     verify: Annotated[
         Path | None,
-        typer.Option(help="With --check: public key file that must match the signature of the pack."),
+        typer.Option(
+            help="With --check: public key file that must match the signature of the pack. Default: not verified."
+        ),
     ] = None,
     as_json: AsJson = False,
     workers: Annotated[int | None, typer.Option(help="Number of worker processes. Default: number of cores.")] = None,

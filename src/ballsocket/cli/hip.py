@@ -37,10 +37,15 @@ def hip(
     csv: Annotated[Path | None, typer.Option(help="Write a table with a row for each report (.csv).")] = None,
     report: Annotated[Path | None, typer.Option(help="Write a report with figures to this file (.html).")] = None,
     store: Annotated[
-        Path | None, typer.Option(help="Folder that stores the run; the same command resumes a stopped run.")
+        Path | None,
+        typer.Option(help="Folder that stores the run; the same command resumes a stopped run. Default: not stored."),
     ] = None,
     patients: Annotated[
-        int | None, typer.Option(help="Number of patients of a cohort that differ by the [uncertainty] of the file.")
+        int | None,
+        typer.Option(
+            help="Number of patients of a cohort that differ by the [uncertainty] of the file. "
+            "Default: one hip, as in the file."
+        ),
     ] = None,
     workers: Workers = None,
     scheduler: Scheduler = None,

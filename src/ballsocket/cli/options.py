@@ -23,13 +23,17 @@ from .json_answers import echo_json
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-JointName = Annotated[str | None, typer.Argument(help="Joint file (TOML), or name of a preset.")]
+JointName = Annotated[
+    str | None,
+    typer.Argument(help="Joint file (TOML), or name of a preset. The options of the joint replace its values."),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, not a table.")]
 Workers = Annotated[
     int | None, typer.Option(help="Number of worker processes on this machine. Default: 1, or as in the file.")
 ]
 Scheduler = Annotated[
-    str | None, typer.Option(help="Address of a Dask scheduler that distributes the work: 'tcp://host:8786'.")
+    str | None,
+    typer.Option(help="Address of a Dask scheduler that distributes the work: 'tcp://host:8786'. Default: none."),
 ]
 ModelName = Annotated[
     str | None,
@@ -47,21 +51,26 @@ class JointOptions:
     head_diameter: Annotated[
         str | None, typer.Option(help="Ball diameter 2 R1 in mm: '32 mm'. Not with --ball-radius.")
     ] = None
-    clearance: Annotated[str | None, typer.Option(help="Radial clearance: socket minus ball radius, '0.1 mm'.")] = None
+    clearance: Annotated[
+        str | None, typer.Option(help="Radial clearance (socket minus ball radius) in mm: '0.1 mm'.")
+    ] = None
     diametral_clearance: Annotated[
-        str | None, typer.Option(help="Twice the radial clearance: '0.2 mm'. Not with --clearance.")
+        str | None, typer.Option(help="Twice the radial clearance in mm: '0.2 mm'. Not with --clearance.")
     ] = None
     interference: Annotated[
-        str | None, typer.Option(help="Negative clearance of a preloaded joint: '0.02 mm'. Solved by model sphere.")
+        str | None,
+        typer.Option(
+            help="Interference of a preloaded joint in mm: '0.02 mm'. Solved by model sphere. Not with --clearance."
+        ),
     ] = None
     liner_thickness: Annotated[
-        str | None, typer.Option(help="Thickness of the liner: '6 mm'; inf for a massive socket.")
+        str | None, typer.Option(help="Thickness of the liner in mm: '6 mm'; inf for a massive socket.")
     ] = None
     outer_radius: Annotated[
-        str | None, typer.Option(help="Outer radius of the liner: '24 mm'. Not with --liner-thickness.")
+        str | None, typer.Option(help="Outer radius of the liner in mm: '24 mm'. Not with --liner-thickness.")
     ] = None
     outer_diameter: Annotated[
-        str | None, typer.Option(help="Outer diameter of the liner: '48 mm'. Not with --liner-thickness.")
+        str | None, typer.Option(help="Outer diameter of the liner in mm: '48 mm'. Not with --liner-thickness.")
     ] = None
     young: Annotated[str | None, typer.Option(help="Young's modulus of the liner in MPa, or with a unit: '1 GPa'.")] = (
         None
@@ -74,7 +83,10 @@ class JointOptions:
         ),
     ] = None
     ball_young: Annotated[
-        str | None, typer.Option(help="Young's modulus of the ball: '230 GPa'. Default: as in the file, or rigid.")
+        str | None,
+        typer.Option(
+            help="Young's modulus of the ball in MPa, or with a unit: '230 GPa'. Default: as in the file, or rigid."
+        ),
     ] = None
     ball_poisson: Annotated[str | None, typer.Option(help="Poisson's ratio of the ball, from 0 to 0.5.")] = None
     ball: Annotated[
@@ -118,7 +130,10 @@ class LoadOptions:
         str | None, typer.Option(help="Axial force in N, or with a unit: '3 kN'. Default: load of the joint file.")
     ] = None
     indentation: Annotated[
-        str | None, typer.Option(help="Displacement of the ball after first contact: '40 um'. Not with --force.")
+        str | None,
+        typer.Option(
+            help="Displacement of the ball after first contact in mm, or with a unit: '40 um'. Not with --force."
+        ),
     ] = None
     half_angle: Annotated[
         str | None, typer.Option(help="Half angle of the contact in degrees: '40 deg'. Not with --force.")

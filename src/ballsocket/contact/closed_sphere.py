@@ -98,6 +98,6 @@ HEMISPHERE_NOTE = Remark(
     quantity=max_hemisphere_change,
     symbol="change on a hemisphere",
     high=NOTED_CHANGE,
-    why="closed sphere: a hemisphere with a free rim and half a ball differs by more than 1 % in d, ε, pmax or dF/dd "
-    "at the same force: exact estimates by how much, fem and sphere solve it",
+    why="closed sphere: on a hemisphere with a free rim, d, ε, pmax or dF/dd differs by more than 1 % at the same "
+    "force; the model exact estimates the difference, fem and sphere compute it",
 )

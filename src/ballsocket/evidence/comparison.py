@@ -18,7 +18,7 @@ from typing import Any
 from ..core.checks import shown
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
-from ..core.storage.fingerprint import fingerprint
+from ..core.storage.pieces import fingerprint
 from .credibility import assess
 from .folder import (
     MAX_FILE_SIZE,

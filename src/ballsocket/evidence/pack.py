@@ -14,8 +14,7 @@ from typing import Any
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
-from ..core.storage.fingerprint import fingerprint
-from ..core.storage.plan import Results
+from ..core.storage.pieces import Results, fingerprint
 from ..problem import Material
 from ..problem.dimensions import DIAMETERS, STORED_LENGTHS
 from ..studies.parameters import press_arguments

@@ -150,8 +150,8 @@ def solve_with_calculix(question: Question, case: Case) -> list[CalculationMetho
 
 def _run_calculix(name: str, model: FiniteElement, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
     """Run CalculiX on the input deck of a contact."""
-    from ..elasticity.finite_elements.decks.calculix import run
-    from ..elasticity.finite_elements.decks.deck import deck_of
+    from ..elasticity.finite_elements.calculix import run
+    from ..elasticity.finite_elements.deck import deck_of
 
     contact: Contact = model.press(joint, **load)
     failed = CalculationMethod(name=name, numbers={}, errors={}, valid=False, notes=tuple(contact.notes))

@@ -17,8 +17,7 @@ from ..core.checks import require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
-from ..files.joint_file import CupTable, JointFile, cup_of
-from ..files.named_joint import joint_in
+from ..files.joint_file import CupTable, JointFile, cup_of, joint_in
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import convert, parse, parse_units, split_quantity

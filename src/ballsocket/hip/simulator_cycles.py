@@ -25,9 +25,9 @@ _ISO_PEAK = 3000.0
 _ISO_FLEXION_MIDDLE, _ISO_FLEXION_AMPLITUDE = 3.5, 21.5  # in degrees
 _TWO_AXIS_AMPLITUDES = radians(23.0), radians(6.0)
 _MISMATCH_NOTE = (
-    "mismatch, spring and swing load are as in published tests after ISO 14242-4; the standard itself was not read"
+    "mismatch, spring and swing load are taken from published tests after ISO 14242-4, not from the standard itself"
 )
-_ISO_NOTE = "the key points of ISO 14242-1 are as quoted in the literature; the standard itself was not read"
+_ISO_NOTE = "the key points of ISO 14242-1 are taken from publications, not from the standard itself"
 _TWO_AXIS_NOTE = "the waveform of the two-axis simulator is a typical one, not that of a specific machine"
 
 

@@ -13,8 +13,7 @@ from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_names, known_name, shown
 from ..core.quantities import FIELD, LOADS, MATERIAL
-from ..files.joint_file import JointTables
-from ..files.named_joint import joint_in
+from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,

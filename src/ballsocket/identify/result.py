@@ -220,7 +220,7 @@ def _fit_notes(result: IdentificationResult) -> Iterator[str]:
         yield f"value {row + 1} of {name} is {residual:+.3g} uncertainties from the result"
     if result.freedom > 0 and chi2.sf(result.spread**2 * result.freedom, result.freedom) < _MIN_PROBABILITY:
         yield (
-            f"the data scatter {result.spread:.3g} times as far as their stated uncertainties: these are too small, "
+            f"scatter of the data {result.spread:.3g} times the stated uncertainties: these are too small, "
             "there are outliers (HeavyTailed), or the model is not valid"
         )
     for measured, uncertainty in zip(result.data, result.uncertainties, strict=True):

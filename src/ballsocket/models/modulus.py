@@ -170,7 +170,7 @@ bonded_layer = Modulus(
         Range(
             quantity="joint.thickness_ratio",
             low=5.5,
-            why="a flat layer has one area inside and outside: a thicker shell is stiffer",
+            why="the layer is taken as flat, but a thick shell is larger outside than inside and stiffer",
         ),
         _contact_width_range(1.5, "the layer must be thin against the contact radius"),
         RIGID_BALL,

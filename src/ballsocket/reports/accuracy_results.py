@@ -16,12 +16,12 @@ from ..core.quantities import CONTACT, QUANTITIES
 from ..paper.cases import RATIOS
 from ..paper.cases import TableColumn as TableColumn
 from ..studies.calibration import Calibration
-from .terminal import console, print_folded
+from .terminal import console, print_columns, print_folded
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..elasticity.finite_elements.decks.calculix import CcxAnswer
+    from ..elasticity.finite_elements.calculix import CcxAnswer
 
 _LOADS = {"indentation": "force", "max_pressure": "force", "half_angle": "force", "force": "indentation"}
 HEADS = {name: f"{CONTACT[name].symbol} at given {CONTACT[load].symbol}" for name, load in _LOADS.items()}
@@ -169,7 +169,7 @@ def print_table_3(columns: Sequence[TableColumn]) -> None:
         errors = (100 * column.calibration.error[name] for column in columns)
         table.add_row(f"closed form: {name.replace('_', ' ')}", *(f"{error:.1f} %" for error in errors))
     terminal.print("Table 3 of Heß & Forsbach 2021: K R2/E = C1 + C2 (R2/L) + C3 (R2/L)²", style="bold")
-    terminal.print(table)
+    print_columns(terminal, table)
     text = f"{len(RATIOS)} joints of 24 mm outer radius, clearance 0.1 mm, steel on 1 GPa; mean of p0/d at 1, 2, 3 kN."
     print_folded(terminal, text, "dim")
 
@@ -187,7 +187,7 @@ def print_rival(ours: Mapping[str, numpy.ndarray], theirs: CcxAnswer) -> None:
         forces = (f"{F:.1f}", f"{F_ccx:.1f}", f"{100 * (F_ccx / F - 1):+.2f}")
         pressures = (f"{p:.3f}", f"{p_ccx:.3f}", f"{100 * (p_ccx / p - 1):+.2f}")
         table.add_row(f"{d:.5f}", *forces, *pressures, f"{angle:.2f}", f"{angle_ccx:.2f}", f"{angle_ccx - angle:+.2f}")
-    console().print(table)
+    print_columns(console(), table)
 
 
 def _rival_heads() -> Iterator[tuple[str, str]]:

@@ -16,7 +16,7 @@ from ..hip.history import History
 from ..hip.wear_fit import WEAR_QUANTITIES, WearFit
 from .hip_tables import print_notes, table_with_units
 from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
-from .terminal import console, print_folded
+from .terminal import console, print_columns, print_folded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,8 +27,7 @@ _PANELS = {"volume": "worn volume [mm³]", "penetration": "penetration [mm]"}
 """Results of the panels of the figure, with the labels of their axes."""
 
 _HEADS = {
-    "cycles": "million",
-    "hip": "",
+    "cycles, hip": "million",
     "volume": "mm³",
     "depth": "mm",
     "penetration": "mm",
@@ -102,10 +101,10 @@ def print_comparison(runs: Sequence[HipRun]) -> None:
     terminal = console()
     for run in runs:
         print_folded(terminal, f"{run.name}: {run.history.use.joint}; {run.history.use.cycle.name}", "bold")
-    terminal.print(_table(runs))
+    print_columns(terminal, _table(runs))
     for run in runs:
         verdict = "valid" if run.history.valid else "NOT VALID, see its notes"
-        error = f"volume within {100 * run.history.error.volume:.2g} % of the same model in the finest steps"
+        error = f"estimated numerical error of the volume {100 * run.history.error.volume:.2g} %"
         print_folded(terminal, f"{run.name}: contact {verdict}; {error}", "")
     for note, names in _notes_with_names(runs).items():
         prefix = "" if len(names) == len(runs) else f"{', '.join(names)}: "
@@ -116,7 +115,7 @@ def _table(runs: Sequence[HipRun]) -> Any:
     """Make the table of all hips at each report, with the ends of their bands."""
     banded = any(run.bands is not None for run in runs)
     heads = {**_HEADS, "volume 95 %": "mm³", "penetration 95 %": "mm"} if banded else _HEADS
-    table = table_with_units(heads, left=("hip",))
+    table = table_with_units(heads, left=("cycles, hip",))
     for cycles in sorted({report.cycles for run in runs for report in run.history.reports}):
         for run in runs:
             for row in _rows_at(run, cycles, banded):
@@ -131,7 +130,7 @@ def _rows_at(run: HipRun, cycles: float, banded: bool) -> Iterator[tuple[str, ..
             continue
         numbers = (report.volume, report.depth, report.penetration, report.max_pressure)
         edge = "yes" if report.edge_loaded.any() else "no"
-        row = (f"{cycles / 1e6:.6g}", run.name, *(f"{number:.4g}" for number in numbers), edge)
+        row = (f"{cycles / 1e6:.6g} {run.name}", *(f"{number:.4g}" for number in numbers), edge)
         yield (*row, *(_band_text(run.bands, result, index) for result in _PANELS)) if banded else row
 
 
@@ -159,14 +158,14 @@ def print_wear_fit(fit: WearFit) -> None:
     band = f"{fit.low:.4g} to {fit.high:.4g}" if isfinite(fit.high) else "-"
     table = table_with_units({"": "", "best": fit.unit, "95 %": fit.unit}, left=("",))
     table.add_row("coefficient", f"{fit.coefficient:.4g}", band)
-    terminal.print(table)
+    print_columns(terminal, table)
     if fit.readings:
         print_folded(terminal, "the same number as a rate of another kind:", "")
         readings = table_with_units({"rate": "", "coefficient": fit.unit}, left=("rate",))
         for description, coefficient in fit.readings.items():
             readings.add_row(description, f"{coefficient:.4g}")
-        terminal.print(readings)
-    terminal.print(_measured_table(fit))
+        print_columns(terminal, readings)
+    print_columns(terminal, _measured_table(fit))
     print_notes(fit.notes)
 
 

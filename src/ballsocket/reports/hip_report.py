@@ -205,8 +205,8 @@ def _first_cycle(history: History) -> str:
         f"The sliding distance of a cycle is {first.slide:.4g} mm; pressure times slide is {first.work:.4g} N m, "
         f"the mean cross-shear {first.cross_shear:.3g}. "
         f"The unworn hip wears {first.volume:.4g} mm³ and {first.depth:.3g} mm in a million cycles. "
-        f"Compared with the finest steps of the same model, the volume is within {100 * error.volume:.2g} %, "
-        f"the depth within {100 * error.depth:.2g} %."
+        f"The estimated numerical error is {100 * error.volume:.2g} % of the volume and "
+        f"{100 * error.depth:.2g} % of the depth."
     )
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from math import inf, isnan
-from typing import Any
 
 import numpy
 from rich.table import Table
@@ -13,7 +12,7 @@ from rich.table import Table
 from ..hip.bands import INFLUENCED_RESULTS, Bands
 from ..hip.contact_checks import largest_utilisation
 from ..hip.history import History
-from .terminal import console, print_folded
+from .terminal import console, print_columns, print_folded
 
 _WEAR_UNITS = {
     "cycles": "million",
@@ -171,7 +170,7 @@ def print_hip(history: History) -> None:
         "",
     )
     print_folded(terminal, f"unworn: {first.volume:.4g} mm³ and {first.depth:.4g} mm a million cycles", "")
-    terminal.print(_wear_table(history))
+    print_columns(terminal, _wear_table(history))
     print_folded(terminal, radiograph_line(history), "")
     if history.use.ball_wear is not None:
         last = history.last
@@ -179,12 +178,12 @@ def print_hip(history: History) -> None:
         print_folded(terminal, f"the ball: {ball_wear} after {last.cycles / 1e6:g} million cycles", "")
     print_folded(terminal, contact_line(history), "")
     if len(history.use.unworn_checks) > 1:
-        terminal.print(_contact_table(history))
+        print_columns(terminal, _contact_table(history))
     for line in _film_lines(history):
         print_folded(terminal, line, "")
     print_folded(terminal, lubricant_line(history), "dim")
-    accuracy = f"volume within {100 * history.error.volume:.2g} % of the same model in the finest steps"
-    print_folded(terminal, f"{accuracy}, in {history.steps} blocks", "dim")
+    accuracy = f"estimated numerical error of the volume {100 * history.error.volume:.2g} %"
+    print_folded(terminal, f"{accuracy}, {history.steps} blocks of cycles", "dim")
     print_notes(history.notes)
 
 
@@ -192,22 +191,21 @@ def print_bands(bands: Bands) -> None:
     """Print the bands of patients who differ as a table, the Sobol indices of each result, and notes."""
     terminal = console()
     print_folded(terminal, f"{band_summary(bands)} lie between", "bold")
-    table = table_with_units(band_units(bands), fold=True)
+    table = table_with_units(band_units(bands))
     tail = (1 - bands.level) / 2
     for row in band_rows(bands, (tail, 1 - tail)):
         table.add_row(*row)
-    terminal.print(table)
+    print_columns(terminal, table)
     for line in (*rim_lines(bands), band_contact_line(bands), *sobol_lines(bands)):
         print_folded(terminal, line, "")
     print_notes(bands.notes)
 
 
-def table_with_units(heads: Mapping[str, str], left: Sequence[str] = (), fold: bool = False) -> Table:
+def table_with_units(heads: Mapping[str, str], left: Sequence[str] = ()) -> Table:
     """Make an empty table from heads and their units; columns in `left` are aligned to the left."""
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for head in heads:
-        justify: Any = "left" if head in left else "right"
-        table.add_column(head, justify=justify, no_wrap=not fold, overflow="fold" if fold else "ellipsis")
+        table.add_column(head, justify="left" if head in left else "right", no_wrap=True)
     table.add_row(*heads.values(), style="dim")
     return table
 
@@ -224,12 +222,10 @@ def radiograph_line(history: History) -> str:
 def lubricant_line(history: History) -> str:
     """State the numbers that film and friction assume."""
     lubricant = history.lubricant
-    roughness = (
-        f"roughness Ra {1e3 * lubricant.ball_roughness:g} µm (ball) and {1e3 * lubricant.cup_roughness:g} µm (cup)"
-    )
+    ball, cup = (f"{1e3 * roughness:g} µm" for roughness in (lubricant.ball_roughness, lubricant.cup_roughness))
     return (
-        f"assumed for film and friction: viscosity {1e3 * lubricant.viscosity:g} mPa s, {roughness}, coefficient of friction "
-        f"{lubricant.friction:g}"
+        f"assumed for film and friction: viscosity {1e3 * lubricant.viscosity:g} mPa s, roughness Ra {ball} (ball) and "
+        f"{cup} (cup), coefficient of friction {lubricant.friction:g}"
     )
 
 

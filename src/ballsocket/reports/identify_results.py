@@ -16,7 +16,7 @@ from ..identify.posterior import CONVERGED, Posterior
 from ..identify.result import IdentificationResult
 from ..identify.sensitivity import Sensitivity
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
-from .terminal import console, print_folded
+from .terminal import console, print_columns, print_folded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -199,15 +199,15 @@ _ROWS = 5
 def print_identified(result: IdentificationResult, posterior: Posterior | None) -> None:
     """Print the unknowns with their bands, products, fit, sensitivity to machine errors, and the next measurement."""
     terminal, information = console(), result.information
-    print_folded(terminal, f"{result.model.name} through {_data_text(result)}", "bold")
-    terminal.print(_table(result, posterior))
+    print_folded(terminal, f"{result.model.name} fitted to {_data_text(result)}", "bold")
+    print_columns(terminal, _table(result, posterior))
     rank = f"rank {information.rank} of {len(result.transform.names)}, condition {information.condition:.2g}"
     print_folded(terminal, f"information of {rank}; {_scatter_text(result)}", "")
     if posterior is not None:
         print_folded(terminal, _sampling_text(posterior), "")
     if result.sensitivity:
-        terminal.print(_sensitivity_table(result))
-    terminal.print(_next_table(result))
+        print_columns(terminal, _sensitivity_table(result))
+    print_columns(terminal, _next_table(result))
     for note in result.notes:
         print_folded(terminal, note, "dim")
 
@@ -223,10 +223,10 @@ def _scatter_text(result: IdentificationResult) -> str:
     if result.freedom <= 0:
         return "as many values as unknowns: the quality of the fit cannot be tested"
     if all(data.has_unknown_noise for data in result.data):
-        return "the uncertainty of the data is estimated from their scatter"
+        return "uncertainty of the data estimated from their scatter"
     widening = result.misfit.widening
     widened = f"; the bands are {widening:.2f} times as wide" if widening > 1 else ""
-    return f"the data scatter {result.spread:.2f} times as far as their uncertainties say{widened}"
+    return f"scatter of the data {result.spread:.2f} times the stated uncertainties{widened}"
 
 
 def _sampling_text(posterior: Posterior) -> str:

@@ -16,7 +16,7 @@ from ..core.quantities import CONTACT, CUP, DERIVED, Quantity
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from .style import LEGEND
-from .terminal import console, print_folded
+from .terminal import console, print_columns, print_folded
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -152,7 +152,7 @@ def print_orientations(orientations: Orientations) -> None:
     fields = {DERIVED["edge_distance"]: orientations.edge_distance, CONTACT["max_pressure"]: orientations.max_pressure}
     for quantity, values in fields.items():
         terminal.print(Text(f"{quantity.label()}, anteversion by inclination"))
-        terminal.print(_table(orientations, values))
+        print_columns(terminal, _table(orientations, values))
     for line in _remarks(orientations):
         print_folded(terminal, line, "dim")
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
@@ -16,6 +17,7 @@ from ..core.validity import Status
 from ..studies.export import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, refusal_reason
 from ..studies.parameters import MATERIAL_PARTS
+from .terminal import print_columns
 
 if TYPE_CHECKING:
     import xarray
@@ -207,7 +209,7 @@ def print_study(study: xarray.Dataset) -> None:
         middle = float(numpy.nanmedian(numpy.concatenate(report.sampled[name])))
         numbers = (_value_text(name, value) for value in (low.value, middle, high.value))
         table.add_row(name, _unit(name), *numbers, _point_text(study, low.place), _point_text(study, high.place))
-    Console().print(table)
+    print_columns(Console(), table)
     failed = "".join(f"; {count} {status.sentence}" for status, count in report.failed.items() if count)
     Console().print(f"{study.status.size} points, {report.valid} of them valid{failed}", highlight=False)
 
@@ -218,7 +220,7 @@ def print_map(study: xarray.Dataset, limits: Sequence[Limit]) -> None:
     table = _table(*heads)
     for row in rows:
         table.add_row(*row)
-    Console().print(table)
+    print_columns(Console(), table)
     share = float(allowed(study, limits).mean())
     Console().print(
         f"{100 * share:.3g} % of the map is allowed" + "".join(f", {limit}" for limit in limits), highlight=False
@@ -244,7 +246,7 @@ def print_front(front: xarray.Dataset, max_rows: int = 12) -> None:
     table = _table(*(_head(name) for name in names))
     for index in range(chosen.sizes["point"]):
         table.add_row(*(_value_text(name, chosen[name].values[index].item()) for name in names))
-    Console().print(table)
+    print_columns(Console(), table)
     Console().print(f"{front.sizes['point']} designs that no other beats in both", highlight=False)
 
 
@@ -262,7 +264,7 @@ def print_optimum(best: Optimum) -> None:
         table.add_row(name, f"{value * _factor(name):.5g}", _unit(name), slope)
     for part, material in best.materials.items():
         table.add_row(part, material, "", "-")
-    console.print(table)
+    print_columns(console, table)
     if not best.valid:
         console.print("the model is not valid there: use another model", highlight=False)
     if best.active:
@@ -285,7 +287,7 @@ def print_sensitivity(indices: xarray.Dataset) -> None:
                 for order in ("first", "total")
             )
             table.add_row(name, *cells, f"{float(row.elasticity):+.2f}")
-        console.print(table)
+        print_columns(console, table)
 
 
 def _point_text(study: xarray.Dataset, flat: int) -> str:
@@ -328,5 +330,5 @@ def _table(*heads: str) -> Table:
     """Make an empty table with dim heads."""
     table = Table(box=None, pad_edge=False, header_style="dim")
     for head in heads:
-        table.add_column(head, overflow="fold")
+        table.add_column(Text(head), no_wrap=not table.columns)
     return table

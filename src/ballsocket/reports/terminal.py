@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Sequence
+from copy import copy
 from dataclasses import replace
 from math import pi
 
 import numpy
 from rich.console import Console
+from rich.table import Column as RichColumn
 from rich.table import Table
 from rich.text import Text
 
@@ -23,8 +25,9 @@ _BARS = " ▁▂▃▄▅▆▇█"
 _BARS_ASCII = " .:-=+*#@"
 _PROFILE = "profile"
 _OFF_THE_POLE = ("pole_pressure", "max_pressure_angle")
-_DROPPED_LAST = ("stiffness", "area", _PROFILE, "indentation", "force", "half_angle")
+_DROPPED_LAST = ("stiffness", "area", "indentation", "force", "half_angle")
 _DROPPED = (
+    _PROFILE,
     *(name for name in reversed(tuple(CONTACT)) if name not in (*_DROPPED_LAST, "max_pressure")),
     *_DROPPED_LAST,
 )
@@ -43,7 +46,7 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
     print_folded(terminal, str(ordered.joint), "bold")
     table, shown = _fitting_table(ordered, terminal, units)
     terminal.print(table)
-    for line in (_symbols_text(ordered, shown), *remarks, *ordered.notes()):
+    for line in (_symbols_text(ordered, shown), *_omitted_text(ordered, shown, units), *remarks, *ordered.notes()):
         print_folded(terminal, line, "dim")
 
 
@@ -62,6 +65,14 @@ def _symbols_text(comparison: Comparison, columns: Sequence[Column]) -> str:
     return f"{symbols}; Δ % from {reference.name}" if deviating else symbols
 
 
+def _omitted_text(comparison: Comparison, shown: Sequence[Column], units: Units) -> tuple[str, ...]:
+    """Name the columns that do not fit the width of the terminal."""
+    hidden = (*_pole_columns(comparison), *_unimportant_utilisation(comparison))
+    omitted = [column for column in units.columns if column.attribute not in hidden and column not in shown]
+    text = ", ".join(f"{column.symbol} {column.title}" for column in omitted)
+    return (f"not shown, the terminal is too narrow: {text}",) if omitted else ()
+
+
 def print_curve(contact: Contact) -> None:
     """Print contacts at increasing loads as a table of the main quantities, and the notes."""
     terminal = console()
@@ -69,12 +80,12 @@ def print_curve(contact: Contact) -> None:
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
     for column in COLUMNS:
         if column.attribute in HEADLINE:
-            table.add_column(column.head, justify="right", no_wrap=True)
+            table.add_column(Text(column.head), justify="right", no_wrap=True)
     table.add_column("valid", no_wrap=True)
     values = [column.values_of(contact) for column in COLUMNS if column.attribute in HEADLINE]
     for index, valid in enumerate(contact.valid):
         table.add_row(*(number_text(value[index], 4, "-") for value in values), "yes" if valid else "no")
-    terminal.print(table)
+    print_columns(terminal, table)
     for note in contact.notes:
         print_folded(terminal, note, "dim")
 
@@ -88,6 +99,54 @@ def print_folded(console: Console, text: str, style: str) -> None:
     """Print a line folded between words, with continuation lines indented."""
     folded = textwrap.fill(text, max(console.width, 20), subsequent_indent="    ", break_on_hyphens=False)
     console.print(Text(folded, style=style), soft_wrap=True)
+
+
+def print_columns(terminal: Console, table: Table) -> None:
+    """Print a table without a cut number: columns that do not fit follow below, beside the first column again.
+
+    Columns without `no_wrap` are folded between words first.
+    """
+    limits = [_width_limits(terminal, column) for column in table.columns]
+    gap = table.padding[1] + table.padding[3]
+    for indices in _column_blocks([least for least, _ in limits], gap, terminal.width):
+        part = copy(table)
+        widths = _fitted_widths([limits[index] for index in indices], terminal.width - gap * (len(indices) - 1))
+        part.columns = [
+            replace(table.columns[index], _index=position, width=width)
+            for position, (index, width) in enumerate(zip(indices, widths, strict=True))
+        ]
+        terminal.print(part)
+
+
+def _width_limits(terminal: Console, column: RichColumn) -> tuple[int, int]:
+    """Return the least and the largest useful width of a column: its longest word, and its longest cell."""
+    unbounded = terminal.options.update(width=10_000)
+    sizes = [terminal.measure(cell, options=unbounded) for cell in (column.header, *column.cells)]
+    longest = max(size.maximum for size in sizes)
+    return longest if column.no_wrap else max(size.minimum for size in sizes), longest
+
+
+def _column_blocks(widths: Sequence[int], gap: int, available: int) -> list[list[int]]:
+    """Group the columns of a table into blocks that fit; each block begins with the first column."""
+    blocks, used = [[0]], widths[0]
+    for index, width in enumerate(widths[1:], start=1):
+        if used + gap + width > available and len(blocks[-1]) > 1:
+            blocks.append([0])
+            used = widths[0]
+        blocks[-1].append(index)
+        used += gap + width
+    return blocks
+
+
+def _fitted_widths(limits: Sequence[tuple[int, int]], available: int) -> list[int]:
+    """Narrow the widest columns until all fit, none below its least width."""
+    widths = [longest for _, longest in limits]
+    while sum(widths) > available:
+        reducible = [index for index, (least, _) in enumerate(limits) if widths[index] > least]
+        if not reducible:
+            break
+        widths[max(reducible, key=widths.__getitem__)] -= 1
+    return widths
 
 
 def _fitting_table(comparison: Comparison, console: Console, units: Units) -> tuple[Table, list[Column]]:

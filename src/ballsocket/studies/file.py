@@ -9,20 +9,19 @@ from typing import Annotated, Any, ClassVar
 
 from ..catalogue import named_models
 from ..contact import Model
-from ..core.checks import check_names, shown
+from ..core.checks import check_filled, check_names, shown
 from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
 from ..core.kinds import Kind
-from ..files.joint_file import JointTables
-from ..files.named_joint import joint_in
+from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
     Parsed,
     Table,
     Text,
-    Whole,
+    WholeNumber,
     Word,
     meaning,
     quantity_keys,
@@ -109,7 +108,7 @@ class AxisValues(Parsed):
             *QUANTITIES_SCHEMA["anyOf"],
             {
                 "type": "object",
-                "properties": {"from": QUANTITY_SCHEMA, "to": QUANTITY_SCHEMA, "count": Whole.schema},
+                "properties": {"from": QUANTITY_SCHEMA, "to": QUANTITY_SCHEMA, "count": WholeNumber.json_schema()},
                 "required": ["from", "to", "count"],
                 "additionalProperties": False,
             },
@@ -128,7 +127,7 @@ class AxisValues(Parsed):
         if missing:
             raise ValueError(f"{name} needs from, to and count; missing: {', '.join(missing)}")
         low, high = (parse(f"{name}.{key}", value[key], cls.kind) for key in ("from", "to"))
-        return Span(low, high, Whole.read(f"{name}.count", value["count"]))
+        return Span(low, high, WholeNumber.read(f"{name}.count", value["count"]))
 
 
 class AxisMaterials(Parsed):
@@ -169,8 +168,8 @@ class AxesTable(Table, frozen=True, kw_only=True):
 class SamplesTable(Table, frozen=True, kw_only=True):
     """Samples: their number, and a distribution for each parameter that varies."""
 
-    count: Annotated[Whole, meaning("number of samples")]
-    seed: Annotated[Whole, meaning("seed of the samples")] = Whole(0)
+    count: Annotated[WholeNumber, meaning("number of samples")]
+    seed: Annotated[WholeNumber, meaning("seed of the samples")] = WholeNumber(0)
     method: Annotated[MethodName, meaning("method of sampling")] = MethodName(Method.SOBOL.value)
 
 
@@ -186,7 +185,7 @@ class EngineTable(Table, frozen=True, kw_only=True):
     qualified: ClassVar[bool] = True
 
     kind: Annotated[EngineKind, meaning("kind of executor")]
-    workers: Annotated[Whole | None, meaning("number of worker processes")] = None
+    workers: Annotated[WholeNumber | None, meaning("number of worker processes")] = None
     address: Annotated[Text | None, meaning("address of a Dask scheduler")] = None
 
 
@@ -241,7 +240,7 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
         joint=file.joint,
         design=_design(tables, content, folder),
         quantities=tuple(map(str, tables.quantities or ())),
-        store=None if tables.store is None else folder / _filled("store", tables.store),
+        store=None if tables.store is None else folder / check_filled("store", tables.store),
         engine=_engine(tables.engine),
     )
 
@@ -254,7 +253,7 @@ def _engine(table: EngineTable) -> Engine:
         raise ValueError(f"engine kind {str(table.kind)!r} has no address: 'dask' has")
     workers = None if table.workers is None else int(table.workers)
     if table.kind == "dask":
-        address = None if table.address is None else _filled("address", table.address)
+        address = None if table.address is None else check_filled("address", table.address)
         return Distributed(address=address, workers=workers)
     return Processes(workers=workers) if table.kind == "processes" else Serial()
 
@@ -267,17 +266,10 @@ def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Des
         spreads = parsed_values(samples, content["samples"])
         design = sample(int(samples.count), seed=int(samples.seed), method=Method(samples.method), **spreads) * design
     if tables.table is not None:
-        design = table(folder / _filled("path", tables.table.path)) * design
+        design = table(folder / check_filled("path", tables.table.path)) * design
     if not design.names:
         raise ValueError("nothing varies: a table [axes], [samples] or [table] is needed")
     return design
-
-
-def _filled(name: str, text: str) -> str:
-    """Return a text as plain text; ValueError if it is empty."""
-    if not text:
-        raise ValueError(f"{name} is empty")
-    return str(text)
 
 
 __getattr__ = renamed_names(

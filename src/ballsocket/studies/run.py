@@ -16,8 +16,7 @@ from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core.checks import check_names, needs, shown
 from ..core.deprecation import renamed_fields
-from ..core.executors.processes import Engine, Serial
-from ..core.memory import available_disk_space, available_memory, size_text
+from ..core.executors.processes import Engine, Serial, available_disk_space, available_memory, size_text
 from ..core.storage.pieces import PieceRun
 from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve

@@ -245,9 +245,9 @@ def _describe_changes(changes: dict[str, numpy.ndarray]) -> str:
     }
     listed = [f"{symbol} {100 * value:+.3g} %" for symbol, value in largest.items() if abs(value) > NOTED_CHANGE]
     if not listed:
-        return "closed sphere: on a hemisphere the contact of this force reaches the rim: use fem or sphere"
+        return "closed sphere: on a hemisphere the contact at this force reaches the rim; use fem or sphere"
     up_to = "" if all(values.size == 1 for values in changes.values()) else "up to "
     return (
-        f"closed sphere: a hemisphere with a free rim and half a ball has {up_to}{', '.join(listed)} "
-        "at the same force: use fem or sphere"
+        f"closed sphere: a hemisphere with a free rim has {up_to}{', '.join(listed)} at the same force; "
+        "use fem or sphere"
     )

@@ -107,7 +107,7 @@ class Exact(Model):
             (CLOSE_FIT, SMALL_STRAIN, _NEAR_HEMISPHERE) if self.gap is LinearGap else (SMALL_STRAIN, _NEAR_HEMISPHERE)
         )
 
-    reach: ClassVar[str] = "half angles up to 85°, less where the ball fills its socket before"
+    reach: ClassVar[str] = "half angles up to 85°, or less if the ball fills its socket first"
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         """Solve the contacts of all joints and loads on the load curve of each joint."""
