@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from ..catalogue import catalogue
-from ..core.checks import require, shown
+from ..core.checks import number_of_percent, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
@@ -160,9 +160,9 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
     uncertainty: Any = None
     if table.uncertainty is not None:
         text = table.uncertainty.value
-        if isinstance(text, str) and text.strip().endswith("%"):
-            percent = parse("uncertainty", text.strip().removesuffix("%").strip(), Kind.NUMBER)
-            uncertainty = [percent / 100 * value for value in values]
+        percent = number_of_percent(text)
+        if percent is not None:
+            uncertainty = [parse("uncertainty", percent, Kind.NUMBER) / 100 * value for value in values]
         else:
             numbers = text if isinstance(text, list) else [text]
             uncertainty = [_parse_wear("uncertainty", n, unit, table.rate is not None, per_year) for n in numbers]
