@@ -102,7 +102,7 @@ def test_scatter_makes_or_widens_the_band():
     ("words", "message"),
     [
         ({"quantity": "weight"}, "quantity 'weight' is not known"),
-        ({"rate": "final"}, "rate 'final' is not known; known: initial, steady, mean"),
+        ({"rate": "final"}, "rate 'final' is not known; did you mean 'initial'"),
         ({}, "volume needs the cycles of its values, or else the kind of its rate: initial, steady, mean"),
         ({"cycles": [1e6, 2e6]}, "volume has 1 values and 2 cycles"),
         ({"cycles": 1e6, "rate": "mean"}, "a rate of volume takes from and to, not cycles"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import degrees, pi
@@ -141,8 +140,8 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     )
 
 
-_RATE_UNIT = re.compile(r"(.*?)\s*/\s*(Mc|million cycles|year|a)\s*", re.DOTALL)
-"""Unit of a rate: that of its total, over a million cycles or a year."""
+_PER_MILLION, _PER_YEAR = ("Mc", "million cycles"), ("year", "a")
+"""Ends of the unit of a rate, behind the slash."""
 
 
 def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: HipTable) -> MeasuredWear:
@@ -181,17 +180,18 @@ def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: H
 
 def _parse_wear(name: str, value: Any, unit: str, is_rate: bool, per_year: float | None) -> float:
     """Convert a total or a rate with its unit to mm³ or mm, or to mm³ or mm per million cycles."""
-    match = _RATE_UNIT.fullmatch(value) if isinstance(value, str) else None
-    if is_rate and match is None:
+    total_text, _, period = value.rpartition("/") if isinstance(value, str) else ("", "", "")
+    has_period = period.strip() in (*_PER_MILLION, *_PER_YEAR)
+    if is_rate and not has_period:
         raise ValueError(f"{name} = {shown(value)} of a rate needs a unit such as '38 {unit}/Mc' or '8 {unit}/year'")
-    if match is not None and not is_rate:
+    if has_period and not is_rate:
         raise ValueError(f"{name} = {shown(value)} is a rate: state its kind, rate = {', '.join(map(repr, RATES))}")
     try:
-        number, text = split_quantity(str(value) if match is None else match[1])
+        number, text = split_quantity(total_text if has_period else str(value))
         total = convert(number, parse_units(text or unit), parse_units(unit))
     except ValueError as error:
         raise ValueError(f"{name} = {shown(value)} must be a number with a unit, such as '38 {unit}'") from error
-    if match is None or match[2] in ("Mc", "million cycles"):
+    if period.strip() not in _PER_YEAR:
         return total
     if per_year is None:
         raise ValueError(f"{name} = {shown(value)} is per year: state cycles_per_year at the top of the file")

@@ -288,7 +288,7 @@ class History:
         stages = [(_FIRST_CYCLE, self.worst)] + [
             (_AFTER_CYCLES.format(report.cycles), report.edge.closest_approach(frame)) for report in self.reports
         ]
-        first = {}
+        first: dict[str, tuple[str, ClosestApproach]] = {}
         for stage, worst in stages:
             if worst is not None and worst.steps_at_rim:
                 first.setdefault(worst.kind, (stage, worst))

@@ -60,7 +60,7 @@ def _draw_set(above: Axes, below: Axes, result: IdentificationResult, index: int
     colour, mark = _COLOURS[index % len(_COLOURS)], _MARKS[index % len(_MARKS)]
     above.plot(*_model_line(result, index, x, factor), color=INK, linewidth=1.4, label=result.model.name)
     uncertainty = result.uncertainties[index] if data.has_unknown_noise else data.uncertainty
-    bars = {"yerr": factor * uncertainty, "color": colour, "fmt": mark, "markersize": 4, "linewidth": 1}
+    bars: Any = {"yerr": factor * uncertainty, "color": colour, "fmt": mark, "markersize": 4, "linewidth": 1}
     above.errorbar(x, factor * data.values, **bars, label="measured")
     cut = data.saturated
     if cut.any():
