@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from math import degrees, pi
 from typing import Annotated, Any
 
 import numpy
@@ -11,11 +12,16 @@ import typer
 
 from ..catalogue import catalogue, judge, named_model, off_axis, reference
 from ..compare import Comparison, compare, successful_contacts
-from ..contact import Model
+from ..contact import Contact, Model
 from ..core.checks import known_name
+from ..core.quantities import CONTACT
 from ..core.validity import Status
+from ..dynamics import Friction
+from ..elasticity.off_axis import PullOut
+from ..elasticity.off_axis import pull_out as compute_pull_out
 from ..files.joint_file import JointFile
 from ..problem.cup import UP
+from ..problem.presets import long_term_note
 from ..reports.terminal import print_curve, print_press
 from ..reports.unit_systems import Units
 from ..version import __version__
@@ -70,6 +76,64 @@ class ModelOptions:
         return {name: elastic.get(name) or catalogue[name] for name in self.names or [default]}
 
 
+@dataclass(frozen=True, kw_only=True)
+class FrictionOptions:
+    """Options of the friction torque."""
+
+    friction: Annotated[
+        float | None,
+        typer.Option(help="Coefficient of sliding friction. Adds running and breakaway torque to the results."),
+    ] = None
+    static_friction: Annotated[
+        float | None,
+        typer.Option(help="Coefficient of static friction, for the breakaway torque. Default: --friction."),
+    ] = None
+
+    def torques(self, contact: Contact) -> dict[str, Any]:
+        """Compute the friction torques of a contact in N mm, with their coefficients; empty without friction."""
+        if self.friction is None:
+            return {}
+        sliding, static = self.coefficients
+        across, along = (contact.friction_torque(1.0, axis_angle) for axis_angle in (pi / 2, 0.0))
+        return {
+            "coefficient": sliding,
+            "static_coefficient": static,
+            "running_torque": sliding * across,
+            "breakaway_torque": static * across,
+            "running_torque_about_load": sliding * along,
+            "breakaway_torque_about_load": static * along,
+        }
+
+    @property
+    def coefficients(self) -> tuple[float, float]:
+        """Coefficients of sliding and of static friction.
+
+        Raises
+        ------
+        ValueError
+            A negative coefficient; static friction without, or below, sliding friction.
+        """
+        if self.friction is None:
+            raise ValueError("--static-friction needs the coefficient of sliding friction: add --friction")
+        friction = Friction(coefficient=self.friction, static_coefficient=self.static_friction)
+        return friction.coefficient, friction.breakaway_coefficient
+
+    def remark(self, name: str, contact: Contact, units: Units) -> str:
+        """Return one line with the friction torques of a contact."""
+        torques = self.torques(contact)
+
+        def text(kind: str) -> str:
+            across, along = (units.torque(torques[f"{kind}_torque{axis}"]) for axis in ("", "_about_load"))
+            return f"{kind} torque {across} about an axis across the load, {along} about the load"
+
+        if torques["static_coefficient"] == torques["coefficient"]:
+            return f"{name}: friction {torques['coefficient']:g}: {text('running')}; breakaway torque the same"
+        return (
+            f"{name}: friction {torques['coefficient']:g}, static {torques['static_coefficient']:g}: "
+            f"{text('running')}; {text('breakaway')}"
+        )
+
+
 @app.command()
 @expand_groups
 def press(
@@ -77,6 +141,7 @@ def press(
     joint: JointName = None,
     joint_options: JointOptions,
     load_options: LoadOptions,
+    friction_options: FrictionOptions,
     model_options: ModelOptions,
     units: Annotated[
         Units, typer.Option(case_sensitive=False, help="Units of the table; JSON is always in mm, N, MPa.")
@@ -87,6 +152,10 @@ def press(
     direction_options: DirectionOptions,
     cup_options: CupOptions,
     mesh: Annotated[MeshOptions, "fem"],
+    pull_out: Annotated[
+        bool,
+        typer.Option("--pull-out", help="sphere: add the largest force while the ball is pulled out of its cup."),
+    ] = False,
     meshes: Annotated[
         int | None, typer.Option(min=1, max=2, help="fem: number of meshes; 1 gives no error estimate. Default: 2.")
     ] = None,
@@ -105,8 +174,16 @@ def press(
     file = joint_options.read(joint)
     load = load_options.read(file)
     direction, remarks = direction_options.read(file), []
-    cup = tilted_cup(cup_options.apply_to(file.cup), direction)
-    needs_sphere = direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
+    if (friction_options.friction, friction_options.static_friction) != (None, None):
+        friction_options.coefficients  # noqa: B018 - raises for wrong coefficients
+    stated_cup = cup_options.apply_to(file.cup)
+    cup = stated_cup.around_ball(file.joint.clearance)
+    if cup is not stated_cup:
+        remarks.append(f"arc of cover {degrees(cup.arc_of_cover):g}° assumed for a preloaded joint; set --arc-of-cover")
+    cup = tilted_cup(cup, direction)
+    if pull_out and cup is not stated_cup:
+        raise ValueError("--pull-out needs the arc of cover: add --arc-of-cover, or arc_of_cover in [cup] of the file")
+    needs_sphere = pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
     models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
     if model_options.has_finite_elements and direction:
         raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
@@ -123,13 +200,35 @@ def press(
     comparison = _compare(replace(file, cup=cup), load, models)
     if off_axis.name in comparison:
         remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds))
+    if file.joint.clearance < 0:
+        remarks += filter(None, [long_term_note(file.joint.liner)])
+    if friction_options.friction is not None:
+        contacts = successful_contacts(comparison)
+        remarks += [friction_options.remark(name, contacts[name], units) for name in models if name in contacts]
+    pulled = None
+    if pull_out and off_axis.name in models:
+        pulled = compute_pull_out(timed.model, file.joint, friction_options.friction or 0.0)
+        remarks += _pull_out_remarks(pulled, units)
     files.write(comparison, next(iter(models)))
     report.write(comparison, replace(file, cup=cup, load=load, aim=direction), units)
     if as_json:
-        echo_json(comparison.summary())
+        summary = comparison.summary()
+        for result in summary["results"] if friction_options.friction is not None else ():
+            result["friction"] = (
+                friction_options.torques(comparison[result["model"]]) if result["model"] in comparison else None
+            )
+        echo_json(summary if pulled is None else {**summary, "pull_out": pulled.summary()})
     else:
         print_press(comparison, remarks, units)
     _exit_on_failure(comparison, models)
+
+
+def _pull_out_remarks(pulled: PullOut, units: Units) -> list[str]:
+    """Return lines with the pull-out force, its displacement and its limits."""
+    if not pulled.force >= 0.0:
+        return list(pulled.notes)
+    force, displacement = units.text_of(CONTACT["force"], pulled.force), units.length(pulled.displacement)
+    return [f"pull-out force {force}, {displacement} out of the cup's centre", *pulled.notes]
 
 
 def _compare(file: JointFile, load: Mapping[str, float], models: Mapping[str, Model]) -> Comparison:

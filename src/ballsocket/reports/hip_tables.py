@@ -181,7 +181,8 @@ def print_hip(history: History) -> None:
         print_columns(terminal, _contact_table(history))
     for line in _film_lines(history):
         print_folded(terminal, line, "")
-    print_folded(terminal, lubricant_line(history), "dim")
+    if history.use.joint.clearance > 0:
+        print_folded(terminal, lubricant_line(history), "dim")
     accuracy = f"estimated numerical error of the volume {100 * history.error.volume:.2g} %"
     print_folded(terminal, f"{accuracy}, {history.steps} blocks of cycles", "dim")
     print_notes(history.notes)
@@ -220,13 +221,10 @@ def radiograph_line(history: History) -> str:
 
 
 def lubricant_line(history: History) -> str:
-    """State the numbers that film and friction assume."""
+    """State the viscosity and the roughness of the surfaces that the film assumes."""
     lubricant = history.lubricant
     ball, cup = (f"{1e3 * roughness:g} µm" for roughness in (lubricant.ball_roughness, lubricant.cup_roughness))
-    return (
-        f"assumed for film and friction: viscosity {1e3 * lubricant.viscosity:g} mPa s, roughness Ra {ball} (ball) and "
-        f"{cup} (cup), coefficient of friction {lubricant.friction:g}"
-    )
+    return f"assumed for the film: viscosity {1e3 * lubricant.viscosity:g} mPa s, roughness Ra {ball} (ball) and {cup} (cup)"
 
 
 def print_notes(notes: Iterable[str]) -> None:
@@ -271,6 +269,10 @@ def _film_lines(history: History) -> Iterator[str]:
         yield "no film: nothing is pressed"
         return
     summary = film.summary()
-    thickness = f"{1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm"
-    yield f"film (Hamrock-Dowson) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
-    yield f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"
+    if summary["largest_nm"] is None:
+        yield "no film thickness: without a clearance the surfaces do not converge, and no formula applies"
+    else:
+        thickness = f"{1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm"
+        yield f"film (Hamrock-Dowson) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
+    friction = f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"
+    yield f"{friction}, with a coefficient of {history.lubricant.friction:g}"

@@ -44,6 +44,12 @@ class Units(StrEnum):
             return f"{millimetres / _INCH:.4g} in"
         return f"{millimetres:.4g} mm"
 
+    def torque(self, newton_millimetres: float) -> str:
+        """Write a torque (N mm) in N m or in pound inches."""
+        if self is Units.IMPERIAL:
+            return f"{newton_millimetres / (_INCH * _POUND):.3g} lbf in"
+        return f"{1e-3 * newton_millimetres:.3g} N m"
+
     def unit_of(self, quantity: Quantity) -> Unit:
         """Return the unit of a quantity."""
         return _IMPERIAL.get(quantity.kind, quantity.shown) if self is Units.IMPERIAL else quantity.shown
