@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy
 
 import ballsocket as bs
-from ballsocket.elasticity.finite_elements.decks.calculix import SECTORS, read_contact_pressures, read_printed
+from ballsocket.elasticity.finite_elements.calculix import SECTORS, read_contact_pressures, read_printed
 
 SCALE = 1e-3
 RIM, GROWTH, WIDEST = 120.0, 1.3, 15.0  # degrees, of the liner's elements beyond the contact

@@ -12,8 +12,8 @@ import numpy
 
 import ballsocket as bs
 from ballsocket.elasticity.finite_elements import bodies, solver
-from ballsocket.elasticity.finite_elements.decks import calculix as ccx
-from ballsocket.elasticity.finite_elements.decks.deck import deck_of
+from ballsocket.elasticity.finite_elements import calculix as ccx
+from ballsocket.elasticity.finite_elements.deck import deck_of
 
 from .calculix_rival import Calculix, Mesh
 from .report import Rows

@@ -12,7 +12,7 @@ MODULES = {path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_bytes()) fo
 OPENING = {"open", "read_text", "read_bytes", "genfromtxt", "loadtxt", "fromfile", "read_csv", "read_parquet"}
 OWN_FILES = {
     "app/style.py": "styles and scripts of the package",
-    "core/storage/atomic_files.py": "locks a folder that is written",
+    "core/storage/atomic_files.py": "locks a folder that is written; writes arrays",
     "cli/root.py": "opens the null device",
     "contact/closed_sphere.py": "a table of the package",
     "contact/strength.py": "a table of the package",
@@ -25,19 +25,17 @@ OWN_FILES = {
     "export/c_element.py": "templates of the package",
     "export/compiler.py": "a library that it has just compiled",
     "export/fmu/fmu.py": "a library that it has just compiled",
-    "elasticity/finite_elements/decks/calculix.py": "results in a folder of decks, named by its user in Python",
-    "core/storage/fingerprint.py": "the source of the package",
+    "elasticity/finite_elements/calculix.py": "results in a folder of decks, named by its user in Python",
+    "core/storage/pieces.py": "the source of the package; pieces of a run",
     "hip/cohort.py": "labels of a store",
     "models/refined_state.py": "a table of the package",
     "models/table_3.py": "a table of the package",
-    "core/storage/array_files.py": "writes arrays",
     "reports/paper_report.py": "a picture that it has just drawn",
     "paper/cases.py": "a table of the package",
-    "core/storage/plan.py": "pieces of a run",
     "core/sources.py": "the bibliography of the package",
     "elasticity/off_axis/deck.py": "results in a folder of decks, named by its user in Python",
     "studies/export.py": "writes the numbers of a study",
-    "core/memory.py": "memory of the machine",
+    "core/executors/processes.py": "memory of the machine",
     "studies/store.py": "the label of a store",
 }
 """Modules that open files without `input_files`, with these files; readers of input files are excluded."""
@@ -82,7 +80,7 @@ def test_files_that_users_name_are_opened_by_one_module():
         "files/toml.py",
         "files/columns.py",
         "elasticity/off_axis/scans.py",
-        "core/storage/array_files.py",
+        "core/storage/atomic_files.py",
         "elasticity/exact/tabulated/chebyshev.py",
         "evidence/signature.py",
     ],
@@ -95,8 +93,8 @@ def test_other_modules_do_not_read_files_by_names_of_users():
     """Readers of other packages that take a path get one that was checked."""
     readers = {name for name, tree in MODULES.items() if called(tree) & {"ZipFile", "ParquetFile"}}
     assert readers == {
-        "app/evidencing.py",
+        "app/evidence_pack.py",
         "export/fmu/fmu.py",
-        "core/storage/array_files.py",
+        "core/storage/atomic_files.py",
         "files/columns.py",
     }  # the first two write

@@ -19,7 +19,7 @@ SIZES = (500, 1000, 2000, 4000)
 BOUNDED = {
     "studies/expressions.py": "texts of at most 200 characters",
     "core/sources.py": "the bibliography of the package",
-    "elasticity/finite_elements/decks/calculix.py": "results in a folder of decks",
+    "elasticity/finite_elements/calculix.py": "results in a folder of decks",
 }
 """Modules with patterns made at run time, which are not measured, and the texts that they read."""
 

@@ -9,7 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.executors.processes import Serial
-from ballsocket.core.storage.array_files import read_arrays, write_arrays
+from ballsocket.core.storage.atomic_files import read_arrays, write_arrays
 from ballsocket.elasticity.off_axis import read_scan
 from ballsocket.hip import HipSimulation
 from ballsocket.hip.simulator_cycles import iso_14242_1

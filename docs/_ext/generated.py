@@ -13,11 +13,10 @@ import ballsocket as bs
 from ballsocket.catalogue import listed_models
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.sources import Source, bibliography
-from ballsocket.evidence.applicability import range_text
-from ballsocket.evidence.comparators import PUBLISHED
+from ballsocket.evidence.comparators import PUBLISHED, range_text
 from ballsocket.evidence.validity import measure, models_with_promise
 from ballsocket.files.schema_keys import Key, keys_of
-from ballsocket.mcp.file_kinds import FILE_TABLES, file_table
+from ballsocket.mcp.tools import FILE_TABLES, file_table
 from ballsocket.paper.plan import quick_plan
 from ballsocket.reports.accuracy_results import markdown
 from ballsocket.reports.paper_report import write_report

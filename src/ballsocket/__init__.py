@@ -51,9 +51,8 @@ from .models.foundation import (
     RadialFoundation,
     Vessel,
 )
-from .models.half_space import Hertz, Steuermann
+from .models.half_space import Hertz, LiuReconstruction, Steuermann
 from .models.kinematics import cosine_kinematics, exact_kinematics, linear_kinematics
-from .models.liu import LiuReconstruction
 from .models.modulus import bonded_layer, constant, corrected_vessel, hess_forsbach, polynomial, spherical_vessel
 from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer

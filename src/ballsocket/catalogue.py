@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from .contact import Model
-from .contact.model_info import ModelInfo
+from .contact.outcome import ModelInfo
 from .core.checks import NamedItems, known_name
 from .core.deprecation import renamed_names
 from .elasticity.exact.exact_curve import ExactCurve
@@ -15,8 +15,7 @@ from .elasticity.finite_elements.model import FiniteElement
 from .elasticity.off_axis.model import Sphere
 from .models.adhesion import AdhesiveSocket
 from .models.foundation import Bartel, BondedLayer, BondedLayerExact, CosineLimit, HessForsbach, Vessel
-from .models.half_space import Hertz, Steuermann
-from .models.liu import LiuReconstruction
+from .models.half_space import Hertz, LiuReconstruction, Steuermann
 from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined

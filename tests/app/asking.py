@@ -6,14 +6,14 @@ from base64 import b64decode
 
 def does(page, what, **words):
     """Somebody does something on a page; the messages with which it answers, as one."""
-    last, answer = json.loads(page.channel.ears.value or '{"n": 0}')["n"], {}
+    last, answer = json.loads(page.channel.inbox.value or '{"n": 0}')["n"], {}
 
     def hear(attribute, old, new):
         answer.update(json.loads(new))
 
-    page.channel.mouth.on_change("value", hear)
-    page.channel.ears.value = json.dumps({"n": last + 1, "do": what, **words})
-    page.channel.mouth.remove_on_change("value", hear)
+    page.channel.outbox.on_change("value", hear)
+    page.channel.inbox.value = json.dumps({"n": last + 1, "do": what, **words})
+    page.channel.outbox.remove_on_change("value", hear)
     assert answer["n"] == last + 1
     return answer
 
@@ -27,4 +27,4 @@ def saved(page, kind):
 
 
 def trouble(page):
-    return page.channel.told("#trouble") or ""
+    return page.channel.shown_value("#trouble") or ""

@@ -13,14 +13,13 @@ from .asking import does, edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("skfem")
-from ballsocket.app import cupping
-from ballsocket.app.angle_map import angle_map
-from ballsocket.app.bore_map import pressed_bore
-from ballsocket.app.cupping import Stood
+from ballsocket.app import elasticity_tasks
+from ballsocket.app.cup_pictures import angle_map, pressed_bore
+from ballsocket.app.elasticity_tasks import Stood
 from ballsocket.app.jobs import Job
 from ballsocket.app.page import Page
 from ballsocket.app.reading import Reading
-from ballsocket.app.running import Done
+from ballsocket.app.running import RunFinished
 from ballsocket.app.views.cup import _hint
 from ballsocket.problem.cup import Cup, Side
 from ballsocket.reports.unit_systems import Units
@@ -37,14 +36,14 @@ def at_once(monkeypatch):
     def ask(self, key, work):
         asked.append(key[0])
         if key[0] == "bore":
-            self._heard(key, Done(work(lambda news: self._heard(key, news))))
+            self._heard(key, RunFinished(work(lambda news: self._heard(key, news))))
 
     monkeypatch.setattr(Job, "ask", ask)
     return asked
 
 
 def told(page, name):
-    return page.channel.told(f"#cup-{name}") or ""
+    return page.channel.shown_value(f"#cup-{name}") or ""
 
 
 def opened(link=LINK):
@@ -76,8 +75,8 @@ def test_the_view_says_what_the_sphere_says(at_once):
     edits(page, "cup.side", "left")
     assert page.screen.file.aim["direction"][0] == pytest.approx(-way[0])
     assert f"{degrees(leaning.tilt):.4g} <span class='unit'>°" in told(page, "numbers")  # a mirror changes nothing
-    assert "load.direction=" in page.channel.told("link")
-    assert opened(page.channel.told("link")).screen == page.screen
+    assert "load.direction=" in page.channel.shown_value("link")
+    assert opened(page.channel.shown_value("link")).screen == page.screen
 
     edits(page, "cup.inwards", 0)
     edits(page, "cup.pick", [75.0, 12.34])
@@ -104,10 +103,10 @@ def test_an_orientation_of_zero_is_shown_and_not_replaced():
         ("inclination", "91", "inclination = 91"),
         ("arc_of_cover", "0", "arc_of_cover = 0"),
         ("inwards", "85", "load leans to the middle = 85"),
-        ("chamfer", "wide", "chamfer = 'wide' is no number"),
+        ("chamfer", "wide", "chamfer = 'wide' is not a number"),
         ("side", "middle", "side = 'middle' is not allowed"),
         ("aim", "up", "'up' as aim is not known"),
-        ("pick", [1.0], "is no place on the map"),
+        ("pick", [1.0], "is not a point of the map"),
         ("show", "area", "'area' as standing is not known"),
         ("colour", "red", "'colour' among the inputs of a cup"),
     ],
@@ -124,11 +123,11 @@ def test_what_a_cup_cannot_be_is_told(name, value, sentence, monkeypatch):
 def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(monkeypatch):
     monkeypatch.setattr(Job, "ask", lambda *words: None)
     page = opened()
-    assert page.channel.told("=cup.tilt")["hidden"]
-    assert not page.channel.told("=cup.inclination")["hidden"]
+    assert page.channel.shown_value("=cup.tilt")["hidden"]
+    assert not page.channel.shown_value("=cup.inclination")["hidden"]
     edits(page, "cup.aim", "axis")
     assert page.screen.file.aim["tilt"] == pytest.approx(page.screen.file.cup.tilt((0.0, 0.0, 1.0)))
-    assert page.channel.told("=cup.inclination")["hidden"]
+    assert page.channel.shown_value("=cup.inclination")["hidden"]
     assert "turns with the cup" in told(page, "stood")
     edits(page, "cup.tilt", 30)
     assert page.screen.file.aim == {"tilt": pytest.approx(radians(30))}
@@ -176,8 +175,8 @@ def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
 @pytest.mark.long
 def test_the_map_is_that_of_python():
     page = opened()
-    found = cupping.stood(page.screen.file, lambda news: None)
-    angles = {"inclination": cupping.INCLINATIONS[::5], "anteversion": cupping.ANTEVERSIONS[::5]}
+    found = elasticity_tasks.stood(page.screen.file, lambda news: None)
+    angles = {"inclination": elasticity_tasks.INCLINATIONS[::5], "anteversion": elasticity_tasks.ANTEVERSIONS[::5]}
     asked = bs.orient(JOINT, model=bs.Sphere(cup=Cup(side=Side.RIGHT)), force=3000.0, **angles)
     assert found.edge_distance[::5, ::5] == pytest.approx(asked.edge_distance, rel=1e-5)  # as far as a press is solved
     assert found.figure.startswith(b"\x89PNG")

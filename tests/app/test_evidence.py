@@ -17,12 +17,11 @@ from .asking import edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
-from ballsocket.app.asked import FIRST, Asked, written
-from ballsocket.app.evidencing import Packed, packed
-from ballsocket.app.in_use import WHOLE, Use
+from ballsocket.app.evidence_pack import DEFAULT_QUESTION, EvidencePack, EvidenceQuestion, gather_pack, write_question
+from ballsocket.app.in_use import DEFAULT_USE, Use
 from ballsocket.app.jobs import Job
 from ballsocket.app.page import Page
-from ballsocket.app.running import Done
+from ballsocket.app.running import RunFinished
 from ballsocket.app.views import evidence
 
 LINK = "view=evidence&preset=hip-36&load.force=3000"
@@ -37,11 +36,11 @@ def opened(link=LINK):
 
 
 def told(page, name):
-    return unescape(page.channel.told(f"#evidence-{name}") or "")
+    return unescape(page.channel.shown_value(f"#evidence-{name}") or "")
 
 
 def test_what_is_typed_is_a_question_file(tmp_path):
-    asked = Asked(
+    asked = EvidenceQuestion(
         limits="max_pressure <= 20 MPa; half_angle <= 60 deg",
         matrix="force = 2, 3 kN; inclination = 30, 45 deg; clearance = 0.1 mm",
         tolerances="clearance = 0.1 +- 0.02 mm",
@@ -50,7 +49,7 @@ def test_what_is_typed_is_a_question_file(tmp_path):
         wear="yes",
     )
     use = Use(cycle="walking", body_weight=750.0, millions=2.0, creep="yes")
-    found = written(asked, JointFile(FILE.joint, FILE.load, CUP), use, tmp_path)
+    found = write_question(asked, JointFile(FILE.joint, FILE.load, CUP), use, tmp_path)
     assert found.axes["force"] == (2000.0, 3000.0)
     assert found.axes["inclination"] == pytest.approx((radians(30.0), radians(45.0)))
     assert (found.file.joint.ball_radius, found.file.cup) == (18.0, CUP)
@@ -59,7 +58,7 @@ def test_what_is_typed_is_a_question_file(tmp_path):
     hip = read_hip(found.hip)
     assert (hip.cycles, hip.use.cycle.name, hip.use.creep is not None) == (2e6, "walking", True)
     assert hip.use.cycle.force_magnitudes.max() == pytest.approx(2.47 * 750, rel=0.01)
-    plain = written(FIRST, FILE, WHOLE, tmp_path)
+    plain = write_question(DEFAULT_QUESTION, FILE, DEFAULT_USE, tmp_path)
     assert (plain.file.joint, plain.hip) == (FILE.joint, None)
     assert not (tmp_path / "hip.toml").exists()  # it would be taken along
 
@@ -69,8 +68,8 @@ def test_a_question_is_read_as_it_is_typed():
     assert "2 cases" in told(page, "said")
     edits(page, "evidence.matrix", "force = 2, 3 kN; clearance = 0.05, 0.1, 0.15 mm")
     assert "6 cases" in told(page, "said")
-    assert "ask.matrix=" in page.channel.told("link")
-    assert opened(page.channel.told("link")).screen == page.screen
+    assert "ask.matrix=" in page.channel.shown_value("link")
+    assert opened(page.channel.shown_value("link")).screen == page.screen
     edits(page, "evidence.matrix", "clearance = 0.05, 0.1 mm")
     assert "[matrix] needs a load" in told(page, "said")
     edits(page, "evidence.run", True)
@@ -114,10 +113,10 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
         folders.append(Path(work.args[-1]))
         assert folders[-1].is_dir()
         worst = {"max_pressure": {"numbers": {"max_pressure": 11.2}, "errors": {}, "case": {"force": 2000.0}}}
-        self._heard(key, Done(Packed(conclusions=("kept",), record={"worst": worst}, content=b"a pack")))
+        self._heard(key, RunFinished(EvidencePack(conclusions=("kept",), record={"worst": worst}, content=b"a pack")))
 
     monkeypatch.setattr(Job, "ask", ask)
-    monkeypatch.setattr(evidence, "_FOUND", evidence.CachedRun(most=4))
+    monkeypatch.setattr(evidence, "_PACKS", evidence.CachedRun(max_size=4))
     page = opened()
     edits(page, "evidence.take", True)
     assert "there is no pack of this yet" in trouble(page)
@@ -134,8 +133,8 @@ def test_the_pack_that_was_gathered_is_taken(monkeypatch):
 @pytest.mark.long
 def test_a_pack_is_what_the_command_writes(tmp_path):
     news = []
-    asked = Asked(matrix="force = 2000 N")
-    found = packed(asked, FILE, WHOLE, str(tmp_path), news.append)
+    asked = EvidenceQuestion(matrix="force = 2000 N")
+    found = gather_pack(asked, FILE, DEFAULT_USE, str(tmp_path), news.append)
     shares = [each.share for each in news]
     assert shares == sorted(shares)
     with zipfile.ZipFile(io.BytesIO(found.content)) as pack:

@@ -13,9 +13,8 @@ from ballsocket.files.joint_file import JointFile
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
 from ballsocket.app.drawing import petals
-from ballsocket.app.headline import nearness
 from ballsocket.app.page import Page
-from ballsocket.app.verdict import about_von_mises, most_used, sentence
+from ballsocket.app.words import accuracy_sentence, estimate_von_mises, most_used, verdict_sentence
 from ballsocket.reports.section_plots import gap_factor
 
 from .asking import does, edits, trouble
@@ -26,7 +25,7 @@ JOINT = "joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.m
 
 
 def drawing(page):
-    return page.channel.told("#press-section")
+    return page.channel.shown_value("#press-section")
 
 
 def texts(page):
@@ -94,8 +93,8 @@ def test_a_contact_over_the_rim_is_said():
 def test_a_verdict_is_that_of_the_strength_that_is_used_most(strengths, force, holds, words):
     liner = bs.Material(young=1000.0, poisson=0.4, **strengths)
     contact = bs.Exact().press(replace(HIP, liner=liner, ball=None), force=force)
-    borne = most_used(contact, about_von_mises(contact))
-    said = sentence(contact, borne)
+    borne = most_used(contact, estimate_von_mises(contact))
+    said = verdict_sentence(contact, borne)
     assert said[0] is holds
     assert words in said[1]
     if "allowable_pressure" in strengths and len(strengths) == 1:
@@ -104,29 +103,29 @@ def test_a_verdict_is_that_of_the_strength_that_is_used_most(strengths, force, h
 
 def test_an_answer_that_is_not_to_be_trusted_has_no_verdict():
     contact = bs.Hertz().press(HIP, force=3000.0)
-    assert sentence(contact, most_used(contact, about_von_mises(contact))) == (
+    assert verdict_sentence(contact, most_used(contact, estimate_von_mises(contact))) == (
         None,
-        "No verdict: this answer is not to be trusted here",
+        "No verdict: this contact is outside the range of its model",
     )
 
 
 def test_the_first_number_comes_with_its_share_of_the_allowable():
     page = Page("preset=hip-28&load.force=3000")
     edits(page, "allowable", "20,5")
-    numbers = page.channel.told("#press-numbers")
+    numbers = page.channel.shown_value("#press-numbers")
     assert "83 % of the allowable pressure of the liner (UHMWPE, 20.5 MPa)" in numbers
     assert numbers.index("data-name='max_pressure'") < numbers.index("data-name='force'")
-    assert page.channel.told("=liner")["value"] == "uhmwpe"
+    assert page.channel.shown_value("=liner")["value"] == "uhmwpe"
     edits(page, "allowable", "")
-    assert "of the yield stress of the liner" in page.channel.told("#press-numbers")
+    assert "of the yield stress of the liner" in page.channel.shown_value("#press-numbers")
 
 
 def test_one_line_says_how_near_all_numbers_are():
     exact, other = (bs.catalogue[name].press(HIP, force=3000.0) for name in ("exact", "hess-forsbach"))
-    assert nearness(exact, exact) == "All within 0.001 % of the exact answer"
+    assert accuracy_sentence(exact, exact) == "All within 0.001 % of the exact answer"
     apart = max(abs(other.area / exact.area - 1), abs(other.half_angle / exact.half_angle - 1))
-    assert nearness(other, exact) == f"All within {100 * apart:.2g} % of the exact answer"
-    assert Page("").channel.told("#press-numbers").count("of the exact answer") == 1
+    assert accuracy_sentence(other, exact) == f"All within {100 * apart:.2g} % of the exact answer"
+    assert Page("").channel.shown_value("#press-numbers").count("of the exact answer") == 1
 
 
 def test_stresses_in_the_liner_are_painted_when_they_are_asked_for():
@@ -136,4 +135,4 @@ def test_stresses_in_the_liner_are_painted_when_they_are_asked_for():
     top = float(re.search(r"<span>([\d.]+) MPa", drawing(page))[1])
     assert top == pytest.approx(bs.Exact().press(HIP, force=3000.0).von_mises, rel=0.05)
     does(page, "choose", name="answered_by", value="hertz")
-    assert "this model knows no stresses inside the liner" in drawing(page)
+    assert "this model has no stresses inside the liner" in drawing(page)

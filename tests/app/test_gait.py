@@ -15,11 +15,11 @@ from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named
 from .asking import does, edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
-from ballsocket.app.gaiting import MERIDIANS, RINGS, gaited
-from ballsocket.app.in_use import WHOLE
+from ballsocket.app.hip_tasks import MERIDIANS, RINGS, simulate_gait
+from ballsocket.app.in_use import DEFAULT_USE
 from ballsocket.app.jobs import Job
 from ballsocket.app.page import Page
-from ballsocket.app.running import Done, RunRefused
+from ballsocket.app.running import RunFinished, RunRefused
 
 LINK = "view=gait&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
 CUP = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
@@ -32,7 +32,7 @@ def at_once(monkeypatch):
 
     def ask(self, key, work):
         try:
-            self._heard(key, Done(work(lambda news: self._heard(key, news))))
+            self._heard(key, RunFinished(work(lambda news: self._heard(key, news))))
         except ValueError as error:
             self._heard(key, RunRefused(why=str(error)))
 
@@ -46,12 +46,12 @@ def opened(link=LINK):
 
 
 def told(page, name):
-    return page.channel.told(f"#gait-{name}") or ""
+    return page.channel.shown_value(f"#gait-{name}") or ""
 
 
 def test_a_cycle_is_that_of_python():
     page = opened()
-    found = gaited(page.screen.file, WHOLE, None, lambda news: None)
+    found = simulate_gait(page.screen.file, DEFAULT_USE, None, lambda news: None)
     hip = HipSimulation(joint=page.screen.file.joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6), cup=CUP)
     film = hip.film(Lubricant())
     assert found.force == pytest.approx(hip.cycle.force_magnitudes)
@@ -69,7 +69,7 @@ def test_a_cycle_is_that_of_python():
 
 def test_the_page_plays_what_the_process_found():
     page = opened()
-    found = gaited(page.screen.file, WHOLE, None, lambda news: None)
+    found = simulate_gait(page.screen.file, DEFAULT_USE, None, lambda news: None)
     data = json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "player"))[1]))
     assert [course["unit"] for course in data["courses"]] == ["N", "MPa", "nm", "mm"]
     assert data["courses"][1]["values"] == pytest.approx(found.pressure, rel=1e-4)
@@ -78,8 +78,8 @@ def test_the_page_plays_what_the_process_found():
     assert told(page, "at") == str(found.heaviest)
     edits(page, "gait.instant", 7)
     assert told(page, "at") == "7"
-    assert "use.instant=7" in page.channel.told("link")
-    assert opened(page.channel.told("link")).screen == page.screen
+    assert "use.instant=7" in page.channel.shown_value("link")
+    assert opened(page.channel.shown_value("link")).screen == page.screen
     head, first, *_ = saved(page, "CSV").decode().splitlines()
     assert head == "phase [%],load [N],largest pressure [MPa],least film [nm],edge distance [mm]"
     assert float(first.split(",")[2]) == pytest.approx(found.pressure[0])
@@ -99,9 +99,9 @@ def test_a_cycle_is_read_in_inches_and_pounds():
 
 def test_a_patients_load_needs_a_weight():
     page = opened()
-    assert page.channel.told("=gait.body_weight")["hidden"]
+    assert page.channel.shown_value("=gait.body_weight")["hidden"]
     edits(page, "gait.cycle", "jogging")
-    assert not page.channel.told("=gait.body_weight")["hidden"]
+    assert not page.channel.shown_value("=gait.body_weight")["hidden"]
     edits(page, "gait.body_weight", "700")
     largest = named_cycle("jogging", body_weight=700.0).force_magnitudes.max()
     assert f"{largest:.4g} <span class='unit'>N" in told(page, "numbers")
@@ -112,7 +112,7 @@ def test_a_cycle_of_ones_own_is_read_and_is_in_no_link():
     edits(page, "gait.own", {"name": "walk <1>.csv", "size": len(OWN), "text": OWN})
     assert "2500 <span class='unit'>N" in told(page, "numbers")
     assert "walk &lt;1&gt;.csv: a link does not hold it" in told(page, "said")
-    assert "own" not in page.channel.told("link")
+    assert "own" not in page.channel.shown_value("link")
     edits(page, "gait.cycle", "flexion")
     assert "walk" not in told(page, "said")
 
@@ -125,7 +125,7 @@ def test_a_cycle_of_ones_own_is_read_and_is_in_no_link():
         ("contact", "steel", "'steel' as contact is not known"),
         ("instant", "seven", "an instant of a cycle is a whole number"),
         ("instant", -1, "instant = -1"),
-        ("own", {"name": "walk.exe", "text": OWN}, "'walk.exe' is no table of a cycle"),
+        ("own", {"name": "walk.exe", "text": OWN}, "'walk.exe' is not a table of a cycle"),
         ("own", {"name": "walk.csv", "text": "", "size": 10**9}, "longer than 100000 characters"),
         ("colour", "red", "'colour' among the inputs of a cycle"),
     ],

@@ -12,8 +12,8 @@ from ballsocket.problem.cup import Cup
 pytest.importorskip("skfem")
 pytest.importorskip("bokeh")
 from ballsocket.app import running
-from ballsocket.app.judging import judged
-from ballsocket.app.running import Done, Reached, Run, RunRefused
+from ballsocket.app.elasticity_tasks import judged
+from ballsocket.app.running import Reached, Run, RunFinished, RunRefused
 
 HIP = JointFile(bs.joints["hip-28"], {"force": 3000.0})
 
@@ -28,7 +28,7 @@ def until_the_end(run, seconds=600.0):
         news = run.news()
         if news is not None:
             heard.append(news)
-        if isinstance(news, Done | RunRefused):
+        if isinstance(news, RunFinished | RunRefused):
             return heard
         time.sleep(0.02)
     pytest.fail("the run said nothing for ten minutes")
@@ -81,8 +81,8 @@ def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
     for run in (second, third):
         assert run.news().words == "waiting for a free place: others are running"
     second.stop()
-    assert isinstance(until_the_end(first)[-1], Done)
-    assert isinstance(until_the_end(third)[-1], Done)
+    assert isinstance(until_the_end(first)[-1], RunFinished)
+    assert isinstance(until_the_end(third)[-1], RunFinished)
 
 
 def test_a_process_that_cannot_be_started_is_said(monkeypatch):

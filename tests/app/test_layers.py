@@ -11,7 +11,7 @@ from ballsocket.problem import Support
 from .asking import edits, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
-from ballsocket.app.layers import layers_edited
+from ballsocket.app.controls import layers_edited
 from ballsocket.app.page import Page
 
 HIP = "preset=hip-28&load.force=3000"
@@ -31,14 +31,14 @@ def test_a_backing_is_built_from_bone_to_shell():
     joint = page.screen.file.joint
     assert joint.backing[1] == bs.Layer(thickness=8.0, material=bs.CANCELLOUS_BONE)
     assert (joint.support, joint.name) == (Support.FREE, "")
-    assert Page(page.channel.told("link")).screen == page.screen
+    assert Page(page.channel.shown_value("link")).screen == page.screen
     expected = bs.Exact().press(joint, force=3000.0).max_pressure
-    assert f"{float(expected):.4g}" in page.channel.told("#press-numbers")
+    assert f"{float(expected):.4g}" in page.channel.shown_value("#press-numbers")
     edits(page, "behind.0", "away")
     edits(page, "behind.0", "away")
     joint = page.screen.file.joint
     assert (joint.backing, joint.support) == ((), Support.FIXED)  # nothing is left to be free
-    assert "behind.0" not in page.channel.told("order")
+    assert "behind.0" not in page.channel.shown_value("order")
 
 
 @pytest.mark.parametrize(
@@ -77,7 +77,7 @@ def test_joints_are_compared_with_the_one_that_is_chosen():
     assert "this joint: the base" in page.view._table.object
     mine, other = (bs.Exact().press(bs.joints[name], force=3000.0).max_pressure for name in ("hip-28", "hip-36"))
     assert f"{float(other):.4g} ({100 * (other / mine - 1):+.0f} %)" in page.view._table.object
-    assert "base=0" in page.channel.told("link")
+    assert "base=0" in page.channel.shown_value("link")
     alone = Page(f"view=compare&{HIP}")
     alone._refresh()
     assert alone.screen.base == "1"  # nothing has been chosen by looking

@@ -12,8 +12,8 @@ from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 from tornado.websocket import websocket_connect
 
 from ballsocket.app import serve
-from ballsocket.app.beside import beside
-from ballsocket.app.guard import OpenPages
+from ballsocket.app.jobs import run_in_thread
+from ballsocket.app.serve import OpenPages
 
 
 async def session_of(served):
@@ -30,7 +30,7 @@ def test_what_takes_long_does_not_hold_the_server(served):
     async def whole():
         session, _ = await session_of(served)
         with set_curdoc(session.document):
-            beside(lambda: went_on.wait(60), lambda outcome: found.append(outcome.result()))
+            run_in_thread(lambda: went_on.wait(60), lambda outcome: found.append(outcome.result()))
         await asyncio.sleep(0)
         went_on.set()
         while not found:
@@ -46,7 +46,7 @@ def test_work_for_a_page_that_was_closed_meanwhile_is_told_to_nobody(served):
     async def whole():
         session, _ = await session_of(served)
         with set_curdoc(session.document):
-            beside(closed.wait, found.append)
+            run_in_thread(closed.wait, found.append)
             session.destroy()
             closed.set()
         await asyncio.sleep(0.1)

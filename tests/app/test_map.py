@@ -7,8 +7,7 @@ import ballsocket as bs
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 from bokeh.events import Tap
 
-from ballsocket.app.limit_lines import sold
-from ballsocket.app.mapping import mapped, models_of
+from ballsocket.app.mapping import catalogue_sizes, mapped, models_of
 from ballsocket.app.page import Page
 
 LINK = "view=map&preset=hip-28&load.force=3000&across=ball_radius=11..23"
@@ -52,7 +51,7 @@ def test_a_limit_is_moved_by_its_line():
     )
     assert page.screen.limits[1].high == pytest.approx(float(there.max_pressure), rel=0.01)
     assert [limit.name for limit in page.screen.limits] == ["outer_radius", "max_pressure", "liner_thickness"]
-    assert "limit=max_pressure" in page.channel.told("link")
+    assert "limit=max_pressure" in page.channel.shown_value("link")
     kept = page.screen.limits
     chart._handles.data = {"x": [], "y": [], "words": []}  # somebody presses Backspace on a handle
     assert page.screen.limits == kept
@@ -72,7 +71,7 @@ def test_a_click_takes_sizes_of_a_catalogue():
     chart.figure._trigger_event(Tap(chart.figure, x=15.3, y=6.7))
     joint = page.screen.file.joint
     assert (2 * joint.ball_radius, joint.liner_thickness) == (32.0, 7.0)
-    assert sold({"head_diameter": 100.0, "clearance": 0.123}) == {"head_diameter": 44.0, "clearance": 0.123}
+    assert catalogue_sizes({"head_diameter": 100.0, "clearance": 0.123}) == {"head_diameter": 44.0, "clearance": 0.123}
 
 
 BACKED = (

@@ -16,9 +16,9 @@ pytest.importorskip("tomli_w")
 from bokeh.events import Tap
 
 from ballsocket.app import serve
-from ballsocket.app.files import made
 from ballsocket.app.mapping import mapped
 from ballsocket.app.page import Page
+from ballsocket.app.view import make_file
 from ballsocket.app.views.press import Press
 from ballsocket.files.joint_toml import toml_of
 
@@ -151,11 +151,11 @@ def test_a_map_of_joints_that_tables_do_not_know_is_solved():
 
 def test_the_exact_curve_lies_below_those_through_which_it_can_be_seen():
     page = Page(f"view=press&preset=hip-28&load.force=3000&shown={','.join(reversed(bs.catalogue))}")
-    curves = re.findall('data-name="([^"]+)"', page.channel.told("#press-charts"))
+    curves = re.findall('data-name="([^"]+)"', page.channel.shown_value("#press-charts"))
     assert curves[0] == "exact"
     assert set(curves) == set(bs.catalogue)
     does(page, "choose", name="shown", value=["exact", "hertz"])
-    assert set(re.findall('data-name="([^"]+)"', page.channel.told("#press-charts"))) == {"exact", "hertz"}
+    assert set(re.findall('data-name="([^"]+)"', page.channel.shown_value("#press-charts"))) == {"exact", "hertz"}
 
 
 def test_only_what_has_changed_is_sent():
@@ -181,11 +181,11 @@ def test_a_number_is_understood_as_people_write_it(text, meant):
     ("name", "text", "why"),
     [
         ("load", "3,000", "force = '3,000' could be two numbers: write 3000 or 3.000"),
-        ("load", "much", "force = 'much' is no number in N, and not a force, such as '3 kN'"),
+        ("load", "much", "force = 'much' is not a number in N, and not a force, such as '3 kN'"),
         ("liner_poisson", "0,7", "poisson = 0.7 is not allowed"),
-        ("clearance", None, "clearance = None is no number"),
+        ("clearance", None, "clearance = None is not a number"),
         ("clearence", "1", "'clearence' among the inputs is not known"),
-        ("liner", 3, "liner = 3 is no material"),
+        ("liner", 3, "liner = 3 is not a material"),
         ("preset", "hip-29", "'hip-29' as preset is not known"),
     ],
 )
@@ -205,9 +205,9 @@ def test_an_input_that_is_none_is_refused_in_words_and_stays(name, text, why):
 )
 def test_what_no_page_of_ours_says_is_not_heard(text):
     page = Page("")
-    said = page.channel.mouth.value
-    page.channel.ears.value = text
-    assert page.channel.mouth.value == said
+    said = page.channel.outbox.value
+    page.channel.inbox.value = text
+    assert page.channel.outbox.value == said
 
 
 def test_a_word_that_no_page_of_ours_knows_is_refused():
@@ -222,7 +222,7 @@ def test_a_word_that_no_page_of_ours_knows_is_refused():
 
 @pytest.mark.parametrize("view", ["press", "compare"])
 def test_a_report_has_the_joint_its_inputs_and_no_machine(view):
-    name, page = made(Page(f"view={view}").seen(), "HTML")
+    name, page = make_file(Page(f"view={view}").seen(), "HTML")
     text = page.decode()
     assert name.endswith(".html")
     for part in ("Drawing", "Inputs", "head diameter", "SHA-256", "In the explorer: <code>?"):

@@ -159,7 +159,7 @@ def test_arrays_are_no_joint_file():
         ("name=%1b[31m&joint=2", "name = .* no control characters|must be a table"),
         ("joint=2&joint.clearance=1", "'joint' is given as text and as a table in the link"),
         ("up=head_diameter=1..2", "a map has two axes, and both are head_diameter"),
-        ("up=clearance=2..1", "clearance from 2 to 1 is no range: it must go upwards"),
+        ("up=clearance=2..1", "clearance from 2 to 1 is not a range: it must increase"),
         ("across=half_angle=10..40", "'half_angle' among the axes of a map is not known"),
         ("load.force=1&load.force=2", "'load.force' is given 2 times in the link"),
         ("load.force=1&load.indentation=2&preset=hip-28", "one load is needed, got force, indentation"),

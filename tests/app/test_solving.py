@@ -42,8 +42,8 @@ def link(ratio, poisson=0.3, clearance=0.1, **more):
 def waited_for(page, seconds=300.0):
     """Until nothing is being solved for a page."""
     start = time.monotonic()
-    while page._errand._run is not None:
-        page._errand.hear()
+    while page._errand.job.works:
+        page._errand.job.hear()
         assert time.monotonic() - start < seconds, "nothing more was heard for minutes"
         time.sleep(0.02)
 
@@ -80,9 +80,9 @@ def test_a_link_to_thin_liners_does_not_hold_the_server(query, monkeypatch):
     seen = presses_of(monkeypatch)
     page = Page(query)
     page.leave()
-    assert not page.channel.told("#trouble")
+    assert not page.channel.shown_value("#trouble")
     assert all(float(joint.thickness_ratio) <= THIN_LINER_RATIO for joint in seen)
-    said = page.channel.told("#press-table") or page.view._table.object
+    said = page.channel.shown_value("#press-table") or page.view._table.object
     assert "exact is being solved: at R2/L = " in said
 
 
@@ -105,7 +105,7 @@ def test_what_was_solved_elsewhere_is_what_a_press_answers():
             assert seen.pressure(angle) == pytest.approx(own.pressure(angle), abs=2e-3 * own.max_pressure)
         assert seen.notes == own.notes
         assert seen.curve.half_angle[-1] > own.half_angle
-    assert f"data-value='{seen.max_pressure!r}'" in page.channel.told("#press-numbers")
+    assert f"data-value='{seen.max_pressure!r}'" in page.channel.shown_value("#press-numbers")
     assert saved(page, "PNG").startswith(b"\x89PNG")
     assert b"exact" in saved(page, "CSV")
 
@@ -115,23 +115,23 @@ def test_what_takes_too_long_is_ended_and_said(monkeypatch):
     page = Page(link(190))
     waited_for(page)
     words = "exact has no answer here: stopped after 0.01 s, the longest that a run may take here"
-    assert words in page.channel.told("#press-numbers")
-    assert "hess-forsbach" in page.channel.told("#press-table")
+    assert words in page.channel.shown_value("#press-numbers")
+    assert "hess-forsbach" in page.channel.shown_value("#press-table")
     again = Page(link(190))
-    assert again._errand._run is None
-    assert words in again.channel.told("#press-numbers")
+    assert not again._errand.job.works
+    assert words in again.channel.shown_value("#press-numbers")
 
 
 def test_only_what_is_on_the_screen_is_solved():
     """A slider that moves on, or leads back, ends what was asked for before."""
     page = Page(link(190))
-    first = page._errand._run
-    page._errand.hear()
+    first = page._errand.job._run
+    page._errand.job.hear()
     page.ask(file=JointFile(page.screen.file.joint, {"force": 100.0}))
-    assert page._errand._run is not first
+    assert page._errand.job._run is not first
     assert not first._process.is_alive()
     page.ask(file=JointFile(bs.joints["hip-28"], {"force": 100.0}))
-    assert page._errand._run is None
+    assert not page._errand.job.works
 
 
 async def opened(session, callback):

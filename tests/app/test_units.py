@@ -26,12 +26,12 @@ METRIC = re.compile(r"[\d.]\s*(?:</?\w[^>]*>\s*)*(?:mm|µm|N|kN|MPa|kN/mm|mm²|N
 
 
 def field(page, name):
-    return page.channel.told(f"={name}")
+    return page.channel.shown_value(f"={name}")
 
 
 def shown(page):
     """All that stands on the page outside of lists of sizes."""
-    parts = {name: said for name, said in page.channel._said.items() if name.startswith("#")}
+    parts = {name: said for name, said in page.channel._current.items() if name.startswith("#")}
     return unescape(" ".join(parts.values()))
 
 
@@ -49,7 +49,7 @@ def test_a_page_speaks_of_diameters_and_of_what_makers_offer():
 
 
 def test_every_number_beside_a_box_has_its_unit():
-    fields = {name: said for name, said in Page("").channel._said.items() if name.startswith("=")}
+    fields = {name: said for name, said in Page("").channel._current.items() if name.startswith("=")}
     bare = [name for name, said in fields.items() if said["kind"] == "number" and not said["unit"]]
     assert set(bare) == {"=liner_poisson", "=ball_poisson"}
 
@@ -64,12 +64,12 @@ def test_inches_and_pounds_hold_on_the_whole_page_and_come_back_as_they_were():
     assert [said[name]["unit"] for name in said] == ["in", "lbf", "psi", "psi"]
     assert said["ball_radius"]["value"] == pytest.approx(28 / 25.4)
     assert said["load"]["value"] == pytest.approx(3000 * LBF)
-    (first, *_) = re.findall(r"data-value='([^']+)'", page.channel.told("#press-numbers"))
+    (first, *_) = re.findall(r"data-value='([^']+)'", page.channel.shown_value("#press-numbers"))
     assert float(first) == pytest.approx(contact.max_pressure * PSI)
     assert {"⌀ 1.102 in", "674.427 lbf"} <= set(re.findall(r"<text[^>]*>([^<]*)</text>", shown(page)))
-    assert METRIC.findall(page.channel.told("#press-numbers") + page.channel.told("#press-section")) == []
-    assert METRIC.findall(page.channel.told("#press-charts")) == []
-    assert re.findall(r"\[[^\]]*\]", page.channel.told("#press-table"))[:4] == ["[lbf]", "[mil]", "[°]", "[psi]"]
+    assert METRIC.findall(page.channel.shown_value("#press-numbers") + page.channel.shown_value("#press-section")) == []
+    assert METRIC.findall(page.channel.shown_value("#press-charts")) == []
+    assert re.findall(r"\[[^\]]*\]", page.channel.shown_value("#press-table"))[:4] == ["[lbf]", "[mil]", "[°]", "[psi]"]
     edits(page, "ball_radius", "28 mm")
     edits(page, "load", "3 kN")
     does(page, "choose", name="units", value="SI")
@@ -85,7 +85,7 @@ def test_what_is_typed_is_in_the_unit_beside_the_box_or_in_its_own():
     edits(page, "allowable", 3000)
     assert page.screen.file.joint.liner.allowable_pressure == pytest.approx(3000 / PSI)
     edits(page, "ball_radius", "wide")
-    assert "head_diameter = 'wide' is no number in in" in unescape(trouble(page))
+    assert "head_diameter = 'wide' is not a number in in" in unescape(trouble(page))
 
 
 def test_files_are_in_the_units_of_the_page():

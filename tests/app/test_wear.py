@@ -14,14 +14,14 @@ from ballsocket.hip import Archard, HipSimulation, iso_14242_1
 from .asking import does, edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
-from ballsocket.app import wearing
-from ballsocket.app.in_use import WHOLE
+from ballsocket.app import hip_tasks
+from ballsocket.app.hip_charts import depth_maps, penetration_chart, wear_numbers
+from ballsocket.app.in_use import DEFAULT_USE
 from ballsocket.app.jobs import Job
 from ballsocket.app.page import Page
 from ballsocket.app.reading import Reading
-from ballsocket.app.running import Done, RunRefused
+from ballsocket.app.running import RunFinished, RunRefused
 from ballsocket.app.views import wear
-from ballsocket.app.wear_charts import depth_maps, penetration_chart, wear_numbers
 from ballsocket.reports.unit_systems import Units
 
 LINK = (
@@ -31,8 +31,8 @@ LINK = (
 
 @pytest.fixture(autouse=True)
 def nothing_is_known(monkeypatch):
-    monkeypatch.setattr(wear, "_FOUND", wear.CachedRun(most=4))
-    monkeypatch.setattr(wearing, "figure_bytes", lambda figure: b"a picture")
+    monkeypatch.setattr(wear, "_RESULTS", wear.CachedRun(max_size=4))
+    monkeypatch.setattr(hip_tasks, "figure_bytes", lambda figure: b"a picture")
 
 
 @pytest.fixture
@@ -42,7 +42,7 @@ def at_once(monkeypatch):
 
     def ask(self, key, work):
         try:
-            self._heard(key, Done(work(lambda news: heard.append(news) or self._heard(key, news))))
+            self._heard(key, RunFinished(work(lambda news: heard.append(news) or self._heard(key, news))))
         except ValueError as error:
             self._heard(key, RunRefused(why=str(error)))
 
@@ -57,7 +57,7 @@ def opened(link=LINK):
 
 
 def told(page, name):
-    return page.channel.told(f"#wear-{name}") or ""
+    return page.channel.shown_value(f"#wear-{name}") or ""
 
 
 def test_a_life_is_that_of_python(at_once):
@@ -100,7 +100,7 @@ def made(scale):
         "contact": {"valid": scale > 0.1, "unworn": [unworn]},
         "cycle": {"peaks": {"max_pressure_MPa": 10.0}},
     }
-    return wearing.Worn(
+    return hip_tasks.WearResult(
         cycles=cycles,
         penetration=grown,
         deepest=grown,
@@ -146,7 +146,7 @@ def test_a_design_is_put_beside_and_taken_away(monkeypatch):
     assert asked == [1, 2]  # the same design twice is one
     (other,) = page.screen.beside
     assert (other.joint.clearance, other.cup) == (0.1, page.screen.file.cup)
-    assert opened(page.channel.told("link")).screen == page.screen
+    assert opened(page.channel.shown_value("link")).screen == page.screen
     edits(page, "wear.beside", "hip-28")
     assert page.screen.beside[0].joint == bs.joints["hip-28"]
     edits(page, "wear.beside", "")
@@ -161,7 +161,7 @@ def test_a_design_is_put_beside_and_taken_away(monkeypatch):
         ("millions", "0", "millions = 0"),
         ("spread", "0.5", "spread = 0.5"),
         ("law", "magic", "'magic' as law is not known"),
-        ("creep", True, "creep = True is no choice"),
+        ("creep", True, "creep = True is not a choice"),
         ("beside", "my hip", "'my hip' as design is not known"),
         ("colour", "red", "'colour' among the inputs of wear"),
     ],
@@ -189,8 +189,8 @@ def test_a_coefficient_may_be_typed_as_others_write_it():
 @pytest.mark.long
 def test_patients_whose_coefficient_scatters_make_the_band():
     page = opened()
-    use = replace(WHOLE, millions=0.2, spread=1.5)
-    (found,) = wearing.worn([page.screen.file], use, lambda news: None)
+    use = replace(DEFAULT_USE, millions=0.2, spread=1.5)
+    (found,) = hip_tasks.simulate_wear([page.screen.file], use, lambda news: None)
     assert (found.low[1:] < found.penetration[1:]).all()
     assert (found.penetration[1:] < found.high[1:]).all()
     assert found.high[-1] / found.penetration[-1] == pytest.approx(1.5**1.96, rel=0.25)

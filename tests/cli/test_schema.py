@@ -6,7 +6,7 @@ from functools import cache
 
 import pytest
 
-from ballsocket.mcp.file_kinds import FILE_TABLES
+from ballsocket.mcp.tools import FILE_TABLES
 
 from ..files.test_corpus import READ, REFUSED, of_kind
 from ..places import EXAMPLES

@@ -18,7 +18,7 @@ from ballsocket.compiled.kernels import _angle_polynomial, _evaluate_table_funct
 from ballsocket.contact.roots import increasing_root
 from ballsocket.core.deprecation import RenamedAttribute
 from ballsocket.elasticity.exact.tabulated.chebyshev import angle_root
-from ballsocket.elasticity.exact.tabulated.formulas import CurveCoefficients
+from ballsocket.elasticity.exact.tabulated.curves import CurveCoefficients
 from ballsocket.models.kinematics import angle_of
 
 KINEMATICS = (bs.linear_kinematics, bs.exact_kinematics, bs.cosine_kinematics)

@@ -10,8 +10,8 @@ import pytest
 import ballsocket as bs
 from ballsocket.contact import closed_sphere, describe
 from ballsocket.contact.assembly import SolverResult, as_arrays, broadcast_load, make_contact, make_scalar_contact
-from ballsocket.contact.peak_pressure import find_peak_pressure
 from ballsocket.contact.per_joint import JointContacts, joint_at, solve_per_joint
+from ballsocket.contact.roots import find_peak_pressure
 from ballsocket.core.validity import Status
 
 from ..joints import HIP

@@ -16,7 +16,7 @@ ATTRIBUTES = (
 )
 OLD_NAMES = {
     "catalogue.theories": "listed_models",
-    "contact.contact.Pressed": "ballsocket.contact.model_info.ModelInfo",
+    "contact.contact.Pressed": "ballsocket.contact.outcome.ModelInfo",
     "contact.law.Law": "ForceLaw",
     "contact.model.Covered": "RimLimited",
     "contact.model.Wrapped": "ModelWrapper",

@@ -10,17 +10,19 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.executors import Serial
-from ballsocket.core.storage import array_files
-from ballsocket.core.storage.array_files import cache_folder, cached_array, read_arrays, write_arrays
+from ballsocket.core.storage import atomic_files
 from ballsocket.core.storage.atomic_files import (
+    cache_folder,
+    cached_array,
     check_parent_folder,
     is_draft_folder,
     make_draft_folder,
+    read_arrays,
+    write_arrays,
     write_atomically,
     write_text,
 )
-from ballsocket.core.storage.fingerprint import check_worker_code, fingerprint, hash_inputs
-from ballsocket.core.storage.pieces import PieceRun, PieceStore
+from ballsocket.core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
 
 SECONDS_AGO = {"young": 30.0, "old": 90.0}
 
@@ -226,7 +228,7 @@ def test_the_oldest_cached_arrays_are_removed_above_the_size_limit(cache, monkey
         os.utime(newest, (1000.0 + number, 1000.0 + number))
     size = newest.stat().st_size
     (cache / "mine.txt").write_bytes(bytes(10 * size))
-    monkeypatch.setattr(array_files, "_MAX_CACHE_SIZE", 2 * size)
+    monkeypatch.setattr(atomic_files, "_MAX_CACHE_SIZE", 2 * size)
     cached_array("new", lambda: np.zeros(100))
     times = sorted(path.stat().st_mtime for path in cache.glob("cup-*"))
     assert len(times) == 2

@@ -20,7 +20,7 @@ from ballsocket.cli.root import app, load_commands
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.files.schema import Table
 from ballsocket.files.schema_keys import keys_of
-from ballsocket.mcp.file_kinds import file_table
+from ballsocket.mcp.tools import file_table
 
 PROMISED = Path(__file__).with_name("promised.json")
 LOAD = {"force": 3000.0}

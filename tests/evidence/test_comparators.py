@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 
 from ballsocket import Exact
-from ballsocket.evidence.applicability import SIMILARITY, applicability, question_ranges, range_text, similarity_ranges
-from ballsocket.evidence.comparators import CLAIMS, PUBLISHED, claim
+from ballsocket.evidence.comparators import (
+    CLAIMS,
+    PUBLISHED,
+    SIMILARITY,
+    applicability,
+    claim,
+    question_ranges,
+    range_text,
+    similarity_ranges,
+)
 from ballsocket.problem import Joint, Layer, Material
 from ballsocket.problem.presets import ALUMINA, COCR, UHMWPE, joints
 

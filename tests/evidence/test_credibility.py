@@ -5,9 +5,8 @@ import copy
 import pytest
 
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
-from ballsocket.evidence.credibility import model_risk
+from ballsocket.evidence.credibility import assess, model_risk
 from ballsocket.evidence.credibility_levels import error_margins
-from ballsocket.evidence.requirements import assess
 
 pytestmark = pytest.mark.xdist_group("evidence")
 

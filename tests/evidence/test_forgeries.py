@@ -18,6 +18,7 @@ pytest.importorskip("xarray", reason="the extra for studies is not installed")
 from ballsocket.core.executors import Serial
 from ballsocket.evidence import comparison
 from ballsocket.evidence.comparison import compare
+from ballsocket.evidence.credibility import assess
 from ballsocket.evidence.folder import (
     PAGE,
     QUESTION,
@@ -30,7 +31,6 @@ from ballsocket.evidence.folder import (
     sign_pack,
     signature_of,
 )
-from ballsocket.evidence.requirements import assess
 
 from .small_pack import page
 

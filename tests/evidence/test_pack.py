@@ -12,16 +12,15 @@ from pathlib import Path
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.storage.plan import Plan
+from ballsocket.core.storage.pieces import Plan
 from ballsocket.evidence import matrix
 from ballsocket.evidence import pack as pack_module
 from ballsocket.evidence.code_checks import CHECKS
 from ballsocket.evidence.comparison import compare, contradictions
-from ballsocket.evidence.credibility import FACTORS, model_risk
+from ballsocket.evidence.credibility import FACTORS, assess, gaps, model_risk
 from ballsocket.evidence.folder import PAGE, QUESTION, RECORD, SUMS, source_files
 from ballsocket.evidence.pack import gather_evidence, list_inputs
 from ballsocket.evidence.question import Recentred, read_question
-from ballsocket.evidence.requirements import assess, gaps
 from ballsocket.evidence.worst_case import propagate_tolerances, wear_history, wear_rates
 
 from ..places import EXAMPLES, ROOT

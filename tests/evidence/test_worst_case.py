@@ -131,7 +131,7 @@ def test_notes_state_values_in_the_units_of_files(tmp_path):
 
 @pytest.mark.skipif(find_spec("skfem") is None, reason="the extra for finite elements is not installed")
 def test_calculix_is_run_on_the_deck_of_the_case(pack, monkeypatch, tmp_path):
-    from ballsocket.elasticity.finite_elements.decks import calculix
+    from ballsocket.elasticity.finite_elements import calculix
 
     question = question_of(tmp_path, ('joint = "hip-36"', 'joint = "hip-36"\nfinite_elements = true'))
     decks = []

@@ -353,7 +353,7 @@ def test_numbers_win_over_the_material():
         (
             "[joint]",
             "[joint]\nball = 'steel'",
-            "hip: 'ball' in .joint. is not known; it is a table of its own, .ball.$",
+            "hip: 'ball' in .joint. is not known; it is a separate table, .ball.$",
         ),
         (
             "[joint]",

@@ -47,7 +47,7 @@ def test_the_rows_of_an_opensim_file_are_counted(tmp_path):
     counts = []
     table = read_text_table(path, ["time"], counts.append)
     assert counts == [2]
-    assert [list(column) for column in table.columns] == [[0.0, 1.0], [1.0, 2.0]]
+    assert [column.numbers.tolist() for column in table.columns] == [[0.0, 1.0], [1.0, 2.0]]
 
 
 def test_a_head_line_that_ends_with_a_digit_is_a_row(tmp_path):

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from ballsocket.cli import root
 from ballsocket.core.input_files import restriction_variables
 from ballsocket.core.kinds import Kind
-from ballsocket.core.storage.array_files import read_arrays
+from ballsocket.core.storage.atomic_files import read_arrays
 from ballsocket.elasticity.off_axis.scans import read_scan
 from ballsocket.evidence.question import read_question
 from ballsocket.files.units import parse

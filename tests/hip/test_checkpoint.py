@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from ballsocket.core.storage.array_files import read_arrays, write_arrays
+from ballsocket.core.storage.atomic_files import read_arrays, write_arrays
 from ballsocket.hip import Archard, CustomWearLaw, logarithmic
 from ballsocket.hip.simulation import make_checkpoint, make_report
 from ballsocket.hip.wear_integrator import WearIntegrator

@@ -9,11 +9,10 @@ from urllib.parse import parse_qs
 import pytest
 
 import ballsocket as bs
-from ballsocket.app.asked import FIRST, written
-from ballsocket.app.gaiting import gait_of
+from ballsocket.app.evidence_pack import DEFAULT_QUESTION, write_question
+from ballsocket.app.hip_tasks import gait_key, wear_key
 from ballsocket.app.in_use import Use, hip_of
 from ballsocket.app.screen import START, link_of, read_link
-from ballsocket.app.wearing import life_of
 from ballsocket.files.joint_file import JointFile
 from ballsocket.files.joint_toml import cup_table, tables_of
 from ballsocket.hip import Archard, HipSimulation, PatientVariability, iso_14242_1
@@ -88,7 +87,7 @@ def test_the_explorer_preserves_an_explicit_zero_angle(tmp_path):
     assert tilt_of(hip_of(upright.file, Use())) == 0
     assert read_link(parse_qs(link_of(upright))).file.cup.oriented
     assert not read_link(parse_qs(link_of(START))).file.cup.oriented
-    assert gait_of(upright.file, Use(), None) != gait_of(START.file, Use(), None)
-    assert life_of(upright.file, Use()) != life_of(START.file, Use())
-    question = written(replace(FIRST, wear="yes"), upright.file, Use(), tmp_path)
+    assert gait_key(upright.file, Use(), None) != gait_key(START.file, Use(), None)
+    assert wear_key(upright.file, Use()) != wear_key(START.file, Use())
+    question = write_question(replace(DEFAULT_QUESTION, wear="yes"), upright.file, Use(), tmp_path)
     assert tilt_of(read_hip(question.hip).use) == 0

@@ -45,7 +45,7 @@ def test_results_are_printed_before_the_report_fails(tmp_path, monkeypatch):
     def full(path, *rest):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("ballsocket.cli.hip.write_hip_report", full)
+    monkeypatch.setattr("ballsocket.reports.hip_report.write_hip_report", full)
     words = ["hip", str(write_edited_file(tmp_path, ("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]"))), "--json"]
     done = CliRunner().invoke(app, [*words, "--report", str(tmp_path / "hip.html")])
     assert isinstance(done.exception, OSError)

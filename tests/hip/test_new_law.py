@@ -51,12 +51,12 @@ assert (hip.use.wear, hip.use.creep) == (law, creep)
 assert hip.uncertain.scatter.patient({"coefficient": 2e-6}).use.wear == ThresholdWear(coefficient=2e-6, threshold=0.5)
 """
 EXPLORER = """
-from ballsocket.app.in_use import hip_of, pairs_of, use_of
+from ballsocket.app.in_use import hip_of, use_of, use_pairs
 from ballsocket.app.screen import Screen
 from ballsocket.app.views.wear import _fields
 from ballsocket.files.joint_file import JointFile
 settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "exponential", "creep_time": "60"})
-assert use_of({name.partition(".")[2]: text for name, text in pairs_of(settings)}) == settings
+assert use_of({name.partition(".")[2]: text for name, text in use_pairs(settings)}) == settings
 screen = Screen(file=JointFile(joint=bs.joints["hip-28"], load={"force": 1000.0}), use=settings)
 worn = hip_of(screen.file, settings)
 assert (worn.wear.threshold, worn.creep.time, worn.creep.compliance) == (0.25, 60.0, 1e-3)

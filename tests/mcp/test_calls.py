@@ -15,7 +15,7 @@ from ballsocket.cli.root import load_commands
 from ballsocket.cli.servers import LIMITED_PROGRAM
 from ballsocket.core.input_files import restriction_variables
 from ballsocket.mcp import call
-from ballsocket.mcp.run import run as run_tool
+from ballsocket.mcp.call import run as run_tool
 from ballsocket.mcp.tools import TOOLS, schema
 
 from ..cli.command import run
@@ -169,8 +169,8 @@ def test_a_busy_process_ends_with_its_parent(tmp_path):
         "print(os.getpid(), file=open('child', 'w'), flush=True); 9**9**9"
     )
     parent = (
-        "import asyncio, pathlib; from ballsocket.mcp import run; "
-        f"asyncio.run(run.run(['-c', {busy!r}], pathlib.Path(), 600.0))"
+        "import asyncio, pathlib; from ballsocket.mcp.call import run; "
+        f"asyncio.run(run(['-c', {busy!r}], pathlib.Path(), 600.0))"
     )
     note = tmp_path / "child"
     with subprocess.Popen([sys.executable, "-c", parent], cwd=tmp_path) as server:
@@ -201,7 +201,7 @@ def test_a_call_beyond_the_time_limit_is_stopped(tmp_path):
 
 def test_a_tool_returns_what_the_command_prints(tmp_path):
     mcp = pytest.importorskip("mcp", reason="the extra for assistants is not installed")
-    from ballsocket.mcp.server import server
+    from ballsocket.mcp import server
 
     async def asked():
         async with mcp.Client(server(tmp_path, 60.0, COMMANDS, LIMITED_PROGRAM)) as client:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.storage.plan import Plan
+from ballsocket.core.storage.pieces import Plan
 from ballsocket.paper import cases, claims, curves
 from ballsocket.paper.accuracy import FORCES, accuracies, edge_joints, paper_joints
 from ballsocket.paper.claims.evaluation import EXACTLY, Claim, Evaluation, Verdict, judge
@@ -229,7 +229,7 @@ def test_a_stopped_plan_is_resumed(tmp_path):
 def test_results_of_other_code_are_not_reused(tmp_path, monkeypatch):
     plan = Plan(name="a", parts={"x": {"one": lambda: 1}})
     assert plan.results(tmp_path) == {"x": [1]}
-    monkeypatch.setattr("ballsocket.core.storage.plan.fingerprint", lambda: "0.0.0+other")
+    monkeypatch.setattr("ballsocket.core.storage.pieces.fingerprint", lambda: "0.0.0+other")
     assert Plan(name="a", parts={"x": {"one": lambda: 2}}).results(tmp_path) == {"x": [2]}
 
 

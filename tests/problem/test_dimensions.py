@@ -9,7 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.problem.dimensions import check_unique_lengths, derive_lengths
-from ballsocket.problem.values import elementwise_maximum, short_text
+from ballsocket.problem.material import elementwise_maximum, short_text
 
 SHELL = bs.Layer(thickness=4.0, material=bs.TITANIUM)
 BONE = bs.Layer(thickness=inf, material=bs.CANCELLOUS_BONE)

@@ -15,7 +15,7 @@ from ballsocket.reports.press_report import press_report
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
-from ballsocket.studies.local_uncertainty import local_uncertainty
+from ballsocket.studies.derivatives import local_uncertainty
 
 from ..cli.command import run
 

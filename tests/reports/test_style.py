@@ -99,7 +99,7 @@ def test_the_explorer_draws_a_model_as_the_press_does(pressed):
     page.view.show(page.screen)
     curves = re.findall(
         r'stroke="([^"]+)" data-name="([^"]+)" stroke-width="\S+"(?: stroke-dasharray="([^"]+)")?/>',
-        page.channel.told("#press-charts"),
+        page.channel.shown_value("#press-charts"),
     )
     assert {name for _, name, _ in curves} == set(pressed)
     for colour, name, dash in curves:

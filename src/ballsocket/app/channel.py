@@ -1,4 +1,4 @@
-"""The line between a page and its browser: what the browser asks for, and what the page shows, as text both ways."""
+"""Text connection between a page and its browser, in both directions."""
 
 from __future__ import annotations
 
@@ -16,65 +16,54 @@ LONGEST = 300_000
 
 
 class Channel:
-    """Sends only what has changed since it was last said.
+    """Connection to one browser, with hidden text inputs for both directions, that sends only changed values."""
 
-    Parameters
-    ----------
-    asked : callable
-        Told what a browser does: its word, and a mapping of the rest.
-
-    Attributes
-    ----------
-    ears, mouth : TextInput
-        Hidden, for the page: the browser writes into one, the server into the other.
-    """
-
-    def __init__(self, asked: Callable[[str, Mapping[str, Any]], None]) -> None:
-        self._asked = asked
-        self._said: dict[str, Any] = {}
-        self._waiting: dict[str, Any] = {}
+    def __init__(self, handle_request: Callable[[str, Mapping[str, Any]], None]) -> None:
+        self._handle_request = handle_request
+        self._current: dict[str, Any] = {}
+        self._pending: dict[str, Any] = {}
         self._number = self._answered = 0
-        self.ears = TextInput(name="asked", value="", visible=False)
-        self.mouth = TextInput(name="shown", value="", visible=False)
-        self.ears.on_change("value", lambda attribute, old, new: self._hear(new))
-        self.mouth.js_on_change("value", CustomJS(code="window.ballsocket.hear(cb_obj.value)"))
+        self.inbox = TextInput(name="asked", value="", visible=False)
+        self.outbox = TextInput(name="shown", value="", visible=False)
+        self.inbox.on_change("value", lambda attribute, old, new: self._hear(new))
+        self.outbox.js_on_change("value", CustomJS(code="window.ballsocket.hear(cb_obj.value)"))
 
     def put(self, name: str, value: Any) -> None:
-        """Have a part of the page show a value, when the next message is sent."""
-        if self._said.get(name, "" if name.startswith("#") else None) != value:
-            self._said[name] = self._waiting[name] = value
+        """Set the value of a part of the page in the next message."""
+        if self._current.get(name, "" if name.startswith("#") else None) != value:
+            self._current[name] = self._pending[name] = value
 
     def put_fields(self, fields: Mapping[str, Field]) -> None:
-        """Have inputs be like this."""
+        """Set the inputs of the page."""
         for name, field in fields.items():
             self.put(f"={name}", field)
 
     def once(self, name: str, value: Any) -> None:
-        """Have something done once: it is sent though it may have been sent before."""
-        self._waiting[name] = value
+        """Send a value once, even if it was sent before."""
+        self._pending[name] = value
 
-    def told(self, name: str) -> Any:
-        """What a part of the page shows; None where it shows nothing yet."""
-        return self._said.get(name)
+    def shown_value(self, name: str) -> Any:
+        """Return the current value of a part of the page; None without one."""
+        return self._current.get(name)
 
-    def taken(self) -> dict[str, Any]:
-        """What waits to be sent, for somebody who brings it there otherwise."""
-        waiting, self._waiting = self._waiting, {}
+    def take_pending(self) -> dict[str, Any]:
+        """Return and clear the values that wait to be sent."""
+        waiting, self._pending = self._pending, {}
         return waiting
 
     def send(self) -> None:
-        """One message with all that is new; it also says which question was the last."""
-        self.mouth.value = json.dumps({"n": self._number, **self.taken()}, ensure_ascii=False)
+        """Send all changed values in one message, with the number of the last request."""
+        self.outbox.value = json.dumps({"n": self._number, **self.take_pending()}, ensure_ascii=False)
         self._answered = self._number
 
     def _hear(self, text: str) -> None:
-        """One question from a browser; what is none came from no page of ours."""
+        """Handle one request of a browser; ignore text that is not a request."""
         try:
             words = json.loads(text) if len(text) <= LONGEST else None
         except (ValueError, RecursionError):
             return
         if isinstance(words, dict) and isinstance(words.get("do"), str) and isinstance(words.get("n"), int):
             self._number = words["n"]
-            self._asked(words["do"], words)
-            if self._waiting or self._answered != self._number:
+            self._handle_request(words["do"], words)
+            if self._pending or self._answered != self._number:
                 self.send()

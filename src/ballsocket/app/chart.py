@@ -13,12 +13,12 @@ from ..reports.style import INK, THICK, THIN, LineStyle
 from . import svg
 
 _WIDE, _HIGH = 440.0, 300.0
-_LEFT, _RIGHT, _TOP, _FOOT = 58.0, 12.0, 10.0, 44.0
+_X_LEFT, _RIGHT, _TOP, _FOOT = 58.0, 12.0, 10.0, 44.0
 _INSIDE = (
-    f'x="{_LEFT:g}" y="{_TOP:g}" width="{_WIDE - _LEFT - _RIGHT:g}" height="{_HIGH - _TOP - _FOOT:g}" '
-    f'viewBox="{_LEFT:g} {_TOP:g} {_WIDE - _LEFT - _RIGHT:g} {_HIGH - _TOP - _FOOT:g}"'
+    f'x="{_X_LEFT:g}" y="{_TOP:g}" width="{_WIDE - _X_LEFT - _RIGHT:g}" height="{_HIGH - _TOP - _FOOT:g}" '
+    f'viewBox="{_X_LEFT:g} {_TOP:g} {_WIDE - _X_LEFT - _RIGHT:g} {_HIGH - _TOP - _FOOT:g}"'
 )
-"""Where curves are, and are cut off."""
+"""Area of the curves, which are cut off at its edges."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +34,7 @@ class Curve:
 
 
 def colour_of(line: LineStyle) -> str:
-    """The colour of a line on the page, whose ink may be light."""
+    """Return the CSS colour of a line; ink follows the theme."""
     return "var(--text)" if line.colour == INK else line.colour
 
 
@@ -44,8 +44,8 @@ def dash_of(line: LineStyle, width: float = THICK) -> str:
     return f'stroke-width="{width:g}"' + (f' stroke-dasharray="{lengths}"' if lengths else "")
 
 
-def chart(said: str, x: str, y: str, curves: Mapping[str, Curve], ends: tuple[float, float]) -> str:
-    """Curves over axes from zero to `ends`, as SVG; `x` and `y` label them.
+def chart(label: str, x: str, y: str, curves: Mapping[str, Curve], ends: tuple[float, float]) -> str:
+    """Draw curves over axes from zero to `ends`, as SVG; `x` and `y` label them.
 
     Curves are thick where they can be trusted, and thin all the way where not; one without gaps lies below the others.
     """
@@ -53,13 +53,13 @@ def chart(said: str, x: str, y: str, curves: Mapping[str, Curve], ends: tuple[fl
     ordered = sorted(curves.items(), key=lambda named: bool(named[1].line.dash))
     lines = "".join(part for name, curve in ordered for part in _drawn(name, curve, across, up))
     parts = [*_axes(x, y, across, up), f"<svg {_INSIDE}>{lines}</svg>"]
-    scale = f' data-x="{across!r}" data-y="{up!r}" data-box="{_LEFT:g} {_TOP:g} {_WIDE - _RIGHT:g} {_HIGH - _FOOT:g}"'
+    scale = f' data-x="{across!r}" data-y="{up!r}" data-box="{_X_LEFT:g} {_TOP:g} {_WIDE - _RIGHT:g} {_HIGH - _FOOT:g}"'
     labels = f' data-across="{escape(x)}" data-up="{escape(y)}"'
-    return svg.picture((_WIDE, _HIGH), said, parts, f"{scale}{labels}")
+    return svg.picture((_WIDE, _HIGH), label, parts, f"{scale}{labels}")
 
 
 def _across(value: Any, end: float) -> Any:
-    return _LEFT + (_WIDE - _LEFT - _RIGHT) * value / end
+    return _X_LEFT + (_WIDE - _X_LEFT - _RIGHT) * value / end
 
 
 def _up(value: Any, end: float) -> Any:
@@ -69,16 +69,16 @@ def _up(value: Any, end: float) -> Any:
 def _axes(x: str, y: str, across: float, up: float) -> Iterator[str]:
     foot, right = _HIGH - _FOOT, _WIDE - _RIGHT
     for value in svg.ticks(across):
-        place = _across(value, across)
-        yield svg.line(place, _TOP, place, foot, "grid")
-        yield svg.text(place, foot + 16, f"{value:g}", "tick")
+        position = _across(value, across)
+        yield svg.line(position, _TOP, position, foot, "grid")
+        yield svg.text(position, foot + 16, f"{value:g}", "tick")
     for value in svg.ticks(up):
-        place = _up(value, up)
-        yield svg.line(_LEFT, place, right, place, "grid")
-        yield svg.text(_LEFT - 6, place + 4, f"{value:g}", "tick", "end")
-    yield svg.line(_LEFT, foot, right, foot, "axis")
-    yield svg.line(_LEFT, _TOP, _LEFT, foot, "axis")
-    yield svg.text((_LEFT + right) / 2, _HIGH - 8, x, "label")
+        position = _up(value, up)
+        yield svg.line(_X_LEFT, position, right, position, "grid")
+        yield svg.text(_X_LEFT - 6, position + 4, f"{value:g}", "tick", "end")
+    yield svg.line(_X_LEFT, foot, right, foot, "axis")
+    yield svg.line(_X_LEFT, _TOP, _X_LEFT, foot, "axis")
+    yield svg.text((_X_LEFT + right) / 2, _HIGH - 8, x, "label")
     middle = (_TOP + foot) / 2
     yield svg.text(14, middle, y, "label", more=f' transform="rotate(-90 14 {middle:g})"')
 
@@ -95,12 +95,12 @@ def _drawn(name: str, curve: Curve, across: float, up: float) -> Iterator[str]:
     if not curve.trusted.all():
         yield f'<path d="{svg.path(x, y)}" {stroke} {dash_of(curve.line, THIN)}/>'
     if curve.mark is not None:
-        place = f'cx="{_across(curve.mark[0], across):.1f}" cy="{_up(curve.mark[1], up):.1f}"'
-        yield f'<circle {place} r="4" fill="{colour_of(curve.line)}"/>'
+        centre = f'cx="{_across(curve.mark[0], across):.1f}" cy="{_up(curve.mark[1], up):.1f}"'
+        yield f'<circle {centre} r="4" fill="{colour_of(curve.line)}"/>'
 
 
 def swatch(line: LineStyle) -> str:
-    """A short piece of a line."""
+    """Draw a short piece of a line."""
     return (
         f"<svg class='swatch' viewBox='0 0 32 8' aria-hidden='true'><path d='M0 4H32' stroke='{colour_of(line)}' "
         f"{dash_of(line)}/></svg>"
@@ -108,5 +108,5 @@ def swatch(line: LineStyle) -> str:
 
 
 def legend(lines: Mapping[str, LineStyle]) -> str:
-    """The names of curves beside a piece of each, as HTML."""
+    """List the names of curves beside a piece of each, as HTML."""
     return "".join(f"<span class='key'>{swatch(line)}{escape(name)}</span>" for name, line in lines.items())

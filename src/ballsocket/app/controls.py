@@ -1,4 +1,4 @@
-"""The joint and its load as inputs: each edits one entry of the tables of a joint file."""
+"""Inputs of the joint and its load; each edits one entry of the tables of a joint file."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ from ..core.checks import check_names, shown
 from ..core.quantities import LOADS, STRESS_LIMITS
 from ..files.joint_file import JointFile, joint_of, read_aim
 from ..files.joint_toml import Tables, tables_of
-from ..problem import Joint
+from ..problem import Joint, Layer, Support
 from ..problem.cup import UP
 from ..problem.presets import joints, materials
+from .cup_fields import TILT_LABEL
 from .fields import Field, choice, segments, tick, unknown
 from .numbers import ALLOWABLE, NUMBERS, THICKNESS, TILT, Number, load_of, number_of
 from .reading import Reading
 from .screen import Screen
 
-_OWN, _RIGID, _PRESET = "own", "rigid", ""
-_OWN_NUMBERS = (_OWN, "– own numbers –")
+_CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
+_OWN_NUMBERS = (_CUSTOM, "– own numbers –")
 
 
 def fields_of(screen: Screen) -> dict[str, Field]:
-    """Every input of the joint on the screen, by its name and in the order of the page."""
+    """Return every input of the joint on the screen by name, in the order of the page."""
     file, joint = screen.file, screen.file.joint
     ((kind, _),) = file.load.items()
     named = tables_of(file)
@@ -35,11 +36,11 @@ def fields_of(screen: Screen) -> dict[str, Field]:
         *([] if joint.backing else [tick("massive", "massive socket (L = ∞)", isinf(float(joint.liner_thickness)))]),
         segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind),
         load_of(kind).field("load", named["load"][kind], screen.reading),
-        {**TILT.field("tilt", degrees(tilt_of(file)), screen.reading), "label": "Load from the cup's axis γ"},
+        {**TILT.field("tilt", degrees(tilt_of(file)), screen.reading), "label": TILT_LABEL},
         choice("liner", "Liner", [_OWN_NUMBERS, *_materials()], _chosen(named["liner"])),
         *_numbers(screen, ("liner_young", "liner_poisson")),
         _allowable(joint, screen.reading),
-        *_layers(joint, screen.reading),
+        *_layer_thicknesses(joint, screen.reading),
         choice("ball", "Ball", [(_RIGID, "rigid"), _OWN_NUMBERS, *_materials()], _ball(joint, named)),
         *_numbers(screen, ("ball_young", "ball_poisson")),
     ]
@@ -47,38 +48,38 @@ def fields_of(screen: Screen) -> dict[str, Field]:
 
 
 def tilt_of(file: JointFile) -> float:
-    """The angle in rad between load and cup's axis."""
+    """Return the angle in rad between the load and the axis of the cup."""
     return float(file.aim["tilt"]) if "tilt" in file.aim else float(file.cup.tilt(file.aim.get("direction", UP)))
 
 
 def _allowable(joint: Joint, reading: Reading) -> Field:
-    """The pressure that the liner may have; without one there is only its yield stress, if that is known."""
+    """Return the input of the liner's allowable pressure, empty if unknown."""
     value = joint.liner.allowable_pressure
     if value is None:
         return unknown("allowable", ALLOWABLE.label, ALLOWABLE.unit(reading).text)
     return ALLOWABLE.field("allowable", float(value), reading)
 
 
-def _layers(joint: Joint, reading: Reading) -> list[Field]:
-    """The thickness of each layer behind the liner."""
+def _layer_thicknesses(joint: Joint, reading: Reading) -> list[Field]:
+    """Return the inputs for the thickness of each layer behind the liner."""
     return [
         {
-            **THICKNESS.field(f"layer{place}", float(layer.thickness), reading),
+            **THICKNESS.field(f"layer{index}", float(layer.thickness), reading),
             "label": f"{layer.material.name or 'Layer'} behind",
         }
-        for place, layer in enumerate(joint.backing)
+        for index, layer in enumerate(joint.backing)
         if not isinf(float(layer.thickness))
     ]
 
 
 def behind(joint: Joint) -> str:
-    """What lies behind the liner, as HTML."""
+    """List the layers behind the liner as HTML."""
     layers = "".join(f"<li>{escape(str(layer))}</li>" for layer in joint.backing)
     return f"<p>Behind the liner:</p><ul>{layers}</ul>" if layers else ""
 
 
 def _numbers(screen: Screen, names: tuple[str, ...]) -> list[Field]:
-    """Those that the joint has: an infinite thickness has no slider, nor has a rigid ball a modulus."""
+    """Return inputs of the finite numbers that the joint has."""
     joint = screen.file.joint
     tables: Tables = {"joint": {**tables_of(screen.file)["joint"], "outer_radius": float(joint.outer_radius)}}
     for part in ("liner", "ball"):
@@ -107,28 +108,12 @@ def _ball(joint: Joint, named: Tables) -> str:
 
 
 def _chosen(table: Tables) -> str:
-    """The material's name, unless a number differs from it."""
-    return str(table["material"]) if set(table) - set(STRESS_LIMITS) == {"material"} else _OWN
+    """Return the name of a material, or "own" if a number differs from it."""
+    return str(table["material"]) if set(table) - set(STRESS_LIMITS) == {"material"} else _CUSTOM
 
 
 def edited(screen: Screen, name: str, value: Any, load_alike: Callable[[str], dict[str, float]]) -> JointFile:
-    """The joint on the screen after one input has been changed.
-
-    Parameters
-    ----------
-    screen : Screen
-    name : str
-        Of the input, as in `fields_of`.
-    value : str, float or bool
-        What was typed, chosen or ticked.
-    load_alike : callable
-        Asked for the load of another kind that presses the joint as much as now.
-
-    Raises
-    ------
-    ValueError
-        There is no such joint, and why.
-    """
+    """Return the joint after a change of one input of `fields_of`; `load_alike` converts the kind of load."""
     file = screen.file
     if name in NUMBERS:
         return _with_number(screen, number_of(name, screen.size), value)
@@ -139,11 +124,11 @@ def edited(screen: Screen, name: str, value: Any, load_alike: Callable[[str], di
         return _thicker(screen, int(name[5:]), value)
     if name == "tilt":
         return _turned(screen, value)
-    check_names([name], _OTHERS, "among the inputs")
+    check_names([name], _EDITS, "among the inputs")
     if name == "kind":
         check_names([value], LOADS, "as load")
         return replace(file, load=load_alike(value))
-    return _OTHERS[name](screen, value)
+    return _EDITS[name](screen, value)
 
 
 def _with_number(screen: Screen, spec: Number, value: Any) -> JointFile:
@@ -156,7 +141,7 @@ def _with_number(screen: Screen, spec: Number, value: Any) -> JointFile:
 
 
 def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
-    """The joint with a change to its tables; its preset's name goes with the first number that differs."""
+    """Apply a change to the tables of a joint; drop the preset's name if a number differs."""
     tables = tables_of(file)
     before = joint_of(tables).joint
     change(tables)
@@ -168,20 +153,20 @@ def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
     return joint_of(tables)
 
 
-def _thicker(screen: Screen, place: int, value: Any) -> JointFile:
+def _thicker(screen: Screen, index: int, value: Any) -> JointFile:
     meant = THICKNESS.meant(value, screen.reading)
-    return _changed(screen.file, lambda tables: tables["backing"][place].update(thickness=meant))
+    return _changed(screen.file, lambda tables: tables["backing"][index].update(thickness=meant))
 
 
 def _turned(screen: Screen, value: Any) -> JointFile:
-    """Another tilt of the load, in place of a direction."""
-    turn, file = TILT.meant(value, screen.reading), screen.file
-    along = turn == 0 and float(file.cup.tilt(UP)) == 0
-    return replace(file, aim={} if along else read_aim({"tilt": turn}))
+    """Replace the direction of the load by another tilt."""
+    tilt, file = TILT.meant(value, screen.reading), screen.file
+    along = tilt == 0 and float(file.cup.tilt(UP)) == 0
+    return replace(file, aim={} if along else read_aim({"tilt": tilt}))
 
 
 def _bears(screen: Screen, value: Any) -> JointFile:
-    """Another allowable pressure of the liner; an emptied box is one that is not known."""
+    """Change the allowable pressure of the liner; an empty box removes it."""
 
     def change(tables: Tables) -> None:
         tables["liner"].pop("allowable_pressure", None)
@@ -191,7 +176,7 @@ def _bears(screen: Screen, value: Any) -> JointFile:
     return _changed(screen.file, change)
 
 
-def _start(screen: Screen, name: Any) -> JointFile:
+def _choose_preset(screen: Screen, name: Any) -> JointFile:
     file = screen.file
     if name == _PRESET:
         return file
@@ -206,13 +191,13 @@ def _massive(screen: Screen, value: Any) -> JointFile:
 
 
 def _made_of(part: str, screen: Screen, chosen: Any) -> JointFile:
-    """Another material; numbers of its own are those of the one before."""
+    """Change a material; custom numbers start from those of the previous material."""
     if not isinstance(chosen, str):
-        raise ValueError(f"{part} = {shown(chosen)} is no material")
+        raise ValueError(f"{part} = {shown(chosen)} is not a material")
     file = screen.file
     if chosen == _RIGID and part == "ball":
         return _changed(file, lambda tables: tables.pop(part, None))
-    if chosen != _OWN:
+    if chosen != _CUSTOM:
         return _changed(file, lambda tables: tables.update({part: {"material": chosen}}))
     material = getattr(file.joint, part)
     numbers = {"young": 2e5, "poisson": 0.3}
@@ -221,12 +206,76 @@ def _made_of(part: str, screen: Screen, chosen: Any) -> JointFile:
     return _changed(file, lambda tables: tables.update({part: numbers}))
 
 
-_OTHERS: dict[str, Callable[[Screen, Any], JointFile]] = {
-    "preset": _start,
+_EDITS: dict[str, Callable[[Screen, Any], JointFile]] = {
+    "preset": _choose_preset,
     "massive": _massive,
     "allowable": _bears,
     "liner": lambda screen, value: _made_of("liner", screen, value),
     "ball": lambda screen, value: _made_of("ball", screen, value),
     "kind": lambda screen, value: screen.file,
 }
-"""Inputs that are no numbers."""
+"""Functions that apply inputs other than numbers."""
+
+
+_NO_CHOICE, _REMOVE, _CUSTOM = "", "away", "own"
+_NEW_THICKNESS = 3.0
+"""mm of a layer that is added."""
+
+_MAX_LAYERS = 20
+
+
+def layer_fields(joint: Joint) -> dict[str, Field]:
+    """Return a material list for each layer, one to add a layer, and the support of the outermost."""
+    made_of = [(name, name) for name in materials]
+    listed = [
+        choice(
+            f"behind.{index}",
+            f"Layer {index + 1} behind the liner",
+            [*_own_material(layer), *made_of, (_REMOVE, "– take away –")],
+            _material_name(layer),
+        )
+        for index, layer in enumerate(joint.backing)
+    ]
+    listed.append(choice("behind.add", "Add a layer behind", [(_NO_CHOICE, "– choose –"), *made_of], _NO_CHOICE))
+    if joint.backing:
+        held = [(support.value, support.value) for support in Support]
+        listed.append(segments("behind.support", "Outermost surface", held, joint.support.value))
+    return {field["name"]: field for field in listed}
+
+
+def _material_name(layer: Layer) -> str:
+    return next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
+
+
+def _own_material(layer: Layer) -> list[tuple[str, str]]:
+    return [(_CUSTOM, layer.material.name or "– own numbers –")] if _material_name(layer) == _CUSTOM else []
+
+
+def layers_edited(file: JointFile, key: str, value: Any) -> JointFile:
+    """Return the joint, unnamed, after a change of a layer by its index, of "add" or of "support"."""
+    layers = list(file.joint.backing)
+    check_names([key], [*map(str, range(len(layers))), "add", "support"], "among the layers")
+    if key == "support":
+        check_names([value], [support.value for support in Support], "as support")
+        return _with_joint(file, support=Support(value))
+    if value in (_NO_CHOICE, _CUSTOM):
+        return file
+    if key != "add" and value == _REMOVE:
+        del layers[int(key)]
+    else:
+        check_names([value], materials, "as material")
+        if key == "add":
+            layers.append(_added(layers, value))
+        else:
+            layers[int(key)] = replace(layers[int(key)], material=materials[value])
+    return _with_joint(file, backing=tuple(layers), **({} if layers else {"support": Support.FIXED}))
+
+
+def _added(layers: list[Layer], name: str) -> Layer:
+    if len(layers) >= _MAX_LAYERS:
+        raise ValueError(f"{shown(name)} is one layer too many: at most {_MAX_LAYERS}")
+    return Layer(thickness=_NEW_THICKNESS, material=materials[name])
+
+
+def _with_joint(file: JointFile, **changes: Any) -> JointFile:
+    return replace(file, joint=replace(file.joint, name="", source="", **changes))

@@ -1,4 +1,4 @@
-"""How a cup stands and where its load points, as inputs: each edits one entry of a joint file."""
+"""Inputs for the orientation of a cup and the direction of its load."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ _ENDS = {
     "inwards": (-45.0, 45.0, 1.0),
     "forwards": (-45.0, 45.0, 1.0),
 }
-_TILT = "Load from the cup's axis γ"
+TILT_LABEL = "Load from the cup's axis γ"
 _LEANS = {"inwards": "Load leans to the middle", "forwards": "Load leans to the front"}
 _STEEPEST = 80.0  # degrees of a lean that is typed
 _BODY, _AXIS = "body", "axis"
 
 
 def cup_fields(screen: Screen) -> dict[str, Field]:
-    """Every input of the cup on the screen, by its name; those that mean nothing now are hidden."""
+    """Return every input of the cup by name; inputs without effect are hidden."""
     file, tilted = screen.file, "tilt" in screen.file.aim
     aims = ((_BODY, "in the body"), (_AXIS, "from the cup's axis"))
     in_body = [_of_cup(screen, "inclination"), _of_cup(screen, "anteversion"), *_leans(screen)]
     listed = [
         *({**field, "hidden": tilted} for field in in_body),
-        {**_angle(screen, "tilt", _TILT, degrees(file.aim.get("tilt", 0.0))), "hidden": not tilted},
+        {**_angle(screen, "tilt", TILT_LABEL, degrees(file.aim.get("tilt", 0.0))), "hidden": not tilted},
         *(_of_cup(screen, name) for name in ("arc_of_cover", "chamfer")),
         segments("cup.aim", "Load is aimed", aims, _AXIS if tilted else _BODY),
-        segments("cup.side", "Side of the body", [(one.value, one.value) for one in Side], file.cup.side.value),
+        segments("cup.side", "Side of the body", [(side.value, side.value) for side in Side], file.cup.side.value),
     ]
     return {field["name"]: field for field in listed}
 
@@ -53,14 +53,14 @@ def _of_cup(screen: Screen, name: str) -> Field:
         return _angle(screen, name, title, degrees(value))
     low, high, step = _ENDS[name]
     unit = screen.reading.unit(CUP[name])
-    low, high, step = (each * unit.factor for each in (low, high, step))
+    low, high, step = (end * unit.factor for end in (low, high, step))
     return number(f"cup.{name}", title, unit, (low, high), step, value * unit.factor)
 
 
 def _angle(screen: Screen, name: str, title: str, value: float) -> Field:
-    """An angle in degrees in the unit that is chosen."""
+    """Return the input of an angle in degrees, shown in the chosen unit."""
     factor = _factor(screen)
-    low, high, step = (each * factor for each in _ENDS[name])
+    low, high, step = (end * factor for end in _ENDS[name])
     unit = screen.reading.unit(CUP["inclination"])
     return number(f"cup.{name}", title, unit, (low, high), step, (round(value, 9) + 0.0) * factor)
 
@@ -75,13 +75,13 @@ def _leans(screen: Screen) -> list[Field]:
 
 
 def leaning(file: JointFile) -> tuple[float, float]:
-    """How far a load leans to the middle and to the front of the body, in degrees."""
+    """Compute the angles in degrees by which a load leans medially and anteriorly."""
     x, y, z = file.aim.get("direction", UP)
     return degrees(atan2(_inwards(file) * x, z)), degrees(atan2(y, z))
 
 
 def _inwards(file: JointFile) -> float:
-    """The sign of the body's x that points to the middle."""
+    """Return the sign of the body's x axis that points medially."""
     return -1.0 if file.cup.side is Side.RIGHT else 1.0
 
 
@@ -91,20 +91,7 @@ def _aimed(file: JointFile, inwards: float, forwards: float) -> JointFile:
 
 
 def cup_edited(screen: Screen, key: str, value: Any) -> JointFile:
-    """The joint file on the screen after one input of its cup has been changed.
-
-    Parameters
-    ----------
-    screen : Screen
-    key : str
-        Of the input, as in `cup_fields` behind the dot.
-    value : str or float
-
-    Raises
-    ------
-    ValueError
-        There is no such cup or load, and why.
-    """
+    """Return the joint file after a change of one input of `cup_fields`, named without its prefix."""
     check_names([key], _EDITS, "among the inputs of a cup")
     return _EDITS[key](screen, key, value)
 
@@ -120,7 +107,7 @@ def _edit_cup(screen: Screen, key: str, value: Any) -> JointFile:
 
 
 def _edit_side(screen: Screen, key: str, value: Any) -> JointFile:
-    """The other side: what leans to the middle still does."""
+    """Change the side of the body; a medial load stays medial."""
     file = screen.file
     turned = replace(file, cup=read_cup({**cup_table(file.cup), key: value}))
     return turned if "direction" not in file.aim else _aimed(turned, *leaning(file))
@@ -139,7 +126,7 @@ def _edit_tilt(screen: Screen, key: str, value: Any) -> JointFile:
 
 
 def _edit_aim(screen: Screen, key: str, value: Any) -> JointFile:
-    """The other way to aim; the load stays as far from the cup's axis as it was, or points up."""
+    """Change how the load is aimed, and keep its angle to the cup's axis where possible."""
     check_names([value], (_BODY, _AXIS), "as aim")
     if value == _BODY:
         return replace(screen.file, aim={})

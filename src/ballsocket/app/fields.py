@@ -1,4 +1,4 @@
-"""Inputs of the page as plain data: the page's script makes them, and each tells its name and what was typed."""
+"""Inputs of the page as plain data, from which a script builds them."""
 
 from __future__ import annotations
 
@@ -19,34 +19,40 @@ Field = dict[str, Any]
 
 
 def choice(name: str, label: str, options: Iterable[tuple[str, str]], value: str) -> Field:
-    """A list of which one is taken: pairs of a value and its words."""
-    return {"name": name, "kind": "choice", "label": label, "options": [list(each) for each in options], "value": value}
+    """Return a list for one choice, from pairs of a value and its label."""
+    return {
+        "name": name,
+        "kind": "choice",
+        "label": label,
+        "options": [list(option) for option in options],
+        "value": value,
+    }
 
 
 def segments(name: str, label: str, options: Iterable[tuple[str, str]], value: str) -> Field:
-    """A row of buttons of which one is taken."""
+    """Return a row of buttons for one choice."""
     return {**choice(name, label, options, value), "kind": "segments"}
 
 
 def several(
     name: str, label: str, options: Iterable[tuple[str, str]], value: Iterable[str], pieces: Mapping[str, str]
 ) -> Field:
-    """A row of boxes of which any are ticked, each with HTML before its words."""
+    """Return a row of boxes for any number of choices, each with HTML before its label."""
     return {**choice(name, label, options, ""), "kind": "several", "value": list(value), "pieces": dict(pieces)}
 
 
 def tick(name: str, label: str, value: bool) -> Field:
-    """A box that is ticked or not."""
+    """Return a tick box."""
     return {"name": name, "kind": "tick", "label": label, "value": value}
 
 
 def unknown(name: str, label: str, unit: str) -> Field:
-    """A number that need not be given, and is not."""
+    """Return an empty input for an optional number."""
     return {"name": name, "kind": "number", "label": label, "unit": unit, "value": None, "text": ""}
 
 
 def number(name: str, label: str, unit: Unit, ends: tuple[float, float], step: float, value: float) -> Field:
-    """A number with a slider over what is usual; what lies outside widens it.
+    """Return an input for a number, with a slider over its typical range and the present value.
 
     `value` and `ends` are in the unit beside the box, to which `unit.factor` leads from that of a joint file.
     """
@@ -65,18 +71,18 @@ def number(name: str, label: str, unit: Unit, ends: tuple[float, float], step: f
 
 
 def words(name: str, label: str, value: str, rows: int = 1) -> Field:
-    """Words that are typed, on so many rows."""
+    """Return an input for text of several rows."""
     return {"name": name, "kind": "words", "label": label, "value": value, "rows": rows}
 
 
 def plain(value: float) -> str:
-    """A number as it stands in a box: up to six digits, no power of ten where it can be avoided."""
+    """Format a number for a box: up to six digits, without exponent where possible."""
     text = f"{value:.6g}"
     return f"{value:.0f}" if "e+" in text and isfinite(value) and abs(value) < 1e12 else text
 
 
 def typed(name: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float:
-    """The number of a file's table that was meant by what was typed: in the unit beside the box, or with its own.
+    """Convert typed text to the number of a table; a bare number has the unit beside the box.
 
     Parameters
     ----------
@@ -106,14 +112,14 @@ def typed(name: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float:
     if isinstance(text, int | float) and not isinstance(text, bool):
         return round(float(text) / unit.factor, 12)
     if not isinstance(text, str):
-        raise ValueError(f"{name} = {shown(text)} is no number")
-    said = text.strip()
-    if _THOUSANDS.match(said):
-        plain_text = said.replace(",", "")
+        raise ValueError(f"{name} = {shown(text)} is not a number")
+    stripped = text.strip()
+    if _THOUSANDS.match(stripped):
+        plain_text = stripped.replace(",", "")
         raise ValueError(
-            f"{name} = {shown(said)} could be two numbers: write {plain_text} or {said.replace(',', '.', 1)}"
+            f"{name} = {shown(stripped)} could be two numbers: write {plain_text} or {stripped.replace(',', '.', 1)}"
         )
-    bare = _COMMA.sub(".", said, count=1)
+    bare = _COMMA.sub(".", stripped, count=1)
     try:
         return round(float(bare) / unit.factor, 12)
     except ValueError:
@@ -123,5 +129,5 @@ def typed(name: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float:
     except ValueError as error:
         inside = f" in {unit.text}" if unit.text else ""
         meant = str(error).partition(" is ")[2]
-        raise ValueError(f"{name} = {shown(said)} is no number{inside}, and {meant}") from error
+        raise ValueError(f"{name} = {shown(stripped)} is not a number{inside}, and {meant}") from error
     return round((degrees(value) if kind == Kind.ANGLE else value) / times, 12)

@@ -1,4 +1,4 @@
-"""The joint large, with its dimensions, its load, and handles to drag: what a designer shows to a client."""
+"""Large section of the joint with dimensions, load and handles to drag."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from ..core.quantities import Quantity
 from ..files.joint_file import JointFile
 from ..reports.section_plots import gap_factor, radii_of
 from . import svg
-from .drawing import DrawingFrame, ball, heat, layers, painted
+from .drawing import DrawingFrame, ball, layers, painted
 from .fields import Field
 
-Said = Callable[[float], str]
+Formatter = Callable[[float], str]
 Aim = tuple[float, Unit]
 _WIDE, _HIGH = 624.0, 486.0
 _MIDDLE = (300.0, 238.0)
@@ -24,7 +24,7 @@ _OFF, _SHORT, _LONG = 8.0, 26.0, 54.0  # of the load's arrow: from the ball, wit
 
 
 def first_view(file: JointFile, contact: Contact | None, fields: dict[str, Field], aim: Aim, inside: str = "") -> str:
-    """A joint as SVG; `inside` is SVG of its stresses, in the frame of `frame_of`, in place of the pressure.
+    """Draw a joint as SVG; `inside` is SVG of its stresses, which replaces the pressure.
 
     `fields` are the inputs that its handles move; `aim` the load's tilt in rad, and the unit of lengths.
     """
@@ -48,14 +48,14 @@ def first_view(file: JointFile, contact: Contact | None, fields: dict[str, Field
 
 
 def frame_of(file: JointFile) -> DrawingFrame:
-    """Where the joint lies in the picture."""
+    """Return the frame of the joint in the picture."""
     return DrawingFrame(x=_MIDDLE[0], y=_MIDDLE[1], scale=_REACH / radii_of(file.joint)[-1])
 
 
 def _arrow(x1: float, y1: float, x2: float, y2: float, kind: str, size: float = 7.0) -> str:
-    """A line with a head at its end."""
+    """Draw a line with an arrow head at its end."""
     away = atan2(y2 - y1, x2 - x1)
-    wings = [(x2 - size * cos(away + turn), y2 - size * sin(away + turn)) for turn in (0.4, -0.4)]
+    wings = [(x2 - size * cos(away + angle), y2 - size * sin(away + angle)) for angle in (0.4, -0.4)]
     head = " ".join(f"{x:.1f},{y:.1f}" for x, y in ((x2, y2), *wings))
     return svg.line(x1, y1, x2, y2, kind) + f'<polygon class="{kind} head" points="{head}"/>'
 
@@ -65,65 +65,65 @@ def _both_ways(x1: float, y1: float, x2: float, y2: float) -> str:
     return _arrow(*middle, x1, y1, "dim") + _arrow(*middle, x2, y2, "dim")
 
 
-def _said(lines: tuple[str, str], x: float, y: float, anchor: str) -> str:
-    """What it is, and below it how much."""
+def _labelled_value(lines: tuple[str, str], x: float, y: float, anchor: str) -> str:
+    """Write a name and its value below it."""
     return svg.text(x, y, lines[0], "quiet", anchor) + svg.text(x, y + 17, lines[1], "value", anchor)
 
 
 def _dimensions(file: JointFile, frame: DrawingFrame, unit: Unit) -> Iterator[str]:
-    def said(value: float) -> str:
+    def format_length(value: float) -> str:
         return f"{value * unit.factor:.4g} {unit.text}"
 
-    yield from _head(file, frame, said)
-    yield from _bore_and_gap(file, frame, said)
-    yield from _liner(file, frame, said)
+    yield from _head(file, frame, format_length)
+    yield from _bore_and_gap(file, frame, format_length)
+    yield from _liner(file, frame, format_length)
     lengths = [file.joint.liner_thickness, *(layer.thickness for layer in file.joint.backing)]
     if not any(isinf(float(length)) for length in lengths):
-        yield from _shell(frame, f"⌀ {said(2 * radii_of(file.joint)[-1])}")
+        yield from _shell(frame, f"⌀ {format_length(2 * radii_of(file.joint)[-1])}")
 
 
-def _head(file: JointFile, frame: DrawingFrame, said: Said) -> Iterator[str]:
-    radius, turn = float(file.joint.ball_radius), radians(118.0)
-    near, far = frame.at(0.985 * radius, turn), frame.at(0.985 * radius, turn + pi)
-    yield _both_ways(*near, *far)
-    yield _said(("head", f"⌀ {said(2 * radius)}"), frame.x - 62, frame.y + 12, "middle")
+def _head(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> Iterator[str]:
+    radius, angle = float(file.joint.ball_radius), radians(118.0)
+    start, end = frame.at(0.985 * radius, angle), frame.at(0.985 * radius, angle + pi)
+    yield _both_ways(*start, *end)
+    yield _labelled_value(("head", f"⌀ {format_length(2 * radius)}"), frame.x - 62, frame.y + 12, "middle")
 
 
-def _bore_and_gap(file: JointFile, frame: DrawingFrame, said: Said) -> Iterator[str]:
+def _bore_and_gap(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> Iterator[str]:
     radius, rim, times = float(file.joint.socket_radius), file.cup.rim, gap_factor(file.joint)
     bore = frame.at(radius, min(rim, radians(86.0)))
     yield _leader(*bore, 486.0, bore[1] - 62)
-    yield _said(("bore", f"⌀ {said(2 * radius)}"), 490.0, bore[1] - 66, "start")
+    yield _labelled_value(("bore", f"⌀ {format_length(2 * radius)}"), 490.0, bore[1] - 66, "start")
     gap = frame.at(radius, min(rim, radians(72.0)))
     yield _leader(*gap, 492.0, gap[1] + 12)
-    drawn = f"⌀ {said(2 * float(file.joint.clearance))}"
+    drawn = f"⌀ {format_length(2 * float(file.joint.clearance))}"
     if times > 1:
         yield svg.text(496.0, gap[1] + 42, f"drawn × {times}", "quiet", "start")
-    yield _said(("clearance", drawn), 496.0, gap[1] + 8, "start")
+    yield _labelled_value(("clearance", drawn), 496.0, gap[1] + 8, "start")
 
 
-def _liner(file: JointFile, frame: DrawingFrame, said: Said) -> Iterator[str]:
+def _liner(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> Iterator[str]:
     radii, thickness = radii_of(file.joint), float(file.joint.liner_thickness)
-    turn = -min(file.cup.rim, radians(62.0))
-    inner, outer = frame.at(radii[0], turn), frame.at(radii[1], turn)
+    angle = -min(file.cup.rim, radians(62.0))
+    inner, outer = frame.at(radii[0], angle), frame.at(radii[1], angle)
     if not isinf(thickness):
         yield _both_ways(*inner, *outer)
     yield _leader(*outer, 112.0, outer[1] + 14)
-    thick = "massive" if isinf(thickness) else said(thickness)
-    yield _said(("liner", thick), 106.0, outer[1] + 10, "end")
+    thick = "massive" if isinf(thickness) else format_length(thickness)
+    yield _labelled_value(("liner", thick), 106.0, outer[1] + 10, "end")
 
 
 def _leader(x1: float, y1: float, x2: float, y2: float) -> str:
     return _arrow(x2, y2, x1, y1, "dim", 6.0)
 
 
-def _shell(frame: DrawingFrame, said: str) -> Iterator[str]:
-    """The outer diameter below the cup."""
-    left, right, low = frame.x - _REACH, frame.x + _REACH, frame.y + _REACH + 34
-    for x in (left, right):
+def _shell(frame: DrawingFrame, text: str) -> Iterator[str]:
+    """Draw the outer diameter below the cup."""
+    x_left, x_right, low = frame.x - _REACH, frame.x + _REACH, frame.y + _REACH + 34
+    for x in (x_left, x_right):
         yield svg.line(x, frame.y + 4, x, low + 5, "thin")
-    yield _both_ways(left, low, right, low)
-    yield _said(("shell", said), frame.x, low + 20, "middle")
+    yield _both_ways(x_left, low, x_right, low)
+    yield _labelled_value(("shell", text), frame.x, low + 20, "middle")
 
 
 def _names(file: JointFile, frame: DrawingFrame) -> Iterator[str]:
@@ -142,38 +142,38 @@ def _names(file: JointFile, frame: DrawingFrame) -> Iterator[str]:
 
 
 def _contact_edge(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> Iterator[str]:
-    """The contact's half angle."""
+    """Draw the half angle of the contact."""
     if contact is None or not float(contact.half_angle) > 0:
         return
-    for turn in (0.0, float(contact.half_angle)):
-        x, y = frame.at(float(file.joint.socket_radius), turn - tilt)
+    for angle in (0.0, float(contact.half_angle)):
+        x, y = frame.at(float(file.joint.socket_radius), angle - tilt)
         yield svg.line(frame.x, frame.y, x, y, "edge")
 
 
 def _start(file: JointFile, contact: Contact | None, frame: DrawingFrame) -> float:
-    """Where the arrow ends, in pixels from the centre: just above the ball as it is drawn."""
+    """Return the distance in pixels from the centre to the arrow's tip, just above the drawn ball."""
     gap = 2 * float(file.joint.clearance) + (0.0 if contact is None else float(contact.indentation))
     return frame.scale * (float(file.joint.socket_radius) - gap_factor(file.joint) * gap) + _OFF
 
 
 def _load(start: float, frame: DrawingFrame, fields: dict[str, Field], tilt: float) -> Iterator[str]:
-    """The load's arrow, from outside to the ball; its tail turns it."""
-    load, turn = fields["load"], fields["tilt"]
+    """Draw the load's arrow to the ball; its tail is the handle of the tilt."""
+    load, tilt_field = fields["load"], fields["tilt"]
     share = min(1.0, max(0.0, load["value"] / load["high"]))
     long = start + _SHORT + _LONG * share
     tip, tail = ((frame.x + away * sin(tilt), frame.y - away * cos(tilt)) for away in (start, long))
     x, y = frame.x + (long + 16) * sin(tilt), frame.y - (long + 16) * cos(tilt)
     yield f"<g {_handle('load', 'arrow', load)}>{_arrow(*tail, *tip, 'load', 15.0)}</g>"
     yield (
-        f"<g {_handle('tilt', 'arrow', turn)}>"
+        f"<g {_handle('tilt', 'arrow', tilt_field)}>"
         + f'<circle class="knob" cx="{tail[0]:.1f}" cy="{tail[1]:.1f}" r="8"/></g>'
     )
-    said = f"{load['text']} {load['unit']}" + (f", {turn['value']:.3g}{turn['unit']}" if tilt else "")
-    yield svg.text(x + (4 if tilt else 14), y + 5, said, "value", "start")
+    text = f"{load['text']} {load['unit']}" + (f", {tilt_field['value']:.3g}{tilt_field['unit']}" if tilt else "")
+    yield svg.text(x + (4 if tilt else 14), y + 5, text, "value", "start")
 
 
 def _borders(file: JointFile, frame: DrawingFrame, fields: dict[str, Field]) -> Iterator[str]:
-    """The outer border of each layer that has one, to be dragged."""
+    """Draw the outer border of each layer as a handle."""
     radii = radii_of(file.joint)
     names = ["liner_thickness", *(f"layer{number}" for number in range(len(file.joint.backing)))]
     for name, inner, outer in zip(names, radii, radii[1:], strict=False):
@@ -191,19 +191,19 @@ def _arc(frame: DrawingFrame, radius: float, half: float) -> str:
 
 
 def _handle(name: str, how: str, field: Field) -> str:
-    """What makes a part a slider, for the mouse, the keyboard and a screen reader."""
-    said = f"{field['text']} {field['unit']}".strip()
+    """Return the attributes of a slider for mouse, keyboard and screen readers."""
+    text = f"{field['text']} {field['unit']}".strip()
     return (
         f'tabindex="0" role="slider" data-drag="{name}" data-how="{how}" aria-label="{escape(field["label"])}" '
         f'aria-valuemin="{field["low"]:g}" aria-valuemax="{field["high"]:g}" aria-valuenow="{field["value"]:g}" '
-        f'aria-valuetext="{escape(said)}"'
+        f'aria-valuetext="{escape(text)}"'
     )
 
 
 def key(top: str, quantity: Quantity, instead: bool) -> str:
-    """The scale of the colours from 0 to a number with its unit; `instead`: nothing else is known inside."""
-    stops = ", ".join(heat(share / 8) for share in range(9))
-    note = "<span>this model knows no stresses inside the liner</span>" if instead else ""
+    """Draw the colour scale from 0 to a value; `instead` notes that the model has no stresses."""
+    stops = ", ".join(svg.heat(share / 8) for share in range(9))
+    note = "<span>this model has no stresses inside the liner</span>" if instead else ""
     return (
         f"<p class='scale'><span>{escape(quantity.title)}: 0</span>"
         f"<i style='background: linear-gradient(to right, {stops})'></i>"
@@ -212,13 +212,13 @@ def key(top: str, quantity: Quantity, instead: bool) -> str:
 
 
 def about_the_rim(file: JointFile, contact: Contact | None, tilt: float) -> str:
-    """How a tilted load lies to the cup's rim, as HTML: these numbers are those of a socket without one."""
+    """Describe in HTML the margin between a tilted contact and the rim, for a model without rim."""
     if contact is None or not tilt:
         return ""
-    left = degrees(file.cup.rim - tilt - float(contact.half_angle))
-    if left > 0:
-        return f"<p class='quiet'>The contact ends {left:.3g}° before the rim.</p>"
+    margin = degrees(file.cup.rim - tilt - float(contact.half_angle))
+    if margin > 0:
+        return f"<p class='quiet'>The contact ends {margin:.3g}° before the rim.</p>"
     return (
-        f"<p class='trust no'>✗ the contact reaches {-left:.3g}° over the rim, which no answer here knows: "
+        f"<p class='trust no'>✗ the contact reaches {-margin:.3g}° over the rim, which no answer here knows: "
         "ask <code>sphere</code></p>"
     )

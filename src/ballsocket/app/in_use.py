@@ -1,4 +1,4 @@
-"""What a hip on the screen goes through and how it wears, as plain data: to and from a link, and as a hip in use."""
+"""Settings of a hip in use: cycle, wear law and creep, to and from a link."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..core.checks import check_names, require, shown
-from ..core.kinds import Kind
+from ..core.kinds import Kind, Unit
 from ..files.joint_file import JointFile
 from ..files.units import parse
 from ..hip import Cycle, HipSimulation, named_cycle
@@ -21,11 +21,12 @@ from ..hip.in_vivo import check_body_weight
 from ..hip.law_fields import Law, LawField
 from ..hip.wear_law import COEFFICIENT
 from ..hip.wear_laws import WEAR_LAWS, read_wear_law
+from .fields import Field, choice, number, segments
 
 CONTACTS = ("springs", "shell", "cup")
 LAWS = tuple(WEAR_LAWS)
 _TABLES = (".csv", ".txt", ".dat", ".mot", ".sto")
-_MOST = 50.0
+_MAX_MILLIONS = 50.0
 """Million cycles of a run."""
 
 _NO_CREEP, _DEFAULT_CREEP = "no", "yes"
@@ -40,8 +41,8 @@ def _inputs(laws: Mapping[str, type[Law]], prefix: str = "") -> dict[str, LawFie
 
 def _creep_choices() -> tuple[str, ...]:
     """Return "no", "yes" for the default law, and the other laws whose required fields are numbers."""
-    _, *others = CREEP_LAWS.items()
-    names = (name for name, law in others if not any(part.is_list and part.required for part in law.law_fields()))
+    _, *further = CREEP_LAWS.items()
+    names = (name for name, law in further if not any(part.is_list and part.required for part in law.law_fields()))
     return (_NO_CREEP, _DEFAULT_CREEP, *names)
 
 
@@ -57,42 +58,18 @@ LAW_INPUTS = WEAR_INPUTS | CREEP_INPUTS
 
 @dataclass(frozen=True, kw_only=True)
 class Use:
-    """A cycle, how the bore gives way in it, and a law of wear.
-
-    Attributes
-    ----------
-    cycle : str
-        One of `hip.cycle_registry.CYCLES`.
-    body_weight : float
-        In N, for loads that were measured in patients.
-    instant : int, optional
-        Of the cycle, that is looked at; that of the largest force without.
-    contact : str
-        One of CONTACTS.
-    law : str
-        One of LAWS.
-    coefficient : float
-        Wear coefficient in the unit of the law.
-    law_numbers : tuple of pairs
-        Other numbers of the laws by the names of `LAW_INPUTS`; the example of the field for others.
-    millions : float
-        Of cycles.
-    creep : str
-        "no", "yes" for the default law, or the name of another law.
-    spread : float
-        Factor of one standard deviation of the coefficient; 1 is a coefficient that is known exactly.
-    """
+    """Cycle, compliance of the bore, wear law and creep."""
 
     cycle: str = "iso-14242-1"
-    body_weight: float = 800.0
-    instant: int | None = None
+    body_weight: float = 800.0  # N, for loads measured in patients
+    instant: int | None = None  # shown instant of the cycle; None is that of the largest force
     contact: str = "springs"
     law: str = LAWS[0]
-    coefficient: float = 1e-6
-    millions: float = 5.0
-    creep: str = "no"
-    spread: float = 1.5
-    law_numbers: tuple[tuple[str, float], ...] = ()
+    coefficient: float = 1e-6  # in the unit of the law
+    millions: float = 5.0  # cycles
+    creep: str = "no"  # "yes" is the default law, other laws have names
+    spread: float = 1.5  # factor of one standard deviation of the coefficient; 1 is a known coefficient
+    law_numbers: tuple[tuple[str, float], ...] = ()  # by the names of `LAW_INPUTS`; others have their examples
 
     def __post_init__(self) -> None:
         for name, known in CHOICES.items():
@@ -105,7 +82,12 @@ class Use:
         for name, value in self.law_numbers:
             LAW_INPUTS[name].check(LAW_INPUTS[name].unit.read(name, value))
         require("spread", self.spread, 1 <= self.spread <= 5, "a factor of 1 (no scatter) to 5")
-        require("millions", self.millions, 0 < self.millions <= _MOST, f"above 0, at most {_MOST:g} million cycles")
+        require(
+            "millions",
+            self.millions,
+            0 < self.millions <= _MAX_MILLIONS,
+            f"above 0, at most {_MAX_MILLIONS:g} million cycles",
+        )
 
     @property
     def coefficient_field(self) -> LawField | None:
@@ -158,10 +140,10 @@ CHOICES: Mapping[str, tuple[str, ...]] = {
     "law": LAWS,
     "creep": _creep_choices(),
 }
-"""What can be chosen, by name."""
+"""Names of each choice."""
 
-WHOLE = Use()
-"""What a page without a link shows."""
+DEFAULT_USE = Use()
+"""Settings of a page without a link."""
 
 _NUMBERS: Mapping[str, Callable[[Any], Any]] = {
     "body_weight": lambda text: parse("body_weight", text, Kind.FORCE),
@@ -177,9 +159,9 @@ def _instant(number: float) -> int:
     return int(number)
 
 
-def pairs_of(use: Use) -> list[tuple[str, str]]:
-    """What differs from `WHOLE`, as pairs of a link."""
-    names = [name for name in _PLAIN_FIELDS if getattr(use, name) != getattr(WHOLE, name)]
+def use_pairs(use: Use) -> list[tuple[str, str]]:
+    """List the differences from `DEFAULT_USE` as pairs of a link."""
+    names = [name for name in _PLAIN_FIELDS if getattr(use, name) != getattr(DEFAULT_USE, name)]
     numbers = [(name, value) for name, value in use.law_numbers if value != LAW_INPUTS[name].example]
     return [(f"use.{name}", str(value)) for name, value in (*((name, getattr(use, name)) for name in names), *numbers)]
 
@@ -188,13 +170,7 @@ _PLAIN_FIELDS = tuple(part.name for part in fields(Use) if part.name != "law_num
 
 
 def use_of(pairs: Mapping[str, str]) -> Use:
-    """What pairs of a link say, without the word before their dot.
-
-    Raises
-    ------
-    ValueError
-        One sentence: what is wrong.
-    """
+    """Read settings from pairs of a link, without their prefix."""
     check_names(pairs, [*_PLAIN_FIELDS, *LAW_INPUTS], "of a hip in use in the link")
     plain = {name: text for name, text in pairs.items() if name in _PLAIN_FIELDS}
     words: dict[str, Any] = {name: _NUMBERS[name](text) if name in _NUMBERS else text for name, text in plain.items()}
@@ -203,38 +179,45 @@ def use_of(pairs: Mapping[str, str]) -> Use:
 
 
 @dataclass(frozen=True)
-class Own:
-    """A cycle of one's own: a table's name and text."""
+class UploadedCycle:
+    """Cycle from an uploaded table."""
 
     name: str
     text: str
 
     def __post_init__(self) -> None:
         if Path(self.name).suffix.lower() not in _TABLES:
-            raise ValueError(f"{shown(self.name)} is no table of a cycle: {', '.join(_TABLES)}")
+            raise ValueError(f"{shown(self.name)} is not a table of a cycle, which ends in {', '.join(_TABLES)}")
 
     def cycle(self, body_weight: float) -> Cycle:
-        """The cycle in it, by the reader of files."""
+        """Read the table as a cycle."""
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"cycle{Path(self.name).suffix.lower()}"
             path.write_text(self.text, encoding="utf-8")
             return read_cycle(path, body_weight=body_weight if "%BW" in self.text else None)
 
 
-def hip_of(file: JointFile, use: Use, own: Own | None = None) -> HipSimulation:
-    """A hip in use: the joint and cup of a file, through a cycle.
-
-    Raises
-    ------
-    ValueError
-        A cycle that pushes the ball over the rim; what `HipSimulation` refuses.
-    """
+def hip_of(file: JointFile, use: Use, upload: UploadedCycle | None = None) -> HipSimulation:
+    """Set up the simulation of a hip: joint and cup of a file under a cycle, uploaded or named."""
     weight = use.body_weight if CYCLES[use.cycle].per_body_weight else None
     return HipSimulation(
         joint=file.joint,
         cup=file.cup,
-        cycle=own.cycle(use.body_weight) if own is not None else named_cycle(use.cycle, body_weight=weight),
+        cycle=upload.cycle(use.body_weight) if upload is not None else named_cycle(use.cycle, body_weight=weight),
         wear=read_wear_law(use.wear_table),
         surface=socket_surface(use.contact),
         creep=parse_creep(use.creep_tables, float(file.joint.liner.poisson)),
     )
+
+
+_FOUNDATIONS = (("springs", "springs"), ("shell", "closed shell"), ("cup", "real cup"))
+
+
+def cycle_fields(view: str, use: Use) -> list[Field]:
+    """Cycle, body weight where the cycle was measured in patients, and what the bore is taken for."""
+    weight = number(f"{view}.body_weight", "Body weight", Unit("N"), (300.0, 1500.0), 10.0, use.body_weight)
+    return [
+        choice(f"{view}.cycle", "Cycle", [(name, name) for name in CHOICES["cycle"]], use.cycle),
+        {**weight, "hidden": not CYCLES[use.cycle].per_body_weight},
+        segments(f"{view}.contact", "Compliance of the bore", _FOUNDATIONS, use.contact),
+    ]

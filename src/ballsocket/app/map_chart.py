@@ -1,4 +1,4 @@
-"""A map with its contours, limits, doubts and the joint that is on the screen."""
+"""Design map with contours, limits, marks of doubtful points, and the joint on the screen."""
 
 from __future__ import annotations
 
@@ -9,10 +9,18 @@ import numpy
 from bokeh.models import ColumnDataSource, HoverTool, LinearColorMapper, PointDrawTool
 from bokeh.plotting.contour import contour_data
 
-from .limit_lines import Place, handles, longest, said
-from .look import Palette, chart, colour_bar
-from .mapping import good, head, margin, now
+from .mapping import (
+    MapPoint,
+    allowed_points,
+    axis_label,
+    current_value,
+    limit_handles,
+    limit_text,
+    longest_line_middle,
+    margin,
+)
 from .screen import Screen
+from .style import Palette, bokeh_chart, colour_bar
 
 _LEVELS = 14
 _NO_WORDS: dict[str, list[Any]] = {"x": [], "y": [], "words": []}
@@ -29,24 +37,15 @@ _NO_IMAGE: dict[str, list[Any]] = {"image": [], "x": [], "y": [], "dw": [], "dh"
 
 
 class MapChart:
-    """A coloured map, in the units of a study for who is told.
-
-    Parameters
-    ----------
-    palette : Palette
-    tapped : callable
-        Told where it was clicked.
-    dragged : callable
-        Told the number of a limit, and where its line was moved to.
-    """
+    """Coloured design map; the callbacks receive values in the units of a study."""
 
     def __init__(
         self,
         palette: Palette,
         tapped: Callable[[float, float], None],
-        dragged: Callable[[int, Place], None] = lambda number, place: None,
+        dragged: Callable[[int, MapPoint], None] = lambda number, point: None,
     ) -> None:
-        self.figure = chart("", "", palette, 440)
+        self.figure = bokeh_chart("", "", palette, 440)
         self._colours = LinearColorMapper("Viridis256", low=0.0, high=1.0)
         self._image, self._pale = ColumnDataSource(dict(_NO_IMAGE)), ColumnDataSource(dict(_NO_IMAGE))
         box = {"x": "x", "y": "y", "dw": "dw", "dh": "dh"}
@@ -86,7 +85,7 @@ class MapChart:
         self.figure.on_event("tap", lambda event: tapped(event.x / self._turns[0], event.y / self._turns[1]))
 
     def _moved(self, data: dict[str, Any]) -> None:
-        """Tell which handle is not where it was put, if there is one."""
+        """Report the handle that a user has moved, if any."""
         if len(data["x"]) != len(self._put["x"]):
             self._handles.data = self._put  # one was taken away by a key: limits are taken away as text
             return
@@ -96,7 +95,7 @@ class MapChart:
                 return
 
     def clear(self) -> None:
-        """Draw nothing."""
+        """Remove the drawing."""
         for source in (self._image, self._pale):
             source.data = dict(_NO_IMAGE)
         self._doubt.data = self._here.data = {"x": [], "y": []}
@@ -105,23 +104,17 @@ class MapChart:
         for lines in (self._lines, self._ends):
             lines.set_data(contour_data(*(numpy.arange(3.0),) * 2, nothing, [1.0], want_fill=False))
 
-    def show(self, found: Any, screen: Screen) -> None:
-        """Draw a map.
-
-        Raises
-        ------
-        ValueError
-            It has no answer anywhere.
-        """
+    def show(self, results: Any, screen: Screen) -> None:
+        """Draw a map; raise ValueError if it has no result anywhere."""
         across, up, name = screen.across, screen.up, screen.quantity
-        title, turn = head(name, screen)
-        values = found[name].transpose(up.name, across.name).values * turn
+        title, factor = axis_label(name, screen)
+        values = results[name].transpose(up.name, across.name).values * factor
         if numpy.isnan(values).all():
-            raise ValueError(f"{found.attrs['model']} has no answer anywhere on this map: choose another model")
-        fine = good(found, screen).transpose(up.name, across.name).values
-        valid = found.valid.transpose(up.name, across.name).values
-        heads, self._turns = zip(*(head(axis.name, screen) for axis in (across, up)), strict=True)
-        x, y = (found[axis.name].values * one for axis, one in zip((across, up), self._turns, strict=True))
+            raise ValueError(f"{results.attrs['model']} has no answer anywhere on this map: choose another model")
+        fine = allowed_points(results, screen).transpose(up.name, across.name).values
+        valid = results.valid.transpose(up.name, across.name).values
+        heads, self._turns = zip(*(axis_label(axis.name, screen) for axis in (across, up)), strict=True)
+        x, y = (results[axis.name].values * factor for axis, factor in zip((across, up), self._turns, strict=True))
         box = _box(x, y)
         self._colours.update(low=float(numpy.nanmin(values)), high=float(numpy.nanmax(values)))
         self._image.data = {"image": [values], **box}
@@ -129,45 +122,48 @@ class MapChart:
         levels = _levels(values)
         self._lines.set_data(contour_data(x, y, values, levels, want_fill=False))
         self._values.data = _labelled(x, y, values, levels)
-        self._put_handles(found, screen)
-        self._ends.set_data(contour_data(x, y, margin(found, screen), [0.0], want_fill=False))
+        self._put_handles(results, screen)
+        self._ends.set_data(contour_data(x, y, margin(results, screen), [0.0], want_fill=False))
         grid_x, grid_y = numpy.meshgrid(x, y)
         thinned = (~valid) & (numpy.add.outer(numpy.arange(len(y)), numpy.arange(len(x))) % 4 == 0)
         self._doubt.data = {"x": grid_x[thinned], "y": grid_y[thinned]}
-        here = (now(screen.file, axis.name) * one for axis, one in zip((across, up), self._turns, strict=True))
-        self._here.data = {place: [value] for place, value in zip("xy", here, strict=True)}
+        here = (
+            current_value(screen.file, axis.name) * factor
+            for axis, factor in zip((across, up), self._turns, strict=True)
+        )
+        self._here.data = {coordinate: [value] for coordinate, value in zip("xy", here, strict=True)}
         self.figure.x_range.update(start=box["x"][0], end=box["x"][0] + box["dw"][0])
         self.figure.y_range.update(start=box["y"][0], end=box["y"][0] + box["dh"][0])
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = heads
         self._bar.title = title
-        places = [(label, f"${place}{{0.000}}") for label, place in zip(heads, "xy", strict=True)]
-        self._hover.tooltips = [*places, (title, "@image{0.000}")]
+        tooltips = [(label, f"${coordinate}{{0.000}}") for label, coordinate in zip(heads, "xy", strict=True)]
+        self._hover.tooltips = [*tooltips, (title, "@image{0.000}")]
 
-    def _put_handles(self, found: Any, screen: Screen) -> None:
-        """A handle on each limit whose line is on the map."""
-        places = handles(found, screen)
-        self._numbers = [number for number, (x, _) in enumerate(places) if not numpy.isnan(x)]
+    def _put_handles(self, results: Any, screen: Screen) -> None:
+        """Place a handle on each limit whose line is on the map."""
+        points = limit_handles(results, screen)
+        self._numbers = [number for number, (x, _) in enumerate(points) if not numpy.isnan(x)]
         self._put = {
-            "x": [places[number][0] * self._turns[0] for number in self._numbers],
-            "y": [places[number][1] * self._turns[1] for number in self._numbers],
-            "words": [said(screen.limits[number], screen.reading) for number in self._numbers],
+            "x": [points[number][0] * self._turns[0] for number in self._numbers],
+            "y": [points[number][1] * self._turns[1] for number in self._numbers],
+            "words": [limit_text(screen.limits[number], screen.reading) for number in self._numbers],
         }
         self._handles.data = self._put
 
 
 def _labelled(x: numpy.ndarray, y: numpy.ndarray, values: numpy.ndarray, levels: list[float]) -> dict[str, list[Any]]:
-    """Every second contour with its value, where it is longest."""
-    places = [(level, longest(x, y, values, level)) for level in levels[1::2]]
-    kept = [(level, place) for level, place in places if not numpy.isnan(place[0])]
+    """Label every second contour at the middle of its longest line."""
+    middles = [(level, longest_line_middle(x, y, values, level)) for level in levels[1::2]]
+    visible = [(level, point) for level, point in middles if not numpy.isnan(point[0])]
     return {
-        "x": [place[0] for _, place in kept],
-        "y": [place[1] for _, place in kept],
-        "words": [f"{level:.4g}" for level, _ in kept],
+        "x": [point[0] for _, point in visible],
+        "y": [point[1] for _, point in visible],
+        "words": [f"{level:.4g}" for level, _ in visible],
     }
 
 
 def _box(x: numpy.ndarray, y: numpy.ndarray) -> dict[str, list[float]]:
-    """Pixels are centred on the points."""
+    """Return the edges of an image whose pixels are centred on the points."""
     dx, dy = x[1] - x[0], y[1] - y[0]
     return {
         "x": [float(x[0] - dx / 2)],

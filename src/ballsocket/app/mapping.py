@@ -1,4 +1,4 @@
-"""What a design map holds: a study over two numbers of the joint on the screen, and what its limits leave."""
+"""Design maps: a study over two numbers of a joint, its limits, and the lines of the limits."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from html import escape
+from math import isfinite, nan
 from typing import Any
 
 import numpy
@@ -18,30 +19,33 @@ from ..core.quantities import PARTS, QUANTITIES, Quantity
 from ..core.validity import OutsideDomainError, check_domain
 from ..files.joint_file import JointFile
 from ..problem import Joint
-from ..studies.default_model import default_model, joint_of_arrays
+from ..problem.dimensions import DIAMETERS
 from ..studies.design import Span, grid
 from ..studies.limits import Limit, allowed, margin_on_plane
 from ..studies.parameters import LOADS, PARAMETERS, press_arguments
-from ..studies.run import study
+from ..studies.run import default_model, joint_of_arrays, study
+from .numbers import NUMBERS
+from .reading import Reading
 from .screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
+from .svg import Contours
 
 _POINTS = 61
-_FEW = 17
+_SOLVED_POINTS = 17
 """Values along an axis where every joint is solved: a second in all."""
 
 
 @lru_cache(maxsize=16)
 def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: MapAxis, up: MapAxis, model: str) -> Any:
-    asked = _asked(joint, {axis.name: [axis.low, axis.high] for axis in (across, up)}, model)
-    count = _FEW if asked.name not in QUICK else _POINTS
+    chosen = _map_model(joint, {axis.name: [axis.low, axis.high] for axis in (across, up)}, model)
+    count = _SOLVED_POINTS if chosen.name not in QUICK else _POINTS
     axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, count) for axis in (across, up)}
     varied = any(name in axes for name in LOADS)
     design = grid(**axes, **({} if varied else dict(load)))
-    return study(asked, joint, design, quantities=MAPPED)
+    return study(chosen, joint, design, quantities=MAPPED)
 
 
-def _asked(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
-    """The model of that name; for tables that know none of the joints the one behind them, where it is quick enough."""
+def _map_model(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
+    """Return the model of a name, or a quick model behind the tables if the joints are outside them."""
     model = default_model(joint, ends) if name == START.map_model else catalogue[name]
     if model.name in QUICK or not bool(numpy.any(joint_of_arrays(joint, ends).thickness_ratio > THIN_LINER_RATIO)):
         return model
@@ -53,11 +57,11 @@ def _asked(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
 
 
 def models_of(screen: Screen) -> list[str]:
-    """The models that know the joint on the screen, and the one that is chosen."""
-    return [name for name in MAP_MODELS if name == screen.map_model or _knows(name, screen.file.joint)]
+    """List the models whose domain holds the joint on the screen, and the chosen one."""
+    return [name for name in MAP_MODELS if name == screen.map_model or _in_domain(name, screen.file.joint)]
 
 
-def _knows(name: str, joint: Joint) -> bool:
+def _in_domain(name: str, joint: Joint) -> bool:
     try:
         return bool(check_domain(catalogue[name].domain, joint, name))
     except OutsideDomainError:
@@ -65,62 +69,62 @@ def _knows(name: str, joint: Joint) -> bool:
 
 
 def mapped(file: JointFile, across: MapAxis, up: MapAxis, model: str) -> Any:
-    """The study behind a map."""
+    """Compute the study behind a map."""
     return _mapped(file.joint, tuple(file.load.items()), across, up, model)
 
 
 def limits_of(screen: Screen) -> tuple[Limit, ...]:
-    """The limits on the screen, with the cup that is there: distances from the edge are those of its rim."""
+    """Return the limits on the screen, with the cup on the screen for edge distances."""
     return tuple(replace(limit, cup=screen.file.cup) for limit in screen.limits)
 
 
-def good(found: Any, screen: Screen) -> Any:
-    """Where there is an answer that no limit forbids."""
-    return allowed(found, limits_of(screen)).broadcast_like(found.max_pressure)
+def allowed_points(results: Any, screen: Screen) -> Any:
+    """Return True at points with a result that no limit forbids."""
+    return allowed(results, limits_of(screen)).broadcast_like(results.max_pressure)
 
 
-def margin(found: Any, screen: Screen) -> numpy.ndarray:
-    """How far inside the nearest limit each point is; far where there is none."""
-    nearest = numpy.ones((found.sizes[screen.up.name], found.sizes[screen.across.name]))
+def margin(results: Any, screen: Screen) -> numpy.ndarray:
+    """Compute the relative distance of each point inside the nearest limit; 1 without limits."""
+    nearest = numpy.ones((results.sizes[screen.up.name], results.sizes[screen.across.name]))
     for limit in limits_of(screen):
-        values = margin_on_plane(found, limit, screen.across.name, screen.up.name)
+        values = margin_on_plane(results, limit, screen.across.name, screen.up.name)
         nearest = numpy.minimum(nearest, values / max(float(numpy.nanmax(numpy.abs(values))), 1e-300))
     return nearest
 
 
-def head(name: str, screen: Screen) -> tuple[str, float]:
-    """The label of a quantity with the unit that is chosen for it, and the factor to it from that of a study."""
+def axis_label(name: str, screen: Screen) -> tuple[str, float]:
+    """Return the label of a quantity in its chosen unit, and the factor from the unit of a study."""
     unit = screen.reading.unit(QUANTITIES[name])
     return QUANTITIES[name].label(unit), unit.factor
 
 
-def best(found: Any, screen: Screen) -> dict[str, float] | None:
-    """The parameters of the point with the least value among those that are allowed, if any is."""
-    fine = good(found, screen)
+def best_point(results: Any, screen: Screen) -> dict[str, float] | None:
+    """Return the parameters of the allowed point with the least value; None without one."""
+    fine = allowed_points(results, screen)
     if not bool(fine.any()):
         return None
-    place = found[screen.quantity].where(fine).argmin(...)
-    return {axis: float(found[axis].isel({axis: place[axis]})) for axis in (screen.across.name, screen.up.name)}
+    indices = results[screen.quantity].where(fine).argmin(...)
+    return {axis: float(results[axis].isel({axis: indices[axis]})) for axis in (screen.across.name, screen.up.name)}
 
 
-def told(found: Any, screen: Screen) -> str:
-    """What the map says, as HTML: the share that is allowed, and the least value there."""
-    fine, point, name = good(found, screen), best(found, screen), screen.quantity
+def map_summary(results: Any, screen: Screen) -> str:
+    """Describe the map as HTML: its allowed part, and the least value there."""
+    fine, point, name = allowed_points(results, screen), best_point(results, screen), screen.quantity
     words = []
-    if found.attrs["model"] != screen.map_model:
-        words.append(f"{found.attrs['model']} answers, since {screen.map_model} knows none of these joints.")
+    if results.attrs["model"] != screen.map_model:
+        words.append(f"{results.attrs['model']} answers, since {screen.map_model} knows none of these joints.")
     if screen.limits:
         words.append(f"{100 * float(fine.mean()):.3g} % of the map is allowed by the limits.")
     if point is not None:
-        where = ", ".join(_said(QUANTITIES[axis], value, screen) for axis, value in point.items())
-        title, turn = head(name, screen)
-        least = float(found[name].sel(point)) * turn
+        where = ", ".join(_symbol_value(QUANTITIES[axis], value, screen) for axis, value in point.items())
+        title, factor = axis_label(name, screen)
+        least = float(results[name].sel(point)) * factor
         steps = ", ".join(
-            f"{(axis.high - axis.low) / (found.sizes[axis.name] - 1) * head(axis.name, screen)[1]:.2g}"
+            f"{(axis.high - axis.low) / (results.sizes[axis.name] - 1) * axis_label(axis.name, screen)[1]:.2g}"
             for axis in (screen.across, screen.up)
         )
         words.append(f"Smallest value of {title} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")
-    if not bool(found.valid.all()):
+    if not bool(results.valid.all()):
         words.append("Crosses: the model is not to be trusted there.")
     if not bool(fine.all()):
         words.append("Faded: a limit is broken, or there is no answer.")
@@ -128,19 +132,19 @@ def told(found: Any, screen: Screen) -> str:
     return f"<p class='quiet'>{' '.join(words)}</p>"
 
 
-def _said(quantity: Quantity, value: float, screen: Screen) -> str:
-    return f"{quantity.symbol} {screen.reading.said(quantity, value)}".strip()
+def _symbol_value(quantity: Quantity, value: float, screen: Screen) -> str:
+    return f"{quantity.symbol} {screen.reading.with_unit(quantity, value)}".strip()
 
 
-def now(file: JointFile, name: str) -> float:
-    """What the joint on the screen has there; NaN where it has no such number."""
+def current_value(file: JointFile, name: str) -> float:
+    """Return a parameter of the joint on the screen; NaN without one."""
     part, _, number = name.partition("_") if name in PARTS else ("", "", "")
     value = getattr(getattr(file.joint, part), number, None) if part else getattr(file.joint, name, file.load.get(name))
     return float("nan") if value is None else float(value)
 
 
-def around(name: str, middle: float) -> MapAxis:
-    """A range for a parameter: half to twice what it is now, where that is a number."""
+def default_axis(name: str, middle: float) -> MapAxis:
+    """Return a range of half to twice the present value of a parameter."""
     if PARAMETERS[name].kind is Kind.NUMBER:
         return MapAxis(name=name, low=0.3, high=0.48)
     middle = middle if 0 < middle < 1e9 else {"force": 3000.0, "indentation": 0.05, "clearance": 0.1}.get(name, 10.0)
@@ -148,7 +152,7 @@ def around(name: str, middle: float) -> MapAxis:
 
 
 def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
-    """The joint of a point of the map, to four digits; its load, where that is an axis."""
+    """Return the joint at a point of the map, rounded to four digits, with its load."""
     rounded = {name: float(f"{value:.4g}") for name, value in chosen.items()}
     made, load, possible = press_arguments(file.joint, rounded)
     if not bool(possible):
@@ -162,3 +166,57 @@ def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
         source="",
     )
     return replace(file, joint=plain, load={name: float(value) for name, value in load.items()} or file.load)
+
+
+MapPoint = tuple[float, float]
+
+
+def longest_line_middle(x: numpy.ndarray, y: numpy.ndarray, values: numpy.ndarray, level: float) -> MapPoint:
+    """Return the middle of the longest contour of a field (y, x); NaN without one."""
+    grid_x, grid_y = numpy.meshgrid(x, y)
+    lines = Contours(grid_x, grid_y, values).lines(level)
+    if not lines:
+        return nan, nan
+    line = max(lines, key=len)
+    across, up = line[len(line) // 2]
+    return float(across), float(up)
+
+
+def limit_handles(results: Any, screen: Screen) -> list[MapPoint]:
+    """Return a point on the line of each limit, in the units of a study; NaN off the map."""
+    across, up = screen.across.name, screen.up.name
+    x, y = results[across].values, results[up].values
+    return [longest_line_middle(x, y, margin_on_plane(results, limit, across, up), 0.0) for limit in limits_of(screen)]
+
+
+def move_limit(results: Any, screen: Screen, number: int, point: MapPoint) -> tuple[Limit, ...]:
+    """Change one limit of the screen so that its line runs through a point of the map."""
+    limit = limits_of(screen)[number]
+    across, up = screen.across, screen.up
+    x, y = (min(max(at, axis.low), axis.high) for at, axis in zip(point, (across, up), strict=True))
+    field = limit.evaluate(results) + 0.0 * results[across.name] + 0.0 * results[up.name]
+    value = float(field.interp({across.name: x, up.name: y}))
+    if not isfinite(value):
+        raise ValueError(f"{limit.name} has no number there: the limit stays where it was")
+    end = float(f"{value:.3g}")
+    old = screen.limits[number]
+    changed = replace(old, high=end) if isfinite(limit.high) else replace(old, low=end)
+    return (*screen.limits[:number], changed, *screen.limits[number + 1 :])
+
+
+def limit_text(limit: Limit, reading: Reading) -> str:
+    """Write a limit with its unit for the map."""
+    sign, end = ("≤", limit.high) if isfinite(limit.high) else ("≥", limit.low)
+    quantity = QUANTITIES[limit.name]
+    return f"{quantity.title} {sign} {reading.with_unit(quantity, end)}"
+
+
+def catalogue_sizes(point: Mapping[str, float]) -> dict[str, float]:
+    """Replace each number of a point by the nearest catalogue size, where there are sizes."""
+    return {name: _nearest_size(name, value) for name, value in point.items()}
+
+
+def _nearest_size(name: str, value: float) -> float:
+    single, times = (DIAMETERS[name], 2) if name in DIAMETERS else (name, 1)
+    sizes = NUMBERS[single].sizes if single in NUMBERS else ()
+    return min((times * size for size in sizes), key=lambda size: abs(size - value), default=value)

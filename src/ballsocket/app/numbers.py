@@ -1,4 +1,4 @@
-"""The numbers of a joint that the page has inputs for: where a joint file keeps each, what is usual, and its unit."""
+"""Numbers of a joint that have inputs: their tables, typical ranges and units."""
 
 from __future__ import annotations
 
@@ -15,10 +15,7 @@ from .reading import Reading, handy_step
 
 @dataclass(frozen=True, kw_only=True)
 class Number:
-    """A number of the tables of a joint file, what is usual for it, and how often it is taken: twice for a diameter.
-
-    `ends` and `step` are in the unit of metric pages; `sizes` are those of catalogues, in the unit of the tables.
-    """
+    """Number of a joint file with its typical range, its step and its catalogue sizes; `times` is 2 for a diameter."""
 
     table: str
     key: str
@@ -29,12 +26,12 @@ class Number:
     sizes: Sequence[float] = ()
 
     def unit(self, reading: Reading) -> Unit:
-        """The unit beside the box, and the factor to it from the number of the tables."""
+        """Return the unit beside the box, and the factor to it from the table's unit."""
         unit = reading.unit(self.quantity)
         return Unit(unit.text, self.times * unit.factor / self.quantity.written.factor)
 
     def field(self, name: str, value: float, reading: Reading) -> Field:
-        """The input for a number of the tables."""
+        """Return the input for a number of a table."""
         unit, ratio = self.unit(reading), _ratio(self.quantity, reading)
         low, high = (float(f"{self.times * end * ratio:.3g}") for end in self.ends)
         step = self.times * self.step * ratio
@@ -50,23 +47,17 @@ class Number:
         return f"{title[:1].upper()}{title[1:]} {self.quantity.symbol}".strip()
 
     def _sizes(self, reading: Reading) -> list[str]:
-        """The sizes of catalogues, with a unit where that is not the one of the page."""
+        """List the catalogue sizes, with their unit where the page has another."""
         behind = "" if reading.units is Units.SI else " mm"
         return [f"{self.times * size:g}{behind}" for size in self.sizes]
 
     def meant(self, value: object, reading: Reading) -> float:
-        """The number of the tables that was meant by what was typed.
-
-        Raises
-        ------
-        ValueError
-            No such number.
-        """
+        """Convert typed text to the number of the table; raise ValueError for other text."""
         return typed(self.quantity.name, value, self.unit(reading), self.quantity.kind, self.times)
 
 
 def _ratio(quantity: Quantity, reading: Reading) -> float:
-    """From the unit of metric pages to the one that is read."""
+    """Return the factor from the unit of metric pages to the chosen one."""
     return reading.unit(quantity).factor / quantity.shown.factor
 
 
@@ -84,7 +75,7 @@ NUMBERS: Mapping[str, Number] = {
     "ball_young": _number("ball_young", "ball", "young", (1e3, 4e5), 1e3),
     "ball_poisson": _number("ball_poisson", "ball", "poisson", (0.0, 0.4995), 0.005),
 }
-"""Of joint and materials, by the name of their input; heads and shells have the sizes that makers of hips offer."""
+"""Numbers of joint and materials by input; heads and shells have the sizes of hip manufacturers."""
 
 _LOADS = {
     "force": _number("force", "load", "force", (50.0, 5000.0), 50.0),
@@ -99,13 +90,13 @@ _SINGLE = {single: double for double, single in DIAMETERS.items()}
 
 
 def number_of(name: str, size: str) -> Number:
-    """An input of joint or materials, balls by "radius" or "diameter"."""
-    found = NUMBERS[name]
+    """Return an input of joint or materials; `size` is "radius" or "diameter"."""
+    spec = NUMBERS[name]
     if size != "diameter" or name not in _SINGLE:
-        return found
-    return Number(**{**vars(found), "quantity": JOINT[_SINGLE[name]], "times": 2})
+        return spec
+    return Number(**{**vars(spec), "quantity": JOINT[_SINGLE[name]], "times": 2})
 
 
 def load_of(kind: str) -> Number:
-    """The input of a load of that kind."""
+    """Return the input of a kind of load."""
     return _LOADS[kind]

@@ -1,31 +1,33 @@
-"""The page: controls beside one view at a time; a change anywhere becomes a new screen, and the screen is shown."""
+"""Page of one user: its screen, its inputs and its HTML."""
 
 from __future__ import annotations
 
+import json
 import logging
 from base64 import b64encode
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
+from html import escape
 from typing import Any
 from urllib.parse import parse_qs
 
 import panel as pn
+from markupsafe import Markup
 
 from ..core.checks import check_names
 from ..files.joint_file import parse_joint
 from ..reports.unit_systems import Units
-from .beside import beside
 from .channel import Channel
-from .controls import behind, edited, fields_of
+from .controls import behind, edited, fields_of, layer_fields, layers_edited
 from .fields import Field, segments
-from .files import ScreenContent, made
-from .layers import layer_fields, layers_edited
+from .jobs import run_in_thread
 from .pressing import pressed
 from .screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, link_of, read_link
 from .solving import Errand
-from .view import View
+from .style import asset
+from .view import FILE_KINDS, ScreenContent, View, make_file
 from .views import KINDS
 from .words import alert
 
@@ -38,25 +40,19 @@ _UNITS = ((Units.SI.value, "mm, N, MPa"), (Units.IMPERIAL.value, "in, lbf, psi")
 
 
 class Page:
-    """One user's page.
-
-    Parameters
-    ----------
-    query : str
-        The part of the address after the question mark. What is wrong with it is said on the page.
-    """
+    """Page of one user, for the query of its address; errors in the query are shown on the page."""
 
     def __init__(self, query: str) -> None:
-        self.channel = Channel(self._asked)
+        self.channel = Channel(self._handle_request)
         self.screen = self._read(query)
         self._views: dict[str, View] = {}
-        self._ears: dict[str, Callable[[str, Any], None]] = {"behind": self._layered}
+        self._handlers: dict[str, Callable[[str, Any], None]] = {"behind": self._layered}
         self.main = pn.Column(sizing_mode="stretch_width")
         self._errand = Errand(self._refresh)
-        pn.state.onload(self._refresh)  # whoever only looks at the address makes nothing work
+        pn.state.onload(self._refresh)  # a client that never connects causes no work
 
     def _read(self, query: str) -> Screen:
-        """The screen of a link; the start where it cannot be read."""
+        """Read the screen of a link; return the start if it is invalid."""
         if not query:
             return START
         try:
@@ -68,11 +64,11 @@ class Page:
             return START
 
     def refuse(self, sentence: str) -> None:
-        """Say what cannot be done; an empty sentence says nothing."""
+        """Show why a request failed; an empty sentence clears the message."""
         self.channel.put("#trouble", alert(sentence) if sentence else "")
 
     def ask(self, **changes: Any) -> None:
-        """Put other things on the screen, and show it."""
+        """Change the screen and show it."""
         screen = replace(self.screen, **changes)
         if screen == self.screen:
             return
@@ -83,26 +79,26 @@ class Page:
         self.refuse("")
         self._refresh()
 
-    def _asked(self, what: str, words: Mapping[str, Any]) -> None:
-        """What a browser does; what cannot be done is said, and the inputs show what is meant."""
+    def _handle_request(self, event: str, words: Mapping[str, Any]) -> None:
+        """Handle a request of the browser; show why it failed, and reset the inputs."""
         doings = {"edit": self._edit, "choose": self._choose, "save": self._save, "upload": self._upload}
         try:
-            check_names([what], doings, "among what a page does")
-            doings[what](words)
+            check_names([event], doings, "among what a page does")
+            doings[event](words)
         except ValueError as error:
             self.refuse(str(error))
             self.channel.once("reset", True)
 
-    def listen(self, view: str, told: Callable[[str, Any], None]) -> None:
-        """Tell a view of its own inputs, which are named by it and a dot."""
-        self._ears[view] = told
+    def listen(self, view: str, handler: Callable[[str, Any], None]) -> None:
+        """Register the handler of a view's inputs, whose names start with the view and a dot."""
+        self._handlers[view] = handler
 
     def _edit(self, words: Mapping[str, Any]) -> None:
         view, _, key = str(words.get("name")).partition(".")
         if key:
-            check_names([view], self._ears, "among the views that have inputs")
+            check_names([view], self._handlers, "among the views that have inputs")
             self.refuse("")
-            self._ears[view](key, words.get("value"))
+            self._handlers[view](key, words.get("value"))
             return
         file = edited(self.screen, str(words.get("name")), words.get("value"), self._same_load)
         self.refuse("")
@@ -115,14 +111,16 @@ class Page:
         name, value = str(words.get("name")), words.get("value")
         check_names([name], _CHOSEN, "among the choices")
         wanted = tuple(value) if isinstance(value, list) else value
-        if not isinstance(wanted, tuple if name == "shown" else str) or not all(isinstance(one, str) for one in wanted):
+        if not isinstance(wanted, tuple if name == "shown" else str) or not all(
+            isinstance(item, str) for item in wanted
+        ):
             raise ValueError(f"{name} takes words")
         self.ask(**{name: wanted})
 
     def _save(self, words: Mapping[str, Any]) -> None:
-        """A file, made in a thread; where there is none, the page says why."""
+        """Make a file in a thread, or show why it cannot be made."""
         kind, seen = str(words.get("kind")), self.seen()
-        beside(partial(made, seen, kind), self._saved)
+        run_in_thread(partial(make_file, seen, kind), self._saved)
 
     def _saved(self, outcome: Future[tuple[str, bytes]]) -> None:
         try:
@@ -137,7 +135,7 @@ class Page:
         self.channel.send()
 
     def _upload(self, words: Mapping[str, Any]) -> None:
-        """A joint file from the browser, by the reader of files."""
+        """Read a joint file from the browser."""
         text = str(words.get("text"))
         if len(text) > _LARGEST:
             raise ValueError(f"the file is longer than {_LARGEST} characters; a joint file is a few lines")
@@ -145,14 +143,14 @@ class Page:
         self.ask(file=file if file.load else replace(file, load=self.screen.file.load))
 
     def start(self) -> dict[str, Any]:
-        """What the page shows before its first answer: inputs, and what is wrong with its link."""
+        """Return the initial content of the page: inputs, and errors of its link."""
         self._put()
-        return self.channel.taken()
+        return self.channel.take_pending()
 
     def fields(self) -> dict[str, Field]:
-        """Every input beside the views, by its name."""
-        angles = segments("angle", "angles in", [(each, each) for each in ANGLES], self.screen.angle)
-        sizes = segments("size", "balls by", [(each, each) for each in SIZES], self.screen.size)
+        """Return every input beside the views by name."""
+        angles = segments("angle", "angles in", [(option, option) for option in ANGLES], self.screen.angle)
+        sizes = segments("size", "balls by", [(option, option) for option in SIZES], self.screen.size)
         units = segments("units", "units", _UNITS, self.screen.units)
         joint = {**fields_of(self.screen), **layer_fields(self.screen.file.joint)}
         return {**joint, "units": units, "size": sizes, "angle": angles}
@@ -166,14 +164,14 @@ class Page:
             self._put()
             try:
                 seen.show(self.screen)
-            except Exception as error:  # a page must not fall silent, whatever it is
+            except Exception as error:  # the page must report every failure
                 _LOG.exception("a view failed")
                 self.refuse(f"This cannot be shown: {error}")
         self.channel.send()
         self._errand.ask(*seen.asks(self.screen))
 
     def _put(self) -> None:
-        """Have every input show what is on the screen."""
+        """Set every input to the state of the screen."""
         fields = self.fields()
         self.channel.put_fields(fields)
         self.channel.put("order", list(fields))
@@ -183,7 +181,7 @@ class Page:
 
     @property
     def view(self) -> View:
-        """The one that is seen, made when it is first looked at."""
+        """View that is open, made when it is first opened."""
         name = self.screen.view
         if name not in self._views:
             self._views[name] = KINDS[name](self)
@@ -192,7 +190,7 @@ class Page:
         return self._views[name]
 
     def seen(self) -> ScreenContent:
-        """What is on the screen, for files."""
+        """Return the content of the screen for files."""
         return ScreenContent(
             title=self.view.title,
             file=self.screen.file,
@@ -202,15 +200,73 @@ class Page:
         )
 
     def _same_load(self, kind: str) -> dict[str, float]:
-        """The load of another kind that presses as much as now, by the model on top."""
-        found = pressed(self.screen.file, (self.screen.answered_by,))
-        contact = found.contacts.get(self.screen.answered_by)
+        """Return a load of another kind that presses equally, by the model on top."""
+        comparison = pressed(self.screen.file, (self.screen.answered_by,))
+        contact = comparison.contacts.get(self.screen.answered_by)
         value = float("nan") if contact is None else float(getattr(contact, kind))
-        usual = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}
-        return {kind: float(f"{value:.6g}") if value > 0 else usual[kind]}
+        defaults = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}
+        return {kind: float(f"{value:.6g}") if value > 0 else defaults[kind]}
 
     def leave(self) -> None:
-        """The page is closed."""
+        """Stop all work of a closed page."""
         self._errand.leave()
         for view in self._views.values():
             view.leave()
+
+
+_SCRIPTS = ("fields.js", "page.js", "charts.js", "drag.js", "bowl.js", "player.js", "views.js")
+
+
+class Template(pn.Template):
+    """Bokeh looks through a document once when all is in it, and not after every part."""
+
+    def server_doc(self, doc: Any = None, title: str | None = None, location: Any = True) -> Any:
+        document = doc or pn.state.curdoc
+        with document.models.freeze():
+            return super().server_doc(document, title, location)
+
+    def __repr__(self) -> str:
+        return "<the explorer's page>"  # short, because Panel formats it often
+
+
+def template(page: Page) -> Any:
+    """Return the HTML of the page before its first result, with disabled inputs."""
+    html_page = Template(asset("page.html"))
+    html_page.add_variable(
+        "style", asset("parts.css").replace(":host {", ".app {") + asset("page.css") + asset("views.css")
+    )
+    html_page.add_variable("script", "\n".join(asset(name) for name in _SCRIPTS))
+    html_page.add_variable("theme", page.screen.theme)
+    html_page.add_variable("views", _buttons({name: kind.title for name, kind in KINDS.items()}, "view"))
+    html_page.add_variable("sections", _sections())
+    html_page.add_variable("files", _buttons({kind: kind for kind in FILE_KINDS}, "file"))
+    html_page.add_variable("start", _script_json(json.dumps(page.start())))
+    html_page.add_panel("inbox", pn.pane.Bokeh(page.channel.inbox))
+    html_page.add_panel("outbox", pn.pane.Bokeh(page.channel.outbox))
+    html_page.add_panel("main", page.main)
+    return html_page
+
+
+def _buttons(words: dict[str, str], kind: str) -> Markup:
+    return Markup(
+        "".join(
+            f'<button type="button" data-{kind}="{escape(name)}">{escape(label)}</button>'
+            for name, label in words.items()
+        )
+    )
+
+
+def _sections() -> Markup:
+    """Return the sections of the views that the page itself shows."""
+    bodies = {name: (kind.title, kind.body) for name, kind in KINDS.items() if kind.body}
+    return Markup(
+        "".join(
+            f'<section class="view" data-view="{name}" aria-label="{title}" hidden>{body}</section>'
+            for name, (title, body) in bodies.items()
+        )
+    )
+
+
+def _script_json(text: str) -> Markup:
+    """JSON inside a script: no end of it can be written in a name."""
+    return Markup(text.replace("<", "\\u003c"))

@@ -1,4 +1,4 @@
-"""In which units numbers are read: angles in degrees or radians, all else in mm, N, MPa or in, lbf, psi."""
+"""Units in which a page shows numbers: angles in degrees or radians, all else metric or imperial."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ _THOUSANDTH = 1e-3
 
 @dataclass(frozen=True, kw_only=True)
 class Reading:
-    """What somebody reads numbers in."""
+    """Units of a page."""
 
     angle: str = "degrees"
     units: Units = Units.SI
 
     def unit(self, quantity: Quantity) -> Unit:
-        """The unit of a quantity; lengths that are read in µm are mils where others are inches."""
+        """Return the unit of a quantity; lengths in µm become mils on imperial pages."""
         if quantity.kind is Kind.ANGLE:
             return Unit(quantity.unit) if self.angle == "radians" else quantity.shown
         if self.units is Units.IMPERIAL and quantity.kind is Kind.LENGTH and quantity.display_unit is None:
@@ -32,15 +32,15 @@ class Reading:
 
     @property
     def length(self) -> Unit:
-        """The unit of a dimension."""
+        """Unit of a dimension."""
         return self.unit(JOINT["ball_radius"])
 
     def label(self, quantity: Quantity) -> str:
         """Title, symbol and unit, for an axis."""
         return quantity.label(self.unit(quantity))
 
-    def said(self, quantity: Quantity, value: float) -> str:
-        """A number from the unit inside, with its unit."""
+    def with_unit(self, quantity: Quantity, value: float) -> str:
+        """Write a number in internal units with its chosen unit."""
         unit = self.unit(quantity)
         gap = "" if unit.text in ("", "°") else " "
         return f"{number_text(value * unit.factor)}{gap}{unit.text}"
@@ -48,11 +48,11 @@ class Reading:
     @property
     def columns(self) -> tuple[Column, ...]:
         """Every quantity of a contact."""
-        return tuple(Column(each, self.unit(each)) for each in CONTACT.values())
+        return tuple(Column(quantity, self.unit(quantity)) for quantity in CONTACT.values())
 
 
 def number_text(value: float) -> str:
-    """Four digits; what has no answer, and what is infinite, in words."""
+    """Format a number with four digits; NaN and infinity in words."""
     if isnan(value):
         return "no answer"
     if 10**_DIGITS <= abs(value) < 1e12:
@@ -61,6 +61,6 @@ def number_text(value: float) -> str:
 
 
 def handy_step(step: float) -> float:
-    """The next round number below: 1, 2 or 5 times a power of ten."""
+    """Round down to 1, 2 or 5 times a power of ten."""
     scale = 10.0 ** floor(log10(step * (1 + 1e-9)))
     return max(factor * scale for factor in (1, 2, 5) if factor * scale <= step * (1 + 1e-9))

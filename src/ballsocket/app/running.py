@@ -1,9 +1,10 @@
-"""Work of a page that takes long, in a process of its own: with a turn to wait for, and limits on time and memory."""
+"""Long work of a page in a separate process, with a queue and limits of time and memory."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections import OrderedDict
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -18,42 +19,42 @@ LONGEST = 60.0
 MEMORY = 4_000_000_000
 """Bytes that its process may ask for."""
 
-Told = Callable[[Any], None]
-"""Takes what is known on the way: plain values."""
+Report = Callable[[Any], None]
+"""Callback for intermediate results, as plain values."""
 
-Work = Callable[[Told], Any]
-"""What is done; the process must be able to receive it, and the page what it returns and tells."""
+Work = Callable[[Report], Any]
+"""Function that a process runs; it, its result and its reports must be picklable."""
 
 
 class RunQueue:
-    """Runs in the order in which they came; so many of the first are at work."""
+    """Queue of runs, of which the first few are at work."""
 
-    def __init__(self, places: int) -> None:
-        self._places = places
+    def __init__(self, capacity: int) -> None:
+        self._capacity = capacity
         self._runs: list[Run] = []
 
     def __len__(self) -> int:
         return len(self._runs)
 
-    def turn(self, run: Run) -> bool:
-        """Whether it may work; who is not in line stands behind the others."""
+    def admit(self, run: Run) -> bool:
+        """Return True if a run may work; add it to the queue if it is new."""
         if run not in self._runs:
             self._runs.append(run)
-        return self._runs.index(run) < self._places
+        return self._runs.index(run) < self._capacity
 
     def leave(self, run: Run) -> None:
-        """Make room."""
+        """Free the place of a run."""
         if run in self._runs:
             self._runs.remove(run)
 
 
 LINE = RunQueue(max(1, available_cores()))
-"""As many runs at once as there are cores, whoever asks."""
+"""Queue of all pages: as many runs at once as there are cores."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Reached:
-    """How far a run is: `share` from 0 to 1, and in words what is done now."""
+    """Progress of a run: `share` from 0 to 1, and the present step in words."""
 
     share: float
     words: str
@@ -61,28 +62,21 @@ class Reached:
 
 @dataclass(frozen=True, kw_only=True)
 class RunRefused:
-    """Why there is no answer, in one sentence."""
+    """Reason for a missing result, in one sentence."""
 
     why: str
 
 
 @dataclass(frozen=True)
-class Done:
-    """The last word of a run: what its work returned."""
+class RunFinished:
+    """Last news of a run: the value that its work returned."""
 
     value: Any
 
 
 @dataclass(eq=False)
 class Run:
-    """One run. Ask `news` now and then; it waits for a free place first, and is killed when it takes too long.
-
-    Parameters
-    ----------
-    work : function
-    longest : float
-        Seconds it may take.
-    """
+    """Run of some work, at most `longest` seconds; poll `news`, which first waits for a free place."""
 
     work: Work
     longest: float = LONGEST
@@ -91,9 +85,9 @@ class Run:
     _start: float = field(default=0.0, init=False)
 
     def news(self) -> Any:
-        """What has happened since it was last asked, None if nothing; the last is `Done` or `Refused`."""
+        """Return the news since the last call, or None; the last news is `RunFinished` or `RunRefused`."""
         if self._process is None:
-            if not LINE.turn(self):
+            if not LINE.admit(self):
                 return Reached(share=0.0, words="waiting for a free place: others are running")
             try:
                 self._begin()
@@ -103,12 +97,12 @@ class Run:
         assert self._pipe is not None
         if self._pipe.poll():
             try:
-                found = self._pipe.recv()
+                message = self._pipe.recv()
             except EOFError:
-                found = RunRefused(why="its process died; it may have had too little memory")
-            if isinstance(found, Done | RunRefused):
+                message = RunRefused(why="its process died; it may have had too little memory")
+            if isinstance(message, RunFinished | RunRefused):
                 self.stop()
-            return found
+            return message
         if time.monotonic() - self._start > self.longest:
             self.stop()
             return RunRefused(why=f"stopped after {self.longest:g} s, the longest that a run may take here")
@@ -124,7 +118,7 @@ class Run:
         self._process, self._pipe, self._start = process, pipe, time.monotonic()
 
     def stop(self) -> None:
-        """End it, wherever it is, and give its place to the next."""
+        """End the run, and free its place for the next."""
         LINE.leave(self)
         if self._process is not None:
             self._process.kill()
@@ -133,8 +127,26 @@ class Run:
             self._pipe.close()
 
 
+class CachedRun:
+    """Latest results by their inputs, shared by all pages."""
+
+    def __init__(self, max_size: int) -> None:
+        self._max_size = max_size
+        self._results: OrderedDict[Hashable, Any] = OrderedDict()
+
+    def get(self, key: Hashable) -> Any:
+        """Return a stored result; None without one."""
+        return self._results.get(key)
+
+    def put(self, key: Hashable, result: Any) -> None:
+        """Fill an element of the view."""
+        self._results[key] = result
+        while len(self._results) > self._max_size:
+            self._results.popitem(last=False)
+
+
 def looked_at() -> bool:
-    """Whether somebody still has the page open: nobody else waits for an answer."""
+    """Return True while a browser shows the page."""
     from panel import state  # a run's process needs none of it
 
     document = state.curdoc
@@ -143,11 +155,11 @@ def looked_at() -> bool:
 
 
 def _run(pipe: Connection, work: Work) -> None:
-    """In the process."""
+    """Run the work inside the process."""
     exit_with_parent()
     limit_memory()
     try:
-        pipe.send(Done(work(pipe.send)))
+        pipe.send(RunFinished(work(pipe.send)))
     except (ValueError, OutsideDomainError, ImportError) as error:
         pipe.send(RunRefused(why=str(error)))
     except MemoryError:
@@ -155,7 +167,7 @@ def _run(pipe: Connection, work: Work) -> None:
 
 
 def limit_memory() -> None:
-    """Hold this process, and those that it starts, to `MEMORY` each."""
+    """Limit the memory of this process and of its children to `MEMORY` each."""
     try:
         import resource
     except ImportError:  # no such limits on this system: only the time is limited

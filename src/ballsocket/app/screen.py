@@ -1,4 +1,4 @@
-"""What is on the screen, as plain data: to and from a link."""
+"""State of the screen as plain data, to and from a link."""
 
 from __future__ import annotations
 
@@ -20,25 +20,25 @@ from ..reports.unit_systems import Units
 from ..studies.expressions import parse_limit, parse_range
 from ..studies.limits import Limit
 from ..studies.parameters import PARAMETERS
-from . import asked, in_use
-from .asked import FIRST, Asked
-from .in_use import WHOLE, Use
+from . import evidence_pack, in_use
+from .evidence_pack import DEFAULT_QUESTION, EvidenceQuestion
+from .in_use import DEFAULT_USE, Use
 from .reading import Reading
 
 VIEWS = ("press", "cup", "gait", "wear", "map", "compare", "judge", "evidence")
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
 PAINTED = ("pressure", "stress")
-"""What is painted on the drawing of the joint."""
+"""Fields on the drawing of the joint."""
 
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
 """Models that press a map's points at once."""
 
 BASES = ("0", "1", "2")
-"""Places of the joints that are compared: that on the screen, and those beside it."""
+"""Indices of the compared joints: that on the screen first."""
 
 STANDINGS = ("edge_distance", "max_pressure")
-"""What a map of how a cup may stand can show."""
+"""Quantities of the map over orientations of the cup."""
 
 MAP_MODELS = (*QUICK, *(name for name, model in catalogue.items() if 1e-4 <= model.seconds_a_press < 1e-2))
 """Models that press a map's points at once, and those that press fewer of them in a second or two."""
@@ -47,22 +47,22 @@ PICKED = ("any", "catalogue")
 """Sizes that a click on a map takes."""
 
 MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")
-"""What a map can show."""
+"""Quantities of the design map."""
 
 AXES = tuple(name for name in PARAMETERS if PARAMETERS[name].kind is not Kind.ANGLE)
-"""What a map can vary."""
+"""Parameters of the design map."""
 
 LONGEST_LINK = 8000
-BESIDE = 2
+MAX_COMPARED = 2
 MOST_LIMITS = 20
 _TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")
 _VIEWS = ("use", "ask")
-_PREFIXES = tuple(f"beside{number}" for number in range(1, BESIDE + 1))
+_PREFIXES = tuple(f"beside{number}" for number in range(1, MAX_COMPARED + 1))
 
 
 @dataclass(frozen=True, kw_only=True)
 class MapAxis:
-    """An axis of the map: a parameter of a study from `low` to `high`, in mm, N, MPa, rad."""
+    """Axis of the map: a parameter of a study from `low` to `high`, in mm, N, MPa, rad."""
 
     name: str
     low: float
@@ -72,7 +72,7 @@ class MapAxis:
         check_names([self.name], AXES, "among the axes of a map")
         if not -inf < self.low < self.high < inf:
             raise ValueError(
-                f"{self.name} from {self.low:g} to {self.high:g} is no range: it must go upwards, to an end"
+                f"{self.name} from {self.low:g} to {self.high:g} is not a range: it must increase to a finite end"
             )
 
     def __str__(self) -> str:
@@ -81,58 +81,24 @@ class MapAxis:
 
 @dataclass(frozen=True, kw_only=True)
 class Screen:
-    """Everything that a link carries.
-
-    Attributes
-    ----------
-    view : str
-        One of VIEWS.
-    file : JointFile
-        The joint, its load and its cup.
-    beside : tuple of JointFile
-        At most two more, for comparison.
-    answered_by : str
-        The model whose numbers are on top.
-    shown : tuple of str
-        Models that are drawn.
-    across, up : Axis
-        Of the map.
-    map_model, quantity : str
-        What the map shows, by which model.
-    limits : tuple of Limit
-        Of the map.
-    standing : str
-        What the map of how a cup may stand shows.
-    base : str
-        The joint with which others are compared, one of BASES.
-    sizes : str
-        That a click on the map takes, one of PICKED.
-    use : Use
-        What the hip goes through.
-    painted : str
-        "pressure", or "stress": von Mises stresses in the liner.
-    asked : Asked
-        What evidence is gathered for.
-    angle, size, units, theme : str
-        "degrees" or "radians"; balls by "radius" or "diameter"; "SI" or "imperial"; "light" or "dark".
-    """
+    """State that a link carries."""
 
     view: str = "press"
     file: JointFile
-    beside: tuple[JointFile, ...] = ()
-    answered_by: str = reference.name
-    shown: tuple[str, ...] = (reference.name, "hess-forsbach", "bartel", "hertz")
+    beside: tuple[JointFile, ...] = ()  # at most MAX_COMPARED joints for comparison
+    answered_by: str = reference.name  # model of the numbers on top
+    shown: tuple[str, ...] = (reference.name, "hess-forsbach", "bartel", "hertz")  # drawn models
     across: MapAxis = MapAxis(name="head_diameter", low=22.0, high=46.0)
     up: MapAxis = MapAxis(name="liner_thickness", low=3.0, high=15.0)
     map_model: str = "tabulated"
     quantity: str = "max_pressure"
     limits: tuple[Limit, ...] = ()
-    standing: str = "edge_distance"
-    base: str = "1"
-    sizes: str = "any"
-    use: Use = WHOLE
+    standing: str = "edge_distance"  # quantity of the map over orientations
+    base: str = "1"  # joint with which others are compared
+    sizes: str = "any"  # sizes that a click on the map takes
+    use: Use = DEFAULT_USE
     painted: str = "pressure"
-    asked: Asked = FIRST
+    asked: EvidenceQuestion = DEFAULT_QUESTION
     angle: str = "degrees"
     size: str = "diameter"
     units: str = Units.SI.value
@@ -142,8 +108,8 @@ class Screen:
         for name, known in _KNOWN.items():
             chosen = getattr(self, name)
             check_names(chosen if isinstance(chosen, tuple) else (chosen,), known, f"as {name}")
-        if len(self.beside) > BESIDE:
-            raise ValueError(f"at most {BESIDE} joints are put beside this one, got {len(self.beside)}")
+        if len(self.beside) > MAX_COMPARED:
+            raise ValueError(f"at most {MAX_COMPARED} joints are put beside this one, got {len(self.beside)}")
         if len(self.limits) > MOST_LIMITS:
             raise ValueError(f"a map has at most {MOST_LIMITS} limits, got {len(self.limits)}")
         if not self.file.load:
@@ -153,7 +119,7 @@ class Screen:
 
     @property
     def reading(self) -> Reading:
-        """In which units numbers are read."""
+        """Units in which numbers are shown."""
         return Reading(angle=self.angle, units=Units(self.units))
 
 
@@ -169,16 +135,16 @@ _KNOWN: Mapping[str, Sequence[str]] = {
     "painted": PAINTED,
     "angle": ANGLES,
     "size": SIZES,
-    "units": tuple(each.value for each in Units),
+    "units": tuple(system.value for system in Units),
     "theme": THEMES,
 }
 
 START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
-"""What a page without a link shows."""
+"""Screen of a page without a link."""
 
 
 def link_of(screen: Screen) -> str:
-    """The part of a link after the question mark: what differs from the start, and the joint."""
+    """Return the query of a link: the differences from the start, and the joint."""
     pairs: list[tuple[str, str]] = []
     for name in (
         "view",
@@ -201,7 +167,7 @@ def link_of(screen: Screen) -> str:
         if getattr(screen, name) != getattr(START, name):
             pairs.append((name, str(getattr(screen, name))))
     pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
-    pairs += [*in_use.pairs_of(screen.use), *asked.pairs_of(screen.asked)]
+    pairs += [*in_use.use_pairs(screen.use), *evidence_pack.question_pairs(screen.asked)]
     pairs += _flat(_tables(screen.file), "")
     for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
         pairs += _flat(_tables(file), f"{prefix}.")
@@ -209,18 +175,7 @@ def link_of(screen: Screen) -> str:
 
 
 def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
-    """What a link says: parsed by the same strict reader as joint files and the command line.
-
-    Parameters
-    ----------
-    pairs : mapping of str to sequence of str
-        Every value of every name.
-
-    Raises
-    ------
-    ValueError
-        One sentence: what is wrong in it.
-    """
+    """Read a link with the same strict reader as joint files and the command line."""
     if sum(len(name) + len(value) for name, values in pairs.items() for value in values) > LONGEST_LINK:
         raise ValueError(f"the link is longer than {LONGEST_LINK} characters")
     plain = {
@@ -235,12 +190,12 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
         words["shown"] = tuple(dict.fromkeys(words["shown"].split(",")))
     words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
     words["use"] = in_use.use_of(_part(pairs, "use"))
-    words["asked"] = asked.asked_of(_part(pairs, "ask"))
+    words["asked"] = evidence_pack.question_of(_part(pairs, "ask"))
     words["limits"] = tuple(map(parse_limit, pairs.get("limit", ())))
     joint = {name: values[0] for name, values in pairs.items() if name.split(".")[0] in _TABLES}
-    others = [_part(pairs, prefix) for prefix in _PREFIXES]
+    further = [_part(pairs, prefix) for prefix in _PREFIXES]
     words["file"] = _joint(joint) if joint else START.file
-    words["beside"] = tuple(_joint(part) for part in others if part)
+    words["beside"] = tuple(_joint(part) for part in further if part)
     return Screen(**words)
 
 
@@ -254,7 +209,7 @@ def _axis(phrase: str) -> MapAxis:
 
 
 def _joint(flat: Mapping[str, str]) -> JointFile:
-    """A joint from names with dots; the load of the start where it has none."""
+    """Read a joint from dotted names, with the load of the start if it has none."""
     tables = _nested({name: value for name, value in flat.items() if name != "preset"})
     if "preset" in flat:
         check_names([flat["preset"]], joints, "as preset")
@@ -267,7 +222,7 @@ def _joint(flat: Mapping[str, str]) -> JointFile:
 
 
 def _tables(file: JointFile) -> Tables:
-    """Tables of a joint file; short where the joint is a preset."""
+    """Return the tables of a joint file; short for a preset."""
     tables = tables_of(file)
     for name, joint in joints.items():
         if file.joint == joint:
@@ -276,32 +231,32 @@ def _tables(file: JointFile) -> Tables:
 
 
 def _flat(part: Any, prefix: str) -> list[tuple[str, str]]:
-    """Tables as names with dots; layers by their numbers."""
+    """Flatten tables to dotted names, with layers by number."""
     items: Iterable[tuple[Any, Any]] = enumerate(part) if isinstance(part, list) else part.items()
-    found = []
+    pairs = []
     for name, value in items:
         if isinstance(value, dict | list):
-            found += _flat(value, f"{prefix}{name}.")
+            pairs += _flat(value, f"{prefix}{name}.")
         else:
-            found.append((f"{prefix}{name}", str(value)))
-    return found
+            pairs.append((f"{prefix}{name}", str(value)))
+    return pairs
 
 
 def _nested(flat: Mapping[str, str]) -> Tables:
     tables: Tables = {}
     layers: dict[int, dict[str, str]] = {}
     for name, value in flat.items():
-        table, _, rest = name.partition(".")
-        number, _, key = rest.partition(".")
+        table, _, key_path = name.partition(".")
+        number, _, key = key_path.partition(".")
         if table == "backing":
             if not (number.isdecimal() and len(number) < 4 and key):
                 raise ValueError(f"{shown(name)} in the link is not known; a layer is 'backing.0.thickness' and so on")
             layers.setdefault(int(number), {})[key] = value
-        elif rest:
+        elif key_path:
             part = tables.setdefault(table, {})
             if not isinstance(part, dict):
                 raise ValueError(f"{shown(table)} is given as text and as a table in the link")
-            part[rest] = value
+            part[key_path] = value
         else:
             tables[table] = value
     if layers:
@@ -310,12 +265,12 @@ def _nested(flat: Mapping[str, str]) -> Tables:
 
 
 def _bare(name: str, value: float) -> str:
-    """The text that `units.parse` takes, to the last digit: a bare angle would be degrees."""
+    """Write a number to the last digit for `units.parse`; a bare angle would be degrees."""
     return f"{value!r} {Kind.ANGLE.unit}" if QUANTITIES[name].kind is Kind.ANGLE else repr(value)
 
 
 def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> list[str]:
-    """What `limit_of` reads, for each end; numbers are `written` by their name and value."""
+    """Write each end of a limit as text that `parse_limit` reads."""
     ends = ((">=", limit.low), ("<=", limit.high))
     return [f"{limit.name}{sign}{written(limit.name, end)}" for sign, end in ends if isfinite(end)]
 

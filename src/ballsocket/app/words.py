@@ -1,4 +1,4 @@
-"""Numbers of a contact as the page shows them: text and HTML, in the units that are chosen."""
+"""Text and HTML of contacts for the page: numbers, tables, verdicts and notes in the chosen units."""
 
 from __future__ import annotations
 
@@ -8,11 +8,13 @@ from math import floor, isfinite, isnan, log10
 from typing import Any
 
 from ..catalogue import reference
-from ..compare import Comparison
+from ..compare import Comparison, relative_deviation
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column
+from ..contact.strength import unchecked_strength_reason, von_mises_ratio
+from ..contact.verdict import StrengthUse, strength_uses_at
 from ..core.kinds import Unit
-from ..core.quantities import HEADLINE, Quantity
+from ..core.quantities import HEADLINE, STRENGTH, Quantity
 from ..reports.style import line_of
 from ..reports.unit_systems import Units
 from .chart import swatch
@@ -23,29 +25,29 @@ _SPELT = {"°": "deg", "in²": "in2", "µm": "um", "mm²": "mm2"}
 
 
 def alert(sentence: str) -> str:
-    """A sentence that says why something cannot be done."""
+    """Return an error message."""
     return f"<p class='refused' role='alert'>{escape(sentence)}</p>"
 
 
 def notes_list(notes: Iterable[str]) -> str:
-    """What a model says of its answer."""
+    """List the notes of a model."""
     return f"<ul class='notes'>{''.join(f'<li>{escape(note)}</li>' for note in notes)}</ul>"
 
 
 def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
-    """One number with its unit, and what is to be said of it below."""
+    """Return a number with its unit, and a remark below it."""
     behind = "" if isnan(value) else f" <span class='unit'>{escape(unit)}</span>"
     small = f"<small>{escape(more)}</small>" if more else ""
     return f"<div><dt>{escape(title)}</dt><dd>{number_text(value)}{behind}{small}</dd></div>"
 
 
 def progress(words: str, share: float | None, stop: str = "", again: str = "") -> str:
-    """How far something is, with a button that stops it or begins it again: what it tells the view."""
+    """Return a progress bar with buttons to stop or continue, named by the events they send."""
     bar = "" if share is None else f"<progress max='1' value='{share:.3f}' aria-label='progress'></progress> "
     buttons = "".join(
-        f" <button type='button' class='plain' data-tell='{told}'>{said}</button>"
-        for told, said in ((stop, "Stop"), (again, "Go on"))
-        if told
+        f" <button type='button' class='plain' data-tell='{value_text}'>{label}</button>"
+        for value_text, label in ((stop, "Stop"), (again, "Go on"))
+        if value_text
     )
     return f"<p class='quiet'>{bar}{escape(words)}{buttons}</p>"
 
@@ -62,9 +64,9 @@ def doubt(valid: bool, name: str = "") -> str:
 
 
 def models_table(comparison: Comparison, reading: Reading) -> str:
-    """Every model in a row, with its deviation from the exact answer, its validity, and its line in the charts."""
-    shown = [each for each in reading.columns if each.attribute in HEADLINE]
-    heads = "".join(f"<th scope='col'>{escape(each.head)}</th>" for each in shown)
+    """Tabulate the models with deviation from the exact result, validity and line style."""
+    shown = [column for column in reading.columns if column.attribute in HEADLINE]
+    heads = "".join(f"<th scope='col'>{escape(column.head)}</th>" for column in shown)
     rows = "".join(_row(comparison, name, shown) for name in comparison)
     missing = "".join(
         f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(shown) + 1}' class='text'>{escape(why)}</td></tr>"
@@ -80,25 +82,25 @@ def models_table(comparison: Comparison, reading: Reading) -> str:
 
 def _row(comparison: Comparison, name: str, shown: list[Column]) -> str:
     contact, apart = comparison[name], comparison.deviation(name)
-    cells = "".join(_number(each, contact, apart) for each in shown)
+    cells = "".join(_number(column, contact, apart) for column in shown)
     why = "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
     kind = "reference" if name == reference.name else "valid" if bool(contact.valid) else "doubtful"
     head = f"<th scope='row'>{swatch(line_of(name))}{escape(name)}</th>"
     return f"<tr class='{kind}'>{head}{cells}<td class='text'>{escape(why)}</td></tr>"
 
 
-def _number(each: Column, contact: Contact, apart: Mapping[str, Any] | None) -> str:
-    """A cell, which says its own head where there is no room for one above."""
-    text = number_text(float(each.values_of(contact)))
-    return f"<td data-head='{escape(each.head)}'>{text}{_apart(apart, each.name)}</td>"
+def _number(column: Column, contact: Contact, apart: Mapping[str, Any] | None) -> str:
+    """Return a table cell that carries its own heading for narrow pages."""
+    text = number_text(float(column.values_of(contact)))
+    return f"<td data-head='{escape(column.head)}'>{text}{_deviation_cell(apart, column.name)}</td>"
 
 
-def _apart(deviation: Mapping[str, Any] | None, name: str) -> str:
+def _deviation_cell(deviation: Mapping[str, Any] | None, name: str) -> str:
     return "" if deviation is None else f"<small>{percent(float(deviation[name]), '+').replace('below', '<')}</small>"
 
 
 def percent(share: float, sign: str = "") -> str:
-    """A small share of one, in percent, without more digits than it deserves."""
+    """Format a small ratio in percent with few digits."""
     if not isfinite(share):
         return ""
     if share == 0:
@@ -110,29 +112,147 @@ def percent(share: float, sign: str = "") -> str:
 
 
 def number_rows(head: str, contacts: Mapping[str, Contact], reading: Reading) -> list[list[Any]]:
-    """A table with its head: a row a contact, its numbers its columns named by quantity and unit."""
+    """Tabulate contacts for a file: a heading row, then one row for each contact."""
     columns = COLUMNS if reading.units is Units.SI else reading.columns
     rows = [
-        [name, *(float(each.values_of(contact)) for each in columns), bool(contact.valid)]
+        [name, *(float(column.values_of(contact)) for column in columns), bool(contact.valid)]
         for name, contact in contacts.items()
     ]
-    return [[head, *(column_of(each.quantity, each.reading) for each in columns), "valid"], *rows]
+    return [[head, *(column_of(column.quantity, column.reading) for column in columns), "valid"], *rows]
 
 
-def told(value: Any) -> str:
-    """A value of a file as a page for people has it: four digits, and words for what is none."""
+def value_text(value: Any) -> str:
+    """Format a value of a file for readers: four digits, or words."""
     if isinstance(value, bool):
         return "yes" if value else "no"
     return number_text(value) if isinstance(value, float | int) else str(value)
 
 
 def unit_of_files(quantity: Quantity, reading: Reading) -> Unit:
-    """The unit of a number in a file: mm, N, MPa and degrees, or that of an inch page."""
+    """Return the unit of a number in files: mm, N, MPa and degrees, or imperial."""
     return quantity.written if reading.units is Units.SI else reading.unit(quantity)
 
 
 def column_of(quantity: Quantity, unit: Unit) -> str:
-    """The head of a column in a file, which ends in the unit."""
+    """Return the heading of a column in a file, which ends in the unit."""
     if unit == quantity.written or not unit.text:
         return quantity.column
     return f"{quantity.name}_{_SPELT.get(unit.text, unit.text).replace('/', '_per_').replace(' ', '_')}"
+
+
+_LITTLE_MARGIN = 0.8
+"""Utilisation above which the margin is small."""
+
+
+def estimate_von_mises(contact: Contact) -> float:
+    """Estimate the largest von Mises stress (MPa) in the liner by a fit, about 6 % off."""
+    joint = contact.joint
+    return float(von_mises_ratio(contact.half_angle, joint.liner.poisson, joint.thickness_ratio) * contact.max_pressure)
+
+
+def most_used(contact: Contact, von_mises: float) -> StrengthUse | None:
+    """Return the strength of liner or ball with the largest utilisation; None if unknown."""
+    return next(iter(strength_uses_at(contact, von_mises)), None)
+
+
+def verdict_sentence(contact: Contact, strength_use: StrengthUse | None) -> tuple[bool | None, str]:
+    """Return a verdict and its sentence; None without a strength or outside the validity."""
+    if strength_use is None or (strength_use.ratio <= 1 and not contact.joint.liner.strengths):
+        return None, f"No verdict: {unchecked_strength_reason(contact.joint)}. Enter the liner's allowable pressure."
+    if strength_use.ratio > 1:
+        return False, f"The {strength_use.part} does not bear it: {strength_use}"
+    if not bool(contact.valid):
+        return None, "No verdict: this contact is outside the range of its model"
+    return (
+        True,
+        f"The {strength_use.part} bears it{', with little to spare' if strength_use.ratio > _LITTLE_MARGIN else ''}",
+    )
+
+
+_MAIN_QUANTITY = "max_pressure"
+_AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
+"""Quantities that repeat others if the pressure is largest at the pole."""
+
+
+def headline(
+    contact: Contact, exact: Contact | None, von_mises: float, reading: Reading, surely: str = "about "
+) -> str:
+    """Return the numbers of a contact as HTML; `surely` precedes a utilisation from `von_mises` (MPa)."""
+    strength_use = most_used(contact, von_mises)
+    listed = [
+        column
+        for column in reading.columns
+        if column.attribute != _MAIN_QUANTITY and not _repeats_pole(column, contact)
+    ]
+    first = next(column for column in reading.columns if column.attribute == _MAIN_QUANTITY)
+    cells = "".join(_quantity_cell(column, contact) for column in listed)
+    return (
+        f"<dl class='first'>{_quantity_cell(first, contact)}</dl>"
+        f"{_utilisation_bar(strength_use, surely, contact, reading)}"
+        f"{_verdict_line(contact, strength_use)}{trust(contact, _notes(contact))}"
+        f"<dl class='numbers'>{cells}</dl><p class='quiet'>{escape(accuracy_sentence(contact, exact))}</p>"
+    )
+
+
+def _notes(contact: Contact) -> list[str]:
+    """List the notes; omit the utilisation note where the verdict already states it."""
+    return [note for note in contact.notes if contact.joint.liner.strengths or note != contact.utilisation_note]
+
+
+def _repeats_pole(column: Column, contact: Contact) -> bool:
+    return column.attribute in _AT_THE_POLE and float(contact.max_pressure_angle) == 0
+
+
+def _quantity_cell(column: Column, contact: Contact) -> str:
+    value = float(column.values_of(contact))
+    unit = "" if value != value else f" <span class='unit'>{escape(column.unit)}</span>"
+    return (
+        f"<div><dt>{escape(column.title)} <i>{escape(column.symbol)}</i></dt>"
+        f"<dd data-name='{column.attribute}' data-value='{value!r}'>{number_text(value)}{unit}</dd></div>"
+    )
+
+
+def _utilisation_bar(strength_use: StrengthUse | None, surely: str, contact: Contact, reading: Reading) -> str:
+    """Return the utilisation as a bar and in words."""
+    if strength_use is None or strength_use.ratio != strength_use.ratio:
+        return ""
+    about = "" if strength_use.strength == "allowable_pressure" else surely
+    name = getattr(contact.joint, strength_use.part).name or strength_use.part
+    text = f"{about}{strength_use} ({name}, {reading.with_unit(STRENGTH[strength_use.strength], strength_use.allowed)})"
+    kind = "yes" if strength_use.ratio <= 1 else "no"
+    return (
+        f"<div class='bar' aria-hidden='true'>"
+        f"<i class='{kind}' style='width:{min(100.0, 100 * strength_use.ratio):.1f}%'></i>"
+        f"</div><p class='share'>{escape(text)}</p>"
+    )
+
+
+def _verdict_line(contact: Contact, strength_use: StrengthUse | None) -> str:
+    holds, words = verdict_sentence(contact, strength_use)
+    kind, sign = {True: ("yes", "✓ "), False: ("no", "✗ "), None: ("quiet", "")}[holds]
+    return f"<p class='verdict {kind}' role='status'>{sign}{escape(words)}</p>"
+
+
+def accuracy_sentence(contact: Contact, exact: Contact | None) -> str:
+    """State the largest deviation from the exact result; empty if unknown."""
+    apart = (
+        _estimated_error(contact)
+        if exact is None or exact.model.name == contact.model.name
+        else _largest_deviation(contact, exact)
+    )
+    if apart != apart or apart == 0:
+        return ""
+    return f"All within {100 * max(apart, 1e-5):.2g} % of the exact answer"
+
+
+def _estimated_error(contact: Contact) -> float:
+    """Return the largest estimated error of an exact result."""
+    known: dict[str, Any] = getattr(contact, "error", {})
+    return max((float(error) for error in known.values()), default=float("nan"))
+
+
+def _largest_deviation(contact: Contact, exact: Contact) -> float:
+    deviations = [
+        abs(float(relative_deviation(column.values_of(contact), column.values_of(exact)))) for column in COLUMNS
+    ]
+    return max((share for share in deviations if share == share), default=float("nan"))

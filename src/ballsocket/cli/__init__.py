@@ -21,10 +21,10 @@ add_commands(  # in the order in which `ballsocket --help` lists them
             "ballsocket.cli.identify", "Build the tables of the model `tabulated`.", hidden=True
         ),
         "evidence": CommandEntry("ballsocket.cli.evidence", "Write or check an evidence pack for a computed number."),
-        "deck": CommandEntry("ballsocket.cli.deck", "Write a finite-element input file for CalculiX or Abaqus."),
+        "deck": CommandEntry("ballsocket.cli.export", "Write a finite-element input file for CalculiX or Abaqus."),
         "fmu": CommandEntry("ballsocket.cli.export", "Write a joint as a functional mock-up unit (FMI)."),
         "export": CommandEntry("ballsocket.cli.export", "Write a joint as a force element for another program."),
-        "schema": CommandEntry("ballsocket.cli.schema", "Print the JSON schema of a kind of input file."),
+        "schema": CommandEntry("ballsocket.cli.lists", "Print the JSON schema of a kind of input file."),
         "app": CommandEntry("ballsocket.cli.servers", "Open the explorer, an interactive page, in a browser."),
         "serve-mcp": CommandEntry("ballsocket.cli.servers", "Offer the commands to AI assistants (MCP)."),
         "reproduce": CommandEntry("ballsocket.cli.reproduce", "Recompute the results of Heß & Forsbach 2021."),

@@ -16,14 +16,13 @@ from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports import study_plots, study_tables
 from ..studies.axes import Span
-from ..studies.default_model import check_model_domain, default_model
 from ..studies.design import grid
 from ..studies.expressions import parse_choices, parse_distribution, parse_limit, parse_range
 from ..studies.limits import Limit
 from ..studies.optimisation import optimise as find_optimum
 from ..studies.parameters import LOADS
 from ..studies.pareto import pareto
-from ..studies.run import study
+from ..studies.run import check_model_domain, default_model, study
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import DEFAULT_QUANTITIES, QUANTITIES
 from ..version import __version__

@@ -18,8 +18,7 @@ from ..contact.per_joint import SolvedContact
 from ..core.checks import known_name, require
 from ..core.kinds import Kind
 from ..core.quantities import CONTACT, LOADS
-from ..elasticity.finite_elements.contact import MeshedContact
-from ..elasticity.finite_elements.model import FiniteElement
+from ..elasticity.finite_elements.model import FiniteElement, MeshedContact
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.finite_elements.spacing import Adapted, Element, Spacing, Uniform
 from ..elasticity.off_axis.contact import OffAxisContact

@@ -14,7 +14,7 @@ from rich.progress import Progress
 
 from ..core.checks import needs
 from ..core.executors.processes import Engine, Processes
-from ..core.storage.fingerprint import fingerprint
+from ..core.storage.pieces import fingerprint
 from ..evidence.comparison import compare
 from ..evidence.folder import WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
 from ..evidence.pack import Listener, gather_evidence

@@ -1,11 +1,12 @@
-"""Commands `export` and `fmu`: a joint as a force element for other programs."""
+"""Commands `export`, `fmu` and `deck`: a joint as a force element or as finite elements for other programs."""
 
 from __future__ import annotations
 
 import keyword
 import re
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import radians
 from pathlib import Path
 from typing import Annotated
 
@@ -16,10 +17,12 @@ from ..core.checks import known_name
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, Restitution
 from ..export.targets import TARGETS, ExportJob
-from ..files.joint_file import JointFile
+from ..files.joint_file import JointFile, read_aim
 from ..problem.cup import Cup
-from ..studies.default_model import default_model
-from .options import JointName, JointOptions, ModelName, expand_groups
+from ..reports.accuracy_results import print_rival, print_tilted_rival
+from ..studies.run import default_model
+from .elasticity_options import CupOptions, MeshOptions, solve_mesh
+from .options import JointName, JointOptions, LoadOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 
 
@@ -150,3 +153,78 @@ _MORE_MODELICA = (
 )
 _PROGRAMS = "exudyn mujoco numpy opensim pydrake assert errno float limits stdio stdlib string"
 _RESERVED = {*keyword.kwlist, *sys.stdlib_module_names, *f"{_MODELICA} {_MORE_MODELICA} {_PROGRAMS}".split()}
+
+
+_TILTED_ELEMENT_ANGLE = 6.0  # degrees of the bore per element, by default
+
+
+@app.command()
+@expand_groups
+def deck(
+    *,
+    joint: JointName = None,
+    joint_options: JointOptions,
+    out: Annotated[Path, typer.Option(help="Output folder; created if it does not exist.")],
+    load_options: LoadOptions,
+    steps: Annotated[
+        int, typer.Option(min=1, max=1000, help="Number of equal indentation steps up to that of the load.")
+    ] = 8,
+    scale: Annotated[
+        float,
+        typer.Option(
+            help="Factor on clearance and indentation; small: contact on the undeformed shape, 1: on the deformed."
+        ),
+    ] = 1e-3,
+    tilt: Annotated[
+        str | None,
+        typer.Option(
+            help="Angle between load and cup axis in degrees: '45 deg'. Writes a three-dimensional model. "
+            "Default: 0 deg."
+        ),
+    ] = None,
+    cup: CupOptions,
+    mesh: MeshOptions,
+    run: Annotated[bool, typer.Option("--run", help="Run CalculiX (ccx), and compare its results with ours.")] = False,
+) -> None:
+    """Write a finite-element input file for CalculiX or Abaqus.
+
+    The folder also gets the results to expect.
+    """
+    file = joint_options.read(joint)
+    load = load_options.read(file)
+    if tilt is not None:
+        angle = read_aim({"tilt": tilt})["tilt"]
+        _write_tilted(replace(file, cup=cup.apply_to(file.cup)), load, angle, out, mesh, run)
+        return
+    contact, _ = solve_mesh(mesh.model(cup.apply_to(file.cup), meshes=1), file.joint, load)
+    if contact.status.failed:
+        raise ValueError("; ".join(contact.notes))
+    from ..elasticity.finite_elements.calculix import run as run_ccx
+    from ..elasticity.finite_elements.deck import deck_of
+
+    made = deck_of(contact, steps=steps, scale=scale)
+    echo_path(made.write(out), f": {contact.mesh.elements} elements, {steps} steps")
+    if run:
+        print_rival(made.expected, run_ccx(out))
+
+
+def _write_tilted(
+    file: JointFile, load: dict[str, float], tilt: float, out: Path, mesh: MeshOptions, run: bool
+) -> None:
+    """Write the input file of a ball that is displaced at a tilt in rad."""
+    from ..elasticity.off_axis.deck import TiltedDeck
+    from ..elasticity.off_axis.deck import run as run_ccx
+
+    if "indentation" not in load:
+        raise ValueError("a tilted deck displaces the ball: give an indentation")
+    size = mesh.size or radians(_TILTED_ELEMENT_ANGLE) * float(file.joint.socket_radius)
+    made = TiltedDeck(
+        joint=replace(file.joint, ball=None),
+        cup=file.cup,
+        indentation=load["indentation"],
+        tilt=tilt,
+        element_size=size / float(file.joint.socket_radius),
+    )
+    echo_path(made.write(out), f": {made.ball.last_number} nodes, rigid ball")
+    if run:
+        print_tilted_rival(made.expected["force_vector"], run_ccx(out)["force_vector"])

@@ -5,24 +5,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 from ..core.executors.processes import Engine, Serial
-from ..hip.bands import Bands
-from ..hip.cohort import cohort_store, write_csv
-from ..hip.config import HipFile, read_hip
-from ..hip.history import History
-from ..hip.uncertainty import population, uncertainty
-from ..reports.hip_report import check_page, write_hip_report
-from ..reports.hip_tables import print_bands, print_hip, print_notes
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, Scheduler, Workers, choose_executor
 from .root import FAILURE, app, echo_path
+
+if TYPE_CHECKING:  # imported on use: the solver of wear is slow to import
+    from ..hip.bands import Bands
+    from ..hip.config import HipFile
+    from ..hip.history import History
 
 
 @app.command()
@@ -48,6 +46,10 @@ def hip(
 
     Exit status: 0 success, 2 wrong input, 3 a contact does not balance its load.
     """
+    from ..hip.config import read_hip
+    from ..reports.hip_report import check_page, write_hip_report
+    from ..reports.hip_tables import print_bands, print_hip
+
     if report is not None:
         check_page(report)
     hip_file, engine = read_hip(file), choose_executor(workers, scheduler, Serial())
@@ -81,6 +83,8 @@ def _simulate(hip_file: HipFile, store: Path | None) -> History:
 
 def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> Bands | None:
     """Compute uncertainty bands of a simulation; None if the file has no uncertainty."""
+    from ..hip.uncertainty import uncertainty
+
     scatter = hip_file.uncertain
     if scatter is None:
         return None
@@ -103,6 +107,10 @@ def _echo_history(history: History, bands: Bands | None) -> None:
 
 def _simulate_cohort(hip_file: HipFile, patients: int, engine: Engine, store: Path | None, as_json: bool) -> None:
     """Simulate and print a patient cohort; with a store, also write a table of the patients."""
+    from ..hip.cohort import cohort_store, write_csv
+    from ..hip.uncertainty import population
+    from ..reports.hip_tables import print_bands, print_notes
+
     scatter = hip_file.uncertain
     if scatter is None:
         raise ValueError("--patients needs a table [uncertainty] in the file: the scatter between patients")

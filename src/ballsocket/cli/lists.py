@@ -1,7 +1,8 @@
-"""Commands `models`, `presets` and `cite`: lists of what the package contains, with sources."""
+"""Commands `models`, `presets`, `cite` and `schema`: lists of what the package contains, and of the keys of files."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Annotated
 
@@ -10,6 +11,8 @@ import typer
 from ..catalogue import listed_models
 from ..core.checks import known_name
 from ..core.sources import cite as bibtex_of
+from ..files.schema_keys import json_schema
+from ..mcp.tools import FILE_TABLES, file_table
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
 from ..reports.catalogue_lists import (
@@ -79,3 +82,14 @@ def cite(
         typer.echo(bibtex_of(*(citable[name] for name in chosen)))
     except TypeError as error:  # a material or joint without a publication
         raise ValueError(str(error)) from None
+
+
+@app.command()
+def schema(
+    kind: Annotated[str, typer.Argument(help=f"Kind of file: {', '.join(FILE_TABLES)}.")],
+) -> None:
+    """Print the JSON schema of a kind of input file.
+
+    Editors complete and check TOML files with it.
+    """
+    typer.echo(json.dumps(json_schema(file_table(kind)), indent=2))

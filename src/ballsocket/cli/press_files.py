@@ -12,13 +12,13 @@ import typer
 from ..catalogue import judge, off_axis, reference
 from ..compare import Comparison, successful_contacts
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
-from ..elasticity.finite_elements.contact import MeshedContact
+from ..elasticity.finite_elements.model import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..reports.figure_files import check_format, save
 from ..reports.unit_systems import Units
+from ..studies.derivatives import LocalUncertainty, local_uncertainty
 from ..studies.expressions import parse_distribution
-from ..studies.local_uncertainty import LocalUncertainty, local_uncertainty
 from .root import print_message
 
 _VIEW_FORMAT = ".png"
@@ -51,7 +51,7 @@ class FigureOptions:
         if self.view is not None and self.view.suffix.lower() != _VIEW_FORMAT:
             raise ValueError(f"view {str(self.view)!r} must end in {_VIEW_FORMAT}")
         if self.vtk is not None:
-            from ..elasticity.finite_elements.decks.vtk import check_vtk_path
+            from ..elasticity.finite_elements.section import check_vtk_path
 
             check_vtk_path(self.vtk)
 
@@ -107,7 +107,7 @@ def _write_section(contact: MeshedContact, exact: Any, path: Path) -> None:
 
 def _write_meshes(contact: MeshedContact, path: Path) -> None:
     """Write the meshes and fields of the finite elements for VTK."""
-    from ..elasticity.finite_elements.decks.vtk import write_vtk
+    from ..elasticity.finite_elements.section import write_vtk
 
     write_vtk(contact.section, path)
 

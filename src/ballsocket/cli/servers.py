@@ -11,9 +11,10 @@ from typing import Annotated, Any
 import typer
 
 from ..core.checks import needs
-from .root import app, load_commands
+from ..core.executors.processes import exit_with_parent
+from .root import app, load_commands, main
 
-LIMITED_PROGRAM = ("-P", "-m", "ballsocket.cli.limited")
+LIMITED_PROGRAM = ("-P", "-c", "from ballsocket.cli.servers import run_limited; run_limited()")
 """Arguments of Python for a call of a tool; -P: a file in the folder that is named like a module is not imported."""
 
 
@@ -78,6 +79,15 @@ def serve_mcp(
     needs("mcp", "mcp", "mcp_types")
     if not folder.is_dir():
         raise ValueError(f"folder {str(folder)!r} does not exist")
-    from ..mcp.server import serve
+    from ..mcp import serve
 
     asyncio.run(serve(folder.resolve(), longest, load_commands(), LIMITED_PROGRAM))
+
+
+def run_limited() -> None:
+    """Run the program with a limit on its memory, until its parent process ends: for calls of tools."""
+    from ..app.running import limit_memory
+
+    exit_with_parent()
+    limit_memory()
+    main()

@@ -13,10 +13,10 @@ from numba.extending import overload
 from ..contact.assembly import SolverResult
 from ..core.arrays import Numbers
 from ..core.validity import Status
-from ..elasticity.exact.tabulated import chebyshev, formulas
-from ..elasticity.exact.tabulated.curves import JointCurves
-from ..elasticity.exact.tabulated.formulas import (
+from ..elasticity.exact.tabulated import chebyshev, curves
+from ..elasticity.exact.tabulated.curves import (
     CurveCoefficients,
+    JointCurves,
     Scale,
     angle_of_force,
     angle_of_indentation,
@@ -184,7 +184,7 @@ def _tabulated_kernel(kind: str) -> Any:
     return compile_loop(solve_contacts)
 
 
-@overload(formulas.evaluate_table_functions, strict=False)
+@overload(curves.evaluate_table_functions, strict=False)
 def _overload_evaluate(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
     """Implement the evaluation of the first one, two or three tabulated functions in compiled code."""
     if rows.count == 1:
@@ -216,7 +216,7 @@ def _evaluate_table_functions(angle, curve):  # type: ignore[no-untyped-def]
         force_slope += c[1, k] * rise
         pole_slope += c[2, k] * rise
         U, U_next = U_next, twice * U_next - U
-    rate = formulas.angle_derivative(angle, root, curve.ratio)
+    rate = curves.angle_derivative(angle, root, curve.ratio)
     return (
         (opening, rate * opening_slope),
         (force, rate * force_slope),
@@ -256,13 +256,13 @@ for _long_formula in (
     refined_state.half_angle_of_indentation,
     refined_state.half_angle_of_force,
     chebyshev.angle_root,
-    formulas.angle_derivative,
-    formulas.opening,
-    formulas.contact_quantities,
-    formulas._solve_angle,
-    formulas._indentation_residual,
-    formulas._force_residual,
-    formulas.angle_of_indentation,
-    formulas.angle_of_force,
+    curves.angle_derivative,
+    curves.opening,
+    curves.contact_quantities,
+    curves._solve_angle,
+    curves._indentation_residual,
+    curves._force_residual,
+    curves.angle_of_indentation,
+    curves.angle_of_force,
 ):
     jit_formula(_long_formula)

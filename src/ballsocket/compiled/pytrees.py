@@ -14,7 +14,7 @@ from jax.tree_util import register_pytree_node
 
 from ..contact import Contact
 from ..core.quantities import STRESS_LIMITS
-from ..elasticity.exact.tabulated.solution import TableSolution
+from ..elasticity.exact.tabulated.model import TableSolution
 from ..models.closed_form import ClosedFormSolution
 from ..models.plane_layer import LayerSolution
 from ..models.refined import RefinedSolution

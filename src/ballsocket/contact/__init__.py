@@ -1,17 +1,17 @@
 """Base classes of contact models and the results that models return; no formula of a single model.
 
-Results: `contact`, the result of a press; `outcome`, status, validity and notes; `strength`, stress relative to the
-strength of the materials; `verdict`, the same in one sentence; `describe`, a contact in text and numbers.
+Results: `contact`, the result of a press; `outcome`, status, validity and notes, with the base class of all models;
+`strength`, stress relative to the strength of the materials; `verdict`, the same in one sentence; `describe`, a contact
+in text and numbers.
 
-Models: `model_info`, name, sources and validity; `model`, the base classes; `assembly`, checked inputs and assembled
-results; `law`, the force law of one joint; `per_joint`, models that solve joint by joint; `peak_pressure`, the position
-of the largest pressure; `roots`, the inversion; `closed_sphere`, the difference between a closed sphere and a
-hemisphere.
+Models: `model`, the base classes; `assembly`, checked inputs and assembled results; `law`, the force law of one joint;
+`per_joint`, models that solve joint by joint; `roots`, inversion and largest pressure; `closed_sphere`, the difference
+between a closed sphere and a hemisphere.
 """
 
 from .contact import Contact, Laws
 from .model import Model, ModelWrapper, RimLimited
-from .model_info import ModelInfo
+from .outcome import ModelInfo
 
 Covered, Pressed, Wrapped = RimLimited, ModelInfo, ModelWrapper  # names of version 1.0
 

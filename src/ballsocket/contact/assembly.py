@@ -16,7 +16,7 @@ from ..core.validity import Status, is_missing
 from ..problem import Joint
 from ..problem.presets import joints
 from .contact import Contact, Laws
-from .model_info import ModelInfo
+from .outcome import ModelInfo
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -401,4 +401,4 @@ def _mean_friction_lever(angle: Array, axis_angle: float) -> Array:
     return arrays.weighted_sum(sines, [1 / 64] * 64)
 
 
-__getattr__ = renamed_names(__name__, {"Pressed": "ballsocket.contact.model_info.ModelInfo"})
+__getattr__ = renamed_names(__name__, {"Pressed": "ballsocket.contact.outcome.ModelInfo"})

@@ -137,10 +137,7 @@ def fit_curve_law(force: Callable[[Numbers], Numbers], shallowest: float, deepes
 
 
 def _deepest_indentation(force: Callable[[Numbers], Numbers], low: float, high: float) -> float:
-    """Find the deepest indentation in mm with a finite force, by repeated refinement of a grid.
-
-    It is reduced by a relative tolerance of 1e-6.
-    """
+    """Find the deepest indentation in mm with a finite force, less 1e-6 of it, by repeated refinement of a grid."""
     if not force(numpy.array([low]))[0] > 0:
         raise TypeError(f"no force law: the load at an indentation of {low:.3g} mm must be above 0 N")
     while high / low > 1 + _END_TOLERANCE:

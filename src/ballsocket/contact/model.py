@@ -28,7 +28,7 @@ from .assembly import (
 )
 from .contact import Contact, Laws
 from .law import CurveLaw, ForceLaw, fit_curve_law
-from .model_info import ModelInfo
+from .outcome import ModelInfo
 
 
 class Model(ModelInfo):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 from importlib.util import find_spec
@@ -304,6 +305,39 @@ def check_text(name: str, value: Any) -> str:
         limit = f"at most {_MAX_TEXT_LENGTH} characters with no control characters"
         raise ValueError(f"{name} = {shown(value)} must be {limit}")
     return value
+
+
+def check_filled(name: str, text: str, meaning: str = "") -> str:
+    """Check that a text is not blank, and return it as plain text; raise ValueError with its meaning otherwise."""
+    if not text.strip():
+        raise ValueError(f"{name} is empty" + (f": {meaning}" if meaning else ""))
+    return str(text)
+
+
+_MAX_INTEGER = (1 << 53) - 1
+"""Largest whole number up to which a float represents every whole number exactly."""
+
+
+def check_whole_number(name: str, value: Any, low: int = 0, high: int = _MAX_INTEGER) -> int:
+    """Check that a value is an integer within limits, and return it.
+
+    Raises
+    ------
+    ValueError
+        Any other value, such as a float or a boolean.
+    """
+    if isinstance(value, bool) or not isinstance(value, int) or not low <= value <= high:
+        raise ValueError(f"{name} = {shown(value)} is not allowed: a whole number from {low} to {high}")
+    return value
+
+
+_PERCENTAGE = re.compile(r"\s*([-+.\deE]+)\s*%\s*")
+
+
+def number_of_percent(value: Any) -> str | None:
+    """Return the number of a percentage as text, such as "10" of "10 %"; None for any other value."""
+    match = _PERCENTAGE.fullmatch(value) if isinstance(value, str) else None
+    return None if match is None else match[1]
 
 
 def shown(value: Any) -> str:

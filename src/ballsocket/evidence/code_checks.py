@@ -23,9 +23,8 @@ from ..elasticity.finite_elements.mesh import Block, mesh_block
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.surfaces import ClosedShell
 from ..models.foundation import RadialFoundation
-from ..models.half_space import Hertz, Steuermann
+from ..models.half_space import Hertz, LiuReconstruction, Steuermann
 from ..models.kinematics import exact_kinematics
-from ..models.liu import LiuReconstruction
 from ..models.modulus import constant
 from ..problem import Joint, Material
 from ..problem.cup import Cup

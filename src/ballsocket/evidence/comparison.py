@@ -18,7 +18,8 @@ from typing import Any
 from ..core.checks import shown
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
-from ..core.storage.fingerprint import fingerprint
+from ..core.storage.pieces import fingerprint
+from .credibility import assess
 from .folder import (
     MAX_FILE_SIZE,
     PAGE,
@@ -37,7 +38,6 @@ from .folder import (
 )
 from .pack import DRAWING, STATED, Listener, gather_evidence, ignore_progress, made_with
 from .question import read_question
-from .requirements import assess
 
 RELATIVE_TOLERANCE = 1e-9
 """Largest relative difference between the numbers of two machines."""

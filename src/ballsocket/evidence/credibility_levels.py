@@ -8,9 +8,8 @@ from math import inf
 from typing import Any
 
 from ..studies.parameters import LOADS
-from .applicability import APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY, IN_PART, WITHIN
 from .code_checks import ORDER_OF_ELEMENTS, OWN_TOLERANCE
-from .comparators import MEASURED
+from .comparators import APPLIES, APPLIES_IN_PART, DOES_NOT_APPLY, IN_PART, MEASURED, WITHIN
 from .matrix import NAMES, input_title, limit_text
 
 Record = Mapping[str, Any]

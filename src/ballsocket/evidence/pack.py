@@ -14,17 +14,16 @@ from typing import Any
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS
-from ..core.storage.fingerprint import fingerprint
-from ..core.storage.plan import Results
+from ..core.storage.pieces import Results, fingerprint
 from ..problem import Material
 from ..problem.dimensions import DIAMETERS, STORED_LENGTHS
 from ..studies.parameters import press_arguments
-from .applicability import applicability, question_ranges
-from .credibility import model_risk
+from .comparators import applicability, question_ranges
+from .credibility import assess, model_risk
+from .credibility_levels import Record
 from .matrix import WEAR, Row, check_limit, worst_rows
 from .plan import distinct_cases, plan, plan_worst_cases
 from .question import Question
-from .requirements import assess
 from .worst_case import largest_deviation
 
 _SERIAL = Serial()
@@ -127,7 +126,7 @@ def _drawn_joint(question: Question, worst: Mapping[str, Row]) -> dict[str, Any]
     }
 
 
-def _accuracy(record: Mapping[str, Any]) -> dict[str, Any]:
+def _accuracy(record: Record) -> dict[str, Any]:
     """Compare error bars and deviations of methods with the required accuracy."""
     errors = [error for row in record["matrix"] for error in row["errors"].values()]
     deviations = [value for calculation in record["calculation"] for value in calculation["deviation"].values()]

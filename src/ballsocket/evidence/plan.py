@@ -11,7 +11,7 @@ from pathlib import Path
 from shutil import rmtree
 from typing import Any
 
-from ..core.storage.plan import Piece, Plan, Summary
+from ..core.storage.pieces import Piece, Plan, Summary
 from .code_checks import CHECKS
 from .comparators import CLAIMS, PUBLISHED, claim
 from .matrix import WEAR, Case, Row, compute_rows, list_cases

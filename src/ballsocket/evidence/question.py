@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from math import isclose, prod
@@ -12,12 +11,11 @@ from unicodedata import category
 
 from ..catalogue import off_axis, reference
 from ..contact import Model
-from ..core.checks import check_names, check_text, require, shown
+from ..core.checks import check_filled, check_names, check_text, number_of_percent, require, shown
 from ..core.input_files import open_input, packed_files, record_inputs, resolve_input
 from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
-from ..files.joint_file import JointFile, JointTables
-from ..files.named_joint import joint_in
+from ..files.joint_file import JointFile, JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
@@ -44,8 +42,6 @@ from ..studies.parameters import AIMS, LOADS, PARAMETERS, check_contradictions, 
 LEVELS = ("low", "medium", "high")
 MOST = 2000
 """Cases of a matrix."""
-
-_PERCENT = re.compile(r"\s*([\d.]+(?:[eE][-+]?\d+)?)\s*%\s*")
 
 
 class MatrixValues(Parsed):
@@ -85,8 +81,8 @@ class Share(Value, float):
     @classmethod
     def read(cls, name: str, value: Any) -> Self:
         """Convert a share above 0, at most 1."""
-        percent = _PERCENT.fullmatch(value) if isinstance(value, str) and len(value) < 40 else None
-        share = float(percent[1]) / 100 if percent else parse(name, value, Kind.NUMBER)
+        percent = number_of_percent(value)
+        share = parse(name, value, Kind.NUMBER) if percent is None else parse(name, percent, Kind.NUMBER) / 100
         require(name, share, 0 < share <= 1, "above 0, at most 100 %")
         return cls(share)
 
@@ -256,8 +252,8 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
     tolerances = _tolerances(parsed_values(tables.tolerances, content.get("tolerances", {})))
     file, recentred = _recentred(joint_in(tables, path.parent), tolerances, axes)
     return Question(
-        text=_filled("question", tables.question, _QUESTION),
-        context=_filled("context_of_use", tables.context_of_use, _CONTEXT),
+        text=check_filled("question", tables.question, _QUESTION),
+        context=check_filled("context_of_use", tables.context_of_use, _CONTEXT),
         influence=str(tables.risk.influence),
         consequence=str(tables.risk.consequence),
         accuracy=float(tables.required.accuracy),
@@ -273,13 +269,6 @@ def _question(content: Mapping[str, Any], path: Path) -> Question:
         path=path,
         files=(path,),
     )
-
-
-def _filled(name: str, text: str, meaning: str) -> str:
-    """Return a text as plain text; ValueError if it is blank."""
-    if not text.strip():
-        raise ValueError(f"{name} is empty: {meaning}")
-    return str(text)
 
 
 def _check_axes(axes: Mapping[str, tuple[float, ...]]) -> None:

@@ -27,9 +27,9 @@ from ..hip.simulation import HipSimulation
 from ..hip.uncertainty import uncertainty
 from ..problem import Joint
 from ..studies.axes import Method
-from ..studies.default_model import default_model
 from ..studies.design import sample
 from ..studies.parameters import AIMS, LOADS, PARAMETERS, press_arguments
+from ..studies.run import default_model
 from ..studies.sensitivity import sensitivity
 from .matrix import Case, known_errors
 from .question import ALMOST_ALL, Question
@@ -150,8 +150,8 @@ def solve_with_calculix(question: Question, case: Case) -> list[CalculationMetho
 
 def _run_calculix(name: str, model: FiniteElement, joint: Joint, load: Mapping[str, Any]) -> CalculationMethod:
     """Run CalculiX on the input deck of a contact."""
-    from ..elasticity.finite_elements.decks.calculix import run
-    from ..elasticity.finite_elements.decks.deck import deck_of
+    from ..elasticity.finite_elements.calculix import run
+    from ..elasticity.finite_elements.deck import deck_of
 
     contact: Contact = model.press(joint, **load)
     failed = CalculationMethod(name=name, numbers={}, errors={}, valid=False, notes=tuple(contact.notes))

@@ -15,8 +15,8 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import needs, shown
+from ..core.executors.processes import check_memory
 from ..core.input_files import open_input, resolve_input
-from ..core.memory import check_memory
 
 CheckHeads = Callable[[Sequence[str]], None]
 """Function that refuses column heads before the rows below them are read."""

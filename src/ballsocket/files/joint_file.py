@@ -1,4 +1,4 @@
-"""Joint files: TOML with units that describes a joint, its cup and its load."""
+"""Joint files: TOML with units that describes a joint, its cup and its load; joints of files of other kinds."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
 
 from ..contact.assembly import select_and_check_load
-from ..core.checks import require, shown
+from ..core.checks import check_text, nearest, normalise_name, require, shown
+from ..core.input_files import resolve_input
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import Cup, Interface, Side
-from ..problem.presets import materials, named_material
+from ..problem.presets import joints, materials, named_material
 from .schema import Angle, Force, Length, PlainNumber, Stress, Table, Text, Value, meaning
 from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
@@ -275,3 +276,45 @@ def _material(name: str, table: MaterialTable, present: Material | None = None) 
         raise ValueError(f"the {name} needs a material, or young and poisson; missing: {', '.join(missing)}")
     with as_given(written_in(table), f"{name}."):
         return replace(preset, **numbers) if preset else Material(**numbers)
+
+
+_PARTS = ("liner", "ball", "backing", "cup")
+"""Tables that describe a joint together with [joint]."""
+
+
+def joint_in(tables: JointTables, folder: Path) -> JointFile:
+    """Create the joint of a file from its tables, or read it by its name.
+
+    Parameters
+    ----------
+    tables : JointTables
+        `joint` is a table, or the name of a preset or of a joint file in the folder; then no other table describes it.
+    folder : Path
+
+    Raises
+    ------
+    ValueError
+        One sentence: the error, and the nearest allowed name.
+    OSError
+        A joint file cannot be read.
+    """
+    if tables.joint is None:
+        raise ValueError("a joint is needed: a joint file, a preset's name, or a table [joint]")
+    if not isinstance(tables.joint, str):
+        return describe_joint(tables)
+    described = [part for part in _PARTS if getattr(tables, part) is not None]
+    if described:
+        name = shown(tables.joint)
+        raise ValueError(f"joint = {name} is a whole joint: [{described[0]}] belongs to a table [joint]")
+    return _named(tables.joint, folder)
+
+
+def _named(name: str, folder: Path) -> JointFile:
+    """Return a preset, or read a joint file of the folder."""
+    if not check_text("joint", name):
+        raise ValueError("joint is empty")
+    if normalise_name(name) in joints:
+        return JointFile(joints[normalise_name(name)], {})
+    if not resolve_input(folder / name).is_file():
+        raise ValueError(f"joint {shown(name)} is neither a file nor a preset{nearest(name, joints)}")
+    return read_joint(folder / name)

@@ -22,8 +22,8 @@ _MAX_HINTS = 3
 
 
 @dataclass(frozen=True)
-class _Place:
-    """Place in a file: the value there, its declared type, the name of the table around it and of its key."""
+class _Location:
+    """Location in a file: its value, its declared type, the name of the table around it and of its key."""
 
     value: Any
     type: inspect.Type
@@ -33,51 +33,51 @@ class _Place:
 
     @property
     def label(self) -> str:
-        """Name of the place in messages."""
+        """Name of the location in messages."""
         return f"{self.table}.{self.key}" if self.qualified and self.table else self.key
 
 
 def format_refusal(error: msgspec.ValidationError, content: Mapping[str, Any], table: type[Table], name: str) -> str:
     """Format the sentence for what a file has and its schema does not allow; `name` is that of the table."""
-    root = place = _Place(content, inspect.type_info(table), table=name)
+    root = location = _Location(content, inspect.type_info(table), table=name)
     path = _PATH.search(str(error))
     for step in _STEP.finditer(path["path"] if path else ""):
-        place = _step_into(place, step)
-    struct = struct_in(place.type)
+        location = _step_into(location, step)
+    struct = struct_in(location.type)
     if error.__cause__ is not None:
-        return str(error.__cause__).replace(KEY, place.label) + _table_hint(place, root)
-    if struct is not None and isinstance(place.value, Mapping):
-        return _unknown_or_missing_key(place, struct, root)
-    choices = choices_in(place.type)
-    allowed = f"is not allowed: {' or '.join(map(repr, choices))}" if choices else f"must be {_expected(place)}"
-    return f"{place.label} = {shown(place.value)} {allowed}{_table_hint(place, root)}"
+        return str(error.__cause__).replace(KEY, location.label) + _table_hint(location, root)
+    if struct is not None and isinstance(location.value, Mapping):
+        return _unknown_or_missing_key(location, struct, root)
+    choices = choices_in(location.type)
+    allowed = f"is not allowed: {' or '.join(map(repr, choices))}" if choices else f"must be {_expected(location)}"
+    return f"{location.label} = {shown(location.value)} {allowed}{_table_hint(location, root)}"
 
 
-def _step_into(place: _Place, step: re.Match[str]) -> _Place:
-    """Return the place of a key or of an element of a list."""
+def _step_into(location: _Location, step: re.Match[str]) -> _Location:
+    """Return the location of a key or of an element of a list."""
     if step["key"] is not None:
-        key, struct = step["key"], struct_in(place.type)
+        key, struct = step["key"], struct_in(location.type)
         assert struct is not None
         kind = next(field.type for field in struct.fields if field.encode_name == key)
         qualified = issubclass(struct.cls, Table) and struct.cls.qualified
-        return _Place(place.value[key], kind, place.key or place.table, key, qualified)
+        return _Location(location.value[key], kind, location.key or location.table, key, qualified)
     if step["index"] == "...":
-        return _step_into_named_entry(place)
-    key = f"{place.key}[{step['index']}]"
-    listed = next(part for part in parts_of(place.type) if isinstance(part, inspect.ListType))
-    return replace(place, value=place.value[int(step["index"])], type=listed.item_type, key=key)
+        return _step_into_named_entry(location)
+    key = f"{location.key}[{step['index']}]"
+    listed = next(part for part in parts_of(location.type) if isinstance(part, inspect.ListType))
+    return replace(location, value=location.value[int(step["index"])], type=listed.item_type, key=key)
 
 
-def _step_into_named_entry(place: _Place) -> _Place:
-    """Return the place of the first refused entry of a table whose keys the file chooses."""
-    named = next(part for part in parts_of(place.type) if isinstance(part, inspect.DictType))
+def _step_into_named_entry(location: _Location) -> _Location:
+    """Return the location of the first refused entry of a table whose keys the file chooses."""
+    named = next(part for part in parts_of(location.type) if isinstance(part, inspect.DictType))
     (kind,) = parts_of(named.value_type)
     assert isinstance(kind, inspect.StructType | inspect.CustomType)
-    for name, value in place.value.items():
+    for name, value in location.value.items():
         try:
             msgspec.convert(value, kind.cls, dec_hook=read_value)
         except msgspec.ValidationError:
-            return replace(place, value=value, type=kind, key=f"{place.key}.{name}")
+            return replace(location, value=value, type=kind, key=f"{location.key}.{name}")
     raise AssertionError("one of the entries is refused")
 
 
@@ -129,76 +129,76 @@ def tables_of(kind: inspect.Type) -> Iterator[tuple[str, inspect.StructType]]:
 
 def meaning_of(key: str, kind: inspect.Type) -> str:
     """Return the meaning of a key: its own, or that of the quantity of this name."""
-    own = (kind.extra_json_schema or {}).get("description") if isinstance(kind, inspect.Metadata) else None
-    return str(own or (QUANTITIES[key].title if key in QUANTITIES else ""))
+    text = (kind.extra_json_schema or {}).get("description") if isinstance(kind, inspect.Metadata) else None
+    return str(text or (QUANTITIES[key].title if key in QUANTITIES else ""))
 
 
-def _unknown_or_missing_key(place: _Place, struct: inspect.StructType, root: _Place) -> str:
+def _unknown_or_missing_key(location: _Location, struct: inspect.StructType, root: _Location) -> str:
     """Format the sentence for a key that a table does not know, or lacks."""
     keys = {field.encode_name: field for field in struct.fields}
-    table = place.key or root.table
-    for key in place.value:
+    table = location.key or root.table
+    for key in location.value:
         if key not in keys:
             where = f"in {table if '[' in table else f'[{table}]'}" if table else "at the top"
             return f"{shown(key)} {where} is not known{_hint(key, keys, root)}"
-    missing = next(field for name, field in keys.items() if field.required and name not in place.value)
+    missing = next(field for name, field in keys.items() if field.required and name not in location.value)
     label = f"{table}.{missing.encode_name}" if table else missing.encode_name
     parts = (meaning_of(missing.encode_name, missing.type), ", ".join(choices_in(missing.type)))
     return f"{label} is missing: {'; allowed: '.join(filter(None, parts))}"
 
 
-def _hint(key: str, keys: Mapping[str, Any], root: _Place) -> str:
-    """Format a hint for an unknown key: own keys that end in it, other tables that know it, or the nearest own key."""
-    own = [name for name in keys if name.endswith(f"_{key}")]
-    if len(own) > 1:
-        return f"; did you mean {' or '.join(map(repr, own[:_MAX_HINTS]))}?"
+def _hint(key: str, keys: Mapping[str, Any], root: _Location) -> str:
+    """Format a hint for an unknown key: longer keys, other tables that have it, or a similar key."""
+    longer = [name for name in keys if name.endswith(f"_{key}")]
+    if len(longer) > 1:
+        return f"; did you mean {' or '.join(map(repr, longer[:_MAX_HINTS]))}?"
     heads = dict(tables_of(root.type))
-    if others := [head for head, struct in heads.items() if key in {field.encode_name for field in struct.fields}]:
-        return f"; it belongs in {' or '.join(others[:_MAX_HINTS])}"
-    if own := [head for head in heads if head.strip("[]") == key]:
-        return f"; it is a table of its own, {own[0]}"
+    if tables := [head for head, struct in heads.items() if key in {field.encode_name for field in struct.fields}]:
+        return f"; it belongs in {' or '.join(tables[:_MAX_HINTS])}"
+    if tables := [head for head in heads if head.strip("[]") == key]:
+        return f"; it is a separate table, {tables[0]}"
     return nearest(key, keys)
 
 
-def _table_hint(place: _Place, root: _Place) -> str:
-    """Format a hint for a table under the name of a key that is no table, such as [cycles] in place of [cycle]."""
+def _table_hint(location: _Location, root: _Location) -> str:
+    """Format a hint for a table under the name of a key without a table, such as [cycles] for [cycle]."""
     heads = {head.strip("[]"): head for head, _ in tables_of(root.type)}
-    if not isinstance(place.value, Mapping) or place.key not in root.value or place.key in heads:
+    if not isinstance(location.value, Mapping) or location.key not in root.value or location.key in heads:
         return ""
-    near = get_close_matches(place.key, heads, n=1)
-    return f"; did you mean {heads[near[0]]}?" if near else ""
+    similar = get_close_matches(location.key, heads, n=1)
+    return f"; did you mean {heads[similar[0]]}?" if similar else ""
 
 
-def _expected(place: _Place) -> str:
+def _expected(location: _Location) -> str:
     """Describe what a value must be."""
-    parts = list(parts_of(place.type))
-    texts = [text(place, part) for kind, text in _EXPECTED for part in parts if isinstance(part, kind)]
+    parts = list(parts_of(location.type))
+    texts = [text(location, part) for kind, text in _EXPECTED for part in parts if isinstance(part, kind)]
     return " or ".join(texts) or "another kind of value"
 
 
 def expected(key: str, kind: inspect.Type) -> str:
     """Describe what the value of a key must be."""
-    return _expected(_Place(None, kind, key=key))
+    return _expected(_Location(None, kind, key=key))
 
 
-def _array(place: _Place, kind: inspect.ListType) -> str:
+def _array(location: _Location, kind: inspect.ListType) -> str:
     """Describe an array of tables, or a list."""
     if struct_in(kind.item_type):
-        return f"an array of tables: [[{place.key}]] before each of them"
+        return f"an array of tables: [[{location.key}]] before each of them"
     items = "texts" if any(issubclass(custom, str) for custom in customs_in(kind.item_type)) else "numbers"
-    text = meaning_of(place.key, place.type)
+    text = meaning_of(location.key, location.type)
     return f"a list of {items}{f': {text}' if text else ''}"
 
 
-def _table(place: _Place, kind: inspect.StructType) -> str:
+def _table(location: _Location, kind: inspect.StructType) -> str:
     """Describe a table."""
-    return f"a table: [[{place.key.partition('[')[0]}]]" if "[" in place.key else f"a table: [{place.key}]"
+    return f"a table: [[{location.key.partition('[')[0]}]]" if "[" in location.key else f"a table: [{location.key}]"
 
 
-_EXPECTED: Sequence[tuple[type[inspect.Type], Callable[[_Place, Any], str]]] = (
+_EXPECTED: Sequence[tuple[type[inspect.Type], Callable[[_Location, Any], str]]] = (
     (inspect.ListType, _array),
-    (inspect.StrType, lambda place, kind: "text"),
+    (inspect.StrType, lambda location, kind: "text"),
     (inspect.StructType, _table),
-    (inspect.DictType, lambda place, kind: f"a table: [{place.key}]"),
-    (inspect.BoolType, lambda place, kind: "true or false"),
+    (inspect.DictType, lambda location, kind: f"a table: [{location.key}]"),
+    (inspect.BoolType, lambda location, kind: "true or false"),
 )

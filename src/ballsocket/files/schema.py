@@ -18,7 +18,7 @@ from typing import Annotated, Any, ClassVar, Self, TypeVar, cast
 
 import msgspec
 
-from ..core.checks import check_text, known_name, shown
+from ..core.checks import check_text, check_whole_number, known_name
 from ..core.kinds import Kind
 from ..core.quantities import Quantity
 from .units import LONGEST, parse
@@ -139,25 +139,22 @@ class Texts(Value, list[str]):
         return cls(check_text(name, text) for text in (value if isinstance(value, list) else [value]))
 
 
-_MAX_INTEGER = 1 << 53
-"""Largest whole number that a float represents exactly."""
-
-
-class Whole(Value, int):
+class WholeNumber(Value, int):
     """Whole number."""
 
-    schema: ClassVar[Mapping[str, Any]] = {"type": "integer"}
+    limits: ClassVar[tuple[int, ...]] = ()
+    """Smallest and largest allowed number; by default 0 and the largest that a float represents exactly."""
 
     @classmethod
     def read(cls, name: str, value: Any) -> Self:
         """Convert a whole number of a file; 4.0 is one."""
-        if isinstance(value, float) and value.is_integer():
-            value = int(value)
-        if isinstance(value, bool) or not isinstance(value, int):
-            raise ValueError(f"{name} = {shown(value)} must be a whole number")
-        if not -_MAX_INTEGER < value < _MAX_INTEGER:
-            raise ValueError(f"{name} = {shown(value)} is too large a number")
-        return cls(value)
+        integer = int(value) if isinstance(value, float) and value.is_integer() else value
+        return cls(check_whole_number(name, integer, *cls.limits))
+
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of the accepted numbers."""
+        return {"type": "integer", **dict(zip(("minimum", "maximum"), cls.limits, strict=False))}
 
 
 class QuantityValue(Value, float):
@@ -185,10 +182,10 @@ class QuantityValue(Value, float):
 
 def _in_degrees(angle: float) -> float:
     """Return the degrees that a file reads as exactly this angle (rad), a round number if there is one."""
-    near = degrees(angle)
-    above, below = nextafter(near, inf), nextafter(near, -inf)
-    candidates = (round(near, 9), near, above, below)
-    return next((number for number in candidates if radians(number) == angle), near)
+    nearest = degrees(angle)
+    above, below = nextafter(nearest, inf), nextafter(nearest, -inf)
+    candidates = (round(nearest, 9), nearest, above, below)
+    return next((number for number in candidates if radians(number) == angle), nearest)
 
 
 class PlainNumber(QuantityValue):

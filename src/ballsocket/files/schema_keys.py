@@ -102,7 +102,7 @@ def json_schema(table: type[Table]) -> dict[str, Any]:
 
 
 def _object_schema(struct: inspect.StructType, definitions: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a table; `definitions` gets those of its own tables."""
+    """Return the schema of a table; `definitions` gets those of the tables in it."""
     return {
         "title": (struct.cls.__doc__ or "").split("\n")[0].rstrip("."),
         "type": "object",
@@ -133,7 +133,7 @@ def _type_schema(kind: inspect.Type, definitions: dict[str, Any]) -> dict[str, A
 
 
 def _part_schema(part: inspect.Type, definitions: dict[str, Any]) -> dict[str, Any]:
-    """Return the schema of a type of values that is no union."""
+    """Return the schema of a single type of values."""
     if isinstance(part, inspect.CustomType):
         value: type[Value] = part.cls
         definitions[value.__name__] = value.json_schema()

@@ -14,7 +14,7 @@ from ..core.input_files import open_input
 
 Result = TypeVar("Result")
 
-MOST = 100_000
+MAX_FILE_SIZE = 100_000
 """Largest size of a file in bytes."""
 
 _PART = r"""(?:[\w-]++|"(?:[^"\\\n]|\\.){0,80}+"|'[^'\n]{0,80}+')[ \t]*+"""
@@ -33,7 +33,7 @@ def read_toml(path: Path, kind: str, make: Callable[[Mapping[str, Any]], Result]
         The file cannot be read.
     """
     with open_input(path) as stream:
-        raw = stream.read(MOST + 1)
+        raw = stream.read(MAX_FILE_SIZE + 1)
     return parse_toml(raw, path.name, kind, make)
 
 
@@ -43,7 +43,7 @@ def parse_toml(raw: bytes, title: str, kind: str, make: Callable[[Mapping[str, A
     Parameters
     ----------
     raw : bytes
-        TOML in UTF-8, at most `MOST` bytes.
+        TOML in UTF-8, at most `MAX_FILE_SIZE` bytes.
     title : str
         Name of the file, with which every message begins.
     kind : str
@@ -65,8 +65,8 @@ def parse_toml(raw: bytes, title: str, kind: str, make: Callable[[Mapping[str, A
 
 def _content(raw: bytes, title: str, kind: str) -> Mapping[str, Any]:
     """Parse TOML; ValueError if it is too large, not TOML, or empty."""
-    if len(raw) > MOST:
-        raise ValueError(f"{title} is larger than {MOST} bytes; a {kind} file is a few lines")
+    if len(raw) > MAX_FILE_SIZE:
+        raise ValueError(f"{title} is larger than {MAX_FILE_SIZE} bytes; a {kind} file is a few lines")
     try:
         text = raw.decode("utf-8-sig")  # as editors on Windows write it
         if _LONG_KEY.search(text):

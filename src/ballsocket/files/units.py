@@ -69,12 +69,12 @@ _REFUSED = re.compile(r"(?P<name>\w+) = \S+ is not allowed: (?P<rule>.*)")
 
 
 def parse(name: str, value: Any, kind: str) -> float:
-    """`value` as a float in mm, N, MPa or rad.
+    """Convert a number or a text with a unit to a float in mm, N, MPa or rad.
 
     Parameters
     ----------
     name : str
-        What it is, for the message.
+        Name of the value in messages.
     value : float, int or str
         A bare number, or text such as "16 mm", "3 kN", "1 GPa", "40 deg", "inf".
     kind : str
@@ -103,17 +103,17 @@ def parse(name: str, value: Any, kind: str) -> float:
 
 
 @contextmanager
-def as_given(given: Mapping[str, Any], prefix: str = "") -> Iterator[None]:
-    """Inside, the refusal of a number ("clearance = -0.1 is not allowed: ...") shows it as it was given."""
+def as_given(texts: Mapping[str, Any], prefix: str = "") -> Iterator[None]:
+    """Within the block, show a refused number ("clearance = -0.1 is not allowed: ...") as the text of the user."""
     try:
         yield
     except ValueError as error:
-        found = _REFUSED.fullmatch(str(error))
-        if found is None or found["name"] not in given:
+        refusal = _REFUSED.fullmatch(str(error))
+        if refusal is None or refusal["name"] not in texts:
             raise
-        rule = _IN_RADIANS.sub("", found["rule"]).replace("(rad)", "(deg)").replace("pi/2", "90")
-        value = shown(given[found["name"]])
-        raise ValueError(f"{prefix}{found['name']} = {value} is not allowed: {rule}") from error
+        rule = _IN_RADIANS.sub("", refusal["rule"]).replace("(rad)", "(deg)").replace("pi/2", "90")
+        value = shown(texts[refusal["name"]])
+        raise ValueError(f"{prefix}{refusal['name']} = {value} is not allowed: {rule}") from error
 
 
 def _number(name: str, value: float | str, kind: str) -> float:
@@ -247,11 +247,11 @@ def convert(number: float, units: Units, target: Units) -> float:
     import pint
 
     registry = _registry()
-    given, wanted = (registry.Unit(pint.util.UnitsContainer(each)) for each in (units, target))
+    source_unit, target_unit = (registry.Unit(pint.util.UnitsContainer(factors)) for factors in (units, target))
     try:
-        return float(registry.Quantity(number, given).to(wanted).magnitude)
+        return float(registry.Quantity(number, source_unit).to(target_unit).magnitude)
     except (pint.PintError, ArithmeticError, ValueError) as error:
-        raise ValueError(f"{given} has another dimension than {wanted}") from error
+        raise ValueError(f"{source_unit} has another dimension than {target_unit}") from error
 
 
 @cache

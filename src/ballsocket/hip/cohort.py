@@ -14,10 +14,8 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
-from ..core.storage.array_files import read_arrays, write_arrays
-from ..core.storage.atomic_files import write_text
-from ..core.storage.fingerprint import check_worker_code, fingerprint, hash_inputs
-from ..core.storage.pieces import PieceRun, PieceStore
+from ..core.storage.atomic_files import read_arrays, write_arrays, write_text
+from ..core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
 from ..studies.axes import SampleAxis
 from .simulation import make_checkpoint
 from .variability import (

@@ -16,15 +16,14 @@ from ..core.checks import require
 from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
-from ..files.joint_file import CupTable, JointFile, cup_of
-from ..files.named_joint import joint_in
+from ..files.joint_file import CupTable, JointFile, cup_of, joint_in
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import parse
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from ..studies.distributions import check_nominal
-from ..studies.scatter import Read, distribution_of
+from ..studies.file import Read, distribution_of
 from .creep_law import CreepLaw
 from .creep_laws import read_creep_law
 from .cycle_file import cycle_of

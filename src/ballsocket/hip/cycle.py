@@ -12,7 +12,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import require, shown
+from ..core.checks import check_whole_number, require
 from ..core.deprecation import renamed_fields, renamed_names
 from ..core.kinds import Kind
 from .kinematics import parse_rotation_order, rotation_matrices, rotation_vectors
@@ -29,7 +29,7 @@ __getattr__ = renamed_names(
 DEFAULT_STEPS = 100
 """Number of time steps of a cycle, unless another is set."""
 
-_MIN_STEPS, _MAX_STEPS = 8, 10_000
+MIN_STEPS, MAX_STEPS = 8, 10_000
 _PEAK_SAMPLES = 10_000
 """Number of intervals in which the largest force of a cycle is searched."""
 
@@ -208,7 +208,7 @@ class Cycle:
 
     def finer(self) -> Cycle:
         """Return this cycle with twice as many time steps, up to the largest allowed number."""
-        return replace(self, n_steps=min(2 * self.n_steps, _MAX_STEPS))
+        return replace(self, n_steps=min(2 * self.n_steps, MAX_STEPS))
 
     def transformed(self, transform: Callable[[Cycle], Cycle]) -> Cycle:
         """Return the result of a function of this cycle; a `Mix` applies it to each of its cycles."""
@@ -242,7 +242,7 @@ _MIRRORED_FORCE = numpy.array([[-1.0], [1.0], [1.0]])
 _MIRRORED_ANGLES = numpy.array([[1.0], [-1.0], [-1.0]])
 
 
-def check_step_count(count: Any, name: str = "n_steps") -> int:
+def check_step_count(count: Any) -> int:
     """Check a number of time steps and return it; ValueError if it is not allowed.
 
     Raises
@@ -250,9 +250,7 @@ def check_step_count(count: Any, name: str = "n_steps") -> int:
     ValueError
         `count` is not a whole number from 8 to 10 000.
     """
-    if isinstance(count, bool) or not isinstance(count, int) or not _MIN_STEPS <= count <= _MAX_STEPS:
-        raise ValueError(f"{name} = {shown(count)} is not allowed: a whole number from {_MIN_STEPS} to {_MAX_STEPS}")
-    return count
+    return check_whole_number("n_steps", count, MIN_STEPS, MAX_STEPS)
 
 
 @dataclass(frozen=True, kw_only=True)

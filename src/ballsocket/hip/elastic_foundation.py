@@ -9,12 +9,11 @@ import numpy
 import scipy.fft
 
 from ..core.arrays import Numbers
-from ..elasticity.finite_elements.shapes import socket_shape
-from ..elasticity.off_axis.bore_contact import BoreContact, EquilibriumBatch
+from ..elasticity.finite_elements.mesh import socket_shape
+from ..elasticity.off_axis.bore_contact import BoreContact, EquilibriumBatch, GapField, initial_displacement
 from ..elasticity.off_axis.compliance import Compliance, make_compliance
 from ..elasticity.off_axis.directions import magnitudes_and_directions
 from ..elasticity.off_axis.equilibrium import solve_force
-from ..elasticity.off_axis.gap import GapField, initial_displacement
 from ..elasticity.off_axis.grid import Grid, even_grid
 from ..elasticity.off_axis.surfaces import ClosedShell, EdgeRelation, RealCup
 from ..problem import Joint

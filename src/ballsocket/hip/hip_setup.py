@@ -15,7 +15,7 @@ from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import require, shown
 from ..core.deprecation import RenamedAttribute, renamed_arguments
 from ..core.validity import check_domain
-from ..elasticity.finite_elements.shapes import socket_shape
+from ..elasticity.finite_elements.mesh import socket_shape
 from ..elasticity.off_axis.grid import Grid, even_grid, graded_grid
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs

@@ -21,14 +21,15 @@ from ..files.schema import (
     Text,
     Texts,
     Value,
+    WholeNumber,
     Word,
     meaning,
     with_keys,
 )
 from ..problem.cup import Side
-from ..studies.scatter import DISTRIBUTION_SCHEMA
+from ..studies.file import DISTRIBUTION_SCHEMA
 from .creep_laws import CONFINEMENTS, CREEP_LAWS
-from .cycle import DEFAULT_STEPS, check_step_count
+from .cycle import DEFAULT_STEPS, MAX_STEPS, MIN_STEPS
 from .cycle_registry import CYCLES
 from .cycle_tables import DEFAULT_CLOSURE
 from .kinematics import parse_rotation_order
@@ -37,15 +38,10 @@ from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES
 from .wear_laws import BALL_COEFFICIENT, WEAR_LAWS
 
 
-class Steps(Value, int):
+class Steps(WholeNumber):
     """Number of time steps of a cycle."""
 
-    schema: ClassVar[Mapping[str, Any]] = {"type": "integer"}
-
-    @classmethod
-    def read(cls, name: str, value: Any) -> Self:
-        """Convert a number of time steps."""
-        return cls(check_step_count(value, name))
+    limits = (MIN_STEPS, MAX_STEPS)
 
 
 class RotationOrder(Parsed):
@@ -174,17 +170,10 @@ _MAX_INTEGER = 1 << 20
 """Largest number of samples and largest seed."""
 
 
-class SampleNumber(Value, int):
+class SampleNumber(WholeNumber):
     """Whole number."""
 
-    schema: ClassVar[Mapping[str, Any]] = {"type": "integer", "minimum": 0, "maximum": _MAX_INTEGER}
-
-    @classmethod
-    def read(cls, name: str, value: Any) -> Self:
-        """Convert a whole number."""
-        if isinstance(value, bool) or not isinstance(value, int) or not 0 <= value <= _MAX_INTEGER:
-            raise ValueError(f"{name} = {shown(value)} is not allowed: it must be an integer from 0 to {_MAX_INTEGER}")
-        return cls(value)
+    limits = (0, _MAX_INTEGER)
 
 
 class LawNumber(Parsed):

@@ -15,8 +15,8 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
-from ..core.storage.array_files import read_arrays, write_arrays
-from ..core.storage.fingerprint import hash_inputs
+from ..core.storage.atomic_files import read_arrays, write_arrays
+from ..core.storage.pieces import hash_inputs
 from .ball_wear import map_counterface
 from .film import Lubricant
 from .hip_setup import MIN_RING_WIDTH, HipSetup

@@ -9,8 +9,8 @@ from typing import Protocol
 import numpy
 
 from ..core.arrays import Numbers
+from ..elasticity.off_axis.bore_contact import initial_displacement
 from ..elasticity.off_axis.directions import magnitudes_and_directions
-from ..elasticity.off_axis.gap import initial_displacement
 from ..elasticity.off_axis.grid import Grid
 
 _MAX_ITERATIONS = 60

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -13,7 +12,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import shown
+from ..core.checks import number_of_percent, shown
 from ..core.kinds import Kind
 from ..core.quantities import FIELD, LOADS, Quantity
 from ..files.columns import read_columns, split_head
@@ -199,9 +198,9 @@ def _choose_uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stat
 def parse_uncertainty(quantity: Quantity, stated: float | str, values: Numbers) -> Any:
     """Parse an uncertainty: "2 %" of each value, a text with a unit, or a number."""
     name = f"{quantity.name}{_UNCERTAINTY}"
-    percentage = re.fullmatch(r"\s*([-+.\deE]+)\s*%\s*", stated) if isinstance(stated, str) else None
-    if percentage:
-        return parse(name, percentage[1], Kind.NUMBER) / 100 * abs(values)
+    percent = number_of_percent(stated)
+    if percent is not None:
+        return parse(name, percent, Kind.NUMBER) / 100 * abs(values)
     return parse(name, stated, quantity.kind)
 
 

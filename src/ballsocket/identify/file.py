@@ -13,8 +13,7 @@ from ..catalogue import named_models
 from ..contact import Model
 from ..core.checks import check_names, known_name, shown
 from ..core.quantities import FIELD, LOADS, MATERIAL
-from ..files.joint_file import JointTables
-from ..files.named_joint import joint_in
+from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
@@ -34,8 +33,7 @@ from ..files.toml import read_toml
 from ..files.units import parse
 from ..problem import Joint
 from ..studies.expressions import parse_ends
-from ..studies.file import ModelName
-from ..studies.scatter import DISTRIBUTION_SCHEMA, distribution_of
+from ..studies.file import DISTRIBUTION_SCHEMA, ModelName, distribution_of
 from .columns import Gaps, parse_uncertainty, read_measured
 from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange

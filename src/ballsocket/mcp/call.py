@@ -1,9 +1,19 @@
-"""Command line of a call: the arguments of a tool, checked and restricted to the folder of the server."""
+"""Calls of tools: arguments checked and restricted to the folder of the server, and a process with limits.
+
+The command of a call runs in a separate process, which is killed with its children at a time limit.
+"""
 
 from __future__ import annotations
 
+import asyncio
+import json
 import math
-from collections.abc import Iterator, Mapping
+import os
+import signal
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -11,9 +21,10 @@ from typing import Any
 from typer.models import ArgumentInfo
 
 from ..core.checks import check_names, known_name, needs, shown
-from ..core.input_files import AllowedFolders, resolve_path
-from ..core.storage.atomic_files import write_text
-from ..files.toml import MOST, read_toml
+from ..core.executors.processes import available_cores
+from ..core.input_files import AllowedFolders, resolve_path, restriction_variables
+from ..core.storage.atomic_files import cache_folder, write_text
+from ..files.toml import MAX_FILE_SIZE, read_toml
 from .tools import TOOLS, Commands, Tool, option, parameters
 
 _MAX_CHARACTERS = 300  # of a text
@@ -147,7 +158,116 @@ def _stored_content(content: Any, folder: Path) -> Path:
     if not isinstance(content, str):
         raise ValueError(f"content = {shown(content)} must be text in TOML, or an object")
     raw = content.encode("utf-8", errors="replace")
-    if len(raw) > MOST:
-        raise ValueError(f"the content is larger than {MOST} bytes")
+    if len(raw) > MAX_FILE_SIZE:
+        raise ValueError(f"the content is larger than {MAX_FILE_SIZE} bytes")
     path = folder / f"asked-{sha256(raw).hexdigest()[:12]}.toml"
     return path if path.is_file() else write_text(path, raw.decode("utf-8"))
+
+
+MAX_ANSWER = 2_000_000
+"""Largest size of an answer in bytes."""
+
+
+@dataclass(frozen=True)
+class CallResult:
+    """Result of a call: an answer, a refusal, or both if the answer is incomplete."""
+
+    answer: dict[str, Any] | None
+    refusal: str = ""
+
+
+async def run(arguments: Sequence[str], folder: Path, longest: float) -> CallResult:
+    """Run a command in a separate Python process, and return its result.
+
+    Parameters
+    ----------
+    arguments : sequence of str
+        Arguments of Python: those of the program, the name of the command and its arguments.
+    folder : Path
+        Working folder of the process.
+    longest : float
+        Time limit in seconds.
+    """
+    with _lifeline() as stdin:
+        process = await asyncio.create_subprocess_exec(
+            sys.executable,
+            *arguments,
+            cwd=folder,
+            env={**os.environ, **restriction_variables((folder, cache_folder()))},
+            stdin=stdin,
+            stdout=asyncio.subprocess.PIPE,
+            stderr=asyncio.subprocess.PIPE,
+            start_new_session=True,
+        )
+        try:
+            out, err = await asyncio.wait_for(process.communicate(), longest)
+        except TimeoutError:
+            return CallResult(None, f"stopped after {longest:g} s, the time limit of a call here{_RESUME}")
+        finally:
+            _kill(process)
+            await process.wait()
+    return _call_result(process.returncode, out, err.decode("utf-8", errors="replace"))
+
+
+_RESUME = "; the finished parts of an evidence pack are stored: call the tool again to resume"
+
+
+@contextmanager
+def _lifeline() -> Iterator[int]:
+    """Open a pipe whose reading end is for a child, and whose writing end closes when this process ends."""
+    reading, writing = os.pipe()
+    try:
+        yield reading
+    finally:
+        os.close(writing)
+        os.close(reading)
+
+
+def _kill(process: asyncio.subprocess.Process) -> None:
+    """Kill a process and its children."""
+    with suppress(OSError):
+        if hasattr(os, "killpg"):
+            os.killpg(process.pid, signal.SIGKILL)
+        elif process.returncode is None:
+            process.kill()
+
+
+def _call_result(status: int | None, out: bytes, err: str) -> CallResult:
+    """Return the result of a process from its exit status and its output."""
+    messages = [line.removeprefix("ballsocket: ") for line in err.splitlines() if line.startswith("ballsocket: ")]
+    refusal = "" if status == 0 else "; ".join(messages) or "its process died; it may have had too little memory"
+    if len(out) > MAX_ANSWER:
+        return CallResult(None, f"the answer has {len(out)} bytes; allowed are {MAX_ANSWER}: request fewer points")
+    return CallResult(json.loads(out) if out.strip() else None, refusal)
+
+
+@dataclass(frozen=True)
+class ToolCalls:
+    """Calls of tools; at most one runs per core.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the files to read and write.
+    longest : float
+        Time limit of a call in seconds, without the time in the queue.
+    commands : mapping
+        Functions of the commands by name.
+    program : sequence of str
+        Arguments of Python that run a command, before its name.
+    """
+
+    folder: Path
+    longest: float
+    commands: Commands
+    program: Sequence[str]
+    _slots: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(available_cores()))
+
+    async def call(self, name: str, arguments: Mapping[str, Any]) -> CallResult:
+        """Call a tool, and return its answer or the reason of a refusal."""
+        try:
+            command = command_line(name, arguments, self.folder, self.commands)
+        except (ValueError, OSError) as error:
+            return CallResult(None, " ".join(str(error).split()))
+        async with self._slots:
+            return await run([*self.program, *command], self.folder, self.longest)

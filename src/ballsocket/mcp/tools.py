@@ -1,4 +1,4 @@
-"""Table of the tools, and the JSON Schema of their arguments from the options of the commands."""
+"""Tools for AI assistants: their table, the JSON schema of their arguments, and the kinds of files that they read."""
 
 from __future__ import annotations
 
@@ -11,10 +11,64 @@ from types import MappingProxyType, NoneType, UnionType
 from typing import Any, get_args, get_origin
 
 from ..catalogue import off_axis
+from ..core.checks import known_name
 from ..core.quantities import QUANTITIES
+from ..files.schema import Table
 from ..files.schema_keys import json_schema
 from ..problem.dimensions import DIAMETERS
-from .file_kinds import file_table
+
+
+def _joint() -> type[Table]:
+    """Return the tables of joint files."""
+    from ..files.joint_file import JointFileTable
+
+    return JointFileTable
+
+
+def _hip() -> type[Table]:
+    """Return the tables of hip files."""
+    from ..hip.schema import HipTable
+
+    return HipTable
+
+
+def _study() -> type[Table]:
+    """Return the tables of study files."""
+    from ..studies.file import StudyTable
+
+    return StudyTable
+
+
+def _identify() -> type[Table]:
+    """Return the tables of identification files."""
+    from ..identify.file import IdentifyTable
+
+    return IdentifyTable
+
+
+def _evidence() -> type[Table]:
+    """Return the tables of question files."""
+    from ..evidence.question import QuestionTable
+
+    return QuestionTable
+
+
+FILE_TABLES: Mapping[str, Callable[[], type[Table]]] = MappingProxyType(
+    {"joint": _joint, "hip": _hip, "study": _study, "identify": _identify, "evidence": _evidence}
+)
+"""Functions that return the tables of a kind of input file, by the names of their commands."""
+
+
+def file_table(kind: str) -> type[Table]:
+    """Return the tables of a kind of input file.
+
+    Raises
+    ------
+    ValueError
+        A kind that is not known; the message suggests the nearest one.
+    """
+    return FILE_TABLES[known_name("kind of file", kind, FILE_TABLES)]()
+
 
 Commands = Mapping[str, Callable[..., None]]
 """Functions of the commands by name; their parameters are annotated for typer."""

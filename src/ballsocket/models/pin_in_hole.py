@@ -10,8 +10,7 @@ from typing import Any, ClassVar
 import numpy
 
 from ..contact.assembly import as_arrays, check_joint
-from ..contact.model_info import ModelInfo
-from ..contact.outcome import Outcome
+from ..contact.outcome import ModelInfo, Outcome
 from ..contact.roots import increasing_root
 from ..core import arrays
 from ..core.arrays import Array, asinh, atan, broadcast, clip, log, safe_divisor, sqrt, tan, where

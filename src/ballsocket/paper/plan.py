@@ -9,7 +9,7 @@ from typing import Any
 
 from ..catalogue import catalogue
 from ..contact import Model
-from ..core.storage.plan import Piece, Plan, Summary
+from ..core.storage.pieces import Piece, Plan, Summary
 from ..elasticity.exact.model import Exact
 from ..elasticity.finite_elements.model import FiniteElement
 from . import cases, curves

@@ -2,12 +2,11 @@
 
 `joint`, a ball in a lined socket; `material`, materials and layers; `dimensions`, the lengths of a joint from radii or
 diameters; `cup`, rim and orientation of a socket; `gaps`, the displacement that a rigid ball prescribes; `presets`,
-materials and joints with sources; `values`, frozen values without checks.
+materials and joints with sources.
 """
 
 from .joint import Joint, Support
-from .material import Layer, Material
-from .values import elementwise_maximum, make_unchecked
+from .material import Layer, Material, elementwise_maximum, make_unchecked
 
 larger = elementwise_maximum  # name of version 1.0
 unchecked = make_unchecked  # name of version 1.0

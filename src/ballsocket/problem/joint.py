@@ -13,8 +13,7 @@ from ..core.arrays import Array, is_plain_number, to_list, where
 from ..core.checks import check_names, require, shown
 from ..core.kinds import Choice
 from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
-from .material import Layer, Material
-from .values import elementwise_maximum, make_unchecked, set_fields, short_text
+from .material import Layer, Material, elementwise_maximum, make_unchecked, set_fields, short_text
 
 
 class Support(Choice):

@@ -21,7 +21,7 @@ from .terminal import console, print_columns, print_folded
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ..elasticity.finite_elements.decks.calculix import CcxAnswer
+    from ..elasticity.finite_elements.calculix import CcxAnswer
 
 _LOADS = {"indentation": "force", "max_pressure": "force", "half_angle": "force", "force": "indentation"}
 HEADS = {name: f"{CONTACT[name].symbol} at given {CONTACT[load].symbol}" for name, load in _LOADS.items()}

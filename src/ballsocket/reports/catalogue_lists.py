@@ -9,7 +9,7 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
-from ..contact.model_info import ModelInfo
+from ..contact.outcome import ModelInfo
 from ..core.quantities import JOINT, MATERIAL, QUANTITIES, STRESS_LIMITS, Quantity
 from ..core.sources import Source
 from ..core.validity import Range

@@ -7,9 +7,9 @@ from itertools import starmap
 from types import MappingProxyType
 from typing import Any
 
+from ..evidence.credibility import MET, NOT_MET, UNKNOWN
 from ..evidence.folder import RECORD
 from ..evidence.matrix import KEYS, NAMES, input_title, limit_text, number, title_of
-from ..evidence.requirements import MET, NOT_MET, UNKNOWN
 from . import evidence_parts as figures
 from .evidence_parts import (
     Record,

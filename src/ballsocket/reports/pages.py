@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from ..core.storage.fingerprint import fingerprint
+from ..core.storage.pieces import fingerprint
 from .figure_files import figure_bytes
 
 if TYPE_CHECKING:

@@ -20,7 +20,7 @@ from ..files.joint_file import JointFile
 from ..files.joint_toml import tables_of
 from ..problem import Material
 from ..problem.cup import Cup
-from ..studies.local_uncertainty import LocalUncertainty
+from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from . import press_plots
 from .pages import Sections, render_page, render_part, svg_address, trusted_html

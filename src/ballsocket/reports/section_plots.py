@@ -11,7 +11,7 @@ import numpy
 from ..catalogue import judge, reference
 from ..contact import Contact
 from ..core.quantities import CONTACT, FIELD
-from ..elasticity.finite_elements.contact import MeshedContact
+from ..elasticity.finite_elements.model import MeshedContact
 from ..problem import Joint
 from ..problem.cup import Cup
 from .style import BLUE, GREEN, GREY, INK, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish, in_matplotlib, line_of

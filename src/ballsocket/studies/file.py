@@ -1,27 +1,27 @@
-"""Study files: TOML with units that describes a model, a joint and a design of cases."""
+"""Study files: TOML with units that describes a model, a joint and a design of cases; distributions in files."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from ..catalogue import named_models
 from ..contact import Model
-from ..core.checks import check_names
+from ..core.checks import check_filled, check_names, shown
 from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
-from ..files.joint_file import JointTables
-from ..files.named_joint import joint_in
+from ..core.kinds import Kind
+from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
     Parsed,
     Table,
     Text,
-    Whole,
+    WholeNumber,
     Word,
     meaning,
     quantity_keys,
@@ -29,13 +29,69 @@ from ..files.schema import (
 )
 from ..files.tables import parsed_values, read_table
 from ..files.toml import read_toml
-from ..files.units import parse
+from ..files.units import as_given, parse
 from ..problem import Joint
 from ..problem.presets import materials, named_material
 from .axes import Method, Span
 from .design import Design, grid, sample, table
+from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 from .parameters import PARAMETERS
-from .scatter import ScatteredNumber
+
+Read = Callable[[str, Any], float]
+"""Function from name and value of a number in a file to the number."""
+
+_DISTRIBUTIONS: tuple[tuple[tuple[str, ...], Callable[..., Distribution]], ...] = (
+    (("low", "high"), Rectangular),
+    (("mean", "deviation"), Normal),
+    (("mean", "deviation", "low"), Normal),
+    (("mean", "deviation", "high"), Normal),
+    (("mean", "deviation", "low", "high"), Normal),
+    (("median", "factor"), LogNormal),
+    (("nominal", "plus_minus"), tolerance),
+)
+"""Keys of the tables, and the distributions that they describe."""
+
+DISTRIBUTION_SCHEMA: Mapping[str, Any] = {
+    "type": "object",
+    "properties": dict.fromkeys(dict.fromkeys(key for keys, _ in _DISTRIBUTIONS for key in keys), QUANTITY_SCHEMA),
+    "additionalProperties": False,
+}
+"""JSON schema of a distribution."""
+
+
+class ScatteredNumber(Parsed):
+    """Distribution `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`."""
+
+    schema: ClassVar[Mapping[str, Any]] = DISTRIBUTION_SCHEMA
+
+    @classmethod
+    def parse(cls, name: str, value: Any) -> Distribution:
+        """Convert a distribution."""
+        return distribution_of(name, value, lambda key, number: parse(key, number, cls.kind))
+
+
+def distribution_of(name: str, content: Any, read: Read) -> Distribution:
+    """Create a distribution from `{low, high}`, `{mean, deviation}`, `{median, factor}` or `{nominal, plus_minus}`.
+
+    Raises
+    ------
+    ValueError
+        Other keys, or numbers that are not allowed.
+    """
+    for keys, make in _DISTRIBUTIONS:
+        if isinstance(content, Mapping) and set(content) == set(keys):
+            numbers = {key: _number(f"{name}.{key}", content[key], read) for key in keys}
+            with as_given(content, f"{name}."):
+                return make(**numbers)
+    raise ValueError(
+        f"{name} = {shown(content)} must be {{low, high}}, {{mean, deviation}} with or without low and high, "
+        "{median, factor}, or {nominal, plus_minus}"
+    )
+
+
+def _number(name: str, value: Any, read: Read) -> float:
+    """Read a number of a distribution; a factor has no unit."""
+    return parse(name, value, Kind.NUMBER) if name.endswith(".factor") else read(name, value)
 
 
 class ModelName(Word):
@@ -52,7 +108,7 @@ class AxisValues(Parsed):
             *QUANTITIES_SCHEMA["anyOf"],
             {
                 "type": "object",
-                "properties": {"from": QUANTITY_SCHEMA, "to": QUANTITY_SCHEMA, "count": Whole.schema},
+                "properties": {"from": QUANTITY_SCHEMA, "to": QUANTITY_SCHEMA, "count": WholeNumber.json_schema()},
                 "required": ["from", "to", "count"],
                 "additionalProperties": False,
             },
@@ -71,7 +127,7 @@ class AxisValues(Parsed):
         if missing:
             raise ValueError(f"{name} needs from, to and count; missing: {', '.join(missing)}")
         low, high = (parse(f"{name}.{key}", value[key], cls.kind) for key in ("from", "to"))
-        return Span(low, high, Whole.read(f"{name}.count", value["count"]))
+        return Span(low, high, WholeNumber.read(f"{name}.count", value["count"]))
 
 
 class AxisMaterials(Parsed):
@@ -112,8 +168,8 @@ class AxesTable(Table, frozen=True, kw_only=True):
 class SamplesTable(Table, frozen=True, kw_only=True):
     """Samples: their number, and a distribution for each parameter that varies."""
 
-    count: Annotated[Whole, meaning("number of samples")]
-    seed: Annotated[Whole, meaning("seed of the samples")] = Whole(0)
+    count: Annotated[WholeNumber, meaning("number of samples")]
+    seed: Annotated[WholeNumber, meaning("seed of the samples")] = WholeNumber(0)
     method: Annotated[MethodName, meaning("method of sampling")] = MethodName(Method.SOBOL.value)
 
 
@@ -129,7 +185,7 @@ class EngineTable(Table, frozen=True, kw_only=True):
     qualified: ClassVar[bool] = True
 
     kind: Annotated[EngineKind, meaning("kind of executor")]
-    workers: Annotated[Whole | None, meaning("number of worker processes")] = None
+    workers: Annotated[WholeNumber | None, meaning("number of worker processes")] = None
     address: Annotated[Text | None, meaning("address of a Dask scheduler")] = None
 
 
@@ -184,7 +240,7 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
         joint=file.joint,
         design=_design(tables, content, folder),
         quantities=tuple(map(str, tables.quantities or ())),
-        store=None if tables.store is None else folder / _filled("store", tables.store),
+        store=None if tables.store is None else folder / check_filled("store", tables.store),
         engine=_engine(tables.engine),
     )
 
@@ -197,7 +253,7 @@ def _engine(table: EngineTable) -> Engine:
         raise ValueError(f"engine kind {str(table.kind)!r} has no address: 'dask' has")
     workers = None if table.workers is None else int(table.workers)
     if table.kind == "dask":
-        address = None if table.address is None else _filled("address", table.address)
+        address = None if table.address is None else check_filled("address", table.address)
         return Distributed(address=address, workers=workers)
     return Processes(workers=workers) if table.kind == "processes" else Serial()
 
@@ -210,17 +266,10 @@ def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Des
         spreads = parsed_values(samples, content["samples"])
         design = sample(int(samples.count), seed=int(samples.seed), method=Method(samples.method), **spreads) * design
     if tables.table is not None:
-        design = table(folder / _filled("path", tables.table.path)) * design
+        design = table(folder / check_filled("path", tables.table.path)) * design
     if not design.names:
         raise ValueError("nothing varies: a table [axes], [samples] or [table] is needed")
     return design
-
-
-def _filled(name: str, text: str) -> str:
-    """Return a text as plain text; ValueError if it is empty."""
-    if not text:
-        raise ValueError(f"{name} is empty")
-    return str(text)
 
 
 __getattr__ = renamed_names(

@@ -15,7 +15,7 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.quantities import QUANTITIES
-from ..core.storage.fingerprint import fingerprint
+from ..core.storage.pieces import fingerprint
 from ..core.validity import Status
 from .axes import Axis, SampleAxis
 from .design import Design

@@ -1,9 +1,9 @@
-"""Run of a study: one joint with varied parameters, pressed with any model."""
+"""Run of a study: one joint with varied parameters, pressed with any model, and its default model."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from math import prod
 from pathlib import Path
@@ -11,18 +11,20 @@ from typing import TYPE_CHECKING, Any
 
 import numpy
 
-from ..catalogue import catalogue
+from ..catalogue import catalogue, reference
 from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core.checks import check_names, needs, shown
 from ..core.deprecation import renamed_fields
-from ..core.executors.processes import Engine, Serial
-from ..core.memory import available_disk_space, available_memory, size_text
+from ..core.executors.processes import Engine, Serial, available_disk_space, available_memory, size_text
 from ..core.storage.pieces import PieceRun
+from ..core.validity import OutsideDomainError, check_domain
+from ..elasticity.exact.exact_curve import ExactCurve
+from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint
 from .design import Design, check_values, grid, is_number
 from .metadata import make_dataset
-from .parameters import LOADS, check_aims
+from .parameters import LOADS, check_aims, press_arguments
 from .store import BlockStore, StudyStore, read
 from .task import DEFAULT_QUANTITIES, DTYPES, EDGE_DISTANCE, QUANTITIES, Blocks, Task, points_per_block
 
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 __all__ = ["Listener", "Progress", "read", "study"]
 
 _SERIAL = Serial()
+
+_TABULATED, _EXACT_CURVE = Tabulated(), ExactCurve()
 
 _COPIES = 3
 """Copies of the values along an axis in memory: as drawn, as scaled, as labels."""
@@ -249,3 +253,41 @@ def _report_progress(
         yield number, result
         n_done += task.blocks.n_points(number)
         listen(Progress(n_done, n_points, n_stored, time.perf_counter() - start))
+
+
+def default_model(joint: Joint, ranges: Mapping[str, Any]) -> Model:
+    """Choose the model for a joint with varied parameters.
+
+    It is `tabulated` unless none of the joints is in its domain. Otherwise it is `exact`, or `exact-curve` for a
+    single joint.
+
+    Parameters
+    ----------
+    joint : Joint
+        Parameters that do not vary.
+    ranges : mapping of str to sequence
+        Ends of the range or all values of each varied parameter; materials by `liner` or `ball`.
+    """
+    try:
+        check_model_domain(_TABULATED, joint, ranges)
+    except OutsideDomainError:
+        return _EXACT_CURVE if all(name in LOADS for name in ranges) else reference
+    return _TABULATED
+
+
+def check_model_domain(model: Model, joint: Joint, ranges: Mapping[str, Any]) -> None:
+    """Check that some joint of a range is in the domain of a model.
+
+    Raises
+    ------
+    OutsideDomainError
+        No joint is in the domain; the message has the reason.
+    """
+    check_domain((*model.fits, *model.domain), joint_of_arrays(joint, ranges), model.name)
+
+
+def joint_of_arrays(joint: Joint, ranges: Mapping[str, Any]) -> Joint:
+    """Return all joints of a range as one joint of arrays; parameters are those of `default_model`."""
+    design = grid(**ranges)
+    check_values(design)
+    return press_arguments(joint, design.values_in([slice(None)] * len(design.axes)))[0]

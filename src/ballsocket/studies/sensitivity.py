@@ -14,7 +14,7 @@ from ..contact import Model
 from ..core.arrays import Numbers
 from ..core.checks import check_names, needs, require
 from ..core.deprecation import renamed_names
-from ..core.memory import check_memory
+from ..core.executors.processes import check_memory
 from ..problem import Joint
 from .derivatives import elasticities, press_quantities
 from .distributions import Distribution

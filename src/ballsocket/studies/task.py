@@ -14,7 +14,7 @@ from ..contact.describe import COLUMNS
 from ..core.arrays import Numbers
 from ..core.deprecation import renamed_names
 from ..core.quantities import BEARING
-from ..core.storage.fingerprint import check_worker_code, fingerprint
+from ..core.storage.pieces import check_worker_code, fingerprint
 from ..core.validity import OutsideDomainError, Status
 from ..problem import Joint
 from .design import Design

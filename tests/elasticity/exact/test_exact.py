@@ -288,7 +288,7 @@ def test_stresses_balance_the_load_at_any_depth():
 
 def test_kernel_is_the_sum_of_its_modes():
     """The split into closed forms and a rest against the plain sum, smoothed to converge."""
-    from ballsocket.elasticity.exact import closed_forms
+    from ballsocket.elasticity.exact import grid
 
     socket = Socket(radius=18.0, shells=(Shell(thickness=6.75, young=1000.0, poisson=0.4),))
     k = Kernel(socket=socket, ball=ElasticBall(radius=17.9, young=3000.0, poisson=0.2))
@@ -296,9 +296,9 @@ def test_kernel_is_the_sum_of_its_modes():
     smooth = (1 - (n / len(n)) ** 2) ** 2
     for x in (0.3, 1.0, 2.9):
         plain = np.sum(k.excess(n) * smooth * np.cos((n + 0.5) * x))
-        a = k.expansion[: closed_forms.ORDER]
-        g, h = closed_forms.logarithm_coefficients(a), closed_forms.distance_coefficients(a)
-        s = closed_forms.smooth_coefficients(a, reach=x)
+        a = k.expansion[: grid.ORDER]
+        g, h = grid.logarithm_coefficients(a), grid.distance_coefficients(a)
+        s = grid.smooth_coefficients(a, reach=x)
         split = polynomial.polyval(x * x, g) * np.log(x) + polynomial.polyval(x * x, h) * x
         split += polynomial.polyval(x * x, s) + np.sum(k.remainder * np.cos((np.arange(len(k.remainder)) + 0.5) * x))
         assert split == pytest.approx(plain, rel=1e-7, abs=1e-9)
@@ -307,7 +307,7 @@ def test_kernel_is_the_sum_of_its_modes():
 def test_cached_intervals_give_the_operators_of_new_ones():
     """Cached operators equal new ones, for few modes and for more modes than are cached."""
     from ballsocket.elasticity.exact.grid import cached_grid
-    from ballsocket.elasticity.exact.intervals import CachedIntervals, Intervals
+    from ballsocket.elasticity.exact.kernel import CachedIntervals, Intervals
 
     angle = np.radians([1.0, 20.0, 60.0, 85.0])
     kept, fresh = (kind(half_angle=angle, grid=cached_grid(10)) for kind in (CachedIntervals, Intervals))
@@ -480,7 +480,7 @@ def test_an_incompressible_liner_that_is_free_outside_has_an_answer():
 def test_zeta_values_are_those_of_scipy():
     from scipy.special import zeta
 
-    from ballsocket.elasticity.exact import closed_forms
+    from ballsocket.elasticity.exact import grid
 
-    integers = [*range(2, 2 * closed_forms._MAX_TERMS)]
-    assert [closed_forms._zeta(s) for s in integers] == pytest.approx(zeta(integers).tolist(), rel=3e-16)
+    integers = [*range(2, 2 * grid._MAX_TERMS)]
+    assert [grid._zeta(s) for s in integers] == pytest.approx(zeta(integers).tolist(), rel=3e-16)

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.finite_elements.decks import calculix as ccx
-from ballsocket.elasticity.finite_elements.decks.bodies import faceting_gap
-from ballsocket.elasticity.finite_elements.decks.deck import deck_of
+from ballsocket.elasticity.finite_elements import calculix as ccx
+from ballsocket.elasticity.finite_elements.deck import deck_of
+from ballsocket.elasticity.finite_elements.deck_bodies import faceting_gap
 
 from ...extent import some
 

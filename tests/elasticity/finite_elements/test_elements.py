@@ -5,8 +5,7 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 from ballsocket.elasticity.finite_elements.bodies import ball_body, socket_body
-from ballsocket.elasticity.finite_elements.mesh import graded_points
-from ballsocket.elasticity.finite_elements.shapes import Resolution, SocketShape
+from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, graded_points
 from ballsocket.evidence.code_checks import (
     polar_components,
     pressure_forces,

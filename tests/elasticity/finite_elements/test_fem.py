@@ -9,7 +9,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.arrays import gauss_legendre
-from ballsocket.elasticity.finite_elements.shapes import Resolution
+from ballsocket.elasticity.finite_elements.mesh import Resolution
 from ballsocket.reports.section_plots import section_figure
 
 from ...extent import either, some
@@ -547,7 +547,7 @@ def test_a_section_names_its_parts_and_has_a_scale_for_each_kind():
 def test_a_vtk_file_has_the_mesh_and_its_stresses(tmp_path):
     import meshio
 
-    from ballsocket.elasticity.finite_elements.decks.vtk import write_vtk
+    from ballsocket.elasticity.finite_elements.section import write_vtk
 
     contact = bs.FiniteElement().press(HIP, force=3000.0)
     write_vtk(contact.section, tmp_path / "hip.vtu")
@@ -571,7 +571,7 @@ def numpy_of(blocks):
 def test_an_interrupted_write_leaves_no_file(tmp_path, monkeypatch):
     import meshio
 
-    from ballsocket.elasticity.finite_elements.decks.vtk import write_vtk
+    from ballsocket.elasticity.finite_elements.section import write_vtk
 
     def interrupted(self, path):
         path.write_text("half of")

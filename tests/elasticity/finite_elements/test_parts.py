@@ -9,17 +9,14 @@ import pytest
 import ballsocket as bs
 from ballsocket.elasticity.exact.model import curve_of
 from ballsocket.elasticity.exact.modes import Shell, Socket
-from ballsocket.elasticity.finite_elements import load_curve, memory, mesh, solver, tangent
-from ballsocket.elasticity.finite_elements.bodies import socket_body
-from ballsocket.elasticity.finite_elements.condensation import nested_dissection
-from ballsocket.elasticity.finite_elements.decks import calculix
+from ballsocket.elasticity.finite_elements import calculix, load_search, mesh, solver, spacing
+from ballsocket.elasticity.finite_elements.bodies import nested_dissection, socket_body
 from ballsocket.elasticity.finite_elements.elasticity import shape_functions
-from ballsocket.elasticity.finite_elements.full_contact import FullContact
 from ballsocket.elasticity.finite_elements.harmonics import Harmonics, socket_harmonics
 from ballsocket.elasticity.finite_elements.load_search import ContactBracket
-from ballsocket.elasticity.finite_elements.round_contact import partial_contact, pressure_at_pole
+from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, ball_corners, socket_shape
+from ballsocket.elasticity.finite_elements.pair_contact import FullContact, partial_contact, pressure_at_pole
 from ballsocket.elasticity.finite_elements.section import _superconvergent_points as superconvergent_points
-from ballsocket.elasticity.finite_elements.shapes import Resolution, SocketShape, ball_corners, socket_shape
 from ballsocket.elasticity.finite_elements.solver import Settings, load_curve_of
 from ballsocket.elasticity.finite_elements.surfaces import ContactSurface, lagrange
 from ballsocket.problem import Support
@@ -41,7 +38,7 @@ def curve():
 
 @pytest.fixture(scope="module")
 def pair(curve):
-    return curve.pairs(0, load_curve.COARSE)
+    return curve.pairs(0, solver.COARSE)
 
 
 def closed_shell(order=0.4, *, support=Support.FIXED, layers=((1.3, 1.0, 0.4),)):
@@ -118,8 +115,8 @@ def test_a_full_contact_obeys_equilibrium_and_superposition(pair):
     assert contacts[0].pressure(0.0) == contacts[0].pole_pressure
     work = (forces[1] + forces[0]) / 2 * 0.5 * start
     assert contacts[1].strain_energy - contacts[0].strain_energy == pytest.approx(work, rel=1e-6)
-    assert tangent.work(contacts[0]) == contacts[0].strain_energy
-    assert tangent.stiffness(contacts[0]) == contacts[0].stiffness
+    assert load_search.work(contacts[0]) == contacts[0].strain_energy
+    assert load_search.stiffness(contacts[0]) == contacts[0].stiffness
 
 
 def test_work_of_a_full_contact_is_the_strain_energy(pair):
@@ -127,17 +124,17 @@ def test_work_of_a_full_contact_is_the_strain_energy(pair):
     linear = LinearGap(clearance=0.1, socket_radius=18.0)
     start = partial_contact(pair, linear, float(pair.angle[-1])).indentation
     full = FullContact(pair=pair, gap=linear, indentation=1.5 * start)
-    energy = tangent._partial_work(partial_contact(pair, linear, full.half_angle)) + tangent._rim_work(full)
+    energy = load_search._partial_work(partial_contact(pair, linear, full.half_angle)) + load_search._rim_work(full)
     assert energy == pytest.approx(full.strain_energy, rel=2e-3)
     narrow = partial_contact(pair, linear, 0.8)
-    assert tangent._partial_work(narrow) == pytest.approx(narrow.strain_energy, rel=2e-3)
+    assert load_search._partial_work(narrow) == pytest.approx(narrow.strain_energy, rel=2e-3)
 
 
 def test_a_full_contact_is_solved_for_its_force(pair):
     for gap in (LinearGap(clearance=0.1, socket_radius=18.0), CircularGap(clearance=0.1, socket_radius=18.0)):
-        contact = load_curve._solve_full_contact("force", 9000.0, pair, gap)
+        contact = solver._solve_full_contact("force", 9000.0, pair, gap)
         assert contact.force == pytest.approx(9000.0, rel=1e-10)
-    assert load_curve._solve_full_contact("indentation", 0.5, pair, gap).indentation == 0.5
+    assert solver._solve_full_contact("indentation", 0.5, pair, gap).indentation == 0.5
 
 
 def test_a_bracket_finds_the_contacts_between_its_ends(pair):
@@ -241,7 +238,7 @@ def test_a_block_numbers_its_nodes_elements_and_layers(order):
 def test_the_size_of_a_mesh_counts_both_bodies():
     shape, cup = socket_shape(HIP, bs.Cup()), bs.Cup()
     resolution = Resolution(size=0.1, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2)
-    size = memory.mesh_size(HIP, cup, resolution, resolution)
+    size = spacing.mesh_size(HIP, cup, resolution, resolution)
     angle, radii = shape.corners(resolution)
     ball = ball_corners(resolution)
     along, deep = len(angle) - 1, len(radii[0]) - 1
@@ -250,8 +247,8 @@ def test_the_size_of_a_mesh_counts_both_bodies():
     assert size.largest == max((2 * along + 1) * (2 * deep + 1), (2 * ball_along + 1) * (2 * ball_deep + 1))
     assert size.nodes == (2 * along + 1) * (2 * deep + 1) + (2 * ball_along + 1) * (2 * ball_deep + 1)
     assert size.element_size == pytest.approx(angle[1] * 18.0)
-    assert memory.mesh_size(RIGID, cup, resolution, resolution).elements == along * deep
-    assert memory.bytes_needed(2048, 2) == 2 * 12 * 8 * 2 * 2048 * 11 + 1000 * 2048 * 2
+    assert spacing.mesh_size(RIGID, cup, resolution, resolution).elements == along * deep
+    assert spacing.bytes_needed(2048, 2) == 2 * 12 * 8 * 2 * 2048 * 11 + 1000 * 2048 * 2
 
 
 def test_resolutions_of_adapted_and_uniform_elements():
@@ -293,10 +290,10 @@ class Quantities:
 
 @pytest.mark.parametrize(("order", "richardson", "factor"), [(1, 1.0, 3.0), (2, 3.0, 1.0)])
 def test_errors_are_extrapolated_and_bounded_from_below(order, richardson, factor):
-    errors = load_curve.estimate_errors("force", Quantities(1.0), Quantities(1.6), order)
+    errors = solver.estimate_errors("force", Quantities(1.0), Quantities(1.6), order)
     assert errors["force"] == 0
     assert errors["energy"] == pytest.approx(2.0 * 0.6 / richardson)
-    bounded = load_curve.estimate_errors("force", Quantities(1.0), Quantities(1.0), order)
+    bounded = solver.estimate_errors("force", Quantities(1.0), Quantities(1.0), order)
     assert bounded["stiffness"] == pytest.approx(1.0 * factor * 0.01)
     assert bounded["half_angle"] == pytest.approx(0.7 * factor * 0.01)
     assert bounded["indentation"] == pytest.approx(0.03 * factor * 0.01)
@@ -444,11 +441,11 @@ def test_adapted_elements_are_even_and_at_least_24(elements, allowed):
 
 @pytest.mark.parametrize("growth", [0.99, 2.01])
 def test_elements_grow_by_a_factor_of_one_to_two(growth):
-    for spacing in (bs.Adapted, lambda growth: bs.Uniform(size=0.5, growth=growth)):
+    for make_spacing in (bs.Adapted, lambda growth: bs.Uniform(size=0.5, growth=growth)):
         with pytest.raises(ValueError, match="growth must lie between 1 and 2"):
-            spacing(growth=growth)
-        assert spacing(growth=1.0).growth == 1.0
-        assert spacing(growth=2.0).growth == 2.0
+            make_spacing(growth=growth)
+        assert make_spacing(growth=1.0).growth == 1.0
+        assert make_spacing(growth=2.0).growth == 2.0
 
 
 def test_a_contact_has_the_size_of_its_mesh_in_its_summary():
@@ -467,10 +464,10 @@ def test_a_contact_has_the_size_of_its_mesh_in_its_summary():
 def test_a_contact_under_tension_or_overlap_is_not_round(monkeypatch):
     model, force = bs.FiniteElement(spacing=COARSE, meshes=1), 250.0
     assert model.press(RIGID, force=force).status is bs.Status.OK
-    monkeypatch.setattr(load_curve, "_MAX_TENSION", -2.0)
+    monkeypatch.setattr(solver, "_MAX_TENSION", -2.0)
     assert model.press(RIGID, force=force).status is bs.Status.NOT_ROUND
     monkeypatch.undo()
-    monkeypatch.setattr(load_curve, "_MAX_OVERLAP", -inf)
+    monkeypatch.setattr(solver, "_MAX_OVERLAP", -inf)
     assert model.press(RIGID, force=[0.0, force]).status.tolist() == [bs.Status.OK, bs.Status.NOT_ROUND]
 
 
@@ -485,11 +482,11 @@ def test_the_gap_of_a_solved_contact_is_open_and_its_pressure_positive(pair):
 
 def test_a_bracket_spans_its_class_and_the_next_four(curve):
     for number in (0, 3):
-        bracket = curve._contact_bracket(number, load_curve.COARSE)
+        bracket = curve._contact_bracket(number, solver.COARSE)
         assert curve.classes[number + 5] < bracket.low < curve.classes[number + 4]
         assert curve.classes[number] <= bracket.high <= 1.12 * curve.classes[number]
-    assert curve._contact_bracket(0, load_curve.COARSE).high == curve.classes[0]
-    assert curve._contact_bracket(3, load_curve.COARSE) is curve._contact_bracket(3, load_curve.COARSE)
+    assert curve._contact_bracket(0, solver.COARSE).high == curve.classes[0]
+    assert curve._contact_bracket(3, solver.COARSE) is curve._contact_bracket(3, solver.COARSE)
 
 
 def test_loads_are_solved_on_the_mesh_of_their_class(curve):
@@ -498,7 +495,7 @@ def test_loads_are_solved_on_the_mesh_of_their_class(curve):
     assert curve._mesh_class("half_angle", curve.classes[0]) == 0
     assert curve._mesh_class("half_angle", 1e-9) == len(curve.classes) - 2
     for angle in angles[:3]:
-        contact = partial_contact(curve.pairs(0, load_curve.COARSE), curve.gap, 0.93 * angle)
+        contact = partial_contact(curve.pairs(0, solver.COARSE), curve.gap, 0.93 * angle)
         for kind in ("force", "indentation"):
             assert curve._mesh_class(kind, getattr(contact, kind)) == curve._mesh_class("half_angle", 0.93 * angle)
     assert curve._mesh_class("force", 1e9) == 0
@@ -517,7 +514,7 @@ def perfect_fit(pair, gap):
 def soft_pair():
     cup = bs.Cup(arc_of_cover=radians(340.0))
     settings = Settings(cup=cup, spacing=COARSE, ball_spacing=COARSE, order=2, meshes=1, gap=LinearGap)
-    return load_curve_of(settings, replace(RIGID, liner_thickness=inf)).pairs(0, load_curve.COARSE)
+    return load_curve_of(settings, replace(RIGID, liner_thickness=inf)).pairs(0, solver.COARSE)
 
 
 @pytest.mark.parametrize("count", [1, 2, 5])

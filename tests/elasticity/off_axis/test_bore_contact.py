@@ -8,10 +8,9 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.elasticity.off_axis import bore_contact, equilibrium
-from ballsocket.elasticity.off_axis.bore_contact import BoreContact
+from ballsocket.elasticity.off_axis.bore_contact import BoreContact, GapField
 from ballsocket.elasticity.off_axis.compliance import make_compliance
 from ballsocket.elasticity.off_axis.equilibrium import solve_force
-from ballsocket.elasticity.off_axis.gap import GapField
 from ballsocket.elasticity.off_axis.grid import even_grid
 
 from ...joints import HIP

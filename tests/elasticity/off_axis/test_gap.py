@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.off_axis.gap import GapField, initial_displacement
+from ballsocket.elasticity.off_axis.bore_contact import GapField, initial_displacement
 from ballsocket.elasticity.off_axis.grid import even_grid
 
 GRID = even_grid(1.4, 0.1)

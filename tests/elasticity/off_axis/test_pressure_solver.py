@@ -7,8 +7,8 @@ import pytest
 from scipy.optimize import nnls
 
 import ballsocket as bs
+from ballsocket.elasticity.off_axis.bore_contact import GapField
 from ballsocket.elasticity.off_axis.compliance import make_compliance
-from ballsocket.elasticity.off_axis.gap import GapField
 from ballsocket.elasticity.off_axis.grid import Grid, even_grid
 from ballsocket.elasticity.off_axis.pressure_solver import solve_pressure, solve_pressure_change
 

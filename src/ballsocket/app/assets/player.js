@@ -38,7 +38,7 @@
       window.clearInterval(timer);
       timer = null;
       play.textContent = "▶ Play";
-      app.tell("edit", player.dataset.told, instant);
+      app.tell("edit", player.dataset.event, instant);
     }
     play.addEventListener("click", () => {
       if (timer) { halt(); return; }
@@ -51,7 +51,7 @@
       }, 40);
     });
     bar.addEventListener("input", () => { if (timer) halt(); instant = Number(bar.value); show(); });
-    bar.addEventListener("change", () => app.tell("edit", player.dataset.told, instant));
+    bar.addEventListener("change", () => app.tell("edit", player.dataset.event, instant));
     show();
   }
   document.addEventListener("shown", () => {

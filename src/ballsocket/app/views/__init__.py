@@ -1,6 +1,7 @@
 """Views: one question each."""
 
 from ...core.deprecation import renamed_names
+from ..view import View
 from .compare import Compare
 from .cup import CupView
 from .design_map import DesignMap
@@ -10,18 +11,7 @@ from .judge import Judge
 from .press import Press
 from .wear import Wear
 
-Kind = (
-    type[Press]
-    | type[CupView]
-    | type[Gait]
-    | type[Wear]
-    | type[DesignMap]
-    | type[Compare]
-    | type[Judge]
-    | type[Evidence]
-)
-
-KINDS: dict[str, Kind] = {
+KINDS: dict[str, type[View]] = {
     "press": Press,
     "cup": CupView,
     "gait": Gait,

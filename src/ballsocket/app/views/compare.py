@@ -20,19 +20,18 @@ from ...reports.pages import table
 from ...reports.press_plots import press_figure
 from ...reports.style import LineStyle, numbered
 from ..drawing import extent_of, section
-from ..press_charts import press_charts
-from ..pressing import fine_curves, pressed
+from ..pressing import fine_curves, press_charts, pressed
 from ..reading import number_text
-from ..screen import BESIDE, Screen
+from ..screen import MAX_COMPARED, Screen
 from ..style import html, inputs
-from ..view import Document, Host
+from ..view import Document, Host, View
 from ..words import alert, number_rows, percent
 
 _CHOOSE = "– choose –"
 
 
-class Compare:
-    """The joint on the screen, and up to two that were put beside it."""
+class Compare(View):
+    """View that compares the joint on the screen with up to two others."""
 
     title = "Compare"
 
@@ -45,7 +44,7 @@ class Compare:
         )
         self._base = pn.widgets.Select(label="Percent against", options={}, width=220, stylesheets=inputs())
         self._base.param.watch(self._based, "value")
-        self._drop = [pn.widgets.Button(label="", width=200, visible=False) for _ in range(BESIDE)]
+        self._drop = [pn.widgets.Button(label="", width=200, visible=False) for _ in range(MAX_COMPARED)]
         self._keep.on_click(lambda event: self._add(self._screen.file))
         self._preset.param.watch(self._chosen, "value")
         for number, button in enumerate(self._drop):
@@ -61,8 +60,8 @@ class Compare:
         )
 
     def _add(self, file: JointFile) -> None:
-        if len(self._screen.beside) >= BESIDE:
-            self._told.object = alert(f"There is room for {BESIDE}: take one away first.")
+        if len(self._screen.beside) >= MAX_COMPARED:
+            self._told.object = alert(f"There is room for {MAX_COMPARED}: take one away first.")
             return
         self._ask(beside=(*self._screen.beside, file))
 
@@ -72,18 +71,18 @@ class Compare:
             self._preset.value = _CHOOSE
 
     def _based(self, event: Any) -> None:
-        if not self._putting:  # only what a user changes counts
+        if not self._putting:  # ignore changes by the page itself
             self._ask(base=event.new)
 
     def _put_base(self, files: Mapping[str, JointFile], screen: Screen) -> None:
         self._putting = True
-        places = {name: str(place) for place, name in enumerate(files)}
-        self._base.param.update(options=places, value=str(base_of(files, screen)))
+        options = {name: str(index) for index, name in enumerate(files)}
+        self._base.param.update(options=options, value=str(base_of(files, screen)))
         self._putting = False
 
     def _remove(self, number: int) -> None:
-        beside = self._screen.beside
-        self._ask(beside=(*beside[:number], *beside[number + 1 :]))
+        compared = self._screen.beside
+        self._ask(beside=(*compared[:number], *compared[number + 1 :]))
 
     def show(self, screen: Screen) -> None:
         self._screen = screen
@@ -122,9 +121,6 @@ class Compare:
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
         return list(labelled(screen).values()), (screen.answered_by,)
 
-    def leave(self) -> None:
-        """Nothing runs on."""
-
 
 def _percent(files: Mapping[str, JointFile], screen: Screen) -> str:
     base = escape(list(files)[base_of(files, screen)])
@@ -132,19 +128,19 @@ def _percent(files: Mapping[str, JointFile], screen: Screen) -> str:
 
 
 def labelled(screen: Screen) -> dict[str, JointFile]:
-    """The joints by what they are called here, each once; all under the load of the one on the screen."""
-    found = {"this joint": screen.file}
+    """Name the joints uniquely, all under the load on the screen."""
+    files = {"this joint": screen.file}
     for file in screen.beside:
         base = name = file.joint.name or "kept joint"
         number = 2
-        while name in found:
+        while name in files:
             name, number = f"{base} ({number})", number + 1
-        found[name] = replace(file, load=screen.file.load)
-    return found
+        files[name] = replace(file, load=screen.file.load)
+    return files
 
 
 def _drawings(files: Mapping[str, JointFile], contacts: Mapping[str, Contact]) -> str:
-    """The joints in section, to one scale and with one scale of colours."""
+    """Draw the sections of the joints to one scale and in one colour scale."""
     extent = max(map(extent_of, files.values()))
     highest = max((float(contact.max_pressure) for contact in contacts.values()), default=1.0)
     figures = "".join(
@@ -155,14 +151,14 @@ def _drawings(files: Mapping[str, JointFile], contacts: Mapping[str, Contact]) -
 
 
 def _lines(files: Mapping[str, JointFile]) -> dict[str, LineStyle]:
-    """A joint's line is that of its place."""
-    return {name: numbered(place) for place, name in enumerate(files)}
+    """Return the line style of each joint by its position."""
+    return {name: numbered(index) for index, name in enumerate(files)}
 
 
 def answers(files: Mapping[str, JointFile], model: str) -> dict[str, Contact]:
-    """Answers of a model to the joints for which it has one, by their names."""
-    found = {name: successful_contacts(pressed(file, (model,))) for name, file in files.items()}
-    return {name: contacts[model] for name, contacts in found.items() if model in contacts}
+    """Press the joints by a model; return the successful contacts by name."""
+    comparisons = {name: successful_contacts(pressed(file, (model,))) for name, file in files.items()}
+    return {name: contacts[model] for name, contacts in comparisons.items() if model in contacts}
 
 
 _DIMENSIONS = {
@@ -174,7 +170,7 @@ _DIMENSIONS = {
 def _text_table(
     files: Mapping[str, JointFile], contacts: Mapping[str, Contact], screen: Screen
 ) -> tuple[list[str], list[list[str]]]:
-    """A column a joint; answers with their difference from the one that is chosen as base."""
+    """Tabulate the joints in columns, with differences from the base joint."""
     rows = [
         [_head(name, screen), *(_length(file, name, screen) for file in files.values())]
         for name in _DIMENSIONS[screen.size]
@@ -183,18 +179,18 @@ def _text_table(
     rows.append(["ball", *("rigid" if file.joint.ball is None else str(file.joint.ball) for file in files.values())])
     base = list(files)[base_of(files, screen)]
     first = contacts.get(base)
-    for each in screen.reading.columns:
-        row = [each.label]
+    for column in screen.reading.columns:
+        row = [column.label]
         for name in files:
             contact = contacts.get(name)
             if contact is None:
                 row.append("no answer")
                 continue
-            number = float(each.values_of(contact))
+            number = float(column.values_of(contact))
             share = (
                 ""
                 if first is None or contact is first
-                else percent(relative_deviation(number, float(each.values_of(first))), "+")
+                else percent(relative_deviation(number, float(column.values_of(first))), "+")
             )
             apart = f" ({share})" if share else ""
             row.append(f"{number_text(number)}{apart}")
@@ -205,7 +201,7 @@ def _text_table(
 
 
 def base_of(files: Mapping[str, JointFile], screen: Screen) -> int:
-    """The place of the joint with which the others are compared; the last, where there are not so many."""
+    """Return the index of the base joint, at most that of the last joint."""
     return min(int(screen.base), len(files) - 1)
 
 

@@ -18,34 +18,31 @@ from ...files.joint_file import JointFile
 from ...reports.cup_plots import cup_figure
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import picture, table
-from ..angle_map import angle_map
-from ..beside import beside
-from ..bore_map import pressed_bore
-from ..bowl import pressed_bowl
 from ..cup_fields import cup_edited, cup_fields
-from ..cupping import SOLVED, Stood, bore_of, pressed_in_cup, set_up, stand_of, stood
+from ..cup_pictures import angle_map, pressed_bore, pressed_bowl
+from ..elasticity_tasks import SOLVED, Stood, bore_of, pressed_in_cup, set_up, stand_of, stood
 from ..fields import segments
-from ..jobs import CachedRun, ViewJob
+from ..jobs import ViewJob, run_in_thread
 from ..reading import Reading
+from ..running import CachedRun
 from ..screen import STANDINGS, Screen
-from ..view import Document, Host
-from ..words import alert, column_of, number_cell, progress, told, trust, unit_of_files
+from ..view import Document, Host, View
+from ..words import alert, column_of, number_cell, progress, trust, unit_of_files, value_text
 
-_STOOD: CachedRun = CachedRun(most=32)
+_STOOD: CachedRun = CachedRun(max_size=32)
 _FIELDS = (
     *("inclination", "anteversion", "tilt", "inwards", "forwards"),
     *("arc_of_cover", "chamfer", "aim", "side"),
 )
-_USUAL = {"inclination": 45.0, "anteversion": 15.0}
+_TYPICAL = {"inclination": 45.0, "anteversion": 15.0}
 
 
-class CupView:
-    """The press at once, in a bore that has been set up; the map of orientations when nothing else is to be done."""
+class CupView(View):
+    """View of the load in the present cup, followed by a map over orientations."""
 
     title = "Cup"
-    panel = None
     body = f"""
-<div class="inputs-row">{"".join(f'<div data-field="cup.{each}"></div>' for each in _FIELDS)}</div>
+<div class="inputs-row">{"".join(f'<div data-field="cup.{name}"></div>' for name in _FIELDS)}</div>
 <div id="cup-trouble" role="alert"></div>
 <div id="cup-progress" role="status"></div>
 <div id="cup-numbers"></div>
@@ -62,7 +59,7 @@ class CupView:
 
     def __init__(self, page: Host) -> None:
         self._page, self._screen = page, page.screen
-        self._job = ViewJob(page.channel, "cup", self._done)
+        self._job = ViewJob(page.channel, "cup", self._store_result)
         self._stopped: Hashable = None
         page.listen("cup", self._edited)
 
@@ -89,14 +86,14 @@ class CupView:
         elif key == "show":
             self._page.ask(standing=str(value))
         elif key == "usual":
-            self._stand(**_USUAL)
+            self._stand(**_TYPICAL)
         elif key == "pick":
-            self._stand(**dict(zip(_USUAL, _picked(value), strict=True)))
+            self._stand(**dict(zip(_TYPICAL, _picked(value), strict=True)))
         else:
             self._page.ask(file=cup_edited(self._screen, key, value))
 
     def _stand(self, **angles: float) -> None:
-        """Have the cup stand so, in degrees."""
+        """Change angles of the cup, in degrees."""
         screen = self._screen
         factor = 1.0 if screen.angle == "degrees" else radians(1.0)
         for name, angle in angles.items():
@@ -104,13 +101,13 @@ class CupView:
         self._page.ask(file=screen.file)
 
     def _work(self) -> None:
-        """What comes next: set up the bore, press, map the orientations."""
+        """Set up the bore, press the load, or map the orientations, as needed next."""
         file = self._screen.file
         if SOLVED.get(bore_of(file)) is None:
             self._clear()
             self._job.ask(("bore", bore_of(file)), partial(set_up, file))
             return
-        beside(
+        run_in_thread(
             lambda: _drawn(file, self._screen.reading) if file is self._screen.file else None,
             partial(self._pressed, file),
         )
@@ -123,67 +120,68 @@ class CupView:
         else:
             self._job.ask(("map", stand_of(file)), partial(stood, file))
 
-    def _done(self, key: tuple[str, Hashable], found: Any) -> None:
-        """The bore has been set up, or the orientations are mapped."""
-        what, of = key
-        if what == "bore":
+    def _store_result(self, key: tuple[str, Hashable], result: Any) -> None:
+        """Store the bore or the map, and continue."""
+        kind, of = key
+        if kind == "bore":
             SOLVED.put(of, True)
             self._work()
         else:
-            _STOOD.put(of, found)
+            _STOOD.put(of, result)
             self._put_map()
 
     def _pressed(self, file: JointFile, outcome: Future[Any]) -> None:
         if file is not self._screen.file:
             return
         try:
-            contact, around, bowl = outcome.result()
+            contact, bore, bowl = outcome.result()
         except (ValueError, OutsideDomainError) as error:
             self._clear()
             self._job.put("trouble", alert(str(error)))
         else:
             self._job.put("numbers", _numbers(contact, self._screen))
-            self._job.put("map", around)
+            self._job.put("map", bore)
             self._job.put("bowl", bowl)
         self._page.channel.send()
 
     def _clear(self) -> None:
-        for place in ("numbers", "map", "bowl"):
-            self._job.put(place, "")
+        for element in ("numbers", "map", "bowl"):
+            self._job.put(element, "")
 
     def _put_map(self) -> None:
-        """The map of orientations, if it has been made of what is on the screen."""
-        found: Stood | None = _STOOD.get(stand_of(self._screen.file))
+        """Show the map of orientations if it is available."""
+        orientations: Stood | None = _STOOD.get(stand_of(self._screen.file))
         if "tilt" in self._screen.file.aim:
-            self._job.put("stood", _TURNS)
-        elif found is None:
+            self._job.put("stood", _NO_MAP)
+        elif orientations is None:
             self._job.put("stood", "")
         else:
             seen = self._screen
-            self._job.put("stood", f"{angle_map(found, seen.file.cup, seen.standing, seen.reading)}{_KEY}")
+            self._job.put("stood", f"{angle_map(orientations, seen.file.cup, seen.standing, seen.reading)}{_KEY}")
 
     def document(self, screen: Screen) -> Document:
         if SOLVED.get(bore_of(screen.file)) is None:
             raise ValueError("this bore is still being set up: wait until its pressure is there")
         contact = pressed_in_cup(screen.file)
-        found: Stood | None = _STOOD.get(stand_of(screen.file))
-        stands = {} if found is None else {"orientations": ("How the cup may stand", picture(found.figure, "map"))}
-        rows = [["quantity", "value"], *_told(contact, screen.reading)]
-        listed = table(rows[0], [[name, told(value)] for name, value in rows[1:]])
+        orientations: Stood | None = _STOOD.get(stand_of(screen.file))
+        stands = (
+            {}
+            if orientations is None
+            else {"orientations": ("How the cup may stand", picture(orientations.figure, "map"))}
+        )
+        rows = [["quantity", "value"], *_file_rows(contact, screen.reading)]
+        listed = table(rows[0], [[name, value_text(value)] for name, value in rows[1:]])
         return Document(
             picture=lambda form: figure_bytes(cup_figure(contact), form),
             rows=lambda: rows,
             sections=lambda: {"cup": ("In the cup", listed), **stands},
         )
 
-    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
-        return [], ()
-
     def leave(self) -> None:
         self._job.stop()
 
 
-_TURNS = (
+_NO_MAP = (
     "<p class='quiet'>A load that is aimed from the cup's axis turns with the cup: there is no map of orientations.</p>"
 )
 _KEY = (
@@ -193,11 +191,11 @@ _KEY = (
 
 
 def _picked(value: Any) -> list[float]:
-    """Two angles of a place on the map, in degrees."""
+    """Read the two angles (degrees) of a point on the map."""
     numbers = value if isinstance(value, list) else []
-    if len(numbers) != len(_USUAL) or not all(isinstance(each, int | float) for each in numbers):
-        raise ValueError(f"{shown(value)} is no place on the map: it has two angles")
-    return [round(float(each), 1) for each in numbers]
+    if len(numbers) != len(_TYPICAL) or not all(isinstance(number, int | float) for number in numbers):
+        raise ValueError(f"{shown(value)} is not a point of the map, which has two angles")
+    return [round(float(number), 1) for number in numbers]
 
 
 def _with(screen: Screen, file: JointFile) -> Screen:
@@ -212,7 +210,7 @@ def _drawn(file: JointFile, reading: Reading) -> tuple[OffAxisContact, str, str]
 _NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="rim_distance")}
 
 
-def _told(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]:
+def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]:
     """Plain numbers of a file, by the names of JSON, each with its unit."""
     for name, value in contact.summary().items():
         quantity = _NAMED.get(name.removesuffix("_deg"))
@@ -235,8 +233,8 @@ def _numbers(contact: OffAxisContact, screen: Screen) -> str:
         _cell(CONTACT["half_angle"], contact.half_angle, reading),
         _cell(CONTACT["force"], contact.force, reading),
     ]
-    told = f"{trust(contact, contact.notes)}{_hint(contact)}"
-    return f"{_verdict(contact, reading)}<dl class='tiles'>{''.join(cells)}</dl>{told}"
+    value_text = f"{trust(contact, contact.notes)}{_hint(contact)}"
+    return f"{_verdict(contact, reading)}<dl class='tiles'>{''.join(cells)}</dl>{value_text}"
 
 
 def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> str:
@@ -245,8 +243,8 @@ def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> s
 
 
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
-    """Whether the contact stays on the bore, in words."""
-    apart = reading.said(DERIVED["edge_distance"], float(contact.edge_distance))
+    """State in words if the contact stays on the bore."""
+    apart = reading.with_unit(DERIVED["edge_distance"], float(contact.edge_distance))
     margin = degrees(float(contact.edge_margin))
     if contact.edge_loaded:
         return "<p class='trust no'>✗ Edge loading: the contact reaches the rim of the cup</p>"
@@ -257,5 +255,7 @@ def _hint(contact: OffAxisContact) -> str:
     """Offer the usual orientation for a cup without one."""
     if contact.model.cup.oriented:
         return ""
-    words = escape(f"This cup opens straight down. Put it at {_USUAL['inclination']:g}° / {_USUAL['anteversion']:g}°")
+    words = escape(
+        f"This cup opens straight down. Put it at {_TYPICAL['inclination']:g}° / {_TYPICAL['anteversion']:g}°"
+    )
     return f"<p><button type='button' class='plain' data-tell='cup.usual'>{words}</button></p>"

@@ -13,7 +13,6 @@ import panel as pn
 
 from ...core.kinds import Unit
 from ...core.quantities import QUANTITIES
-from ...files.joint_file import JointFile
 from ...reports.figure_files import figure_bytes
 from ...reports.pages import table
 from ...reports.study_plots import design_map
@@ -21,20 +20,30 @@ from ...reports.study_tables import map_rows
 from ...reports.unit_systems import Units
 from ...studies.expressions import parse_limit, parse_range
 from ...studies.parameters import PARAMETERS
-from ..beside import beside
-from ..limit_lines import Place, moved, sold
-from ..look import PALETTES
+from ..jobs import run_in_thread
 from ..map_chart import MapChart
-from ..mapping import around, best, joint_at, limits_of, mapped, models_of, now, told
+from ..mapping import (
+    MapPoint,
+    best_point,
+    catalogue_sizes,
+    current_value,
+    default_axis,
+    joint_at,
+    limits_of,
+    map_summary,
+    mapped,
+    models_of,
+    move_limit,
+)
 from ..reading import Reading
 from ..screen import AXES, MAP_MODELS, MAPPED, MapAxis, Screen, phrases_of
-from ..style import html, inputs
-from ..view import Document, Host
+from ..style import PALETTES, html, inputs
+from ..view import Document, Host, View
 from ..words import alert, column_of, unit_of_files
 
 
-class DesignMap:
-    """A map that is computed as one study by a model that answers at once."""
+class DesignMap(View):
+    """View of one quantity over two parameters, computed as one study by a quick model."""
 
     title = "Design map"
 
@@ -100,17 +109,17 @@ class DesignMap:
         self._best.on_click(lambda event: self._press_best())
 
     def _told_by(self, widget: Any, changed: Callable[[Any], None]) -> None:
-        """Only what a user changes counts."""
+        """Call a function when a user changes a widget."""
         widget.param.watch(lambda event: None if self._putting else changed(event), "value")
 
     def _change(self, **fields: Any) -> None:
-        """Ask for another map, if there is one; else say why not, and leave all as it is."""
+        """Request another map; show why it is impossible, and keep the present one."""
         try:
             wanted = replace(self._screen, **fields)
         except ValueError as error:
             self._refuse(error)
             return
-        beside(lambda: _map_of(wanted), partial(self._changed, fields))
+        run_in_thread(lambda: _map_of(wanted), partial(self._changed, fields))
 
     def _changed(self, fields: Mapping[str, Any], outcome: Future[Any]) -> None:
         try:
@@ -125,8 +134,8 @@ class DesignMap:
         self._refused.object = alert(str(error))
 
     def _axis(self, which: str, event: Any) -> None:
-        """Another parameter, over half to twice what the joint has now."""
-        self._change(**{which: around(event.new, now(self._screen.file, event.new))})
+        """Choose another parameter over half to twice its present value."""
+        self._change(**{which: default_axis(event.new, current_value(self._screen.file, event.new))})
 
     def _range(self, which: str, event: Any) -> None:
         name = getattr(self._screen, which).name
@@ -148,15 +157,15 @@ class DesignMap:
         self._change(limits=limits)
 
     def _tapped(self, x: float, y: float) -> None:
-        """The joint at the point that was clicked goes on the screen; beside the map there is none."""
+        """Press the joint at a clicked point of the map."""
         across, up = self._screen.across, self._screen.up
         if across.low <= x <= across.high and up.low <= y <= up.high:
             self._press({across.name: x, up.name: y})
 
-    def _dragged(self, number: int, place: Place) -> None:
-        """A limit whose line was moved has another end."""
+    def _dragged(self, number: int, point: MapPoint) -> None:
+        """Move a limit to the new position of its line."""
         try:
-            limits = moved(_map_of(self._screen), self._screen, number, place)
+            limits = move_limit(_map_of(self._screen), self._screen, number, point)
         except ValueError as error:
             self.show(self._screen)  # the handle goes back
             self._refuse(error)
@@ -164,7 +173,7 @@ class DesignMap:
             self._ask(limits=limits)
 
     def _press_best(self) -> None:
-        point = best(_map_of(self._screen), self._screen)
+        point = best_point(_map_of(self._screen), self._screen)
         if point is None:
             self._refuse(ValueError("no point of the map is allowed by the limits"))
         else:
@@ -172,7 +181,7 @@ class DesignMap:
 
     def _press(self, point: Mapping[str, float]) -> None:
         try:
-            file = joint_at(self._screen.file, sold(point) if self._screen.sizes == "catalogue" else point)
+            file = joint_at(self._screen.file, catalogue_sizes(point) if self._screen.sizes == "catalogue" else point)
         except ValueError as error:
             self._refuse(error)
             return
@@ -182,21 +191,21 @@ class DesignMap:
         self._screen = screen
         self._refused.object = ""
         self._put(screen)
-        beside(lambda: _map_of(screen) if screen is self._screen else None, partial(self._shown, screen))
+        run_in_thread(lambda: _map_of(screen) if screen is self._screen else None, partial(self._shown, screen))
 
     def _shown(self, screen: Screen, outcome: Future[Any]) -> None:
-        """Draw a map that has been made, unless another has been asked for since."""
+        """Draw a finished map, unless a newer one was requested."""
         if screen is not self._screen:
             return
         try:
-            found = outcome.result()
-            self._chart.show(found, screen)
+            results = outcome.result()
+            self._chart.show(results, screen)
         except ValueError as error:
             self._chart.clear()
             self._told.object = ""
             self._refuse(error)
             return
-        self._told.object = told(found, screen)
+        self._told.object = map_summary(results, screen)
 
     def _put(self, screen: Screen) -> None:
         self._putting = True
@@ -218,25 +227,19 @@ class DesignMap:
             self._putting = False
 
     def document(self, screen: Screen) -> Document:
-        found = _map_of(screen)
+        results = _map_of(screen)
         limits = list(limits_of(screen))
 
         return Document(
-            picture=lambda form: figure_bytes(design_map(found, limits), form),
-            rows=lambda: _rows(found, screen.reading),
-            sections=lambda: {"map": ("Design map", table(*map_rows(found, limits)))},
+            picture=lambda form: figure_bytes(design_map(results, limits), form),
+            rows=lambda: _rows(results, screen.reading),
+            sections=lambda: {"map": ("Design map", table(*map_rows(results, limits)))},
         )
 
-    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
-        return [], ()
 
-    def leave(self) -> None:
-        """Nothing runs on."""
-
-
-def _rows(found: Any, reading: Reading) -> list[list[Any]]:
-    """A row a joint, each number under its name and unit."""
-    flat, heads = found.to_dataframe().reset_index(), []
+def _rows(results: Any, reading: Reading) -> list[list[Any]]:
+    """Tabulate the joints in rows, with numbers under names with units."""
+    flat, heads = results.to_dataframe().reset_index(), []
     for name in flat.columns:
         quantity = QUANTITIES.get(name)
         if quantity is not None:
@@ -255,7 +258,7 @@ _TYPED = {"mil": "thou", "°": "deg"}
 
 
 def _unit(name: str, reading: Reading) -> Unit:
-    """The unit in which a number is typed: that of files, or that of an inch page."""
+    """Return the unit of typed numbers: that of files, or that of an imperial page."""
     quantity = QUANTITIES[name]
     unit = quantity.written if reading.units is Units.SI else reading.unit(quantity)
     return Unit(
@@ -264,13 +267,13 @@ def _unit(name: str, reading: Reading) -> Unit:
 
 
 def _typed(reading: Reading, name: str, value: float) -> str:
-    """A number as it would be typed."""
+    """Write a number as it would be typed."""
     unit = _unit(name, reading)
     return f"{value * unit.factor:.6g} {unit.text}".strip()
 
 
 def _with_unit(phrase: str, name: str, reading: Reading) -> str:
-    """A phrase whose last number has a unit: a bare one is in that of the page."""
+    """Append the page's unit to a phrase that ends in a bare number."""
     bare = name in QUANTITIES and phrase.rstrip()[-1:].isdigit()
     return f"{phrase} {_unit(name, reading).text}".strip() if bare else phrase
 

@@ -16,19 +16,19 @@ from ...files.joint_file import JointFile, read_cup
 from ...files.joint_toml import cup_table
 from ...problem.cup import Interface
 from ...reports.pages import picture, table
-from ..judging import Judged, judged
+from ..elasticity_tasks import Judged, judged
 from ..reading import number_text
-from ..running import LONGEST, Done, Reached, Run, RunRefused, looked_at
+from ..running import LONGEST, Reached, Run, RunFinished, RunRefused, looked_at
 from ..screen import Screen
 from ..style import html, inputs
-from ..view import Document, Host
+from ..view import Document, Host, View
 from ..words import alert, notes_list, percent
 
 _EVERY = 150  # ms between two questions for news
 
 
-class Judge:
-    """Runs when asked; a joint that has changed since is said to have."""
+class Judge(View):
+    """View that runs finite elements on request and notes if the joint has changed since."""
 
     title = "Judge"
 
@@ -48,7 +48,10 @@ class Judge:
             label=CUP["chamfer"].input_label(), step=0.5, width=120, stylesheets=inputs()
         )
         self._interface = pn.widgets.Select(
-            label="Liner on its backing", options=[one.value for one in Interface], width=160, stylesheets=inputs()
+            label="Liner on its backing",
+            options=[interface.value for interface in Interface],
+            width=160,
+            stylesheets=inputs(),
         )
         self._trouble, self._said, self._numbers, self._picture = html(), html(), html(), html()
         self._go.on_click(lambda event: self._begin())
@@ -65,10 +68,10 @@ class Judge:
             self._picture,
             **wide,
         )
-        self._put(page.screen)  # before it is seen: what is typed into a page that still loads is not overwritten
+        self._put(page.screen)  # before the page is shown, so that typed values are not overwritten
 
     def show(self, screen: Screen) -> None:
-        if screen != self._screen:  # what was refused stays to be read until something else is asked
+        if screen != self._screen:  # a refusal remains until the screen changes
             self._refuse("")
         self._screen = screen
         self._put(screen)
@@ -78,7 +81,7 @@ class Judge:
             self._numbers.object = _numbers(self._found[1], screen)
 
     def _put(self, screen: Screen) -> None:
-        """Set the cup's inputs, without an answer."""
+        """Set the cup's inputs without triggering their handlers."""
         self._putting, cup = True, screen.file.cup
         self._arc.value, self._chamfer.value = round(degrees(cup.arc_of_cover), 9), cup.chamfer
         self._interface.value = cup.interface.value
@@ -132,7 +135,7 @@ class Judge:
             self._ended()
             self._say("")
             self._refuse(news.why)
-        elif isinstance(news, Done):
+        elif isinstance(news, RunFinished):
             self._found = (self._asked, news.value)
             self._ended()
             self._numbers.object = _numbers(news.value, self._screen)
@@ -158,7 +161,7 @@ class Judge:
         heads = ["quantity", "finite elements", "error of the mesh", "exact"]
         rows = [
             [name, judged.numbers[name], judged.error.get(quantity.name, ""), (judged.exact or {}).get(name, "")]
-            for name, quantity in ((each.key, each) for each in CONTACT.values())
+            for name, quantity in ((item.key, item) for item in CONTACT.values())
             if isinstance(judged.numbers[name], float)
         ]
         body = table(heads, [[str(cell) for cell in row] for row in rows])
@@ -169,25 +172,22 @@ class Judge:
             sections=lambda: {"judge": ("Finite elements", body + shown)},
         )
 
-    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
-        return [], ()
-
     def leave(self) -> None:
         self._ended()
 
 
 def _numbers(judged: Judged, screen: Screen) -> str:
-    """Numbers with their error bars, beside the exact answer."""
+    """Tabulate the numbers with mesh errors beside the exact ones."""
     rows = []
-    for each in screen.reading.columns:
-        turn = each.factor / each.quantity.written.factor  # the numbers are those of JSON
-        value = judged.numbers[each.name] * turn
-        bar = judged.error.get(each.attribute)
-        row = [each.label, number_text(value), f"± {percent(bar)}" if bar else "–"]
+    for column in screen.reading.columns:
+        factor = column.factor / column.quantity.written.factor  # the numbers are those of JSON
+        value = judged.numbers[column.name] * factor
+        bar = judged.error.get(column.attribute)
+        row = [column.label, number_text(value), f"± {percent(bar)}" if bar else "–"]
         if judged.exact is None:
             row += ["–", "–"]
         else:
-            exact = judged.exact[each.name] * turn
+            exact = judged.exact[column.name] * factor
             row += [number_text(exact), percent(float(relative_deviation(value, exact)), "+")]
         rows.append(row)
     heads = ["", "finite elements", "error of the mesh", "exact, a whole shell", "difference"]

@@ -19,20 +19,17 @@ from ...reports.figure_files import figure_bytes
 from ...reports.press_plots import press_figure
 from ...reports.press_report import press_lede, press_sections
 from ...reports.style import line_of
-from ...studies.local_uncertainty import LocalUncertainty, local_uncertainty
-from ..beside import beside
+from ...studies.derivatives import LocalUncertainty, local_uncertainty
 from ..chart import swatch
 from ..controls import fields_of, tilt_of
+from ..drawing import LinerStresses, liner_stresses, painted_stresses
 from ..fields import choice, segments, several
 from ..first_view import about_the_rim, first_view, frame_of, key
-from ..headline import headline
-from ..press_charts import press_charts
-from ..pressing import fine_curves, pressed
+from ..jobs import run_in_thread
+from ..pressing import fine_curves, press_charts, pressed
 from ..screen import PAINTED, Screen
-from ..stresses import Stresses, painted_stresses, stresses
-from ..verdict import about_von_mises
-from ..view import Document, Host
-from ..words import models_table, number_rows
+from ..view import Document, Host, View
+from ..words import estimate_von_mises, headline, models_table, number_rows
 
 _EVERY = tuple(catalogue)
 _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
@@ -40,11 +37,10 @@ _PATIENCE = 300  # ms until the table of all models follows
 _LATE, _WAITS = 0.05, 10  # s: a server that comes so late has others to answer first; how often it may
 
 
-class Press:
-    """Numbers, drawing and curves at once; the table of all models when the slider rests."""
+class Press(View):
+    """View of a press: numbers, drawing and curves at once, then the table of all models."""
 
     title = "Press"
-    panel = None
 
     def __init__(self, page: Host) -> None:
         self._channel = page.channel
@@ -53,56 +49,59 @@ class Press:
 
     def show(self, screen: Screen) -> None:
         names = tuple(dict.fromkeys((screen.answered_by, *screen.shown)))
-        found = pressed(screen.file, names)
-        by = found.contacts.get(screen.answered_by)
-        drawn = {name: found[name] for name in screen.shown if name in successful_contacts(found)}
+        comparison = pressed(screen.file, names)
+        by = comparison.contacts.get(screen.answered_by)
+        drawn = {name: comparison[name] for name in screen.shown if name in successful_contacts(comparison)}
         lines = {name: line_of(name) for name in drawn}
         if by is None:
             self._channel.put(
-                "#press-numbers", f"<p class='trust no'>✗ {escape(found.missing[screen.answered_by])}</p>"
+                "#press-numbers", f"<p class='trust no'>✗ {escape(comparison.missing[screen.answered_by])}</p>"
             )
         else:
-            exact = found.contacts.get(reference.name)
-            self._channel.put("#press-numbers", headline(by, exact, about_von_mises(by), screen.reading))
+            exact = comparison.contacts.get(reference.name)
+            self._channel.put("#press-numbers", headline(by, exact, estimate_von_mises(by), screen.reading))
         self._draw(screen, None if by is None or by.status.failed else by)
         self._channel.put("#press-charts", press_charts(drawn, lines, screen.reading))
         self._channel.put_fields(_fields(screen))
         self._fill_later(screen)
 
     def _draw(self, screen: Screen, contact: Contact | None) -> None:
-        """The joint with its pressure; stresses take their time, and the drawing stays until they are there."""
+        """Draw the joint with its pressure; stresses follow from a thread."""
         self._screen = screen
         if screen.painted == "pressure" or contact is None:
             self._put_drawing(screen, contact, None)
         else:
-            beside(
-                lambda: stresses(contact) if screen is self._screen else None, partial(self._stressed, screen, contact)
+            run_in_thread(
+                lambda: liner_stresses(contact) if screen is self._screen else None,
+                partial(self._stressed, screen, contact),
             )
 
-    def _stressed(self, screen: Screen, contact: Contact, outcome: Future[Stresses | None]) -> None:
+    def _stressed(self, screen: Screen, contact: Contact, outcome: Future[LinerStresses | None]) -> None:
         if screen is self._screen:
             try:
-                found = outcome.result()
+                stresses = outcome.result()
             except ValueError:  # a contact too narrow for it
-                found = None
-            self._put_drawing(screen, contact, found)
+                stresses = None
+            self._put_drawing(screen, contact, stresses)
             self._channel.send()
 
-    def _put_drawing(self, screen: Screen, contact: Contact | None, inside: Stresses | None) -> None:
+    def _put_drawing(self, screen: Screen, contact: Contact | None, inside: LinerStresses | None) -> None:
         file, tilt = screen.file, tilt_of(screen.file)
         painted = "" if inside is None else painted_stresses(file, inside, frame_of(file), tilt)
         drawing = first_view(file, contact, fields_of(screen), (tilt, screen.reading.length), painted)
         top = 0.0 if contact is None else float(contact.max_pressure)
         if contact is None:
-            said = ""
+            legend = ""
         elif inside is None:
-            said = key(screen.reading.said(FIELD["pressure"], top), FIELD["pressure"], screen.painted == "stress")
+            legend = key(
+                screen.reading.with_unit(FIELD["pressure"], top), FIELD["pressure"], screen.painted == "stress"
+            )
         else:
-            said = key(screen.reading.said(BEARING["von_mises"], inside.largest), BEARING["von_mises"], False)
-        self._channel.put("#press-section", drawing + said + about_the_rim(file, contact, tilt))
+            legend = key(screen.reading.with_unit(BEARING["von_mises"], inside.largest), BEARING["von_mises"], False)
+        self._channel.put("#press-section", drawing + legend + about_the_rim(file, contact, tilt))
 
     def _fill_later(self, screen: Screen, waits: int = _WAITS) -> None:
-        """The table of all models follows when nothing has moved for a while, and others need not wait for it."""
+        """Schedule the table of all models for a moment without changes."""
         document = pn.state.curdoc
         if document is None:
             self._fill(screen)
@@ -121,29 +120,32 @@ class Press:
         self._channel.send()
 
     def _fill(self, screen: Screen) -> None:
-        found = pressed(screen.file, _EVERY)
-        self._channel.put("#press-table", models_table(found, screen.reading))
-        by = successful_contacts(found).get(screen.answered_by)
+        comparison = pressed(screen.file, _EVERY)
+        self._channel.put("#press-table", models_table(comparison, screen.reading))
+        by = successful_contacts(comparison).get(screen.answered_by)
         if by is not None:
-            beside(lambda: float(by.von_mises) if screen is self._screen else 0.0, partial(self._sure, screen, found))
+            run_in_thread(
+                lambda: float(by.von_mises) if screen is self._screen else 0.0,
+                partial(self._show_model_stress, screen, comparison),
+            )
 
-    def _sure(self, screen: Screen, found: Comparison, outcome: Future[float]) -> None:
-        """The numbers again, with the stress that the model itself knows."""
+    def _show_model_stress(self, screen: Screen, comparison: Comparison, outcome: Future[float]) -> None:
+        """Show the numbers again, with the von Mises stress of the model itself."""
         if screen is self._screen:
-            by, exact = found[screen.answered_by], found.contacts.get(reference.name)
+            by, exact = comparison[screen.answered_by], comparison.contacts.get(reference.name)
             self._channel.put("#press-numbers", headline(by, exact, outcome.result(), screen.reading, ""))
             self._channel.send()
 
     def document(self, screen: Screen) -> Document:
-        found, units = pressed(screen.file, _EVERY), screen.reading.units
-        by = found.contacts.get(screen.answered_by)
-        drawn = {name: found[name] for name in screen.shown if name in successful_contacts(found)}
+        comparison, units = pressed(screen.file, _EVERY), screen.reading.units
+        by = comparison.contacts.get(screen.answered_by)
+        drawn = {name: comparison[name] for name in screen.shown if name in successful_contacts(comparison)}
         return Document(
             picture=(lambda form: figure_bytes(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
             if drawn
             else None,
-            rows=lambda: _rows(found, screen),
-            sections=lambda: press_sections(found, units, surroundings=_around(screen.file)),
+            rows=lambda: _rows(comparison, screen),
+            sections=lambda: press_sections(comparison, units, surroundings=_local_effects(screen.file)),
             lede=lambda: "" if by is None else press_lede(by, units),
             contact=by,
         )
@@ -151,9 +153,6 @@ class Press:
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
         first = (screen.answered_by, *screen.shown)
         return [screen.file], tuple(dict.fromkeys((*first, *_EVERY)))
-
-    def leave(self) -> None:
-        """Nothing runs on."""
 
 
 def _fields(screen: Screen) -> dict[str, Any]:
@@ -166,13 +165,13 @@ def _fields(screen: Screen) -> dict[str, Any]:
     }
 
 
-def _rows(found: Comparison, screen: Screen) -> list[list[Any]]:
-    """With why a model is not to be trusted."""
-    heads, *rows = number_rows("model", found, screen.reading)
-    return [[*heads, "notes"], *([*row, "; ".join(found[row[0]].notes)] for row in rows)]
+def _rows(comparison: Comparison, screen: Screen) -> list[list[Any]]:
+    """Tabulate the contacts with their notes."""
+    heads, *rows = number_rows("model", comparison, screen.reading)
+    return [[*heads, "notes"], *([*row, "; ".join(comparison[row[0]].notes)] for row in rows)]
 
 
-def _around(file: JointFile) -> LocalUncertainty | None:
-    """What a percent of each number does; without a load nothing."""
+def _local_effects(file: JointFile) -> LocalUncertainty | None:
+    """Compute the effect of one percent of each number; None without a load."""
     pressing = any(float(load) > 0 for load in file.load.values())
     return local_uncertainty(file.joint, file.cup, file.load, {}) if pressing else None

@@ -15,28 +15,27 @@ from ...hip.law_fields import LawField
 from ...problem.presets import joints
 from ...reports.pages import picture
 from ..fields import Field, choice, number, segments, typed
-from ..in_use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS, Use
-from ..jobs import CachedRun, ViewJob
+from ..hip_charts import depth_maps, penetration_chart, wear_numbers
+from ..hip_tasks import WEAR_SECONDS, WearResult, simulate_wear, wear_key
+from ..in_use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS, Use, cycle_fields
+from ..jobs import ViewJob
+from ..running import CachedRun
 from ..screen import Screen
-from ..use_fields import cycle_fields
-from ..view import Document, Host
-from ..wear_charts import depth_maps, penetration_chart, wear_numbers
-from ..wearing import LONGEST, Worn, life_of, worn
+from ..view import Document, Host, View
 from ..words import progress, unit_of_files
 
-_FOUND: CachedRun = CachedRun(most=24)
-_ALONE, _NOW, _OTHER = "", "as it is now", "as it was put beside"
+_RESULTS: CachedRun = CachedRun(max_size=24)
+_ALONE, _NOW, _AS_COMPARED = "", "as it is now", "as it was put beside"
 _SHOWN = (
     *("cycle", "body_weight", "contact", "law", "coefficient", *WEAR_INPUTS, "spread", "millions", "creep"),
     *(*CREEP_INPUTS, "beside"),
 )
 
 
-class Wear:
-    """Runs when asked; what has been run of what is on the screen is shown at once."""
+class Wear(View):
+    """View of wear that runs on request and shows stored results at once."""
 
     title = "Wear"
-    panel = None
     body = f"""
 <div class="inputs-row">{"".join(f'<div data-field="wear.{name}"></div>' for name in _SHOWN)}</div>
 <p><button type="button" class="plain" data-tell="wear.run">Run the wear</button></p>
@@ -47,10 +46,10 @@ class Wear:
 <div class="beside" id="wear-maps"></div>
 """
 
-    def __init__(self, host: Host) -> None:
-        self._page, self._screen = host, host.screen
-        self._job = ViewJob(host.channel, "wear", self._done, longest=LONGEST)
-        host.listen("wear", self._edited)
+    def __init__(self, page: Host) -> None:
+        self._page, self._screen = page, page.screen
+        self._job = ViewJob(page.channel, "wear", self._store_results, longest=WEAR_SECONDS)
+        page.listen("wear", self._edited)
 
     def show(self, screen: Screen) -> None:
         self._screen = screen
@@ -61,15 +60,15 @@ class Wear:
         self._put_found()
 
     def _put_found(self) -> None:
-        """What has been run of the designs on the screen; else what to do."""
-        found = self._found()
-        self._job.put("numbers", wear_numbers(found, self._screen.reading) if found else _NOTHING)
-        self._job.put("curve", penetration_chart(found, self._screen.reading) if found else "")
-        self._job.put("maps", depth_maps(found, self._screen.reading) if found else "")
+        """Show the stored results for the designs on the screen, or instructions."""
+        results = self._stored_results()
+        self._job.put("numbers", wear_numbers(results, self._screen.reading) if results else _NOTHING)
+        self._job.put("curve", penetration_chart(results, self._screen.reading) if results else "")
+        self._job.put("maps", depth_maps(results, self._screen.reading) if results else "")
 
-    def _found(self) -> dict[str, Worn]:
-        lives = {name: _FOUND.get(life_of(file, self._screen.use)) for name, file in designs(self._screen).items()}
-        return lives if all(each is not None for each in lives.values()) else {}
+    def _stored_results(self) -> dict[str, WearResult]:
+        results = {name: _RESULTS.get(wear_key(file, self._screen.use)) for name, file in designs(self._screen).items()}
+        return results if all(result is not None for result in results.values()) else {}
 
     def _edited(self, key: str, value: Any) -> None:
         if key == "run":
@@ -78,44 +77,41 @@ class Wear:
             self._job.stop()
             self._job.put("progress", progress("Stopped.", None))
         elif key == "beside":
-            self._page.ask(beside=_beside(self._screen, value))
+            self._page.ask(beside=_compared(self._screen, value))
         else:
             self._page.ask(use=_changed(self._screen, key, value))
 
     def _run(self) -> None:
         use = self._screen.use
-        lives = {life_of(file, use): file for file in designs(self._screen).values()}
-        missing = {life: file for life, file in lives.items() if _FOUND.get(life) is None}
+        files_by_key = {wear_key(file, use): file for file in designs(self._screen).values()}
+        missing = {key: file for key, file in files_by_key.items() if _RESULTS.get(key) is None}
         self._job.put("trouble", "")
         if missing:
-            self._job.ask(tuple(missing), partial(worn, list(missing.values()), use))
+            self._job.ask(tuple(missing), partial(simulate_wear, list(missing.values()), use))
 
-    def _done(self, lives: tuple[Hashable, ...], found: list[Worn]) -> None:
-        for life, each in zip(lives, found, strict=True):
-            _FOUND.put(life, each)
+    def _store_results(self, keys: tuple[Hashable, ...], results: list[WearResult]) -> None:
+        for key, result in zip(keys, results, strict=True):
+            _RESULTS.put(key, result)
         self._put_found()
 
     def document(self, screen: Screen) -> Document:
-        found = self._found()
-        if not found:
+        results = self._stored_results()
+        if not results:
             raise ValueError("the wear of this has not been run yet: run it first")
         unit = unit_of_files(CONTACT["indentation"], screen.reading)
         depths = [f"{name}{unit.text_in_brackets}" for name in ("penetration", "low", "high", "deepest")]
         rows = [
             [name, float(cycles), *(unit.factor * float(depth) for depth in row), float(volume)]
-            for name, each in found.items()
+            for name, design in results.items()
             for cycles, *row, volume in zip(
-                each.cycles, each.penetration, each.low, each.high, each.deepest, each.volume, strict=True
+                design.cycles, design.penetration, design.low, design.high, design.deepest, design.volume, strict=True
             )
         ]
-        pictures = "".join(picture(each.figure, f"penetration of {name}") for name, each in found.items())
+        pictures = "".join(picture(design.figure, f"penetration of {name}") for name, design in results.items())
         return Document(
             rows=lambda: [["design", "million cycles", *depths, "volume [mm3]"], *rows],
-            sections=lambda: {"wear": ("Wear", wear_numbers(found, screen.reading) + pictures)},
+            sections=lambda: {"wear": ("Wear", wear_numbers(results, screen.reading) + pictures)},
         )
-
-    def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
-        return [], ()
 
     def leave(self) -> None:
         self._job.stop()
@@ -129,11 +125,11 @@ _NOTHING = (
 
 
 def designs(screen: Screen) -> dict[str, JointFile]:
-    """The design on the screen, and the first that was put beside it, by name."""
+    """Return the design on the screen and the first compared one, by name."""
     named = {screen.file.joint.name or "this design": screen.file}
-    for other in screen.beside[:1]:
-        name = other.joint.name or "the other"
-        named[f"{name}, beside" if name in named else name] = other
+    for file in screen.beside[:1]:
+        name = file.joint.name or "the other"
+        named[f"{name}, beside" if name in named else name] = file
     return named
 
 
@@ -148,7 +144,7 @@ def _fields(screen: Screen) -> dict[str, Field]:
         number("wear.millions", "Million cycles", Unit(""), (0.5, 20.0), 0.5, use.millions),
         segments("wear.creep", "The liner creeps", [(name, name) for name in CHOICES["creep"]], use.creep),
         *(_law_input(name, use) for name in CREEP_INPUTS),
-        choice("wear.beside", "Compare with", _choices(screen), _OTHER if screen.beside else _ALONE),
+        choice("wear.beside", "Compare with", _choices(screen), _AS_COMPARED if screen.beside else _ALONE),
     ]
     return {field["name"]: field for field in listed}
 
@@ -176,22 +172,22 @@ def _law_input(name: str, use: Use) -> Field:
 
 
 def _choices(screen: Screen) -> list[tuple[str, str]]:
-    kept = [(_OTHER, f"{screen.beside[0].joint.name or 'a joint'}, {_OTHER}")] if screen.beside else []
-    return [(_ALONE, "– nothing –"), *kept, (_NOW, f"this design {_NOW}"), *((name, name) for name in joints)]
+    compared = [(_AS_COMPARED, f"{screen.beside[0].joint.name or 'a joint'}, {_AS_COMPARED}")] if screen.beside else []
+    return [(_ALONE, "– nothing –"), *compared, (_NOW, f"this design {_NOW}"), *((name, name) for name in joints)]
 
 
-def _beside(screen: Screen, value: Any) -> tuple[JointFile, ...]:
-    """What is put beside: this design, or a preset in the same cup."""
+def _compared(screen: Screen, value: Any) -> tuple[JointFile, ...]:
+    """Return the compared design: this one, or a preset in the same cup."""
     if value == _ALONE:
         return ()
-    if value in (_NOW, _OTHER):
+    if value in (_NOW, _AS_COMPARED):
         return (screen.file,) if value == _NOW else screen.beside
     check_names([value], joints, "as design")
     return (replace(screen.file, joint=joints[value]),)
 
 
 def _changed(screen: Screen, key: str, value: Any) -> Use:
-    """What the hip goes through, after one input has been changed."""
+    """Return the settings after one input has changed."""
     check_names([key], _SHOWN, "among the inputs of wear")
     if key in LAW_INPUTS:
         return screen.use.with_law_number(key, float(LAW_INPUTS[key].unit.read(key, _decimal_point(value))))
@@ -201,7 +197,7 @@ def _changed(screen: Screen, key: str, value: Any) -> Use:
 
 def _word(key: str, value: Any) -> str:
     if not isinstance(value, str):
-        raise ValueError(f"{key} = {shown(value)} is no choice")
+        raise ValueError(f"{key} = {shown(value)} is not a choice")
     return value
 
 

@@ -1,9 +1,10 @@
-"""Executors of numbered pieces of work on this machine: this process, or several worker processes."""
+"""Executors of numbered pieces of work on this machine, with its memory, disk space and processor cores."""
 
 from __future__ import annotations
 
 import os
 import select
+import shutil
 import signal
 import time
 from collections import Counter, deque
@@ -13,6 +14,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context, parent_process
+from pathlib import Path
 from threading import Thread
 from typing import Any, Protocol
 
@@ -233,3 +235,48 @@ def _watch_parent(parent: int) -> None:
     while os.getppid() == parent:
         time.sleep(_PARENT_CHECK_INTERVAL)
     os._exit(_PARENT_ENDED)
+
+
+_ASSUMED_MEMORY = 4_000_000_000
+"""Memory in bytes that is assumed if the system does not state it."""
+
+
+def check_memory(subject: str, size: float) -> None:
+    """Check that `size` bytes fit into the available memory.
+
+    Raises
+    ------
+    ValueError
+        The memory is too small; the message begins with `subject`, a plural noun.
+    """
+    free = available_memory()
+    if size > free:
+        raise ValueError(f"{subject} take about {size_text(size)}, and there are {size_text(free)} of memory")
+
+
+def available_memory() -> int:
+    """Return the available memory in bytes; half of the installed memory if the system does not state it."""
+    try:
+        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                return int(line.split()[1]) * 1024
+        return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2
+    except (OSError, ValueError, AttributeError):
+        return _ASSUMED_MEMORY
+
+
+def available_disk_space(path: Path) -> int:
+    """Return the free bytes of the disk on which a path lies, or will lie."""
+    folder = path.absolute()
+    while not folder.exists():
+        folder = folder.parent
+    return shutil.disk_usage(folder).free
+
+
+def size_text(size: float) -> str:
+    """Format a size in bytes with three digits, such as "1.5 GB"."""
+    units = ["B", "kB", "MB", "GB", "TB"]
+    while size >= 1000 and len(units) > 1:
+        size /= 1000
+        units.pop(0)
+    return f"{size:.3g} {units[0]}"

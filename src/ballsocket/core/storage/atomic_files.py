@@ -1,14 +1,22 @@
-"""Atomic writing: a file or folder appears complete under its name, or not at all."""
+"""Files and folders that appear complete under their name or not at all: texts, named arrays, and a cache of arrays."""
 
 from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from hashlib import sha256
 from pathlib import Path
 from shutil import rmtree
 from tempfile import TemporaryDirectory
+from typing import Any, BinaryIO
+from zipfile import BadZipFile, ZipFile
+
+import numpy
+
+from ..arrays import Numbers
+from ..input_files import open_input
 
 try:
     import fcntl
@@ -116,3 +124,110 @@ def write_text(path: Path, text: str, encoding: str = "utf-8") -> Path:
     with write_atomically(path) as draft:
         draft.write_text(text, encoding=encoding)
     return path
+
+
+_END_RECORD_LENGTH = 22
+"""Length in bytes of the end record of a zip archive without a comment."""
+
+_CACHE_VERSION = 3
+"""Version of the cached arrays: raise it when the elements or the rings of off-axis models change."""
+
+_MAX_CACHE_SIZE = 2 * 2**30
+"""Size in bytes of the cache folder above which the oldest files are removed."""
+
+
+def write_arrays(path: Path, **arrays: Any) -> None:
+    """Write named arrays, numbers and texts to an npz file, with checksums.
+
+    Raises
+    ------
+    OSError
+        The folder is not writable or the disk is full.
+    """
+    with write_atomically(path) as draft, draft.open("wb") as stream:
+        numpy.savez(stream, **arrays)
+
+
+def read_arrays(path: Path) -> dict[str, Numbers]:
+    """Read the arrays of an npz file by name, and verify their checksums.
+
+    Raises
+    ------
+    ValueError
+        The file is damaged or is not an npz file.
+    OSError
+        The file does not exist or is not readable.
+    """
+    try:
+        with open_input(path) as stream:
+            with ZipFile(stream) as archive:
+                damaged = archive.testzip()  # NumPy accepts a damaged, smaller shape without this test
+                n_members = len(archive.infolist())
+            if damaged is not None or n_members != _count_zip_members(stream):
+                raise ValueError(f"{path.name} is damaged")
+            stream.seek(0)
+            with numpy.load(stream, allow_pickle=False) as file:
+                return {name: file[name] for name in file.files}
+    except (BadZipFile, EOFError, KeyError, RuntimeError) as error:
+        raise ValueError(f"{path.name} is damaged") from error
+
+
+def _count_zip_members(stream: BinaryIO) -> int:
+    """Read the number of members from the end record of a zip archive.
+
+    A damaged archive lists fewer members than it has.
+    """
+    stream.seek(-_END_RECORD_LENGTH, os.SEEK_END)
+    return int.from_bytes(stream.read(_END_RECORD_LENGTH)[10:12], "little")
+
+
+def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
+    """Read an array from the cache folder; compute and store it if it is missing.
+
+    Processes share the cache. A damaged file is replaced. If the folder is not writable, the array is only computed.
+
+    Parameters
+    ----------
+    key : object
+        All inputs of the array. Their `repr` identifies the file.
+    compute : function
+        Computes the array.
+    """
+    path = cache_folder() / f"cup-{sha256(f'{_CACHE_VERSION} {key!r}'.encode()).hexdigest()[:32]}.npz"
+    array = _read_cached_array(path)
+    if array is None:
+        array = compute()
+        with suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_arrays(path, rings=array)
+            _remove_oldest_files(path.parent)
+    return array
+
+
+def cache_folder() -> Path:
+    """Return the path of the cache folder.
+
+    It is the environment variable BALLSOCKET_CACHE, or `ballsocket` in the user's cache folder.
+    """
+    folder = os.environ.get("BALLSOCKET_CACHE")
+    if folder:
+        return Path(folder)
+    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "ballsocket"
+
+
+def _read_cached_array(path: Path) -> Numbers | None:
+    """Read a cached array; return None if the file is missing or damaged."""
+    try:
+        return read_arrays(path)["rings"]
+    except (OSError, ValueError, KeyError):
+        return None
+
+
+def _remove_oldest_files(folder: Path) -> None:
+    """Remove the oldest files of the cache until its size is below the limit."""
+    newest_first = sorted(folder.glob("cup-*"), key=lambda path: path.stat().st_mtime, reverse=True)
+    size = 0
+    for path in newest_first:
+        size += path.stat().st_size
+        if size > _MAX_CACHE_SIZE:
+            path.unlink(missing_ok=True)

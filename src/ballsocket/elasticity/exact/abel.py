@@ -22,12 +22,11 @@ from math import ceil, pi
 
 import numpy
 
-from ...contact.peak_pressure import PeakPressure, find_peak_pressure
+from ...contact.roots import PeakPressure, find_peak_pressure
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem.gaps import Gap
 from .grid import QuadratureGrid
-from .intervals import CachedIntervals, Intervals
-from .kernel import Kernel
+from .kernel import CachedIntervals, Intervals, Kernel
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -237,10 +236,7 @@ class AbelState(PeakPressure):
         return []
 
     def _compute_modes(self, count: int) -> Numbers:
-        """Compute the pressure modes p_n in MPa by Gauss-Legendre quadrature.
-
-        The quadrature panels are shorter than the wavelengths.
-        """
+        """Compute the pressure modes p_n in MPa by Gauss-Legendre quadrature in panels shorter than the wavelengths."""
         panels = 4 + ceil(count * float(self.half_angle.max(initial=0.0)) / 4)
         x, w = (numpy.array(part) for part in gauss_legendre(12))
         y = ((numpy.arange(panels)[:, None] + x) / panels).ravel()
@@ -298,18 +294,12 @@ def _evaluate_even_series(coefficients: Numbers, y: Numbers) -> Numbers:
 
 
 def _recurrence_factor(n: int, square: Numbers) -> Numbers:
-    """Compute the factor A y² + B of P_2k in the recurrence of even Legendre polynomials.
-
-    The recurrence is P_n+2 = (A y² + B) P_n + D P_n-2.
-    """
+    """Compute the factor A y² + B in the recurrence P_n+2 = (A y² + B) P_n + D P_n-2, n = 2k."""
     lead = (2 * n + 1) * (2 * n + 3) / ((n + 1) * (n + 2))
     shift = (n + 1) ** 2 / ((2 * n + 1) * (2 * n + 3)) + (n**2 / ((2 * n + 1) * (2 * n - 1)))
     return lead * (square - shift)
 
 
 def _recurrence_offset(n: int) -> float:
-    """Compute the coefficient D of P_2k-2 in the recurrence of even Legendre polynomials.
-
-    The recurrence is P_n+2 = (A y² + B) P_n + D P_n-2.
-    """
+    """Compute the coefficient D in the recurrence P_n+2 = (A y² + B) P_n + D P_n-2, n = 2k."""
     return -((2 * n + 1) * (2 * n + 3) / ((n + 1) * (n + 2))) * (n * (n - 1) / ((2 * n - 1) * (2 * n + 1)))

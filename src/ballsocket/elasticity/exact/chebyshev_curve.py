@@ -14,8 +14,8 @@ from math import inf
 
 import numpy
 
-from ...contact.peak_pressure import PeakPressure, find_peak_pressure
 from ...contact.per_joint import JointContacts
+from ...contact.roots import PeakPressure, find_peak_pressure
 from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .abel import ROUNDING, AbelState, scaled_pressure
@@ -29,7 +29,7 @@ from .tabulated.chebyshev import (
     chebyshev_polynomials,
     half_angle_at,
 )
-from .tabulated.formulas import angle_derivative
+from .tabulated.curves import angle_derivative
 
 _TERMS, _POINTS, _ATTEMPTS = 32, 28, 4
 """Number of contacts and of quadrature points each at first; half as many more of one of them at each attempt."""
@@ -200,18 +200,12 @@ class ChebyshevState(PeakPressure):
 
     @cached_property
     def _function_values(self) -> tuple[Numbers, Numbers]:
-        """Values of the dimensionless functions, and slopes of both logarithms by ln ε.
-
-        The order is that of `_dimensionless_quantities`.
-        """
+        """Values of the functions of `_dimensionless_quantities`, and slopes of both logarithms by ln ε."""
         return self.series.evaluate_dimensionless_functions(self.half_angle)
 
     @cached_property
     def _relative_indentation(self) -> tuple[Numbers, Numbers]:
-        """Ratio of indentation d to total displacement X = c + d, and its difference from 1.
-
-        The ratio is 1 at the perfect fit.
-        """
+        """Ratio of indentation d to total displacement X = c + d, and its difference from 1 (0 at the perfect fit)."""
         ratio = numpy.exp(self._function_values[0][0]) * 2 * numpy.sin(self.half_angle / 2) ** 2
         return ratio, 1 - ratio
 

@@ -1,26 +1,262 @@
-"""Kernel of the contact equation.
+"""Kernel of the contact equation, and its integrals over [-ε, ε] for half angles on a grid.
 
 In Abel space (see `abel`) the ball and the socket act through k(x) = Σ ρ_n cos((n + ½) x). ρ_n measures how far mode
 n departs from a row of independent springs. Since ρ_n ~ Σ a_j (n + ½)^-j, the sum is split into
 
     k(x) = g(x²) ln|x| + h(x²) |x| + s(x²) + Σ r_n cos((n + ½) x),
 
-closed forms of Σ (n + ½)^-j cos((n + ½) x), j = 1..6, and a remainder whose r_n decrease like n^-7 or faster. Its
-integration is described in `grid` and `intervals`.
+closed forms of Σ (n + ½)^-j cos((n + ½) x), j = 1..6, see `grid`, and a remainder whose r_n decrease like n^-7 or
+faster.
+
+The integrals ½ ∫ k(t - s) f(s) ds of even f and of odd f are matrices (loads, points + 1, points): from f at the points
+to the integral at the points and at t = ε. They are linear in a_1 .. a_6 and in the remainder r_n.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from math import ceil
+from functools import cache, cached_property
+from math import ceil, pi, prod
+from threading import local
 
 import numpy
 
 from ...core.arrays import Numbers
-from .closed_forms import ORDER
-from .intervals import CachedIntervals, Intervals, Operators
+from .grid import ORDER, QuadratureGrid, distance_coefficients, logarithm_coefficients, smooth_coefficients
 from .modes import ElasticBall, Socket
+
+Operators = tuple[Numbers, Numbers]
+"""Operators of even functions and of odd ones."""
+
+_BLOCK = 16_384  # waves in one block, which fits into the cache
+_PANEL_STEP = 8
+_LONGEST_PANEL = 96
+_CACHED_COUNTS = (32, 64, 128)  # numbers of waves that are cached
+_MAX_WORKSPACE = 1 << 18  # bytes of one reused array
+
+
+class _Workspace(local):
+    """Reusable arrays of one thread, stored by name."""
+
+    def __init__(self) -> None:
+        self.arrays: dict[str, numpy.ndarray] = {}
+
+
+_workspace = _Workspace()
+
+
+def workspace_array(name: str, shape: tuple[int, ...], dtype: type = float) -> numpy.ndarray:
+    """Return an uninitialised array, valid until the same thread requests that name again."""
+    size = prod(shape)
+    if size * numpy.dtype(dtype).itemsize > _MAX_WORKSPACE:
+        return numpy.empty(shape, dtype)
+    if name not in _workspace.arrays:
+        _workspace.arrays[name] = numpy.empty(_MAX_WORKSPACE, numpy.uint8)
+    return _workspace.arrays[name].view(dtype)[:size].reshape(shape)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Intervals:
+    """Integration intervals [-ε, ε] of half angles ε (loads,), with the points of a grid."""
+
+    half_angle: Numbers
+    grid: QuadratureGrid
+
+    def closed_form_operators(self, a: Numbers) -> Operators:
+        """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
+        grid, edge = self.grid, self.half_angle[:, None, None]
+        square = numpy.multiply(edge, grid.distance, out=workspace_array("square", (edge.size, *grid.distance.shape)))
+        square *= square
+        log_weights = grid.weights * numpy.log(edge)
+        weights = _evaluate_polynomial("logarithm", logarithm_coefficients(a), square)
+        weights *= numpy.add(log_weights, grid.log_weights, out=workspace_array("log weights", weights.shape))
+        term = _evaluate_polynomial("term", distance_coefficients(a), square)
+        term *= numpy.multiply(edge, grid.distance_weights, out=workspace_array("modulus weights", weights.shape))
+        weights += term
+        term = _evaluate_polynomial("term", smooth_coefficients(a, 2 * float(self.half_angle.max(initial=0.0))), square)
+        term *= grid.weights
+        weights += term
+        weights *= edge * (grid.slope / 2)
+        left, right = weights[..., : grid.points][..., ::-1], weights[..., grid.points :]
+        return left + right, right - left
+
+    def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
+        """Add the integral operators of the kernel's remainder, a sum of cosines with weights r_n, in place."""
+        size = max(1, _BLOCK // (_wave_panels(self.half_angle, self.grid, len(remainder)).count * len(remainder)))
+        for first in range(0, len(self.half_angle), size):
+            block = slice(first, first + size)
+            waves = _waves_and_integration_matrices(self.half_angle[block], self.grid, len(remainder))
+            _add_products(waves, remainder, (operators[0][block], operators[1][block]))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CachedIntervals:
+    """Integration intervals shared by many joints: what does not depend on the joint is computed once."""
+
+    half_angle: Numbers
+    grid: QuadratureGrid
+
+    @cached_property
+    def _intervals(self) -> Intervals:
+        """Intervals without a cache."""
+        return Intervals(half_angle=self.half_angle, grid=self.grid)
+
+    @cached_property
+    def _unit_operators(self) -> Operators:
+        """Integral operators of each of the six closed forms, along a new last axis."""
+        operators = zip(*(self._intervals.closed_form_operators(unit) for unit in numpy.eye(ORDER)), strict=True)
+        even, odd = (numpy.stack(stack, axis=-1) for stack in operators)
+        return even, odd
+
+    @cached_property
+    def _cached_waves(self) -> dict[int, tuple[Numbers, Numbers, Numbers, Numbers]]:
+        """Cosines and sines with their integrals computed so far, by their number."""
+        return {}
+
+    def closed_form_operators(self, a: Numbers) -> Operators:
+        """Compute the integral operators of the kernel's closed-form part, from its coefficients a_1 .. a_6."""
+        even, odd = self._unit_operators
+        return even @ a, odd @ a
+
+    def add_remainder(self, remainder: Numbers, operators: Operators) -> None:
+        """Add the integral operators of the kernel's remainder, a sum of cosines with weights r_n, in place."""
+        if len(remainder) > _CACHED_COUNTS[-1]:
+            self._intervals.add_remainder(remainder, operators)
+            return
+        count = min(cached for cached in _CACHED_COUNTS if cached >= len(remainder))
+        if count not in self._cached_waves:
+            even, odd, even_integrals, odd_integrals = _waves_and_integration_matrices(
+                self.half_angle, self.grid, count
+            )
+            self._cached_waves[count] = even.copy(), odd.copy(), even_integrals.copy(), odd_integrals.copy()
+        even, odd, even_integrals, odd_integrals = self._cached_waves[count]
+        first = slice(len(remainder))
+        _add_products(
+            (even[..., first], odd[..., first], even_integrals[:, first], odd_integrals[:, first]), remainder, operators
+        )
+
+
+def _add_products(waves: tuple[Numbers, Numbers, Numbers, Numbers], remainder: Numbers, operators: Operators) -> None:
+    """Add the operators of the remainder in place: cosines and sines times their integrals times r_n."""
+    even, odd, even_integrals, odd_integrals = waves
+    for operator, wave, integrals in zip(operators, (even, odd), (even_integrals, odd_integrals), strict=True):
+        weighted = numpy.multiply(wave, remainder, out=workspace_array("weighted waves", wave.shape))
+        operator += numpy.matmul(weighted, integrals, out=workspace_array("remainder", operator.shape))
+
+
+def _waves_and_integration_matrices(
+    half_angle: Numbers, grid: QuadratureGrid, count: int
+) -> tuple[Numbers, Numbers, Numbers, Numbers]:
+    """Compute the cosines and sines of (n + ½) t, and the matrices that integrate functions times them.
+
+    The cosines and sines at the targets have the shape (loads, points + 1, count), the matrices (loads, count, points).
+    All arrays are valid until the next call. The waves are shorter than the variations of the pressure, so they are
+    integrated at their own points.
+    """
+    edge = half_angle[:, None]
+    panels = _wave_panels(half_angle, grid, count)
+    even, odd = _cosines_and_sines("targets", edge * grid.position, count)
+    odd *= edge[..., None]
+    even *= edge[..., None]
+    panel_cosines, panel_sines = _cosines_and_sines("sources", edge * panels.position, count)
+    shape = (len(half_angle), count, grid.points)
+    even_integrals = numpy.matmul(
+        panel_cosines.swapaxes(-1, -2), _even_interpolation(grid, panels), out=workspace_array("even integrals", shape)
+    )
+    odd_integrals = numpy.matmul(
+        panel_sines.swapaxes(-1, -2), _odd_interpolation(grid, panels), out=workspace_array("odd integrals", shape)
+    )
+    return even, odd, even_integrals, odd_integrals
+
+
+def _wave_panels(half_angle: Numbers, grid: QuadratureGrid, count: int) -> _Panels:
+    """Choose quadrature panels that resolve this number of cosines and sines."""
+    return _panels_with_points(grid.points / 2 + count * float(half_angle.max(initial=0.0)) * pi / 4)
+
+
+def _cosines_and_sines(name: str, angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
+    """Compute cos and sin of (n + ½) angle for n below count, in workspace arrays of this name."""
+    waves = workspace_array("waves", (*angle.shape, count), complex)
+    waves[..., 0] = numpy.exp(0.5j * angle)
+    waves[..., 1:] = numpy.exp(1j * angle)[..., None]
+    numpy.multiply.accumulate(waves, axis=-1, out=waves)
+    parts = workspace_array(f"cos at {name}", waves.shape), workspace_array(f"sin at {name}", waves.shape)
+    parts[0][...], parts[1][...] = waves.real, waves.imag
+    return parts
+
+
+def _evaluate_polynomial(name: str, coefficients: Numbers, x: Numbers) -> Numbers:
+    """Evaluate a polynomial in x by Horner's rule, in the workspace array of this name."""
+    total = workspace_array(name, x.shape)
+    total[...] = coefficients[-1]
+    for coefficient in coefficients[-2::-1]:
+        total *= x
+        total += coefficient
+    return total
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Panels:
+    """Composite Gauss-Legendre rule: points in equal panels of y from 0 to 1."""
+
+    panels: int
+    points: int
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return self.panels * self.points
+
+    @cached_property
+    def nodes(self) -> tuple[Numbers, Numbers]:
+        """Points y and their weights."""
+        x, w = numpy.polynomial.legendre.leggauss(self.points)
+        y = (numpy.arange(self.panels)[:, None] + (1 + x) / 2).ravel() / self.panels
+        return y, numpy.tile(w / (2 * self.panels), self.panels)
+
+    @property
+    def position(self) -> Numbers:
+        """Relative position t/ε of the points."""
+        return numpy.sin(pi / 2 * self.nodes[0])
+
+    @property
+    def weights(self) -> Numbers:
+        """Quadrature weights of integrals over t/ε."""
+        y, w = self.nodes
+        return pi / 2 * numpy.cos(pi / 2 * y) * w
+
+
+def _panels_with_points(points: float) -> _Panels:
+    """Choose panels with at least this number of points, rounded up so that few rules are built."""
+    if points <= _LONGEST_PANEL:
+        return _panels_of(1, _PANEL_STEP * ceil(points / _PANEL_STEP))
+    return _panels_of(ceil(points / _LONGEST_PANEL), _LONGEST_PANEL)
+
+
+@cache
+def _panels_of(panels: int, points: int) -> _Panels:
+    """Return this number of panels with this number of points each, from a cache."""
+    return _Panels(panels=panels, points=points)
+
+
+@cache
+def _even_interpolation(grid: QuadratureGrid, panels: _Panels) -> Numbers:
+    """Compute the matrix that interpolates an even function from a grid to panels, times their weights."""
+    return _interpolation_matrix(grid, panels, 0)
+
+
+@cache
+def _odd_interpolation(grid: QuadratureGrid, panels: _Panels) -> Numbers:
+    """Compute the matrix that interpolates an odd function from a grid to panels, times their weights."""
+    return _interpolation_matrix(grid, panels, 1)
+
+
+def _interpolation_matrix(grid: QuadratureGrid, panels: _Panels, parity: int) -> Numbers:
+    """Compute the matrix that interpolates a function of one parity from a grid to panels, times their weights."""
+    y, w = grid.positive_nodes
+    degree = 2 * numpy.arange(grid.points) + parity
+    P, Q = (numpy.polynomial.legendre.legvander(points, 2 * grid.points)[:, degree] for points in (y, panels.nodes[0]))
+    return panels.weights[:, None] * (Q @ ((2 * degree[:, None] + 1) * (w[:, None] * P).T))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,7 +300,7 @@ class Kernel:
     def operators(self, intervals: Intervals | CachedIntervals) -> Operators:
         """Compute the integral operators of the kernel over [-ε, ε] for even and for odd functions f.
 
-        They are ½ ∫ k(t - s) f(s) ds, see `intervals`.
+        They are ½ ∫ k(t - s) f(s) ds.
         """
         operators = intervals.closed_form_operators(self.expansion[:ORDER])
         intervals.add_remainder(self.remainder, operators)

@@ -14,8 +14,7 @@ from ...core.arrays import Numbers
 from ...problem.gaps import Gap
 from .abel import AbelState
 from .grid import cached_grid
-from .intervals import CachedIntervals, Intervals
-from .kernel import Kernel
+from .kernel import CachedIntervals, Intervals, Kernel
 
 LIMIT = radians(85.0)
 """Largest half angle in rad that is solved."""

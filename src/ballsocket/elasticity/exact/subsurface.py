@@ -15,7 +15,7 @@ from ...core.stress import Peak, Stress
 from .abel import AbelState
 from .free_face import free_face_of
 from .hemisphere import hemisphere_response, low_pressure_modes, solve_on_hemisphere
-from .intervals import Intervals
+from .kernel import Intervals
 from .load_curve import LoadCurve
 from .tabulated.chebyshev import angle_root, half_angle_at
 
@@ -160,10 +160,7 @@ def _mode_count(state: AbelState, depth: float) -> int:
 
 
 def _taper_modes(state: AbelState, count: int) -> Numbers:
-    """Compute the pressure modes p_n of one contact in MPa, tapered over the last half.
-
-    The taper avoids oscillations of a truncated sum.
-    """
+    """Compute the pressure modes p_n of one contact in MPa, tapered over the last half to avoid oscillations."""
     n = numpy.arange(count)
     taper = numpy.cos(numpy.pi * numpy.clip(n / count - 0.5, 0.0, 0.5)) ** 2
     return state.pressure_modes(count)[0] * taper

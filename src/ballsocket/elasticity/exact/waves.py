@@ -205,10 +205,7 @@ class SupportedLayer:
         return _matmul(departure, _matmul(self._inner_reflection, self._traction_response))
 
     def _wave_amplitudes(self, traction: Matrix) -> tuple[Matrix, Matrix]:
-        """Compute the growing wave at the outer surface and the decaying wave at the inner surface.
-
-        `traction` is the traction r σ on the inner surface.
-        """
+        """Compute the growing wave outside and the decaying wave inside from the traction r σ on the inner surface."""
         decaying = _matmul(self._traction_response, traction)
         return _matmul(self._outer_reflection, _matmul(self._transmission, decaying)), decaying
 

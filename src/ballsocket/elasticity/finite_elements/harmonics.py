@@ -18,11 +18,9 @@ from scipy.sparse.linalg import splu
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...problem import Support
-from .bodies import socket_block, socket_elastic
-from .condensation import nested_dissection
+from .bodies import nested_dissection, socket_block, socket_elastic
 from .elasticity import ElasticBlock, element_quadrature
-from .mesh import Block
-from .shapes import Resolution, SocketShape
+from .mesh import Block, Resolution, SocketShape
 from .surfaces import lagrange
 
 _DIRECT, _HOOP, _SHEARS = 4, 3, (4, 5)

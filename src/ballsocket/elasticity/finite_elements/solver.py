@@ -1,22 +1,230 @@
-"""Load curves of joints from the settings of the finite element model."""
+"""Load curve of one joint, each load on a mesh for contacts of its width, with error estimates."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from math import inf, pi, radians
+from operator import attrgetter
 
+import numpy
+
+from ...contact.per_joint import QUANTITIES, JointContacts
+from ...contact.roots import PeakPressure, find_peak_pressure
+from ...core.arrays import Numbers
 from ...core.checks import require
 from ...problem import Joint, Support
 from ...problem.cup import Cup, Interface
-from ...problem.gaps import CircularGap, LinearGap
+from ...problem.gaps import CircularGap, Gap, LinearGap
 from .bodies import ball_compliance, socket_compliance
-from .load_curve import COARSE, MeshedLoadCurve
-from .memory import check_memory, mesh_size
+from .load_search import ContactBracket, Solved, is_pressed, stiffness, work
+from .mesh import Resolution, socket_shape
+from .pair_contact import FullContact, partial_contact
 from .progress import report_progress
-from .shapes import Resolution, socket_shape
-from .spacing import Spacing, Uniform
+from .spacing import Spacing, Uniform, check_memory, mesh_size
 from .surfaces import ContactSurface, SurfacePair
+
+FINE, COARSE = 0, 1
+"""Indices of the two meshes."""
+
+_STRIDE = 4
+"""Number of classes whose contacts one coarse mesh resolves."""
+
+_CLASS_MARGIN = 1.12
+"""Factor by which the half angle may differ from its class on another mesh."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeshedLoadCurve:
+    """Force, indentation and half angle of one joint on finite element meshes.
+
+    Parameters
+    ----------
+    pairs : function (number of the class, FINE or COARSE) -> SurfacePair
+        Function that makes the meshes.
+    classes : tuple of float
+        Half angles in rad, descending from the widest of all; a class lies between each and the next.
+    gap : Gap
+    ends_at_rim : bool
+        True if deeper contacts fill the socket; otherwise they are not solved.
+    meshes : int
+        1 gives errors of NaN, 2 estimates them.
+    order : int
+        Order of the elements and of the error estimate.
+    """
+
+    pairs: Callable[[int, int], SurfacePair]
+    classes: tuple[float, ...]
+    gap: Gap
+    ends_at_rim: bool
+    meshes: int
+    order: int
+
+    def press(self, kind: str, load: Numbers) -> JointContacts:
+        """Solve the contacts for loads of one kind: "force", "indentation" or "half_angle"."""
+        touching = load > 0
+        loads = load[touching].tolist()
+        numbers = [self._mesh_class(kind, value) for value in loads]
+        fine, *coarse = (
+            MeshedStates(
+                solved=tuple(self._solve_contact(kind, *pair, mesh) for pair in zip(loads, numbers, strict=True))
+            )
+            for mesh in (FINE, COARSE)[: self.meshes]
+        )
+        reached = numpy.isfinite(fine.indentation) & numpy.isfinite(fine.force)
+        error = dict.fromkeys(QUANTITIES, numpy.full(len(loads), numpy.nan))
+        if coarse:
+            error = estimate_errors(kind, fine, coarse[0], self.order)
+        return JointContacts(load=load, touching=touching, state=fine, reached=reached, error=error)
+
+    def _mesh_class(self, kind: str, load: float) -> int:
+        """Return the mesh class of a load, from its half angle estimated on the coarse mesh of a nearby class."""
+        last = len(self.classes) - 2
+        if kind == "half_angle":
+            return min(sum(load <= edge for edge in self.classes[1:]), last)
+        for start in range(0, last, _STRIDE):
+            bracket = self._contact_bracket(start, COARSE)
+            angle = bracket.estimate_angle(kind, load)
+            if angle is not None:
+                return min(sum(angle <= edge for edge in self.classes[1:]), last)
+            if bracket.lies_below(kind, load):
+                return start
+        return last
+
+    def _contact_bracket(self, number: int, mesh: int) -> ContactBracket:
+        """Return the contacts on the mesh of a class of half angles and of a few narrower classes, from a cache."""
+        if (number, mesh) not in self._cached_brackets:
+            low = self.classes[min(number + _STRIDE, len(self.classes) - 1)] / _CLASS_MARGIN
+            high = min(_CLASS_MARGIN * self.classes[number], self.classes[0])
+            self._cached_brackets[number, mesh] = ContactBracket(
+                pair=self.pairs(number, mesh), gap=self.gap, low=low, high=high
+            )
+        return self._cached_brackets[number, mesh]
+
+    @cached_property
+    def _cached_brackets(self) -> dict[tuple[int, int], ContactBracket]:
+        """Contacts on the meshes used so far, by class and mesh."""
+        return {}
+
+    def _solve_contact(self, kind: str, load: float, number: int, mesh: int) -> Solved | None:
+        """Solve one contact on the mesh of a class; None for a load outside the range of the class."""
+        bracket = self._contact_bracket(number, mesh)
+        if kind == "half_angle":
+            contact = (
+                partial_contact(bracket.pair, self.gap, load)
+                if self.classes[-1] / _CLASS_MARGIN <= load <= bracket.high
+                else None
+            )
+            return contact if contact is not None and is_pressed(contact) else None
+        if number == 0 and self.ends_at_rim and bracket.lies_below(kind, load):
+            return _solve_full_contact(kind, load, bracket.pair, self.gap)
+        return bracket.solve(kind, load)
+
+
+def _solve_full_contact(kind: str, load: float, pair: SurfacePair, gap: Gap) -> FullContact:
+    """Solve the contact that fills the socket under a load, by the secant method.
+
+    The force increases with the indentation. For the linear gap one step suffices.
+    """
+    contact = FullContact(pair=pair, gap=gap, indentation=load if kind == "indentation" else 1e-3 * pair.radius)
+    if kind == "indentation":
+        return contact
+    step = 1e-3 * contact.indentation
+    for _ in range(gap.steps + 3):
+        following = replace(contact, indentation=contact.indentation + step)
+        slope = (following.force - contact.force) / step
+        contact, step = following, (load - following.force) / slope
+        if abs(step) <= 1e-13 * contact.indentation:
+            break
+    return replace(contact, indentation=contact.indentation + step)
+
+
+_MAX_TENSION = 1e-3  # over the pressure at the pole
+_MAX_OVERLAP = 1e-3  # over the indentation
+_PRESSURE_NOISE = 5e-4  # of the nodal pressures, over the one at the pole
+
+_LAWS: dict[str, Callable[[Solved], float]] = {"stiffness": stiffness, "energy": work}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeshedStates(PeakPressure):
+    """Solved contacts of one joint; each quantity has one number per contact, NaN for a missing contact (None)."""
+
+    solved: tuple[Solved | None, ...]
+
+    def __getattr__(self, name: str) -> Numbers:
+        if name not in QUANTITIES:
+            raise AttributeError(name)
+        return self._evaluate_contacts(_LAWS.get(name, attrgetter(name)))
+
+    def _evaluate_contacts(self, law: Callable[[Solved], float]) -> Numbers:
+        """Evaluate a function of each contact; NaN for missing contacts."""
+        return numpy.array([numpy.nan if contact is None else law(contact) for contact in self.solved])
+
+    @property
+    def at_rim(self) -> Numbers:
+        """Flag of each contact: 1 if it fills the socket, else 0."""
+        return self._evaluate_contacts(lambda contact: float(isinstance(contact, FullContact)))
+
+    @property
+    def not_round(self) -> Numbers:
+        """Flag of each contact: 1 if tension or overlap shows that its area is not round, else 0."""
+        return self._evaluate_contacts(
+            lambda contact: float(contact.tension > _MAX_TENSION or contact.overlap > _MAX_OVERLAP)
+        )
+
+    @property
+    def edge_element(self) -> Numbers:
+        """Length of the elements at the edge of each contact, as a fraction of its half angle."""
+        return self._evaluate_contacts(lambda contact: contact.edge_element / contact.half_angle)
+
+    @cached_property
+    def largest(self) -> tuple[Numbers, Numbers]:
+        """Largest pressure of each contact in MPa, and its polar angle in rad."""
+        return find_peak_pressure(self.pressure, self.pole_pressure, self.half_angle, _PRESSURE_NOISE)
+
+    def pressure(self, angle: Numbers) -> Numbers:
+        """Compute the contact pressure p(φ) in MPa at polar angles (any, loads)."""
+        columns = [
+            numpy.full(len(angle), numpy.nan) if contact is None else contact.pressure(angle[:, i])
+            for i, contact in enumerate(self.solved)
+        ]
+        return numpy.stack(columns, axis=-1) if columns else numpy.zeros_like(angle)
+
+
+_SAFETY = 2.0  # factor on Richardson's error estimate
+_MIN_ERRORS = {
+    "force": 0.03,
+    "indentation": 0.03,
+    "half_angle": 0.7,
+    "max_pressure": 0.2,
+    "pole_pressure": 0.2,
+    "stiffness": 1.0,
+    "energy": 0.07,
+    "pressure_integral": 0.02,
+}
+"""Observed errors of random contacts against the exact solution, over the square of relative element size.
+
+They hold for biquadratic elements; bilinear ones had three times the errors. test_fem.py draws new contacts and
+checks that the true error lies within the error bar.
+"""
+
+
+def estimate_errors(kind: str, fine: MeshedStates, coarse: MeshedStates, order: int) -> dict[str, Numbers]:
+    """Estimate relative errors of the fine solution by Richardson's extrapolation with a safety factor.
+
+    Both meshes may have the same error by chance, so an estimate is at least the observed error of elements of this
+    size. The applied quantity is exact.
+    """
+    errors = {}
+    for name in QUANTITIES:
+        difference = abs(getattr(coarse, name) / getattr(fine, name) - 1)
+        observed = _MIN_ERRORS[name] * (3 if order == 1 else 1) * fine.edge_element**2
+        errors[name] = numpy.maximum(_SAFETY * difference / (2**order - 1), observed)
+    errors[kind] = 0.0 * errors[kind]
+    return errors
+
 
 LIMIT = radians(88.0)
 """Largest half angle in rad that is solved."""

@@ -15,7 +15,7 @@ from scipy.linalg import cholesky, solve_triangular
 from scipy.sparse import csr_array, dia_array
 
 from ...core.arrays import Numbers, gauss_legendre
-from .shapes import Resolution
+from .mesh import Resolution
 
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(5))
 _ANGLE_TOLERANCE = 1e-9  # rad: corners of two meshes closer than this are one

@@ -62,10 +62,7 @@ class BoreDeviation:
             raise TypeError(f"of must be a function from directions to depths (mm), got {shown(self.of)}")
 
     def depth(self, directions: Numbers) -> Numbers:
-        """Compute the depth of the bore below its sphere in mm, at unit vectors (3, ...) in the cup's frame.
-
-        The depth is positive where material is missing.
-        """
+        """Compute the depth of the bore in mm at unit vectors (3, ...), as in `BoreShape`."""
         return self.of(directions)
 
 
@@ -108,10 +105,7 @@ class OvalBore:
         require("direction", direction, abs(direction) <= 2 * pi, f"a direction is in radians, at most 6.283{hint}")
 
     def depth(self, directions: Numbers) -> Numbers:
-        """Compute the depth of the bore below its sphere in mm, at unit vectors (3, ...) in the cup's frame.
-
-        The depth is positive where material is missing.
-        """
+        """Compute the depth of the bore in mm at unit vectors (3, ...), as in `BoreShape`."""
         x, y, _ = directions
         twofold = (x * x - y * y) * numpy.cos(2 * self.direction) + 2 * x * y * numpy.sin(2 * self.direction)
         depth: Numbers = -self.squeeze / 2 * twofold
@@ -125,10 +119,7 @@ class InterpolatedDeviation:
     """
 
     def depth(self, directions: Numbers) -> Numbers:
-        """Compute the depth of the bore below its sphere in mm, at unit vectors (3, ...) in the cup's frame.
-
-        The depth is positive where material is missing.
-        """
+        """Compute the depth of the bore in mm at unit vectors (3, ...), as in `BoreShape`."""
         if directions.flags.writeable:
             return self.interpolate(directions)
         last, depth = vars(self).get("_last", (None, None))

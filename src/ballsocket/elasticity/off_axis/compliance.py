@@ -14,10 +14,9 @@ from ...core.arrays import Numbers
 from ...problem import Joint
 from ...problem.cup import Cup
 from ..exact.modes import ball_of
-from ..finite_elements.shapes import socket_shape
+from ..finite_elements.mesh import socket_shape
 from .grid import Grid, rim_grid
-from .ring_matrices import sphere_rings
-from .surfaces import Springs, Surface
+from .surfaces import Springs, Surface, sphere_rings
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -38,10 +38,7 @@ class OffAxisContact(SolvedContact):
     _inside: ClassVar[str] = "pressure maps"
 
     def _joint_von_mises(self, indices: Numbers, contacts: JointContacts) -> Numbers:
-        """Estimate the largest von Mises stress in the liner in MPa from half angle and largest pressure.
-
-        Stresses below the surface are not solved.
-        """
+        """Estimate the largest von Mises stress in the liner in MPa from half angle and largest pressure."""
         joint, state = joint_at(self.joint, self.laws.shape, int(indices[0])), contacts.state
         estimate = von_mises_ratio(state.half_angle, joint.liner.poisson, joint.thickness_ratio)
         return numpy.asarray(estimate * state.max_pressure)

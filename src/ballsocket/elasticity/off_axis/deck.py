@@ -23,10 +23,9 @@ from ...core.checks import require
 from ...core.storage.atomic_files import write_text
 from ...problem import Joint
 from ...problem.cup import Cup, Interface
-from ..finite_elements.decks.calculix import last_output, read_printed, run_calculix
-from ..finite_elements.decks.deck import EXPECTED, NAME
-from ..finite_elements.mesh import add_midpoints, graded_points, join_points
-from ..finite_elements.shapes import SocketShape, socket_shape
+from ..finite_elements.calculix import last_output, read_printed, run_calculix
+from ..finite_elements.deck import EXPECTED, NAME
+from ..finite_elements.mesh import SocketShape, add_midpoints, graded_points, join_points, socket_shape
 from ..finite_elements.solver import check_cup
 from .directions import unit_vectors
 from .model import Sphere

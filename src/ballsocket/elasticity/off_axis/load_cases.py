@@ -10,11 +10,10 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...models.kinematics import versine_of
-from .bore_contact import BoreContact
+from .bore_contact import BoreContact, initial_displacement
 from .contact_states import ContactStates, LoadSolver
 from .directions import polar_angle, unit_vectors
 from .equilibrium import solve_force
-from .gap import initial_displacement
 from .surfaces import EdgeRelation
 
 _MAX_FREE_DISPLACEMENT = 0.5
@@ -91,10 +90,7 @@ _MAX_ANGLE_JUMP = 1.0
 
 
 def _solve_half_angles(bore: BoreContact, half_angle: Numbers, axes: Numbers, edges: EdgeRelation) -> ContactStates:
-    """Solve the contacts of prescribed half angles (rad), by Newton's method for the indentation.
-
-    The indentation stays in a bracket.
-    """
+    """Solve the contacts of prescribed half angles (rad), by Newton's method for the indentation in a bracket."""
     width, limit = bore.compliance.grid.width, _MAX_FREE_DISPLACEMENT * bore.gap.socket_radius
     indentation = numpy.clip(_spring_indentation(bore, half_angle), 1e-6 * limit, limit)
     low, high = 0.0 * indentation, numpy.full_like(indentation, limit)
@@ -168,10 +164,7 @@ def edge_margins(states: ContactStates) -> Numbers:
 
 
 def _rim_contact_tilts(states: ContactStates, cut_indices: Numbers) -> Numbers:
-    """Compute the tilts of the loads in rad at which contacts just touch the end of the bore.
-
-    `cut_indices` has the indices of contacts that the rim cuts off.
-    """
+    """Compute the tilts of the loads in rad at which the contacts `cut_indices` just touch the end of the bore."""
     x, y, _ = states.axes[cut_indices].T
     worn = bool(states.bore.gap.depth.any())  # otherwise all meridians are the same
     azimuth = numpy.arctan2(y, x) if worn else 0.0 * x
@@ -240,10 +233,7 @@ def _patch_margins(states: ContactStates) -> Numbers:
 
 
 def _max_rim_levels(states: ContactStates) -> Numbers:
-    """Return the largest level in mm of each contact, over the cells of the ring at the rim: (contacts,).
-
-    A level is positive in the contact, and minus the gap outside.
-    """
+    """Return the largest level in mm of each contact over the cells of the ring at the rim: (contacts,)."""
     largest: Numbers = states.levels[:, -1].max(axis=1)
     return largest
 

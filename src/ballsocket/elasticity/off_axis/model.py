@@ -283,9 +283,11 @@ class Sphere(Model):
 
     def _solve_joint(self, joint: Joint, kind: str, loads: Numbers, axes: Numbers) -> JointContacts:
         """Solve the contacts of one joint under loads (n,) along unit vectors (n, 3) in the cup's frame."""
-        from .bore_contact import BoreContact  # slow to import
+        from .bore_contact import (
+            BoreContact,  # slow to import
+            GapField,
+        )
         from .compliance import cached_compliance
-        from .gap import GapField
         from .load_cases import LOAD_SOLVERS
 
         touching = loads > (0 if joint.clearance >= 0 else -1)  # a preloaded joint touches without a load

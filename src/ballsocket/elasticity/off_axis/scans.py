@@ -197,10 +197,7 @@ def _average_in_boxes(directions: Numbers, deviation: Numbers, size: float) -> t
 
 
 def _fit_sphere(points: Numbers) -> tuple[Numbers, float]:
-    """Fit centre and radius of a sphere in mm to points, by least squares of the distances.
-
-    A linear fit gives the start.
-    """
+    """Fit centre and radius of a sphere in mm to points, by least squares of the distances."""
     from scipy.optimize import least_squares  # slow to import
 
     rows = numpy.hstack([2 * points, numpy.ones((len(points), 1))])

@@ -10,7 +10,7 @@ import numpy
 from ...core.arrays import Numbers
 from ...core.checks import needs
 from ...core.storage.atomic_files import write_atomically
-from ..finite_elements.decks.vtk import check_vtk_path
+from ..finite_elements.section import check_vtk_path
 from .contact import OffAxisContact
 from .directions import unit_vectors
 

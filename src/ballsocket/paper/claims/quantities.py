@@ -12,8 +12,7 @@ from ...contact import Contact, Model
 from ...core.arrays import Numbers
 from ...elasticity.exact.contact import ElasticContact
 from ...elasticity.exact.model import Exact
-from ...elasticity.finite_elements.contact import MeshedContact
-from ...elasticity.finite_elements.model import FiniteElement
+from ...elasticity.finite_elements.model import FiniteElement, MeshedContact
 from ...elasticity.finite_elements.spacing import Element, Uniform
 from ...models.foundation import Bartel, BondedLayer, HessForsbach, Vessel
 from ...models.half_space import Hertz

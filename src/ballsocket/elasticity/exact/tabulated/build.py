@@ -22,8 +22,7 @@ from ....problem import Joint, Material
 from ....problem.gaps import LinearGap
 from ..abel import AbelState
 from ..grid import cached_grid
-from ..intervals import Intervals
-from ..kernel import Kernel
+from ..kernel import Intervals, Kernel
 from ..modes import ElasticBall, Shell, Socket
 from . import chebyshev
 from . import model as table
@@ -145,10 +144,7 @@ def _ball_share_at(coordinate: float, poisson: float, ratio: float) -> float:
 def _solve_state(
     liner: _LinerParameters, angle: Numbers, points: int, ball_share: float = 0.0, ball_poisson: float = 0.3
 ) -> AbelState:
-    """Solve the contacts of one liner at half angles (rad), with R2 = c = E = 1.
-
-    `ball_share` is the ball's share of the compliance, 0 for a rigid ball.
-    """
+    """Solve the contacts of one liner with R2 = c = E = 1; `ball_share` is the ball's share of the compliance."""
     poisson, ratio = liner
     socket = Socket(radius=1.0, shells=(Shell(thickness=1 / ratio, young=1.0, poisson=poisson),))
     young = (1 - ball_poisson**2) / (1 - poisson**2) * (1 - ball_share) / ball_share if ball_share else 1.0
@@ -189,10 +185,7 @@ def _sample_ball_change(
     shares: int,
     balls: Sequence[float],
 ) -> Numbers:
-    """Sample the change of a function by elastic balls, divided by the table coordinate of the ball's share.
-
-    The balls have several shares of the compliance and several ν.
-    """
+    """Sample the change of a function by balls of several shares and ν, divided by the coordinate of the share."""
     angle = chebyshev.half_angle_at(chebyshev.chebyshev_points(angles), liner[1])
     rigid = function(_solve_state(liner, angle, points))
 

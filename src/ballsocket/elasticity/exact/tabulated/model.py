@@ -1,20 +1,237 @@
-"""Exact solution interpolated from small tables."""
+"""Exact solution interpolated from small tables: contacts by their loads, block by block, with energy and pressure."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache, cached_property
+from math import inf, pi, prod
 from typing import Any, ClassVar
+
+import numpy
 
 from ....contact import Model
 from ....contact.assembly import SolverResult
 from ....contact.closed_sphere import HEMISPHERE_NOTE, LIKE_HEMISPHERE
 from ....core import arrays
-from ....core.arrays import Array, broadcast, safe_divisor
+from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
 from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
 from ....problem import Joint
-from .chebyshev import POISSON, THICKNESS_RATIO
-from .solution import CurveReader, curve_reader, solve_with_tables
+from .chebyshev import LIMIT, POISSON, THICKNESS_RATIO, angle_coordinate, chebyshev_polynomials, chebyshev_values
+from .curves import SMALL_LOAD, JointCurves, plain_joint_curves, sum_series
+
+_BLOCK = 2000  # contacts in one block, which fits into the cache; powers of two collide in the cache
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TableSolution:
+    """Contacts interpolated from the tables, with the quantities that a `Contact` delegates to.
+
+    `values` are d, F, p0 and dF/dd.
+    """
+
+    file: str
+    joint: Joint
+    angle: Array
+    values: tuple[Array, Array, Array, Array]
+
+    @property
+    def half_angle(self) -> Array:
+        """Half angle ε in rad."""
+        return self.angle
+
+    @property
+    def pole_pressure(self) -> Array:
+        """Pressure p0 at the pole in MPa."""
+        return self.values[2]
+
+    @property
+    def max_pressure(self) -> Array:
+        """Largest pressure in MPa, which lies at the pole for all joints in the tables."""
+        return self.values[2]
+
+    @property
+    def max_pressure_angle(self) -> Array:
+        """Polar angle of the largest pressure in rad: 0."""
+        return 0.0 * self.angle
+
+    @property
+    def stiffness(self) -> Array:
+        """Tangent stiffness dF/dd in N/mm."""
+        return self.values[3]
+
+    @property
+    def foundation_modulus(self) -> Array:
+        """Foundation modulus p0/d in MPa/mm."""
+        return where(self.values[0] == 0, inf, self.values[2] / safe_divisor(self.values[0]))
+
+    @cached_property
+    def energy(self) -> Array:
+        """Energy U = ∫ F dd in N mm, the work of the force during indentation."""
+        (energy,) = _compute_in_blocks(self.file, self.joint, self.angle, _integrate_work)
+        return where(self.angle > 0, energy, 0.0 * self.angle)
+
+    @property
+    def pressure_integral(self) -> Array:
+        """Integral of the pressure over the contact area, ∫ p dA, in N.
+
+        It follows from U = (d F - c ∫ p (1 - cos φ) dA)/2 and F = ∫ p cos φ dA.
+        """
+        d, F, _, _ = self.values
+        return F + (d * F - 2 * self.energy) / self.joint.clearance
+
+    @cached_property
+    def _profile_coefficients(self) -> Array:
+        """Chebyshev coefficients of the pressure profile p/(p0 sqrt(1 - v)), along the first axis.
+
+        The argument is 2v - 1 with v = sin²(φ/2)/sin²(ε/2).
+        """
+        (series,) = _compute_in_blocks(self.file, self.joint, self.angle, _profile_coefficients)
+        return series
+
+    @cached_property
+    def _profile_correction(self) -> tuple[Array, Array]:
+        """Corrections a and b of the pressure profile, so that it is 1 at the pole and has the force F.
+
+        The corrected pressure is p = p0 sqrt(1 - v) [q(v) + a + b v].
+        """
+        q = [self._profile_coefficients[k, ...] for k in range(self._profile_coefficients.shape[0])]
+        _, F, p0, _ = self.values
+        height = sin(safe_divisor(self.angle) / 2) ** 2
+        plain, tilted = _profile_moments(len(q))
+        carries = [even - 2 * height * odd for even, odd in zip(plain, tilted, strict=True)]
+        pole_correction = 1 - arrays.weighted_sum(q, [(-1.0) ** k for k in range(len(q))])
+        target = F / safe_divisor(4 * pi * self.joint.socket_radius**2 * p0 * height)
+        carried = sum(
+            (coefficient * moment for coefficient, moment in zip(q, carries, strict=False)),
+            pole_correction * carries[0],
+        )
+        return pole_correction, (target - carried) / carries[-1]
+
+    def pressure(self, angle: Array) -> Array:
+        """Compute the contact pressure p(φ) in MPa at polar angles (rad); 0 outside the contact."""
+        pole_correction, tilt = self._profile_correction
+        half, height = sin(angle / 2), sin(safe_divisor(self.angle) / 2) ** 2
+        v = half * half / height
+        total = _evaluate_series(self._profile_coefficients, clip(2 * v - 1, -1.0, 1.0)) + pole_correction + tilt * v
+        inside = (v < 1) & (abs(angle) < pi) & (self.angle > 0)
+        return where(inside, self.values[2] * sqrt(clip(1 - v, 0.0, 1.0)) * clip(total, 0.0, inf), 0.0)
+
+
+def _evaluate_series(series: Array, x: Array) -> Array:
+    """Evaluate the Chebyshev series Σ series[k] T_k(x) by Clenshaw's recurrence."""
+    following = current = 0.0 * x
+    for k in range(series.shape[0] - 1, 0, -1):
+        current, following = series[k, ...] + 2 * x * current - following, current
+    return series[0, ...] + x * current - following
+
+
+def _profile_coefficients(curves: JointCurves, angle: Array) -> tuple[Array]:
+    """Compute the Chebyshev coefficients of the pressure profile at half angles."""
+    series = curves.table_series("profile")
+    if series.ndim == 2:
+        return (series @ chebyshev_values(angle_coordinate(angle, curves.ratio), series.shape[1]),)
+    waves = chebyshev_polynomials(angle_coordinate(angle, curves.ratio), series.shape[1])
+    return (arrays.namespace(angle).stack([sum_series(series[k, ...], waves) for k in range(series.shape[0])]),)
+
+
+def _integrate_work(curves: JointCurves, angle: Array) -> tuple[Array]:
+    """Compute the work ∫ F dd in N mm by quadrature over the half angle.
+
+    The substitution ε' = ε sin²(πy/2) removes the singularities at both ends.
+    """
+    total = 0.0 * angle
+    for node, weight in zip(*gauss_legendre(32), strict=True):
+        _, F, _, _, deepening = curves.contact_quantities(angle * math.sin(pi / 2 * node) ** 2)
+        total = total + pi * weight / math.tan(pi / 2 * node) * F * deepening
+    return (total,)
+
+
+@cache
+def _profile_moments(size: int) -> tuple[list[float], list[float]]:
+    """Compute two moments of each profile function f: ∫ sqrt(1 - v) f dv and ∫ sqrt(1 - v) f v dv over [0, 1].
+
+    The functions are f = T_0(2v - 1) ... T_size-1 and f = v.
+    """
+    y, w = (numpy.array(function) for function in gauss_legendre(2 * size + 4))
+    v, w = 1 - y * y, 2 * y * y * w
+    functions = [*numpy.polynomial.chebyshev.chebvander(2 * v - 1, size - 1).T, v]
+    return [float(w @ function) for function in functions], [float(w @ (function * v)) for function in functions]
+
+
+CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
+"""Function of the curves of joints and the loads of contacts (contacts,) that returns arrays (contacts,)."""
+
+
+def solve_with_tables(file: str, joint: Joint, load: Array, compute_quantities: CurveReader) -> TableSolution:
+    """Solve contacts for loads with the tables; NaN beyond the range of the tables.
+
+    `compute_quantities` returns ε, d, F, p0 and dF/dd from the curves of joints and the loads.
+    """
+    values = _compute_in_blocks(file, joint, load, compute_quantities)
+    fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
+    angle, d, F, p0, stiffness = (
+        where(broadcast(load, value) > 0, where(fits, value, float("nan")), 0.0) for value in values
+    )
+    return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness))
+
+
+def curve_reader(kind: str) -> CurveReader:
+    """Return a function that computes half angle, d, F, p0 and dF/dd from curves and loads of one kind."""
+
+    def compute_quantities(curves: JointCurves, load: Array) -> tuple[Array, ...]:
+        angle = where(load <= LIMIT, load, float("nan")) if kind == "half_angle" else curves.angle(kind, load)
+        return (angle, *curves.contact_quantities(angle)[:4])
+
+    return compute_quantities
+
+
+def _compute_in_blocks(file: str, joint: Joint, load: Array, compute_quantities: CurveReader) -> tuple[Array, ...]:
+    """Compute quantities of contacts block by block with a function of curves; replace loads that are not positive."""
+    if type(load) is float:
+        return compute_quantities(plain_joint_curves(file, joint), load if load > 0 else SMALL_LOAD)
+    xp, numbers = arrays.namespace(load), joint.numbers()
+    shape = numpy.broadcast_shapes(*(tuple(part.shape) for part in (load, *numbers)))
+    if not prod(shape):  # read one contact for the shape, and remove it
+        unit_load = xp.ones((1,), dtype=load.dtype)
+        single = compute_quantities(JointCurves(file, joint.with_numbers([unit_load for _ in numbers])), unit_load)
+        return tuple(xp.reshape(part[..., :0], (*part.shape[:-1], *shape)) for part in single)
+    is_single_joint = all(prod(part.shape) == 1 for part in numbers)
+    shared, indices = (None, None) if is_single_joint else _shared_curves(file, joint, shape)
+    broadcasted = (part if prod(part.shape) == 1 else arrays.broadcast_to(part, shape) for part in numbers)
+    flat = [xp.reshape(part, (-1,)) for part in broadcasted]
+    loads = xp.reshape(arrays.broadcast_to(where(load > 0, load, SMALL_LOAD), shape), (-1,))
+    all_curves = JointCurves(file, joint.with_numbers(flat))
+    size = (4 if is_single_joint else 1) * (_BLOCK if xp is numpy else 64 * _BLOCK)
+    results = []
+    for first in range(0, max(prod(shape), 1), size):
+        block = slice(first, min(first + size, prod(shape)))
+        block_indices = None if indices is None else indices[block]
+        parts = [part if part.shape[0] == 1 else part[block] for part in flat]
+        curves = all_curves if is_single_joint else JointCurves(file, joint.with_numbers(parts), shared, block_indices)
+        results.append(compute_quantities(curves, loads[block]))
+    joined = (xp.concat(parts, axis=-1) if len(parts) > 1 else parts[0] for parts in zip(*results, strict=True))
+    return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)
+
+
+def _shared_curves(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[JointCurves | None, Array | None]:
+    """Return the curves of the joints of a grid and the joint of each contact, or None if sharing saves no time."""
+    numbers = joint.numbers()
+    inner = numpy.broadcast_shapes(*(tuple(part.shape) for part in numbers))
+    if (
+        arrays.namespace(*numbers) is not numpy
+        or prod(inner) * _MIN_CONTACTS_PER_JOINT > prod(shape)
+        or prod(inner) > _BLOCK
+    ):
+        return None, None
+    flat = [numpy.broadcast_to(part, inner).ravel() for part in numbers]
+    indices = numpy.broadcast_to(numpy.arange(prod(inner)).reshape(inner), shape).ravel()
+    return JointCurves(file, joint.with_numbers(flat)), indices
+
+
+_MIN_CONTACTS_PER_JOINT = 4
 
 
 def _ball_poisson(contact: Any) -> Array:

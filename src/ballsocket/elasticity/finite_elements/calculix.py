@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy
 
-from ....core.arrays import Numbers
-from .bodies import TYPES
+from ...core.arrays import Numbers
 from .deck import EXPECTED, NAME
+from .deck_bodies import TYPES
 
 SECTORS = 180
 """Number of sectors in a ring: CalculiX solves two degrees of an axisymmetric element."""

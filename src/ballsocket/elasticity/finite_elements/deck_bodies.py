@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy
 
-from ....core.arrays import Numbers
-from ....problem import Joint, Material
-from ..bodies import ball_body, socket_body
-from ..contact import MeshedContact
-from ..mesh import Block, mesh_block
-from ..shapes import socket_shape
-from ..surfaces import SurfacePair
-from ..tangent import Solved
+from ...core.arrays import Numbers
+from ...problem import Joint, Material
+from .bodies import ball_body, socket_body
+from .load_search import Solved
+from .mesh import Block, mesh_block, socket_shape
+from .model import MeshedContact
+from .surfaces import SurfacePair
 
 _RING_THICKNESS = 0.05  # meshed part of a rigid ball, over its radius
 _ANGLE_TOLERANCE = 1e-9  # rad

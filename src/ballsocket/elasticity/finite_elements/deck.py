@@ -28,13 +28,13 @@ from typing import Any
 
 import numpy
 
-from ....core.arrays import Numbers
-from ....core.checks import require
-from ....core.storage.atomic_files import write_text
-from ....problem.gaps import LinearGap
-from ....version import __version__
-from ..contact import MeshedContact
-from .bodies import TYPES, DeckBodies, DeckBody, faceting_gap, node_set_lines
+from ...core.arrays import Numbers
+from ...core.checks import require
+from ...core.storage.atomic_files import write_text
+from ...problem.gaps import LinearGap
+from ...version import __version__
+from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap, node_set_lines
+from .model import MeshedContact
 
 NAME, EXPECTED = "ballsocket", "expected.json"
 """Names of the deck for CalculiX, and of the file with the expected results."""
@@ -270,10 +270,7 @@ def support_lines(bodies: DeckBodies) -> Iterator[str]:
 
 
 def _polar_lines(socket: DeckBody, fixed_directions: Numbers) -> Iterator[str]:
-    """Yield the lines of polar directions of supported and sliding nodes, and of the sliding constraints.
-
-    The radius is the first direction.
-    """
+    """Yield the lines of polar directions (radius first) of supported and sliding nodes, and sliding constraints."""
     inner, outer = socket.sliding
     polar = fixed_directions.copy()
     polar[inner] = polar[outer] = True

@@ -1,1 +1,0 @@
-"""Input decks of finite element programs, and files of displacements and stresses."""
