@@ -13,7 +13,7 @@ import ballsocket as bs
 from ballsocket.catalogue import listed_models
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.sources import Source, bibliography
-from ballsocket.core.storage.fingerprint import fingerprint
+from ballsocket.core.storage.pieces import fingerprint
 from ballsocket.evidence.comparators import PUBLISHED, range_text
 from ballsocket.evidence.validity import measure, models_with_promise
 from ballsocket.files.schema_keys import Key, keys_of
