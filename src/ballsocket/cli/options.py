@@ -18,6 +18,7 @@ from ..files.joint_file import JointFile, joint_of, read_joint, read_load, varie
 from ..problem.dimensions import LENGTHS
 from ..problem.presets import joints
 from ..reports.figure_files import check_format, save
+from ..reports.unit_systems import Units
 from .json_answers import echo_json
 
 if TYPE_CHECKING:
@@ -26,6 +27,22 @@ if TYPE_CHECKING:
 JointName = Annotated[
     str | None,
     typer.Argument(help="Joint file (TOML), or name of a preset. The options of the joint replace its values."),
+]
+JointNames = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="JOINT",
+        help="Joint file (TOML), or name of a preset. The options of the joint replace its values. "
+        "Several joints share one report.",
+        show_default=False,
+    ),
+]
+UnitSystem = Annotated[
+    Units,
+    typer.Option(
+        case_sensitive=False,
+        help="Units of tables, figures and reports: SI is mm, N, MPa; imperial is in, lbf, psi. JSON is always SI.",
+    ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, not a table.")]
 Workers = Annotated[
