@@ -205,7 +205,7 @@ def needs(extra: str, *modules: str) -> None:
     """
     for module in modules:
         if find_spec(module) is None:
-            raise ImportError(f"{module} is not installed: pip install 'ballsocket[{extra}]'", name=module)
+            raise ImportError(f'{module} is not installed: pip install "ballsocket[{extra}]"', name=module)
 
 
 def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
