@@ -226,13 +226,6 @@ class History(OneLine):
         """Draw worn volume and penetration over the cycles; return the matplotlib figure."""
         return load_plot("wear")({"": self})
 
-    def __repr__(self) -> str:
-        last = self.last
-        return (
-            f"History({self.use.cycle.name}, {len(self.reports)} reports: {last.volume:.4g} mm³ and a penetration of "
-            f"{last.penetration:.3g} mm after {last.cycles:g} cycles)"
-        )
-
     @property
     def converged(self) -> bool:
         """True if the contacts balance their loads in all reports."""
