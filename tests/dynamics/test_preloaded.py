@@ -38,6 +38,7 @@ def test_forces_are_those_of_the_solver_in_every_direction(element, positions):
     error = np.linalg.norm(element(positions).force - force, axis=1) / np.linalg.norm(force, axis=1)
     assert error.max() < 0.015
     assert np.median(error) < 3e-3
+    assert 0.5 * error.max() < element.table.error < 2.0 * error.max()
 
 
 def test_in_equilibrium_there_is_no_force_and_the_stiffness_of_the_solver(element):
