@@ -21,13 +21,14 @@ from ..contact.law import CurveLaw
 from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, is_plain_number, isfinite, sqrt, to_common_arrays, where
 from ..core.checks import check_vectors, shown
+from ..core.display import OneLine
 from ..elasticity.off_axis import Preload, Sphere
 from ..problem import Joint
 from .bristles import Bristles
 from .damping import Damping
 from .element import as_array_like, components, split_components
 from .friction import Friction, friction_coefficient
-from .load import OVERFLOW_GUARD, ContactState
+from .load import OVERFLOW_GUARD, ContactState, describe_load
 from .matrices import join_matrix, join_vector
 from .potential import CurvePotential
 from .reaction import Constants, Vector
@@ -377,6 +378,13 @@ class PreloadedLoad(NamedTuple):
     elastic: PreloadedForce
     is_finite: Array
 
+    def __repr__(self) -> str:
+        return f"<PreloadedLoad {self}>"
+
+    def __str__(self) -> str:
+        """Force, moment and energy of one state, or the shape of several."""
+        return describe_load(self.force, self.moment, self.energy)
+
     @property
     def half_angle(self) -> Array:
         """Half angle in rad of a round contact of the same area."""
@@ -412,8 +420,8 @@ class PreloadedLoad(NamedTuple):
         )
 
 
-@dataclass(frozen=True, eq=False)
-class PreloadedElement:
+@dataclass(frozen=True, eq=False, repr=False)
+class PreloadedElement(OneLine):
     """Force element of a preloaded joint for time-stepping programs, tabulated by the off-axis solver.
 
     A ball with an interference touches its socket without a load. The element has a force for displacements in any
@@ -470,6 +478,11 @@ class PreloadedElement:
             raise TypeError("a force element needs one joint: its numbers must be plain, not arrays")
         object.__setattr__(self, "table", tabulate_preload(self.model, self.joint))
         object.__setattr__(self, "constants", self._collect_constants())
+
+    def __str__(self) -> str:
+        parts = {"damping": self.damping, "friction": self.friction}
+        named = [f"{name} {type(part).__name__}" for name, part in parts.items() if part is not None]
+        return "; ".join([f"{self.model.name} on {self.joint.name or self.joint.dimensions}", *named])
 
     internal_state = ""
     stretch = 0.0
