@@ -184,7 +184,7 @@ def press(
     if cup is not stated_cup:
         remarks.append(f"arc of cover {degrees(cup.arc_of_cover):g}° assumed for a preloaded joint; set --arc-of-cover")
     angles = {} if "tilt" in direction else orientation_summary(stated_cup)
-    remarks += [orientation_remark(stated_cup)] if angles else []
+    remarks += [orientation_remark(stated_cup)] if angles and joint_options.orients else []
     cup = tilted_cup(cup, direction)
     if pull_out and cup is not stated_cup:
         raise ValueError("--pull-out needs the arc of cover: add --arc-of-cover, or arc_of_cover in [cup] of the file")
