@@ -284,6 +284,7 @@ def test_the_pull_out_force_is_printed_with_its_limits():
     ("words", "said"),
     [
         ((*HELD, "--pull-out"), "--pull-out needs the arc of cover: add --arc-of-cover"),
+        (("hip-28", "--force", "9", "--pull-out", "--model", "exact"), "--pull-out is solved by the model sphere"),
         (("hip-28", "--force", "9", "--pull-out"), "a socket of 180 deg does not hold its ball"),
         (("hip-28", "--force", "9", "--static-friction", "0.1"), "--static-friction needs the coefficient of sliding"),
         (("hip-28", "--force", "9", "--friction", "0.2", "--static-friction", "0.1"), "static_coefficient = 0.1"),

@@ -28,6 +28,7 @@ from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import parse
 from ..problem import Joint
 from ..problem.cup import AngleDefinition, Cup
+from ..reports.unit_systems import Units
 from .options import drop_missing
 
 
@@ -207,22 +208,24 @@ def sphere_in_cup(sphere: Sphere, cup: Cup, direction: Mapping[str, Any]) -> Sph
     return replace(sphere, cup=cup).with_direction(**direction)
 
 
-def sphere_remark(contact: Any, seconds: float) -> str:
+def sphere_remark(contact: Any, seconds: float, units: Units = Units.SI) -> str:
     """Return one line with the place of the contact in its cup, the rings, the time and the estimated errors."""
     cost = f"rings of {degrees(contact.model.ring_width):.3g}°, {seconds:.2f} s"
     if contact.status.failed or contact.indentation == 0:
         return f"{off_axis.name}: {cost}"
-    position = f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim_text(contact)}, {_peak_text(contact)}"
+    position = (
+        f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim_text(contact, units)}, {_peak_text(contact)}"
+    )
     return f"{off_axis.name}: {position}; {cost}; error of the rings: {_error_text(contact)}"
 
 
-def _rim_text(contact: OffAxisContact) -> str:
+def _rim_text(contact: OffAxisContact, units: Units = Units.SI) -> str:
     """Return the distance of the contact from the rim as text."""
     distance = contact.edge_distance
     return (
-        f"contact cut off by {max(-distance, 0.0):.1f} mm at the rim"
+        f"contact cut off by {units.short_length(max(-distance, 0.0))} at the rim"
         if contact.edge_loaded
-        else f"contact {distance:.1f} mm from the rim"
+        else f"contact {units.short_length(distance)} from the rim"
     )
 
 

@@ -19,6 +19,7 @@ from ..files.joint_file import JointFile, joint_of, read_cup, read_joint, read_l
 from ..problem.dimensions import LENGTHS
 from ..problem.presets import joints, materials
 from ..reports.figure_files import check_format, save
+from ..reports.unit_systems import Units
 from .json_answers import echo_json
 
 if TYPE_CHECKING:
@@ -39,6 +40,22 @@ JointName = Annotated[
     str | None,
     typer.Argument(help="Joint file (TOML), or name of a preset. The options of the joint replace its values."),
 ]
+JointNames = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="JOINT",
+        help="Joint file (TOML), or name of a preset. The options of the joint replace its values. "
+        "Several joints share one report.",
+        show_default=False,
+    ),
+]
+UnitSystem = Annotated[
+    Units,
+    typer.Option(
+        case_sensitive=False,
+        help="Units of tables, figures and reports: SI is mm, N, MPa; imperial is in, lbf, psi. JSON is always SI.",
+    ),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object, not a table.")]
 Workers = Annotated[
     int | None, typer.Option(help="Number of worker processes on this machine. Default: 1, or as in the file.")
@@ -50,7 +67,8 @@ Scheduler = Annotated[
 ModelName = Annotated[
     str | None,
     typer.Option(
-        help="Name of a model, see `ballsocket models`. Default: tabulated; exact for joints outside its tables.",
+        help="Name of a model (see `ballsocket models`), or FILE.py:NAME for a custom model. "
+        "Default: tabulated; exact for joints outside its tables.",
         autocompletion=complete_model,
     ),
 ]

@@ -135,6 +135,17 @@ class JointTables(Table, frozen=True, kw_only=True):
     cup: CupTable | None = None
 
 
+class ReportTable(Table, frozen=True, kw_only=True):
+    """Head of the report: names, and a picture beside them."""
+
+    qualified: ClassVar[bool] = True
+
+    customer: Annotated[Text | None, meaning("customer of the report")] = None
+    project: Annotated[Text | None, meaning("project or order")] = None
+    author: Annotated[Text | None, meaning("author of the report")] = None
+    logo: Annotated[Text | None, meaning("path of a picture, .png or .svg, from the folder of the file")] = None
+
+
 class JointFileTable(JointTables, frozen=True, kw_only=True):
     """Joint file."""
 
@@ -142,6 +153,24 @@ class JointFileTable(JointTables, frozen=True, kw_only=True):
     source: Annotated[Text | None, meaning("source of the numbers")] = None
     joint: LengthsTable | None = None
     load: LoadTable | None = None
+    report: ReportTable | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReportDetails:
+    """Head of a report; empty texts are left out.
+
+    Attributes
+    ----------
+    customer, project, author : str
+    logo : str
+        Path of a PNG or SVG picture.
+    """
+
+    customer: str = ""
+    project: str = ""
+    author: str = ""
+    logo: str = ""
 
 
 @dataclass(frozen=True)
@@ -156,12 +185,15 @@ class JointFile:
     cup : Cup
     aim : dict
         Direction of the load as the keyword of `Sphere.press`: empty, or one of tilt (rad) and direction.
+    report : ReportDetails
+        Head of a report.
     """
 
     joint: Joint
     load: dict[str, float]
     cup: Cup = DEFAULT_CUP
     aim: dict[str, Any] = field(default_factory=dict)
+    report: ReportDetails = ReportDetails()
 
 
 def read_joint(path: str | Path) -> JointFile:
@@ -182,7 +214,10 @@ def read_joint(path: str | Path) -> JointFile:
     OSError
         The file cannot be read.
     """
-    return read_toml(Path(path), "joint", joint_of)
+    file = read_toml(Path(path), "joint", joint_of)
+    if not file.report.logo:
+        return file
+    return replace(file, report=replace(file.report, logo=str(Path(path).parent / file.report.logo)))
 
 
 def parse_joint(raw: bytes, title: str) -> JointFile:
@@ -195,7 +230,12 @@ def joint_of(content: Mapping[str, Any]) -> JointFile:
     tables = read_table(content, JointFileTable)
     file = describe_joint(tables, name=tables.name or "", source=tables.source or "")
     load = tables.load or LoadTable()
-    return replace(file, load=_load_of(load), aim=_aim_of(load))
+    return replace(file, load=_load_of(load), aim=_aim_of(load), report=_details_of(tables.report or ReportTable()))
+
+
+def _details_of(table: ReportTable) -> ReportDetails:
+    """Return the head of a report."""
+    return ReportDetails(**{name: str(text) for name, text in table.stated().items()})
 
 
 def describe_joint(tables: JointTables, name: str = "", source: str = "") -> JointFile:
