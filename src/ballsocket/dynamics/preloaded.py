@@ -19,7 +19,7 @@ import numpy
 from ..contact.assembly import check_joint
 from ..contact.law import CurveLaw
 from ..core import arrays
-from ..core.arrays import Array, Numbers, clip, isfinite, sqrt, to_common_arrays, where
+from ..core.arrays import Array, Numbers, clip, is_plain_number, isfinite, sqrt, to_common_arrays, where
 from ..core.checks import check_vectors, shown
 from ..elasticity.off_axis import Preload, Sphere
 from ..problem import Joint
@@ -440,6 +440,8 @@ class PreloadedElement:
             if not (isinstance(value, kind) or (value is None and name != "model")):
                 reason = "; bristles are not supported in a preloaded joint" if isinstance(value, Bristles) else ""
                 raise TypeError(f"{name} must be {kind.__name__}, got {shown(value)}{reason}")
+        if not all(map(is_plain_number, self.joint.numbers())):
+            raise TypeError("a force element needs one joint: its numbers must be plain, not arrays")
         object.__setattr__(self, "table", tabulate_preload(self.model, self.joint))
         object.__setattr__(self, "constants", self._collect_constants())
 
