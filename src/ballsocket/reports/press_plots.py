@@ -130,7 +130,7 @@ MAX_CURVES = 7
 """Curves that are distinguishable in one figure."""
 
 
-def plot(contacts: Mapping[str, Contact]) -> Figure:
+def plot(contacts: Mapping[str, Contact], units: Units = Units.SI) -> Figure:
     """Draw single contacts: the pressure over the angle, beside the force over the indentation.
 
     A contact off the cup's axis that is alone is drawn in its cup. Of many models at most `MAX_CURVES` are drawn, and
@@ -151,10 +151,10 @@ def plot(contacts: Mapping[str, Contact]) -> Figure:
         raise ValueError("there is nothing to draw: no model has an answer")
     single = next(iter(shown.values())) if len(shown) == 1 else None
     if isinstance(single, OffAxisContact) and single.max_pressure > 0:
-        return cup_figure(single)
+        return cup_figure(single, units)
     chosen = select_curves(shown)
     models: Any = {name: contact.model for name, contact in chosen.items()}
-    return press_figure(chosen, force_curves(chosen, models), note=_omission_note(shown, chosen))
+    return press_figure(chosen, force_curves(chosen, models), note=_omission_note(shown, chosen), units=units)
 
 
 def select_curves(contacts: Mapping[str, Contact]) -> dict[str, Contact]:
