@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import numpy
 import typer
 
-from ..catalogue import catalogue, judge, named_model, off_axis, reference
+from ..catalogue import catalogue, judge, off_axis, reference
 from ..compare import Comparison, compare, successful_contacts
 from ..contact import Contact, Model
 from ..core.checks import known_name
@@ -41,6 +41,7 @@ from .elasticity_options import (
     tilted_cup,
 )
 from .json_answers import echo_json
+from .model_file import is_model_file, requested_model
 from .options import (
     AsJson,
     JointName,
@@ -64,7 +65,7 @@ class ModelOptions:
     model: Annotated[
         list[str] | None,
         typer.Option(
-            help="Name of a model (see `ballsocket models`), fem or sphere. "
+            help="Name of a model (see `ballsocket models`), fem, sphere, or FILE.py:NAME for a custom model. "
             f"Repeat for several. Default: {DEFAULT_MODEL}.",
             autocompletion=complete_model,
         ),
@@ -73,8 +74,9 @@ class ModelOptions:
 
     @property
     def names(self) -> list[str]:
-        """Names of the requested models, as in the catalogue."""
-        return [known_name("model", name, (*catalogue, judge.name, off_axis.name)) for name in self.model or ()]
+        """Names of the requested models, as in the catalogue; custom models as FILE.py:NAME."""
+        known = (*catalogue, judge.name, off_axis.name)
+        return [name if is_model_file(name) else known_name("model", name, known) for name in self.model or ()]
 
     @property
     def has_finite_elements(self) -> bool:
@@ -84,9 +86,13 @@ class ModelOptions:
     def models(self, default: str) -> dict[str, Model]:
         """Return the requested models by name, or the default one."""
         if self.every:
-            return dict(catalogue)
-        elastic = {judge.name: judge, off_axis.name: off_axis}
-        return {name: elastic.get(name) or catalogue[name] for name in self.names or [default]}
+            custom = [requested_model(name) for name in self.names if is_model_file(name)]
+            return {**{model.name: model for model in custom}, **catalogue}
+        models = [requested_model(name) for name in self.names or [default]]
+        named = {model.name: model for model in models}
+        if len(named) < len(set(self.names)):
+            raise ValueError("two of the models have one name: give each custom model a name of its own")
+        return named
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -345,7 +351,7 @@ def curve(
     joint: JointName = None,
     joint_options: JointOptions,
     load_options: LoadOptions,
-    model: Annotated[str, typer.Option(help="Name of a model, see `ballsocket models`.")] = "exact",
+    model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
@@ -358,7 +364,7 @@ def curve(
 
     Exit status: 0 success, 2 wrong input, 3 no result at any load.
     """
-    file, named = joint_options.read(joint), named_model(model)
+    file, named = joint_options.read(joint), requested_model(model)
     fractions = numpy.linspace(0.0, 1.0, points)
     steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
     contact = named.in_cup(cup.apply_to(file.cup)).press(file.joint, **steps)
