@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import numpy
 import typer
 
-from ..catalogue import catalogue, judge, named_model, off_axis, reference
+from ..catalogue import catalogue, judge, off_axis, reference
 from ..compare import Comparison, compare, successful_contacts
 from ..contact import Contact, Model
 from ..core.checks import known_name
@@ -32,6 +32,8 @@ from .elasticity_options import (
     MeshOptions,
     TimedModel,
     mesh_remark,
+    orientation_remark,
+    orientation_summary,
     refuse_mesh_options,
     solve_mesh,
     sphere_in_cup,
@@ -39,7 +41,17 @@ from .elasticity_options import (
     tilted_cup,
 )
 from .json_answers import echo_json
-from .options import AsJson, JointName, JointNames, JointOptions, LoadOptions, UnitSystem, expand_groups
+from .model_file import is_model_file, requested_model
+from .options import (
+    AsJson,
+    JointName,
+    JointNames,
+    JointOptions,
+    LoadOptions,
+    UnitSystem,
+    complete_model,
+    expand_groups,
+)
 from .press_files import FigureOptions, ReportOptions
 from .root import FAILURE, app, print_message
 
@@ -53,16 +65,18 @@ class ModelOptions:
     model: Annotated[
         list[str] | None,
         typer.Option(
-            help="Name of a model (see `ballsocket models`), fem or sphere. "
-            f"Repeat for several. Default: {DEFAULT_MODEL}."
+            help="Name of a model (see `ballsocket models`), fem, sphere, or FILE.py:NAME for a custom model. "
+            f"Repeat for several. Default: {DEFAULT_MODEL}.",
+            autocompletion=complete_model,
         ),
     ] = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
 
     @property
     def names(self) -> list[str]:
-        """Names of the requested models, as in the catalogue."""
-        return [known_name("model", name, (*catalogue, judge.name, off_axis.name)) for name in self.model or ()]
+        """Names of the requested models, as in the catalogue; custom models as FILE.py:NAME."""
+        known = (*catalogue, judge.name, off_axis.name)
+        return [name if is_model_file(name) else known_name("model", name, known) for name in self.model or ()]
 
     @property
     def has_finite_elements(self) -> bool:
@@ -72,9 +86,13 @@ class ModelOptions:
     def models(self, default: str) -> dict[str, Model]:
         """Return the requested models by name, or the default one."""
         if self.every:
-            return dict(catalogue)
-        elastic = {judge.name: judge, off_axis.name: off_axis}
-        return {name: elastic.get(name) or catalogue[name] for name in self.names or [default]}
+            custom = [requested_model(name) for name in self.names if is_model_file(name)]
+            return {**{model.name: model for model in custom}, **catalogue}
+        models = [requested_model(name) for name in self.names or [default]]
+        named = {model.name: model for model in models}
+        if len(named) < len(set(self.names)):
+            raise ValueError("two of the models have one name: give each custom model a name of its own")
+        return named
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,6 +172,8 @@ class PressedJoint:
     ----------
     assumptions : list of str
         Sentences on what was assumed for a preloaded joint.
+    orientation : dict
+        Inclination and anteversion of the cup by each definition, in degrees; empty for a cup without orientation.
     pulled : PullOut or None
         Pull-out force, if it was asked for.
     """
@@ -163,6 +183,7 @@ class PressedJoint:
     models: Mapping[str, Model]
     remarks: list[str]
     assumptions: list[str]
+    orientation: dict[str, Any]
     pulled: PullOut | None
 
     def summary(self, friction: FrictionOptions) -> dict[str, Any]:
@@ -171,9 +192,9 @@ class PressedJoint:
         for result in summary["results"] if friction.friction is not None else ():
             contact = self.comparison.get(result["model"])
             result["friction"] = None if contact is None else friction.torques(contact)
-        if self.assumptions:
-            summary["assumptions"] = self.assumptions
-        return summary if self.pulled is None else {**summary, "pull_out": self.pulled.summary()}
+        pull_out = None if self.pulled is None else self.pulled.summary()
+        further = {"assumptions": self.assumptions, "orientation": self.orientation, "pull_out": pull_out}
+        return {**summary, **{key: part for key, part in further.items() if part}}
 
 
 @app.command()
@@ -221,6 +242,8 @@ def press(
         held_cup = stated_cup.around_ball(file.joint.clearance)
         assumed_arc = held_cup is not stated_cup
         assumptions = _preload_assumptions(file.joint, held_cup if assumed_arc else None)
+        orientation = {} if "tilt" in direction else orientation_summary(stated_cup)
+        remarks += [orientation_remark(stated_cup)] if orientation else []
         cup = tilted_cup(held_cup, direction)
         needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
         models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
@@ -254,6 +277,7 @@ def press(
             models=models,
             remarks=remarks,
             assumptions=assumptions,
+            orientation=orientation,
             pulled=pulled,
         )
 
@@ -330,7 +354,7 @@ def curve(
     joint: JointName = None,
     joint_options: JointOptions,
     load_options: LoadOptions,
-    model: Annotated[str, typer.Option(help="Name of a model, see `ballsocket models`.")] = "exact",
+    model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
@@ -343,7 +367,7 @@ def curve(
 
     Exit status: 0 success, 2 wrong input, 3 no result at any load.
     """
-    file, named = joint_options.read(joint), named_model(model)
+    file, named = joint_options.read(joint), requested_model(model)
     fractions = numpy.linspace(0.0, 1.0, points)
     steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
     contact = named.in_cup(cup.apply_to(file.cup)).press(file.joint, **steps)
