@@ -24,7 +24,9 @@ def axis(inclination, anteversion, side="right"):
     return np.array([x if side == "right" else -x, np.sin(ra), -np.cos(ri) * np.cos(ra)])
 
 
-def pelvis(inclination=42.0, anteversion=17.0, side="right", points=8, scatter=0.0, turn=None, shift=(5.0, -40.0, 900.0)):
+def pelvis(
+    inclination=42.0, anteversion=17.0, side="right", points=8, scatter=0.0, turn=None, shift=(5.0, -40.0, 900.0)
+):
     """Return names and points (n, 3) in mm, RAS, of a pelvis whose pelvic plane is turned in the scanner."""
     anterior = [[ASIS, 0.0, 0.0], [-ASIS, 0.0, 0.0], [0.0, 0.0, -95.0]]
     out = axis(inclination, anteversion, side)

@@ -48,8 +48,8 @@ _CANDIDATES = 60
 """Number of spheres through four corners from which the best is chosen."""
 
 _FINALISTS = 4
-_LOOSE = 0.02
-"""Distance from a candidate sphere over its radius, up to which a facet belongs to it."""
+_START_TOLERANCE, _MAX_TOLERANCE = 0.004, 0.02
+"""Distance from a sphere over its radius, up to which a facet belongs to it: at first, and at most."""
 
 _MIN_RESOLUTION = 3e-4
 """Smallest distance from the fitted sphere over its radius, up to which a facet belongs to it."""
@@ -336,7 +336,7 @@ def _find_sphere(mesh: Mesh, sign: float, radii: tuple[float, float]) -> _Sphere
         candidates += _candidates(sample, sign, radii, generator)
         if len(candidates) >= _CANDIDATES:
             break
-    ranked = sorted(candidates, key=lambda pair: -_belonging(sample, *pair, _LOOSE * pair[1], sign).sum())
+    ranked = sorted(candidates, key=lambda pair: -_belonging(sample, *pair, _START_TOLERANCE * pair[1], sign).sum())
     spheres = [_refine(sample, centre, radius, sign) for centre, radius in ranked[:_FINALISTS]]
     best = max((sphere for sphere in spheres if sphere), key=lambda sphere: sphere.facets.sum(), default=None)
     sphere = best and _refine(mesh, best.centre, best.radius, sign)
@@ -376,7 +376,7 @@ def _belonging(mesh: Mesh, centre: Numbers, radius: float, tolerance: float, sig
 
 def _refine(mesh: Mesh, centre: Numbers, radius: float, sign: float) -> _Sphere | None:
     """Fit a sphere to the facets near it, until they stay the same; None if too few are left."""
-    tolerance, before = _LOOSE * radius, numpy.zeros(len(mesh.triangles), dtype=bool)
+    tolerance, before = _START_TOLERANCE * radius, numpy.zeros(len(mesh.triangles), dtype=bool)
     for _ in range(25):
         mask = _belonging(mesh, centre, radius, tolerance, sign)
         if mask.sum() < 4:
@@ -388,7 +388,7 @@ def _refine(mesh: Mesh, centre: Numbers, radius: float, sign: float) -> _Sphere 
         if (mask == before).all():
             break
         before = mask
-        tolerance = min(tolerance, max(_SIGMAS * robust_scale(residuals), _MIN_RESOLUTION * radius))
+        tolerance = max(min(_SIGMAS * robust_scale(residuals), _MAX_TOLERANCE * radius), _MIN_RESOLUTION * radius)
     return _Sphere(centre=centre, radius=radius, facets=mask, residual=residual)
 
 

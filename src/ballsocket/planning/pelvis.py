@@ -156,13 +156,11 @@ def _check_distance(text: str, distance: float, allowed: tuple[float, float]) ->
 
 def _check_sides(axes: Numbers) -> None:
     """Raise ValueError for a frame that is mirrored or turned in the coordinates of the scanner."""
-    if axes[0, 0] < 0 and axes[1, 1] < 0:
-        raise ValueError(
-            "the pelvis faces backwards: the right ASIS lies on the left in RAS coordinates, and the pubis behind; "
-            "the file may be in LPS where it states RAS, or the sides are mirrored"
-        )
     if axes[0, 0] < 0:
-        raise ValueError("the right ASIS lies to the left of the left one: the names of the sides are mirrored")
+        raise ValueError(
+            "the right ASIS lies to the left of the left one: the names of the sides are mirrored, or the file is in LPS "
+            "coordinates where it states RAS"
+        )
     if axes[2, 2] < 0:
         raise ValueError("the pubis lies above the spines: their names are exchanged, or the pelvis is upside down")
 
