@@ -1,6 +1,7 @@
 """Tilted loads from the command line and from files."""
 
 import json
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -182,10 +183,50 @@ def test_orient_maps_edge_distance_and_pressure(tmp_path):
     assert stood["edge_loaded"][2][2] is True
 
 
+def test_orient_prints_every_orientation_and_the_limits():
+    words = ("orient", "hip-36", "--force", "2.5 kN", "--ring-width", "6 deg", "--limit", "edge_distance>=1 mm")
+    printed = run(*words, "--inclination", "30..70", "--anteversion", "20 deg", columns=60).stdout
+    for angle in range(30, 71, 5):
+        assert printed.count(f" {angle}°  ") + printed.count(f" {angle}°\n") >= 2
+    assert printed.count("\n20°") >= 2
+    assert re.search(r"at 20° anteversion the limit holds up to \d\d° inclination", printed)
+    answer = json.loads(run(*words, "--inclination", "41..52", "--step", "5", "--anteversion", "20", "--json").stdout)
+    assert answer["inclination_deg"] == pytest.approx([41, 45, 50, 52])
+    assert answer["anteversion_deg"] == pytest.approx([20])
+    distances = [row[0] for row in answer["edge_distance"]]
+    assert answer["within_limits"] == [[distance >= 1.0] for distance in distances]
+    assert answer["limits"] == ["edge_distance >= 1 mm"]
+    (ends,) = answer["inclination_ranges"]
+    assert ends["inclination_deg"] == [41.0, [41.0, 45.0, 50.0, 52.0][sum(d >= 1.0 for d in distances) - 1]]
+
+
+def test_a_cup_is_oriented_by_options_as_by_its_file(tmp_path):
+    angles = {"inclination": "43.0795 deg", "anteversion": "20.7536 deg", "orientation": "operative", "side": "left"}
+    words = ("press", "--ball-radius", "18", "--clearance", "0.1", "--liner-thickness", "5", "--liner", "xlpe")
+    table = "".join(f'{key} = "{value}"\n' for key, value in angles.items())
+    text = "[joint]\nball_radius = 18\nclearance = 0.1\nliner_thickness = 5\n[liner]\nmaterial = 'xlpe'\n[cup]\n"
+    (tmp_path / "cup.toml").write_text(f"{text}{table}", encoding="utf-8")
+    options = [word for key, value in angles.items() for word in (f"--{key}", value)]
+    from_file, from_options = (
+        json.loads(run(*call, *COARSE, "--force", "3 kN", "--json", folder=tmp_path).stdout)
+        for call in (("press", "cup.toml"), (*words, *options))
+    )
+    assert from_file["results"] == from_options["results"]
+    assert from_file["results"][0]["model"] == "sphere"
+    assert from_file["orientation"] == from_options["orientation"]
+    shown = from_options["orientation"]["radiographic"]
+    assert (shown["inclination_deg"], shown["anteversion_deg"]) == pytest.approx((45.0, 15.0), abs=1e-4)
+    printed = run(*words, *options, *COARSE, "--force", "3 kN").stdout
+    assert "cup: inclination/anteversion radiographic 45°/15°, operative 43.08°/20.75°" in printed
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--inclination", "30 to 60"), "inclination = '30 to 60' is not a range, such as '30..60 deg'"),
+        (("--inclination", "30 to 60"), "inclination = '30 to 60' is not an angle, such as '40 deg'"),
+        (("--step", "5"), "--step and --points are one too many: either fixes the other"),
+        (("--limit", "area<=3"), "--limit of area is not possible here; possible: edge_distance, max_pressure"),
+        (("--limit", "edge_distance"), "'edge_distance' is not a limit, such as"),
         (("--inclination", "30..100"), "inclination is 0 to 90 degrees"),
         (("--direction", "0,0,0"), "points somewhere"),
         (("--ring-width", "20 deg"), "0.5 to 6 degrees"),
@@ -196,3 +237,62 @@ def test_orientations_outside_the_range_are_refused(words, said):
     assert done.returncode == 2
     assert said in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+
+
+TIGHT = ("--ball-radius", "13.5", "--interference", "0.03", "--liner-thickness", "2.5", "--liner", "pom")
+HELD = (*TIGHT, "--force", "0", *COARSE)
+
+
+def test_a_preloaded_joint_gets_a_socket_that_holds_it_and_its_friction_torques():
+    finished = run("press", *HELD, "--friction", "0.1", "--static-friction", "0.15", columns=200)
+    assert "arc of cover 240° assumed for a preloaded joint; set --arc-of-cover" in finished.stdout
+    assert "after 1000 hours under load it is 1300 MPa (Ticona 2008" in finished.stdout
+    torques = answered(*HELD, "--friction", "0.1", "--static-friction", "0.15")["sphere"]["friction"]
+    joint = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
+    model = bs.Sphere(cup=bs.Cup(arc_of_cover=np.radians(240.0)), ring_width=np.radians(4.0))
+    expected = model.press(joint, force=0.0).friction_torque(0.1)
+    assert torques["running_torque"] == pytest.approx(expected)
+    assert torques["breakaway_torque"] == pytest.approx(1.5 * expected)
+    assert f"running torque {1e-3 * expected:.3g} N m about an axis across the load" in finished.stdout
+    wide = run("press", *HELD, "--arc-of-cover", "260", "--young", "1300 MPa", columns=200).stdout
+    assert "assumed" not in wide
+    assert "1000 hours" not in wide  # the modulus of a long load is stated
+
+
+def test_friction_of_several_models_stands_beside_each():
+    words = ("hip-28", "--force", "1 kN", "--friction", "0.05")
+    results = json.loads(run("press", *words, "--json").stdout)["results"]
+    assert [result["model"] for result in results] == ["hess-forsbach", "exact"]
+    contact = bs.HessForsbach().press(bs.joints["hip-28"], force=1000.0)
+    assert results[0]["friction"]["running_torque"] == pytest.approx(contact.friction_torque(0.05))
+    assert results[0]["friction"]["running_torque_about_load"] == pytest.approx(contact.friction_torque(0.05, 0.0))
+    assert "breakaway torque the same" in run("press", *words, columns=200).stdout
+
+
+def test_the_pull_out_force_is_printed_with_its_limits():
+    words = ("press", *HELD, "--pull-out", "--friction", "0.1", "--arc-of-cover", "200")
+    finished, pulled = run(*words, columns=200), json.loads(run(*words, "--json").stdout)["pull_out"]
+    assert pulled["force"] > 0
+    assert f"pull-out force {pulled['force']:.4g} N, {pulled['displacement']:.4g} mm" in finished.stdout
+    assert "a housing that widens as a ring makes the force smaller" in finished.stdout
+    wide = json.loads(run("press", *HELD, "--pull-out", "--arc-of-cover", "240", "--json").stdout)["pull_out"]
+    assert wide["force"] is None
+    assert "not computed" in wide["notes"][0]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ((*HELD, "--pull-out"), "--pull-out needs the arc of cover: add --arc-of-cover"),
+        (("hip-28", "--force", "9", "--pull-out", "--model", "exact"), "--pull-out is solved by the model sphere"),
+        (("hip-28", "--force", "9", "--pull-out"), "a socket of 180 deg does not hold its ball"),
+        (("hip-28", "--force", "9", "--static-friction", "0.1"), "--static-friction needs the coefficient of sliding"),
+        (("hip-28", "--force", "9", "--friction", "0.2", "--static-friction", "0.1"), "static_coefficient = 0.1"),
+        (("hip-28", "--force", "9", "--friction", "-1"), "coefficient = -1 is not allowed"),
+    ],
+)
+def test_impossible_friction_and_pull_out_are_refused_in_a_sentence(words, said):
+    finished = run("press", *words)
+    assert finished.returncode == 2
+    assert said in finished.stderr
+    assert finished.stderr.count("\n") == 1

@@ -2,6 +2,7 @@
 
 import json
 from contextlib import nullcontext
+from importlib import import_module
 from math import inf
 from pathlib import Path
 from types import SimpleNamespace
@@ -144,7 +145,8 @@ def test_uncertainty_of_a_hip_simulates_count_times_parameters_plus_two_patients
     """A Saltelli design has n + 2 blocks of samples for n parameters."""
     bars = []
     monkeypatch.setattr(hip, "_progress_bar", lambda *words: bars.append(words) or nullcontext(print))
-    monkeypatch.setattr(hip, "uncertainty", lambda variability, history, **options: options["count"])
+    module = import_module("ballsocket.hip.uncertainty")
+    monkeypatch.setattr(module, "uncertainty", lambda variability, history, **options: options["count"])
     variability = SimpleNamespace(distributions={"clearance": None, "force": None, "wear": None})
     scatter = SimpleNamespace(count=16, seed=1, variability=variability)
     assert hip._uncertainty_bands(SimpleNamespace(uncertain=scatter), None, None) == 16

@@ -20,7 +20,7 @@ OLD_NAMES = {
     "contact.law.Law": "ForceLaw",
     "contact.model.Covered": "RimLimited",
     "contact.model.Wrapped": "ModelWrapper",
-    "contact.model_info.Theory": "ModelInfo",
+    "contact.outcome.Theory": "ModelInfo",
     "contact.strength.ELASTIC": "MAX_ELASTIC_UTILISATION",
     "contact.strength.share": "von_mises_ratio",
     "contact.verdict.shares": "strength_uses",

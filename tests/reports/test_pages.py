@@ -25,8 +25,13 @@ SAFE = "&lt;script&gt;alert(&#39;&amp;&#39;)&lt;/script&gt;"
         pages.picture(b"", "title", UNSAFE),
         pages.render_page("page.html", UNSAFE, {}),
         pages.render_page("page.html", "title", {"one": (UNSAFE, "")}),
-        pages.render_part("press.html", "lede", UNSAFE, "3 N", "exact", "verdict", "holds"),
-        pages.render_part("press.html", "answers", ("model",), (), UNSAFE, ()),
+        pages.render_part("press.html", "lede", UNSAFE, "3 N", "exact", [("verdict", "holds")]),
+        pages.render_part("press.html", "lede", "3 MPa", "3 N", "exact", [(UNSAFE, "holds")]),
+        pages.render_part("press.html", "answers", [((UNSAFE,), ())], ()),
+        pages.render_part("press.html", "answers", (), (UNSAFE,)),
+        pages.render_part("press.html", "origin", UNSAFE, "", ""),
+        pages.render_part("press.html", "design", "", [(UNSAFE, "")]),
+        pages.render_page("joint_report.html", "title", {}, lede="", logo="", details=[("customer", UNSAFE)]),
     ],
 )
 def test_texts_are_escaped(html):
@@ -40,7 +45,7 @@ def test_html_of_a_section_is_not_escaped_again():
 
 def test_a_missing_value_is_an_error():
     with pytest.raises(UndefinedError):
-        pages.render_page("joint_report.html", "title", {"origin": ("Origin", None)})
+        pages.render_page("joint_report.html", "title", {"origin": ("Origin", "")})
     with pytest.raises(UndefinedError, match="unknown"):
         pages.render_page("page.html", "title", {"unknown": ("Section without HTML or block", None)})
 

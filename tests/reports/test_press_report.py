@@ -2,6 +2,8 @@
 
 import json
 import re
+import shlex
+import zlib
 from dataclasses import replace
 from datetime import date
 from hashlib import sha256
@@ -10,7 +12,8 @@ from html import unescape
 import pytest
 
 import ballsocket as bs
-from ballsocket.files.joint_file import JointFile
+from ballsocket.files.joint_file import JointFile, parse_joint
+from ballsocket.reports.pages import table, write_page
 from ballsocket.reports.press_report import press_report
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.reports.unit_systems import Units
@@ -58,11 +61,112 @@ def test_a_joint_outside_its_tolerance_is_refused():
         local_uncertainty(HIP, FILE.cup, FILE.load, {"force": tolerance(1000.0, 100.0)})
 
 
-def test_its_checksum_is_that_of_its_inputs_and_they_are_a_joint_file(pages):
-    text = unescape(pages[0][Units.SI])
-    told = re.search(r"<pre>(.*)</pre>", text, flags=re.DOTALL)[1]
-    assert sha256(told.encode()).hexdigest() in text
-    assert json.loads(told)["joint"] == {"ball_radius": 18.0, "clearance": 0.1, "liner_thickness": 5.0}
+def recipe_of(page):
+    """Return the joint file on a page, and the options of the command behind it."""
+    text = unescape(page)
+    command = re.search(r"ballsocket press again.toml ?([^<]*)</code>", text)[1]
+    return re.search(r"<pre>(.*)</pre>", text, flags=re.DOTALL)[1], shlex.split(command)
+
+
+def test_its_checksum_is_that_of_its_joint_file_which_is_the_same_joint(pages):
+    for page in pages[0].values():
+        recipe, _ = recipe_of(page)
+        assert sha256(recipe.encode()).hexdigest() in page
+        assert parse_joint(recipe.encode(), "again.toml") == FILE
+
+
+CUP = """
+name = "cup <52>"
+[joint]
+head_diameter = "36 mm"
+diametral_clearance = "0.3 mm"
+liner_thickness = "6.5 mm"
+[liner]
+material = "crosslinked-pe"
+allowable_pressure = "20 MPa"
+[ball]
+material = "cocr"
+[[backing]]
+material = "titanium"
+thickness = "1.35 mm"
+[cup]
+inclination = "50 deg"
+anteversion = "20 deg"
+[load]
+force = "2.5 kN"
+[report]
+customer = "<b>Bones</b> & Sons"
+logo = "logo.svg"
+"""
+TILTED = ("--ring-width", "6 deg", "--tolerance", "inclination=50+-6 deg")
+
+
+@pytest.fixture(scope="module")
+def tilted(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("tilted")
+    (folder / "cup.toml").write_text(CUP)
+    (folder / "logo.svg").write_text("<svg xmlns='http://www.w3.org/2000/svg'></svg>")
+    done = run("press", str(folder / "cup.toml"), *TILTED, "--json", "--report", str(folder / "cup.html"))
+    assert done.returncode == 0, done.stderr
+    return folder, json.loads(done.stdout)
+
+
+def test_the_joint_file_of_a_report_computes_the_same_numbers(tilted):
+    """Of a tilted cup with a shell: the text on the page, pressed with the options beside it."""
+    folder, numbers = tilted
+    recipe, options = recipe_of((folder / "cup.html").read_text("utf-8"))
+    (folder / "again.toml").write_text(recipe, encoding="utf-8")
+    assert "--report" in options  # tolerances are for a report
+    options[options.index("--report") + 1] = str(folder / "again.html")
+    done = run("press", str(folder / "again.toml"), *options, "--json")
+    assert json.loads(done.stdout) == numbers
+    assert recipe_of((folder / "again.html").read_text("utf-8"))[0] == recipe
+
+
+def test_the_report_of_a_tilted_cup_locates_the_contact_and_computes_its_tolerances(tilted):
+    folder, numbers = tilted
+    text = (folder / "cup.html").read_text("utf-8")
+    contact = next(row for row in numbers["results"] if row["model"] == "sphere")
+    assert f"{contact['edge_distance']:.1f} mm from the rim (CPER)" in text
+    assert f"<td>{contact['rim_distance']:.1f} mm</td><td>arc on the bore from the direction of the load" in text
+    assert "in which the ball pushes into the cup, in the body: straight up" in unescape(text)
+    assert "From 3 presses by sphere" in text
+    assert "largest over allowable pressure pmax/pa" in text
+
+
+def test_the_head_of_a_report_is_escaped_and_its_logo_is_inside(tilted):
+    text = (tilted[0] / "cup.html").read_text("utf-8")
+    assert "<dd>&lt;b&gt;Bones&lt;/b&gt; &amp; Sons</dd>" in text
+    assert "<h1>cup &lt;52&gt;</h1>" in text
+    assert "class='logo' alt='logo' src='data:image/svg+xml;base64," in text
+
+
+def test_designs_are_compared_on_one_page(tilted):
+    folder, _ = tilted
+    words = ("--force", "2 kN", "--units", "imperial", "--ring-width", "6 deg", "--report", str(folder / "both.html"))
+    done = run("press", str(folder / "cup.toml"), str(folder / "cup.toml"), *words)
+    assert done.returncode == 0, done.stderr
+    text = (folder / "both.html").read_text("utf-8")
+    assert text.count("<td>449.6 lbf</td>") >= 2
+    assert text.index("id='comparison'") < text.index("id='design-1'") < text.index("id='design-2'")
+    quoted = re.sub(r"<pre>.*?</pre>|" + re.escape(bs.TITANIUM.source), "", unescape(text), flags=re.DOTALL)
+    for part in (done.stdout, quoted):
+        assert re.findall(r"\d (?:mm|µm|MPa|N)\b", part) == []
+
+
+def test_a_page_is_printed_as_pdf(tmp_path):
+    pytest.importorskip("weasyprint")
+    paths = {paper: tmp_path / f"{paper}.pdf" for paper in ("A4", "letter")}
+    for paper, path in paths.items():
+        write_page(table(["head"], [["cell"]]), path, paper)
+    assert {paper: _sheet_width(path.read_bytes()) for paper, path in paths.items()} == {"A4": 595, "letter": 612}
+
+
+def _sheet_width(document):
+    """Return the width of the sheets of a PDF in points."""
+    streams = [document, *re.findall(rb"stream\r?\n(.*?)endstream", document, flags=re.DOTALL)]
+    texts = [part if part is document else zlib.decompressobj().decompress(part) for part in streams]
+    return round(float(re.search(rb"/MediaBox ?\[ ?0 0 ([\d.]+)", b"".join(texts))[1]))
 
 
 def test_it_loads_nothing_and_names_no_machine(pages):
@@ -108,7 +212,10 @@ def test_the_command_writes_it_for_a_tilted_load(tmp_path):
     ("words", "sentence"),
     [
         (("--tolerance", "clearance=0.1+-0.03 mm"), "is for the report: add --report"),
-        (("--report", "hip.pdf"), "must end in .html"),
+        (("--report", "hip.doc"), "must end in .html or .pdf"),
+        (("--report", "hip.html", "--tolerance", "clearence=0.1+-0.03 mm"), "did you mean 'clearance'?"),
+        (("--report", "hip.html", "--tolerance", "inclination=40+-5 deg"), "inclination cannot vary for"),
+        (("hip-36", "--figure", "hip.png"), "--figure shows one joint, got 2"),
         (("--report", "nowhere/hip.html"), "nowhere"),
     ],
 )

@@ -27,7 +27,8 @@ from ..elasticity.off_axis.model import Sphere
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import parse
 from ..problem import Joint
-from ..problem.cup import Cup
+from ..problem.cup import AngleDefinition, Cup
+from ..reports.unit_systems import Units
 from .options import drop_missing
 
 
@@ -50,9 +51,7 @@ class CupOptions:
 
     def apply_to(self, cup: Cup) -> Cup:
         """Return a cup with the values that the options replace."""
-        options = drop_missing(vars(self))
-        changed = read_cup(options)
-        return replace(cup, **{name: getattr(changed, name) for name in options})
+        return read_cup(drop_missing(vars(self)), cup)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,6 +161,20 @@ class DirectionOptions:
         return Sphere(ring_width=parse("ring_width", self.ring_width, Kind.ANGLE))
 
 
+def orientation_summary(cup: Cup) -> dict[str, dict[str, float]]:
+    """Return the angles of a cup in the body in every definition, for JSON; empty without an orientation."""
+    names = ("inclination_deg", "anteversion_deg")
+    angles = {definition.value: map(degrees, cup.angles(definition)) for definition in AngleDefinition}
+    return {name: dict(zip(names, pair, strict=True)) for name, pair in angles.items()} if cup.oriented else {}
+
+
+def orientation_remark(cup: Cup) -> str:
+    """Return one line with the angles of a cup in the body in every definition."""
+    angles = orientation_summary(cup)
+    texts = (f"{name} {pair['inclination_deg']:.4g}°/{pair['anteversion_deg']:.4g}°" for name, pair in angles.items())
+    return f"cup: inclination/anteversion {', '.join(texts)}, {cup.side.value} side"
+
+
 def tilted_cup(cup: Cup, direction: Mapping[str, Any]) -> Cup:
     """Return the cup tilted against a vertical load.
 
@@ -195,22 +208,24 @@ def sphere_in_cup(sphere: Sphere, cup: Cup, direction: Mapping[str, Any]) -> Sph
     return replace(sphere, cup=cup).with_direction(**direction)
 
 
-def sphere_remark(contact: Any, seconds: float) -> str:
+def sphere_remark(contact: Any, seconds: float, units: Units = Units.SI) -> str:
     """Return one line with the place of the contact in its cup, the rings, the time and the estimated errors."""
     cost = f"rings of {degrees(contact.model.ring_width):.3g}°, {seconds:.2f} s"
     if contact.status.failed or contact.indentation == 0:
         return f"{off_axis.name}: {cost}"
-    position = f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim_text(contact)}, {_peak_text(contact)}"
+    position = (
+        f"load {degrees(contact.tilt):.3g}° from the cup's axis, {_rim_text(contact, units)}, {_peak_text(contact)}"
+    )
     return f"{off_axis.name}: {position}; {cost}; error of the rings: {_error_text(contact)}"
 
 
-def _rim_text(contact: OffAxisContact) -> str:
+def _rim_text(contact: OffAxisContact, units: Units = Units.SI) -> str:
     """Return the distance of the contact from the rim as text."""
     distance = contact.edge_distance
     return (
-        f"contact cut off by {max(-distance, 0.0):.1f} mm at the rim"
+        f"contact cut off by {units.short_length(max(-distance, 0.0))} at the rim"
         if contact.edge_loaded
-        else f"contact {distance:.1f} mm from the rim"
+        else f"contact {units.short_length(distance)} from the rim"
     )
 
 

@@ -59,7 +59,7 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
         checked. `error` has estimated relative errors, by model where there are several, and null where none are known.
         `notes` are sentences, `sources` publications with `key`, `text`, `doi`, and `next` steps with `command`, `why`.
     """
-    results = answer.get("results", [])
+    results = [result for result in answer.get("results", []) if "model" in result]
     requested = requested_results(results, arguments)
     notes = [f"{result['model']}: {note}" for result in results for note in result["notes"]]
     full = {
@@ -164,7 +164,8 @@ def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
             yield from (NextStep((*bare, "--model", name), why) for name in (judge.name, off_axis.name))
         else:
             yield NextStep((*bare, "--model", judge.name), "check by finite elements, with estimated errors")
-    yield from (NextStep(("cite", name), "references of the model") for name in valid_models[:1] if name in requested)
+    cited = [name for name in valid_models[:1] if name in requested and name in listed_models]
+    yield from (NextStep(("cite", name), "references of the model") for name in cited)
 
 
 def _differs_on_hemisphere(result: Answer) -> bool:
@@ -182,7 +183,8 @@ def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     if answer["valid"] is not True and answer["model"] != reference.name:
         why = f"{answer['model']} is outside its valid range at some points"
         yield NextStep((*_without_options(arguments, "--model"), "--model", reference.name), why)
-    yield NextStep(("cite", answer["model"]), "references of the model")
+    if answer["model"] in listed_models:
+        yield NextStep(("cite", answer["model"]), "references of the model")
 
 
 def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
@@ -254,13 +256,13 @@ def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     if not answer["valid"]:
         why = answer["notes"][0] if answer["notes"] else "not every parameter is identifiable"
         yield NextStep((*arguments, "--experiment", "next.png"), why)
-    elif answer["posterior"] is None:
+    elif "posterior" in answer and answer["posterior"] is None:
         yield NextStep((*arguments, "--samples", "4000"), "samples of the posterior within the ranges")
 
 
 def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     """Suggest the simulation with a report."""
-    if not _selected_options(arguments, "--report", "--patients"):
+    if not _selected_options(arguments, "--report", "--patients") and "results" not in answer:
         yield NextStep((*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear")
 
 
@@ -288,13 +290,15 @@ def _after_list(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
     """Return the file or preset of the joint, and the options that change it."""
-    return (*_joint_name(arguments), *_selected_options(arguments, *_JOINT_OPTIONS))
+    angles = () if arguments[0] == "orient" else _ANGLE_OPTIONS  # there they are ranges
+    return (*_joint_name(arguments), *_selected_options(arguments, *_JOINT_OPTIONS, *angles))
 
 
-_JOINT_OPTIONS = tuple(
-    f"--{name}".replace("_", "-")
-    for name in (*LENGTHS, "young", "poisson", "liner", "ball_young", "ball_poisson", "ball")
-)
+_PART_OPTIONS = ("young", "poisson", "liner", "ball_young", "ball_poisson", "ball", "shell", "shell_thickness")
+
+_JOINT_OPTIONS = tuple(f"--{name}".replace("_", "-") for name in (*LENGTHS, *_PART_OPTIONS))
+
+_ANGLE_OPTIONS = ("--inclination", "--anteversion", "--side", "--orientation", "--pelvic-tilt")
 
 
 def _joint_name(arguments: Arguments) -> list[str]:

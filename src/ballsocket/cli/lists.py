@@ -14,7 +14,7 @@ from ..core.sources import cite as bibtex_of
 from ..files.schema_keys import json_schema
 from ..mcp.tools import FILE_TABLES, file_table
 from ..problem import Joint, Material
-from ..problem.presets import joints, materials
+from ..problem.presets import find_material, joints, materials
 from ..reports.catalogue_lists import (
     model_summary,
     preset_summary,
@@ -55,7 +55,7 @@ def presets(
 ) -> None:
     """List materials and joints by name, with their sources."""
     known = [*materials, *joints]
-    names = known if name is None else [known_name("preset", name, known)]
+    names = known if name is None else [find_material(name) or known_name("preset", name, known)]
     if as_json:
         kinds: dict[str, Mapping[str, Material | Joint]] = {"materials": materials, "joints": joints}
         listed = {
@@ -71,11 +71,17 @@ def presets(
 
 @app.command()
 def cite(
-    names: Annotated[list[str] | None, typer.Argument(help="Names of models. Default: all models.")] = None,
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Names of models, materials or joints. Default: all models.")
+    ] = None,
 ) -> None:
-    """Print the BibTeX references of models."""
-    chosen = [known_name("model", name, listed_models) for name in names or listed_models]
-    typer.echo(bibtex_of(*(listed_models[name] for name in chosen)))
+    """Print the BibTeX references of models, materials or joints."""
+    citable = {**joints, **materials, **listed_models}
+    chosen = [known_name("model, material or joint", name, citable) for name in names or listed_models]
+    try:
+        typer.echo(bibtex_of(*(citable[name] for name in chosen)))
+    except TypeError as error:  # the source of a material or joint names no publication
+        raise ValueError(str(error)) from error
 
 
 @app.command()

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import degrees, pi
 from typing import Annotated, Any
 
 import numpy
 import typer
 
-from ..catalogue import catalogue, judge, named_model, off_axis, reference
+from ..catalogue import catalogue, judge, off_axis, reference
 from ..compare import Comparison, compare, successful_contacts
-from ..contact import Model
+from ..contact import Contact, Model
 from ..core.checks import known_name
+from ..core.quantities import CONTACT
 from ..core.validity import Status
+from ..dynamics import Friction
+from ..elasticity.off_axis import PullOut
+from ..elasticity.off_axis import pull_out as compute_pull_out
 from ..files.joint_file import JointFile
-from ..problem.cup import UP
+from ..problem import Joint
+from ..problem.cup import UP, Cup
+from ..problem.presets import long_term_note
 from ..reports.terminal import print_curve, print_press
 from ..reports.unit_systems import Units
 from ..version import __version__
@@ -25,6 +32,8 @@ from .elasticity_options import (
     MeshOptions,
     TimedModel,
     mesh_remark,
+    orientation_remark,
+    orientation_summary,
     refuse_mesh_options,
     solve_mesh,
     sphere_in_cup,
@@ -32,7 +41,17 @@ from .elasticity_options import (
     tilted_cup,
 )
 from .json_answers import echo_json
-from .options import AsJson, JointName, JointOptions, LoadOptions, expand_groups
+from .model_file import is_model_file, requested_model
+from .options import (
+    AsJson,
+    JointName,
+    JointNames,
+    JointOptions,
+    LoadOptions,
+    UnitSystem,
+    complete_model,
+    expand_groups,
+)
 from .press_files import FigureOptions, ReportOptions
 from .root import FAILURE, app, print_message
 
@@ -46,16 +65,18 @@ class ModelOptions:
     model: Annotated[
         list[str] | None,
         typer.Option(
-            help="Name of a model (see `ballsocket models`), fem or sphere. "
-            f"Repeat for several. Default: {DEFAULT_MODEL}."
+            help="Name of a model (see `ballsocket models`), fem, sphere, or FILE.py:NAME for a custom model. "
+            f"Repeat for several. Default: {DEFAULT_MODEL}.",
+            autocompletion=complete_model,
         ),
     ] = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
 
     @property
     def names(self) -> list[str]:
-        """Names of the requested models, as in the catalogue."""
-        return [known_name("model", name, (*catalogue, judge.name, off_axis.name)) for name in self.model or ()]
+        """Names of the requested models, as in the catalogue; custom models as FILE.py:NAME."""
+        known = (*catalogue, judge.name, off_axis.name)
+        return [name if is_model_file(name) else known_name("model", name, known) for name in self.model or ()]
 
     @property
     def has_finite_elements(self) -> bool:
@@ -65,22 +86,124 @@ class ModelOptions:
     def models(self, default: str) -> dict[str, Model]:
         """Return the requested models by name, or the default one."""
         if self.every:
-            return dict(catalogue)
-        elastic = {judge.name: judge, off_axis.name: off_axis}
-        return {name: elastic.get(name) or catalogue[name] for name in self.names or [default]}
+            custom = [requested_model(name) for name in self.names if is_model_file(name)]
+            return {**{model.name: model for model in custom}, **catalogue}
+        models = [requested_model(name) for name in self.names or [default]]
+        named = {model.name: model for model in models}
+        if len(named) < len(set(self.names)):
+            raise ValueError("two of the models have one name: give each custom model a name of its own")
+        return named
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrictionOptions:
+    """Options of the friction torque."""
+
+    friction: Annotated[
+        float | None,
+        typer.Option(help="Coefficient of sliding friction. Adds running and breakaway torque to the results."),
+    ] = None
+    static_friction: Annotated[
+        float | None,
+        typer.Option(help="Coefficient of static friction, for the breakaway torque. Default: --friction."),
+    ] = None
+
+    pull_out: Annotated[
+        bool,
+        typer.Option("--pull-out", help="sphere: add the largest force while the ball is pulled out of its cup."),
+    ] = False
+
+    def check(self) -> None:
+        """Raise ValueError for a negative coefficient, and for static friction without, or below, sliding friction."""
+        if self.friction is not None:
+            Friction(coefficient=self.friction, static_coefficient=self.static_friction)
+        elif self.static_friction is not None:
+            raise ValueError("--static-friction needs the coefficient of sliding friction: add --friction")
+
+    def check_pull_out(self, models: Container[str], assumed_arc: bool) -> None:
+        """Raise ValueError for a pull-out force without the model `sphere`, or without an arc of cover."""
+        if self.pull_out and off_axis.name not in models:
+            raise ValueError(f"--pull-out is solved by the model {off_axis.name}: add --model {off_axis.name}")
+        if self.pull_out and assumed_arc:
+            raise ValueError(
+                "--pull-out needs the arc of cover: add --arc-of-cover, or arc_of_cover in [cup] of the file"
+            )
+
+    def torques(self, contact: Contact) -> dict[str, Any]:
+        """Compute the friction torques of a contact in N mm, with their coefficients; empty without friction."""
+        if self.friction is None:
+            return {}
+        friction = Friction(coefficient=self.friction, static_coefficient=self.static_friction)
+        sliding, static = friction.coefficient, friction.breakaway_coefficient
+        across, along = (contact.friction_torque(1.0, axis_angle) for axis_angle in (pi / 2, 0.0))
+        return {
+            "coefficient": sliding,
+            "static_coefficient": static,
+            "running_torque": sliding * across,
+            "breakaway_torque": static * across,
+            "running_torque_about_load": sliding * along,
+            "breakaway_torque_about_load": static * along,
+        }
+
+    def remark(self, name: str, contact: Contact, units: Units) -> str:
+        """Return one line with the friction torques of a contact."""
+        torques = self.torques(contact)
+
+        def text(kind: str) -> str:
+            across, along = (units.torque(torques[f"{kind}_torque{axis}"]) for axis in ("", "_about_load"))
+            return f"{kind} torque {across} about an axis across the load, {along} about the load"
+
+        if torques["static_coefficient"] == torques["coefficient"]:
+            return f"{name}: friction {torques['coefficient']:g}: {text('running')}; breakaway torque the same"
+        return (
+            f"{name}: friction {torques['coefficient']:g}, static {torques['static_coefficient']:g}: "
+            f"{text('running')}; {text('breakaway')}"
+        )
+
+
+@dataclass(kw_only=True)
+class PressedJoint:
+    """Results of one joint of the command, with remarks on their computation.
+
+    Attributes
+    ----------
+    assumptions : list of str
+        Sentences on what was assumed for a preloaded joint.
+    orientation : dict
+        Inclination and anteversion of the cup by each definition, in degrees; empty for a cup without orientation.
+    pulled : PullOut or None
+        Pull-out force, if it was asked for.
+    """
+
+    file: JointFile
+    comparison: Comparison
+    models: Mapping[str, Model]
+    remarks: list[str]
+    assumptions: list[str]
+    orientation: dict[str, Any]
+    pulled: PullOut | None
+
+    def summary(self, friction: FrictionOptions) -> dict[str, Any]:
+        """Return the results as plain data, with the friction torques and the pull-out force if asked for."""
+        summary = self.comparison.summary()
+        for result in summary["results"] if friction.friction is not None else ():
+            contact = self.comparison.get(result["model"])
+            result["friction"] = None if contact is None else friction.torques(contact)
+        pull_out = None if self.pulled is None else self.pulled.summary()
+        further = {"assumptions": self.assumptions, "orientation": self.orientation, "pull_out": pull_out}
+        return {**summary, **{key: part for key, part in further.items() if part}}
 
 
 @app.command()
 @expand_groups
 def press(
     *,
-    joint: JointName = None,
+    joint: JointNames = None,
     joint_options: JointOptions,
     load_options: LoadOptions,
+    friction_options: FrictionOptions,
     model_options: ModelOptions,
-    units: Annotated[
-        Units, typer.Option(case_sensitive=False, help="Units of the table; JSON is always in mm, N, MPa.")
-    ] = Units.SI,
+    units: UnitSystem = Units.SI,
     as_json: AsJson = False,
     files: FigureOptions,
     report: ReportOptions,
@@ -95,6 +218,7 @@ def press(
 
     The table compares the chosen models with the exact solution. The finite elements (--model fem) also include rims,
     chamfers and sliding liners. The model sphere solves loads at an angle to the cup's axis (--tilt, --direction).
+    Several joints are pressed one after the other; --report puts them on one page.
 
     Exit status: 0 success, 2 wrong input, 3 an iteration did not converge or no model has a result.
     """
@@ -102,34 +226,88 @@ def press(
         refuse_mesh_options({**vars(mesh), "meshes": meshes})
     files.check()
     report.check()
-    file = joint_options.read(joint)
-    load = load_options.read(file)
-    direction, remarks = direction_options.read(file), []
-    cup = tilted_cup(cup_options.apply_to(file.cup), direction)
-    needs_sphere = direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
-    models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
-    if model_options.has_finite_elements and direction:
-        raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
-    files.check_models(models)
-    if off_axis.name not in models:
-        direction_options.refuse()
-    if off_axis.name in models:
-        timed: Any = TimedModel(sphere_in_cup(direction_options.model(), cup, direction))
-        models[off_axis.name] = timed
-    if model_options.has_finite_elements:
-        fem = mesh.model(cup, meshes or 2)
-        models[judge.name] = fem
-        remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
-    comparison = _compare(replace(file, cup=cup), load, models)
-    if off_axis.name in comparison:
-        remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds))
-    files.write(comparison, next(iter(models)))
-    report.write(comparison, replace(file, cup=cup, load=load, aim=direction), units)
+    friction_options.check()
+    names: Sequence[str | None] = joint or [None]
+    files.check_single(len(names))
+
+    def press_joint(name: str | None) -> PressedJoint:
+        """Press one joint by the requested models."""
+        file = joint_options.read(name)
+        load = load_options.read(file)
+        direction, remarks = direction_options.read(file), []
+        stated_cup = cup_options.apply_to(file.cup)
+        held_cup = stated_cup.around_ball(file.joint.clearance)
+        assumed_arc = held_cup is not stated_cup
+        assumptions = _preload_assumptions(file.joint, held_cup if assumed_arc else None)
+        orientation = {} if "tilt" in direction else orientation_summary(stated_cup)
+        remarks += [orientation_remark(stated_cup)] if orientation else []
+        cup = tilted_cup(held_cup, direction)
+        needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
+        models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
+        if model_options.has_finite_elements and direction:
+            raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
+        files.check_models(models)
+        friction_options.check_pull_out(models, assumed_arc)
+        if off_axis.name not in models:
+            direction_options.refuse()
+        if off_axis.name in models:
+            timed: Any = TimedModel(sphere_in_cup(direction_options.model(), cup, direction))
+            models[off_axis.name] = timed
+        if model_options.has_finite_elements:
+            fem = mesh.model(cup, meshes or 2)
+            models[judge.name] = fem
+            remarks.append(mesh_remark(*solve_mesh(fem, file.joint, load)))
+        comparison = _compare(replace(file, cup=cup), load, models)
+        if off_axis.name in comparison:
+            remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds, units))
+        if friction_options.friction is not None:
+            contacts = successful_contacts(comparison)
+            remarks += [friction_options.remark(name, contacts[name], units) for name in models if name in contacts]
+        remarks += assumptions
+        pulled = None
+        if friction_options.pull_out:
+            pulled = compute_pull_out(timed.model, file.joint, friction_options.friction or 0.0)
+            remarks += _pull_out_remarks(pulled, units)
+        return PressedJoint(
+            file=replace(file, cup=held_cup, load=load, aim=direction),
+            comparison=comparison,
+            models=models,
+            remarks=remarks,
+            assumptions=assumptions,
+            orientation=orientation,
+            pulled=pulled,
+        )
+
+    joints = [press_joint(name) for name in names]
+    for pressed in joints:
+        files.write(pressed.comparison, next(iter(pressed.models)), units)
+    designs = [report.design(pressed.comparison, pressed.file, pressed.models, units) for pressed in joints]
+    report.write(designs, units)
     if as_json:
-        echo_json(comparison.summary())
+        summaries = [pressed.summary(friction_options) for pressed in joints]
+        echo_json(summaries[0] if len(summaries) == 1 else {"joints": summaries})
     else:
-        print_press(comparison, remarks, units)
-    _exit_on_failure(comparison, models)
+        for pressed in joints:
+            print_press(pressed.comparison, pressed.remarks, units)
+    for pressed in joints:
+        _exit_on_failure(pressed.comparison, pressed.models)
+
+
+def _preload_assumptions(joint: Joint, assumed_cup: Cup | None) -> list[str]:
+    """Return sentences on an assumed cup and on the long-term modulus of a preloaded joint; empty for a clearance."""
+    if joint.clearance >= 0:
+        return []
+    arc = "" if assumed_cup is None else f"{degrees(assumed_cup.arc_of_cover):g}°"
+    cover = f"arc of cover {arc} assumed for a preloaded joint; set --arc-of-cover" if arc else ""
+    return list(filter(None, (cover, long_term_note(joint.liner))))
+
+
+def _pull_out_remarks(pulled: PullOut, units: Units) -> list[str]:
+    """Return lines with the pull-out force, its displacement and its limits."""
+    if not pulled.force >= 0.0:
+        return list(pulled.notes)
+    force, displacement = units.text_of(CONTACT["force"], pulled.force), units.length(pulled.displacement)
+    return [f"pull-out force {force}, {displacement} out of the cup's centre", *pulled.notes]
 
 
 def _compare(file: JointFile, load: Mapping[str, float], models: Mapping[str, Model]) -> Comparison:
@@ -173,7 +351,7 @@ def curve(
     joint: JointName = None,
     joint_options: JointOptions,
     load_options: LoadOptions,
-    model: Annotated[str, typer.Option(help="Name of a model, see `ballsocket models`.")] = "exact",
+    model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
@@ -186,7 +364,7 @@ def curve(
 
     Exit status: 0 success, 2 wrong input, 3 no result at any load.
     """
-    file, named = joint_options.read(joint), named_model(model)
+    file, named = joint_options.read(joint), requested_model(model)
     fractions = numpy.linspace(0.0, 1.0, points)
     steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
     contact = named.in_cup(cup.apply_to(file.cup)).press(file.joint, **steps)

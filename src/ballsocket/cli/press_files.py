@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import degrees
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,18 +12,20 @@ import typer
 
 from ..catalogue import judge, off_axis, reference
 from ..compare import Comparison, successful_contacts
-from ..core.storage.atomic_files import check_parent_folder, write_atomically
+from ..core.checks import check_names
 from ..elasticity.finite_elements.model import MeshedContact
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..files.joint_file import JointFile
 from ..reports.figure_files import check_format, save
+from ..reports.pages import check_page_path, write_page
 from ..reports.unit_systems import Units
-from ..studies.derivatives import LocalUncertainty, local_uncertainty
+from ..studies.derivatives import LocalUncertainty, local_uncertainty, off_axis_uncertainty
+from ..studies.distributions import Distribution
 from ..studies.expressions import parse_distribution
+from ..studies.parameters import PARAMETERS
 from .root import print_message
 
 _VIEW_FORMAT = ".png"
-_REPORT_FORMAT = ".html"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,11 +68,17 @@ class FigureOptions:
         if self.view is not None and not has_view:
             raise ValueError(f"--view is for contacts off the axis: add --model {off_axis.name}")
 
-    def write(self, comparison: Comparison, first_model: str) -> None:
+    def check_single(self, count: int) -> None:
+        """Raise ValueError for a file that shows one joint, if there are several."""
+        for name, path in vars(self).items():
+            if path is not None and count > 1:
+                raise ValueError(f"--{name} shows one joint, got {count}; --report shows several")
+
+    def write(self, comparison: Comparison, first_model: str, units: Units) -> None:
         """Write the files for the results; `first_model` is the name of the first requested model."""
         contacts = successful_contacts(comparison)
         if self.figure is not None and contacts:
-            _write_figure(contacts, first_model, self.figure)
+            _write_figure(contacts, first_model, self.figure, units)
         loaded = {name: contact for name, contact in contacts.items() if contact.max_pressure > 0}
         meshed, tilted = loaded.get(judge.name), loaded.get(off_axis.name)
         _write(self.section, meshed, lambda contact, path: _write_section(contact, contacts.get(reference.name), path))
@@ -90,12 +99,12 @@ def _write(path: Path | None, contact: Any, write: Callable[[Any, Path], None]) 
     write(contact, path)
 
 
-def _write_figure(contacts: Mapping[str, Any], first_model: str, path: Path) -> None:
+def _write_figure(contacts: Mapping[str, Any], first_model: str, path: Path, units: Units) -> None:
     """Write a figure of all contacts, or of the cup alone if `sphere` is the first model."""
     from ..reports import press_plots
 
     alone = first_model == off_axis.name and first_model in contacts
-    save(press_plots.plot({first_model: contacts[first_model]} if alone else contacts), path)
+    save(press_plots.plot({first_model: contacts[first_model]} if alone else contacts, units), path)
 
 
 def _write_section(contact: MeshedContact, exact: Any, path: Path) -> None:
@@ -130,42 +139,77 @@ def _write_view(contact: OffAxisContact, path: Path) -> None:
 class ReportOptions:
     """Options of the report, with the tolerances of the drawing."""
 
-    report: Annotated[Path | None, typer.Option(help="Write a report on one page to this file (.html).")] = None
+    report: Annotated[
+        Path | None, typer.Option(help="Write a report on one page to this file (.html, or .pdf with the extra pdf).")
+    ] = None
     tolerance: Annotated[
         list[str] | None,
         typer.Option(help="Tolerance in the report: 'clearance=0.1+-0.05 mm'. Repeat for several. Default: none."),
     ] = None
 
     def check(self) -> None:
-        """Raise ValueError for another file format, a missing folder, or tolerances without a report."""
-        if self.report is None:
-            if self.tolerance:
-                raise ValueError(
-                    f"--tolerance {self.tolerance[0]!r} is for the report: add --report press{_REPORT_FORMAT}"
-                )
-            return
-        if self.report.suffix.lower() != _REPORT_FORMAT:
-            raise ValueError(f"report {str(self.report)!r} must end in {_REPORT_FORMAT}")
-        check_parent_folder(self.report)
+        """Raise an error for a page that cannot be written, an unknown tolerance, or tolerances without a report."""
+        _ = self.tolerances
+        if self.report is not None:
+            check_page_path(self.report)
+        elif self.tolerance:
+            raise ValueError(f"--tolerance {self.tolerance[0]!r} is for the report: add --report press.html")
 
-    def write(self, comparison: Comparison, file: JointFile, units: Units) -> None:
-        """Write the report if there is a file for it."""
-        if self.report is None:
-            return
-        from ..reports.press_report import press_report
+    @property
+    def tolerances(self) -> dict[str, Distribution]:
+        """Distributions of the tolerances by parameter; ValueError for an unknown name or a name stated twice."""
+        parsed = list(map(parse_distribution, self.tolerance or ()))
+        names = [name for name, _ in parsed]
+        for name in names:
+            check_names([name], PARAMETERS, "among what can have a tolerance")
+            if names.count(name) > 1:
+                raise ValueError(f"{name} has {names.count(name)} tolerances; one is needed")
+        return dict(parsed)
 
-        page = press_report(
-            comparison, file, _verdict_model(comparison), units, self._tolerance_study(comparison, file)
+    def design(self, comparison: Comparison, file: JointFile, models: Iterable[str], units: Units) -> Any:
+        """Return a design of the report with the effect of its tolerances; None without a report."""
+        if self.report is None:
+            return None
+        from ..reports.press_report import PressedDesign
+
+        return PressedDesign(
+            comparison=comparison,
+            file=file,
+            leading=_verdict_model(comparison),
+            uncertainty=self._tolerance_study(comparison, file),
+            command=self._command(comparison, models, units),
         )
-        with write_atomically(self.report) as draft:
-            draft.write_text(page, encoding="utf-8")
+
+    def write(self, designs: Sequence[Any], units: Units) -> None:
+        """Write the report of designs if there is a file for it."""
+        if self.report is None:
+            return
+        from ..reports.press_report import designs_report
+
+        write_page(designs_report(designs, units), self.report, units.paper)
+
+    def _command(self, comparison: Comparison, models: Iterable[str], units: Units) -> str:
+        """Return the options that compute the results from the joint file: models, rings, tolerances and units."""
+        words = [f"--model {name}" for name in models]
+        model: Any = comparison[off_axis.name].model if off_axis.name in comparison else off_axis
+        if model.ring_width != off_axis.ring_width:
+            words.append(f'--ring-width "{degrees(model.ring_width):.6g} deg"')
+        words += [f'--tolerance "{text}"' for text in self.tolerance or ()]
+        words += ["--report again.html"] if self.tolerance else []
+        words += [f"--units {units}"] if units is not Units.SI else []
+        return " ".join(words)
 
     def _tolerance_study(self, comparison: Comparison, file: JointFile) -> LocalUncertainty | None:
-        """Compute the effect of the tolerances; None for a tilted load and for a load without contact."""
-        if off_axis.name in comparison or not any(float(load) > 0 for load in file.load.values()):
-            return None
+        """Compute the effect of the tolerances; None without contact, and off the axis without tolerances."""
         load = {name: float(value) for name, value in file.load.items()}
-        return local_uncertainty(file.joint, file.cup, load, dict(map(parse_distribution, self.tolerance or ())))
+        if not any(value > 0 for value in load.values()):
+            return None
+        if off_axis.name not in comparison:
+            return local_uncertainty(file.joint, file.cup, load, self.tolerances)
+        if not self.tolerances:
+            return None
+        model = comparison[off_axis.name].model
+        return off_axis_uncertainty(file.joint, model, load, self.tolerances, file.aim.get("tilt"))
 
 
 def _verdict_model(comparison: Comparison) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from ..core.arrays import is_plain_number
-from ..core.checks import needs
 from ..problem import Layer, Material
 from ..problem.cup import Cup, Side
 from ..problem.presets import materials
@@ -19,9 +18,12 @@ from .joint_file import (
     LoadTable,
     MaterialName,
     MaterialTable,
+    ReportDetails,
+    ReportTable,
 )
 from .schema import Angle, Force, Length, PlainNumber, Stress, Text
 from .tables import write_table
+from .toml import toml_text
 
 Tables = dict[str, Any]
 
@@ -42,15 +44,10 @@ def toml_of(file: JointFile) -> str:
 
     Raises
     ------
-    ImportError
-        The writer of TOML is not installed.
     ValueError
         A joint of arrays.
     """
-    needs("app", "tomli_w")
-    import tomli_w
-
-    return tomli_w.dumps(write_table(_file_table(file), with_units=True))
+    return toml_text(write_table(_file_table(file), with_units=True))
 
 
 def cup_table(cup: Cup) -> Tables:
@@ -65,6 +62,7 @@ def _file_table(file: JointFile) -> JointFileTable:
         raise ValueError("a joint file holds one joint, and this one has arrays of numbers")
     return JointFileTable(
         name=Text(joint.name) if joint.name else None,
+        report=ReportTable(**_details(file.report)) if file.report != ReportDetails() else None,
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(
             ball_radius=Length(joint.ball_radius),
@@ -78,6 +76,11 @@ def _file_table(file: JointFile) -> JointFileTable:
         cup=_cup(file.cup) if file.cup != Cup() or file.cup.oriented else None,
         load=_load(file) if file.load or file.aim else None,
     )
+
+
+def _details(details: ReportDetails) -> dict[str, Text]:
+    """Return the keys of the head of a report."""
+    return {name: Text(value) for name, value in vars(details).items() if value}
 
 
 def _cup(cup: Cup) -> CupTable:

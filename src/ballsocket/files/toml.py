@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from math import isinf
 from pathlib import Path
 from typing import Any, TypeVar
@@ -81,6 +82,59 @@ def _content(raw: bytes, title: str, kind: str) -> Mapping[str, Any]:
     if not content:
         raise ValueError(f"{title} is empty: a {kind} file has tables, such as [joint]")
     return content
+
+
+def toml_text(content: Mapping[str, Any]) -> str:
+    """Write tables as the text of a TOML file: keys first, then tables, then lists of tables.
+
+    Values are texts, numbers, truth values, lists of them, tables, and lists of tables.
+
+    Examples
+    --------
+    >>> print(toml_text({"name": "cup", "joint": {"clearance": "0.1 mm"}}), end="")
+    name = "cup"
+    <BLANKLINE>
+    [joint]
+    clearance = "0.1 mm"
+    """
+    return "\n".join([*_table_lines(content, ()), ""]).lstrip("\n")
+
+
+def _table_lines(content: Mapping[str, Any], path: tuple[str, ...]) -> Iterator[str]:
+    """Yield the lines of a table without its head."""
+    tables = {key: value for key, value in content.items() if isinstance(value, Mapping)}
+    lists = {key: value for key, value in content.items() if _is_list_of_tables(value)}
+    for key, value in content.items():
+        if key not in tables and key not in lists:
+            yield f"{_key(key)} = {_value(value)}"
+    for key, table in tables.items():
+        yield from ("", f"[{'.'.join(map(_key, (*path, key)))}]")
+        yield from _table_lines(table, (*path, key))
+    for key, rows in lists.items():
+        for row in rows:
+            yield from ("", f"[[{'.'.join(map(_key, (*path, key)))}]]")
+            yield from _table_lines(row, (*path, key))
+
+
+def _is_list_of_tables(value: Any) -> bool:
+    """Return whether a value is a list that begins with a table."""
+    return isinstance(value, list | tuple) and bool(value) and isinstance(value[0], Mapping)
+
+
+def _key(name: str) -> str:
+    """Write a key; in quotes if it has other characters than letters, digits, hyphens and underscores."""
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _value(name)
+
+
+def _value(value: Any) -> str:
+    """Write a text, a number, a truth value or a list."""
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_value, value))}]"
+    return repr(float(value)) if isinstance(value, float) else str(value)
 
 
 def _number(text: str) -> float:

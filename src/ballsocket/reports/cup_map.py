@@ -15,6 +15,7 @@ from ..core.quantities import FIELD
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import unit_vectors
 from .style import INK, VERMILLION
+from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,13 +59,13 @@ def shown_pressure(contact: OffAxisContact, directions: Numbers) -> Numbers:
     return numpy.where(inside | (pressure > _CUT * shown_maximum(contact)), pressure, 0.0)
 
 
-def draw_map(axes: Axes, contact: OffAxisContact) -> ContourSet:
+def draw_map(axes: Axes, contact: OffAxisContact, units: Units = Units.SI) -> ContourSet:
     """Draw the pressure of one contact with rim, load and largest pressure; return the contours for a colour bar."""
     reach = float(contact.model.reach_of(contact.joint))
     _draw_bore(axes, contact, reach)
-    filled = _draw_pressure(axes, contact, reach)
+    filled = _draw_pressure(axes, contact, reach, units.unit_of(FIELD["pressure"]).factor)
     axes.plot(*on_page(numpy.vstack([contact.outline, contact.outline[:1]])), color=INK, linewidth=1.2)
-    _draw_marks(axes, contact)
+    _draw_marks(axes, contact, units)
     _draw_body(axes, contact, reach)
     half_width = 2 * sin(reach / 2) * _FRAME_RADIUS
     axes.set(aspect="equal", xlim=(-half_width, half_width), ylim=(-half_width, half_width))
@@ -90,15 +91,15 @@ def _draw_bore(axes: Axes, contact: OffAxisContact, reach: float) -> None:
         axes.plot(*_ring(contact.model.cup.rim), color=INK, linewidth=0.8, label="chamfer")
 
 
-def _draw_pressure(axes: Axes, contact: OffAxisContact, reach: float) -> Any:
-    """Draw filled contours of the pressure within the rim."""
+def _draw_pressure(axes: Axes, contact: OffAxisContact, reach: float, factor: float) -> Any:
+    """Draw filled contours of the pressure within the rim, times the factor of its unit."""
     from matplotlib.patches import Circle
     from matplotlib.ticker import MaxNLocator
 
     edge = 2 * sin(reach / 2)
     line = numpy.linspace(-edge, edge, _POINTS)
-    grid, maximum = numpy.meshgrid(line, line), shown_maximum(contact)
-    pressure = shown_pressure(contact, from_page(*grid, reach))
+    grid, maximum = numpy.meshgrid(line, line), factor * shown_maximum(contact)
+    pressure = factor * shown_pressure(contact, from_page(*grid, reach))
     ticks = MaxNLocator(_LEVELS).tick_values(0.0, maximum)
     levels = [1e-3 * maximum, *ticks[1:]]
     beyond = "neither" if numpy.isfinite(contact.max_pressure) else "max"
@@ -116,7 +117,7 @@ def from_page(right: Numbers, up: Numbers, reach: float) -> Numbers:
     return numpy.moveaxis(unit_vectors(polar, numpy.arctan2(right, up)), 0, -1)
 
 
-def _draw_marks(axes: Axes, contact: OffAxisContact) -> None:
+def _draw_marks(axes: Axes, contact: OffAxisContact, units: Units) -> None:
     """Mark the direction of the load and the location of the largest pressure."""
     if contact.force > 0:
         load = on_page(contact.force_vector / contact.force)
@@ -124,7 +125,7 @@ def _draw_marks(axes: Axes, contact: OffAxisContact) -> None:
         axes.plot(*load, "x", color=INK, markersize=7, markeredgewidth=1.6, linestyle="", label="load")
     if not numpy.isfinite(contact.max_pressure):
         return
-    label = f"largest pressure, {contact.max_pressure:.3g} {FIELD['pressure'].unit}"
+    label = f"largest pressure, {units.sentence(f'{contact.max_pressure:.3g} MPa')}"
     mark: Any = {"markersize": 8, "markerfacecolor": "none", "markeredgecolor": VERMILLION, "markeredgewidth": 2.0}
     axes.plot(*on_page(contact.max_pressure_at), "o", linestyle="", label=label, **mark)
 

@@ -17,6 +17,7 @@ from ..elasticity.off_axis.directions import unit_vectors
 from ..problem import Support
 from .cup_map import draw_map, shown_maximum, shown_pressure
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION
+from .unit_systems import Units
 
 if TYPE_CHECKING:
     import pyvista
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def cup_figure(contact: OffAxisContact) -> Figure:
+def cup_figure(contact: OffAxisContact, units: Units = Units.SI) -> Figure:
     """Draw the pressure on the cup, seen from its opening, beside the section in the plane of load and cup's axis.
 
     The map is an equal-area projection with the direction of inclination above. It shows rim, edge of the contact, load
@@ -34,6 +35,8 @@ def cup_figure(contact: OffAxisContact) -> Figure:
     ----------
     contact : OffAxisContact
         One contact under load, from `OffAxisContactModel.press`.
+    units : Units
+        Units of every number.
 
     Returns
     -------
@@ -44,20 +47,21 @@ def cup_figure(contact: OffAxisContact) -> Figure:
     ValueError
         More than one contact, a contact without load, or a failed one.
     """
-    from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+    from .notebook_figure import NotebookFigure
+
     _ = contact.single_state
-    figure = Figure(figsize=(11.0, 5.2), layout=ConstrainedLayoutEngine(rect=(0.0, 0.07, 1.0, 0.93)))
+    figure = NotebookFigure(figsize=(11.0, 5.2), layout=ConstrainedLayoutEngine(rect=(0.0, 0.09, 1.0, 0.91)))
     map_axes, section_axes = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
-    filled = draw_map(map_axes, contact)
+    filled = draw_map(map_axes, contact, units)
     bar = figure.colorbar(filled, ax=map_axes, shrink=0.8, pad=0.02, format="%g", ticks=list(filled.levels)[1:])
-    bar.set_label(FIELD["pressure"].label())
+    bar.set_label(FIELD["pressure"].label(units.unit_of(FIELD["pressure"])))
     map_axes.set_title("the cup seen from its opening", fontsize=10, pad=14)
-    draw_section(section_axes, contact)
+    draw_section(section_axes, contact, units)
     section_axes.set_title("section in the plane of load and cup's axis", fontsize=10, pad=14)
     figure.legend(loc="lower center", ncols=6, **LEGEND)
-    figure.suptitle(_title(contact), fontsize=10, parse_math=False)
+    figure.suptitle(units.sentence(_title(contact)), fontsize=10, parse_math=False)
     return figure
 
 
@@ -73,20 +77,32 @@ _BAND = 0.45  # height of the largest pressure, relative to the bore's radius
 _BACK = 0.08  # thickness of a rigid backing, relative to the bore's radius
 
 
-def draw_section(axes: Axes, contact: OffAxisContact) -> None:
+def draw_section(axes: Axes, contact: OffAxisContact, units: Units = Units.SI) -> None:
     """Draw a section with ball, liner and backing, the pressure as a band on the bore, the rim and the load."""
     joint, radius = contact.joint, float(contact.joint.socket_radius)
     outer = _draw_socket(axes, contact, radius)
     _draw_ball(axes, contact)
     _draw_pressure(axes, contact, radius)
-    _draw_margin(axes, contact, radius)
+    _draw_margin(axes, contact, radius, units)
     _draw_load(axes, contact, float(joint.ball_radius))
     axes.axvline(0.0, color="0.5", linewidth=0.6, linestyle=(0, (8, 3, 2, 3)), zorder=0.5)
     axes.set_aspect("equal")
     axes.set_xlim(-1.04 * outer, 1.04 * outer)
-    axes.set_xlabel("across the cup's axis [mm]")
-    axes.set_ylabel("along the cup's axis [mm]")
+    _label_lengths(axes, units)
     axes.spines[["top", "right"]].set_visible(False)
+
+
+def _label_lengths(axes: Axes, units: Units) -> None:
+    """Label the axes of a section, which is drawn in mm, in a unit of length."""
+    from matplotlib.ticker import FuncFormatter, MultipleLocator
+
+    unit = units.length_unit
+    axes.set_xlabel(f"across the cup's axis{unit.text_in_brackets}")
+    axes.set_ylabel(f"along the cup's axis{unit.text_in_brackets}")
+    if units is not Units.SI:
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(MultipleLocator(0.5 / unit.factor))
+            axis.set_major_formatter(FuncFormatter(lambda millimetres, _: f"{millimetres * unit.factor:.4g}"))
 
 
 def lateral(contact: OffAxisContact) -> Numbers:
@@ -150,14 +166,14 @@ def _draw_pressure(axes: Axes, contact: OffAxisContact, radius: float) -> None:
     axes.plot(*top[share > 0].T, color=BLUE, linewidth=1.5, label="pressure on the cut")
 
 
-def _draw_margin(axes: Axes, contact: OffAxisContact, radius: float) -> None:
+def _draw_margin(axes: Axes, contact: OffAxisContact, radius: float, units: Units) -> None:
     """Draw the arc of the bore from the edge of the contact to the rim, or mark the loaded rim."""
     end = float(contact.model.reach_of(contact.joint))
     if contact.edge_loaded:
         label = "contact at the rim" if isfinite(contact.max_pressure) else "contact at the rim: unbounded pressure"
         axes.plot(*_corner(radius, end).T, "s", color=VERMILLION, markersize=6, label=label)
         return
-    label = f"{contact.edge_distance:.1f} mm from contact to rim"
+    label = f"{units.short_length(float(contact.edge_distance))} from contact to rim"
     axes.plot(*_arc(radius, end - float(contact.edge_margin), end).T, color=ORANGE, linewidth=3.0, label=label)
 
 

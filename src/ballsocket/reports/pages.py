@@ -8,8 +8,12 @@ from __future__ import annotations
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..core.checks import needs
+from ..core.input_files import open_input
+from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..core.storage.pieces import fingerprint
 from .figure_files import figure_bytes
 
@@ -34,6 +38,105 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
+
+
+PAGE_FORMATS = (".html", ".pdf")
+"""Endings of the files that `write_page` writes."""
+
+_MAX_LOGO_SIZE = 1_000_000
+_LOGO_FORMATS = {".png": "png", ".svg": "svg+xml"}
+
+
+def check_page_path(path: Path) -> None:
+    """Check that a page can be written to a path.
+
+    Raises
+    ------
+    ValueError
+        Another ending than .html or .pdf, or a folder that does not exist.
+    ImportError
+        A .pdf, and the writer of PDF is not installed.
+    """
+    if path.suffix.lower() not in PAGE_FORMATS:
+        raise ValueError(f"report {str(path)!r} must end in {' or '.join(PAGE_FORMATS)}")
+    check_parent_folder(path)
+    if path.suffix.lower() == ".pdf":
+        _weasyprint()
+
+
+def write_page(page: str, path: Path, paper: str = "A4") -> None:
+    """Write a page as HTML, or printed as PDF, according to the ending of `path`.
+
+    Parameters
+    ----------
+    page : str
+        HTML that needs no other file.
+    path : Path
+    paper : str
+        Size of the sheets of a PDF: "A4" or "letter".
+
+    Raises
+    ------
+    ValueError, ImportError
+        As `check_page_path`.
+    OSError
+        The path cannot be written to.
+    """
+    check_page_path(path)
+    with write_atomically(path) as draft:
+        if path.suffix.lower() == ".pdf":
+            draft.write_bytes(pdf_of(page, paper))
+        else:
+            draft.write_text(page, encoding="utf-8")
+
+
+def pdf_of(page: str, paper: str = "A4") -> bytes:
+    """Print a page as PDF on sheets of a size; nothing outside the page is loaded."""
+    weasyprint = _weasyprint()
+    sheets = weasyprint.CSS(string=f"@page {{ size: {paper} }}")
+    inside = weasyprint.urls.URLFetcher(allowed_protocols=("data",))
+    document: bytes = weasyprint.HTML(string=page, url_fetcher=inside).write_pdf(stylesheets=[sheets])
+    return document
+
+
+def _weasyprint() -> Any:
+    """Import the writer of PDF.
+
+    Raises
+    ------
+    ImportError
+        It is not installed, or a library of the system that it needs.
+    """
+    needs("pdf", "weasyprint")
+    try:
+        import weasyprint
+    except OSError as error:
+        raise ImportError(
+            "WeasyPrint finds no Pango library here; install Pango, or write .html and print it from a browser"
+        ) from error
+    return weasyprint
+
+
+def logo_address(path: Path) -> str:
+    """Return a picture in a file as an address inside the page.
+
+    Raises
+    ------
+    ValueError
+        Another format than PNG and SVG, or a file that is too large.
+    OSError
+        The file cannot be read.
+    """
+    form = _LOGO_FORMATS.get(path.suffix.lower())
+    if form is None:
+        raise ValueError(f"logo {str(path)!r} must end in {' or '.join(_LOGO_FORMATS)}")
+    with open_input(path) as stream:
+        data = stream.read(_MAX_LOGO_SIZE + 1)
+    if len(data) > _MAX_LOGO_SIZE:
+        raise ValueError(f"logo {str(path)!r} is larger than {_MAX_LOGO_SIZE / 1e6:g} MB")
+    if not (data.startswith(b"\x89PNG\r\n") if form == "png" else b"<svg" in data):
+        raise ValueError(f"logo {str(path)!r} is no {form[:3].upper()} picture")
+    return data_address(data, form)
 
 
 def render_page(template: str, title: str, sections: Sections, **context: Any) -> str:

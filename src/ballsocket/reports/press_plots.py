@@ -70,9 +70,9 @@ def press_figure(
     matplotlib.figure.Figure
         Figure; curves outside the validity of their model are thin.
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure, axes = Figure(figsize=(10.0, 4.6), layout="constrained"), force_axes(units)
+    figure, axes = NotebookFigure(figsize=(10.0, 4.6), layout="constrained"), force_axes(units)
     pressure = units.unit_of(FIELD["pressure"])
     pressure_axes, force_panel = figure.subplots(1, 2)
     for name, contact in contacts.items():
@@ -130,7 +130,7 @@ MAX_CURVES = 7
 """Curves that are distinguishable in one figure."""
 
 
-def plot(contacts: Mapping[str, Contact]) -> Figure:
+def plot(contacts: Mapping[str, Contact], units: Units = Units.SI) -> Figure:
     """Draw single contacts: the pressure over the angle, beside the force over the indentation.
 
     A contact off the cup's axis that is alone is drawn in its cup. Of many models at most `MAX_CURVES` are drawn, and
@@ -151,10 +151,10 @@ def plot(contacts: Mapping[str, Contact]) -> Figure:
         raise ValueError("there is nothing to draw: no model has an answer")
     single = next(iter(shown.values())) if len(shown) == 1 else None
     if isinstance(single, OffAxisContact) and single.max_pressure > 0:
-        return cup_figure(single)
+        return cup_figure(single, units)
     chosen = select_curves(shown)
     models: Any = {name: contact.model for name, contact in chosen.items()}
-    return press_figure(chosen, force_curves(chosen, models), note=_omission_note(shown, chosen))
+    return press_figure(chosen, force_curves(chosen, models), note=_omission_note(shown, chosen), units=units)
 
 
 def select_curves(contacts: Mapping[str, Contact]) -> dict[str, Contact]:
@@ -189,9 +189,9 @@ _DASHES = ("-", "--", "-.", ":")
 
 def _axes(count: int = 1, size: tuple[float, float] = (6.4, 4.2)) -> tuple[Figure, Any]:
     """Create a figure with axes side by side."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=size, layout="constrained")
+    figure = NotebookFigure(figsize=size, layout="constrained")
     panels = figure.subplots(1, count, squeeze=False)[0]
     for axes in panels:
         axes.spines[["top", "right"]].set_visible(False)

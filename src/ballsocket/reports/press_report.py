@@ -1,36 +1,169 @@
-"""Pages of a joint and of a press: drawing, inputs, verdict, results, tolerances, sources."""
+"""Pages of a joint, of a press, and of several designs side by side."""
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import date
 from hashlib import sha256
-from math import inf
-from typing import Any
+from math import degrees, inf, isfinite
+from pathlib import Path
 
 from ..compare import Comparison, successful_contacts
 from ..contact import Contact
 from ..contact.describe import number_text
 from ..contact.verdict import assess_strength
-from ..core.quantities import CONTACT, CUP, MATERIAL, STRESS_LIMITS
+from ..core.quantities import CONTACT, CUP, DERIVED, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..files.joint_file import JointFile
-from ..files.joint_toml import tables_of
+from ..elasticity.off_axis.directions import polar_angle
+from ..files.joint_file import JointFile, ReportDetails
+from ..files.joint_toml import toml_of
 from ..problem import Material
 from ..problem.cup import Cup
 from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
+from ..studies.task import EDGE_DISTANCE
 from . import press_plots
-from .pages import Sections, render_page, render_part, svg_address, trusted_html
+from .pages import logo_address, render_page, render_part, svg_address, trusted_html
 from .section_plots import joint_section
 from .unit_systems import Units
+
+_TEMPLATE = "press.html"
+_VERDICT_STYLES = {True: "holds", False: "fails", None: "nearly"}
+"""Style of a verdict by whether the liner bears the load; None if that is unknown."""
+
+_MAX_COLUMNS = 3
+"""Designs beside each other in one table, which fits a printed page."""
+
+_MAX_MODELS = 5
+"""Models beside each other in one table."""
+
+TitledHtml = dict[str, tuple[str, str]]
+"""Title and HTML of each section by its id."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PressedDesign:
+    """Design of a report: a joint file with its results.
+
+    Attributes
+    ----------
+    comparison : Comparison
+        Contacts of one joint under one load.
+    file : JointFile
+        Joint with its cup and load.
+    leading : str
+        Name of the model whose contact gets the verdict.
+    uncertainty : LocalUncertainty or None
+        Sensitivity of the results to each number and to the tolerances.
+    command : str
+        Options of the command line that compute the results from the joint file.
+    """
+
+    comparison: Comparison
+    file: JointFile
+    leading: str
+    uncertainty: LocalUncertainty | None = None
+    command: str = ""
+
+    @property
+    def contact(self) -> Contact:
+        """Contact that gets the verdict."""
+        return self.comparison[self.leading]
+
+    @property
+    def title(self) -> str:
+        """Name of the joint, or a general one."""
+        return self.file.joint.name or "A ball in its socket"
+
+
+def press_report(
+    comparison: Comparison,
+    file: JointFile,
+    leading: str,
+    units: Units = Units.SI,
+    surroundings: LocalUncertainty | None = None,
+    day: date | None = None,
+    command: str = "",
+) -> str:
+    """Return the page of single contacts of one joint as HTML.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    file : JointFile
+        Joint with its cup, load and head of the report.
+    leading : str
+        Name of the model whose contact gets the verdict; the exact one if there is one.
+    units : Units
+        Units of every number.
+    surroundings : LocalUncertainty, optional
+        Sensitivity of the results to each number and to the tolerances.
+    day : date, optional
+        Date of the page; by default today.
+    command : str
+        Options of the command line that compute the results from the joint file.
+
+    Returns
+    -------
+    str
+        HTML that needs no other file.
+    """
+    design = PressedDesign(comparison=comparison, file=file, leading=leading, uncertainty=surroundings, command=command)
+    return designs_report([design], units, day)
+
+
+def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, day: date | None = None) -> str:
+    """Return the page of one design, or of several with a table that compares them, as HTML.
+
+    The head of the page is that of the first design that has one.
+
+    Raises
+    ------
+    ValueError
+        A logo that cannot be shown.
+    OSError
+        A logo that cannot be read.
+    """
+    details = next((design.file.report for design in designs if design.file.report != ReportDetails()), ReportDetails())
+    if len(designs) == 1:
+        (design,) = designs
+        return _page(design.title, _design_sections(design, units), details, day, _lede(design, units))
+    sections: TitledHtml = {"comparison": ("Comparison", _comparison(designs, units))}
+    for number, design in enumerate(designs, 1):
+        parts = [(title, html) for title, html in _design_sections(design, units).values()]
+        html = render_part(_TEMPLATE, "design", trusted_html(_lede(design, units)), _trusted(parts))
+        sections[f"design-{number}"] = (design.title, html)
+    return _page(f"{len(designs)} designs", sections, details, day)
+
+
+def _lede(design: PressedDesign, units: Units) -> str:
+    """Return the verdicts on a design as HTML."""
+    return press_lede(design.contact, units, design.uncertainty)
+
+
+def _trusted(parts: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
+    """Mark the HTML of titled parts as rendered."""
+    return [(title, trusted_html(html)) for title, html in parts]
+
+
+def _page(title: str, sections: TitledHtml, details: ReportDetails, day: date | None, lede: str = "") -> str:
+    """Return a page with the head of a report."""
+    rows = [(name, getattr(details, name)) for name in ("customer", "project", "author") if getattr(details, name)]
+    return render_page(
+        "joint_report.html",
+        title,
+        sections,
+        lede=trusted_html(lede),
+        logo=logo_address(Path(details.logo)) if details.logo else "",
+        details=[*rows, ("date", (day or date.today()).isoformat())],
+    )
 
 
 def joint_report(
     file: JointFile,
-    sections: Sections,
+    sections: Mapping[str, tuple[str, str]],
     lede: str = "",
     units: Units = Units.SI,
     contact: Contact | None = None,
@@ -61,29 +194,38 @@ def joint_report(
     str
         HTML that needs no other file.
     """
+    everything = _joint_sections(file, dict(sections), units, contact)
+    return _page(title or file.joint.name or "A ball in its socket", everything, file.report, day, lede)
+
+
+def _joint_sections(
+    file: JointFile, sections: TitledHtml, units: Units, contact: Contact | None = None, command: str = ""
+) -> TitledHtml:
+    """Return the sections of a joint: drawing, inputs, the given sections, and the joint file."""
     drawn_contact = None if contact is None or contact.status.failed or isinstance(contact, OffAxisContact) else contact
-    all_sections = {
-        "drawing": ("Drawing", None),
-        "inputs": ("Inputs", None),
+    drawing = svg_address(joint_section(file.joint, file.cup, drawn_contact, units))
+    text = toml_of(file)
+    checksum = sha256(text.encode()).hexdigest()
+    return {
+        "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.joint(file.joint))),
+        "inputs": ("Inputs", render_part(_TEMPLATE, "inputs", list(_inputs(file, units)))),
         **sections,
-        "origin": ("Joint file", None),
+        "origin": ("Joint file", render_part(_TEMPLATE, "origin", text, checksum, command)),
     }
-    text = json.dumps(_finite(tables_of(file)), indent=1, ensure_ascii=False)
-    return render_page(
-        "joint_report.html",
-        title or file.joint.name or "A ball in its socket",
-        all_sections,
-        lede=trusted_html(lede),
-        joint=str(file.joint),
-        drawing=svg_address(joint_section(file.joint, file.cup, drawn_contact, units)),
-        inputs=_inputs(file, units),
-        day=(day or date.today()).isoformat(),
-        checksum=sha256(text.encode()).hexdigest(),
-        file=text,
-    )
 
 
-def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
+def _design_sections(design: PressedDesign, units: Units) -> TitledHtml:
+    """Return all sections of a design."""
+    contact = design.contact
+    answers, *more = press_sections(design.comparison, units, design.uncertainty).items()
+    drawn: TitledHtml = {"figures": ("Pressure and force", _figures(design.comparison, contact, units))}
+    if isinstance(contact, OffAxisContact) and not contact.status.failed:
+        rows = list(_position(contact, units))
+        drawn["position"] = ("Position of the contact in the cup", render_part(_TEMPLATE, "position", rows))
+    return _joint_sections(design.file, dict([answers, *drawn.items(), *more]), units, contact, design.command)
+
+
+def _inputs(file: JointFile, units: Units) -> Iterator[tuple[str, str, str]]:
     """Yield title, value and source of each input."""
     joint = file.joint
     yield "head diameter", units.length(2 * float(joint.ball_radius)), joint.source
@@ -105,9 +247,16 @@ def _inputs(file: JointFile, units: Units) -> Iterable[tuple[str, str, str]]:
         if name == "tilt":
             yield PARAMETERS[name].title, units.text_of(PARAMETERS[name], float(angle)), "between load and cup's axis"
         else:
-            yield name, ", ".join(f"{part:.4g}" for part in angle), "components to the right, to the front, up"
+            parts = ", ".join(f"{part:.4g}" for part in angle)
+            yield "direction of the load", parts, f"{_DIRECTION}: components to the right, to the front and up"
+    if not file.aim and file.cup.oriented:
+        yield "direction of the load", "0, 0, 1", f"{_DIRECTION}: straight up"
     for name, value in file.load.items():
         yield PARAMETERS[name].title, units.text_of(PARAMETERS[name], float(value)), ""
+
+
+_DIRECTION = "in which the ball pushes into the cup, in the body"
+"""Meaning of the direction of a load."""
 
 
 def _material(material: Material, units: Units) -> str:
@@ -118,74 +267,98 @@ def _material(material: Material, units: Units) -> str:
     return f"{material.name or 'a material'}: {', '.join(numbers)}"
 
 
-def _cup(cup: Cup, units: Units) -> Iterable[tuple[str, str, str]]:
+_ORIENTATION = ("inclination", "anteversion")
+"""Angles of a cup in the body."""
+
+
+def _cup(cup: Cup, units: Units) -> Iterator[tuple[str, str, str]]:
     """Yield title and value of each dimension of the cup."""
     for name, quantity in CUP.items():
+        if name in _ORIENTATION and not cup.oriented:
+            continue
         number = float(getattr(cup, name))
         yield quantity.title, units.length(number) if name == "chamfer" else units.text_of(quantity, number), ""
     yield "liner on its backing", cup.interface.value, ""
 
 
-def _finite(tables: Any) -> Any:
-    """Replace infinity by the text "inf", which JSON lacks and a joint file accepts."""
-    if isinstance(tables, dict):
-        return {name: _finite(value) for name, value in tables.items()}
-    if isinstance(tables, list):
-        return [_finite(value) for value in tables]
-    return "inf" if tables == inf else tables
-
-
-_TEMPLATE = "press.html"
-_VERDICT_STYLES = {True: "holds", False: "fails", None: "nearly"}
-"""Style of a verdict by whether the liner bears the load; None if that is unknown."""
-
-
-def press_report(
-    comparison: Comparison,
-    file: JointFile,
-    leading: str,
-    units: Units = Units.SI,
-    surroundings: LocalUncertainty | None = None,
-    day: date | None = None,
-) -> str:
-    """Return the page of single contacts of one joint as HTML.
-
-    Parameters
-    ----------
-    comparison : Comparison
-    file : JointFile
-        Joint with its cup and load.
-    leading : str
-        Name of the model whose contact gets the verdict; the exact one if there is one.
-    units : Units
-        Units of every number.
-    surroundings : LocalUncertainty, optional
-        Sensitivity of the results to each number and to the tolerances.
-    day : date, optional
-        Date of the page; by default today.
-
-    Returns
-    -------
-    str
-        HTML that needs no other file.
-    """
-    contact = comparison[leading]
-    answers, *more = press_sections(comparison, units, surroundings).items()
-    drawn = ("figures", ("Pressure and force", _figures(comparison, contact)))
-    return joint_report(file, dict([answers, drawn, *more]), press_lede(contact, units), units, contact, day)
-
-
-def press_lede(contact: Contact, units: Units = Units.SI) -> str:
-    """Return the largest pressure of a contact with the verdict in words, as HTML."""
+def press_lede(contact: Contact, units: Units = Units.SI, uncertainty: LocalUncertainty | None = None) -> str:
+    """Return the largest pressure of a contact with the verdicts on strength and rim in words, as HTML."""
     verdict = assess_strength(contact)
     pressure, load = (_number(contact, name, units) for name in ("max_pressure", "force"))
-    model, kind = contact.model.name, _VERDICT_STYLES[verdict.bears]
-    return render_part(_TEMPLATE, "lede", pressure, load, model, verdict.words, kind)
+    verdicts = [
+        (units.sentence(verdict.words), _VERDICT_STYLES[verdict.bears]),
+        *_rim_verdict(contact, units, uncertainty),
+    ]
+    return render_part(_TEMPLATE, "lede", pressure, load, contact.model.name, verdicts)
+
+
+def _rim_verdict(contact: Contact, units: Units, uncertainty: LocalUncertainty | None = None) -> list[tuple[str, str]]:
+    """Return the verdict on the rim with its style; empty for a contact along the axis."""
+    if not isinstance(contact, OffAxisContact) or contact.status.failed:
+        return []
+    distance = units.short_length(abs(float(contact.edge_distance)))
+    if contact.edge_loaded:
+        return [(f"edge loading: the contact reaches the rim, which cuts off {distance} of it", "fails")]
+    verdict = f"no edge loading: the contact ends {distance} from the rim (CPER)"
+    least = uncertainty.band.get(EDGE_DISTANCE, (inf,))[0] if uncertainty else inf
+    if least > 0:
+        return [(verdict, "holds")]
+    return [(verdict, "holds"), ("edge loading is possible within the tolerances", "nearly")]
+
+
+def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str, str]]:
+    """Yield title, value and meaning of the numbers that locate a contact in its cup."""
+    edge, centre = (units.short_length(float(value)) for value in (contact.edge_distance, contact.rim_distance))
+    beyond = "; below 0 the rim cuts the contact off" if contact.edge_loaded else ""
+    yield "edge distance (CPER)", edge, f"contact patch edge to rim: shortest arc on the bore{beyond}"
+    yield "contact patch centre to rim (CPCR)", centre, "arc on the bore from the direction of the load to the rim"
+    yield "load from the cup's axis", f"{degrees(float(contact.tilt)):.3g}°", "angle between load and axis"
+    if isfinite(contact.max_pressure):
+        angle = degrees(float(polar_angle(contact.max_pressure_at)))
+        yield "largest pressure from the cup's axis", f"{angle:.3g}°", "angle at the centre of the bore"
+    force = (units.text_of(CONTACT["force"], float(part)) for part in contact.force_vector)
+    yield "force of the ball on the cup", ", ".join(force), "components towards the rim, across, towards the dome"
+
+
+def _comparison(designs: Sequence[PressedDesign], units: Units) -> str:
+    """Return tables of the designs beside each other as HTML."""
+    tables = []
+    for start in range(0, len(designs), _MAX_COLUMNS):
+        group = designs[start : start + _MAX_COLUMNS]
+        columns = [list(_summary(design, units)) for design in group]
+        rows = [(name, *(column[index][1] for column in columns)) for index, (name, _) in enumerate(columns[0])]
+        tables.append((("", *(design.title for design in group)), rows))
+    return render_part(_TEMPLATE, "comparison", tables)
+
+
+def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
+    """Yield name and value of the numbers that designs are compared by; the same names for every design."""
+    file, contact = design.file, design.contact
+    joint, verdict = file.joint, assess_strength(design.contact)
+    yield "head diameter", units.length(2 * float(joint.ball_radius))
+    yield "diametral clearance", units.length(2 * float(joint.clearance))
+    layers = [(joint.liner_thickness, joint.liner), *((layer.thickness, layer.material) for layer in joint.backing)]
+    parts = (f"{units.length(float(thickness))} {material.name or 'liner'}" for thickness, material in layers)
+    yield "liner and backing", " on ".join(parts)
+    yield "ball", "rigid" if joint.ball is None else joint.ball.name or "elastic"
+    angles = [f"{degrees(float(getattr(file.cup, name))):.3g}° {name}" for name in _ORIENTATION if file.cup.oriented]
+    angles += [f"load {degrees(file.aim['tilt']):.3g}° from its axis"] if "tilt" in file.aim else []
+    yield "cup", ", ".join(angles) or "load along its axis"
+    yield "load", ", ".join(units.text_of(PARAMETERS[name], float(value)) for name, value in file.load.items())
+    yield "model", contact.model.name
+    for name in ("max_pressure", "half_angle", "indentation", "area"):
+        yield CONTACT[name].title, _number(contact, name, units)
+    located = isinstance(contact, OffAxisContact) and not contact.status.failed
+    yield "edge distance (CPER)", units.short_length(float(getattr(contact, EDGE_DISTANCE))) if located else "-"
+    ratio = number_text(contact.utilisation, 3, "-") if joint.strengths() else "-"
+    yield f"{QUANTITIES['utilisation'].title} {QUANTITIES['utilisation'].symbol}", ratio
+    rim = (text for text, _ in _rim_verdict(contact, units, design.uncertainty))
+    yield "verdict", "; ".join([units.sentence(verdict.words), *rim])
 
 
 def press_sections(
     comparison: Comparison, units: Units = Units.SI, surroundings: LocalUncertainty | None = None
-) -> dict[str, tuple[str, str]]:
+) -> TitledHtml:
     """Return the sections of a press without its figures: title and HTML by id."""
     return {
         "answers": ("Results", _results(comparison, units)),
@@ -197,30 +370,35 @@ def press_sections(
 def _number(contact: Contact, name: str, units: Units) -> str:
     """Write a quantity of a contact with its unit."""
     column = next(column for column in units.columns if column.attribute == name)
-    return f"{number_text(column.values_of(contact), 4, 'no result')} {column.unit}"
+    gap = "" if column.unit == "°" else " "
+    return f"{number_text(column.values_of(contact), 4, 'no result')}{gap}{column.unit}"
 
 
 def _results(comparison: Comparison, units: Units) -> str:
-    """Return the table of results by model with the notes, as HTML."""
-    columns = units.columns
-    rows = [
-        (
-            name,
-            *(number_text(column.values_of(contact), 4, "-") for column in columns),
-            "yes" if contact.valid else "no",
-        )
-        for name, contact in comparison.items()
-    ]
-    heads = ("model", *(column.head for column in columns), "valid")
-    symbols = ", ".join(f"{column.symbol} {column.title}" for column in columns)
-    return render_part(_TEMPLATE, "answers", heads, rows, symbols, comparison.notes())
+    """Return tables of the results, with the models as columns, and the notes, as HTML."""
+    columns = units.columns_of(comparison.joint)
+    names = list(comparison)
+    tables = []
+    for start in range(0, len(names), _MAX_MODELS):
+        contacts = [comparison[name] for name in names[start : start + _MAX_MODELS]]
+        rows = [
+            (
+                f"{column.title} {column.symbol}",
+                *(number_text(column.values_of(contact), 4, "-") for contact in contacts),
+                column.unit,
+            )
+            for column in columns
+        ]
+        valid = ("valid", *("yes" if contact.valid else "no" for contact in contacts), "")
+        tables.append((("", *names[start : start + _MAX_MODELS], "unit"), [*rows, valid]))
+    return render_part(_TEMPLATE, "answers", tables, [units.sentence(note) for note in comparison.notes()])
 
 
-def _figures(comparison: Comparison, leading: Contact) -> str:
+def _figures(comparison: Comparison, leading: Contact, units: Units) -> str:
     """Return the figure of the curves as HTML; for a contact off the cup's axis the pressure map of the cup."""
     contacts = {leading.model.name: leading} if isinstance(leading, OffAxisContact) else successful_contacts(comparison)
     drawable = contacts and not leading.status.failed
-    return render_part(_TEMPLATE, "figures", svg_address(press_plots.plot(contacts)) if drawable else None)
+    return render_part(_TEMPLATE, "figures", svg_address(press_plots.plot(contacts, units)) if drawable else None)
 
 
 def _tolerances(surroundings: LocalUncertainty | None, units: Units) -> str:
@@ -233,11 +411,19 @@ def _tolerances(surroundings: LocalUncertainty | None, units: Units) -> str:
         for name, changes in surroundings.changes.items()
     ]
     heads = ("change in % if 1 % is added to the", *(PARAMETERS[name].title for name in names))
+    quantities = {**CONTACT, **DERIVED}
     ends = [
-        (CONTACT[name].title, *(units.text_of(CONTACT[name], end) for end in band))
-        for name, band in surroundings.band.items()
+        (quantities[name].title, *(_end(name, end, units) for end in band)) for name, band in surroundings.band.items()
     ]
-    return render_part(_TEMPLATE, "tolerances", {"heads": heads, "rows": rows}, ends)
+    method = f"From {surroundings.presses} presses by {surroundings.model}: a quadratic of each tolerance."
+    return render_part(
+        _TEMPLATE, "tolerances", {"heads": heads, "rows": rows}, ends, method if surroundings.presses else ""
+    )
+
+
+def _end(name: str, value: float, units: Units) -> str:
+    """Write the end of a band."""
+    return units.short_length(value) if name in DERIVED else units.text_of(CONTACT[name], value)
 
 
 def _sources(comparison: Comparison) -> str:

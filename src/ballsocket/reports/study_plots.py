@@ -12,7 +12,7 @@ import numpy
 from ..core.deprecation import renamed_arguments
 from ..core.quantities import QUANTITIES
 from ..studies.limits import Limit, allowed, margin_on_plane
-from .style import BLUE, INK, LEGEND, ORANGE, finish
+from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish
 
 if TYPE_CHECKING:
     import xarray
@@ -49,11 +49,11 @@ def design_map(
     ValueError
         A study without exactly two axes of more than one value.
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     names = [name for name in quantities if name in study.data_vars]
     across, up = _two_axes(study)
-    figure = Figure(figsize=(4.4 * len(names) + 0.4, 4.4), layout="constrained")
+    figure = NotebookFigure(figsize=(4.4 * len(names) + 0.4, 4.4), layout="constrained")
     answered, trusted = (condition.transpose(up, across).values for condition in (allowed(study, ()), study.valid))
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
         values = read(study, name).transpose(up, across).values
@@ -162,13 +162,13 @@ def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressur
     ValueError
         A study without samples, or without exactly one more axis.
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     axis_names = [str(dim) for dim in study.sizes if dim != "sample"]
     if "sample" not in study.sizes or len(axis_names) != 1:
         raise ValueError("bands need samples and one more axis, such as the force")
     names = [name for name in quantities if name in study.data_vars]
-    figure = Figure(figsize=(5.0 * len(names), 4.0), layout="constrained")
+    figure = NotebookFigure(figsize=(5.0 * len(names), 4.0), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
         values, x = read(study, name), read(study, axis_names[0]).values
         for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
@@ -192,9 +192,9 @@ def front_figure(
     minimise : tuple of two str
     limits : sequence of Limit
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=(6.4, 4.6), layout="constrained")
+    figure = NotebookFigure(figsize=(6.4, 4.6), layout="constrained")
     axes = figure.subplots()
     good = allowed(study, limits)
     first, second = (read(study, name).where(good).values.ravel() for name in minimise)
@@ -206,36 +206,45 @@ def front_figure(
     return figure
 
 
+_INDEX_STYLES = {
+    "first_order": ("first order", BLUE, ""),
+    "total_order": ("total order", ORANGE, "//"),
+    "shapley": ("Shapley effect", VERMILLION, ".."),
+}
+"""Label, colour and hatch of the bars for each kind of index."""
+
+
 @renamed_arguments(found="indices")
 def sensitivity_figure(indices: xarray.Dataset) -> Figure:
-    """Draw first and total Sobol indices of every quantity with their intervals."""
-    from matplotlib.figure import Figure
+    """Draw first and total indices, and Shapley effects, of every quantity with their intervals."""
+    from .notebook_figure import NotebookFigure
 
     quantities, parameters = indices.quantity.values.tolist(), indices.parameter.values.tolist()
-    figure = Figure(figsize=(3.4 * len(quantities) + 1.2, 0.55 * len(parameters) + 1.8), layout="constrained")
+    figure = NotebookFigure(figsize=(3.4 * len(quantities) + 1.2, 0.55 * len(parameters) + 1.8), layout="constrained")
     rows = numpy.arange(len(parameters))
     for axes, quantity in zip(
         figure.subplots(1, len(quantities), squeeze=False, sharey=True).ravel(), quantities, strict=True
     ):
-        for order, offset, colour in (("first", -0.17, BLUE), ("total", 0.17, ORANGE)):
-            part = indices.sel(quantity=quantity)
-            values, low, high = (part[f"{order}_order{end}"].values for end in ("", "_low", "_high"))
-            error = numpy.clip([values - low, high - values], 0.0, None)
-            hatch = "" if order == "first" else "//"
+        part = indices.sel(quantity=quantity)
+        orders = [order for order in _INDEX_STYLES if order in indices]
+        height = 0.64 / len(orders)
+        for position, order in enumerate(orders):
+            values, (label, colour, hatch) = part[order].values, _INDEX_STYLES[order]
+            ends = [part[f"{order}{end}"].values for end in ("_low", "_high") if f"{order}{end}" in part]
             axes.barh(
-                rows + offset,
+                rows + (position - (len(orders) - 1) / 2) * (height + 0.02),
                 values,
-                0.32,
-                xerr=error,
+                height,
+                xerr=numpy.clip([values - ends[0], ends[1] - values], 0.0, None) if ends else None,
                 color=colour,
                 hatch=hatch,
                 edgecolor="white",
-                label=f"{order} order",
+                label=label,
             )
         axes.set_yticks(rows, [QUANTITIES[name].title for name in parameters])
         axes.set_xlim(0.0, 1.05)
         finish(axes, "share of the variance", "")
         axes.set_title(QUANTITIES[quantity].title, fontsize=10)
     figure.axes[0].invert_yaxis()
-    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
     return figure

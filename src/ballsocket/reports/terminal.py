@@ -17,7 +17,7 @@ from rich.text import Text
 from ..catalogue import reference
 from ..compare import Comparison, relative_deviation
 from ..contact import Contact
-from ..contact.describe import COLUMNS, UTILISATION, Column, number_text
+from ..contact.describe import COLUMNS, Column, number_text
 from ..core.quantities import CONTACT, HEADLINE
 from .unit_systems import Units
 
@@ -31,10 +31,7 @@ _DROPPED = (
     *(name for name in reversed(tuple(CONTACT)) if name not in (*_DROPPED_LAST, "max_pressure")),
     *_DROPPED_LAST,
 )
-"""Columns that a narrow terminal omits, in this order; never the largest pressure, nor the utilisation."""
-
-_SHOWN_UTILISATION = 0.5
-"""Utilisation from which its column is shown."""
+"""Columns that a narrow terminal omits, in this order; never the largest pressure, nor ratios of stress to strength."""
 
 
 def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Units = Units.SI) -> None:
@@ -43,11 +40,11 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
     Bars beside the numbers show the pressure from the pole to 90 degrees. Symbols, remarks and notes follow below.
     """
     terminal, ordered = console(), _exact_first(comparison)
-    print_folded(terminal, str(ordered.joint), "bold")
+    print_folded(terminal, units.joint(ordered.joint), "bold")
     table, shown = _fitting_table(ordered, terminal, units)
     terminal.print(table)
     for line in (_symbols_text(ordered, shown), *_omitted_text(ordered, shown, units), *remarks, *ordered.notes()):
-        print_folded(terminal, line, "dim")
+        print_folded(terminal, units.sentence(line), "dim")
 
 
 def _exact_first(comparison: Comparison) -> Comparison:
@@ -67,8 +64,9 @@ def _symbols_text(comparison: Comparison, columns: Sequence[Column]) -> str:
 
 def _omitted_text(comparison: Comparison, shown: Sequence[Column], units: Units) -> tuple[str, ...]:
     """Name the columns that do not fit the width of the terminal."""
-    hidden = (*_pole_columns(comparison), *_unimportant_utilisation(comparison))
-    omitted = [column for column in units.columns if column.attribute not in hidden and column not in shown]
+    hidden = _pole_columns(comparison)
+    columns = units.columns_of(comparison.joint)
+    omitted = [column for column in columns if column.attribute not in hidden and column not in shown]
     text = ", ".join(f"{column.symbol} {column.title}" for column in omitted)
     return (f"not shown, the terminal is too narrow: {text}",) if omitted else ()
 
@@ -153,10 +151,10 @@ def _fitting_table(comparison: Comparison, console: Console, units: Units) -> tu
     """Return a table with as many columns as fit the width of the terminal, and these columns."""
     unbounded = console.options.update(width=10_000)
     bars = _BARS if console.encoding.startswith("utf") else _BARS_ASCII
-    omitted = (*_pole_columns(comparison), *_unimportant_utilisation(comparison))
+    omitted = _pole_columns(comparison)
     for count in range(len(_DROPPED) + 1):
         dropped = (*omitted, *_DROPPED[:count])
-        columns = [column for column in units.columns if column.attribute not in dropped]
+        columns = [column for column in units.columns_of(comparison.joint) if column.attribute not in dropped]
         table = _press_table(comparison, columns, "" if _PROFILE in dropped else bars)
         if console.measure(table, options=unbounded).maximum <= console.width:
             break
@@ -167,12 +165,6 @@ def _pole_columns(comparison: Comparison) -> tuple[str, ...]:
     """Return the columns to omit if every valid pressure is largest at the pole."""
     off_pole = any(contact.valid and contact.max_pressure_angle > 0 for contact in comparison.values())
     return () if off_pole else _OFF_THE_POLE
-
-
-def _unimportant_utilisation(comparison: Comparison) -> tuple[str, ...]:
-    """Return the utilisation column if no model comes near the limit, to be omitted."""
-    known = (contact for contact in comparison.values() if contact.utilisation_bounds[1] > _SHOWN_UTILISATION)
-    return () if any(contact.utilisation > _SHOWN_UTILISATION for contact in known) else (UTILISATION.attribute,)
 
 
 def _press_table(comparison: Comparison, columns: Sequence[Column], bars: str) -> Table:
@@ -211,7 +203,7 @@ def _percents(contact: Contact, exact: Contact, columns: Sequence[Column]) -> li
 def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequence[str]) -> list[Text]:
     """Return the cells of one contact."""
     style = "" if contact.valid else "yellow"
-    numbers = [number_text(column.values_of(contact), 4, "-") for column in columns]
+    numbers = [number_text(column.values_of(contact), 4 if column.unit else 3, "-") for column in columns]
     bars = [Text(f" {bar}", style=style or "cyan") for bar in profile]
     mark = Text("yes", style="green") if contact.valid else Text("no", style="yellow")
     return [*(Text(text, style=style) for text in (name, *numbers)), *bars, mark]

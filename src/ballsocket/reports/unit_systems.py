@@ -1,14 +1,42 @@
-"""Systems of units for tables and figures of contacts."""
+"""Systems of units for tables, figures and sentences: mm, N and MPa, or inches and pounds."""
 
 from __future__ import annotations
 
+import re
 from enum import StrEnum
-from math import inf, isinf
+from functools import reduce
+from math import inf, isinf, nan
 from types import MappingProxyType
+from typing import Any
 
 from ..contact.describe import UTILISATION, Column
 from ..core.kinds import Kind, Unit
 from ..core.quantities import CONTACT, Quantity
+from ..problem import Joint, elementwise_maximum
+
+
+class PressureRatioColumn(Column):
+    """Column of the largest pressure over the allowable pressure, the larger of liner and ball."""
+
+    def values_of(self, contact: Any) -> Any:
+        """Return the ratios of a contact; NaN without an allowable pressure."""
+        materials = (contact.joint.liner, contact.joint.ball)
+        allowed = [material.allowable_pressure for material in materials if material is not None]
+        ratios = [contact.max_pressure / pressure for pressure in allowed if pressure is not None]
+        return reduce(elementwise_maximum, ratios) if ratios else nan * contact.max_pressure
+
+
+PRESSURE_RATIO = PressureRatioColumn(
+    Quantity(
+        "pressure_ratio",
+        "pmax/pa",
+        "largest over allowable pressure",
+        Kind.NUMBER,
+        "Largest pressure over the allowable pressure, the larger of liner and ball.",
+    ),
+    Unit(""),
+)
+"""Column of the pressure over the allowable pressure, printed if an allowable pressure is known."""
 
 _LARGE = 1e4
 """Value from which numbers are written without an exponent."""
@@ -29,6 +57,37 @@ _IMPERIAL = MappingProxyType(
 )
 """Imperial units by kind; a mil is a thousandth of an inch."""
 
+_INCHES = Unit("in", 1 / _INCH)
+
+_WRITTEN_UNITS = MappingProxyType(
+    {
+        "mm³/(N m)": Unit("in³/(lbf in)", _INCH**-3 * _POUND * 1e-3 * _INCH),
+        "mm^3/(N m)": Unit("in^3/(lbf in)", _INCH**-3 * _POUND * 1e-3 * _INCH),
+        "MPa/mm": Unit("ksi/in", 1e-3 * _PSI * _INCH),
+        "kN/mm": Unit("kip/in", _INCH / _POUND),
+        "N/mm": Unit("lbf/in", _INCH / _POUND),
+        "mm/s": Unit("in/s", 1 / _INCH),
+        "N mm": Unit("lbf in", 1 / (_INCH * _POUND)),
+        "N m": Unit("lbf in", 1e3 / (_INCH * _POUND)),
+        "mm³": Unit("in³", _INCH**-3),
+        "mm²": Unit("in²", _INCH**-2),
+        "mm": _INCHES,
+        "µm": Unit("mil", 1 / _INCH),
+        "nm": Unit("µin", 1 / _INCH),
+        "kN": Unit("lbf", 1e3 / _POUND),
+        "N": Unit("lbf", 1 / _POUND),
+        "GPa": Unit("ksi", _PSI),
+        "MPa": Unit("psi", _PSI),
+        "kPa": Unit("psi", 1e-3 * _PSI),
+    }
+)
+"""Imperial units by the metric unit of a text, longest first."""
+
+_NUMBER = r"(?:[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf|nan)"
+_LIST = rf"{_NUMBER}(?:(?:, | to | and | or |\.\.| ± | x ){_NUMBER})*"
+_QUANTITY = re.compile(rf"(?<![\w.])({_LIST}) ({'|'.join(map(re.escape, _WRITTEN_UNITS))})(?![\w²³^]|/(?!10|Mc))")
+"""Numbers with a unit behind them, such as "2.7 mm" and "1 to 3 kN"."""
+
 
 class Units(StrEnum):
     """System of units: SI with mm, N and MPa, or inches and pounds."""
@@ -36,13 +95,33 @@ class Units(StrEnum):
     SI = "SI"
     IMPERIAL = "imperial"
 
+    @property
+    def paper(self) -> str:
+        """Usual paper of the system: A4 or letter."""
+        return "letter" if self is Units.IMPERIAL else "A4"
+
     def length(self, millimetres: float) -> str:
         """Write a length (mm) in mm or in inches."""
         if isinf(millimetres):
             return "to infinity"
+        unit = self.length_unit
+        return f"{millimetres * unit.factor:.4g} {unit.text}"
+
+    def short_length(self, millimetres: float) -> str:
+        """Write a length (mm) to 0.1 mm or to 0.001 in."""
+        length, digits = (millimetres / _INCH, 3) if self is Units.IMPERIAL else (millimetres, 1)
+        return f"{round(length, digits) + 0.0:.{digits}f} {self.length_unit.text}"
+
+    @property
+    def length_unit(self) -> Unit:
+        """Unit of dimensions: mm or inches."""
+        return _INCHES if self is Units.IMPERIAL else Unit("mm")
+
+    def torque(self, newton_millimetres: float) -> str:
+        """Write a torque (N mm) in N m or in pound inches."""
         if self is Units.IMPERIAL:
-            return f"{millimetres / _INCH:.4g} in"
-        return f"{millimetres:.4g} mm"
+            return f"{newton_millimetres / (_INCH * _POUND):.3g} lbf in"
+        return f"{1e-3 * newton_millimetres:.3g} N m"
 
     def unit_of(self, quantity: Quantity) -> Unit:
         """Return the unit of a quantity."""
@@ -50,12 +129,53 @@ class Units(StrEnum):
 
     def text_of(self, quantity: Quantity, number: float) -> str:
         """Write a number, stated in the internal unit, with the unit of this system."""
-        unit = self.unit_of(quantity)
+        unit = _legible(self.unit_of(quantity), number)
         shown = number * unit.factor
         text = f"{shown:.0f}" if _LARGE <= abs(shown) < inf else f"{shown:.4g}"
         return text if not unit.text else f"{text}{'' if unit.text == '°' else ' '}{unit.text}"
+
+    def sentence(self, text: str) -> str:
+        """Convert every number with a unit in a sentence that is written in mm, N and MPa.
+
+        Examples
+        --------
+        >>> Units.IMPERIAL.sentence("contact 2.7 mm from the rim, 1 to 3 kN")
+        'contact 0.1063 in from the rim, 224.8 to 674.4 lbf'
+        """
+        return text if self is Units.SI else _QUANTITY.sub(_imperial, text)
+
+    def joint(self, joint: Joint) -> str:
+        """Describe a joint in one line; its name stays as it is."""
+        head, _, described = str(joint).rpartition(f"{joint.name}: ") if joint.name else ("", "", str(joint))
+        return f"{f'{joint.name}: ' if joint.name else head}{self.sentence(described)}"
+
+    def columns_of(self, joint: Joint) -> tuple[Column, ...]:
+        """Return the columns of a contact of a joint: without stress ratios whose strength is unknown."""
+        materials = [material for material in (joint.liner, joint.ball) if material is not None]
+        known = {name for material in materials for name in material.strengths}
+        ratios = {"yield_stress": UTILISATION, "allowable_pressure": PRESSURE_RATIO}
+        return (*self.columns[:-1], *(column for name, column in ratios.items() if name in known))
 
     @property
     def columns(self) -> tuple[Column, ...]:
         """Columns of a contact, each with its unit."""
         return (*(Column(quantity, self.unit_of(quantity)) for quantity in CONTACT.values()), UTILISATION)
+
+
+def _legible(unit: Unit, number: float) -> Unit:
+    """Return ksi in place of psi for a number that would need more than four digits."""
+    return Unit("ksi", 1e-3 * unit.factor) if unit.text == "psi" and abs(number) * unit.factor >= _LARGE else unit
+
+
+def _imperial(match: re.Match[str]) -> str:
+    """Write matched numbers in the imperial unit, with four digits."""
+    numbers, written = match.groups()
+    largest = max(abs(float(number)) for number in re.findall(_NUMBER, numbers))
+    unit = _legible(_WRITTEN_UNITS[written], largest)
+
+    def converted(number: re.Match[str]) -> str:
+        """Write one number."""
+        value = float(number[0]) * unit.factor
+        return f"{value:.0f}" if _LARGE <= abs(value) < 1e7 else f"{value:.4g}"
+
+    return f"{re.sub(_NUMBER, converted, numbers)} {unit.text}"

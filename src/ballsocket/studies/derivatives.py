@@ -17,9 +17,9 @@ from ..problem import Joint
 from ..problem.cup import Cup
 from .design import check_values, sample
 from .distributions import Distribution, check_nominal
-from .parameters import LOADS, PARAMETERS, check_aims, nominal_value, press_arguments
+from .parameters import AIMS, LOADS, PARAMETERS, check_aims, nominal_value, press_arguments
 from .run import default_model
-from .task import QUANTITIES
+from .task import EDGE_DISTANCE, QUANTITIES
 
 __getattr__ = renamed_names(
     __name__,
@@ -41,8 +41,16 @@ REPORTED_QUANTITIES = ("max_pressure", "half_angle", "indentation", "area", "sti
 _VARIED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")
 """Dimensions of the joint with an elasticity."""
 
+_ORIENTATION = ("inclination", "anteversion")
+"""Angles of the cup that set the direction of a load in the body."""
+
 _SAMPLE_COUNT = 512
+_QUADRATIC_SAMPLE_COUNT = 8192
+_NODE = 3**0.5
+"""Distance of the nodes of a quadratic from the mean, in standard deviations, as of Gauss-Hermite quadrature."""
+
 _BAND_PROBABILITIES = (0.025, 0.5, 0.975)
+_NO_RESULT = "some joints within the tolerances have no result; narrow the tolerances"
 
 Bands = dict[str, tuple[float, ...]]
 """Low end of a band, median, and high end, by quantity."""
@@ -216,11 +224,14 @@ class LocalUncertainty:
     band : dict of str to tuple of float
         Low end of the band of 95 % of the joints within the tolerances, median, and high end, by quantity, in mm, N,
         MPa, rad. Empty without tolerances.
+    presses : int
+        Number of presses behind the bands of a quadratic; 0 if every sample was pressed.
     """
 
     model: str
     changes: Derivatives
     band: Bands
+    presses: int = 0
 
 
 def local_uncertainty(
@@ -244,6 +255,8 @@ def local_uncertainty(
     ValueError
         An unknown name, a load of 0, joints without a result, or a joint or load outside its own tolerances.
     """
+    model = default_model(joint, {name: [number] for name, number in load.items()}).in_cup(cup)
+    check_aims(model, tolerances)
     for name, distribution in tolerances.items():
         value = load.get(name) if name in LOADS else nominal_value(joint, name)
         if value is not None:
@@ -251,10 +264,85 @@ def local_uncertainty(
     numbers = {name: float(getattr(joint, name)) for name in _VARIED_LENGTHS}
     numbers |= {"liner_young": float(joint.liner.young), "liner_poisson": float(joint.liner.poisson)}
     point = {name: number for name, number in numbers.items() if 0 < number < numpy.inf}
-    model = default_model(joint, {name: [number] for name, number in load.items()}).in_cup(cup)
     changes = elasticities(model, joint, REPORTED_QUANTITIES, {**point, **load})
     bands = _compute_bands(joint, cup, load, tolerances) if tolerances else {}
     return LocalUncertainty(model=model.name, changes=changes, band=bands)
+
+
+def off_axis_uncertainty(
+    joint: Joint,
+    model: Any,
+    load: Mapping[str, float],
+    tolerances: Mapping[str, Distribution],
+    tilt: float | None = None,
+) -> LocalUncertainty:
+    """Compute the effect of tolerances on a contact off the cup's axis, from few presses.
+
+    Each quantity is a sum of quadratics, one of each toleranced parameter through three presses. Interactions of the
+    parameters are neglected. `band` also has the edge distance.
+
+    Parameters
+    ----------
+    joint : Joint
+        Joint of plain numbers.
+    model : OffAxisContactModel
+        Model with its cup and the direction of the load.
+    load : mapping of str to float
+        One of force (N), indentation (mm), half_angle (rad), above 0.
+    tolerances : mapping of str to Rectangular, Normal or LogNormal
+        Independent distributions of parameters of the joint, of the load, or of its direction; at least one.
+    tilt : float, optional
+        Angle (rad) between load and cup's axis, if it sets the direction of the load.
+
+    Raises
+    ------
+    ValueError
+        An unknown name, joints without a result, or a number outside its own tolerances.
+    """
+    angles = {name: getattr(model.cup, name) for name in _ORIENTATION} if tilt is None else {"tilt": tilt}
+    for name, distribution in tolerances.items():
+        _check_direction(name, angles)
+        nominal = {**angles, **load}.get(name) if name in (*AIMS, *LOADS) else nominal_value(joint, name)
+        if nominal is not None:
+            check_nominal(name, float(nominal), distribution, PARAMETERS[name].written)
+    means = {name: float(distribution.frozen.mean()) for name, distribution in tolerances.items()}
+    steps = numpy.array([_NODE * float(distribution.frozen.std()) for distribution in tolerances.values()])
+    results = press_quantities(model, joint, _star(means, steps, load), (*REPORTED_QUANTITIES, EDGE_DISTANCE))
+    if not all(numpy.isfinite(values).all() for values in results.values()):
+        raise ValueError(_NO_RESULT)
+    design = sample(_QUADRATIC_SAMPLE_COUNT, **dict[str, Any](tolerances))
+    samples = design.values_in([slice(None)])
+    offsets = numpy.stack([samples[name] - mean for name, mean in means.items()])
+    changes: Derivatives = {}
+    bands: Bands = {}
+    for quantity, values in results.items():
+        upper, lower = values[1::2] - values[0], values[2::2] - values[0]
+        slopes, curvatures = (upper - lower) / (2 * steps), (upper + lower) / (2 * steps**2)
+        bands[quantity] = _ends(values[0] + slopes @ offsets + curvatures @ offsets**2)
+        if quantity != EDGE_DISTANCE:
+            pairs = zip(means.items(), slopes, strict=True)
+            changes[quantity] = {name: float(slope * mean / values[0]) for (name, mean), slope in pairs}
+    return LocalUncertainty(model=model.name, changes=changes, band=bands, presses=2 * len(means) + 1)
+
+
+def _check_direction(name: str, angles: Mapping[str, float]) -> None:
+    """Raise ValueError for the tolerance of an angle that does not set the direction of the load."""
+    if name in AIMS and name not in angles:
+        raise ValueError(f"{name} has a tolerance, and the direction of the load is set by {' and '.join(angles)}")
+
+
+def _star(means: Mapping[str, float], steps: Numbers, load: Mapping[str, float]) -> dict[str, Numbers]:
+    """Return the means, and for each parameter one point above and one below; the load stays if it has no tolerance."""
+    fixed = {} if set(means) & set(load) else dict(load)
+    rows = {name: numpy.full(2 * len(means) + 1, value) for name, value in {**means, **fixed}.items()}
+    for index, (name, step) in enumerate(zip(means, steps, strict=True)):
+        rows[name][2 * index + 1 : 2 * index + 3] += (step, -step)
+    return rows
+
+
+def _ends(values: Numbers) -> tuple[float, ...]:
+    """Return low end, median and high end of sampled values."""
+    return tuple(float(end) for end in numpy.quantile(values, _BAND_PROBABILITIES))
 
 
 def _compute_bands(joint: Joint, cup: Cup, load: Mapping[str, float], tolerances: Mapping[str, Distribution]) -> Bands:
@@ -267,8 +355,5 @@ def _compute_bands(joint: Joint, cup: Cup, load: Mapping[str, float], tolerances
     model = default_model(joint, {**ranges, **{name: [number] for name, number in fixed.items()}}).in_cup(cup)
     results = press_quantities(model, joint, {**samples, **fixed}, REPORTED_QUANTITIES)
     if not all(numpy.isfinite(values).all() for values in results.values()):
-        raise ValueError("some joints within the tolerances have no result; narrow the tolerances")
-    return {
-        name: tuple(float(end) for end in numpy.quantile(values, _BAND_PROBABILITIES))
-        for name, values in results.items()
-    }
+        raise ValueError(_NO_RESULT)
+    return {name: _ends(values) for name, values in results.items()}
