@@ -37,6 +37,7 @@ from .elasticity.off_axis import (
     Springs,
     Worn,
     orient,
+    pull_out,
     read_scan,
 )
 from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
@@ -117,6 +118,7 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "identify",
     "Orientations",
     "orient",
+    "pull_out",
     "studies",
     "study",
     # models

@@ -196,3 +196,62 @@ def test_orientations_outside_the_range_are_refused(words, said):
     assert done.returncode == 2
     assert said in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
+
+
+TIGHT = ("--ball-radius", "13.5", "--interference", "0.03", "--liner-thickness", "2.5", "--liner", "pom")
+HELD = (*TIGHT, "--force", "0", *COARSE)
+
+
+def test_a_preloaded_joint_gets_a_socket_that_holds_it_and_its_friction_torques():
+    finished = run("press", *HELD, "--friction", "0.1", "--static-friction", "0.15", columns=200)
+    assert "arc of cover 240° assumed for a preloaded joint; set --arc-of-cover" in finished.stdout
+    assert "after 1000 hours under load it is 1300 MPa (Ticona 2008" in finished.stdout
+    torques = answered(*HELD, "--friction", "0.1", "--static-friction", "0.15")["sphere"]["friction"]
+    joint = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
+    model = bs.Sphere(cup=bs.Cup(arc_of_cover=np.radians(240.0)), ring_width=np.radians(4.0))
+    expected = model.press(joint, force=0.0).friction_torque(0.1)
+    assert torques["running_torque"] == pytest.approx(expected)
+    assert torques["breakaway_torque"] == pytest.approx(1.5 * expected)
+    assert f"running torque {1e-3 * expected:.3g} N m about an axis across the load" in finished.stdout
+    wide = run("press", *HELD, "--arc-of-cover", "260", "--young", "1300 MPa", columns=200).stdout
+    assert "assumed" not in wide
+    assert "1000 hours" not in wide  # the modulus of a long load is stated
+
+
+def test_friction_of_several_models_stands_beside_each():
+    words = ("hip-28", "--force", "1 kN", "--friction", "0.05")
+    results = json.loads(run("press", *words, "--json").stdout)["results"]
+    assert [result["model"] for result in results] == ["hess-forsbach", "exact"]
+    contact = bs.HessForsbach().press(bs.joints["hip-28"], force=1000.0)
+    assert results[0]["friction"]["running_torque"] == pytest.approx(contact.friction_torque(0.05))
+    assert results[0]["friction"]["running_torque_about_load"] == pytest.approx(contact.friction_torque(0.05, 0.0))
+    assert "breakaway torque the same" in run("press", *words, columns=200).stdout
+
+
+def test_the_pull_out_force_is_printed_with_its_limits():
+    words = ("press", *HELD, "--pull-out", "--friction", "0.1", "--arc-of-cover", "200")
+    finished, pulled = run(*words, columns=200), json.loads(run(*words, "--json").stdout)["pull_out"]
+    assert pulled["force"] > 0
+    assert f"pull-out force {pulled['force']:.4g} N, {pulled['displacement']:.4g} mm" in finished.stdout
+    assert "a housing that widens as a ring makes the force smaller" in finished.stdout
+    wide = json.loads(run("press", *HELD, "--pull-out", "--arc-of-cover", "240", "--json").stdout)["pull_out"]
+    assert wide["force"] is None
+    assert "not computed" in wide["notes"][0]
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ((*HELD, "--pull-out"), "--pull-out needs the arc of cover: add --arc-of-cover"),
+        (("hip-28", "--force", "9", "--pull-out", "--model", "exact"), "--pull-out is solved by the model sphere"),
+        (("hip-28", "--force", "9", "--pull-out"), "a socket of 180 deg does not hold its ball"),
+        (("hip-28", "--force", "9", "--static-friction", "0.1"), "--static-friction needs the coefficient of sliding"),
+        (("hip-28", "--force", "9", "--friction", "0.2", "--static-friction", "0.1"), "static_coefficient = 0.1"),
+        (("hip-28", "--force", "9", "--friction", "-1"), "coefficient = -1 is not allowed"),
+    ],
+)
+def test_impossible_friction_and_pull_out_are_refused_in_a_sentence(words, said):
+    finished = run("press", *words)
+    assert finished.returncode == 2
+    assert said in finished.stderr
+    assert finished.stderr.count("\n") == 1

@@ -30,7 +30,7 @@ def test_yield_is_noted_above_one_and_ends_validity_at_the_stated_factor():
     told = [[note for note in contact.notes if "yield stress" in note] for contact in at.values()]
     assert [len(notes) for notes in told] == [0, 1, 1, 1]
     assert told[1] == [
-        "von Mises stress 1.1 times the yield stress of the liner: a linear result is valid up to 1.38 times"
+        "von Mises stress 1.1 times the yield stress of the liner: results are valid up to 1.38 times this stress"
     ]
     assert abs(MAX_ELASTIC_UTILISATION - 1.9**0.5) < 0.002
 

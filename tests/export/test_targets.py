@@ -16,7 +16,6 @@ from scipy.integrate import solve_ivp
 import ballsocket as bs
 from ballsocket.cli.export import ForceElementOptions, identifier
 from ballsocket.dynamics import Bristles, Damping, ForceElement, Friction
-from ballsocket.dynamics.element import valid_depth
 from ballsocket.export import TARGETS, CElement, ExportJob
 from ballsocket.export.compiler import LIBRARY_ENDING, shared_library
 from ballsocket.export.law_fit import expression_fit, fit_depth, power_fit
@@ -109,7 +108,7 @@ def test_the_expression_of_a_closed_form_is_the_closed_form():
 def test_one_expression_fits_any_law_within_the_validity_of_its_model():
     fit = expression_fit(TABULATED, 0.05)
     assert fit.error < 1e-5
-    assert_allclose(fit.depth, 1e-3 * valid_depth(TABULATED))
+    assert_allclose(fit.depth, 1e-3 * TABULATED.valid_depth)
     depths = np.array([2e-4, 0.011, 0.049, 0.99e3 * fit.depth])
     forces = fit(1e-3 * (HIP.clearance + depths))
     assert_allclose(forces, TABULATED.potential(depths)[1], rtol=2 * fit.error)
@@ -372,9 +371,9 @@ def test_the_note_on_a_range_has_errors_in_percent_and_the_depth_in_micrometres(
 def test_the_depth_of_a_fit_is_that_of_a_load_or_the_largest_valid_one():
     force = HERTZ.model.press(HIP, indentation=0.03).force
     assert fit_depth(HERTZ, {"force": float(force)}) == pytest.approx(0.03)
-    assert fit_depth(PLAIN, {}) == valid_depth(PLAIN) > 0
+    assert fit_depth(PLAIN, {}) == PLAIN.valid_depth > 0
     never = ForceElement(bs.Hertz(), HIP.replace(liner_thickness=1e-3))
-    assert valid_depth(never) == 0.0
+    assert never.valid_depth == 0.0
     assert fit_depth(never, {}) == never.wall == 1e-3
 
 
@@ -382,7 +381,7 @@ def test_the_depth_of_a_fit_is_that_of_a_load_or_the_largest_valid_one():
 def test_a_model_is_valid_up_to_the_valid_depth_and_not_much_deeper(model):
     """The depths of a search are 5.5 % apart: 128 steps for a factor of a thousand."""
     element = ForceElement(model, HIP)
-    depth = valid_depth(element)
+    depth = element.valid_depth
     assert model.press(HIP, indentation=depth).valid
     assert not model.press(HIP, indentation=1.056 * depth).valid
 

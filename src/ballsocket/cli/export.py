@@ -6,18 +6,20 @@ import keyword
 import re
 import sys
 from dataclasses import dataclass, replace
-from math import radians
+from math import degrees, radians
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from ..catalogue import named_model
+from ..catalogue import named_model, off_axis
 from ..core.checks import known_name
 from ..core.storage.atomic_files import check_parent_folder
-from ..dynamics import Damping, ForceElement, Friction, Restitution
+from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
+from ..elasticity.off_axis import Sphere
 from ..export.targets import TARGETS, ExportJob
-from ..files.joint_file import JointFile, read_aim
+from ..files.joint_file import JointFile, read_aim, read_cup
+from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
@@ -46,22 +48,44 @@ class ForceElementOptions:
         ),
     ] = None
     friction: Annotated[float | None, typer.Option(help="Coefficient of friction. Default: no friction.")] = None
+    arc_of_cover: Annotated[
+        str | None,
+        typer.Option(help="Angle of the cup from rim to rim in degrees. Default: as in the file, or 180 deg."),
+    ] = None
 
-    def element(self, file: JointFile) -> ForceElement:
+    def element(self, file: JointFile) -> ForceElement | PreloadedElement:
         """Return the force element of a joint file; it has a rim unless the cup is a plain hemisphere.
+
+        A joint with an interference has a tabulated element of the model sphere.
 
         Raises
         ------
         ValueError
             The model has no force law, or a value is not allowed.
         """
-        model = default_model(file.joint, {}) if self.model is None else named_model(self.model)
         friction = None if self.friction is None else Friction(coefficient=self.friction)
-        cup = None if file.cup == Cup() else file.cup
+        stated_cup = file.cup
+        if self.arc_of_cover is not None:
+            stated_cup = replace(file.cup, arc_of_cover=read_cup({"arc_of_cover": self.arc_of_cover}).arc_of_cover)
+        if file.joint.clearance < 0:
+            return self._preloaded_element(file.joint, stated_cup, friction)
+        model = default_model(file.joint, {}) if self.model is None else named_model(self.model)
+        cup = None if stated_cup == Cup() else stated_cup
         try:
             return ForceElement(model, file.joint, damping=self._damping(), friction=friction, cup=cup)
         except TypeError as error:  # the model has no force law
             raise ValueError(str(error)) from error
+
+    def _preloaded_element(self, joint: Joint, stated_cup: Cup, friction: Friction | None) -> PreloadedElement:
+        """Return the force element of a joint with an interference; print the assumed arc of cover."""
+        if self.model not in (None, off_axis.name):
+            raise ValueError(f"the model {self.model} does not solve a preloaded joint: use {off_axis.name}")
+        cup = stated_cup.around_ball(joint.clearance)
+        if cup is not stated_cup:
+            print_message(
+                f"arc of cover {degrees(cup.arc_of_cover):g}° assumed for a preloaded joint; set --arc-of-cover"
+            )
+        return PreloadedElement(Sphere(cup=cup), joint, damping=self._damping(), friction=friction)
 
     def _damping(self) -> Damping | None:
         """Return the damping of the options; None without damping."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import degrees, pi
 from typing import Annotated, Any
 
 import numpy
@@ -11,11 +12,17 @@ import typer
 
 from ..catalogue import catalogue, judge, named_model, off_axis, reference
 from ..compare import Comparison, compare, successful_contacts
-from ..contact import Model
+from ..contact import Contact, Model
 from ..core.checks import known_name
+from ..core.quantities import CONTACT
 from ..core.validity import Status
+from ..dynamics import Friction
+from ..elasticity.off_axis import PullOut
+from ..elasticity.off_axis import pull_out as compute_pull_out
 from ..files.joint_file import JointFile
-from ..problem.cup import UP
+from ..problem import Joint
+from ..problem.cup import UP, Cup
+from ..problem.presets import long_term_note
 from ..reports.terminal import print_curve, print_press
 from ..reports.unit_systems import Units
 from ..version import __version__
@@ -70,14 +77,81 @@ class ModelOptions:
         return {name: elastic.get(name) or catalogue[name] for name in self.names or [default]}
 
 
+@dataclass(frozen=True, kw_only=True)
+class FrictionOptions:
+    """Options of the friction torque."""
+
+    friction: Annotated[
+        float | None,
+        typer.Option(help="Coefficient of sliding friction. Adds running and breakaway torque to the results."),
+    ] = None
+    static_friction: Annotated[
+        float | None,
+        typer.Option(help="Coefficient of static friction, for the breakaway torque. Default: --friction."),
+    ] = None
+
+    pull_out: Annotated[
+        bool,
+        typer.Option("--pull-out", help="sphere: add the largest force while the ball is pulled out of its cup."),
+    ] = False
+
+    def check(self) -> None:
+        """Raise ValueError for a negative coefficient, and for static friction without, or below, sliding friction."""
+        if self.friction is not None:
+            Friction(coefficient=self.friction, static_coefficient=self.static_friction)
+        elif self.static_friction is not None:
+            raise ValueError("--static-friction needs the coefficient of sliding friction: add --friction")
+
+    def check_pull_out(self, models: Container[str], assumed_arc: bool) -> None:
+        """Raise ValueError for a pull-out force without the model `sphere`, or without an arc of cover."""
+        if self.pull_out and off_axis.name not in models:
+            raise ValueError(f"--pull-out is solved by the model {off_axis.name}: add --model {off_axis.name}")
+        if self.pull_out and assumed_arc:
+            raise ValueError(
+                "--pull-out needs the arc of cover: add --arc-of-cover, or arc_of_cover in [cup] of the file"
+            )
+
+    def torques(self, contact: Contact) -> dict[str, Any]:
+        """Compute the friction torques of a contact in N mm, with their coefficients; empty without friction."""
+        if self.friction is None:
+            return {}
+        friction = Friction(coefficient=self.friction, static_coefficient=self.static_friction)
+        sliding, static = friction.coefficient, friction.breakaway_coefficient
+        across, along = (contact.friction_torque(1.0, axis_angle) for axis_angle in (pi / 2, 0.0))
+        return {
+            "coefficient": sliding,
+            "static_coefficient": static,
+            "running_torque": sliding * across,
+            "breakaway_torque": static * across,
+            "running_torque_about_load": sliding * along,
+            "breakaway_torque_about_load": static * along,
+        }
+
+    def remark(self, name: str, contact: Contact, units: Units) -> str:
+        """Return one line with the friction torques of a contact."""
+        torques = self.torques(contact)
+
+        def text(kind: str) -> str:
+            across, along = (units.torque(torques[f"{kind}_torque{axis}"]) for axis in ("", "_about_load"))
+            return f"{kind} torque {across} about an axis across the load, {along} about the load"
+
+        if torques["static_coefficient"] == torques["coefficient"]:
+            return f"{name}: friction {torques['coefficient']:g}: {text('running')}; breakaway torque the same"
+        return (
+            f"{name}: friction {torques['coefficient']:g}, static {torques['static_coefficient']:g}: "
+            f"{text('running')}; {text('breakaway')}"
+        )
+
+
 @dataclass(kw_only=True)
 class PressedJoint:
-    """Results of one joint of the command, with remarks on their computation."""
+    """Results of one joint of the command: contacts, remarks on their computation, and all for JSON."""
 
     file: JointFile
     comparison: Comparison
     models: Mapping[str, Model]
     remarks: list[str]
+    summary: dict[str, Any]
 
 
 @app.command()
@@ -87,6 +161,7 @@ def press(
     joint: JointNames = None,
     joint_options: JointOptions,
     load_options: LoadOptions,
+    friction_options: FrictionOptions,
     model_options: ModelOptions,
     units: UnitSystem = Units.SI,
     as_json: AsJson = False,
@@ -111,6 +186,7 @@ def press(
         refuse_mesh_options({**vars(mesh), "meshes": meshes})
     files.check()
     report.check()
+    friction_options.check()
     names: Sequence[str | None] = joint or [None]
     files.check_single(len(names))
 
@@ -120,12 +196,16 @@ def press(
         load = load_options.read(file)
         direction, remarks = direction_options.read(file), []
         stated_cup = cup_options.apply_to(file.cup)
-        cup = tilted_cup(stated_cup, direction)
-        needs_sphere = direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
+        held_cup = stated_cup.around_ball(file.joint.clearance)
+        assumed_arc = held_cup is not stated_cup
+        assumptions = _preload_assumptions(file.joint, held_cup if assumed_arc else None)
+        cup = tilted_cup(held_cup, direction)
+        needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
         models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
         if model_options.has_finite_elements and direction:
             raise ValueError("fem solves axial loads only; for --tilt or --direction use --model sphere")
         files.check_models(models)
+        friction_options.check_pull_out(models, assumed_arc)
         if off_axis.name not in models:
             direction_options.refuse()
         if off_axis.name in models:
@@ -138,22 +218,67 @@ def press(
         comparison = _compare(replace(file, cup=cup), load, models)
         if off_axis.name in comparison:
             remarks.append(sphere_remark(comparison[off_axis.name], timed.seconds, units))
-        computed = replace(file, cup=stated_cup, load=load, aim=direction)
-        return PressedJoint(file=computed, comparison=comparison, models=models, remarks=remarks)
+        if friction_options.friction is not None:
+            contacts = successful_contacts(comparison)
+            remarks += [friction_options.remark(name, contacts[name], units) for name in models if name in contacts]
+        remarks += assumptions
+        pulled = None
+        if friction_options.pull_out:
+            pulled = compute_pull_out(timed.model, file.joint, friction_options.friction or 0.0)
+            remarks += _pull_out_remarks(pulled, units)
+        return PressedJoint(
+            file=replace(file, cup=held_cup, load=load, aim=direction),
+            comparison=comparison,
+            models=models,
+            remarks=remarks,
+            summary=_summary(comparison, friction_options, assumptions, pulled),
+        )
 
     joints = [press_joint(name) for name in names]
     for pressed in joints:
         files.write(pressed.comparison, next(iter(pressed.models)), units)
-    designs = [report.design(pressed.comparison, pressed.file, pressed.models, units) for pressed in joints]
+    designs = [
+        report.design(pressed.comparison, pressed.file, pressed.models, units, pressed.remarks) for pressed in joints
+    ]
     report.write(designs, units)
     if as_json:
-        summaries = [pressed.comparison.summary() for pressed in joints]
+        summaries = [pressed.summary for pressed in joints]
         echo_json(summaries[0] if len(summaries) == 1 else {"joints": summaries})
     else:
         for pressed in joints:
             print_press(pressed.comparison, pressed.remarks, units)
     for pressed in joints:
         _exit_on_failure(pressed.comparison, pressed.models)
+
+
+def _summary(
+    comparison: Comparison, friction: FrictionOptions, assumptions: Sequence[str], pulled: PullOut | None
+) -> dict[str, Any]:
+    """Return a comparison for JSON, with friction torques, assumptions and pull-out force if there are any."""
+    summary = comparison.summary()
+    for result in summary["results"] if friction.friction is not None else ():
+        contact = comparison.get(result["model"])
+        result["friction"] = None if contact is None else friction.torques(contact)
+    if assumptions:
+        summary["assumptions"] = list(assumptions)
+    return summary if pulled is None else {**summary, "pull_out": pulled.summary()}
+
+
+def _preload_assumptions(joint: Joint, assumed_cup: Cup | None) -> list[str]:
+    """Return sentences on an assumed cup and on the long-term modulus of a preloaded joint; empty for a clearance."""
+    if joint.clearance >= 0:
+        return []
+    arc = "" if assumed_cup is None else f"{degrees(assumed_cup.arc_of_cover):g}°"
+    cover = f"arc of cover {arc} assumed for a preloaded joint; set --arc-of-cover" if arc else ""
+    return list(filter(None, (cover, long_term_note(joint.liner))))
+
+
+def _pull_out_remarks(pulled: PullOut, units: Units) -> list[str]:
+    """Return lines with the pull-out force, its displacement and its limits."""
+    if not pulled.force >= 0.0:
+        return list(pulled.notes)
+    force, displacement = units.text_of(CONTACT["force"], pulled.force), units.length(pulled.displacement)
+    return [f"pull-out force {force}, {displacement} out of the cup's centre", *pulled.notes]
 
 
 def _compare(file: JointFile, load: Mapping[str, float], models: Mapping[str, Model]) -> Comparison:

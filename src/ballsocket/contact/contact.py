@@ -13,7 +13,7 @@ import numpy
 
 from ..core import arrays
 from ..core.arrays import Array
-from ..core.checks import check_numeric, check_vectors, degrees_hint, require
+from ..core.checks import check_numeric, check_vectors, degrees_hint, require, shown
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..core.kinds import Unit
 from ..core.plotting import load_plot
@@ -301,10 +301,7 @@ class Contact(Outcome):
         TypeError
             A coefficient that is not numeric.
         """
-        coefficient = check_numeric("coefficient", coefficient)
-        allowed = "a coefficient of friction is 0 or more and finite"
-        require("coefficient", coefficient, (coefficient >= 0) & (coefficient < inf), allowed)
-        require("axis_angle", axis_angle, abs(axis_angle) <= 2 * pi, f"it is in radians; {degrees_hint(axis_angle)}")
+        coefficient = self._check_friction(coefficient, axis_angle)
 
         def ring_torque(fraction: float) -> Array:
             """Compute the friction torque density of the ring at a fraction x of the half angle."""
@@ -318,6 +315,19 @@ class Contact(Outcome):
         return self._match_load(
             friction_lever * 2 * pi * socket_radius * socket_radius * arrays.integral(ring_torque, 24)
         )
+
+    @staticmethod
+    def _check_friction(coefficient: Array, axis_angle: float) -> Array:
+        """Check a coefficient of friction and the angle of an axis in rad, and return the coefficient."""
+        if isinstance(coefficient, tuple | list):
+            raise TypeError(
+                f"coefficient must be a number or an array, got the {type(coefficient).__name__} {shown(coefficient)}"
+            )
+        coefficient = check_numeric("coefficient", coefficient)
+        allowed = "a coefficient of friction is 0 or more and finite"
+        require("coefficient", coefficient, (coefficient >= 0) & (coefficient < inf), allowed)
+        require("axis_angle", axis_angle, abs(axis_angle) <= 2 * pi, f"it is in radians; {degrees_hint(axis_angle)}")
+        return coefficient
 
     def _evaluate(self, read_quantity: Callable[[Laws], Array]) -> Array:
         """Evaluate one quantity from the formulas or the solution of the contact; set failed points to NaN.

@@ -214,7 +214,9 @@ def _exceeded_strength_remarks(
             continue
         ratio = (pressure if is_pressure_limit else von_mises()) / strength
         stress = "pressure" if is_pressure_limit else "von Mises stress"
-        limit = f": a linear result is valid up to {MAX_ELASTIC_UTILISATION:g} times" if name == "yield_stress" else ""
+        limit = (
+            f": results are valid up to {MAX_ELASTIC_UTILISATION:g} times this stress" if name == "yield_stress" else ""
+        )
         yield (
             logical_not(ratio > 1),
             f"{stress} {_stress_ratio_text(ratio)} the {STRENGTH[name].title} of the {body}{limit}",

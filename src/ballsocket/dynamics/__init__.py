@@ -19,6 +19,7 @@ from .element import ForceElement
 from .friction import Friction
 from .load import ContactState, Load
 from .motion import Motion
+from .preloaded import PreloadedElement
 from .simulation import simulate
 from .viscoelastic import Prony, Viscoelastic
 
@@ -39,6 +40,7 @@ __all__ = [
     "LankaraniNikravesh",
     "Load",
     "Motion",
+    "PreloadedElement",
     "Prony",
     "Restitution",
     "Touch",

@@ -17,6 +17,7 @@ from ..compiled.law import CompiledLaw
 from ..compiled.overloads import inline_formula, jit_formula
 from ..contact.law import ForceLaw
 from ..core.arrays import Numbers
+from ..core.checks import shown
 from ..core.deprecation import renamed_names
 from ..models import kinematics
 from ..models.kinematics import Kinematics
@@ -64,6 +65,8 @@ class CompiledElement:
     element: ForceElement
 
     def __post_init__(self) -> None:
+        if not isinstance(self.element, ForceElement):
+            raise TypeError(f"element must be a ForceElement, got {shown(self.element)}")
         if self.element.internal_state:
             raise ValueError(
                 f"{self.element.internal_state}; compiled elements support no internal state, use the ForceElement"

@@ -14,7 +14,7 @@ from ..contact import Contact, Model
 from ..contact.assembly import check_joint
 from ..contact.law import CurveLaw
 from ..core import arrays
-from ..core.arrays import Array, concrete_values, to_common_arrays, where
+from ..core.arrays import Array, concrete_values, is_plain_number, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.validity import Range
@@ -39,6 +39,9 @@ from .reaction import (
 )
 
 _log = logging.getLogger("ballsocket.dynamics")
+
+_DEPTHS = 129
+"""Number of indentations at which validity is evaluated."""
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
 _ZERO_DEFLECTION = (0.0, 0.0, 0.0, 0.0)
@@ -101,6 +104,8 @@ class ForceElement:
             value = getattr(self, name)
             if not (isinstance(value, kind) or (value is None and name != "model")):
                 raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(value)}")
+        if is_plain_number(self.joint.clearance) and self.joint.clearance < 0:
+            raise ValueError(f"clearance = {self.joint.clearance:g}: a preloaded joint needs a PreloadedElement")
         smoothing = check_number("smoothing", self.smoothing)
         potential = self._elastic_energy()
         clearance = float(self.joint.clearance)
@@ -213,8 +218,8 @@ class ForceElement:
         names = ("position", "velocity", "spin")
         axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
         position = check_vectors("position", position, axes[0])
-        states = [_as_array_like(position, value) for value in (position, velocity, spin)]
-        r, v, w = (_split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
+        states = [as_array_like(position, value) for value in (position, velocity, spin)]
+        r, v, w = (split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
         with numpy.errstate(all="ignore"):  # states without a result have a status
             centre = self._centre_if_attached(ball_centre_at(*r, self.constants.clearance), attached)
             self._validity_monitor.check_array(centre.indentation)
@@ -238,6 +243,16 @@ class ForceElement:
     def wall(self) -> float:
         """Largest indentation in mm that the wall thickness and the model's range allow."""
         return self.constants.wall - self.stretch
+
+    @cached_property
+    def valid_depth(self) -> float:
+        """Largest indentation in mm at which the contact model is valid; 0 if no indentation is valid.
+
+        Lower limits of the contact size are ignored: every contact passes through them at first touch.
+        """
+        depths = numpy.geomspace(1e-3 * self.wall, self.wall, _DEPTHS)
+        valid = self.model.press(self.joint.with_floats(), indentation=depths).valid
+        return float(max(depths[valid], default=0.0))
 
     @cached_property
     def _validity_monitor(self) -> ValidityMonitor:
@@ -275,7 +290,7 @@ def components(value: Any, name: str = "a state") -> Vector:
         ) from error
 
 
-def _as_array_like(position: Any, value: Any) -> Any:
+def as_array_like(position: Any, value: Any) -> Any:
     """Convert a tuple or list to an array of the position's library and data type."""
     if type(value) not in _SEQUENCES:
         return value
@@ -283,7 +298,7 @@ def _as_array_like(position: Any, value: Any) -> Any:
     return arrays.namespace(like).asarray(value, dtype=like.dtype, device=arrays.device(like))
 
 
-def _split_components(value: Any) -> Vector:
+def split_components(value: Any) -> Vector:
     """Split an array (..., 3) into its three components."""
     return value[..., 0], value[..., 1], value[..., 2]
 
@@ -353,17 +368,3 @@ def _is_satisfied_by_larger_contact(contact: Contact, limit: Range) -> bool:
     """Check if a contact, or a larger contact, lies inside a range."""
     increases_with_size = isinstance(limit.quantity, str) and not limit.quantity.startswith("joint.")
     return bool(limit.holds(contact)) or (increases_with_size and bool(limit.quantity_of(contact) < limit.low))
-
-
-_DEPTHS = 129
-"""Number of indentations at which validity is evaluated."""
-
-
-def valid_depth(element: ForceElement) -> float:
-    """Find the largest indentation in mm at which the contact model is valid; 0 if no indentation is valid.
-
-    Lower limits of the contact size are ignored: every contact passes through them at first touch.
-    """
-    depths = numpy.geomspace(1e-3 * element.wall, element.wall, _DEPTHS)
-    valid = element.model.press(element.joint.with_floats(), indentation=depths).valid
-    return float(max(depths[valid], default=0.0))

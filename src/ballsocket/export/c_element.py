@@ -14,7 +14,7 @@ from typing import Any
 from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
 from ..core.storage.atomic_files import write_text
-from ..dynamics import ContactState, ForceElement, reaction
+from ..dynamics import ContactState, ForceElement, PreloadedElement, preloaded, reaction
 from ..dynamics.load import contact_state_of
 from ..dynamics.potential import CurvePotential, energy_curve
 from ..dynamics.reaction import BallCentre, Constants, Elastic, Vector
@@ -112,8 +112,7 @@ class Recording:
     @cached_property
     def tangent(self) -> Outputs:
         """Recorded tangent stiffness ∂²U/∂r² in N/mm, nine components by C variable."""
-        xx, yy, zz, xy, yz, zx = reaction.tangent_stiffness(self.centre, self.contact, self.constants)
-        return _by_array_element("tangent", (xx, xy, zx, xy, yy, yz, zx, yz, zz))
+        return _tangent_elements(reaction.tangent_stiffness(self.centre, self.contact, self.constants))
 
     @cached_property
     def slope(self) -> Outputs:
@@ -123,6 +122,74 @@ class Recording:
         return _by_array_element(
             "slope", directional_derivatives([*self.load.values(), *self.contact_size.values()], direction)
         )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PreloadRecording(Recording):
+    """Recorded formulas of the force element of a preloaded joint."""
+
+    element: PreloadedElement  # type: ignore[assignment]
+
+    @cached_property
+    def curves(self) -> dict[str, CurveLaw]:
+        """Tabulated curves of each quantity in each direction, by name."""
+        tabulated = self.element.table.curves
+        return {_curve_name(name, index): curve for name, rows in tabulated.items() for index, curve in enumerate(rows)}
+
+    def _tabulated(self, quantity: str, order: int) -> list[tuple[Part, ...]]:
+        """Record the curves of a quantity in all directions, with derivatives up to an order."""
+        names = (_curve_name(quantity, index) for index in range(preloaded.NODES))
+        return [self.tape.curve(name, self._displacement[0], order + 1) for name in names]
+
+    @cached_property
+    def _displacement(self) -> tuple[Part, ...]:
+        """Recorded displacement from equilibrium: distance, direction and cosine."""
+        return preloaded.displacement_from_equilibrium(*self.state[0], self.constants, self.element.table.offset)
+
+    @cached_property
+    def _elastic(self) -> preloaded.PreloadedForce:
+        """Recorded elastic energy with its derivatives."""
+        return preloaded.preloaded_force(self._tabulated("energy", 2), self._displacement, self.constants)
+
+    def _interpolated(self, quantity: str) -> Part:
+        """Record the interpolation of a quantity between the directions."""
+        values = [value for (value,) in self._tabulated(quantity, 0)]
+        return preloaded.interpolate(values, self._elastic.cosine)
+
+    @cached_property
+    def load(self) -> Outputs:
+        """Recorded force, moment and elastic energy, by C variable."""
+        lever = self._interpolated("friction_lever")
+        parts = preloaded.preloaded_load(self._elastic, lever, *self.state[1:], self.constants, self.element.table)
+        moved = {**_by_array_element("force", parts[:3]), **_by_array_element("moment", parts[3:])}
+        return {**moved, "*energy": self._elastic.energy}
+
+    @cached_property
+    def contact_size(self) -> Outputs:
+        """Recorded half angle and largest pressure, by C variable."""
+        return {f"*{name}": self._interpolated(name) for name in ("half_angle", "max_pressure")}
+
+    @cached_property
+    def status(self) -> Outputs:
+        """Recorded code of the `ContactState`: contact, or a displacement beyond the table."""
+        distance = self._displacement[0]
+        return {"status": preloaded.preloaded_state(distance, isfinite(distance), self.element.wall)}
+
+    @cached_property
+    def tangent(self) -> Outputs:
+        """Recorded tangent stiffness ∂²U/∂r² in N/mm, nine components by C variable."""
+        return _tangent_elements(preloaded.preloaded_tangent(self._elastic))
+
+
+def _curve_name(quantity: str, index: int) -> str:
+    """Return the C name of a tabulated curve."""
+    return f"{quantity}_{index}"
+
+
+def _tangent_elements(components: tuple[Part, ...]) -> Outputs:
+    """Return the nine components of a symmetric matrix by their C array elements."""
+    xx, yy, zz, xy, yz, zx = components
+    return _by_array_element("tangent", (xx, xy, zx, xy, yy, yz, zx, yz, zz))
 
 
 def _by_array_element(name: str, parts: Any) -> Outputs:
@@ -145,7 +212,7 @@ class CElement:
 
     Parameters
     ----------
-    element : ForceElement
+    element : ForceElement or PreloadedElement
     name : str
         Prefix of all names in the program, so that one program can hold two joints: letters, digits and _.
 
@@ -163,7 +230,7 @@ class CElement:
     True
     """
 
-    element: ForceElement
+    element: ForceElement | PreloadedElement
     name: str = "ballsocket"
 
     def __post_init__(self) -> None:
@@ -177,6 +244,8 @@ class CElement:
     @cached_property
     def recording(self) -> Recording:
         """Recorded formulas of the force element."""
+        if isinstance(self.element, PreloadedElement):
+            return PreloadRecording(element=self.element)
         return Recording(element=self.element)
 
     @property

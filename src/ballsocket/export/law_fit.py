@@ -9,8 +9,7 @@ import numpy
 
 from ..contact import Model
 from ..core.arrays import Numbers
-from ..dynamics import ForceElement
-from ..dynamics.element import valid_depth
+from ..dynamics import ForceElement, PreloadedElement
 
 _SAMPLES = 400
 """Number of indentations of a fit."""
@@ -161,7 +160,7 @@ def expression_fit(element: ForceElement, depth: float) -> ExpressionFit:
     If the model is valid beyond `depth`, the fit covers its valid range.
     """
     c, R2 = element.constants.clearance, element.constants.socket_radius
-    fitted_depth = max(depth, valid_depth(element))
+    fitted_depth = max(depth, element.valid_depth)
     d = numpy.geomspace(1e-3 * fitted_depth, fitted_depth, 997)
     forces = element.potential(d)[1]
     ratio = forces / _spring_force_shape(d, c)
@@ -201,9 +200,9 @@ def _fit_exponential_law(
     )
 
 
-def fit_depth(element: ForceElement, load: dict[str, float]) -> float:
+def fit_depth(element: ForceElement | PreloadedElement, load: dict[str, float]) -> float:
     """Return the largest indentation in mm of a fit: that under a given load, else the largest valid one."""
-    if load:
+    if load and isinstance(element, ForceElement):
         model: Model = element.model
         return float(model.press(element.joint.with_floats(), **load).indentation)
-    return valid_depth(element) or element.wall
+    return element.valid_depth or element.wall

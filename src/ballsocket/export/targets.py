@@ -12,7 +12,7 @@ import numpy
 
 from ..core.deprecation import RenamedAttribute
 from ..core.storage.atomic_files import write_text
-from ..dynamics import ContactState, ForceElement
+from ..dynamics import ContactState, ForceElement, PreloadedElement
 from ..dynamics.reaction import Constants
 from ..version import __version__
 from .c_element import CElement, fill_template
@@ -28,7 +28,7 @@ Texts = Mapping[str, str]
 class ExportJob:
     """Export of one force element: the element, the name of its files, and the largest fitted indentation in mm."""
 
-    element: ForceElement
+    element: ForceElement | PreloadedElement
     name: str
     depth: float
 
@@ -40,12 +40,28 @@ class ExportJob:
     @cached_property
     def fitted_power_law(self) -> PowerFit:
         """Fitted power law F = k d^n of the force element."""
-        return power_fit(self.element, self.depth)
+        return power_fit(self.central_element, self.depth)
 
     @cached_property
     def fitted_expression(self) -> ExpressionFit:
         """Force law fitted as one expression of the distance."""
-        return expression_fit(self.element, self.depth)
+        return expression_fit(self.central_element, self.depth)
+
+    @property
+    def central_element(self) -> ForceElement:
+        """Element whose force depends on the distance of the centres alone.
+
+        Raises
+        ------
+        ValueError
+            A preloaded joint.
+        """
+        if isinstance(self.element, PreloadedElement):
+            raise ValueError(
+                "the force of a preloaded joint depends on the direction, which this target cannot represent: "
+                "export c, drake, modelica or mujoco, or use `ballsocket fmu`"
+            )
+        return self.element
 
     @property
     def template_context(self) -> dict[str, str]:
@@ -143,7 +159,7 @@ def _compile_library(job: ExportJob, folder: Path) -> str:
 
 def _opensim_texts(job: ExportJob) -> Texts:
     """Return the text of the OpenSim file with an expression force, by file name."""
-    fitted_expression, element = job.fitted_expression, job.element
+    fitted_expression, element = job.fitted_expression, job.central_element
     accuracy = fitted_expression.range_note or f"within {100 * fitted_expression.error:.1g} % of the law"
     hysteresis = element.damping.hysteresis if element.damping else 0.0
     expression = fitted_expression.text("d", "ddot", 1e3 * hysteresis)
@@ -227,8 +243,8 @@ def _modelica_texts(job: ExportJob) -> Texts:
 def _table_texts(job: ExportJob) -> Texts:
     """Return the texts of the table of the force law and of the fitted power law, by file name."""
     return {
-        f"{job.name}_law.csv": _law_table(job.element, job.depth),
-        f"{job.name}_power.txt": _power_law_text(job.element, job.fitted_power_law, __version__),
+        f"{job.name}_law.csv": _law_table(job.central_element, job.depth),
+        f"{job.name}_power.txt": _power_law_text(job.central_element, job.fitted_power_law, __version__),
     }
 
 

@@ -6,7 +6,7 @@ Directions are those of the patient's body: x to the right, y to the front, z up
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, pi, sin
+from math import cos, pi, radians, sin
 
 from ..core import arrays
 from ..core.arrays import Array, is_plain_number
@@ -38,13 +38,16 @@ class Side(Choice):
 
 
 class UnsetAngle(float):
-    """Default angle of 0 rad of a cup whose orientation is not set.
+    """Default angle in rad of a cup, which nobody set.
 
-    The standard of a load cycle may replace it.
+    The standard of a load cycle may replace an orientation, and a preloaded joint the arc of cover.
     """
 
 
-_UNSET_ANGLE = UnsetAngle(0.0)
+_UNSET_ANGLE, _UNSET_ARC = UnsetAngle(0.0), UnsetAngle(pi)
+
+HOLDING_ARC = radians(240.0)
+"""Assumed arc of cover in rad of a socket that holds a preloaded ball."""
 
 _ENUMERATIONS = {"interface": Interface, "side": Side}
 """Type of each attribute that is an enumeration."""
@@ -95,7 +98,7 @@ class Cup:
     46.9
     """
 
-    arc_of_cover: float = pi
+    arc_of_cover: float = _UNSET_ARC
     chamfer: float = 0.0
     interface: Interface = Interface.BONDED
     inclination: float = _UNSET_ANGLE
@@ -115,6 +118,14 @@ class Cup:
     def rim(self) -> float:
         """Polar angle of the rim in rad, half of the arc of cover."""
         return self.arc_of_cover / 2
+
+    def around_ball(self, clearance: Array) -> Cup:
+        """Return the cup with an arc of cover of 240° if none was set and the clearance (mm) is negative.
+
+        A preloaded ball is held by a socket that reaches beyond its equator alone.
+        """
+        unset = isinstance(self.arc_of_cover, UnsetAngle)
+        return replace(self, arc_of_cover=HOLDING_ARC) if unset and float(clearance) < 0 else self
 
     @property
     def oriented(self) -> bool:

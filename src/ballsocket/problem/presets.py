@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import inf
 from typing import Any
 
@@ -45,6 +46,46 @@ POM = Material(
     "yield: data sheet of Hostaform C 9021 XAP (ISO 527, 50 mm/min)",
     yield_stress=64.0,
 )
+
+
+@dataclass(frozen=True, kw_only=True)
+class LongTermModulus:
+    """Modulus of a preset material under a load that is held for a long time.
+
+    Attributes
+    ----------
+    young : float
+        Creep modulus in MPa.
+    hours : float
+        Duration of the load in hours.
+    source : str
+    """
+
+    young: float
+    hours: float
+    source: str
+
+
+LONG_TERM_MODULI = {
+    "POM": LongTermModulus(
+        young=1300.0, hours=1000.0, source="Ticona 2008, Hostaform C 9021 data sheet, tensile creep modulus (ISO 899-1)"
+    )
+}
+"""Long-term moduli by the name of the preset material; its `young` is the modulus of a short load."""
+
+
+def long_term_note(material: Material) -> str:
+    """Describe the long-term modulus of a preset material in a sentence; empty without data, or for another modulus."""
+    modulus = LONG_TERM_MODULI.get(material.name)
+    preset = next((preset for preset in materials.values() if preset.name == material.name), None)
+    if modulus is None or preset is None or float(material.young) != preset.young:
+        return ""
+    return (
+        f"{material.name}: E {preset.young:g} MPa is the modulus of a short load; after {modulus.hours:g} hours under "
+        f"load it is {modulus.young:g} MPa ({modulus.source})"
+    )
+
+
 STEEL = Material(young=230000.0, poisson=0.3, name="steel head", source=f"{_PAPER}; high for a stainless steel")
 STRUCTURAL_STEEL = Material(
     young=210000.0,

@@ -242,6 +242,10 @@ def _film_lines(history: History) -> Iterator[str]:
         yield "no film: nothing is pressed"
         return
     summary = film.summary()
-    thickness = f"{1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm"
-    yield f"film (Hamrock-Dowson) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
-    yield f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"
+    if summary["largest_nm"] is None:
+        yield "no film thickness: without a clearance the surfaces do not converge, and no formula applies"
+    else:
+        thickness = f"{1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm"
+        yield f"film (Hamrock-Dowson) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
+    friction = f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"
+    yield f"{friction}, with a coefficient of {history.lubricant.friction:g}"

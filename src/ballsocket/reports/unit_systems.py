@@ -117,6 +117,12 @@ class Units(StrEnum):
         """Unit of dimensions: mm or inches."""
         return _INCHES if self is Units.IMPERIAL else Unit("mm")
 
+    def torque(self, newton_millimetres: float) -> str:
+        """Write a torque (N mm) in N m or in pound inches."""
+        if self is Units.IMPERIAL:
+            return f"{newton_millimetres / (_INCH * _POUND):.3g} lbf in"
+        return f"{1e-3 * newton_millimetres:.3g} N m"
+
     def unit_of(self, quantity: Quantity) -> Unit:
         """Return the unit of a quantity."""
         return _IMPERIAL.get(quantity.kind, quantity.shown) if self is Units.IMPERIAL else quantity.shown
@@ -140,8 +146,8 @@ class Units(StrEnum):
 
     def joint(self, joint: Joint) -> str:
         """Describe a joint in one line; its name stays as it is."""
-        head, _, described = str(joint).rpartition(f"{joint.name}: ") if joint.name else ("", "", str(joint))
-        return f"{f'{joint.name}: ' if joint.name else head}{self.sentence(described)}"
+        head = f"{joint.name}: " if joint.name else ""
+        return head + self.sentence(str(joint).removeprefix(head))
 
     def columns_of(self, joint: Joint) -> tuple[Column, ...]:
         """Return the columns of a contact of a joint: without stress ratios whose strength is unknown."""

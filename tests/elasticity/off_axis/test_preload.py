@@ -1,4 +1,4 @@
-"""Preloaded joints: equilibrium without a load, separation, wear and stiffness."""
+"""Preloaded joints: equilibrium without a load, separation, wear and stiffness; friction and pull-out forces."""
 
 from dataclasses import replace
 from math import pi, radians
@@ -101,3 +101,77 @@ def test_methods_of_version_1_0_warn_and_work():
         assert fitted.rest is fitted.equilibrium
     with pytest.warns(DeprecationWarning, match="use separation_displacement"):
         assert fitted.lost_at == fitted.separation_displacement
+
+
+def held(arc, **options):
+    return replace(WRAPPED, cup=bs.Cup(arc_of_cover=radians(arc)), **options)
+
+
+def spring_force(joint, arc, displacement, friction):
+    """Integrate K (penetration of the displaced ball) along the normals of the ball, over the bore."""
+    R1, R2, K = joint.ball_radius, joint.socket_radius, bs.hess_forsbach(joint)
+    polar = np.linspace(0.0, radians(arc / 2), 4001)
+    along = -displacement * np.cos(polar)
+    overlap = along + np.sqrt(R1**2 - displacement**2 + along**2) - R2
+    outward, across = -R2 * np.cos(polar) - displacement, R2 * np.sin(polar)
+    normal = (outward + friction * across) / np.hypot(outward, across)
+    return np.trapezoid(K * np.maximum(overlap, 0.0) * normal * 2 * np.pi * R2**2 * np.sin(polar), polar)
+
+
+@pytest.mark.parametrize(("fit", "friction"), [(("interference", 0.02), 0.2), (("clearance", 0.05), 0.0)])
+def test_the_pull_out_force_on_springs_is_the_largest_integral(fit, friction):
+    joint = TIGHT.replace(**dict([fit]))
+    pulled = bs.pull_out(held(200.0, surface=bs.Springs(), ring_width=radians(1.0)), joint, friction)
+    displacements = np.linspace(max(joint.clearance, 0.0), pulled.displacements[-1], 400)
+    forces = [spring_force(joint, 200.0, displacement, friction) for displacement in displacements]
+    assert pulled.force == pytest.approx(max(forces), rel=0.02)
+    assert pulled.displacement == pytest.approx(displacements[np.argmax(forces)], abs=0.1)
+
+
+def test_the_pull_out_force_grows_with_cover_and_friction_and_does_not_need_fine_rings():
+    narrow, wide = (bs.pull_out(held(arc), TIGHT) for arc in (195.0, 205.0))
+    assert 0 < narrow.force < wide.force < bs.pull_out(held(205.0), TIGHT, 0.1).force
+    assert narrow.strain < wide.strain < 0.1
+    assert wide.force == pytest.approx(bs.pull_out(held(205.0, ring_width=radians(2.0)), TIGHT).force, rel=0.05)
+    assert wide.displacements[-1] == pytest.approx(TIGHT.socket_radius * np.sin(radians(12.5)))
+    assert wide.forces[-1] < 0  # beyond the widest section the rim expels the ball
+
+
+def test_a_pull_out_force_beyond_linear_elasticity_is_not_reported():
+    pulled = bs.pull_out(held(240.0), TIGHT)
+    assert np.isnan(pulled.force)
+    assert not pulled.valid
+    assert pulled.summary()["force"] is None
+    assert pulled.notes[0].startswith("pull-out: not computed, the rim would compress the liner by ")
+    upper = bs.pull_out(held(205.0), TIGHT)
+    assert upper.utilisation > 1.38
+    assert not upper.valid
+    assert upper.notes[0].startswith("pull-out: an upper bound, ")
+
+
+@pytest.mark.parametrize(
+    ("arc", "friction", "said"),
+    [(180.0, 0.0, "a socket of 180 deg does not hold its ball"), (200.0, -0.1, "friction = -0.1 is not allowed")],
+)
+def test_pull_out_of_an_open_socket_or_with_negative_friction_is_refused(arc, friction, said):
+    with pytest.raises(ValueError, match=said):
+        bs.pull_out(held(arc), TIGHT, friction)
+
+
+def test_friction_of_a_preloaded_ball_is_that_of_its_pressures():
+    """A uniform pressure p on a closed bore has the torque μ p R1 R2² π² about every axis: the mean sine is π/4."""
+    closed = replace(WRAPPED, surface=bs.ClosedShell(), cup=bs.Cup(arc_of_cover=radians(340.0)))
+    contact = closed.press(TIGHT, displacement=(0.0, 0.0, 0.0))
+    uniform = pi**2 * TIGHT.ball_radius * TIGHT.socket_radius**2 * contact.pressure_at((0.0, 0.6, 0.8))
+    for axis_angle, lost in ((pi / 2, 1.01), (0.0, 1.0)):  # the opening of 20 degrees takes part of the bore
+        assert lost * contact.friction_torque(0.1, axis_angle) == pytest.approx(0.1 * uniform, rel=0.02)
+    ring = held(200.0).press(TIGHT, force=0.0)  # pushed out until the rim alone holds the ball
+    assert ring.pole_pressure == 0
+    assert ring.friction_torque(0.1, 0.0) > ring.friction_torque(0.1) > 1e3
+
+
+def test_a_half_socket_does_not_hold_a_preloaded_ball():
+    contact = held(180.0).press(TIGHT, force=2000.0)
+    assert not contact.valid
+    assert "a half socket does not hold a preloaded ball: set arc_of_cover above 180 deg" in " ".join(contact.notes)
+    assert held(181.0).press(TIGHT, force=2000.0).valid

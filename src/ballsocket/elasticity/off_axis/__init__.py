@@ -3,7 +3,7 @@
 from .bore_shapes import BoreDeviation, DepthTable, OvalBore
 from .model import Sphere
 from .orientations import Orientations, orient
-from .preload import Preload
+from .preload import Preload, PullOut, pull_out
 from .scans import Scan, read_scan
 from .surfaces import ClosedShell, RealCup, Springs
 
@@ -18,11 +18,13 @@ __all__ = [
     "OvalBore",
     "Pinched",
     "Preload",
+    "PullOut",
     "RealCup",
     "Scan",
     "Sphere",
     "Springs",
     "Worn",
     "orient",
+    "pull_out",
     "read_scan",
 ]

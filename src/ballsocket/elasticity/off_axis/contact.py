@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees
+from math import degrees, pi
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
@@ -62,6 +62,30 @@ class OffAxisContact(SolvedContact):
     def moment(self) -> Array:
         """Moment of the contact on the ball about the ball's centre, without friction, in N mm."""
         return arrays.namespace(self.force_vector).linalg.cross(self.displacement, self.force_vector)
+
+    def friction_torque(self, coefficient: Array, axis_angle: float = pi / 2) -> Array:
+        """Compute the Coulomb friction torque in N mm of a ball that slides about an axis through its centre.
+
+        Parameters
+        ----------
+        coefficient : float or array
+            Coefficient of friction, zero or more.
+        axis_angle : float
+            Angle (rad) between the axis of rotation and the load: π/2 is across it, 0 along it.
+
+        Returns
+        -------
+        float or array
+            μ R1 ∫ p sin(angle between axis and radius) dA over the bore, the mean of axes around the load.
+
+        Raises
+        ------
+        ValueError, TypeError
+            As `Contact.friction_torque`.
+        """
+        coefficient = self._check_friction(coefficient, axis_angle)
+        lever = self.laws.combine(lambda contacts: contacts.state.friction_levers(axis_angle))
+        return self._match_load(coefficient * self.joint.ball_radius * self.joint.socket_radius**2 * lever)
 
     @cached_property
     def stiffness_matrix(self) -> Array:

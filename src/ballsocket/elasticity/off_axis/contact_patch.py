@@ -91,7 +91,7 @@ class ContactPatch:
         if not self.pressure[row, column] > 0:
             return 0.0, self.axis
         middle = self.grid.middles[:, row, column]
-        first, second = _tangents_at(middle)
+        first, second = tangents_at(middle)
         radius = _FIT_RADIUS * self.grid.width
         fitted = (numpy.tensordot(middle, self.grid.middles, 1) > numpy.cos(radius)) & (self.pressure > 0)
         points = self.grid.middles[:, fitted]
@@ -228,13 +228,13 @@ def _ray_directions(centre: Numbers, angle: Numbers, azimuth: Numbers) -> Number
 
     The ray of azimuth 0 lies in the plane of the centre and the cup's axis, away from the pole.
     """
-    first, second = _tangents_at(centre)
+    first, second = tangents_at(centre)
     side = numpy.cos(azimuth)[..., None] * first + numpy.sin(azimuth)[..., None] * second
     ray: Numbers = numpy.cos(angle)[..., None] * centre + numpy.sin(angle)[..., None] * side
     return ray
 
 
-def _tangents_at(axis: Numbers) -> tuple[Numbers, Numbers]:
+def tangents_at(axis: Numbers) -> tuple[Numbers, Numbers]:
     """Compute two unit vectors perpendicular to an axis: away from the pole, and along the ring of the axis."""
     polar, azimuth = float(polar_angle(axis)), float(numpy.arctan2(axis[1], axis[0]))
     along_ring = numpy.array([-numpy.sin(azimuth), numpy.cos(azimuth), 0.0])

@@ -11,7 +11,7 @@ import numpy
 from ...contact.per_joint import QUANTITIES
 from ...core.arrays import Numbers
 from .bore_contact import BoreContact, EquilibriumBatch
-from .contact_patch import ContactPatch
+from .contact_patch import ContactPatch, tangents_at
 from .surfaces import EdgeRelation
 
 _PRESSURE_ERRORS = {
@@ -29,6 +29,9 @@ _EDGE_ERRORS = {"half_angle": 0.1, "stiffness": 0.6}
 
 Both were measured against the exact solution. A test repeats this for random contacts.
 """
+
+_FRICTION_AXES = 4
+"""Number of axes around the load over which a friction torque is averaged."""
 
 _MIN_ERROR = 3e-4
 """Relative error of all quantities that the finite elements of the cup leave."""
@@ -102,6 +105,26 @@ class ContactStates:
     def displacement(self) -> Numbers:
         """Displacement of the ball's centre from the centre of the bore in mm: (3, contacts)."""
         return self.equilibrium.displacement.T
+
+    def friction_levers(self, axis_angle: float) -> Numbers:
+        """Sum pressures times levers about axes at an angle (rad) from the load: (contacts,), in MPa on a unit sphere.
+
+        The levers are means over axes all around the load.
+        """
+        grid, pressure = self.bore.compliance.grid, self.equilibrium.pressure
+        weights, levers = pressure * grid.areas, numpy.zeros(len(pressure))
+        for contact, load_axis in enumerate(self.axes):
+            cosine = numpy.tensordot(load_axis, grid.centroids, 1)
+            first, second = tangents_at(load_axis)
+            azimuth = numpy.arctan2(
+                numpy.tensordot(second, grid.centroids, 1), numpy.tensordot(first, grid.centroids, 1)
+            )
+            sine = numpy.sqrt(numpy.maximum(1.0 - cosine * cosine, 0.0))
+            for turn in numpy.arange(_FRICTION_AXES) * (numpy.pi / _FRICTION_AXES):
+                along = cosine * numpy.cos(axis_angle) + sine * numpy.sin(axis_angle) * numpy.cos(azimuth - turn)
+                lever = numpy.sqrt(numpy.maximum(1.0 - along * along, 0.0))
+                levers[contact] += (weights[contact] * lever).sum() / _FRICTION_AXES
+        return levers
 
     @property
     def force(self) -> Numbers:

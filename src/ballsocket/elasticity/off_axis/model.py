@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import radians
+from math import inf, pi, radians
 from typing import Any, ClassVar
 
 import numpy
@@ -136,7 +136,15 @@ class Sphere(Model):
             low=5.0,
             why="the contact spans few rings: reduce ring_width, or use exact far from the rim",
         )
-        return (SMALL_STRAIN, narrow, *((CLOSE_FIT,) if self.gap is LinearGap else ()))
+        held = Range(
+            quantity=lambda contact: arrays.where(
+                contact.joint.clearance < 0, self.cup.arc_of_cover / pi, inf + 0.0 * contact.joint.clearance
+            ),
+            symbol="arc of cover over 180°",
+            low=1.0 + 1e-9,
+            why="a half socket does not hold a preloaded ball: set arc_of_cover above 180 deg",
+        )
+        return (SMALL_STRAIN, narrow, held, *((CLOSE_FIT,) if self.gap is LinearGap else ()))
 
     @property
     def parameters(self) -> tuple[Array, ...]:

@@ -14,8 +14,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ...core.checks import require
 from ...core.storage.atomic_files import write_atomically
-from ...dynamics import ForceElement
-from ...dynamics.element import valid_depth
+from ...dynamics import ForceElement, PreloadedElement
 from ...version import __version__
 from ..c_element import CElement, fill_template
 from ..c_text import c_number
@@ -256,7 +255,7 @@ class Fmu:
 
     Parameters
     ----------
-    element : ForceElement
+    element : ForceElement or PreloadedElement
     name : str
         Identifier of the model: letters, digits and _.
     version : int
@@ -268,7 +267,7 @@ class Fmu:
         An invalid name or version.
     """
 
-    element: ForceElement
+    element: ForceElement | PreloadedElement
     name: str = "ballsocket"
     version: int = 3
 
@@ -299,7 +298,7 @@ class Fmu:
     @cached_property
     def _job(self) -> ExportJob:
         """Export of the element to C, up to its largest valid indentation."""
-        return ExportJob(element=self.element, name=self.name, depth=valid_depth(self.element))
+        return ExportJob(element=self.element, name=self.name, depth=self.element.valid_depth)
 
     @cached_property
     def _numbers(self) -> dict[str, str]:

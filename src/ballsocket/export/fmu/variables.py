@@ -10,7 +10,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.storage.atomic_files import write_text
-from ...dynamics import ForceElement
+from ...dynamics import ForceElement, PreloadedElement
 from ..tunable import TUNABLES
 
 UNITS: Mapping[str, Mapping[str, int]] = {
@@ -65,7 +65,7 @@ _SCALARS = {
 _STATE, _POSITION = tuple(range(1, 10)), (1, 2, 3)
 
 
-def variables(element: ForceElement) -> tuple[Variable, ...]:
+def variables(element: ForceElement | PreloadedElement) -> tuple[Variable, ...]:
     """List all variables of an FMU in the order of their reference numbers, from 1."""
     properties = [*_input_properties(), *_output_properties(), *_parameter_properties(element)]
     return tuple(
@@ -91,7 +91,7 @@ def _output_properties() -> Iterator[dict]:
         yield {"name": name, "causality": "output", "unit": unit, "description": meaning, "needs": _POSITION}
 
 
-def _parameter_properties(element: ForceElement) -> Iterator[dict]:
+def _parameter_properties(element: ForceElement | PreloadedElement) -> Iterator[dict]:
     """Yield the properties of all tunable parameters of the element, with start values."""
     for parameter in TUNABLES:
         start = getattr(element.constants, parameter.constant) * parameter.si
@@ -102,7 +102,7 @@ def _parameter_properties(element: ForceElement) -> Iterator[dict]:
 _MM, _MPA = 1e-3, 1e6
 
 
-def write_cross_check(element: ForceElement, path: Path) -> tuple[Path, Path, Path]:
+def write_cross_check(element: ForceElement | PreloadedElement, path: Path) -> tuple[Path, Path, Path]:
     """Write the files of the FMI cross-check, NAME_in.csv, NAME_ref.csv and NAME_ref.opt, beside NAME.fmu.
 
     Raises
@@ -123,15 +123,18 @@ def write_cross_check(element: ForceElement, path: Path) -> tuple[Path, Path, Pa
     return inputs, reference, write_text(Path(f"{stem}_ref.opt"), options)
 
 
-def trajectory(element: ForceElement, time: Numbers) -> Numbers:
+def trajectory(element: ForceElement | PreloadedElement, time: Numbers) -> Numbers:
     """Compute the states (times, 9) of a test motion in which the ball touches, slides, spins and separates.
 
     The units are mm, mm/s and rad/s.
     """
     constants = element.constants
-    depth = 0.01 * min(constants.clearance, constants.wall) or 0.001 * constants.socket_radius
+    clearance = constants.clearance
+    depth = 0.01 * min(clearance, constants.wall) or 0.001 * constants.socket_radius
+    if clearance < 0.0:  # a preloaded ball touches at every position
+        clearance = depth = -0.2 * clearance
     phase = 2 * numpy.pi * time / STOP
-    distance = constants.clearance + depth * (1.0 - 2.0 * numpy.cos(phase))
+    distance = clearance + depth * (1.0 - 2.0 * numpy.cos(phase))
     rate = depth * 2.0 * numpy.sin(phase) * 2 * numpy.pi / STOP
     angle, angular_speed = 0.3 * numpy.sin(phase), 0.3 * numpy.cos(phase) * 2 * numpy.pi / STOP
     normal = numpy.stack([numpy.sin(angle), 0.0 * angle, numpy.cos(angle)], axis=-1)
@@ -146,7 +149,7 @@ def states_in_si(state: Numbers) -> Numbers:
     return numpy.hstack([_MM * state[:, :6], state[:, 6:]])
 
 
-def reference_loads(element: ForceElement, state: Numbers) -> Numbers:
+def reference_loads(element: ForceElement | PreloadedElement, state: Numbers) -> Numbers:
     """Compute the outputs of the Python element at given states, in the order and units of the FMU."""
     load = element(state[:, :3], state[:, 3:6], state[:, 6:])
     scalars = (_MM * load.energy, load.half_angle, _MPA * load.max_pressure)

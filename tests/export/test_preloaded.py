@@ -1,0 +1,113 @@
+"""A preloaded joint as C sources and as an FMU, against its element in Python."""
+
+from math import radians
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import ballsocket as bs
+from ballsocket.dynamics import Damping, Friction, PreloadedElement
+from ballsocket.export.fmu import Fmu, write_cross_check
+
+from ..cli.command import run
+from .host import Host
+from .library import Library, needs_compiler
+
+JOINT = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
+WORDS = ("--ball-radius", "13.5", "--interference", "0.03", "--liner-thickness", "2.5", "--liner", "pom")
+
+
+@pytest.fixture(scope="module")
+def element():
+    model = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(240.0), inclination=0.2), ring_width=radians(6.0))
+    return PreloadedElement(
+        model, JOINT, damping=Damping(hysteresis=1e-3, time=1e-5), friction=Friction(coefficient=0.1)
+    )
+
+
+@pytest.fixture(scope="module")
+def states():
+    return np.random.default_rng(1).normal(size=(6, 3, 3)) * np.array([0.04, 5.0, 0.5])[:, None]
+
+
+@needs_compiler
+def test_the_c_program_has_the_loads_of_the_element(element, states, tmp_path):
+    library = Library(element, tmp_path)
+    for position, velocity, spin in states.tolist():
+        load = element(position, velocity, spin)
+        status, force, moment, energy = library.load(position, velocity, spin)
+        assert status == load.status
+        assert_allclose(force, load.force, rtol=1e-11)
+        assert_allclose(moment, load.moment, rtol=1e-11)
+        assert_allclose(energy[0], load.energy, rtol=1e-11)
+        assert_allclose(library.tangent(position)[1].reshape(3, 3), load.tangent, rtol=1e-9, atol=1e-6)
+        assert_allclose([*library.contact(position)[1:]], [[load.half_angle], [load.max_pressure]], rtol=1e-11)
+    assert library.load((1.0, 0.0, 0.0), (0.0,) * 3, (0.0,) * 3)[0] == 4
+
+
+@needs_compiler
+def test_slopes_are_those_of_the_loads(element, states, tmp_path):
+    library = Library(element, tmp_path)
+    direction, step = np.random.default_rng(3).normal(size=(3, 3)) * np.array([[1e-3], [1.0], [0.1]]), 1e-5
+    ends = [element(*(states[0] + sign * step * direction).tolist()) for sign in (-1, 1)]
+    loads = [[*end.force, *end.moment, end.energy, end.half_angle, end.max_pressure] for end in ends]
+    status, slope = library.slope(*states[0].tolist(), direction.ravel().tolist())
+    assert status == 1
+    assert_allclose(slope, (np.array(loads[1]) - loads[0]) / (2 * step), rtol=1e-5, atol=1e-6)
+
+
+@needs_compiler
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_host_receives_force_and_friction_of_the_preload(element, version, tmp_path):
+    Fmu(element=element, name="rod", version=version).write(tmp_path / "rod.fmu")
+    write_cross_check(element, tmp_path / "rod.fmu")
+    host = Host(tmp_path / "rod.fmu", tmp_path)
+    host.set(position=(1e-5, 0.0, -2e-5), spin=(0.0, 0.0, 1.0))
+    load = element((0.01, 0.0, -0.02), spin=(0.0, 0.0, 1.0))
+    status, (force, moment) = host.get("force[1]", "moment[3]")
+    assert status == 0
+    assert_allclose((force, moment), (load.force[0], 1e-3 * load.moment[2]), rtol=1e-11)
+    assert host.messages == []
+    reference = np.genfromtxt(tmp_path / "rod_ref.csv", delimiter=",", names=True, deletechars="")
+    assert np.isfinite(reference["force[1]"]).all()
+    assert np.ptp(reference["energy"]) > 0
+
+
+def test_fmpy_validates_and_simulates_the_unit(element, tmp_path):
+    fmpy = pytest.importorskip("fmpy", reason="fmpy is not installed")
+    from fmpy.validation import validate_fmu
+
+    path = str(tmp_path / "rod.fmu")
+    Fmu(element=element, name="rod").write(tmp_path / "rod.fmu")
+    write_cross_check(element, tmp_path / "rod.fmu")
+    assert validate_fmu(path) == []
+    given, reference = (
+        np.genfromtxt(tmp_path / f"rod_{end}.csv", delimiter=",", names=True, deletechars="") for end in ("in", "ref")
+    )
+    loads = fmpy.simulate_fmu(path, fmi_type="ModelExchange", input=given, stop_time=0.1, output_interval=1e-3)
+    assert_allclose(loads["force[3]"], reference["force[3]"], rtol=1e-10, atol=1e-6)
+
+
+def test_the_commands_export_an_interference(tmp_path):
+    finished = run("export", "c", *WORDS, "--out", "rod", folder=tmp_path)
+    assert finished.returncode == 0, finished.stderr
+    assert finished.stderr == "ballsocket: arc of cover 240° assumed for a preloaded joint; set --arc-of-cover\n"
+    assert "int rod_load(" in (tmp_path / "rod" / "rod.h").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("command", "options", "said"),
+    [
+        (("export", "table"), ("--arc-of-cover", "240"), "export c, drake, modelica or mujoco"),
+        (("export", "opensim"), ("--arc-of-cover", "240"), "export c, drake, modelica or mujoco"),
+        (("export", "c"), ("--arc-of-cover", "180"), "above 180 deg"),
+        (("fmu",), ("--model", "exact"), "the model exact does not solve a preloaded joint: use sphere"),
+    ],
+)
+def test_what_a_preloaded_joint_cannot_be_exported_to_is_refused(command, options, said, tmp_path):
+    out = "rod.fmu" if command == ("fmu",) else "rod"
+    finished = run(*command, *WORDS, *options, "--out", out, folder=tmp_path)
+    assert finished.returncode == 2
+    assert said in finished.stderr
+    assert finished.stderr.count("\n") == 1

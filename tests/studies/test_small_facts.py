@@ -1,0 +1,92 @@
+"""Parts of a study: blocks, times, identities of arrays, rows beside samples, and limits on a plane."""
+
+from math import inf
+
+import numpy
+import pytest
+import xarray
+
+from ballsocket import joints
+from ballsocket.core.kinds import Unit
+from ballsocket.studies import Progress
+from ballsocket.studies.distributions import Normal, Rectangular, check_nominal, tolerance
+from ballsocket.studies.file import read_study
+from ballsocket.studies.limits import Limit, margin_on_plane
+from ballsocket.studies.metadata import _describe_array
+from ballsocket.studies.parameters import vary_joint
+from ballsocket.studies.run import _duration_text
+from ballsocket.studies.task import Blocks
+
+
+def test_a_block_has_at_least_one_point_and_at_most_what_is_allowed():
+    assert Blocks.divide((3, 4), 1).size == (1, 1)
+    assert Blocks.divide((3, 4), 0).size == (1, 1)
+    assert Blocks.divide((3, 4), 4).size == (1, 4)
+    assert Blocks.divide((3, 4), 8).size == (2, 4)
+
+
+def test_the_time_left_is_the_rest_over_the_rate():
+    """40 points in 8 s are 5 a second: 50 more take 10 s. Stored points count as done, not as computed."""
+    progress = Progress(n_done=50, n_points=100, n_stored=10, seconds=8.0)
+    assert progress.rate == 5.0
+    assert progress.seconds_left == 10.0
+    assert Progress(n_done=0, n_points=100, n_stored=0, seconds=8.0).seconds_left == inf
+
+
+@pytest.mark.parametrize(
+    ("hours", "text"),
+    [(1 / 3600, "1 s"), (1 / 60.5, "60 s"), (1 / 59.5, "1 minutes"), (0.5, "30 minutes"), (2.0, "2 hours")],
+)
+def test_a_duration_has_the_unit_that_suits_it(hours, text):
+    assert _duration_text(hours) == text
+
+
+def test_a_nominal_value_may_lie_on_the_end_of_its_tolerance():
+    """Rounding of an end does not count as outside, in either direction."""
+    span = Rectangular(low=0.1, high=0.3)
+    for value in (0.1, 0.3, 0.1 - 1e-12, 0.3 + 1e-12):
+        check_nominal("clearance", value, span, Unit("mm"))
+    for value in (0.1 - 1e-6, 0.3 + 1e-6):
+        with pytest.raises(ValueError, match="lies outside its tolerance of 0.1 to 0.3 mm"):
+            check_nominal("clearance", value, span, Unit("mm"))
+
+
+def test_a_normal_distribution_without_ends_covers_nearly_all_values():
+    """Three deviations from the mean belong to it; a tolerance of parts ends where it says."""
+    check_nominal("clearance", 0.1 + 3 * 0.01, Normal(mean=0.1, deviation=0.01), Unit("mm"))
+    with pytest.raises(ValueError, match="lies outside"):
+        check_nominal("clearance", 0.13, tolerance(0.1, 0.02), Unit("mm"))
+
+
+def test_equal_radii_are_a_joint_without_clearance():
+    joint, possible = vary_joint(
+        joints["hip-36"], {"socket_radius": numpy.array([18.0, 17.9, 18.1]), "ball_radius": 18.0}
+    )
+    assert joint.clearance.tolist() == pytest.approx([0.0, 0.0, 0.1])
+    assert joint.clearance[0] == 0.0
+    assert possible.tolist() == [True, False, True]
+
+
+def test_a_long_array_is_described_by_its_ends():
+    described = _describe_array(numpy.arange(100_000.0) + 3)
+    assert (described["count"], described["first"], described["last"]) == (100_000, 3.0, 100_002.0)
+
+
+def test_a_limit_that_depends_on_one_axis_fills_the_plane():
+    """Zero is a value like any other on the second axis."""
+    study = xarray.Dataset(
+        {"max_pressure": ("clearance", [8.0, 12.0])}, coords={"clearance": [0.1, 0.2], "friction": [0.0, 0.1, 0.2]}
+    )
+    margin = margin_on_plane(study, Limit(name="max_pressure", high=10.0), "clearance", "friction")
+    assert margin.shape == (3, 2)
+    assert numpy.isfinite(margin).all()
+    assert (numpy.sign(margin) == [[1, -1]] * 3).all()
+
+
+def test_rows_of_a_table_are_combined_with_samples(tmp_path):
+    (tmp_path / "rows.csv").write_text("force\n1000\n2000\n")
+    (tmp_path / "study.toml").write_text(
+        'joint = "hip-36"\n[table]\npath = "rows.csv"\n[samples]\ncount = 4\n'
+        'clearance = { low = "0.08 mm", high = "0.12 mm" }\n'
+    )
+    assert read_study(tmp_path / "study.toml").design.shape == (2, 4)
