@@ -53,6 +53,11 @@ def test_a_stopped_run_is_resumed_and_leaves_only_the_pack(pack, run, tmp_path):
     comparison = json.loads(run("--check", out, "--json").stdout)
     assert comparison["digest"] in result.stdout
     assert (comparison["valid"], comparison["differences"], comparison["signature"]) == (True, [], None)
+    assert result.stdout.startswith("largest pressure at most 15 MPa: not kept\n")
+    strict = run("--check", out, "--strict")
+    assert (strict.exit_code, "largest pressure at most 15 MPa: not kept\n" in strict.stdout) == (1, True)
+    (shown,) = [row for row in pack[1]["limits"] if row["verdict"].startswith("kept")]
+    assert shown["name"] == "edge_distance"
 
 
 def test_a_folder_with_other_files_is_refused(pack, run, tmp_path):

@@ -58,7 +58,14 @@ _FLAGS = {
     "press": {**_OWN, **_OTHERS, **_LOADS},
     "map": {**_STUDY, "--x": _range, "--y": _range, "--points": _count},
     "optimise": {**_STUDY, "--vary": _range, "--minimise": mistyped(CONTACT), "--points": _count},
-    "sensitivity": {"--force": words.force, "--spread": _spread, "--count": _count},
+    "sensitivity": {
+        "--force": words.force,
+        "--spread": _spread,
+        "--count": _count,
+        "--of": mistyped(CONTACT),
+        "--correlation": st.builds("{}, {} = {}".format, mistyped(PARAMETERS), mistyped(PARAMETERS), quantity),
+        "--intervals": mistyped(("none", "bootstrap")),
+    },
     "deck": {**_LOADS, "--steps": _count, "--scale": number, "--element-size": _size, "--element": odd_text},
     "calibrate": {"--force": words.force, "--thickness": words.length, "--form": mistyped(("constant", "polynomial"))},
 }

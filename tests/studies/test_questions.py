@@ -1,5 +1,6 @@
 """Questions asked of many joints: maps, fronts, optima, tolerances, sensitivities; in Python and in the shell."""
 
+import csv
 import json
 import re
 import shlex
@@ -149,7 +150,7 @@ def test_sobol_intervals_are_those_of_the_seed_and_leave_the_global_stream_alone
 
 
 @pytest.mark.skipif(find_spec("jax") is None, reason="jax is not installed")
-@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
+@pytest.mark.parametrize("model", some([bs.HessForsbach(), bs.Hertz()], 1), ids=lambda model: model.name)
 def test_slopes_by_jax_are_those_of_differences(model):
     exact, near = (derive(model, HIP, ("max_pressure", "area"), AT) for derive in (jax_derivatives, finite_differences))
     for quantity in ("max_pressure", "area"):
@@ -197,7 +198,6 @@ def test_sobol_indices_of_a_product_of_powers():
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"count": 1000}, "count = 1000 is not allowed: a power of two"),
         ({"distributions": {"force": tolerance(3e3, 5e2)}}, "force scatters and is given as a load too"),
         ({"distributions": {}}, "at least one number must scatter"),
         ({"distributions": {"clearence": tolerance(0.1, 0.05)}}, "did you mean 'clearance'"),
@@ -207,7 +207,7 @@ def test_sobol_indices_of_a_product_of_powers():
         ),
         (
             {"count": 1 << 30},
-            r"intervals of 1073741824 samples take about .* TB, and there are .* of memory",
+            r"indices of 1073741824 samples take about .* GB, and there are .* of memory",
         ),
     ],
 )
@@ -340,7 +340,7 @@ def test_a_study_file_says_all(tmp_path):
             "model 'hess-forsbch' is not known; did you mean 'hess-forsbach'",
         ),
         ('joint = "hip.toml"', 'joint = "hop.toml"', "joint 'hop.toml' is neither a file nor a preset"),
-        ("count = 5", "count = 1e12", "1.6e.13 points take about"),
+        ("count = 5", "count = 1e12", "16 000 000 000 000 points take about"),
         ("count = 8", "count = 2.5", "count = 2.5 is not allowed: a whole number"),
         ('"1 kN"', '"1 kg"', r"force\[0\] = '1 kg' is not a force"),
         ("seed = 3", "sead = 3", "'sead' in .samples. is not known"),
@@ -386,7 +386,7 @@ def backed(tmp_path):
 
 
 def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_path, backed):
-    ranges = ("--x", "ball_radius=12..16 mm", "--y", "liner_thickness=4..6 mm", "--points", "3")
+    ranges = ("--x", "ball_radius=12..16 mm", "--y", "liner_thickness=4..6 mm", "--points", "2")
     found = command(tmp_path, "map", backed, *ranges, "--json")
     assert json.loads(found.stdout)["model"] == "exact"
     assert "model exact is used, since none of these joints is in the tables of tabulated" in found.stderr
@@ -394,7 +394,7 @@ def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_p
     assert "no point of the map is allowed by max_pressure ≤ 1, according to exact" in limited.stderr
     named = command(tmp_path, "map", backed, *ranges, "--model", "tabulated")
     assert "tabulated has no answer for layers behind the liner = 1: outside the tables" in named.stderr
-    best = command(tmp_path, "optimise", backed, "--vary", "liner_thickness=4..6 mm", "--json")
+    best = command(tmp_path, "optimise", backed, "--vary", "liner_thickness=4,6 mm", "--json")
     assert json.loads(best.stdout)["point"]["liner_thickness"] == pytest.approx(6.0)
     plain = command(tmp_path, "map", "hip-28", "--force", "3 kN", *ranges, "--json")
     assert json.loads(plain.stdout)["model"] == "tabulated"
@@ -453,6 +453,10 @@ def test_questions_on_the_command_line(tmp_path):
     )
     indices = json.loads(scatter.stdout)["quantities"]["max_pressure"]["numbers"]
     assert indices["clearance"]["first_order"] > indices["liner_poisson"]["first_order"]
+    assert set(indices["clearance"]) == {
+        "elasticity",
+        *(f"{order}_order{end}" for order in ("first", "total") for end in ("", "_low", "_high")),
+    }
     for words, message in (
         (("map", *common, "--x", "ball_radius=23..11 mm", "--figure", "map.gif"), "must end in"),
         (("map", *common, "--limit", "outer_radius<=1 mm"), "no point of the map is allowed by outer_radius ≤ 1"),
@@ -469,3 +473,52 @@ def test_questions_on_the_command_line(tmp_path):
         assert done.returncode == 2, done.stdout
         assert message in done.stderr
         assert len(done.stderr.strip().splitlines()) == 1
+
+
+SPREAD = ("--spread", "clearance=0.1+-0.05 mm", "--spread", "liner_young=700..1100 MPa")
+
+
+def test_sensitivity_of_one_quantity_with_pairs_in_a_table_and_csv(tmp_path):
+    words = ("sensitivity", "hip-36", "--force", "3 kN", *SPREAD, "--count", "100", "--of", "max_pressure")
+    done = command(tmp_path, *words, "--second-order", "--csv", "all.csv", "--figure", "all.png")
+    assert (done.returncode, done.stderr) == (0, "")
+    lines = done.stdout.splitlines()
+    assert lines[0].startswith("max_pressure: ")
+    assert [line.split()[0] for line in lines] == [
+        *("max_pressure:", "number", "clearance", "liner_young", "pair", "clearance")
+    ]
+    with (tmp_path / "all.csv").open(encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    (pair,) = [row for row in rows if row["index"] == "second_order"]
+    assert (pair["parameter"], pair["other_parameter"]) == ("clearance", "liner_young")
+    assert float(pair["low"]) < float(pair["value"]) < float(pair["high"])
+    assert {row["quantity"] for row in rows} == {"max_pressure"}
+    assert all(row["low"] for row in rows if row["index"] != "elasticity")
+    plain = command(tmp_path, *words, "--intervals", "none", "--json")
+    numbers = json.loads(plain.stdout)["quantities"]["max_pressure"]["numbers"]
+    assert set(numbers["clearance"]) == {"first_order", "total_order", "elasticity"}
+    assert "(" not in command(tmp_path, *words, "--intervals", "none").stdout
+
+
+def test_sensitivity_of_correlated_parameters_has_shapley_effects(tmp_path):
+    words = ("sensitivity", "hip-36", "--force", "3 kN", *SPREAD, "--count", "64")
+    done = command(tmp_path, *words, "--correlation", "clearance, liner_young = 0.6", "--json", "--figure", "s.png")
+    found = json.loads(done.stdout)
+    assert (found["correlation"], found["confidence"]) == ("clearance, liner_young = 0.6", 0.95)
+    for content in found["quantities"].values():
+        assert sum(numbers["shapley"] for numbers in content["numbers"].values()) == pytest.approx(1.0)
+        assert all(numbers["shapley_low"] <= numbers["shapley_high"] for numbers in content["numbers"].values())
+    shown = command(tmp_path, *words, "--correlation", "clearance, liner_young = 0.6").stdout
+    assert "Shapley effect" in shown
+    assert shown.endswith("rank correlations: clearance, liner_young = 0.6\n")
+    assert max(map(len, shown.splitlines())) <= 80
+    for wrong, message in (
+        (("--correlation", "clearance=0.5"), "'clearance=0.5' is not a correlation"),
+        (("--correlation", "clearance, force = 0.5"), "'force' among the correlated parameters is not known"),
+        (("--correlation", "clearance, liner_young = 1"), "a rank correlation is between -1 and 1"),
+        (("--of", "pressure"), "'pressure' among the quantities is not known"),
+        (("--csv", "all.txt"), "'all.txt' must end in .csv"),
+        (("--seed", "-1"), "seed = -1 is not allowed"),
+    ):
+        refused = command(tmp_path, *words, *wrong)
+        assert (refused.returncode, message in refused.stderr) == (2, True), refused.stderr

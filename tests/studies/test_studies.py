@@ -5,9 +5,12 @@ import json
 import sys
 import time
 from contextlib import contextmanager
+from importlib import import_module
+from importlib.util import find_spec
 from subprocess import DEVNULL, Popen
 
 import numpy as np
+import pandas
 import pytest
 import xarray as xr
 from hypothesis import given, settings
@@ -16,6 +19,7 @@ from hypothesis import strategies as st
 import ballsocket as bs
 from ballsocket.core.executors import Processes, Serial
 from ballsocket.core.executors.dask import Distributed
+from ballsocket.core.executors.processes import count_text
 from ballsocket.studies.design import Method, Span, grid, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
@@ -385,7 +389,7 @@ def test_what_would_be_ignored_is_refused(tmp_path):
 
 
 def test_too_many_points_are_refused_with_size_and_time(tmp_path):
-    with pytest.raises(ValueError, match=r"1e\+12 points take about .* TB and .* hours on one core"):
+    with pytest.raises(ValueError, match="1 000 000 000 000 points take about .* TB and .* hours on one core"):
         bs.study(bs.HessForsbach(), HIP, force=Span(1.0, 2.0, 10**12))
     wide = {"force": Span(1.0, 2.0, 10**7), "clearance": Span(0.05, 0.1, 10**6)}
     with pytest.raises(ValueError, match="on the disk of the store"):
@@ -400,8 +404,8 @@ def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
     monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 5)
     for model in some([bs.Exact(), bs.HessForsbach()], 1):
         here = bs.study(model, HIP, **AXES)
-        for engine in (Serial(), Processes(workers=2), Distributed(workers=1)):
-            assert same(bs.study(model, HIP, engine=engine, **AXES), here)
+        assert same(bs.study(model, HIP, engine=Processes(workers=2), **AXES), here)
+        for engine in (Serial(), Distributed(workers=1)):
             store = tmp_path / f"{model.name}-{type(engine).__name__}.zarr"
             stored = bs.study(model, HIP, engine=engine, store=store, **AXES).load()
             assert same(stored, here)
@@ -475,8 +479,62 @@ def test_files_for_other_programs(tmp_path):
     assert len(rows) == 4
     assert float(rows[1]["max_pressure_MPa"]) == found.max_pressure.values[0, 1]
     assert float(rows[3]["half_angle_deg"]) == np.degrees(found.half_angle.values[1, 1])
-    with pytest.raises(ValueError, match=r"must end in .nc or .csv"):
+    export(found, tmp_path / "s.parquet")
+    columns = pandas.read_parquet(tmp_path / "s.parquet")
+    assert columns.columns.tolist() == list(rows[0])
+    assert columns["half_angle_deg"].tolist() == [float(row["half_angle_deg"]) for row in rows]
+    assert columns["valid"].tolist() == [True] * 4
+    export(found, tmp_path / "s.zarr")
+    with xr.open_zarr(tmp_path / "s.zarr", consolidated=False) as again:
+        assert again.load().identical(found)
+    with pytest.raises(ValueError, match=r"s.zarr exists: choose another name"):
+        export(found, tmp_path / "s.zarr")
+    with pytest.raises(ValueError, match=r"must end in .nc, .csv, .parquet or .zarr"):
         export(found, tmp_path / "s.xls")
+
+
+def test_parquet_has_materials_and_the_points_of_all_chunks(tmp_path, monkeypatch):
+    monkeypatch.setattr(import_module("ballsocket.studies.export"), "_MAX_CHUNK_POINTS", 2)
+    found = bs.study(bs.HessForsbach(), HIP, liner=[bs.UHMWPE, bs.POM], force=[1e3, 2e3, 3e3])
+    export(found, tmp_path / "s.parquet")
+    columns = pandas.read_parquet(tmp_path / "s.parquet")
+    assert columns["liner"].tolist() == ["UHMWPE"] * 3 + ["POM"] * 3
+    assert columns["force_N"].tolist() == [1e3, 2e3, 3e3] * 2
+    assert columns["max_pressure_MPa"].tolist() == found.max_pressure.values.ravel().tolist()
+
+
+def test_remote_stores_are_addresses_and_never_local_folders(tmp_path, monkeypatch):
+    """The store of fsspec in the memory stands for a bucket."""
+    fsspec = pytest.importorskip("fsspec")
+    monkeypatch.chdir(tmp_path)
+    found = bs.study(bs.HessForsbach(), HIP, clearance=[0.05, 0.1], force=1000.0)
+    for name in ("s.parquet", "s.zarr", "s.csv"):
+        export(found, f"memory://bucket/{name}")
+    files = fsspec.filesystem("memory")
+    assert {path.split("/")[2] for path in files.find("/bucket")} == {"s.parquet", "s.zarr", "s.csv"}
+    with xr.open_zarr("memory://bucket/s.zarr", consolidated=False) as again:
+        assert again.load().identical(found)
+    files.rm("/bucket", recursive=True)
+    refusals = (
+        (lambda: bs.study(bs.HessForsbach(), HIP, force=1e3, store="s3://bucket/s.zarr"), "is not a local folder"),
+        (lambda: bs.studies.table("s3://bucket/rows.csv"), "'s3://bucket/rows.csv' is the address of a remote store"),
+        (lambda: export(found, "unknown://bucket/s.csv"), "unknown://bucket/s.csv: Protocol not known: unknown"),
+    )
+    for refused, message in refusals:
+        with pytest.raises(ValueError, match=message):
+            refused()
+    if find_spec("s3fs") is None:
+        with pytest.raises(ImportError, match="s3://bucket/s.csv: Install s3fs"):
+            export(found, "s3://bucket/s.csv")
+    for words in (("--store", "s3://bucket/s.zarr"), ("--figure", "s3://bucket/s.png")):
+        (tmp_path / "s.toml").write_text(ORDERED, encoding="utf-8")
+        done = run("study", "s.toml", *words, folder=tmp_path)
+        assert (done.returncode, "s3://bucket" in done.stderr) == (2, True), done.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
+
+
+def test_counts_are_integers_with_spaces():
+    assert [count_text(count) for count in (7, 9999, 14800, 10**6)] == ["7", "9999", "14 800", "1 000 000"]
 
 
 def test_a_stored_study_is_read_by_xarray_alone(tmp_path):

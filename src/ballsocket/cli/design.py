@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -11,13 +12,14 @@ import typer
 from ..catalogue import named_model, reference
 from ..contact import Model
 from ..core.checks import require
+from ..core.kinds import Choice
 from ..files.joint_file import JointFile
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports import study_plots, study_tables
 from ..studies.axes import Span
 from ..studies.design import grid
-from ..studies.expressions import parse_choices, parse_distribution, parse_limit, parse_range
+from ..studies.expressions import parse_choices, parse_correlations, parse_distribution, parse_limit, parse_range
 from ..studies.limits import Limit
 from ..studies.optimisation import optimise as find_optimum
 from ..studies.parameters import LOADS
@@ -189,6 +191,17 @@ def _show_front(result: Any, goals: tuple[str, str], limits: list[Limit], output
     output.draw(lambda: study_plots.front_figure(result, front, goals, limits))
 
 
+class Intervals(Choice):
+    """Methods of computing intervals."""
+
+    BOOTSTRAP = "bootstrap"
+    NONE = "none"
+
+
+_SENSITIVITY_RESULTS = ("indentation", "half_angle", "max_pressure", "area")
+"""Results whose variance is shared by default."""
+
+
 @app.command()
 @expand_groups
 def sensitivity(
@@ -204,20 +217,60 @@ def sensitivity(
         ),
     ],
     press_options: PressOptions,
-    count: Annotated[int, typer.Option(help="Number of samples, a power of two.")] = 1024,
+    count: Annotated[
+        int, typer.Option(help="Number of samples in each set, 2 or more; a power of two fills the space most evenly.")
+    ] = 1024,
+    of: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Result whose variance is shared: 'max_pressure'. Repeat for several. Default: indentation, "
+            "half_angle, max_pressure and area."
+        ),
+    ] = None,
+    correlation: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Rank correlation of two scattered parameters: 'clearance, liner_young = 0.5'. Repeat for several. "
+            "The result then has Shapley effects. Default: independent parameters."
+        ),
+    ] = None,
+    second_order: Annotated[
+        bool, typer.Option("--second-order", help="Also compute the indices of pairs of parameters.")
+    ] = False,
+    intervals: Annotated[
+        Intervals, typer.Option(help="Method of the 95 % intervals: bootstrap, or none to save time.")
+    ] = Intervals.BOOTSTRAP,
+    seed: Annotated[int, typer.Option(help="Seed of the samples, 0 or more.")] = 0,
+    csv: Annotated[
+        Path | None, typer.Option("--csv", help="Write all indices with their intervals to this file (.csv).")
+    ] = None,
     output: OutputOptions,
 ) -> None:
     """Compute which parameter's scatter matters most.
 
     The table shows Sobol indices with their intervals, and elasticities (relative change of a result per relative
-    change of a parameter).
+    change of a parameter). Correlated parameters have Shapley effects, which add up to 1.
     """
     output.check()
+    if csv is not None:
+        study_tables.check_csv(csv)
+    require("seed", seed, seed >= 0, "a seed is 0 or more")
     file = joint_options.read(joint)
     distributions = _unique(map(parse_distribution, spread))
     means = {name: [float(distribution.frozen.mean())] for name, distribution in distributions.items()}
     load, model = press_options.load(file, distributions), press_options.choose_model(file, means)
-    result = find_sensitivity(model, file.joint, distributions, count=count, load=load)
+    result = find_sensitivity(
+        model,
+        file.joint,
+        distributions,
+        quantities=list(dict.fromkeys(of or _SENSITIVITY_RESULTS)),
+        count=count,
+        seed=seed,
+        confidence=0.95 if intervals is Intervals.BOOTSTRAP else None,
+        load=load,
+        second_order=second_order,
+        correlation=parse_correlations(correlation or ()),
+    )
     output.print(
         lambda: {
             "version": __version__,
@@ -227,6 +280,8 @@ def sensitivity(
         lambda: study_tables.print_sensitivity(result),
     )
     output.draw(lambda: study_plots.sensitivity_figure(result))
+    if csv is not None:
+        study_tables.write_sensitivity(result, csv)
 
 
 def _check_points(points: int | None) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,7 +17,8 @@ from ..core.checks import needs
 from ..core.executors.processes import Engine, Processes
 from ..core.storage.pieces import fingerprint
 from ..evidence.comparison import compare
-from ..evidence.folder import WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
+from ..evidence.credibility_levels import Record
+from ..evidence.folder import RECORD, WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
 from ..evidence.pack import Listener, gather_evidence
 from ..evidence.plan import count_stored_pieces, remove_stored_pieces
 from ..evidence.question import Question, read_question
@@ -53,6 +55,9 @@ def evidence(
             help="With --check: public key file that must match the signature of the pack. Default: not verified."
         ),
     ] = None,
+    strict: Annotated[
+        bool, typer.Option("--strict", help="End with exit status 1 unless every limit of the question is kept.")
+    ] = False,
     as_json: AsJson = False,
     workers: Annotated[int | None, typer.Option(help="Number of worker processes. Default: number of cores.")] = None,
 ) -> None:
@@ -61,7 +66,8 @@ def evidence(
     The pack is a page and JSON with verification, comparison with published results, and uncertainty. The same command
     resumes a stopped run; a signed pack is computed in one run.
 
-    Exit status: 0 success, 2 wrong input, 3 the pack differs from the computation or has an invalid signature.
+    Exit status: 0 success, 1 with --strict: a limit is not kept, 2 wrong input, 3 the pack differs from the computation
+    or has an invalid signature.
     """
     needs("study", "xarray")
     if (question is None) == (check is None):
@@ -73,13 +79,20 @@ def evidence(
     key = None if sign is None else read_private_key(sign)
     engine = Processes(workers=workers)
     if check is not None:
-        _check(check, engine, as_json, key, None if verify is None else read_public_key(verify))
-    elif question is not None:
-        _gather(read_question(question), out, engine, as_json, key)
+        record = _check(check, engine, as_json, key, None if verify is None else read_public_key(verify))
+    else:
+        assert question is not None
+        record = _gather(read_question(question), out, engine, as_json, key)
+    if strict and not all(limit["verdict"].startswith("kept") for limit in record["limits"]):
+        raise typer.Exit(_LIMIT_NOT_KEPT)
 
 
-def _gather(question: Question, out: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None) -> None:
-    """Compute and write the pack of a question, signed if there is a key."""
+_LIMIT_NOT_KEPT = 1
+"""Exit status with --strict if a limit is not kept, or if that is not known."""
+
+
+def _gather(question: Question, out: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None) -> Record:
+    """Compute and write the pack of a question, signed if there is a key; return its record."""
     check_folder(out, question)
     resumed = 0 if key is not None else count_stored_pieces(question, out / WORK)
     with _show_progress() as progress, tempfile.TemporaryDirectory() as temporary:
@@ -94,13 +107,16 @@ def _gather(question: Question, out: Path, engine: Engine, as_json: bool, key: E
     if as_json:
         more = {"digest": digest_of(out), "signature": None if signed is None else signed.summary()}
         echo_json({**record, "folder": str(out), **more, "valid": record["accurate"]["holds"], "notes": notes})
-        return
+        return record
+    for conclusion in conclusions(record):
+        typer.echo(conclusion)
     echo_path(path)
     typer.echo(f"digest of the pack {digest_of(out)}")
     if signed is not None:
         typer.echo(f"signed with {signed.key.fingerprint}")
     if resumed:
         typer.echo(_RESUMED.format(resumed))
+    return record
 
 
 _RESUMED = "{} results were read from an earlier, stopped run and not computed: --check computes all of them again"
@@ -108,8 +124,11 @@ _RESUMED = "{} results were read from an earlier, stopped run and not computed: 
 
 def _check(
     folder: Path, engine: Engine, as_json: bool, key: Ed25519PrivateKey | None, expected: PublicKey | None
-) -> None:
-    """Compute a pack again, print the differences and its signature, and sign it if it is equal and there is a key."""
+) -> Record:
+    """Compute a pack again, print the differences and its signature, and sign it if it is equal and there is a key.
+
+    Return its record.
+    """
     with _show_progress() as progress:
         comparison = compare(folder, evidence_page, progress, engine)
     signed, defect = (None, "") if key is not None else _signature(folder, expected, comparison.sums)
@@ -139,6 +158,11 @@ def _check(
         typer.echo(_describe_signature(signed, defect, key is not None))
     if not good:
         raise typer.Exit(FAILURE)
+    record: Record = json.loads((folder / RECORD).read_bytes())
+    if not as_json:
+        for conclusion in conclusions(record):
+            typer.echo(conclusion)
+    return record
 
 
 def _signature(folder: Path, expected: PublicKey | None, sums: bytes) -> tuple[Signed | None, str]:

@@ -229,8 +229,10 @@ def _escape(text: str) -> str:
 
 
 def echo_path(path: Path, more: str = "") -> None:
-    """Print the path of a written file or folder, with escapes for characters that are not printable."""
-    typer.echo(_escape(f"{path}{more}"))
+    """Print the path or address of a written file or folder, with escapes for characters that are not printable."""
+    from ..core.storage.atomic_files import address_of
+
+    typer.echo(_escape(f"{address_of(path) or path}{more}"))
 
 
 def _flush() -> None:

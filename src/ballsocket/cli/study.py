@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
+from ..core.executors.processes import count_text
 from ..reports import study_plots, study_tables
 from ..reports.figure_files import check_format, save
 from ..studies.export import check_suffix, export
@@ -20,6 +21,7 @@ from ..studies.file import StudyFile, read_study
 from ..studies.run import Listener
 from ..studies.run import Progress as StudyProgress
 from ..studies.run import study as run_study
+from ..studies.store import check_store
 from ..version import __version__
 from .json_answers import echo_json
 from .options import AsJson, Scheduler, Workers, choose_executor
@@ -35,7 +37,13 @@ def study(
     store: Annotated[
         Path | None, typer.Option(help="Folder that stores the results. Default: the store of the file.")
     ] = None,
-    out: Annotated[Path | None, typer.Option(help="Write all values to this file: NetCDF (.nc) or CSV (.csv).")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write all values to this file: NetCDF (.nc), CSV (.csv), Parquet (.parquet) or Zarr (.zarr), "
+            "also in a cloud store: 's3://bucket/hips.parquet'."
+        ),
+    ] = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
     figure: Annotated[
@@ -50,6 +58,8 @@ def study(
     """
     if out is not None:
         check_suffix(out)
+    if store is not None:
+        check_store(store)
     study_file = read_study(file)
     draw = None if figure is None else _choose_plot(study_file, figure)
     folder = store or study_file.store
@@ -115,7 +125,7 @@ def _progress_bar(store: Path | None) -> Iterator[Listener]:
     except KeyboardInterrupt:
         _stop(progress)
         if store is not None and latest:
-            stored = f"{latest[0].n_done:.4g} of {latest[0].n_points:.4g} points are stored in {store}"
+            stored = f"{count_text(latest[0].n_done)} of {count_text(latest[0].n_points)} points are stored in {store}"
             print_message(f"stopped; {stored}: run the command again to resume")
         raise
     finally:
@@ -131,4 +141,4 @@ def _stop(progress: Progress) -> None:
 def _progress_text(state: StudyProgress) -> str:
     """Return finished points, rate in points per second and remaining time as text."""
     remaining = "" if state.seconds_left in (0.0, inf) else f", {timedelta(seconds=ceil(state.seconds_left))} left"
-    return f"{state.n_done:.4g} of {state.n_points:.4g}, {state.rate:.3g}/s{remaining}"
+    return f"{count_text(state.n_done)} of {count_text(state.n_points)}, {state.rate:.3g}/s{remaining}"

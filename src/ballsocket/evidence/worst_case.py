@@ -207,11 +207,13 @@ def propagate_tolerances(question: Question, case: Case) -> dict[str, Any]:
     }
     model = default_model(joint, ends)
     count = _EXACT_SAMPLES if model is reference else _TABULATED_SAMPLES
-    drawn = sample(count, seed=_SEED, method=Method.SOBOL, **spreads).values_in([slice(None)])
+    drawn = sample(count, seed=_SEED, method=Method.SOBOL, **dict[str, Any](spreads)).values_in([slice(None)])
     made, loads, possible = press_arguments(joint, {**drawn, **load})
     contact = model.press(made, **loads)
     results = {name: _finite_results(getattr(contact, name), to_numpy(possible), count) for name in _BANDED}
-    indices = sensitivity(model, joint, spreads, quantities=_BANDED[:2], count=count // 4, load=load).total_order
+    indices = sensitivity(
+        model, joint, spreads, quantities=_BANDED[:2], count=count // 4, confidence=None, load=load
+    ).total_order
     return {
         "model": model.name,
         "samples": count,

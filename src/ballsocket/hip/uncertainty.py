@@ -12,7 +12,7 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
-from ..studies.sensitivity import check_sample_memory, sobol_indices
+from ..studies.variance_indices import check_sample_memory, sobol_indices
 from .bands import COEFFICIENT, CONVERTED, DEFAULT_LEVEL, INFLUENCED_RESULTS, Bands, SharedCoefficient
 from .cohort import CohortRun, CohortStore, ProgressCallback, sample_patients
 from .history import History, Report

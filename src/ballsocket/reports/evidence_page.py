@@ -35,7 +35,7 @@ _SECTIONS = MappingProxyType(
         "matrix": "Worst-case matrix",
         "code": "Code verification",
         "calculation": "Calculation verification",
-        "validation": "Validation",
+        "validation": "Comparison with published computations",
         "uncertainty": "Sensitivity and uncertainty",
         "wear": "Wear",
         "limits": "Limits and assumptions",

@@ -12,7 +12,7 @@ import numpy
 from ..core.deprecation import renamed_arguments
 from ..core.quantities import QUANTITIES
 from ..studies.limits import Limit, allowed, margin_on_plane
-from .style import BLUE, INK, LEGEND, ORANGE, finish
+from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish
 
 if TYPE_CHECKING:
     import xarray
@@ -206,9 +206,17 @@ def front_figure(
     return figure
 
 
+_INDEX_STYLES = {
+    "first_order": ("first order", BLUE, ""),
+    "total_order": ("total order", ORANGE, "//"),
+    "shapley": ("Shapley effect", VERMILLION, ".."),
+}
+"""Label, colour and hatch of the bars for each kind of index."""
+
+
 @renamed_arguments(found="indices")
 def sensitivity_figure(indices: xarray.Dataset) -> Figure:
-    """Draw first and total Sobol indices of every quantity with their intervals."""
+    """Draw first and total indices, and Shapley effects, of every quantity with their intervals."""
     from matplotlib.figure import Figure
 
     quantities, parameters = indices.quantity.values.tolist(), indices.parameter.values.tolist()
@@ -217,25 +225,26 @@ def sensitivity_figure(indices: xarray.Dataset) -> Figure:
     for axes, quantity in zip(
         figure.subplots(1, len(quantities), squeeze=False, sharey=True).ravel(), quantities, strict=True
     ):
-        for order, offset, colour in (("first", -0.17, BLUE), ("total", 0.17, ORANGE)):
-            part = indices.sel(quantity=quantity)
-            values, low, high = (part[f"{order}_order{end}"].values for end in ("", "_low", "_high"))
-            error = numpy.clip([values - low, high - values], 0.0, None)
-            hatch = "" if order == "first" else "//"
+        part = indices.sel(quantity=quantity)
+        orders = [order for order in _INDEX_STYLES if order in indices]
+        height = 0.64 / len(orders)
+        for position, order in enumerate(orders):
+            values, (label, colour, hatch) = part[order].values, _INDEX_STYLES[order]
+            ends = [part[f"{order}{end}"].values for end in ("_low", "_high") if f"{order}{end}" in part]
             axes.barh(
-                rows + offset,
+                rows + (position - (len(orders) - 1) / 2) * (height + 0.02),
                 values,
-                0.32,
-                xerr=error,
+                height,
+                xerr=numpy.clip([values - ends[0], ends[1] - values], 0.0, None) if ends else None,
                 color=colour,
                 hatch=hatch,
                 edgecolor="white",
-                label=f"{order} order",
+                label=label,
             )
         axes.set_yticks(rows, [QUANTITIES[name].title for name in parameters])
         axes.set_xlim(0.0, 1.05)
         finish(axes, "share of the variance", "")
         axes.set_title(QUANTITIES[quantity].title, fontsize=10)
     figure.axes[0].invert_yaxis()
-    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2, frameon=False)
+    figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
     return figure

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy
@@ -13,6 +16,7 @@ from rich.text import Text
 
 from ..core.arrays import to_list
 from ..core.quantities import QUANTITIES
+from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..core.validity import Status
 from ..studies.export import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, refusal_reason
@@ -151,24 +155,75 @@ def front_summary(front: xarray.Dataset) -> dict[str, Any]:
 
 
 def sensitivity_summary(indices: xarray.Dataset) -> dict[str, Any]:
-    """Summarise Sobol indices and elasticities by quantity and parameter."""
-    orders = ("first_order", "first_order_low", "first_order_high", "total_order", "elasticity")
-    return {
+    """Summarise the shares of the variance with their intervals, and elasticities, by quantity and parameter."""
+    names = [str(name) for name, values in indices.data_vars.items() if values.dims == ("quantity", "parameter")]
+    summary: dict[str, Any] = {
         "samples": indices.attrs["samples"],
         "quantities": {
             quantity: {
                 "mean": float(indices["mean"].sel(quantity=quantity)),
                 "deviation": float(indices["deviation"].sel(quantity=quantity)),
                 "numbers": {
-                    name: {
-                        order: to_list(indices[order].sel(quantity=quantity, parameter=name).values) for order in orders
+                    parameter: {
+                        name: to_list(indices[name].sel(quantity=quantity, parameter=parameter).values)
+                        for name in names
                     }
-                    for name in indices.parameter.values.tolist()
+                    for parameter in indices.parameter.values.tolist()
                 },
+                **_pairs_summary(indices.sel(quantity=quantity)),
             }
             for quantity in indices.quantity.values.tolist()
         },
     }
+    return summary | {key: indices.attrs[key] for key in ("confidence", "correlation") if key in indices.attrs}
+
+
+def _pairs_summary(part: xarray.Dataset) -> dict[str, Any]:
+    """Summarise the indices of pairs of parameters for one quantity; empty without them."""
+    names = [str(name) for name, values in part.data_vars.items() if "other_parameter" in values.dims]
+    pairs = [
+        {
+            "parameters": [one, other],
+            **{name: to_list(part[name].sel(parameter=one, other_parameter=other).values) for name in names},
+        }
+        for one, other in combinations(part.parameter.values.tolist(), 2)
+    ]
+    return {"pairs": pairs} if names else {}
+
+
+_CSV_HEAD = ("quantity", "index", "parameter", "other_parameter", "value", "low", "high")
+
+
+def check_csv(path: Path) -> None:
+    """Check that a path ends in .csv and that its folder exists; raise ValueError otherwise."""
+    if path.suffix.lower() != ".csv":
+        raise ValueError(f"{str(path)!r} must end in .csv")
+    check_parent_folder(path)
+
+
+def write_sensitivity(indices: xarray.Dataset, path: Path) -> None:
+    """Write the shares of the variance with their intervals, and elasticities, to a CSV file, one value in a row."""
+    with write_atomically(path) as draft, draft.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(_CSV_HEAD)
+        for quantity, content in sensitivity_summary(indices)["quantities"].items():
+            rows = [([name], numbers) for name, numbers in content["numbers"].items()]
+            rows += [(pair["parameters"], pair) for pair in content.get("pairs", ())]
+            for parameters, numbers in rows:
+                for name in (name for name in _INDEX_NAMES if name in numbers):
+                    values = (numbers.get(f"{name}{end}") for end in ("", "_low", "_high"))
+                    cells = ("" if value is None else repr(value) for value in values)
+                    writer.writerow([quantity, name, *(*parameters, "")[:2], *cells])
+
+
+_INDEX_NAMES = {
+    "first_order": "first order",
+    "total_order": "total order",
+    "shapley": "Shapley effect",
+    "second_order": "second order",
+    "elasticity": "% per %",
+}
+"""Heads of tables for the variables of a sensitivity."""
 
 
 def varying_parameters(study: xarray.Dataset) -> list[str]:
@@ -272,22 +327,39 @@ def print_optimum(best: Optimum) -> None:
 
 
 def print_sensitivity(indices: xarray.Dataset) -> None:
-    """Print first and total Sobol indices with intervals, and elasticities, by quantity."""
+    """Print the shares of the variance with their intervals, and elasticities, by quantity."""
     console = Console()
-    for quantity in indices.quantity.values.tolist():
-        part = indices.sel(quantity=quantity)
-        mean, deviation = (_value_text(quantity, float(part[name])) for name in ("mean", "deviation"))
+    orders = [name for name in ("shapley", "first_order", "total_order") if name in indices]
+    with_intervals = orders[:1] if "shapley" in orders else orders  # a line has 80 columns
+    for quantity, content in sensitivity_summary(indices)["quantities"].items():
+        mean, deviation = (_value_text(quantity, content[name]) for name in ("mean", "deviation"))
         console.print(f"{quantity}: {mean} ± {deviation} {_unit(quantity)}", style="bold", highlight=False)
-        table = _table("number", "first order", "total order", "% per %")
-        for name in part.parameter.values.tolist():
-            row = part.sel(parameter=name)
+        table = _table("number", *(_INDEX_NAMES[name] for name in orders), _INDEX_NAMES["elasticity"])
+        for parameter, numbers in content["numbers"].items():
             cells = (
-                f"{float(row[f'{order}_order']):.2f} ({float(row[f'{order}_order_low']):.2f}.."
-                f"{float(row[f'{order}_order_high']):.2f})"
-                for order in ("first", "total")
+                _interval_text(numbers, name) if name in with_intervals else _number_text(numbers[name])
+                for name in orders
             )
-            table.add_row(name, *cells, f"{float(row.elasticity):+.2f}")
+            table.add_row(parameter, *cells, f"{numbers['elasticity']:+.2f}")
         print_columns(console, table)
+        if "pairs" in content:
+            pairs = _table("pair", _INDEX_NAMES["second_order"])
+            for pair in content["pairs"]:
+                pairs.add_row(" x ".join(pair["parameters"]), _interval_text(pair, "second_order"))
+            print_columns(console, pairs)
+    if "correlation" in indices.attrs:
+        console.print(f"rank correlations: {indices.attrs['correlation']}", highlight=False)
+
+
+def _interval_text(numbers: Mapping[str, Any], name: str) -> str:
+    """Write an index with its interval, if it has one."""
+    value, low, high = (_number_text(numbers.get(f"{name}{end}")) for end in ("", "_low", "_high"))
+    return f"{value} ({low}..{high})" if f"{name}_low" in numbers else value
+
+
+def _number_text(value: float | None) -> str:
+    """Write a share of the variance; nan for a missing one."""
+    return "nan" if value is None else f"{round(value, 2) + 0.0:.2f}"  # without the sign of -0.00
 
 
 def _point_text(study: xarray.Dataset, flat: int) -> str:

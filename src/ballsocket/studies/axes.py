@@ -16,7 +16,7 @@ from ..core.checks import require
 from ..core.kinds import Choice
 from ..core.quantities import MATERIAL, QUANTITIES
 from ..problem import Material
-from .distributions import Distribution
+from .distributions import Distribution, copula_matrix, correlate
 
 MAX_COUNT = 10**15
 """Largest number of values along an axis."""
@@ -157,12 +157,16 @@ class Method(Choice):
 
 @dataclass(frozen=True, kw_only=True)
 class SampleAxis(Axis):
-    """Axis of samples of distributions, drawn from the seed when they are used."""
+    """Axis of samples of distributions, drawn from the seed when they are used.
+
+    `correlation` lists pairs of names with their rank correlation.
+    """
 
     count: int
     distributions: tuple[tuple[str, Distribution], ...]
     seed: int = 0
     method: Method = Method.SOBOL
+    correlation: tuple[tuple[tuple[str, str], float], ...] = ()
     name: str = field(default="sample", init=False)
 
     def __len__(self) -> int:
@@ -186,10 +190,12 @@ def _draw_samples(axis: SampleAxis) -> Mapping[str, Numbers]:
     engine = engines[axis.method](len(axis.distributions), rng=axis.seed)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)  # SciPy warns of counts other than powers of two
-        probabilities = engine.random(axis.count)
+        probabilities = engine.random(axis.count).T
+    if axis.correlation:
+        probabilities = correlate(probabilities, copula_matrix(axis.names, dict(axis.correlation)))
     return {
         name: distribution.frozen.ppf(row)
-        for (name, distribution), row in zip(axis.distributions, probabilities.T, strict=True)
+        for (name, distribution), row in zip(axis.distributions, probabilities, strict=True)
     }
 
 

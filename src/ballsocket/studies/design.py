@@ -6,12 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import prod
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require, shown
+from ..core.storage.atomic_files import check_local
 from ..files.columns import read_columns
 from ..problem import Material
 from .axes import (
@@ -26,7 +28,7 @@ from .axes import (
     TableAxis,
     parameter_values,
 )
-from .distributions import Distribution
+from .distributions import Correlation, Distribution, copula_matrix
 from .parameters import MATERIAL_PARTS, PARAMETERS, check_contradictions
 
 
@@ -191,8 +193,15 @@ def _create_axis(name: str, value: Any) -> Axis:
     return GridAxis(name, parameter_values(name, numpy.asarray(value)))
 
 
-def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distributions: Distribution) -> Design:
-    """Create a design of samples of independent parameters.
+def sample(
+    count: int,
+    *,
+    seed: int = 0,
+    method: Method = Method.SOBOL,
+    correlation: Correlation = MappingProxyType({}),
+    **distributions: Distribution,
+) -> Design:
+    """Create a design of samples of scattered parameters.
 
     Parameters
     ----------
@@ -202,13 +211,15 @@ def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distri
         The same seed gives the same samples.
     method : Method
         Method of sampling.
+    correlation : mapping of (str, str) to float
+        Rank correlations (Spearman) of pairs of parameters, by a Gaussian copula. Other pairs are independent.
     **distributions : Rectangular, Normal or LogNormal
         Distributions by parameter.
 
     Raises
     ------
     ValueError
-        No distribution, fewer than one sample, or a seed below 0.
+        No distribution, fewer than one sample, a seed below 0, or correlations that are not possible.
 
     Examples
     --------
@@ -220,7 +231,12 @@ def sample(count: int, *, seed: int = 0, method: Method = Method.SOBOL, **distri
     require("seed", seed, seed >= 0, "a seed is 0 or more")
     if not distributions:
         raise ValueError("samples need at least one parameter with a distribution")
-    return Design((SampleAxis(count=count, distributions=tuple(distributions.items()), seed=seed, method=method),))
+    copula_matrix(tuple(distributions), correlation)
+    pairs = tuple(correlation.items())
+    axis = SampleAxis(
+        count=count, distributions=tuple(distributions.items()), seed=seed, method=method, correlation=pairs
+    )
+    return Design((axis,))
 
 
 _COLUMN_NAMES = {quantity.column: name for name, quantity in PARAMETERS.items()}
@@ -241,6 +257,7 @@ def table(path: str | Path) -> Design:
     OSError
         The file cannot be read.
     """
+    check_local(path)
     path = Path(path)
     columns = {}
     for head, values in read_columns(path, lambda heads: _check_heads(heads, path.name)).items():

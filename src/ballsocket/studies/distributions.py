@@ -1,12 +1,16 @@
-"""Distributions of scattered parameters, and the tolerance of a drawing as a distribution."""
+"""Distributions of scattered parameters, the tolerance of a drawing as a distribution, and rank correlations."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from math import inf, log
+from math import inf, log, pi
 from typing import Any
 
-from ..core.checks import require
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import check_names, require
 from ..core.kinds import Unit
 
 
@@ -155,3 +159,90 @@ def tolerance(nominal: float, plus_minus: float) -> Normal:
     require("plus_minus", plus_minus, 0 < plus_minus < inf, "a tolerance is above 0 and finite")
     low, high = nominal - plus_minus, nominal + plus_minus
     return Normal(mean=nominal, deviation=plus_minus / 3, low=low, high=high)
+
+
+Correlation = Mapping[tuple[str, str], float]
+"""Rank correlations (Spearman) of pairs of parameters by their names; other pairs are independent."""
+
+
+def copula_matrix(names: Sequence[str], correlation: Correlation) -> Numbers:
+    """Compute the correlation matrix of the normal variables of a Gaussian copula, for rank correlations of pairs.
+
+    The rank correlation ρ of two parameters, whatever their distributions, needs the correlation 2 sin(π ρ/6) of their
+    normal variables.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Names of the parameters.
+    correlation : mapping of (str, str) to float
+        Rank correlations between -1 and 1.
+
+    Returns
+    -------
+    array of shape (len(names), len(names))
+
+    Raises
+    ------
+    ValueError
+        An unknown name, a pair that occurs twice, a correlation that is not between -1 and 1, or correlations that no
+        joint distribution has.
+
+    References
+    ----------
+    Pearson 1907, Drapers' Company Research Memoirs, Biometric Series IV.
+
+    Examples
+    --------
+    >>> copula_matrix(["clearance", "liner_young"], {("clearance", "liner_young"): 0.5}).round(4)
+    array([[1.    , 0.5176],
+           [0.5176, 1.    ]])
+    """
+    matrix = numpy.eye(len(names))
+    for (one, other), rank in correlation.items():
+        check_names([one, other], names, "among the correlated parameters")
+        label = f"correlation of {one} and {other}"
+        if one == other:
+            raise ValueError(f"{label} needs two parameters")
+        require(label, rank, -1 < rank < 1, "a rank correlation is between -1 and 1")
+        i, j = names.index(one), names.index(other)
+        if matrix[i, j]:
+            raise ValueError(f"the {label} is given twice; one is needed")
+        matrix[i, j] = matrix[j, i] = 2 * numpy.sin(pi * rank / 6)
+    if numpy.linalg.eigvalsh(matrix)[0] < _SMALLEST_EIGENVALUE:
+        raise ValueError(f"no joint distribution has the correlations {correlation_text(correlation)}: reduce them")
+    return matrix
+
+
+def correlation_text(correlation: Correlation) -> str:
+    """Format rank correlations, such as "clearance, liner_young = 0.5"."""
+    return "; ".join(f"{one}, {other} = {rank:g}" for (one, other), rank in correlation.items())
+
+
+_SMALLEST_EIGENVALUE = 1e-6
+"""Smallest eigenvalue of a matrix of correlations that can be sampled."""
+
+_SMALLEST_PROBABILITY = 1e-16
+"""Probability at which normal quantiles are cut, so that they are finite."""
+
+
+def correlate(probabilities: Numbers, matrix: Numbers) -> Numbers:
+    """Correlate independent uniform samples, shape (n_parameters, n_points), by a Gaussian copula."""
+    return probabilities_of(numpy.linalg.cholesky(matrix) @ normal_quantiles(probabilities))
+
+
+def normal_quantiles(probabilities: Numbers) -> Numbers:
+    """Compute finite quantiles of the standard normal distribution."""
+    from scipy.special import ndtri
+
+    cut = numpy.clip(probabilities, _SMALLEST_PROBABILITY, 1 - _SMALLEST_PROBABILITY)
+    quantiles: Numbers = ndtri(cut)
+    return quantiles
+
+
+def probabilities_of(quantiles: Numbers) -> Numbers:
+    """Compute the probabilities of quantiles of the standard normal distribution."""
+    from scipy.special import ndtr
+
+    probabilities: Numbers = ndtr(quantiles)
+    return probabilities

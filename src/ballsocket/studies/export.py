@@ -1,22 +1,23 @@
-"""Export of a study to NetCDF or CSV, and access to its points in chunks."""
+"""Export of a study to NetCDF, CSV, Parquet or Zarr, and access to its points in chunks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
 from ..core.checks import needs
 from ..core.quantities import QUANTITIES
-from ..core.storage.atomic_files import check_parent_folder, write_atomically
+from ..core.storage.atomic_files import address_of, check_parent_folder, write_atomically
 from .task import Blocks
 
 if TYPE_CHECKING:
     import xarray
 
-SUFFIXES = (".nc", ".csv")
+SUFFIXES = (".nc", ".csv", ".parquet", ".zarr")
 """Endings of the file names of exports."""
 
 _MAX_CHUNK_POINTS = 1 << 18
@@ -44,49 +45,155 @@ def iterate_chunks(study: xarray.Dataset) -> Iterator[xarray.Dataset]:
 
 
 def check_suffix(path: Path) -> None:
-    """Check that a path ends like a format of exports, and that its folder exists; raise ValueError otherwise."""
-    if path.suffix.lower() not in SUFFIXES:
-        raise ValueError(f"{str(path)!r} must end in {' or '.join(SUFFIXES)}")
-    check_parent_folder(path)
-
-
-def export(study: xarray.Dataset, path: str | Path) -> None:
-    """Write a study to a NetCDF (.nc) or CSV (.csv) file, in chunks; the file appears when it is complete.
-
-    CSV has a row for each point: first the parameters in the order of the design, then the quantities. Column names
-    end in their units: `ball_radius_mm`, `max_pressure_MPa`, `half_angle_deg`.
+    """Check that a path ends like a format of exports, and that a file can be written there.
 
     Raises
     ------
     ValueError
-        A path with another ending, or no such folder.
+        Another ending, a folder that does not exist, or a Zarr group that exists.
+    ImportError
+        The library of a format, or of the remote store of an address, is missing.
+    OSError
+        The remote store of an address does not respond.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise ValueError(f"{str(path)!r} must end in {', '.join(SUFFIXES[:-1])} or {SUFFIXES[-1]}")
+    needs("study", *_LIBRARIES.get(suffix, ()))
+    address = address_of(path)
+    if address is not None:
+        _open_address(address)
+        return
+    check_parent_folder(path)
+    if suffix == ".zarr" and path.exists():
+        raise ValueError(f"{path} exists: choose another name for the Zarr group, or remove it")
+
+
+_LIBRARIES = {".nc": ("h5netcdf",), ".parquet": ("pyarrow",), ".zarr": ("zarr",)}
+
+
+def export(study: xarray.Dataset, path: str | Path) -> None:
+    """Write a study to a NetCDF (.nc), CSV (.csv), Parquet (.parquet) or Zarr (.zarr) file, in chunks.
+
+    The file appears when it is complete. CSV and Parquet have a row for each point: first the parameters in the order
+    of the design, then the quantities. Column names end in their units: `ball_radius_mm`, `max_pressure_MPa`,
+    `half_angle_deg`. NetCDF and Zarr have the labelled arrays of the study in mm, N, MPa, rad.
+
+    Parameters
+    ----------
+    study : xarray.Dataset
+        Result of `study`.
+    path : path or str
+        Local path, or address of a remote store that fsspec knows, such as "s3://bucket/hips.parquet". A file for an
+        address is first written to a temporary folder.
+
+    Raises
+    ------
+    ValueError
+        A path with another ending, no such folder, or a Zarr group that exists.
+    ImportError
+        The library of a format, or of a remote store, is missing.
     OSError
         The file cannot be written.
     """
+    check_suffix(Path(path))
+    address = address_of(path)
+    if address is not None:
+        _upload(study, address)
+        return
     path = Path(path)
-    check_suffix(path)
+    write = {".nc": _write_netcdf, ".csv": _write_csv, ".parquet": _write_parquet, ".zarr": _write_zarr}
     with write_atomically(path) as draft:
-        if path.suffix.lower() == ".nc":
-            needs("study", "h5netcdf")
-            plain = study.assign_attrs({key: value for key, value in study.attrs.items() if isinstance(value, str)})
-            plain.attrs.pop("study", None)
-            chunked = plain.chunk(dict(zip(dimension_names(study), _chunk_blocks(study).size, strict=True)))
-            chunked.to_netcdf(draft, engine="h5netcdf")
-        else:
-            _write_csv(study, draft)
+        write[path.suffix.lower()](study, draft)
+
+
+def _upload(study: xarray.Dataset, address: str) -> None:
+    """Write a study to the address of a remote store."""
+    with TemporaryDirectory() as folder:
+        local = Path(folder) / address.rpartition("/")[2]
+        export(study, local)
+        system, target = _open_address(address)
+        try:
+            if local.is_dir():
+                system.put(f"{local}/", f"{target}/", recursive=True)
+            else:
+                system.put_file(str(local), target)
+        except Exception as error:  # each store raises errors of its own
+            raise OSError(None, f"cannot be written: {error}", address) from error
+
+
+def _open_address(address: str) -> tuple[Any, str]:
+    """Return the file system of an address and the path in it."""
+    needs("study", "fsspec")
+    from fsspec.core import url_to_fs
+
+    try:
+        system, target = url_to_fs(address)
+        exists = system.exists(target)
+    except ImportError as error:
+        raise ImportError(f"{address}: {error}", name=error.name) from error
+    except ValueError as error:
+        raise ValueError(f"{address}: {error}") from error
+    except Exception as error:  # each store raises errors of its own
+        raise OSError(None, f"the remote store does not respond: {error}", address) from error
+    if exists and target.lower().endswith(".zarr"):
+        raise ValueError(f"{address} exists: choose another name for the Zarr group, or remove it")
+    return system, target
+
+
+def _plain_dataset(study: xarray.Dataset) -> xarray.Dataset:
+    """Return a study in chunks, with attributes of text only and without the encoding of its store."""
+    plain = study.assign_attrs({key: value for key, value in study.attrs.items() if isinstance(value, str)})
+    plain.attrs.pop("study", None)
+    return plain.chunk(dict(zip(dimension_names(study), _chunk_blocks(study).size, strict=True)))
+
+
+def _write_netcdf(study: xarray.Dataset, path: Path) -> None:
+    """Write a study to a NetCDF file."""
+    _plain_dataset(study).to_netcdf(path, engine="h5netcdf")
+
+
+def _write_zarr(study: xarray.Dataset, path: Path) -> None:
+    """Write a study to a Zarr group."""
+    _plain_dataset(study).drop_encoding().to_zarr(path, zarr_format=3, consolidated=False)
+
+
+def _write_parquet(study: xarray.Dataset, path: Path) -> None:
+    """Write a study to a Parquet file, one row group for each chunk."""
+    import pyarrow
+    from pyarrow import parquet
+
+    metadata = {key: value for key, value in study.attrs.items() if isinstance(value, str)}
+    writer = None
+    try:
+        for columns in _iterate_columns(study):
+            table = pyarrow.table(columns)
+            if writer is None:
+                writer = parquet.ParquetWriter(path, table.schema.with_metadata(metadata), compression="zstd")
+            writer.write_table(table.cast(writer.schema))
+    finally:
+        if writer is not None:
+            writer.close()
+
+
+def _iterate_columns(study: xarray.Dataset) -> Iterator[dict[str, numpy.ndarray]]:
+    """Yield the columns of each chunk by their heads, in the units of files."""
+    names = [str(name) for name in (*study.coords, *study.data_vars)]
+    dims = dimension_names(study)
+    for chunk in iterate_chunks(study):
+        variables = (variable.broadcast_like(chunk[names[-1]]) for variable in map(chunk.__getitem__, names))
+        columns = (variable.transpose(*dims).values.ravel() for variable in variables)
+        yield {_column_head(name): _in_written_unit(name, column) for name, column in zip(names, columns, strict=True)}
 
 
 def _write_csv(study: xarray.Dataset, path: Path) -> None:
     """Write a study to a CSV file."""
-    names = [str(name) for name in (*study.coords, *study.data_vars)]
-    dims = dimension_names(study)
     with path.open("w", encoding="utf-8", newline="") as stream:
-        stream.write(",".join(map(_column_head, names)) + "\n")
-        for chunk in iterate_chunks(study):
-            variables = (variable.broadcast_like(chunk[names[-1]]) for variable in map(chunk.__getitem__, names))
-            columns = [variable.transpose(*dims).values.ravel() for variable in variables]
-            written = (_in_written_unit(name, column) for name, column in zip(names, columns, strict=True))
-            stream.writelines(",".join(map(_cell_text, row)) + "\n" for row in zip(*written, strict=True))
+        for number, columns in enumerate(_iterate_columns(study)):
+            if number == 0:
+                stream.write(",".join(columns) + "\n")
+            rows = zip(*columns.values(), strict=True)
+            stream.writelines(",".join(map(_cell_text, row)) + "\n" for row in rows)
 
 
 def _column_head(name: str) -> str:

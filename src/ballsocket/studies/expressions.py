@@ -1,16 +1,18 @@
-"""Short texts of command options and links: ranges, lists, limits and tolerances of named parameters."""
+"""Short texts of command options and links: ranges, lists, limits, tolerances and correlations of parameters."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import Any
 
 from ..core.checks import check_names, shown
 from ..core.deprecation import renamed_names
+from ..core.kinds import Kind
 from ..core.quantities import QUANTITIES
 from ..files.units import parse
 from ..problem.presets import named_material
-from .distributions import Distribution, Rectangular, tolerance
+from .distributions import Correlation, Distribution, Rectangular, tolerance
 from .limits import LIMITED_NAMES, Limit
 from .parameters import MATERIAL_PARTS, PARAMETERS
 
@@ -104,6 +106,32 @@ def parse_distribution(text: str) -> tuple[str, Distribution]:
     check_names([name], PARAMETERS, "among what can scatter")
     kind = PARAMETERS[name].kind
     return name, tolerance(parse(name, _add_unit(nominal, plus_minus), kind), parse(name, plus_minus, kind))
+
+
+def parse_correlation(text: str) -> tuple[tuple[str, str], float]:
+    """Parse two names and their rank correlation, as in "clearance, liner_young = 0.5".
+
+    Raises
+    ------
+    ValueError
+        Another form, or an unknown name.
+    """
+    match = _match(r"\s*(\w+)\s*,\s*(\w+)\s*=\s*(.+?)\s*", text)
+    if match is None:
+        raise ValueError(f"{shown(text)} is not a correlation, such as 'clearance, liner_young = 0.5'")
+    one, other, rank = match.groups()
+    check_names([one, other], PARAMETERS, "among what can scatter")
+    return (one, other), parse(f"correlation of {one} and {other}", rank, Kind.NUMBER)
+
+
+def parse_correlations(texts: Iterable[str]) -> Correlation:
+    """Parse several rank correlations; raise ValueError for another form or a pair that occurs twice."""
+    correlation: dict[tuple[str, str], float] = {}
+    for (one, other), rank in map(parse_correlation, texts):
+        if (one, other) in correlation:
+            raise ValueError(f"the correlation of {one} and {other} is given twice; one is needed")
+        correlation[one, other] = rank
+    return correlation
 
 
 def parse_limit(text: str) -> Limit:

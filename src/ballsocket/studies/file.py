@@ -14,6 +14,7 @@ from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
 from ..core.kinds import Kind
+from ..core.storage.atomic_files import check_local
 from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
@@ -35,7 +36,9 @@ from ..problem.presets import materials, named_material
 from .axes import Method, Span
 from .design import Design, grid, sample, table
 from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
+from .expressions import parse_correlations
 from .parameters import PARAMETERS
+from .store import check_store
 
 Read = Callable[[str, Any], float]
 """Function from name and value of a number in a file to the number."""
@@ -171,6 +174,9 @@ class SamplesTable(Table, frozen=True, kw_only=True):
     count: Annotated[WholeNumber, meaning("number of samples")]
     seed: Annotated[WholeNumber, meaning("seed of the samples")] = WholeNumber(0)
     method: Annotated[MethodName, meaning("method of sampling")] = MethodName(Method.SOBOL.value)
+    correlation: Annotated[
+        list[Text] | None, meaning("rank correlations of pairs, such as 'clearance, liner_young = 0.5'")
+    ] = None
 
 
 class RowsTable(Table, frozen=True, kw_only=True):
@@ -240,9 +246,15 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
         joint=file.joint,
         design=_design(tables, content, folder),
         quantities=tuple(map(str, tables.quantities or ())),
-        store=None if tables.store is None else folder / check_filled("store", tables.store),
+        store=None if tables.store is None else folder / _store(tables.store),
         engine=_engine(tables.engine),
     )
+
+
+def _store(text: str) -> str:
+    """Return the path of a store; ValueError if it is empty or remote."""
+    check_store(check_filled("store", text))
+    return str(text)
 
 
 def _engine(table: EngineTable) -> Engine:
@@ -264,9 +276,18 @@ def _design(tables: StudyTable, content: Mapping[str, Any], folder: Path) -> Des
     if tables.samples is not None:
         samples = tables.samples
         spreads = parsed_values(samples, content["samples"])
-        design = sample(int(samples.count), seed=int(samples.seed), method=Method(samples.method), **spreads) * design
+        drawn = sample(
+            int(samples.count),
+            seed=int(samples.seed),
+            method=Method(samples.method),
+            correlation=parse_correlations(samples.correlation or ()),
+            **spreads,
+        )
+        design = drawn * design
     if tables.table is not None:
-        design = table(folder / check_filled("path", tables.table.path)) * design
+        path = check_filled("path", tables.table.path)
+        check_local(path)
+        design = table(folder / path) * design
     if not design.names:
         raise ValueError("nothing varies: a table [axes], [samples] or [table] is needed")
     return design

@@ -16,7 +16,7 @@ from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core.checks import check_names, needs, shown
 from ..core.deprecation import renamed_fields
-from ..core.executors.processes import Engine, Serial, available_disk_space, available_memory, size_text
+from ..core.executors.processes import Engine, Serial, available_disk_space, available_memory, count_text, size_text
 from ..core.storage.pieces import PieceRun
 from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
@@ -25,7 +25,7 @@ from ..problem import Joint
 from .design import Design, check_values, grid, is_number
 from .metadata import make_dataset
 from .parameters import LOADS, check_aims, press_arguments
-from .store import BlockStore, StudyStore, read
+from .store import BlockStore, StudyStore, check_store, read
 from .task import DEFAULT_QUANTITIES, DTYPES, EDGE_DISTANCE, QUANTITIES, Blocks, Task, points_per_block
 
 if TYPE_CHECKING:
@@ -36,6 +36,9 @@ __all__ = ["Listener", "Progress", "read", "study"]
 _SERIAL = Serial()
 
 _TABULATED, _EXACT_CURVE = Tabulated(), ExactCurve()
+
+_MANY_HOURS = 100.0
+"""Number of hours that is written without digits after the point."""
 
 _COPIES = 3
 """Copies of the values along an axis in memory: as drawn, as scaled, as labels."""
@@ -135,6 +138,8 @@ def study(
     11.27
     """
     needs("study", "xarray", "zarr")
+    if store is not None:
+        check_store(store)
     _check_types(model, joint, design)
     if not callable(getattr(engine, "run", None)) or isinstance(engine, type):
         raise TypeError(f"engine must be an Engine, such as Serial() or Processes(workers=2), got {shown(engine)}")
@@ -199,7 +204,7 @@ def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> 
         """Raise ValueError if the free space is smaller than a size in bytes."""
         if size > free:
             raise ValueError(
-                f"{count:.3g} points take about {size_text(size)} and {duration} on one core, and there are "
+                f"{count_text(count)} points take about {size_text(size)} and {duration} on one core, and there are "
                 f"{size_text(free)} {hint}"
             )
 
@@ -215,7 +220,9 @@ def _duration_text(hours: float) -> str:
     """Format a duration in hours, with seconds or minutes if it is short."""
     if hours < 1 / 60:
         return f"{3600 * hours:.2g} s"
-    return f"{60 * hours:.2g} minutes" if hours < 1 else f"{hours:.3g} hours"
+    if hours < 1:
+        return f"{60 * hours:.2g} minutes"
+    return f"{hours:.3g} hours" if hours < _MANY_HOURS else f"{count_text(round(hours))} hours"
 
 
 def _compute_in_memory(task: Task, engine: Engine, listen: Listener) -> dict[str, numpy.ndarray]:

@@ -1,12 +1,11 @@
-"""Sensitivity of contact quantities to scattered parameters: Sobol indices, and elasticities at the medians."""
+"""Sensitivity of contact quantities to scattered parameters: shares of the variance, and elasticities."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
-from warnings import catch_warnings
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
@@ -14,21 +13,24 @@ from ..contact import Model
 from ..core.arrays import Numbers
 from ..core.checks import check_names, needs, require
 from ..core.deprecation import renamed_names
-from ..core.executors.processes import check_memory
 from ..problem import Joint
 from .derivatives import elasticities, press_quantities
-from .distributions import Distribution
+from .distributions import Correlation, Distribution, copula_matrix, correlation_text
 from .metadata import variable_attributes
 from .parameters import PARAMETERS, check_contradictions
 from .task import QUANTITIES
+from .variance_indices import check_sample_memory, shapley_effects, sobol_indices
 
 if TYPE_CHECKING:
     import xarray
 
 __getattr__ = renamed_names(__name__, {"sobol": "sobol_indices"})
 
-SampledFunction = Callable[[Numbers], Numbers]
-"""Function from samples, shape (n_parameters, n_points), to quantities, shape (n_quantities, n_points)."""
+MAX_SAMPLES = 1 << 30
+"""Largest number of samples."""
+
+_POINTS_PER_PRESS = 1 << 16
+"""Number of samples that are pressed at once."""
 
 
 def sensitivity(
@@ -39,10 +41,15 @@ def sensitivity(
     quantities: Iterable[str] = ("indentation", "half_angle", "max_pressure", "area"),
     count: int = 1024,
     seed: int = 0,
-    confidence: float = 0.95,
+    confidence: float | None = 0.95,
     load: Mapping[str, float] | None = None,
+    second_order: bool = False,
+    correlation: Correlation = MappingProxyType({}),
 ) -> xarray.Dataset:
     """Compute the contributions of scattered parameters to the variance of contact quantities.
+
+    Independent parameters have Sobol indices, correlated ones Shapley effects and the indices of Kucherenko: see
+    `ballsocket.studies.variance_indices`.
 
     Parameters
     ----------
@@ -50,54 +57,82 @@ def sensitivity(
     joint : Joint
         Values of the parameters that are not in `distributions`.
     distributions : mapping of str to Rectangular, Normal or LogNormal
-        Independent distributions, by parameter.
+        Distributions by parameter.
     quantities : iterable of str
         Quantities of a contact.
     count : int
-        Number of samples in each of `len(distributions) + 2` sets; a power of two.
+        Number of samples in each set, 2 or more; a power of two fills the space most evenly. There are
+        `len(distributions) + 2` sets, `2 * len(distributions) + 2` with second order, `2**len(distributions)` with
+        correlations.
     seed : int
         The same seed gives the same indices and intervals.
-    confidence : float
-        Confidence level of the bootstrap intervals, between 0 and 1.
+    confidence : float or None
+        Confidence level of the bootstrap intervals, between 0 and 1; None for no intervals.
     load : mapping of str to float
         One of force (N), indentation (mm), half_angle (rad), unless the load has a distribution.
+    second_order : bool
+        True for the indices of pairs of independent parameters, too.
+    correlation : mapping of (str, str) to float
+        Rank correlations (Spearman) of pairs of parameters, by a Gaussian copula. Other pairs are independent.
 
     Returns
     -------
     xarray.Dataset
         Along `quantity` and `parameter`: `first_order` (share of the variance from this parameter alone),
-        `total_order` (with its interactions), the ends `_low` and `_high` of their intervals, and `elasticity` (percent
-        for one percent, at the medians). Along `quantity`: `mean` and `deviation`.
+        `total_order` (with its interactions), with correlations `shapley` (shared among correlated parameters, sum 1),
+        the ends `_low` and `_high` of their intervals, and `elasticity` (percent for one percent, at the medians).
+        Along `quantity`, `parameter` and `other_parameter`: `second_order`. Along `quantity`: `mean` and `deviation`.
 
     Raises
     ------
     ValueError
-        An unknown name, a count that is not a power of two or needs too much memory, samples without a result, a
-        quantity that does not change.
+        An unknown name, a count below 2 or one that needs too much memory, samples without a result, a quantity that
+        does not change, correlations that are not possible, or second order of correlated parameters.
     """
     needs("study", "xarray")
     import xarray
 
     names, fixed = tuple(quantities), dict(load or {})
     _check_arguments(distributions, names, fixed)
-    require("count", count, count >= 2 and count & (count - 1) == 0, "a power of two of samples")
-    check_sample_memory(count)
+    require("count", count, 2 <= count <= MAX_SAMPLES, f"the number of samples is 2 to {MAX_SAMPLES}")
+    if confidence is not None:
+        require("confidence", confidence, 0 < confidence < 1, "a confidence level is between 0 and 1")
+    if second_order and correlation:
+        raise ValueError(
+            "second-order indices need independent parameters: leave out the correlations, whose Shapley effects share "
+            "interactions among the parameters"
+        )
+    matrix = copula_matrix(tuple(distributions), correlation)
+    n = len(distributions)
+    n_sets = 2**n if correlation else 2 * n + 2 + n * n // 2 if second_order else 2 * n + 2
+    check_sample_memory(count, len(names) * n_sets)
     evaluate = _SampleEvaluation(model, joint, tuple(distributions), names, fixed)
-    indices = sobol_indices(evaluate, list(distributions.values()), count, seed, confidence)
+    spreads = list(distributions.values())
+    if correlation:
+        indices = shapley_effects(evaluate, spreads, matrix, count, seed, confidence)
+    else:
+        indices = sobol_indices(evaluate, spreads, count, seed, confidence, second_order)
     medians = {name: float(distribution.frozen.median()) for name, distribution in distributions.items()}
     local = elasticities(model, joint, names, {**medians, **fixed})
-    samples = numpy.concatenate(evaluate.tables[:2], axis=1)
-    both = ("quantity", "parameter")
+    samples = numpy.concatenate(evaluate.tables, axis=1)
+    dims = ("quantity", "parameter", "other_parameter")
+    attributes: dict[str, Any] = {"model": model.name, "samples": count}
+    attributes |= {} if confidence is None else {"confidence": confidence}
+    attributes |= {"correlation": correlation_text(correlation)} if correlation else {}
     return xarray.Dataset(
         {
-            **{name: (both, values) for name, values in indices.items()},
-            "elasticity": (both, [[local[quantity][name] for name in distributions] for quantity in names]),
+            **{name: (dims[: values.ndim], values) for name, values in indices.items()},
+            "elasticity": (dims[:2], [[local[quantity][name] for name in distributions] for quantity in names]),
             "mean": ("quantity", samples.mean(axis=1)),
             "deviation": ("quantity", samples.std(axis=1)),
             "units": ("quantity", [variable_attributes(name)["units"] for name in names]),
         },
-        coords={"quantity": list(names), "parameter": list(distributions)},
-        attrs={"model": model.name, "samples": count, "confidence": confidence},
+        coords={
+            "quantity": list(names),
+            "parameter": list(distributions),
+            **({"other_parameter": list(distributions)} if second_order else {}),
+        },
+        attrs=attributes,
     )
 
 
@@ -117,7 +152,7 @@ def _check_arguments(
 
 @dataclass
 class _SampleEvaluation:
-    """Function from samples to quantities; the first two evaluated `tables` are those of independent samples."""
+    """Function from samples to quantities; `tables` are those of the first two sets, which are independent."""
 
     model: Model
     joint: Joint
@@ -128,16 +163,24 @@ class _SampleEvaluation:
 
     def __call__(self, values: Numbers) -> Numbers:
         """Compute the quantities, shape (n_quantities, n_points), of samples, shape (n_parameters, n_points)."""
-        scattered = dict(zip(self.names, values, strict=True))
-        results = press_quantities(self.model, self.joint, {**scattered, **self.fixed}, self.quantities)
-        table = numpy.stack([numpy.broadcast_to(results[name], values.shape[1:]) for name in self.quantities])
+        count = values.shape[1]
+        table = numpy.empty((len(self.quantities), count))
+        for first in range(0, count, _POINTS_PER_PRESS):
+            part = slice(first, first + _POINTS_PER_PRESS)
+            scattered = dict(zip(self.names, values[:, part], strict=True))
+            results = press_quantities(self.model, self.joint, {**scattered, **self.fixed}, self.quantities)
+            table[:, part] = [
+                numpy.broadcast_to(results[name], scattered[self.names[0]].shape) for name in self.quantities
+            ]
         n_bad = int((~numpy.isfinite(table)).any(axis=0).sum())
         if n_bad:
-            samples = f"{n_bad} of {values.shape[1]} samples"
-            raise ValueError(f"{self.model.name} has no answer for {samples}: narrow the distributions")
+            raise ValueError(
+                f"{self.model.name} has no answer for {n_bad} of {count} samples: narrow the distributions"
+            )
         if not self.tables:
             self._check_changes(table)
-        self.tables.append(table.copy())  # SciPy centres its copy in place
+        if len(self.tables) < 2:
+            self.tables.append(table)
         return table
 
     def _check_changes(self, table: Numbers) -> None:
@@ -145,47 +188,3 @@ class _SampleEvaluation:
         for name, row in zip(self.quantities, table, strict=True):
             if numpy.ptp(row) == 0:
                 raise ValueError(f"{name} does not change with {' and '.join(self.names)}: its variance is zero")
-
-
-def check_sample_memory(count: int) -> None:
-    """Check that the intervals of the indices of `count` samples fit into the memory; raise ValueError otherwise."""
-    check_memory(f"intervals of {count} samples", 40_000 * count + 25 * count**2)  # measured; SciPy's jackknife
-
-
-def sobol_indices(
-    evaluate: SampledFunction, distributions: Sequence[Distribution], count: int, seed: int, confidence: float
-) -> dict[str, Numbers]:
-    """Compute Sobol indices of first and total order, and the ends of their bootstrap intervals.
-
-    Returns
-    -------
-    dict of str to array of shape (n_quantities, n_parameters)
-        `first_order`, `total_order`, and both with `_low` and `_high`. NaN if there are too few samples.
-
-    References
-    ----------
-    Saltelli et al. 2010, Comput. Phys. Commun. 181, 259; `scipy.stats.sobol_indices`.
-    """
-    from scipy import stats
-
-    frozen = [distribution.frozen for distribution in distributions]
-    with _seeded(seed), numpy.errstate(all="ignore"), catch_warnings(action="ignore"):  # too few samples: NaN
-        rng = numpy.random.default_rng(seed)
-        indices = stats.sobol_indices(func=evaluate, n=count, dists=frozen, rng=rng)
-        interval = indices.bootstrap(confidence_level=confidence)
-    arrays: dict[str, Numbers] = {}
-    for order in ("first_order", "total_order"):
-        ends = getattr(interval, order).confidence_interval
-        arrays |= {order: getattr(indices, order), f"{order}_low": ends.low, f"{order}_high": ends.high}
-    return {name: numpy.reshape(values, (-1, len(frozen))) for name, values in arrays.items()}
-
-
-@contextmanager
-def _seeded(seed: int) -> Iterator[None]:
-    """Seed NumPy's global random numbers, from which SciPy's bootstrap draws, and restore them at the end."""
-    state = numpy.random.get_state()  # noqa: NPY002
-    numpy.random.seed(seed)  # noqa: NPY002
-    try:
-        yield
-    finally:
-        numpy.random.set_state(state)  # noqa: NPY002

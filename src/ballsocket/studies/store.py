@@ -17,7 +17,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import needs
 from ..core.deprecation import renamed_names
-from ..core.storage.atomic_files import make_draft_folder, write_atomically
+from ..core.storage.atomic_files import address_of, make_draft_folder, write_atomically
 from ..core.storage.pieces import PieceStore
 from .metadata import (
     list_differences,
@@ -53,6 +53,16 @@ _MAX_DIFFERENCES = 8
 """Number of differences in a message."""
 
 _MISSING_FILE_ERRORS = (FileNotFoundError, NotADirectoryError, IsADirectoryError)
+
+
+def check_store(path: str | Path) -> None:
+    """Check that a store is a local folder; raise ValueError for the address of a remote store."""
+    address = address_of(path)
+    if address is not None:
+        raise ValueError(
+            f"store = {address!r} is not a local folder, which a store must be, since its blocks are updated one by "
+            "one: use a local store, and write the finished study to the address with --out or export"
+        )
 
 
 def read(path: str | Path) -> xarray.Dataset:

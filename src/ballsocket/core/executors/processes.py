@@ -273,6 +273,15 @@ def available_disk_space(path: Path) -> int:
     return shutil.disk_usage(folder).free
 
 
+_GROUPED_COUNT = 10_000
+"""Count from which digits are grouped."""
+
+
+def count_text(count: int) -> str:
+    """Format a count with spaces between groups of three digits, such as "14 800"; plain below 10000."""
+    return str(count) if abs(count) < _GROUPED_COUNT else f"{count:,}".replace(",", " ")
+
+
 def size_text(size: float) -> str:
     """Format a size in bytes with three digits, such as "1.5 GB"."""
     units = ["B", "kB", "MB", "GB", "TB"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -38,9 +39,38 @@ def is_draft_folder(name: str) -> bool:
 
 
 def check_parent_folder(path: Path) -> None:
-    """Check that the parent folder of a file exists; raise ValueError otherwise."""
+    """Check that a path is local and that its parent folder exists; raise ValueError otherwise."""
+    check_local(path)
     if not path.parent.is_dir():
         raise ValueError(f"cannot write {path.name}: {str(path.parent)!r} is not a folder; create it first")
+
+
+# a drive of Windows has a single letter
+_ADDRESS = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):/+(.*)", re.DOTALL)
+
+
+def address_of(path: str | Path) -> str | None:
+    """Return the address of a file in a remote store, such as "s3://bucket/file"; None for a local path.
+
+    A `Path` has lost one slash of its address, which is restored.
+
+    Examples
+    --------
+    >>> address_of(Path("s3://bucket/hips.zarr")), address_of("hips.zarr")
+    ('s3://bucket/hips.zarr', None)
+    """
+    match = _ADDRESS.fullmatch(path.as_posix() if isinstance(path, Path) else path)
+    if match is None:
+        return None
+    scheme, rest = match.groups()
+    return f"{scheme}:///{rest}" if scheme == "file" else f"{scheme}://{rest}"
+
+
+def check_local(path: str | Path) -> None:
+    """Check that a path is local; raise ValueError for the address of a remote store."""
+    address = address_of(path)
+    if address is not None:
+        raise ValueError(f"{address!r} is the address of a remote store: use a local file or folder, and copy it")
 
 
 @contextmanager
@@ -75,9 +105,12 @@ def make_draft_folder(path: Path) -> Iterator[Path]:
 
     Raises
     ------
+    ValueError
+        The address of a remote store.
     OSError
         The parent folder is not writable. The error names `path`.
     """
+    check_local(path)
     prefix = f".{path.name[:_PREFIX_LENGTH]}."
     with suppress(OSError):
         for folder in path.parent.iterdir():

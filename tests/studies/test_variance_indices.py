@@ -1,0 +1,185 @@
+"""Sobol indices, Shapley effects and their intervals against analytic values."""
+
+from itertools import combinations
+from math import comb, pi
+
+import numpy
+import pytest
+from scipy import stats
+
+import ballsocket as bs
+from ballsocket.studies.distributions import LogNormal, Normal, Rectangular, copula_matrix
+from ballsocket.studies.run import study
+from ballsocket.studies.sensitivity import sensitivity
+from ballsocket.studies.variance_indices import check_sample_memory, shapley_effects, sobol_indices
+
+UNIFORM, NORMAL = Rectangular(low=-pi, high=pi), Normal(mean=0.0, deviation=1.0)
+HIP = bs.joints["hess-forsbach"]
+
+
+def ishigami(x, a=7.0, b=0.1):
+    """Return the function of Ishigami and Homma 1990 at x, shape (3, n)."""
+    return (numpy.sin(x[0]) + a * numpy.sin(x[1]) ** 2 + b * x[2] ** 4 * numpy.sin(x[0]))[None]
+
+
+def ishigami_shares(a=7.0, b=0.1):
+    """Return the analytic first-order indices and the only interaction, of the first and third parameter."""
+    variance = a**2 / 8 + b * pi**4 / 5 + b**2 * pi**8 / 18 + 1 / 2
+    first = [(1 + b * pi**4 / 5) ** 2 / 2, a**2 / 8, 0.0]
+    return [part / variance for part in first], 8 * b**2 * pi**8 / 225 / variance
+
+
+def linear_shares(slopes, matrix):
+    """Return the analytic shares of a linear function of normal parameters that each subset explains."""
+    size, total = len(slopes), slopes @ matrix @ slopes
+    shares = {(): 0.0}
+    for subset in (list(chosen) for n in range(1, size + 1) for chosen in combinations(range(size), n)):
+        covariance = slopes @ matrix[:, subset]
+        shares[tuple(subset)] = covariance @ numpy.linalg.solve(matrix[numpy.ix_(subset, subset)], covariance) / total
+    return shares
+
+
+@pytest.mark.parametrize("count", [4096, 5000])
+def test_indices_of_ishigami_are_the_analytic_ones_for_any_count(count):
+    first, interaction = ishigami_shares()
+    found = sobol_indices(ishigami, [UNIFORM] * 3, count, seed=1, confidence=0.95, second_order=True)
+    total = [first[0] + interaction, first[1], interaction]
+    assert found["first_order"][0] == pytest.approx(first, abs=0.01)
+    assert found["total_order"][0] == pytest.approx(total, abs=0.01)
+    pairs = found["second_order"][0]
+    assert [pairs[0, 1], pairs[0, 2], pairs[1, 2]] == pytest.approx([0.0, interaction, 0.0], abs=0.01)
+    assert numpy.isnan(numpy.diag(pairs)).all()
+    for name, truth in (("first_order", first), ("total_order", total)):
+        assert (found[f"{name}_low"][0] < truth).all()
+        assert (truth < found[f"{name}_high"][0]).all()
+
+
+def test_indices_and_intervals_are_those_of_scipy():
+    found = sobol_indices(ishigami, [UNIFORM] * 3, 512, seed=3, confidence=0.9)
+    scipy_indices = stats.sobol_indices(
+        func=ishigami, n=512, dists=[UNIFORM.frozen] * 3, rng=numpy.random.default_rng(3)
+    )
+    interval = scipy_indices.bootstrap(confidence_level=0.9)
+    for name in ("first_order", "total_order"):
+        numpy.testing.assert_allclose(found[name][0], getattr(scipy_indices, name), atol=1e-12)
+        ends = getattr(interval, name).confidence_interval
+        numpy.testing.assert_allclose(found[f"{name}_low"][0], ends.low, atol=0.015)
+        numpy.testing.assert_allclose(found[f"{name}_high"][0], ends.high, atol=0.015)
+
+
+def test_nine_of_ten_intervals_hold_the_true_index():
+    """Of a linear function; Sobol points are more even than the random ones that the bootstrap assumes."""
+    first = numpy.array([1.0, 4.0]) / 5
+    held = []
+    for seed in range(60):
+        found = sobol_indices(lambda x: (x[0] + 2 * x[1])[None], [NORMAL] * 2, 64, seed, 0.9)
+        held.append((found["first_order_low"][0] <= first) & (first <= found["first_order_high"][0]))
+    assert numpy.mean(held) > 0.85
+
+
+def test_correlated_parameters_share_the_variance_of_a_linear_function_as_theory_says():
+    """See Owen & Prieur 2017, SIAM/ASA J. Uncertain. Quantif. 5, 986, for the Shapley effects of linear functions."""
+    slopes = numpy.array([1.0, 2.0, -1.5])
+    matrix = numpy.array([[1.0, 0.5, 0.0], [0.5, 1.0, -0.3], [0.0, -0.3, 1.0]])
+    found = shapley_effects(lambda x: (slopes @ x)[None], [NORMAL] * 3, matrix, 4096, 0, 0.95)
+    shares = linear_shares(slopes, matrix)
+    shapley = [
+        sum(
+            (shares[tuple(sorted((*subset, i)))] - shares[subset]) / (3 * comb(2, len(subset)))
+            for n in range(3)
+            for subset in combinations([j for j in range(3) if j != i], n)
+        )
+        for i in range(3)
+    ]
+    total = [1 - shares[tuple(j for j in range(3) if j != i)] for i in range(3)]
+    for name, truth in (("shapley", shapley), ("first_order", [shares[i,] for i in range(3)]), ("total_order", total)):
+        assert found[name][0] == pytest.approx(truth, abs=2e-3)
+        assert (found[f"{name}_low"][0] < truth).all()
+        assert (truth < found[f"{name}_high"][0]).all()
+    assert found["shapley"][0].sum() == pytest.approx(1.0, abs=1e-12)
+
+
+def test_two_correlated_parameters_have_the_published_effects():
+    """Iooss & Prieur 2019, Int. J. Uncertain. Quantif. 9, 493: a linear function of two normal parameters."""
+    rho, deviations = 0.9, numpy.array([1.0, 2.0])
+    matrix = numpy.array([[1.0, rho], [rho, 1.0]])
+    spreads = [Normal(mean=0.0, deviation=float(deviation)) for deviation in deviations]
+    found = shapley_effects(lambda x: x.sum(axis=0)[None], spreads, matrix, 4096, 0, None)
+    one, two = deviations**2
+    both, total = rho * deviations.prod(), (deviations**2).sum() + 2 * rho * deviations.prod()
+    first = (one * (1 - rho**2 / 2) + both + two * rho**2 / 2) / total
+    assert found["shapley"][0] == pytest.approx([first, 1 - first], abs=2e-3)
+
+
+def test_without_correlation_shapley_effects_lie_between_first_and_total_order():
+    first, interaction = ishigami_shares()
+    found = shapley_effects(ishigami, [UNIFORM] * 3, numpy.eye(3), 8192, 0, None)
+    expected = [first[0] + interaction / 2, first[1], interaction / 2]
+    assert found["shapley"][0] == pytest.approx(expected, abs=0.01)
+    assert set(found) == {"first_order", "total_order", "shapley"}  # no intervals
+
+
+def test_samples_have_the_rank_correlation_and_their_own_distributions():
+    spreads = {"clearance": LogNormal(median=0.1, factor=1.5), "liner_young": Rectangular(low=700.0, high=1100.0)}
+    pair = ("liner_young", "clearance")
+    design = bs.studies.sample(8192, correlation={pair: -0.7}, **spreads)
+    values = design.values_in([slice(None)])
+    assert stats.spearmanr(values["clearance"], values["liner_young"]).statistic == pytest.approx(-0.7, abs=0.01)
+    for name, spread in spreads.items():
+        assert stats.kstest(values[name], spread.frozen.cdf).statistic < 0.01
+    pressed = study(bs.HessForsbach(), HIP, design * bs.studies.grid(force=1000.0))
+    assert '"correlation": [[["liner_young", "clearance"], -0.7]]' in pressed.attrs["design"]
+
+
+@pytest.mark.parametrize(
+    ("correlation", "message"),
+    [
+        ({("clearance", "young"): 0.5}, "'young' among the correlated parameters is not known"),
+        ({("clearance", "clearance"): 0.5}, "needs two parameters"),
+        ({("clearance", "force"): 1.0}, r"correlation of clearance and force = 1.* between -1 and 1"),
+        ({("clearance", "force"): 0.5, ("force", "clearance"): 0.4}, "is given twice"),
+        (
+            {("clearance", "force"): 0.9, ("force", "liner_young"): 0.9, ("clearance", "liner_young"): -0.9},
+            "no joint distribution has the correlations clearance, force = 0.9; .*: reduce them",
+        ),
+    ],
+)
+def test_impossible_correlations_are_refused(correlation, message):
+    with pytest.raises(ValueError, match=message):
+        copula_matrix(["clearance", "force", "liner_young"], correlation)
+
+
+def test_a_power_of_correlated_log_normal_parameters_has_analytic_first_order_indices():
+    """Hertz: δ is a power of force and modulus; its logarithm is normal, from which the shares of δ follow."""
+    spread = {"force": LogNormal(median=1000.0, factor=1.1), "liner_young": LogNormal(median=1000.0, factor=1.2)}
+    pair = {("force", "liner_young"): 0.5}
+    indices = sensitivity(bs.Hertz(), HIP, spread, quantities=["indentation"], count=1024, correlation=pair)
+    found, matrix = indices.sel(quantity="indentation"), copula_matrix(list(spread), pair)
+    slopes = found.elasticity.values * numpy.log([1.1, 1.2])
+    variance = slopes @ matrix @ slopes
+    first = numpy.expm1((slopes @ matrix) ** 2) / numpy.expm1(variance)
+    assert found.first_order.values == pytest.approx(first, abs=0.02)
+    assert found.shapley.values.sum() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"count": 1}, "count = 1 is not allowed: the number of samples is 2 to"),
+        ({"confidence": 1.0}, "a confidence level is between 0 and 1"),
+        ({"second_order": True, "correlation": {("clearance", "force"): 0.5}}, "second-order indices need independent"),
+    ],
+)
+def test_wrong_arguments_are_refused(options, message):
+    spread = {"clearance": Rectangular(low=0.05, high=0.15), "force": Rectangular(low=1e3, high=2e3)}
+    with pytest.raises(ValueError, match=message):
+        sensitivity(bs.HessForsbach(), HIP, spread, **{"count": 16, **options})
+
+
+def test_memory_grows_linearly_with_the_count():
+    check_sample_memory(131072)
+    with pytest.raises(ValueError, match="indices of 1000000000 samples take about"):
+        check_sample_memory(10**9)
+    eleven = [NORMAL] * 11
+    with pytest.raises(ValueError, match="number of parameters = 11 is not allowed: correlated ones are at most 10"):
+        shapley_effects(lambda x: x, eleven, numpy.eye(11), 2, 0, None)
