@@ -20,7 +20,7 @@ COLUMNS = list(RESULT_UNITS)
 def cohort(patients=101):
     """Return results whose column c is number + 1000 c at the first report, and twice that at the second."""
     first = np.arange(patients)[:, None] + 1000.0 * np.arange(len(COLUMNS))
-    contact = np.stack([np.full((patients, 3), 0.5), np.ones((patients, 3))], axis=-1)
+    contact = np.stack([np.full((patients, 3), 0.5), np.ones((patients, 3)), np.zeros((patients, 3))], axis=-1)
     return CohortResult(
         table=np.stack([first, 2 * first], axis=1), refused=np.full(patients, "", dtype="U60"), contact=contact
     )
@@ -59,7 +59,7 @@ def test_patients_without_a_result_are_left_out():
     some = bands(replace(result, table=table, refused=refused))
     assert (some.n_patients, some.n_failed) == (5, 3)
     np.testing.assert_allclose(some.quantile("volume", 0.5), [2.0, 4.0])
-    assert "3 of 5 patients have no result, most often: dislocated; the bands are for the others" in some.notes
+    assert "3 of 5 samples have no result, most often: dislocated; the bands are for the others" in some.notes
     assert some.edge_loading(0) == 0.0
     none = bands(replace(result, table=np.full_like(table, np.nan), refused=np.full(5, "x")))
     assert none.n_failed == 5
@@ -77,6 +77,8 @@ def test_edge_loading_is_the_fraction_of_patients_whose_contact_reaches_the_edge
     assert some.edge_loading(1) == 0.75
     assert some.edge_loading(0) == 0.0
     assert [report["edge_loading"] for report in some.summary()["bands"]] == [0.0, 0.75]
+    result.contact[1, 2, 2] = 1.0  # the others are worn to the rim
+    assert [report["edge_loaded"] for report in bands(result).summary()["bands"]] == [0.0, 0.25]
 
 
 def test_validity_and_utilisation_are_those_since_the_first_cycle():
@@ -90,7 +92,7 @@ def test_validity_and_utilisation_are_those_since_the_first_cycle():
     assert some.valid is False
     np.testing.assert_allclose(some.utilisation_quantile(1.0), [0.9, 0.9])
     np.testing.assert_allclose(some.utilisation_quantile(0.0), [0.2, 0.3])
-    assert any(note.startswith("2 of 4 patients have contacts outside the validity") for note in some.notes)
+    assert any(note.startswith("2 of 4 samples have contacts outside the validity") for note in some.notes)
     assert some.summary()["bands"][1]["valid"] == 0.5
     assert some.summary()["bands"][0]["peak_utilisation"]["high"] == pytest.approx(0.84)
     result.contact[3, 1, 0] = np.nan  # an unknown utilisation is left out
@@ -122,12 +124,14 @@ def test_notes_state_assumptions_and_limits():
 def test_the_coefficient_has_a_note_with_its_band():
     note = bands(distributions={"coefficient": LogNormal(median=1e-6, factor=2.0)}, level=0.95).notes[1]
     assert note == (
-        "the wear coefficient is unknown, but the same for all patients: 95 % between 2.57e-07 and 3.89e-06 mm³/(N m)"
+        "the wear coefficient is unknown, but the same for all samples: 95 % between 2.57e-07 and 3.89e-06 mm³/(N m)"
     )
 
 
 def test_members_of_a_band_are_predictions_with_an_unknown_coefficient():
-    assert bands().subject == "patients"
+    assert bands().subject == "samples"  # of a simulator
+    assert bands(members="patients").subject == "patients"
+    assert bands(distributions={"body_weight": WEIGHT}).subject == "patients"
     assert bands(distributions={"coefficient": COEFFICIENT}).subject == "predictions"
 
 
@@ -198,7 +202,7 @@ def test_angles_of_distributions_are_shown_in_degrees():
 def test_notes_of_the_nominal_patient_have_the_contact_and_the_cycle():
     assert set(bands().nominal_notes) >= set(hip().notes)
     thin = bands(use=hip(liner=1.2)).nominal_notes
-    assert any("nominal patient, in the first cycle" in note for note in thin)
+    assert any("nominal sample, in the first cycle" in note for note in thin)
 
 
 def test_old_names_of_the_bands_warn():

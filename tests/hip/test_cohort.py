@@ -40,7 +40,7 @@ def result(n_patients, value=1.0, error=""):
     return CohortResult(
         table=np.full((n_patients, 1, len(RESULT_UNITS)), value),
         refused=np.array([error] * n_patients),
-        contact=np.full((n_patients, 2, 2), value),
+        contact=np.full((n_patients, 2, 3), value),
     )
 
 
@@ -111,13 +111,13 @@ def test_a_patient_without_a_result_has_its_error():
     np.testing.assert_array_equal(cohort.table[0], cohort.table[2])
     assert np.isfinite(cohort.table[0]).all()
     assert cohort.table.shape == (3, 1, len(RESULT_UNITS))
-    assert cohort.contact.shape == (3, 2, 2)
+    assert cohort.contact.shape == (3, 2, 3)
 
 
 def test_results_are_joined_in_order():
     joined = join_results([result(2, 1.0), result(1, 5.0, "dislocated")])
     assert joined.table[:, 0, 0].tolist() == [1.0, 1.0, 5.0]
-    assert joined.contact.shape == (3, 2, 2)
+    assert joined.contact.shape == (3, 2, 3)
     assert joined.refused.tolist() == ["", "", "dislocated"]
 
 
@@ -216,7 +216,7 @@ def test_the_table_has_a_row_for_each_patient(tmp_path):
     )
     table = np.arange(24.0).reshape(2, 2, 6)
     table[1, 0, 3] = np.nan
-    contact = np.array([[[0.1, 1], [0.3, 1], [0.2, 1]], [[0.5, 1], [0.4, 0], [0.6, 1]]])
+    contact = np.array([[[0.1, 1, 0], [0.3, 1, 0], [0.2, 1, 1]], [[0.5, 1, 0], [0.4, 0, 0], [0.6, 1, 0]]])
     cohort = CohortResult(table=table, refused=np.array(["", ""]), contact=contact)
     columns = {name: values.tolist() for name, values in table_columns(run, cohort)}
     assert list(columns)[:4] == ["clearance_mm", "tilt_deg", "cycles_per_year", "volume_mm3_at_1000"]
@@ -225,7 +225,8 @@ def test_the_table_has_a_row_for_each_patient(tmp_path):
     assert columns["peak_utilisation_at_1000"] == [0.3, 0.5]
     assert columns["peak_utilisation_at_5e+06"] == [0.3, 0.6]
     assert columns["valid_at_5e+06"] == [1.0, 0.0]
-    assert len(columns) == 3 + 2 * (len(RESULT_UNITS) + 2)
+    assert columns["edge_loaded_at_5e+06"] == [1.0, 0.0]
+    assert len(columns) == 3 + 2 * (len(RESULT_UNITS) + 3)
     names, first, second = write_csv(tmp_path / "a.csv", run, cohort).read_text(encoding="utf-8").splitlines()
     assert names.split(",") == list(columns)
     assert first.split(",")[:5] == ["0.1", "0", "1000000", "0", "1"]
@@ -258,7 +259,7 @@ def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path
     assert shown.returncode == 0, shown.stderr
     assert "…" not in shown.stdout
     assert "valid in 0 % of the predictions" in shown.stdout
-    assert "contact at the rim: " in shown.stdout
+    assert "contact at the rim, worn to it or edge loading: " in " ".join(shown.stdout.split())
     notes = json.loads(run(*words, "--json").stdout)["notes"]
     assert any(note.startswith("outside R2/L") and "nominal patient, in the first cycle" in note for note in notes)
     assert any("4 of 4 patients have contacts outside the validity" in note for note in notes)

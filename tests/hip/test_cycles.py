@@ -169,6 +169,18 @@ def test_rocking_slides_the_circle_of_its_cone_under_a_sine():
         rocking(order="xx")
 
 
+def test_force_and_amplitude_scale_the_machines():
+    usual, scaled = flexion(40), flexion(40, peak=1500.0, amplitude=radians(43.0))
+    assert scaled.forces == pytest.approx(usual.forces / 2)
+    middle = radians(3.5)
+    phases = np.linspace(0.0, 1.0, 9)
+    assert scaled.angles(phases)[0] - middle == pytest.approx(2 * (usual.angles(phases)[0] - middle))
+    assert np.ptp(two_axis(amplitude=radians(30.0)).angles(PHASES), axis=1) == pytest.approx(np.radians([60, 12, 0]))
+    machines = ("flexion", "biaxial-rocking", "two-axis", "constant-load")
+    for name in machines:
+        assert {parameter.key for parameter in CYCLES[name].parameters} == {"force", "amplitude"}
+
+
 def test_constant_load_has_one_force_and_a_cosine_of_flexion():
     cycle = constant_load()
     assert cycle.force_magnitudes == pytest.approx(3000.0, abs=0)

@@ -93,6 +93,8 @@ def test_the_closest_approach_is_that_of_the_largest_load_among_equals():
         "place_deg": pytest.approx(-30.0),
         "instants_at_rim": 2,
         "pressure_at_rim_MPa": 5.0,
+        "kind": "edge loading",
+        "instants_edge_loaded": 2,
     }
     with pytest.warns(DeprecationWarning, match="ClosestApproach.reaching is deprecated: use steps_at_rim"):
         assert closest.reaching == 2

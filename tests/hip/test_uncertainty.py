@@ -120,7 +120,7 @@ def test_dislocated_patients_are_counted_and_left_out():
     assert np.isfinite(bands.band("volume")).all()
     assert bands.indices is None
     assert bands.summary()["sobol"] is None
-    assert any("patients have no result" in note for note in bands.notes)
+    assert any("samples have no result" in note for note in bands.notes)
 
 
 def test_old_argument_names_warn():

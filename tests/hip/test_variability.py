@@ -196,7 +196,7 @@ def test_results_are_those_of_the_reports():
         assert results["max_pressure"] == report.max_pressure
         assert results["penetration"] == report.penetration
     contact = contact_table(patient.use, reports)
-    assert contact.shape == (3, 2)
+    assert contact.shape == (3, 3)
     assert ((contact[:, 0] > 0) & (contact[:, 0] < 1)).all()
     assert (contact[:, 1] == 1).all()
     unloaded = replace(reports[0], edge_distance=np.array([]))

@@ -83,9 +83,11 @@ def test_incomplete_columns_are_refused(text, message, tmp_path):
         read_measured(csv(tmp_path, text), uncertainty="1 um")
 
 
-def test_a_file_needs_an_uncertainty(tmp_path):
-    with pytest.raises(ValueError, match="press.csv: the uncertainty of indentation is missing"):
-        read_measured(csv(tmp_path, "force_N,indentation_um\n100,2\n"))
+def test_without_an_uncertainty_it_is_estimated_later(tmp_path):
+    (press,) = read_measured(csv(tmp_path, "force_N,displacement_um\n100,2\n200,3\n"))
+    assert press.has_unknown_noise
+    assert (press.quantity, press.name) == ("indentation", "press.csv")
+    np.testing.assert_allclose(press.values, [0.002, 0.003])
 
 
 def test_rows_with_gaps_are_omitted_on_request(tmp_path):
@@ -173,7 +175,6 @@ def test_the_frequency_of_a_mass_measures_the_stiffness(question):
         ("clearance =", "clearence =", "data.toml: 'clearence' in [free] is not known; did you mean 'clearance'?"),
         ('"0.02..0.3 mm"', "0.1", "data.toml: clearance = 0.1 must be two ends, such as '0.02..0.3 mm'"),
         ('machine = "frame"', 'machine = "fram"', "data.toml: machine 'fram' is not known; did you mean 'frame'?"),
-        ('uncertainty = "1 %"\n', "", "data.toml: [[data]] with values needs its uncertainty"),
         ('uncertainty = "1 %"', 'uncertainty = "-1 %"', "data.toml: area_uncertainty[0] = "),
         (
             'compliance = "0..20 um/kN"',

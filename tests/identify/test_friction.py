@@ -132,7 +132,7 @@ def test_file_and_command_identify_the_coefficient(tmp_path, axis, angle):
     assert estimate["value"] == pytest.approx(0.06, rel=1e-6)
     assert estimate["low"] < 0.06 < estimate["high"]
     shown = run("identify", "friction.toml", folder=tmp_path).stdout
-    assert "hess-forsbach through 3 values (3 x friction_torque)" in shown
+    assert "hess-forsbach fitted to 3 values (3 x friction_torque)" in shown
 
 
 def test_an_axis_of_other_data_is_refused(tmp_path):

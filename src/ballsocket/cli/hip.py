@@ -1,11 +1,11 @@
-"""Command `hip`: wear of a hip over millions of gait cycles, for one patient or a cohort."""
+"""Command `hip`: wear of one or several hips over millions of gait cycles, for one patient or a cohort."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
@@ -21,12 +21,20 @@ if TYPE_CHECKING:  # imported on use: the solver of wear is slow to import
     from ..hip.bands import Bands
     from ..hip.config import HipFile
     from ..hip.history import History
+    from ..reports.hip_comparison import HipRun
 
 
 @app.command()
 def hip(
-    file: Annotated[Path, typer.Argument(help="Hip file (TOML): joint, gait cycle, wear law.")],
+    files: Annotated[
+        list[Path],
+        typer.Argument(metavar="FILE...", help="Hip files (TOML): joint, gait cycle, wear law. Several are compared."),
+    ],
     as_json: AsJson = False,
+    figure: Annotated[
+        Path | None, typer.Option(help="Write a figure of volume and penetration over cycles (.png, .svg, .pdf).")
+    ] = None,
+    csv: Annotated[Path | None, typer.Option(help="Write a table with a row for each report (.csv).")] = None,
     report: Annotated[Path | None, typer.Option(help="Write a report with figures to this file (.html).")] = None,
     store: Annotated[
         Path | None,
@@ -47,35 +55,62 @@ def hip(
     Exit status: 0 success, 2 wrong input, 3 a contact does not balance its load.
     """
     from ..hip.config import read_hip
+    from ..reports.figure_files import check_format, save
+    from ..reports.hip_comparison import HipRun, check_table, comparison_figure, print_comparison, write_table
     from ..reports.hip_report import check_page, write_hip_report
     from ..reports.hip_tables import print_bands, print_hip
 
-    if report is not None:
-        check_page(report)
-    hip_file, engine = read_hip(file), choose_executor(workers, scheduler, Serial())
+    for path, check in ((report, check_page), (figure, check_format), (csv, check_table)):
+        if path is not None:
+            check(path)
+    hip_files, engine = [read_hip(path) for path in files], choose_executor(workers, scheduler, Serial())
+    several = len(files) > 1
     if patients is not None:
-        if report is not None:
-            raise ValueError("a report shows one hip: leave out --report or --patients")
-        _simulate_cohort(hip_file, patients, engine, store, as_json)
+        for option, value in {"--report": report, "--figure": figure, "--csv": csv}.items():
+            if value is not None:
+                raise ValueError(f"{option} shows one hip: leave out {option} or --patients")
+        if several:
+            raise ValueError(f"--patients needs one file, got {len(files)}")
+        _simulate_cohort(hip_files[0], patients, engine, store, as_json)
         return
-    history = _simulate(hip_file, store)
-    bands = _uncertainty_bands(hip_file, history, engine)
+    if several and report is not None:
+        raise ValueError(f"--report shows one hip, got {len(files)} files: use --figure or --csv to compare them")
+    runs = []
+    for name, hip_file in zip(_short_names(files), hip_files, strict=True):
+        history = _simulate(hip_file, store / name if store is not None and several else store, name if several else "")
+        runs.append(HipRun(name=name, history=history, bands=_uncertainty_bands(hip_file, history, engine)))
     if as_json:
-        _echo_history(history, bands)
+        _echo_runs(runs, files)
+    elif several:
+        print_comparison(runs)
     else:
-        print_hip(history)
-        if bands is not None:
-            print_bands(bands)
-    if report is not None:  # last: if the page cannot be written, the result is already printed
-        write_hip_report(history, report, bands)
-    if not history.converged:
+        print_hip(runs[0].history)
+        if runs[0].bands is not None:
+            print_bands(runs[0].bands)
+    if report is not None:  # last: if a file cannot be written, the result is already printed
+        write_hip_report(runs[0].history, report, runs[0].bands)
+    if figure is not None:
+        save(comparison_figure(runs), figure)
+    if csv is not None:
+        write_table(csv, runs)
+    if not all(run.history.converged for run in runs):
         typer.echo("ballsocket: a contact did not balance its load (see the notes)", err=True)
         raise typer.Exit(FAILURE)
 
 
-def _simulate(hip_file: HipFile, store: Path | None) -> History:
+def _short_names(files: Sequence[Path]) -> list[str]:
+    """Return the name of each file without folder and ending; its whole path if two files have the same name."""
+    names = [path.stem for path in files]
+    if len(set(names)) == len(names):
+        return names
+    if len(set(files)) < len(files):
+        raise ValueError("two files are the same: give each file once")
+    return [str(path.with_suffix("")) for path in files]
+
+
+def _simulate(hip_file: HipFile, store: Path | None, name: str) -> History:
     """Simulate the hip of a file with a progress bar."""
-    with _progress_bar("wearing", hip_file.cycles, "cycles") as progress:
+    with _progress_bar(f"wearing {name}".strip(), hip_file.cycles, "cycles") as progress:
         return hip_file.use.after(
             hip_file.cycles, hip_file.report_at, progress=progress, lubricant=hip_file.lubricant, store=store
         )
@@ -88,21 +123,35 @@ def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> B
     scatter = hip_file.uncertain
     if scatter is None:
         return None
-    patients = scatter.count * (len(scatter.variability.distributions) + 2)
-    with _progress_bar("other patients", patients, "patients") as progress:
+    samples, noun = scatter.count * (len(scatter.variability.distributions) + 2), scatter.variability.noun
+    with _progress_bar(f"other {noun}", samples, noun) as progress:
         return uncertainty(
             scatter.variability, history, count=scatter.count, seed=scatter.seed, engine=engine, progress=progress
         )
 
 
-def _echo_history(history: History, bands: Bands | None) -> None:
-    """Print a simulation and its bands as JSON."""
-    valid = history.valid and (bands is None or bands.valid)
-    answer = {"version": __version__, "valid": valid, **history.summary()}
+def _echo_runs(runs: Sequence[HipRun], files: Sequence[Path]) -> None:
+    """Print simulations as JSON: the result of one file, or `results` with an entry for each of several files."""
+    answers = [_summarize_run(run) for run in runs]
+    if len(answers) == 1:
+        echo_json({"version": __version__, **answers[0]})
+        return
+    results = [
+        {"file": str(path), "name": run.name, **answer} for path, run, answer in zip(files, runs, answers, strict=True)
+    ]
+    notes = [f"{run.name}: {note}" for run, answer in zip(runs, answers, strict=True) for note in answer["notes"]]
+    valid = all(answer["valid"] for answer in answers)
+    echo_json({"version": __version__, "valid": valid, "results": results, "notes": notes})
+
+
+def _summarize_run(run: HipRun) -> dict[str, Any]:
+    """Return a simulation and its bands as a dictionary for JSON."""
+    history, bands = run.history, run.bands
+    answer = {"valid": history.valid and (bands is None or bands.valid), **history.summary()}
     if bands is not None:
         answer |= bands.summary()
         answer["notes"] = [*answer["notes"], *bands.notes]
-    echo_json(answer)
+    return answer
 
 
 def _simulate_cohort(hip_file: HipFile, patients: int, engine: Engine, store: Path | None, as_json: bool) -> None:

@@ -11,6 +11,7 @@ import typer
 
 from ..core.checks import known_name
 from ..core.kinds import Kind
+from ..files.toml import read_toml
 from ..files.units import parse
 from ..identify import as_constant, as_corrected_vessel, as_polynomial
 from ..identify import calibrate as fit_modulus
@@ -53,15 +54,22 @@ def identify(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Identify parameters of a joint from measurements.
+    """Identify parameters of a joint from measurements, or a wear coefficient from measured wear.
 
     The table shows each parameter with its uncertainty and names the parameters that are not identifiable.
+    A hip file with measured volumes, penetrations or rates in [[data]] gives its wear coefficient.
 
     Exit status: 0 success, 2 wrong input, 3 the search did not converge.
     """
     for path in (figure, corner, experiment):
         if path is not None:
             check_format(path)
+    if _has_measured_wear(file):
+        for option, value in {"--samples": samples, "--corner": corner, "--experiment": experiment}.items():
+            if value is not None:
+                raise ValueError(f"{option} needs measurements of a contact, and {file.name} has measured wear")
+        _fit_wear(file, figure, as_json)
+        return
     result = read_identify(file).identify_unknowns()
     posterior = None if samples is None else result.posterior(samples)
     if as_json:
@@ -77,6 +85,34 @@ def identify(
     if not result.best.converged:
         typer.echo("ballsocket: the search did not converge (see the notes)", err=True)
         raise typer.Exit(FAILURE)
+
+
+def _has_measured_wear(file: Path) -> bool:
+    """Check if a file is a hip file: it has a cycle, activities, or data of worn volumes or penetrations."""
+    from ..hip.wear_fit import WEAR_QUANTITIES
+
+    content = read_toml(file, "measurement", lambda content: content)
+    tables = content.get("data")
+    rows = [table for table in tables if isinstance(table, dict)] if isinstance(tables, list) else []
+    has_wear = any(str(table.get("quantity")) in WEAR_QUANTITIES for table in rows)
+    return "cycle" in content or "activity" in content or has_wear
+
+
+def _fit_wear(file: Path, figure: Path | None, as_json: bool) -> None:
+    """Fit the wear coefficient of a hip file to its measured wear, and print it."""
+    from ..hip.config import read_wear_test
+    from ..hip.wear_fit import fit_wear_coefficient
+    from ..reports.hip_comparison import print_wear_fit, wear_fit_figure
+
+    hip_file = read_wear_test(file)
+    fit = fit_wear_coefficient(hip_file.use, hip_file.data)
+    if as_json:
+        valid = all(check.valid for check in fit.simulation.unworn_checks)
+        echo_json({"version": __version__, "joint": fit.simulation.joint.summary(), "valid": valid, **fit.summary()})
+    else:
+        print_wear_fit(fit)
+    if figure is not None:
+        save(wear_fit_figure(fit), figure)
 
 
 def _summary(result: IdentificationResult, posterior: Posterior | None) -> dict[str, Any]:

@@ -59,7 +59,7 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
         checked. `error` has estimated relative errors, by model where there are several, and null where none are known.
         `notes` are sentences, `sources` publications with `key`, `text`, `doi`, and `next` steps with `command`, `why`.
     """
-    results = answer.get("results", [])
+    results = [result for result in answer.get("results", []) if "model" in result]
     requested = requested_results(results, arguments)
     notes = [f"{result['model']}: {note}" for result in results for note in result["notes"]]
     full = {
@@ -254,13 +254,13 @@ def _after_identify(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     if not answer["valid"]:
         why = answer["notes"][0] if answer["notes"] else "not every parameter is identifiable"
         yield NextStep((*arguments, "--experiment", "next.png"), why)
-    elif answer["posterior"] is None:
+    elif "posterior" in answer and answer["posterior"] is None:
         yield NextStep((*arguments, "--samples", "4000"), "samples of the posterior within the ranges")
 
 
 def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     """Suggest the simulation with a report."""
-    if not _selected_options(arguments, "--report", "--patients"):
+    if not _selected_options(arguments, "--report", "--patients") and "results" not in answer:
         yield NextStep((*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear")
 
 

@@ -21,7 +21,8 @@ from .simulator_cycles import (
 )
 from .uncertainty import population, uncertainty
 from .variability import PatientVariability
-from .wear_laws import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
+from .wear_fit import MeasuredWear, WearFit, fit_wear_coefficient
+from .wear_laws import WEAR_FACTORS, Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 
 AreaLaw = ContactAreaWear
 EnergyLaw = FrictionEnergyWear
@@ -31,6 +32,7 @@ Ladder = KelvinVoigtChain
 Scatter = PatientVariability
 
 __all__ = [
+    "WEAR_FACTORS",
     "Activity",
     "Archard",
     "AreaLaw",
@@ -50,13 +52,16 @@ __all__ = [
     "Ladder",
     "LogarithmicCreep",
     "Lubricant",
+    "MeasuredWear",
     "Mix",
     "OwnLaw",
     "PatientVariability",
     "Scatter",
     "Spring",
+    "WearFit",
     "constant_load",
     "constrained_share",
+    "fit_wear_coefficient",
     "flexion",
     "in_vivo",
     "iso_14242_1",

@@ -69,6 +69,8 @@ class Bands:
         suffixes `_low` and `_high`.
     quick_run_errors : mapping of str to float
         Relative difference between the nominal patient's coarse and full simulations.
+    members : str
+        Noun for the members of the bands; by default that of the variability.
     shared : SharedCoefficient, optional
         Results of the patients for a shared wear coefficient; None without a sampled coefficient and another quantity.
     """
@@ -81,11 +83,17 @@ class Bands:
     indices: Mapping[str, Numbers] | None = None
     quick_run_errors: Mapping[str, float] = field(default_factory=dict)
     shared: SharedCoefficient | None = None
+    members: str = ""
+
+    @property
+    def noun(self) -> str:
+        """Noun for the simulated members: "patients", or "samples" of a simulator."""
+        return self.members or self.variability.noun
 
     @property
     def subject(self) -> str:
-        """Noun for the members of the bands: "predictions" if the wear coefficient is unknown, else "patients"."""
-        return "predictions" if COEFFICIENT in self.variability.distributions else "patients"
+        """Noun for the members of the bands: "predictions" if the wear coefficient is unknown, else `noun`."""
+        return "predictions" if COEFFICIENT in self.variability.distributions else self.noun
 
     @property
     def n_patients(self) -> int:
@@ -170,7 +178,12 @@ class Bands:
     @property
     def nominal_notes(self) -> tuple[str, ...]:
         """Sentences on the simulation of the nominal patient: contact model, cycle, cup and laws."""
-        checks = [("nominal patient, in the first cycle", self.variability.coarse_simulation.unworn_checks)]
+        checks = [
+            (
+                f"nominal {self.noun.removesuffix('s')}, in the first cycle",
+                self.variability.coarse_simulation.unworn_checks,
+            )
+        ]
         return (*list_check_notes(checks), *self.variability.use.notes)
 
     @property
@@ -182,7 +195,7 @@ class Bands:
         coefficient = coefficient_field(self.variability.use.wear)
         unit = "" if coefficient is None else coefficient.unit.text
         band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
-        return (f"the wear coefficient is unknown, but the same for all patients: {band}",)
+        return (f"the wear coefficient is unknown, but the same for all {self.noun}: {band}",)
 
     @property
     def _failure_note(self) -> tuple[str, ...]:
@@ -191,7 +204,7 @@ class Bands:
             return ()
         reasons = Counter(str(error).split(":")[0] for error in self.cohort.refused if error)
         reason = reasons.most_common(1)[0][0]
-        failed = f"{self.n_failed} of {self.n_patients} patients have no result, most often: {reason}"
+        failed = f"{self.n_failed} of {self.n_patients} {self.noun} have no result, most often: {reason}"
         return (f"{failed}; the bands are for the others",)
 
     @property
@@ -199,7 +212,9 @@ class Bands:
         """Sentence on the number of patients whose liner is worn through."""
         depth = self.cohort.table[:, -1, list(RESULT_UNITS).index("depth")]
         n_worn_through = int((depth > self.variability.use.joint.liner_thickness).sum())
-        return (f"{n_worn_through} of {self.n_patients} patients wear their liner through",) if n_worn_through else ()
+        return (
+            (f"{n_worn_through} of {self.n_patients} {self.noun} wear their liner through",) if n_worn_through else ()
+        )
 
     @property
     def _validity_note(self) -> tuple[str, ...]:
@@ -207,7 +222,7 @@ class Bands:
         invalid_count = int((self.cohort.valid[:, -1] == 0).sum())
         model = self.variability.coarse_simulation.contact_model.name
         sentence = (
-            f"{invalid_count} of {self.n_patients} patients have contacts outside the validity of the contact model "
+            f"{invalid_count} of {self.n_patients} {self.noun} have contacts outside the validity of the contact model "
             f"({model})"
         )
         return (sentence,) if invalid_count else ()
@@ -246,6 +261,28 @@ class Bands:
         distance = self.cohort.table[self.cohort.refused == "", report, column]
         return float((distance <= 0).mean()) if len(distance) else numpy.nan
 
+    def edge_loaded_fraction(self, report: int) -> float:
+        """Compute the fraction of patients with edge loading at a report; see `RimDistance.edge_loaded`.
+
+        A bore that is worn to the rim is not edge loading: `edge_loading` counts it, this method does not.
+        """
+        edge_loaded = self.cohort.edge_loaded[self.cohort.refused == "", report]
+        return float(edge_loaded.mean()) if len(edge_loaded) else numpy.nan
+
+    def table(self) -> list[dict[str, float]]:
+        """Return the bands at each report, as dictionaries of numbers by column name with unit: "volume_low_mm3"."""
+        columns = [
+            {
+                f"{name}_{end_name}_{RESULT_UNITS[name]}": self.quantile(name, fraction)
+                for end_name, fraction in self._probabilities_by_name.items()
+            }
+            for name in CONVERTED
+        ]
+        return [
+            {head: float(values[report]) for column in columns for head, values in column.items()}
+            for report in range(len(self.counts))
+        ]
+
     def summary(self) -> dict[str, Any]:
         """Return the bands as a dictionary for JSON."""
         return {
@@ -280,6 +317,7 @@ class Bands:
             **({} if year is None else {"years": self.counts[report] / year}),
             **bands,
             "edge_loading": _finite_or_none(self.edge_loading(report)),
+            "edge_loaded": _finite_or_none(self.edge_loaded_fraction(report)),
             "peak_utilisation": {
                 end_name: _finite_or_none(self.utilisation_quantile(fraction)[report])
                 for end_name, fraction in self._probabilities_by_name.items()

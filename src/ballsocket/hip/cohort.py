@@ -104,7 +104,7 @@ class CohortRun:
             return result_table(reports), contact_table(patient.use, reports), ""
         except ValueError as error:
             results = numpy.full((len(self.counts), len(RESULT_UNITS)), numpy.nan)
-            contact = numpy.full((1 + len(self.counts), 2), numpy.nan)
+            contact = numpy.full((1 + len(self.counts), 3), numpy.nan)
             return results, contact, str(error)
 
     def simulate(
@@ -271,6 +271,7 @@ def table_columns(run: CohortRun, result: CohortResult) -> Iterator[tuple[str, N
             yield f"{name}_{unit}_at_{count:g}", result.table[:, report, column]
         yield f"peak_utilisation_at_{count:g}", result.peak_utilisation[:, report]
         yield f"valid_at_{count:g}", result.valid[:, report]
+        yield f"edge_loaded_at_{count:g}", result.edge_loaded[:, report]
 
 
 def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:

@@ -12,14 +12,14 @@ from typing import Any
 import msgspec
 
 from ..catalogue import catalogue
-from ..core.checks import require
+from ..core.checks import number_of_percent, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..files.joint_file import CupTable, JointFile, cup_of, joint_in
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
-from ..files.units import parse
+from ..files.units import convert, parse, parse_units, split_quantity
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from ..studies.distributions import check_nominal
@@ -28,12 +28,15 @@ from .creep_law import CreepLaw
 from .creep_laws import read_creep_law
 from .cycle_file import cycle_of
 from .film import Lubricant
-from .schema import HipCupTable, HipTable, PatientNumber, UncertaintyTable
+from .law_fields import select_law_class
+from .schema import HipCupTable, HipTable, PatientNumber, UncertaintyTable, WearDataTable
 from .simulation import HipSimulation, check_cycles
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
-from .wear_law import coefficient_field, wear_factor
-from .wear_laws import read_ball_law, read_wear_law
+from .wear_fit import RATES, MeasuredWear
+from .wear_law import COEFFICIENT, coefficient_field, wear_factor
+from .wear_laws import MATERIAL, WEAR_LAWS, read_ball_law, read_wear_law
 
+_MILLION = 1e6
 _DEFAULT_CYCLES = 5e6
 _DEFAULT_N_REPORTS = 10
 
@@ -52,6 +55,8 @@ class HipFile:
     lubricant : Lubricant
     uncertain : optional
         Distributions of quantities that differ between patients; None without a table [uncertainty].
+    data : tuple of MeasuredWear
+        Measured wear of the tables [[data]].
     """
 
     use: HipSimulation
@@ -59,6 +64,7 @@ class HipFile:
     report_at: tuple[float, ...]
     lubricant: Lubricant
     uncertain: UncertaintySettings | None = None
+    data: tuple[MeasuredWear, ...] = ()
 
 
 def read_hip(path: str | Path) -> HipFile:
@@ -76,6 +82,33 @@ def read_hip(path: str | Path) -> HipFile:
     """
     path = Path(path)
     return read_toml(path, "hip", lambda content: _parse_hip(content, path.parent))
+
+
+def read_wear_test(path: str | Path) -> HipFile:
+    """Read a hip file with measured wear in [[data]]; its wear coefficient is fitted and may be missing.
+
+    Raises
+    ------
+    ValueError
+        As `read_hip`, or a file without [[data]].
+    OSError
+        A file cannot be read.
+    """
+    path = Path(path)
+    hip_file = read_toml(path, "wear test", lambda content: _parse_hip(_with_coefficient(content), path.parent))
+    if not hip_file.data:
+        raise ValueError(f"{path.name}: no measured wear: add [[data]] with quantity, values, and cycles or rate")
+    return hip_file
+
+
+def _with_coefficient(content: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Add a wear coefficient to start from, if the file states none."""
+    law_numbers = content.get("wear", {})
+    if not isinstance(law_numbers, Mapping) or {COEFFICIENT, MATERIAL} & set(law_numbers):
+        return content
+    law = select_law_class(law_numbers, WEAR_LAWS, "law")
+    examples = [field.example for field in law.law_fields() if field.key == COEFFICIENT]
+    return {**content, "wear": {**law_numbers, COEFFICIENT: examples[0]}} if examples else content
 
 
 def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
@@ -103,7 +136,66 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         report_at=report_at,
         lubricant=Lubricant(**quantities_of(tables.film)),
         uncertain=None if tables.uncertainty is None else _read_uncertainty(tables, tables.uncertainty, use),
+        data=tuple(_parse_measured_wear(table, cycle.per_year, tables) for table in tables.data or ()),
     )
+
+
+_PER_MILLION, _PER_YEAR = ("Mc", "million cycles"), ("year", "a")
+"""Ends of the unit of a rate, behind the slash."""
+
+
+def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: HipTable) -> MeasuredWear:
+    """Create the measured wear of a table [[data]]."""
+    for key in ("quantity", "values"):
+        if getattr(table, key) is None:
+            raise ValueError(f"[[data]] of measured wear needs its {key}")
+    assert table.quantity is not None
+    assert table.values is not None
+    if per_year is None and tables.cycles_per_year is not None:
+        per_year = float(tables.cycles_per_year)
+    unit = "mm^3" if table.quantity == "volume" else "mm"
+    stated = table.values.value if isinstance(table.values.value, list) else [table.values.value]
+    values = [_parse_wear("values", value, unit, table.rate is not None, per_year) for value in stated]
+    uncertainty: Any = None
+    if table.uncertainty is not None:
+        text = table.uncertainty.value
+        percent = number_of_percent(text)
+        if percent is not None:
+            uncertainty = [parse("uncertainty", percent, Kind.NUMBER) / 100 * value for value in values]
+        else:
+            numbers = text if isinstance(text, list) else [text]
+            uncertainty = [_parse_wear("uncertainty", n, unit, table.rate is not None, per_year) for n in numbers]
+    begin, end = (None if count is None else float(count) for count in (table.begin, table.end))
+    return MeasuredWear(
+        quantity=str(table.quantity),
+        values=values,
+        cycles=table.cycles,
+        rate=None if table.rate is None else str(table.rate),
+        begin=begin,
+        end=end,
+        uncertainty=uncertainty,
+        name=str(table.name or ""),
+    )
+
+
+def _parse_wear(name: str, value: Any, unit: str, is_rate: bool, per_year: float | None) -> float:
+    """Convert a total or a rate with its unit to mm³ or mm, or to mm³ or mm per million cycles."""
+    total_text, _, period = value.rpartition("/") if isinstance(value, str) else ("", "", "")
+    has_period = period.strip() in (*_PER_MILLION, *_PER_YEAR)
+    if is_rate and not has_period:
+        raise ValueError(f"{name} = {shown(value)} of a rate needs a unit such as '38 {unit}/Mc' or '8 {unit}/year'")
+    if has_period and not is_rate:
+        raise ValueError(f"{name} = {shown(value)} is a rate: state its kind, rate = {', '.join(map(repr, RATES))}")
+    try:
+        number, text = split_quantity(total_text if has_period else str(value))
+        total = convert(number, parse_units(text or unit), parse_units(unit))
+    except ValueError as error:
+        raise ValueError(f"{name} = {shown(value)} must be a number with a unit, such as '38 {unit}'") from error
+    if period.strip() not in _PER_YEAR:
+        return total
+    if per_year is None:
+        raise ValueError(f"{name} = {shown(value)} is per year: state cycles_per_year at the top of the file")
+    return total * _MILLION / per_year
 
 
 def parse_creep(content: Mapping[str, Any], poisson: float) -> CreepLaw | None:

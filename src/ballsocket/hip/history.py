@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import chain
-from math import degrees
+from math import degrees, inf, nan
 from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.checks import needs
 from ..core.deprecation import RenamedAttribute, renamed_names
+from ..core.plotting import load_plot
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes
 from .film import Lubricant
 from .hip_setup import HipSetup
@@ -45,6 +47,8 @@ class Report:
         Azimuth of that edge around the cup's axis, in rad from its uppermost point.
     edge_pressure : array (loaded,)
         Largest pressure in MPa in the outermost ring of cells.
+    edge_loaded : array of bool (loaded,)
+        Contacts that are edge loading; see `RimDistance.edge_loaded`.
     crept : array (rings, meridians)
         Depth of creep in mm.
     creep_depth : float
@@ -71,6 +75,7 @@ class Report:
     edge_distance: Numbers
     edge_place: Numbers
     edge_pressure: Numbers
+    edge_loaded: Numbers
     crept: Numbers
     creep_depth: float = 0.0
     ball_wear: Numbers = field(default_factory=lambda: numpy.zeros(0))
@@ -89,8 +94,13 @@ class Report:
 
     @property
     def edge(self) -> RimDistance:
-        """Distance of each contact from the rim, with azimuth and pressure."""
-        return RimDistance(distance=self.edge_distance, azimuth=self.edge_place, pressure=self.edge_pressure)
+        """Distance of each contact from the rim, with azimuth, pressure and edge loading."""
+        return RimDistance(
+            distance=self.edge_distance,
+            azimuth=self.edge_place,
+            pressure=self.edge_pressure,
+            edge_loaded=self.edge_loaded,
+        )
 
     def summary(self) -> dict[str, Any]:
         """Return the report as a dictionary for JSON, in mm, MPa and mm³."""
@@ -127,7 +137,7 @@ class NumericalError:
     depth: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class History:
     """Results of a wear simulation: reports at several cycle counts.
 
@@ -152,6 +162,70 @@ class History:
     def last(self) -> Report:
         """Last report, at the end of the run."""
         return self.reports[-1]
+
+    def radiographic_displacement(self, report: Report) -> Numbers:
+        """Compute the displacement (2,) of the ball's centre in mm in the plane of a radiograph from the front.
+
+        The components are to the right and upwards. They are those of the displacement by wear and creep since the
+        first cycle, at the largest force. Femoral head penetration by ASTM F2385 is this distance. Its scope was read,
+        its full text was not.
+        """
+        right, _, upward = report.displacement @ numpy.array(self.use.frame.placed.frame)
+        return numpy.array([right, upward])
+
+    def radiographic_penetration(self, report: Report) -> float:
+        """Compute the length in mm of `radiographic_displacement`: wear plus creep, as a radiograph shows it."""
+        return float(numpy.linalg.norm(self.radiographic_displacement(report)))
+
+    def table(self) -> list[dict[str, Any]]:
+        """Return one row for each report, as dictionaries of numbers by column name with unit."""
+        per_year = self.use.cycle.per_year
+        return [
+            {
+                "cycles": report.cycles,
+                **({} if per_year is None else {"years": report.cycles / per_year}),
+                "volume_mm3": report.volume,
+                "depth_mm": report.depth,
+                "penetration_mm": report.penetration,
+                "penetration_of_wear_mm": float(numpy.linalg.norm(report.wear_displacement)),
+                "penetration_of_creep_mm": float(numpy.linalg.norm(report.creep_displacement)),
+                "radiographic_penetration_mm": self.radiographic_penetration(report),
+                "max_pressure_MPa": report.max_pressure,
+                "creep_depth_mm": report.creep_depth,
+                "ball_volume_mm3": report.ball_volume,
+                "ball_depth_mm": report.ball_depth,
+                "edge_distance_mm": float(report.edge_distance.min(initial=inf)),
+                "edge_pressure_MPa": float(report.edge_pressure.max(initial=0.0)),
+                "edge_loaded_instants": int(report.edge_loaded.sum()),
+                "utilisation": nan if (share := largest_utilisation(checks)) is None else share,
+                "valid": report.converged and all(check.valid for check in checks),
+            }
+            for report, checks in zip(self.reports, self.contact_checks, strict=True)
+        ]
+
+    def to_frame(self) -> Any:
+        """Return the reports as a pandas DataFrame, one row for each; heads have units: "volume_mm3".
+
+        Raises
+        ------
+        ImportError
+            Pandas is not installed; the message has the command.
+        """
+        needs("study", "pandas")
+        import pandas
+
+        return pandas.DataFrame(self.table())
+
+    def plot(self) -> Any:
+        """Draw worn volume and penetration over the cycles; return the matplotlib figure."""
+        return load_plot("wear")({"": self})
+
+    def __repr__(self) -> str:
+        last = self.last
+        return (
+            f"History({self.use.cycle.name}, {len(self.reports)} reports: {last.volume:.4g} mm³ and a penetration of "
+            f"{last.penetration:.3g} mm after {last.cycles:g} cycles)"
+        )
 
     @property
     def converged(self) -> bool:
@@ -209,16 +283,24 @@ class History:
 
     @property
     def _rim_notes(self) -> tuple[str, ...]:
-        """Sentence on the first report at which a contact reaches the rim."""
-        frame, stages = self.use.frame, [(_FIRST_CYCLE, self.worst)]
-        stages += [
+        """Sentences on the first stages with edge loading, and with a bore that is worn to the rim."""
+        frame = self.use.frame
+        stages = [(_FIRST_CYCLE, self.worst)] + [
             (_AFTER_CYCLES.format(report.cycles), report.edge.closest_approach(frame)) for report in self.reports
         ]
+        first: dict[str, tuple[str, ClosestApproach]] = {}
         for stage, worst in stages:
             if worst is not None and worst.steps_at_rim:
-                count = len(frame.loaded)
-                return (_AT_RIM.format(stage, worst.steps_at_rim, count, worst.location, worst.pressure),)
-        return ()
+                first.setdefault(worst.kind, (stage, worst))
+        return tuple(self._describe_rim_contact(*first[kind]) for kind in sorted(first))
+
+    def _describe_rim_contact(self, stage: str, worst: ClosestApproach) -> str:
+        """Describe the contact at the rim at one stage: edge loading, or a bore that is worn to the rim."""
+        count = len(self.use.frame.loaded)
+        if worst.steps_edge_loaded:
+            return _EDGE_LOADING.format(stage, worst.steps_edge_loaded, count, worst.location, worst.pressure)
+        distance = 0.0 if self.worst is None else self.worst.distance
+        return _WORN_TO_RIM.format(stage, worst.steps_at_rim, count, distance, worst.pressure)
 
     def summary(self) -> dict[str, Any]:
         """Return the results as a dictionary for JSON."""
@@ -261,12 +343,17 @@ class History:
         """Return a report with its contact checks as a dictionary for JSON, with years if known."""
         per_year, edge = self.use.cycle.per_year, report.edge.closest_approach(self.use.frame)
         years = {} if per_year is None else {"years": report.cycles / per_year}
+        lateral, upward = self.radiographic_displacement(report)
+        radiograph = {
+            "radiographic_penetration": float(numpy.hypot(lateral, upward)),
+            "radiographic_vector": [float(lateral), float(upward)],
+        }
         contact = {
             "valid": report.converged and all(check.valid for check in checks),
             "utilisation": largest_utilisation(checks),
             "contact": [check.summary() for check in checks],
         }
-        return {**report.summary(), **years, "edge": _closest_approach_summary(edge), **contact}
+        return {**report.summary(), **radiograph, **years, "edge": _closest_approach_summary(edge), **contact}
 
 
 _THIN_LINER = 0.25
@@ -277,9 +364,14 @@ _WORN_THIN = (
     "after {:g} cycles {:.3g} mm of a liner of {:g} mm are worn away; its stiffness is still that of the unworn liner"
 )
 _FIRST_CYCLE, _AFTER_CYCLES = "in the first cycle", "after {:g} cycles"
-_AT_RIM = (
+_EDGE_LOADING = (
     "edge loading: {} the contact reaches the rim in {} of {} instants, most at {}; "
     "the pressure in the outermost ring is at most {:.3g} MPa"
+)
+_WORN_TO_RIM = (
+    "worn to the rim: {} the worn bore fits the ball and touches it up to the rim in {} of {} instants; this is not "
+    "edge loading, since under the same loads the unworn contact ends {:.3g} mm before the rim; the pressure in the "
+    "outermost ring is at most {:.3g} MPa"
 )
 _NOT_CONVERGED = "a contact did not balance its load: the results of this run are invalid"
 

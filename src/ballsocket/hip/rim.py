@@ -67,6 +67,8 @@ class ClosestApproach:
         Number of steps in which the contact reaches the rim.
     pressure : float
         Largest pressure in MPa in the outermost ring of cells in any step.
+    steps_edge_loaded : int
+        Number of steps with edge loading; see `RimDistance.edge_loaded`.
     """
 
     distance: float
@@ -74,6 +76,14 @@ class ClosestApproach:
     step_description: str
     steps_at_rim: int
     pressure: float = 0.0
+    steps_edge_loaded: int = 0
+
+    @property
+    def kind(self) -> str:
+        """Kind of the contact at the rim: "edge loading", "worn to the rim" or "clear of the rim"."""
+        if self.steps_edge_loaded:
+            return "edge loading"
+        return "worn to the rim" if self.steps_at_rim else "clear of the rim"
 
     @property
     def location(self) -> str:
@@ -89,6 +99,8 @@ class ClosestApproach:
             "place_deg": azimuth,
             "instants_at_rim": self.steps_at_rim,
             "pressure_at_rim_MPa": self.pressure,
+            "kind": self.kind,
+            "instants_edge_loaded": self.steps_edge_loaded,
         }
 
 
@@ -105,11 +117,16 @@ class RimDistance:
         Position of the shortest distance around the cup's axis, in rad from its uppermost point.
     pressure : array (loaded,)
         Largest pressure in MPa in the outermost ring of cells.
+    edge_loaded : array of bool (loaded,), optional
+        Contacts that reach the rim and are edge loading, not wear: the unworn bore's contact reaches the rim under the
+        same load, or the largest pressure of the cycle is at the rim. None for an unworn bore: all contacts that reach
+        the rim.
     """
 
     distance: Numbers
     azimuth: Numbers
     pressure: Numbers
+    edge_loaded: Numbers | None = None
 
     def closest_index(self, loading: CupLoading) -> int | None:
         """Return the index of the contact closest to the rim; None without loads."""
@@ -129,7 +146,27 @@ class RimDistance:
             step_description=loading.cycle.describe_step(int(loading.loaded[index])),
             steps_at_rim=int((self.distance <= 0).sum()),
             pressure=float(self.pressure.max()),
+            steps_edge_loaded=int((self.distance <= 0 if self.edge_loaded is None else self.edge_loaded).sum()),
         )
+
+
+def mask_edge_loading(worn: RimDistance, unworn: RimDistance, max_pressure: float) -> Numbers:
+    """Find the contacts of a worn bore that are edge loading: (loaded,).
+
+    A worn bore that fits the ball touches it up to the rim in every instant. Edge loading is a contact at the rim for
+    one of two reasons. The load points so close to the rim that the contact of the unworn bore reaches it too. Or the
+    largest pressure of the cycle is at the rim.
+
+    Parameters
+    ----------
+    worn, unworn : RimDistance
+        Contacts of the worn and of the unworn bore under the same loads.
+    max_pressure : float
+        Largest pressure in MPa of the worn bore in the cycle.
+    """
+    at_rim = worn.distance <= 0
+    largest_at_rim = (worn.pressure > 0) & (worn.pressure >= max_pressure)
+    return numpy.asarray(at_rim & ((unworn.distance <= 0) | largest_at_rim))
 
 
 def rim_distance(grid: Grid, radius: float, field: Numbers, pressure: Numbers, inset: float) -> RimDistance:

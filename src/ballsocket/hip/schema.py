@@ -11,6 +11,7 @@ from ..catalogue import catalogue
 from ..core.checks import shown
 from ..files.joint_file import CupTable, JointTables
 from ..files.schema import (
+    QUANTITIES_SCHEMA,
     Angle,
     Force,
     Length,
@@ -35,7 +36,8 @@ from .cycle_tables import DEFAULT_CLOSURE
 from .kinematics import parse_rotation_order
 from .law_fields import Law
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES
-from .wear_laws import BALL_COEFFICIENT, WEAR_LAWS
+from .wear_fit import RATES, WEAR_QUANTITIES
+from .wear_laws import BALL_COEFFICIENT, WEAR_FACTORS, WEAR_LAWS
 
 
 class Steps(WholeNumber):
@@ -241,6 +243,9 @@ class WearTable(Table, frozen=True, kw_only=True):
     """Wear law, with the numbers of all registered laws, and the foundation of the contacts."""
 
     law: Annotated[WearLawName | None, meaning("wear law")] = None
+    material: Annotated[
+        Text | None, meaning(f"material of a published coefficient, in its place: {', '.join(WEAR_FACTORS)}")
+    ] = None
     contact: Annotated[ContactName, meaning("foundation of the socket")] = ContactName("springs")
     model: Annotated[SpringModel | None, meaning("model with the springs; hess-forsbach by default")] = None
     ring_width: Annotated[Angle | None, meaning("width of the rings of the wear map; 3 degrees by default")] = None
@@ -277,6 +282,54 @@ class UncertaintyTable(Table, frozen=True, kw_only=True):
     seed: Annotated[SampleNumber, meaning("seed of the samples")] = SampleNumber(0)
 
 
+class WearQuantity(Word):
+    """Measured wear."""
+
+    noun, choices = "quantity", tuple(WEAR_QUANTITIES)
+
+
+class WearRate(Word):
+    """Kind of a rate of wear."""
+
+    noun, choices = "rate", RATES
+
+
+class WearValues(Parsed):
+    """Number with a unit, or list of them: '38 mm^3/Mc', ['33 mm^3', '69 mm^3'], '0.1 mm/year'."""
+
+    schema: ClassVar[Mapping[str, Any]] = QUANTITIES_SCHEMA
+
+
+class CycleCounts(Value, list[float]):
+    """Number of cycles, or list of them."""
+
+    schema: ClassVar[Mapping[str, Any]] = {"anyOf": [Cycles.schema, Counts.schema]}
+
+    @classmethod
+    def read(cls, name: str, value: Any) -> Self:
+        """Convert a number or a list of numbers without units."""
+        return cls(Counts.read(name, value if isinstance(value, list) else [value]))
+
+
+class WearDataTable(Table, frozen=True, kw_only=True):
+    """Measured wear, from which `ballsocket identify` fits the wear coefficient."""
+
+    quantity: Annotated[WearQuantity | None, meaning("measured quantity")] = None
+    values: Annotated[WearValues | None, meaning("measured totals, or rates: '38 mm^3/Mc'")] = None
+    cycles: Annotated[CycleCounts | None, meaning("numbers of cycles of the totals")] = None
+    rate: Annotated[WearRate | None, meaning("kind of the rate: of the new bore, between two counts, from 0")] = None
+    begin: Annotated[Cycles | None, meaning("number of cycles at which a steady rate begins")] = msgspec.field(
+        name="from", default=None
+    )
+    end: Annotated[Cycles | None, meaning("number of cycles at which a rate ends")] = msgspec.field(
+        name="to", default=None
+    )
+    uncertainty: Annotated[
+        WearValues | None, meaning("standard uncertainty, or '10 %'; by default from the scatter")
+    ] = None
+    name: Annotated[Text | None, meaning("name of the data in messages")] = None
+
+
 class HipTable(CycleTables, frozen=True, kw_only=True):
     """Hip file."""
 
@@ -291,3 +344,4 @@ class HipTable(CycleTables, frozen=True, kw_only=True):
     creep: CreepTable | None = None
     film: FilmTable = FilmTable()
     uncertainty: UncertaintyTable | None = None
+    data: Annotated[list[WearDataTable] | None, meaning("measured wear, for ballsocket identify")] = None

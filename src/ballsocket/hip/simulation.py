@@ -21,13 +21,14 @@ from .ball_wear import map_counterface
 from .film import Lubricant
 from .hip_setup import MIN_RING_WIDTH, HipSetup
 from .history import History, NumericalError, Report
+from .rim import mask_edge_loading
 from .socket_foundation import CycleEquilibrium
 from .wear_integrator import WearIntegrator
 
 _MAX_WORN_LINERS = 10.0
 """Largest wear by the rate of the first cycle, in liner thicknesses."""
 
-_VERSION = 6
+_VERSION = 7
 """Version of the file's format."""
 
 _FILE_NAME = "hip_in_use.npz"
@@ -199,7 +200,7 @@ def make_report(integrator: WearIntegrator) -> Report:
     equilibria = (contacts, contacts_by_wear, _solve_contacts(setup, creep_depth))
     largest_load, unworn_displacement = setup.frame.largest_load_index, setup.unworn.displacement
     displacements = [(state.displacement - unworn_displacement)[largest_load].sum(axis=0) for state in equilibria]
-    edge = setup.edge(contacts, depth)
+    edge, unworn_edge = setup.edge(contacts, depth), setup.edge(setup.unworn)
     return Report(
         cycles=integrator.cycles,
         wear=integrator.depth.reshape(grid_shape),
@@ -213,6 +214,7 @@ def make_report(integrator: WearIntegrator) -> Report:
         edge_distance=edge.distance,
         edge_place=edge.azimuth,
         edge_pressure=edge.pressure,
+        edge_loaded=mask_edge_loading(edge, unworn_edge, float(contacts.pressure.max(initial=0.0))),
         crept=creep_depth.reshape(grid_shape),
         creep_depth=float(creep_depth.max()),
         ball_wear=integrator.ball,

@@ -21,6 +21,8 @@ _ISO_ANGLES = (
     (numpy.array([0, 21, 50, 71, 100]) / 100, numpy.radians([3.0, 7.0, -4.0, -4.0, 3.0])),
     (numpy.array([0, 50, 100]) / 100, numpy.radians([-10.0, 2.0, -10.0])),
 )
+_ISO_PEAK = 3000.0
+_ISO_FLEXION_MIDDLE, _ISO_FLEXION_AMPLITUDE = 3.5, 21.5  # in degrees
 _TWO_AXIS_AMPLITUDES = radians(23.0), radians(6.0)
 _MISMATCH_NOTE = (
     "mismatch, spring and swing load are taken from published tests after ISO 14242-4, not from the standard itself"
@@ -91,12 +93,40 @@ def iso_14242_1_key_points(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> 
 
 
 @renamed_arguments(instants="n_steps")
-def flexion(n_steps: int = DEFAULT_STEPS, order: str = "xyz") -> Cycle:
-    """Create a cycle with the force and the flexion of ISO 14242-1 only: each track is an arc, passed twice."""
+def flexion(
+    n_steps: int = DEFAULT_STEPS,
+    order: str = "xyz",
+    *,
+    peak: float = _ISO_PEAK,
+    amplitude: float = radians(_ISO_FLEXION_AMPLITUDE),
+) -> Cycle:
+    """Create a cycle with the force and the flexion of ISO 14242-1 only: each track is an arc, passed twice.
+
+    Parameters
+    ----------
+    n_steps : int
+        Number of time steps.
+    order : str
+        Order of the rotations; see `Cycle`.
+    peak : float
+        Largest force in N. The other forces of ISO 14242-1 change in proportion.
+    amplitude : float
+        Amplitude of the flexion in rad about its middle of 3.5°.
+    """
+    force_ratio, angle_ratio = peak / _ISO_PEAK, amplitude / radians(_ISO_FLEXION_AMPLITUDE)
+    middle = radians(_ISO_FLEXION_MIDDLE)
+
+    def flexion_angles(phases: Numbers) -> Numbers:
+        """Compute the angles (3, n) in rad, of which adduction and rotation are 0."""
+        angles = _iso_14242_1_angles(phases) * numpy.array([[1.0], [0.0], [0.0]])
+        if angle_ratio != 1:
+            angles[0] = middle + angle_ratio * (angles[0] - middle)
+        return angles
+
     return Cycle(
         name="flexion",
-        force=_iso_14242_1_force,
-        angles=lambda phases: _iso_14242_1_angles(phases) * numpy.array([[1.0], [0.0], [0.0]]),
+        force=lambda phases: force_ratio * _iso_14242_1_force(phases),
+        angles=flexion_angles,
         n_steps=n_steps,
         order=order,
         cup_tilt=_ISO_TILT,
@@ -140,7 +170,13 @@ def iso_14242_4(
 
 
 @renamed_arguments(instants="n_steps")
-def two_axis(n_steps: int = DEFAULT_STEPS, order: str = "xyz", *, peak: float = 2000.0) -> Cycle:
+def two_axis(
+    n_steps: int = DEFAULT_STEPS,
+    order: str = "xyz",
+    *,
+    peak: float = 2000.0,
+    amplitude: float = _TWO_AXIS_AMPLITUDES[0],
+) -> Cycle:
     """Create the cycle of a two-axis simulator: flexion over 46° and adduction over 12°, a quarter of a cycle apart.
 
     Parameters
@@ -151,13 +187,15 @@ def two_axis(n_steps: int = DEFAULT_STEPS, order: str = "xyz", *, peak: float = 
         Order of the rotations; see `Cycle`.
     peak : float
         Largest force in N. The force has the waveform of ISO 14242-1, between a fifth of the peak and the peak.
+    amplitude : float
+        Amplitude of the flexion in rad. That of the adduction stays 6°.
     """
     return Cycle(
         name="two-axis",
         force=lambda phases: peak * (0.2 + 0.8 * (_iso_14242_1_force(phases) - 300.0) / 2700.0),
         angles=lambda phases: numpy.stack(
             [
-                _TWO_AXIS_AMPLITUDES[0] * numpy.cos(2 * pi * phases),
+                amplitude * numpy.cos(2 * pi * phases),
                 _TWO_AXIS_AMPLITUDES[1] * numpy.sin(2 * pi * phases),
                 0 * phases,
             ]
@@ -250,14 +288,14 @@ SIMULATOR_CYCLES = (
             CycleParameter(key="swing_load", argument="swing_load", kind=Kind.FORCE, meaning="load in the swing phase"),
         ),
     ),
-    CycleDefinition(name="flexion", make=flexion, source=_ISO_NOTE),
+    CycleDefinition(name="flexion", make=flexion, source=_ISO_NOTE, parameters=(_PEAK, _AMPLITUDE)),
     CycleDefinition(
         name="biaxial-rocking",
         make=rocking,
         source="biaxial rocking simulator: constant tilt about a revolving axis, sinusoidal load",
         parameters=(_PEAK, _AMPLITUDE),
     ),
-    CycleDefinition(name="two-axis", make=two_axis, source=_TWO_AXIS_NOTE, parameters=(_PEAK,)),
+    CycleDefinition(name="two-axis", make=two_axis, source=_TWO_AXIS_NOTE, parameters=(_PEAK, _AMPLITUDE)),
     CycleDefinition(
         name="constant-load",
         make=constant_load,

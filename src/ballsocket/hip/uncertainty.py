@@ -143,6 +143,7 @@ def population(
         counts=run.counts,
         cohort=cohort,
         seed=seed,
+        members="patients",
         quick_run_errors=_quick_run_errors(variability, reports),
         shared=share_coefficient(variability, run.counts, run.values, cohort.table, DEFAULT_LEVEL, engine),
     )

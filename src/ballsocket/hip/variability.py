@@ -17,6 +17,7 @@ from ..elasticity.off_axis.surfaces import Springs
 from ..studies.distributions import Distribution
 from .contact_checks import utilisation_and_validity
 from .cycle import Cycle
+from .cycle_registry import CYCLES
 from .history import Report
 from .simulation import HipSimulation, check_total_wear, make_report
 from .wear_integrator import WearIntegrator
@@ -111,6 +112,15 @@ class PatientVariability:
             if name in self.distributions:
                 median = float(self.distributions[name].frozen.median())
                 require(f"the median of {name}", median, 0 < median < inf, "it must be positive")
+
+    @property
+    def noun(self) -> str:
+        """Noun for those who differ: "patients", or "samples" of a simulator whose loads belong to no patient."""
+        quantities_of_patients = {"body_weight", "cycles_per_year"} & set(self.distributions)
+        of_patients = self.use.cycle.per_year is not None or any(
+            cycle.name in CYCLES and CYCLES[cycle.name].per_body_weight for cycle in self.use.cycle.activity_cycles
+        )
+        return "patients" if quantities_of_patients or of_patients else "samples"
 
     @cached_property
     def _medians_by_name(self) -> dict[str, float]:
@@ -263,8 +273,8 @@ class CohortResult:
         Results by `RESULT_UNITS`; NaN for a patient without a result.
     refused : array of str (patients,)
         Error messages of the patients without a result; empty for the others.
-    contact : array (patients, 1 + reports, 2)
-        Utilisation and validity (1 or 0) of the contact, unworn and at each report.
+    contact : array (patients, 1 + reports, 3)
+        Utilisation, validity (1 or 0) and edge loading (1 or 0) of the contact, unworn and at each report.
     """
 
     table: Numbers
@@ -280,6 +290,11 @@ class CohortResult:
     def valid(self) -> Numbers:
         """Validity of all contacts up to each report, 1 or 0: (patients, reports)."""
         return numpy.minimum.accumulate(self.contact[:, :, 1], axis=1)[:, 1:]
+
+    @property
+    def edge_loaded(self) -> Numbers:
+        """Edge loading in any instant of the cycle, 1 or 0: (patients, reports)."""
+        return self.contact[:, 1:, 2]
 
 
 def join_results(results: Sequence[CohortResult]) -> CohortResult:
@@ -297,10 +312,13 @@ def result_table(reports: Sequence[Report]) -> Numbers:
 
 
 def contact_table(use: HipSimulation, reports: Sequence[Report]) -> Numbers:
-    """Tabulate ratio of von Mises to yield stress, and validity, of the first cycle and each report."""
-    return utilisation_and_validity(
+    """Tabulate ratio of von Mises to yield stress, validity and edge loading of the first cycle and each report."""
+    contacts = utilisation_and_validity(
         use.contact_model, use.joint, [use.unworn_worst_contacts, *(report.worst_contacts for report in reports)]
     )
+    at_rim = use.edge(use.unworn).distance <= 0
+    edge_loaded = [float(mask.any()) for mask in (at_rim, *(report.edge_loaded for report in reports))]
+    return numpy.column_stack([contacts, edge_loaded])
 
 
 def _result_as_number(report: Report, name: str) -> float:

@@ -9,8 +9,9 @@ from typing import Any, ClassVar
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import NamedItems, require
+from ..core.checks import NamedItems, known_name, require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
+from ..problem.presets import materials
 from .law_fields import NUMBER, PRESSURE, Law, law_field, read_law, select_law_class
 from .wear_law import (
     COEFFICIENT,
@@ -25,6 +26,75 @@ from .wear_law import (
 
 
 @dataclass(frozen=True, kw_only=True)
+class WearFactor:
+    """Published wear factor of a material against a smooth ball.
+
+    Attributes
+    ----------
+    material : str
+        Name of the material.
+    value : float
+        Wear factor k in mm³/(N m).
+    low, high : float
+        Range of the factors in mm³/(N m).
+    source : str
+        Publications; "(unverified)" follows a number that was not read in its publication.
+    """
+
+    material: str
+    value: float
+    low: float
+    high: float
+    source: str
+
+    @property
+    def description(self) -> str:
+        """Sentence with the factor, its range and its source."""
+        numbers = f"{self.value:g} mm³/(N m), range {self.low:g} to {self.high:g}"
+        return f"wear factor of {self.material}: {numbers}; {self.source}"
+
+
+_WEAR_FACTORS = (
+    WearFactor(
+        material="uhmwpe",
+        value=1.066e-6,
+        low=0.7e-6,
+        high=1.6e-6,
+        source="Maxian et al. 1996, J. Biomech. 29, 687 (unverified); range: a factor of 1.5 (assumed)",
+    ),
+    WearFactor(
+        material="crosslinked-pe",
+        value=2e-7,
+        low=1e-7,
+        high=4e-7,
+        source="middle of the range (unverified); a review of pin tests has an eighth of the wear of conventional "
+        "polyethylene, some 1.3e-7 (Baykal et al. 2013, J. Mech. Behav. Biomed. Mater., abstract)",
+    ),
+)
+
+WEAR_FACTORS: Mapping[str, WearFactor] = NamedItems("wear factor", {item.material: item for item in _WEAR_FACTORS})
+"""Published wear factors by material, for `material = "crosslinked-pe"` in the table [wear] of a file."""
+
+
+def wear_factor_of(material: str) -> WearFactor:
+    """Return the published wear factor of a material.
+
+    Raises
+    ------
+    ValueError
+        A material that is not known, or without a published wear factor in this package.
+    """
+    preset = materials[known_name("material", material, materials)]
+    for name, factor in WEAR_FACTORS.items():
+        if materials[name] is preset:
+            return factor
+    raise ValueError(
+        f"no published wear factor of {material!r} is known here: state coefficient; materials with one: "
+        f"{', '.join(WEAR_FACTORS)}"
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class Archard(WearLaw):
     """Archard's wear law dh = k p v dt, with pressure p and sliding speed v.
 
@@ -32,18 +102,46 @@ class Archard(WearLaw):
     ----------
     coefficient : float
         k in mm³/(N m): 1.066e-6 for conventional UHMWPE, some 1e-7 to 4e-7 for cross-linked UHMWPE.
+    source : str
+        Source of the coefficient, for the notes.
+
+    Examples
+    --------
+    >>> Archard.of_material("crosslinked-pe").coefficient
+    2e-07
     """
 
     name: ClassVar[str] = "archard"
     title: ClassVar[str] = "wear by pressure and sliding (Archard)"
     coefficient: float = law_field(WEAR_FACTOR, "wear factor k", example=1e-6)
+    source: str = ""
+
+    @classmethod
+    def of_material(cls, material: str) -> Archard:
+        """Create the law with the published wear factor of a material, such as "crosslinked-pe"; see `WEAR_FACTORS`.
+
+        Raises
+        ------
+        ValueError
+            A material that is not known, or without a published wear factor in this package.
+        """
+        factor = wear_factor_of(material)
+        return cls(coefficient=factor.value, source=factor.description)
 
     def depth(self, cycle: CycleExposure) -> Numbers:
         return METRE * self.coefficient * cycle.work
 
+    def with_coefficient(self, value: float) -> Archard:
+        """Return the law with another wear factor, which has no source."""
+        return Archard(coefficient=value)
+
+    def summary(self) -> dict[str, Any]:
+        """Return name, wear factor and its source as a dictionary for JSON."""
+        return {**super().summary(), **({"source": self.source} if self.source else {})}
+
     @property
     def notes(self) -> tuple[str, ...]:
-        return plausibility_notes(self.coefficient)
+        return (*plausibility_notes(self.coefficient), *filter(None, [self.source]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -193,6 +291,10 @@ BALL_COEFFICIENT = "ball_coefficient"
 """Key of the wear coefficient of a ball that wears too."""
 
 
+MATERIAL = "material"
+"""Key of the material whose published wear factor is used."""
+
+
 def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
     """Read the wear law of the socket from the table [wear] of a file.
 
@@ -201,7 +303,14 @@ def read_wear_law(table: Mapping[str, Any]) -> WearLaw:
     ValueError
         An unknown law, a missing key, a key of another law, or a value that is not allowed.
     """
-    return read_law(table, WEAR_LAWS, select_law_class(table, WEAR_LAWS, "law"))
+    law = select_law_class(table, WEAR_LAWS, "law")
+    if MATERIAL not in table:
+        return read_law(table, WEAR_LAWS, law)
+    if law is not Archard:
+        raise ValueError(f"material gives the wear factor of the law 'archard', and the law is {law.name!r}")
+    if COEFFICIENT in table:
+        raise ValueError("material and coefficient exclude each other: both set the wear factor; remove one")
+    return Archard.of_material(table[MATERIAL])
 
 
 def read_ball_law(table: Mapping[str, Any]) -> WearLaw | None:

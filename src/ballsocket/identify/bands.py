@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from math import isfinite
 
 import numpy
 
@@ -55,7 +56,7 @@ def compute_bands(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult, I
     if widening_factor > 1:
         misfit = replace(misfit, widening=widening_factor)
         best = replace(minimise_misfit(misfit, best.theta), rivals=best.rivals)
-    quantile = _band_half_width(widening_factor, misfit.freedom)
+    quantile = _band_half_width(widening_factor, misfit.freedom, misfit.noise_freedom)
     chi_squared_limits = (quantile**2, (quantile * QUANTILE_99 / QUANTILE_95) ** 2)
     for _ in range(_MAX_RESTARTS):
         rivals = [
@@ -116,13 +117,15 @@ def scatter_ratio(misfit: Misfit, best: FitResult) -> float:
     return float(brentq(excess_of_squares, 1.0, upper, rtol=1e-6))
 
 
-def _band_half_width(factor: float, freedom: int) -> float:
+def _band_half_width(factor: float, freedom: int, noise_freedom: float) -> float:
     """Compute the half width of a 95 % band in standard deviations, by Student's or the normal distribution.
 
-    It is Student's quantile for an improbably large scatter, else the normal quantile.
+    It is Student's quantile for estimated uncertainties and for an improbably large scatter, else the normal quantile.
     """
     from scipy.stats import chi2, t
 
+    if isfinite(noise_freedom):
+        return float(t.ppf(0.975, noise_freedom))
     improbable = freedom > 0 and chi2.sf(factor**2 * freedom, freedom) < _SIGNIFICANCE
     return float(t.ppf(0.975, freedom)) if factor > 1 and improbable else QUANTILE_95
 

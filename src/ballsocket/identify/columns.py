@@ -18,7 +18,7 @@ from ..core.quantities import FIELD, LOADS, Quantity
 from ..files.columns import read_columns, split_head
 from ..files.units import parse
 from .machine import IDEAL_MACHINE, Machine
-from .measured import MEASURED, Measured
+from .measured import ALIASES, MEASURED, Measured
 
 _QUANTITIES = {**MEASURED, "angle": FIELD["angle"]}
 _LOADS = ("force", "indentation", "half_angle")
@@ -50,6 +50,9 @@ def parse_head(text: str) -> Head:
         A name that is not known; a missing unit, or the unit of another quantity.
     """
     plain = "_".join(filter(None, split_head(text))).replace(" ", "_")
+    for alias, name in ALIASES.items():
+        if plain == alias or plain.startswith(f"{alias}_"):
+            plain = name + plain.removeprefix(alias)
     known = [name for name in _QUANTITIES if plain == name or plain.startswith(f"{name}_")]
     if not known:
         raise ValueError(
@@ -93,6 +96,7 @@ def read_measured(
         Column of the load; by default the force if there is one.
     uncertainty : float or str
         Uncertainty of quantities without a column for it, in mm, N, MPa, rad, or as text: "2 %" of each value, "1 um".
+        Without either, `identify` estimates it from the scatter.
     load_uncertainty : float
         Standard uncertainty of the loads.
     saturation : float
@@ -129,7 +133,7 @@ def read_measured(
             Measured(
                 quantity=name,
                 values=rows[name],
-                uncertainty=_choose_uncertainty(path.name, name, rows, uncertainty),
+                uncertainty=_choose_uncertainty(name, rows, uncertainty),
                 saturation=saturation,
                 machine=machine if "indentation" in (name, kind) else IDEAL_MACHINE,
                 order=order,
@@ -184,14 +188,12 @@ def _complete_rows(title: str, columns: dict[str, Numbers], gaps: Gaps) -> tuple
     return {name: column[~rows] for name, column in columns.items()}, numpy.flatnonzero(~rows).astype(float)
 
 
-def _choose_uncertainty(title: str, name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
-    """Return the uncertainties of a quantity, from its column or as stated for the file."""
+def _choose_uncertainty(name: str, rows: Mapping[str, Numbers], stated: float | str | None) -> Any:
+    """Return the uncertainties of a quantity, from its column or as stated for the file; None if unknown."""
     if name + _UNCERTAINTY in rows:
         return rows[name + _UNCERTAINTY]
     if stated is None:
-        raise ValueError(
-            f"{title}: the uncertainty of {name} is missing; add a column {name}{_UNCERTAINTY}_..., or an uncertainty"
-        )
+        return None
     return parse_uncertainty(_QUANTITIES[name], stated, rows[name])
 
 

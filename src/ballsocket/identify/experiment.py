@@ -216,7 +216,9 @@ def _estimate_uncertainty(fitted: FittedModel, quantity: str, value: float) -> f
     It is absolute or relative, whichever varies less; 2 % for a new quantity.
     """
     uncertainties_and_values = [
-        (measured.uncertainty, abs(measured.values)) for measured in fitted.data if measured.quantity == quantity
+        (uncertainty if measured.has_unknown_noise else measured.uncertainty, abs(measured.values))
+        for measured, uncertainty in zip(fitted.data, fitted.uncertainties, strict=True)
+        if measured.quantity == quantity
     ]
     if not uncertainties_and_values:
         return _RELATIVE_UNCERTAINTY * value

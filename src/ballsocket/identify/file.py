@@ -37,14 +37,18 @@ from ..studies.file import DISTRIBUTION_SCHEMA, ModelName, distribution_of
 from .columns import Gaps, parse_uncertainty, read_measured
 from .identification import identify
 from .machine import IDEAL_MACHINE, Machine, NumberOrRange
-from .measured import MEASURED, Measured
+from .measured import ALIASES, MEASURED, Measured
 from .observables import FILE_OBSERVABLES, CustomObservable
 from .registry import FREE_NUMBERS, MACHINE_ERRORS
 from .result import IdentificationResult
 from .scatter import HeavyTailed, NormalScatter, ScatterModel
 from .unknowns import Prior
 
-_QUANTITIES = {**MEASURED, **{name: observable.described for name, observable in FILE_OBSERVABLES.items()}}
+_QUANTITIES = {
+    **MEASURED,
+    **{alias: MEASURED[name] for alias, name in ALIASES.items()},
+    **{name: observable.described for name, observable in FILE_OBSERVABLES.items()},
+}
 _SCATTER_MODELS: Mapping[str, ScatterModel] = {"normal": NormalScatter(), "heavy-tailed": HeavyTailed()}
 _FILE_KEYS = ("quantities", "load", "gaps")
 """Keys of data in a file only; other data list their values."""
@@ -173,7 +177,7 @@ class DataTable(Table, frozen=True, kw_only=True):
     values: Annotated[Readings | None, meaning("measured values")] = None
     order: Annotated[Numbers | None, meaning("numbers of the readings, for a drift")] = None
     name: Annotated[Text | None, meaning("name of the data in tables and notes")] = None
-    uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the values")] = None
+    uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty; from the scatter by default")] = None
     load_uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the loads")] = None
     saturation: Annotated[Stress | None, meaning("largest reading of a film or sensor")] = None
     machine: Annotated[Text | None, meaning("name of the machine: [machine.NAME]")] = None
@@ -292,15 +296,15 @@ def _read_data_file(table: DataTable, common: Mapping[str, Any], folder: Path) -
 
 def _parse_listed_values(table: DataTable, readings: Readings, common: Mapping[str, Any]) -> Measured:
     """Create the set of data of a table that lists its values."""
-    if table.quantity is None or table.uncertainty is None:
-        raise ValueError(f"[[data]] with values needs its {'quantity' if table.quantity is None else 'uncertainty'}")
+    if table.quantity is None:
+        raise ValueError("[[data]] with values needs its quantity")
     quantity = _QUANTITIES[table.quantity]
     values = Numbers.of(quantity.kind).parse(quantity.name, readings.value)
     loads = parsed_values(table, dict.fromkeys((*LOADS, "order", "angle")))
     return Measured(
         quantity=quantity.name,
         values=values,
-        uncertainty=parse_uncertainty(quantity, table.uncertainty.value, values),
+        uncertainty=None if table.uncertainty is None else parse_uncertainty(quantity, table.uncertainty.value, values),
         observable=_parse_observable(quantity.name, table),
         load_uncertainty=_parse_load_uncertainty(table, next((name for name in LOADS if name in loads), "force")),
         name=str(table.name or ""),

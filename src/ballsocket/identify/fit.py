@@ -224,6 +224,11 @@ class FittedModel:
             numpy.where(self.misfit.saturated, numpy.maximum(-standardised, 0.0), -standardised)
         )
 
+    @property
+    def uncertainties(self) -> tuple[Numbers, ...]:
+        """Standard uncertainties of the values, stated or estimated, before any widening; one array per data set."""
+        return self._split_by_data_set(self.misfit.uncertainty)
+
     def _split_by_data_set(self, values: Numbers) -> tuple[Numbers, ...]:
         """Split an array over all values (data,) into one array for each data set."""
         return tuple(numpy.split(values, numpy.cumsum([len(measured) for measured in self.data])[:-1]))

@@ -15,7 +15,7 @@ from ..core.checks import shown
 from ..core.deprecation import renamed_names
 from ..problem import Joint
 from .bands import compute_bands
-from .fit import find_best_fit
+from .fit import find_best_fit, minimise_misfit
 from .forward_model import ForwardModel
 from .measured import Measured
 from .misfit import FitResult, Misfit, Slopes, by_differences
@@ -26,6 +26,10 @@ from .unknowns import ParameterTransform, Prior, Unknown, collect_unknowns
 
 _NORMAL = NormalScatter()
 _LOAD_ITERATIONS = 2  # fits with weights that depend on the best point, for uncertain loads
+_NOISE_ITERATIONS = 20  # largest number of fits with estimated uncertainties
+_NOISE_TOLERANCE = 1e-3  # relative tolerance of an estimated uncertainty
+_MIN_NOISE_FREEDOM = 0.5  # smallest number of degrees of freedom of an estimated uncertainty
+_MIN_RELATIVE_NOISE = 1e-6  # smallest estimated uncertainty over the largest value
 _LOAD_STEP = 1e-3  # relative change of the loads for central differences
 
 
@@ -98,11 +102,62 @@ def identify(
     uncertainty = _join_data_sets(measured.uncertainty for measured in sets)
     misfit = Misfit(forward, ParameterTransform(unknowns), scatter, slopes, uncertainty)
     best = find_best_fit(misfit, seed)
-    uncertain_loads = any(measured.load and measured.load_uncertainty.any() for measured in sets)
+    if any(measured.has_unknown_noise for measured in sets):
+        misfit, best = _estimate_noise(misfit, best)
+    uncertain_loads = any(
+        measured.load and measured.load_uncertainty.any() and not measured.has_unknown_noise for measured in sets
+    )
     for _ in range(_LOAD_ITERATIONS if uncertain_loads else 0):
         misfit = replace(misfit, uncertainty=_combine_uncertainties(misfit, best))
         best = find_best_fit(misfit, seed)
     return IdentificationResult(*compute_bands(misfit, best))
+
+
+def _estimate_noise(misfit: Misfit, best: FitResult) -> tuple[Misfit, FitResult]:
+    """Estimate the uncertainty of each data set without one from its residuals, by iterated fits.
+
+    The residuals of a set have as many degrees of freedom as it has values, less its part of the unknowns: the sum of
+    the leverages of its values. Saturated values do not count.
+
+    Raises
+    ------
+    ValueError
+        A data set whose scatter cannot be estimated, for it has no more values than it determines unknowns.
+    """
+    sets = misfit.forward.data
+    ends = numpy.cumsum([len(measured) for measured in sets])
+    parts = [slice(end - len(measured), end) for end, measured in zip(ends, sets, strict=True)]
+    for _ in range(_NOISE_ITERATIONS):
+        results, slopes = misfit.slopes(misfit.forward, misfit.transform, best.theta)
+        weighted_slopes = slopes / misfit.uncertainty[:, None]
+        covariance = numpy.linalg.pinv(weighted_slopes.T @ weighted_slopes + _prior_information(misfit))
+        leverages = numpy.einsum("ij,jk,ik->i", weighted_slopes, covariance, weighted_slopes)
+        uncertainty, freedoms = misfit.uncertainty.copy(), []
+        for measured, part in zip(sets, parts, strict=True):
+            if not measured.has_unknown_noise:
+                continue
+            used = ~misfit.saturated[part]
+            freedom = float(used.sum() - leverages[part][used].sum())
+            if freedom < _MIN_NOISE_FREEDOM:
+                raise ValueError(
+                    f"the uncertainty of {measured.name or measured.quantity} is missing, and {len(measured)} values "
+                    "are too few to estimate it: state uncertainty, or measure more values"
+                )
+            residuals = (results[part] - misfit.value[part])[used]
+            least = _MIN_RELATIVE_NOISE * float(abs(measured.values).max())
+            uncertainty[part] = max(float((residuals @ residuals) / freedom) ** 0.5, least)
+            freedoms.append(freedom)
+        converged = numpy.allclose(uncertainty, misfit.uncertainty, rtol=_NOISE_TOLERANCE)
+        misfit = replace(misfit, uncertainty=uncertainty, noise_freedom=min(freedoms))
+        best = replace(minimise_misfit(misfit, best.theta), rivals=best.rivals)
+        if converged:
+            break
+    return misfit, best
+
+
+def _prior_information(misfit: Misfit) -> Numbers:
+    """Return the information of the stated distributions about theta: (unknowns, unknowns)."""
+    return numpy.diag([float(unknown.has_distribution) for unknown in misfit.transform.unknowns])
 
 
 def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
@@ -114,8 +169,10 @@ def _combine_uncertainties(misfit: Misfit, best: FitResult) -> Numbers:
     above, below = (misfit.forward.results_at(values, load_perturbation=side * _LOAD_STEP)[0] for side in (1, -1))
     slope = (above - below) / (2 * _LOAD_STEP)  # by ln of the load
     of_loads = _join_data_sets(_relative_load_uncertainty(measured) for measured in data)
-    of_values = _join_data_sets(measured.uncertainty for measured in data)
-    return numpy.hypot(of_values, numpy.where(of_loads > 0, slope * of_loads, 0.0))
+    stated = _join_data_sets(measured.uncertainty for measured in data)
+    is_estimated = _join_data_sets(numpy.full(len(measured), measured.has_unknown_noise) for measured in data)
+    of_values = numpy.where(is_estimated, misfit.uncertainty, stated)
+    return numpy.hypot(of_values, numpy.where((of_loads > 0) & ~is_estimated, slope * of_loads, 0.0))
 
 
 def _relative_load_uncertainty(measured: Measured) -> Numbers:

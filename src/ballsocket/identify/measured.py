@@ -29,10 +29,15 @@ MEASURED: Mapping[str, Quantity] = MappingProxyType(
 )
 """Quantities that can be measured: those of a contact need a load, those of the joint none."""
 
+ALIASES: Mapping[str, str] = MappingProxyType({"displacement": "indentation"})
+"""Other names of measured quantities; a displacement is positive into the socket, and 0 at first touch."""
+
 OF_JOINT = (*JOINT, *PARTS)
 """Quantities that are measured without a load, such as the free play of a joint, its `diametral_clearance`."""
 
 
+_FIRST_NOISE = 0.02  # first estimate of an uncertainty that was not stated, over the largest value
+_ZERO_HINT = "; it is positive into the socket and 0 at first touch: for another zero, give the machine an offset"
 _NOT_NEGATIVE = "the value must be 0 or more and finite"  # rule in a message
 
 
@@ -46,11 +51,13 @@ class Measured:
     ----------
     quantity : str
         One of `MEASURED`: "indentation", "half_angle", "area", "max_pressure", "force", ...; "pressure" needs angles. A
-        number of the joint, such as "diametral_clearance", needs no load.
+        number of the joint, such as "diametral_clearance", needs no load. "displacement" is another name of the
+        indentation: positive into the socket, 0 at first touch. For another zero, the machine has an offset.
     values : array (values,)
         Measured values in mm, N, MPa, rad.
-    uncertainty : float or array
-        Standard uncertainty (k = 1) of the values in their unit, above 0.
+    uncertainty : float or array, optional
+        Standard uncertainty (k = 1) of the values in their unit, above 0. Without it, `identify` estimates one for the
+        data set from the scatter about the fit.
     force, indentation, half_angle : array
         Loads in N, mm or rad; exactly one of the three is given.
     load_uncertainty : float or array
@@ -84,7 +91,7 @@ class Measured:
 
     quantity: str
     values: Any
-    uncertainty: Any
+    uncertainty: Any = None
     force: Any = None
     indentation: Any = None
     half_angle: Any = None
@@ -99,6 +106,8 @@ class Measured:
     """Quantity with its title and unit."""
     load: str = field(init=False, default="")
     """Name of the load; empty for a quantity of the joint."""
+    has_unknown_noise: bool = field(init=False, default=False)
+    """True if no uncertainty was stated: `uncertainty` is then a start of its estimate."""
     own = RenamedAttribute("observable")
 
     def __post_init__(self) -> None:
@@ -106,11 +115,15 @@ class Measured:
         if not isinstance(self.machine, Machine):
             raise TypeError(f"machine must be a Machine, got {shown(self.machine)}")
         if self.observable is None:
-            self._set_field("quantity", known_name("quantity", self.quantity, MEASURED))
+            name = ALIASES.get(self.quantity, self.quantity) if isinstance(self.quantity, str) else self.quantity
+            self._set_field("quantity", known_name("quantity", name, MEASURED))
         self._set_field("described", MEASURED[self.quantity] if self.observable is None else self.observable.described)
         values = _to_float_array(self._message_label(self.quantity), self.values)
         self._set_field("values", values)
         self._check_measured_values(values)
+        if self.uncertainty is None:
+            self._set_field("has_unknown_noise", True)
+            self._set_field("uncertainty", _FIRST_NOISE * float(abs(values).max()) or 1.0)
         self._set_field(
             "uncertainty", self._broadcast_to_values(f"{self.quantity}_uncertainty", self.uncertainty, values)
         )
@@ -165,7 +178,8 @@ class Measured:
             require(self._message_label(self.quantity), values, (values >= 0) & (values < inf), _NOT_NEGATIVE)
         elif self.machine is IDEAL_MACHINE:  # a machine with an offset may read less than 0
             allowed = self.described.allows(values)
-            require(self._message_label(self.quantity), values, allowed, self.described.allowed)
+            rule = self.described.allowed + (_ZERO_HINT if self.quantity == "indentation" else "")
+            require(self._message_label(self.quantity), values, allowed, rule)
 
     def _broadcast_to_values(self, name: str, numbers: Any, values: Numbers) -> Numbers:
         """Repeat one number for all values, or check that there is one number for each value."""

@@ -163,6 +163,8 @@ class Misfit:
     uncertainty : array (data,)
     widening : float
         Factor on all uncertainties, 1 or more: observed scatter over the stated uncertainties.
+    noise_freedom : float
+        Degrees of freedom of estimated uncertainties; infinite if all are stated.
     value : array (data,)
         Measured values; a saturated value is replaced by its limit.
     saturated : array (data,)
@@ -175,6 +177,7 @@ class Misfit:
     slopes: Slopes
     uncertainty: Numbers
     widening: float = 1.0
+    noise_freedom: float = inf
     value: Numbers = field(init=False)
     saturated: Numbers = field(init=False)
 

@@ -97,8 +97,14 @@ class IdentificationResult(FittedModel):
             "widening": self.misfit.widening,
             "degrees_of_freedom": self.freedom,
             "data": [
-                {"name": measured.name, "quantity": measured.quantity, "residuals": row.tolist()}
-                for measured, row in zip(self.data, self.residuals, strict=True)
+                {
+                    "name": measured.name,
+                    "quantity": measured.quantity,
+                    "residuals": row.tolist(),
+                    "uncertainty": uncertainty.tolist(),
+                    "uncertainty_estimated": measured.has_unknown_noise,
+                }
+                for measured, row, uncertainty in zip(self.data, self.residuals, self.uncertainties, strict=True)
             ],
             "notes": list(self.notes),
             "sources": [source.key for source in self.model.sources],
@@ -217,6 +223,14 @@ def _fit_notes(result: IdentificationResult) -> Iterator[str]:
             f"scatter of the data {result.spread:.3g} times the stated uncertainties: these are too small, "
             "there are outliers (HeavyTailed), or the model is not valid"
         )
+    for measured, uncertainty in zip(result.data, result.uncertainties, strict=True):
+        if measured.has_unknown_noise:
+            unit, title = measured.described.shown, measured.name or measured.quantity
+            estimate = f"{unit.factor * float(uncertainty[0]):.3g} {unit.text}".rstrip()
+            yield (
+                f"the uncertainty of {title} was not stated: it is estimated from the scatter, {estimate} (k = 1); "
+                "bands are by Student's quantile"
+            )
     if result.misfit.widening > _MIN_NOTED_WIDENING:
         yield f"bands are {result.misfit.widening:.3g} times as wide as the stated uncertainties make them"
 

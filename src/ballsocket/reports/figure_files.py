@@ -76,6 +76,7 @@ def register_plots() -> None:
     """Register the plots of this room; matplotlib is imported when the first of them is loaded."""
     register_plot("contacts", _load_contact_plot)
     register_plot("identification", _load_fit_figure)
+    register_plot("wear", _load_wear_figure)
     for name in STUDY_PLOTS:
         register_plot(name, _study_plot_loader(name))
 
@@ -92,6 +93,13 @@ def _load_fit_figure() -> Plot:
     from .identify_results import fit_figure
 
     return fit_figure
+
+
+def _load_wear_figure() -> Plot:
+    """Import and return the plot of wear simulations."""
+    from .hip_comparison import wear_figure
+
+    return wear_figure
 
 
 def _study_plot_loader(name: str) -> Callable[[], Plot]:

@@ -113,7 +113,7 @@ def penetration_curve(history: History, bands: Bands | None = None) -> Figure:
     axes.fill_between(count, low, high, color=_INK, alpha=0.2, linewidth=0, label=label)
     if bands is not None and bands.shared is not None:
         low, high = ([0.0, *ends] for ends in bands.population_band("penetration"))
-        label = f"{100 * bands.level:g} % of the patients, median coefficient"
+        label = f"{100 * bands.level:g} % of the {bands.noun}, median coefficient"
         axes.fill_between(count, low, high, color=_INK, alpha=0.3, linewidth=0, label=label)
     axes.plot(count, penetration, "o-", color=_INK, ms=4, label="penetration")
     if any(report.creep_depth > 0 for report in history.reports):

@@ -11,6 +11,7 @@ from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..hip.bands import Bands
 from ..hip.film import CONFORMITY_NOTE
 from ..hip.history import History
+from ..hip.rim import ClosestApproach
 from . import hip_plots
 from .figure_files import figure_bytes
 from .hip_tables import (
@@ -21,6 +22,7 @@ from .hip_tables import (
     band_summary,
     contact_line,
     contact_rows,
+    radiograph_line,
     rim_lines,
 )
 from .pages import picture, render_page
@@ -48,7 +50,11 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
             "Cross-shear of the first cycle; each sliding distance is weighted by its pressure.",
         ),
         "film": ("Film and friction", hip_plots.film_figure, f"{CONFORMITY_NOTE}."),
-        "edge": ("Edge distance", hip_plots.edge_figure, "0 means edge loading; the dot marks the least distance."),
+        "edge": (
+            "Edge distance",
+            hip_plots.edge_figure,
+            "0: the contact reaches the rim, worn to it or by edge loading; the dot marks the least distance.",
+        ),
     }
 )
 """Title, figure and caption of each section with a figure, by its id."""
@@ -58,13 +64,14 @@ _BALL_FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str
 )
 """Sections of a hip whose ball wears."""
 
+_CREEP_HEAD = "creep [mm]"
 _WEAR_HEADS = (
     "million cycles",
     "volume [mm³]",
     "depth [mm]",
     "penetration [mm]",
     "pmax [MPa]",
-    "creep [mm]",
+    _CREEP_HEAD,
     "to the rim [mm]",
 )
 
@@ -124,7 +131,7 @@ def hip_report(history: History, bands: Bands | None = None) -> str:
         notes=history.notes,
         first_cycle=_first_cycle(history),
         rim=_rim_approach(history),
-        wear={"heads": _WEAR_HEADS, "rows": _wear_rows(history)},
+        wear={"heads": _wear_heads(history), "rows": _wear_rows(history)},
         contacts={"summary": contact_line(history), "heads": CONTACT_HEADS, "rows": contact_rows(history)},
         bands=None if bands is None else _band_table(bands),
     )
@@ -173,13 +180,18 @@ def _summary(history: History) -> str:
     )
 
 
+def _wear_heads(history: History) -> list[str]:
+    """Return the heads of the table of reports, without creep if the hip has no law of creep."""
+    return [head for head in _WEAR_HEADS if history.use.creep is not None or head != _CREEP_HEAD]
+
+
 def _wear_rows(history: History) -> list[tuple[str, ...]]:
-    """Return the wear at each report: the cells below `_WEAR_HEADS`."""
+    """Return the wear at each report: the cells below `_wear_heads`."""
     return [
         (
             f"{report.cycles / 1e6:g}",
             *(f"{number:.4g}" for number in (report.volume, report.depth, report.penetration, report.max_pressure)),
-            f"{report.creep_depth:.4g}",
+            *(() if history.use.creep is None else (f"{report.creep_depth:.4g}",)),
             f"{report.edge_distance.min(initial=float('inf')):.3g}",
         )
         for report in history.reports
@@ -199,16 +211,24 @@ def _first_cycle(history: History) -> str:
 
 
 def _rim_approach(history: History) -> str:
-    """Describe the least distance to the rim with its instant and location, new and at the end."""
+    """Describe the least distance to the rim with instant and location, new and at the end, and the radiograph."""
     nearest = {"New": history.worst, "at the end": history.last.edge.closest_approach(history.use)}
     sentences = (
-        f"{stage} the contact {_distance_words(worst.distance)} at {worst.location}"
+        f"{stage} the contact {_distance_words(worst)} at {worst.location}"
         for stage, worst in nearest.items()
         if worst is not None
     )
-    return "; ".join(sentences) or "nothing is pressed"
+    distances = "; ".join(sentences)
+    return f"{distances}. {_sentence(radiograph_line(history))}" if distances else "nothing is pressed"
 
 
-def _distance_words(distance: float) -> str:
-    """Describe a distance (mm) to the rim."""
-    return f"comes within {distance:.3g} mm of the rim" if distance > 0 else "reaches the rim"
+def _sentence(line: str) -> str:
+    """Return a line with a capital letter at its beginning."""
+    return line[:1].upper() + line[1:]
+
+
+def _distance_words(worst: ClosestApproach) -> str:
+    """Describe the distance to the rim, or the kind of contact there."""
+    if worst.distance > 0:
+        return f"comes within {worst.distance:.3g} mm of the rim"
+    return f"reaches the rim ({worst.kind})"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from math import inf, isnan
 
@@ -34,7 +34,7 @@ _BAND_UNITS = {
     "volume": "mm³",
     "depth": "mm",
     "penetration": "mm",
-    "at the rim": "patients",
+    "edge loading": "",
 }
 """Units of the columns of `band_rows` by their heads."""
 
@@ -75,16 +75,16 @@ def band_summary(bands: Bands) -> str:
     """Describe what a band holds: the share of the patients or of the predictions."""
     share, patients = f"{100 * bands.level:g} %", bands.n_patients - bands.n_failed
     if bands.shared is None:
-        among = "" if bands.subject == "patients" else "predictions from "
-        return f"{share} of {among}{patients} patients"
+        among = "predictions from " if bands.subject == "predictions" else ""
+        return f"{share} of {among}{patients} {bands.noun}"
     return (
-        f"{share} of {patients} patients for a low, median and high wear coefficient, and {share} of the predictions "
-        f"for {_ANY} coefficient,"
+        f"{share} of {patients} {bands.noun} for a low, median and high wear coefficient, and {share} of the "
+        f"predictions for {_ANY} coefficient,"
     )
 
 
 def band_units(bands: Bands) -> dict[str, str]:
-    """Return table heads with units; a shared coefficient has a column, and the rim has a separate line."""
+    """Return table heads with units; a shared coefficient has a column, and edge loading has a separate line."""
     if bands.shared is None:
         return _BAND_UNITS
     (cycles, million), (years, no_unit), *more, _ = _BAND_UNITS.items()
@@ -106,7 +106,7 @@ def band_rows(bands: Bands, quantiles: Sequence[float]) -> Iterator[tuple[str, .
             _range_text(bands.quantile(name, level)[report] for level in quantiles) for name in INFLUENCED_RESULTS
         ]
         if bands.shared is None:
-            yield (*time, *ranges, f"{100 * bands.edge_loading(report):.3g} %")
+            yield (*time, *ranges, f"{100 * bands.edge_loaded_fraction(report):.3g} %")
             continue
         for coefficient in bands.shared.values:
             quantile = partial(bands.shared.quantile, coefficient)
@@ -124,12 +124,14 @@ def _range_text(numbers: Iterable[float]) -> str:
 
 
 def rim_lines(bands: Bands) -> Iterator[str]:
-    """Describe the share of contacts at the rim at each report, where the table has no column for it."""
-    if bands.shared is None:
-        return
-    percentages = [f"{100 * bands.edge_loading(report):.3g} %" for report in range(len(bands.counts))]
+    """Describe the shares with a contact at the rim, and with edge loading where the table has no column for it."""
+    shares = {"contact at the rim, worn to it or edge loading": bands.edge_loading}
+    if bands.shared is not None:
+        shares["edge loading"] = bands.edge_loaded_fraction
     counts = [f"after {count / 1e6:g} million cycles" for count in bands.counts]
-    yield f"contact at the rim: {', '.join(map(' '.join, zip(percentages, counts, strict=True)))}"
+    for title, share in shares.items():
+        percentages = [f"{100 * share(report):.3g} %" for report in range(len(counts))]
+        yield f"{title}: {', '.join(map(' '.join, zip(percentages, counts, strict=True)))}"
 
 
 def band_contact_line(bands: Bands) -> str:
@@ -169,6 +171,7 @@ def print_hip(history: History) -> None:
     )
     print_folded(terminal, f"unworn: {first.volume:.4g} mm³ and {first.depth:.4g} mm a million cycles", "")
     print_columns(terminal, _wear_table(history))
+    print_folded(terminal, radiograph_line(history), "")
     if history.use.ball_wear is not None:
         last = history.last
         ball_wear = f"{last.ball_volume:.4g} mm³ and {last.ball_depth:.3g} mm"
@@ -178,6 +181,8 @@ def print_hip(history: History) -> None:
         print_columns(terminal, _contact_table(history))
     for line in _film_lines(history):
         print_folded(terminal, line, "")
+    if history.use.joint.clearance > 0:
+        print_folded(terminal, lubricant_line(history), "dim")
     accuracy = f"estimated numerical error of the volume {100 * history.error.volume:.2g} %"
     print_folded(terminal, f"{accuracy}, {history.steps} blocks of cycles", "dim")
     print_notes(history.notes)
@@ -187,10 +192,7 @@ def print_bands(bands: Bands) -> None:
     """Print the bands of patients who differ as a table, the Sobol indices of each result, and notes."""
     terminal = console()
     print_folded(terminal, f"{band_summary(bands)} lie between", "bold")
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
-    for head in band_units(bands):
-        table.add_column(head, justify="right")
-    table.add_row(*band_units(bands).values(), style="dim")
+    table = table_with_units(band_units(bands))
     tail = (1 - bands.level) / 2
     for row in band_rows(bands, (tail, 1 - tail)):
         table.add_row(*row)
@@ -198,6 +200,31 @@ def print_bands(bands: Bands) -> None:
     for line in (*rim_lines(bands), band_contact_line(bands), *sobol_lines(bands)):
         print_folded(terminal, line, "")
     print_notes(bands.notes)
+
+
+def table_with_units(heads: Mapping[str, str], left: Sequence[str] = ()) -> Table:
+    """Make an empty table from heads and their units; columns in `left` are aligned to the left."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
+    for head in heads:
+        table.add_column(head, justify="left" if head in left else "right", no_wrap=True)
+    table.add_row(*heads.values(), style="dim")
+    return table
+
+
+def radiograph_line(history: History) -> str:
+    """Describe the penetration of the last report in the plane of a radiograph."""
+    share = "by wear" if history.use.creep is None else "by wear and creep"
+    penetration = (
+        f"{history.radiographic_penetration(history.last):.4g} mm after {history.last.cycles / 1e6:g} million cycles"
+    )
+    return f"penetration in a radiograph from the front, {share}: {penetration}"
+
+
+def lubricant_line(history: History) -> str:
+    """State the viscosity and the roughness of the surfaces that the film assumes."""
+    lubricant = history.lubricant
+    ball, cup = (f"{1e3 * roughness:g} µm" for roughness in (lubricant.ball_roughness, lubricant.cup_roughness))
+    return f"assumed for the film: viscosity {1e3 * lubricant.viscosity:g} mPa s, roughness Ra {ball} (ball) and {cup} (cup)"
 
 
 def print_notes(notes: Iterable[str]) -> None:
@@ -221,15 +248,15 @@ def _contact_table(history: History) -> Table:
 
 def _wear_table(history: History) -> Table:
     """Lay out the wear at each report."""
-    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     cycles_per_year = history.use.cycle.per_year
-    heads = _WEAR_UNITS if cycles_per_year is None else {"time": "years", **_WEAR_UNITS}
-    for head in heads:
-        table.add_column(head, justify="right", no_wrap=True)
-    table.add_row(*heads.values(), style="dim")
+    heads = dict(_WEAR_UNITS) if cycles_per_year is None else {"time": "years", **_WEAR_UNITS}
+    if history.use.creep is None:
+        del heads["creep"]
+    table = table_with_units(heads)
     for report in history.reports:
+        creep = () if history.use.creep is None else (report.creep_depth,)
         rim = report.edge_distance.min(initial=float("inf"))
-        numbers = (report.volume, report.depth, report.penetration, report.max_pressure, report.creep_depth, rim)
+        numbers = (report.volume, report.depth, report.penetration, report.max_pressure, *creep, rim)
         time = () if cycles_per_year is None else (f"{report.cycles / cycles_per_year:.4g}",)
         table.add_row(*time, f"{report.cycles / 1e6:.6g}", *(f"{number:.4g}" for number in numbers))
     return table

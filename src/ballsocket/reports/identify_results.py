@@ -59,7 +59,8 @@ def _draw_set(above: Axes, below: Axes, result: IdentificationResult, index: int
     quantity, factor = data.described, data.described.shown.factor
     colour, mark = _COLOURS[index % len(_COLOURS)], _MARKS[index % len(_MARKS)]
     above.plot(*_model_line(result, index, x, factor), color=INK, linewidth=1.4, label=result.model.name)
-    bars = {"yerr": factor * data.uncertainty, "color": colour, "fmt": mark, "markersize": 4, "linewidth": 1}
+    uncertainty = result.uncertainties[index] if data.has_unknown_noise else data.uncertainty
+    bars: Any = {"yerr": factor * uncertainty, "color": colour, "fmt": mark, "markersize": 4, "linewidth": 1}
     above.errorbar(x, factor * data.values, **bars, label="measured")
     cut = data.saturated
     if cut.any():
@@ -221,7 +222,11 @@ def _scatter_text(result: IdentificationResult) -> str:
     """Describe the scatter of the data against their uncertainties."""
     if result.freedom <= 0:
         return "as many values as unknowns: the quality of the fit cannot be tested"
-    return f"scatter of the data {result.spread:.2f} times the stated uncertainties"
+    if all(data.has_unknown_noise for data in result.data):
+        return "uncertainty of the data estimated from their scatter"
+    widening = result.misfit.widening
+    widened = f"; the bands are {widening:.2f} times as wide" if widening > 1 else ""
+    return f"scatter of the data {result.spread:.2f} times the stated uncertainties{widened}"
 
 
 def _sampling_text(posterior: Posterior) -> str:

@@ -1,0 +1,526 @@
+"""Wear coefficient from measured volumes, depths, penetrations or rates, of a wear test or of patients."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import exp, inf, isfinite, log, nan
+from types import MappingProxyType
+from typing import Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import known_name, require, shown
+from .history import History, NumericalError, Report
+from .law_fields import law_summary
+from .simulation import HipSimulation, check_total_wear, run_to_report_points
+from .wear_integrator import WearIntegrator
+from .wear_law import coefficient_field, with_coefficient
+
+WEAR_QUANTITIES: Mapping[str, str] = MappingProxyType(
+    {"volume": "mm³", "depth": "mm", "penetration": "mm", "radiographic_penetration": "mm"}
+)
+"""Measured quantities with units: worn volume, deepest wear, displacement of the ball, and that in a radiograph."""
+
+RATES = ("initial", "steady", "mean")
+"""Kinds of rates: of the new bore, between two cycle counts, and from the new bore to a cycle count."""
+
+_MILLION = 1e6
+_NODES = numpy.linspace(-0.5, 0.5, 5)
+"""Differences of ln(coefficient) from that of the centre, at which runs are computed."""
+
+_DEGREE = 3
+"""Degree of the polynomial of ln(result) over ln(coefficient) through the nodes."""
+
+_MAX_SHIFT = 0.3
+"""Largest difference of ln(coefficient) between centre and best; beyond it the nodes are shifted."""
+
+_MAX_CENTRES = 6
+_MAX_LOG_RANGE = 20.0
+"""Range of ln(coefficient) beside the best one in which an end of the band is searched."""
+
+_SIGNIFICANCE = 0.05
+"""Probability of the scatter below which Student's quantile applies."""
+
+_MIN_NOTED_WIDENING = 1.05
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeasuredWear:
+    """Measured wear: totals at cycle counts, or a rate per million cycles.
+
+    Parameters
+    ----------
+    quantity : str
+        One of `WEAR_QUANTITIES`.
+    values : number or array
+        Totals in mm³ or mm, or rates in mm³ or mm per million cycles.
+    cycles : number or array, optional
+        Cycle count of each total.
+    rate : str, optional
+        Kind of a rate: "initial" of the new bore, "steady" from `begin` to `end`, "mean" from 0 to `end`.
+    begin, end : float, optional
+        Cycle counts of a rate.
+    uncertainty : number or array, optional
+        Standard uncertainty (k = 1) in the unit of the values. Without it, it is estimated from the scatter.
+    name : str
+        Name in messages.
+
+    Raises
+    ------
+    ValueError
+        A quantity or rate that is not known, missing cycles, or a number that is not allowed.
+
+    Examples
+    --------
+    >>> MeasuredWear(quantity="volume", values=38.0, rate="steady", begin=5e6, end=1e7).description
+    'volume rate, steady from 5 to 10 million cycles'
+    """
+
+    quantity: str
+    values: Any
+    cycles: Any = None
+    rate: str | None = None
+    begin: float | None = None
+    end: float | None = None
+    uncertainty: Any = None
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        """Check all fields, and convert numbers to arrays."""
+        known_name("quantity", self.quantity, WEAR_QUANTITIES)
+        values = _positive_array(self.quantity, self.values, "a measured wear is positive and finite")
+        object.__setattr__(self, "values", values)
+        if self.rate is None:
+            self._check_totals(values)
+        else:
+            self._check_rate(known_name("rate", self.rate, RATES))
+        if self.uncertainty is not None:
+            sigma = _positive_array("uncertainty", self.uncertainty, "a standard uncertainty is positive and finite")
+            if sigma.size not in (1, values.size):
+                raise ValueError(f"uncertainty must have 1 or {values.size} numbers, got {sigma.size}")
+            object.__setattr__(self, "uncertainty", numpy.broadcast_to(sigma, values.shape))
+
+    def _check_totals(self, values: Numbers) -> None:
+        """Check the cycle counts of totals; ValueError otherwise."""
+        if self.begin is not None or self.end is not None:
+            raise ValueError(f"from and to belong to a rate of {self.quantity}: state rate, or cycles for totals")
+        if self.cycles is None:
+            raise ValueError(
+                f"{self.quantity} needs the cycles of its values, or else the kind of its rate: {', '.join(RATES)}"
+            )
+        cycles = _positive_array("cycles", self.cycles, "a number of cycles is positive and finite")
+        if cycles.size != values.size:
+            raise ValueError(f"{self.quantity} has {values.size} values and {cycles.size} cycles: one for each value")
+        object.__setattr__(self, "cycles", cycles)
+
+    def _check_rate(self, rate: str) -> None:
+        """Check the cycle counts of a rate; ValueError otherwise."""
+        if self.cycles is not None:
+            raise ValueError(f"a rate of {self.quantity} takes from and to, not cycles")
+        if rate == "initial":
+            if self.quantity not in ("volume", "depth"):
+                raise ValueError(f"an initial rate of {self.quantity} is not defined: use volume, or a steady rate")
+            if self.begin is not None or self.end is not None:
+                raise ValueError("an initial rate is that of the new bore: remove from and to")
+            return
+        if self.end is None or (rate == "steady" and self.begin is None):
+            needed = "from and to" if rate == "steady" else "to"
+            raise ValueError(f"a {rate} rate of {self.quantity} needs {needed}: numbers of cycles, such as to = 5e6")
+        if rate == "mean" and self.begin:
+            raise ValueError(f"a mean rate is from 0 cycles, got from = {shown(self.begin)}: use rate = 'steady'")
+        begin = self.begin or 0.0
+        require("to", self.end, 0 <= begin < self.end < inf, f"it is above the {begin:g} cycles of from, and finite")
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+    @property
+    def unit(self) -> str:
+        """Unit of the values: mm³ or mm, for a rate per million cycles (Mc)."""
+        return WEAR_QUANTITIES[self.quantity] + ("" if self.rate is None else "/Mc")
+
+    @property
+    def description(self) -> str:
+        """Quantity, kind of rate and cycle counts in words."""
+        quantity = self.quantity.replace("_", " ")
+        if self.rate is None:
+            return f"{quantity} after {', '.join(f'{count / _MILLION:g}' for count in self.cycles)} million cycles"
+        if self.rate == "initial":
+            return f"{quantity} rate, initial, of the new bore"
+        begin, end = ((count or 0.0) / _MILLION for count in (self.begin, self.end))
+        return f"{quantity} rate, {self.rate} from {begin:g} to {end:g} million cycles"
+
+    @property
+    def counts(self) -> list[float]:
+        """Cycle counts at which the simulation is needed; empty for an initial rate."""
+        if self.rate is None:
+            return [float(count) for count in self.cycles]
+        return [float(count) for count in (self.begin, self.end) if count]
+
+    def predict(self, totals: Callable[[float], float], initial: float) -> Numbers:
+        """Compute the values of this data set from totals by cycle count, and the initial rate per million cycles."""
+        if self.rate is None:
+            return numpy.array([totals(count) for count in self.counts])
+        if self.rate == "initial":
+            return numpy.full(len(self), initial)
+        begin, end = float(self.begin or 0.0), float(self.end or 0.0)
+        start = totals(begin) if begin else 0.0
+        return numpy.full(len(self), _MILLION * (totals(end) - start) / (end - begin))
+
+    def other_readings(self) -> Iterator[MeasuredWear]:
+        """Yield this rate as those of other kinds: of the new bore, of the second million, from 5 to 10 million."""
+        if self.quantity in ("volume", "depth"):
+            yield replace(self, rate="initial", begin=None, end=None)
+        for begin, end in ((1e6, 2e6), (5e6, 1e7)):
+            yield replace(self, rate="steady", begin=begin, end=end)
+
+
+def _positive_array(name: str, numbers: Any, rule: str) -> Numbers:
+    """Convert a number or a sequence to an array; ValueError for numbers that are not positive and finite."""
+    array = numpy.atleast_1d(numpy.asarray(numbers, dtype=float))
+    require(name, array, (array > 0) & (array < inf), rule)
+    return array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WearFit:
+    """Wear coefficient that is fitted to measured wear, with its 95 % band.
+
+    Attributes
+    ----------
+    simulation : HipSimulation
+        Simulation with the best coefficient.
+    data : tuple of MeasuredWear
+    coefficient : float
+        Best coefficient in the unit of the law, such as mm³/(N m).
+    low, high : float
+        Ends of the 95 % band; NaN for a single value without an uncertainty.
+    results : tuple of array
+        Values of the simulation at the best coefficient, for each data set.
+    uncertainty : array (data,)
+        Standard uncertainties, stated or estimated.
+    noise_estimated : bool
+        True if uncertainties were not stated and are estimated from the scatter.
+    widening : float
+        Factor on the stated uncertainties by the scatter of the data, at least 1.
+    readings : mapping of str to float
+        Coefficient for each kind of the measured rates, by its description.
+    """
+
+    simulation: HipSimulation
+    data: tuple[MeasuredWear, ...]
+    coefficient: float
+    low: float
+    high: float
+    results: tuple[Numbers, ...]
+    uncertainty: Numbers
+    noise_estimated: bool
+    widening: float
+    readings: Mapping[str, float]
+
+    @property
+    def law_name(self) -> str:
+        """Name of the wear law, such as "archard"."""
+        return str(getattr(self.simulation.wear, "name", type(self.simulation.wear).__name__))
+
+    @property
+    def unit(self) -> str:
+        """Unit of the coefficient, such as mm³/(N m)."""
+        field = coefficient_field(self.simulation.wear)
+        return "" if field is None else field.unit.text
+
+    @property
+    def residuals(self) -> Numbers:
+        """Measured minus simulated values, in standard uncertainties: (data,); NaN without an uncertainty."""
+        return (_join(self.data) - numpy.concatenate(self.results)) / self.uncertainty
+
+    @cached_property
+    def history(self) -> History:
+        """Simulation with the best coefficient, with reports at the cycle counts of the data."""
+        counts = sorted({count for measured in self.data for count in measured.counts}) or [_MILLION]
+        return self.simulation.after(counts[-1], counts)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on rates, uncertainties, scatter and the simulation."""
+        return (*self._fit_notes(), *self.simulation.notes)
+
+    def _fit_notes(self) -> Iterator[str]:
+        """Yield sentences on rates, uncertainties and scatter."""
+        kinds = dict.fromkeys(measured.description for measured in self.data if measured.rate is not None)
+        if kinds:
+            yield f"the coefficient holds for the measured rate as stated: {'; '.join(kinds)}"
+        if not isfinite(self.high):
+            yield "no band: one value without an uncertainty has no scatter; state uncertainty, such as '10 %'"
+        elif self.noise_estimated:
+            share = float((self.uncertainty / _join(self.data)).mean())
+            yield (
+                f"no uncertainty was stated: it is estimated from the scatter, {100 * share:.2g} % of each value "
+                "(k = 1), and the band is by Student's quantile"
+            )
+        if self.widening > _MIN_NOTED_WIDENING:
+            yield f"the data scatter more than stated: the band is {self.widening:.3g} times as wide"
+        yield "the band has the uncertainty of the measured wear alone, not that of loads, geometry or law"
+
+    def summary(self) -> dict[str, Any]:
+        """Return the fit as a dictionary for JSON."""
+        data = [
+            {
+                "quantity": measured.quantity,
+                "rate": measured.rate,
+                "cycles": None if measured.rate is not None else measured.cycles.tolist(),
+                "from": measured.begin,
+                "to": measured.end,
+                "unit": measured.unit,
+                "measured": measured.values.tolist(),
+                "simulated": values.tolist(),
+            }
+            for measured, values in zip(self.data, self.results, strict=True)
+        ]
+        low, high = (end if isfinite(end) else None for end in (self.low, self.high))
+        return {
+            "law": law_summary(self.simulation.wear),
+            "coefficient": {"value": self.coefficient, "low": low, "high": high, "unit": self.unit},
+            "readings": dict(self.readings),
+            "data": data,
+            "noise_estimated": self.noise_estimated,
+            "widening": self.widening,
+            "notes": list(self.notes),
+        }
+
+
+def fit_wear_coefficient(simulation: HipSimulation, data: MeasuredWear | Sequence[MeasuredWear]) -> WearFit:
+    """Fit the coefficient of a wear law to measured wear, with its 95 % band.
+
+    The simulation runs at several coefficients. Between them, ln(result) is a polynomial of ln(coefficient). The best
+    coefficient minimises χ², and the band ends where χ² has risen by the square of the quantile.
+
+    Parameters
+    ----------
+    simulation : HipSimulation
+        Hip with its cycle and wear law; its coefficient is the start of the search.
+    data : MeasuredWear, or several
+
+    Raises
+    ------
+    ValueError
+        No data, a law without a coefficient, uncertainties of some data only, or wear that the law cannot reach.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.hip import Archard, HipSimulation, iso_14242_1
+    >>> joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
+    >>> simulation = HipSimulation(joint=joint, cycle=iso_14242_1(20), wear=Archard(coefficient=1e-6), ring_width=0.1)
+    >>> fit = fit_wear_coefficient(simulation, MeasuredWear(quantity="volume", values=38.0, rate="initial"))
+    >>> round(fit.coefficient * 1e6, 2)
+    1.26
+    """
+    sets = (data,) if isinstance(data, MeasuredWear) else tuple(data)
+    if not sets:
+        raise ValueError("data must have at least one measured wear, got none")
+    stated = {measured.uncertainty is not None for measured in sets}
+    if len(stated) > 1:
+        raise ValueError("some data have an uncertainty and others have none: state it for all, or for none")
+    field = coefficient_field(simulation.wear)
+    if field is None:
+        raise ValueError("the wear law has no coefficient: use a WearLaw such as Archard")
+    start = float(getattr(simulation.wear, field.name)) or float(field.example)
+    model = _WearModel(simulation=simulation, start=start, data=sets)
+    values = _join(sets)
+    sigma = numpy.concatenate([m.values if m.uncertainty is None else m.uncertainty for m in sets])
+    nodes, best = _find_best(model, values, sigma)
+    results = numpy.exp(nodes.interpolate(best)[: len(values)])
+    noise_estimated = False in stated
+    if noise_estimated:
+        freedom = len(values) - 1
+        relative = float(numpy.sum((results / values - 1) ** 2) / freedom) ** 0.5 if freedom else nan
+        sigma = relative * values
+    low, high, widening = _band(nodes, values, sigma, best, noise_estimated)
+    return WearFit(
+        simulation=replace(simulation, wear=with_coefficient(simulation.wear, exp(best))),
+        data=sets,
+        coefficient=exp(best),
+        low=low,
+        high=high,
+        results=tuple(numpy.split(results, numpy.cumsum([len(measured) for measured in sets])[:-1])),
+        uncertainty=sigma,
+        noise_estimated=noise_estimated,
+        widening=widening,
+        readings=MappingProxyType(_readings(model, nodes)),
+    )
+
+
+def _join(sets: Sequence[MeasuredWear]) -> Numbers:
+    """Join the values of all data sets: (data,)."""
+    return numpy.concatenate([measured.values for measured in sets])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _WearModel:
+    """Results of a simulation for all data sets, and for other readings of rates, at any coefficient.
+
+    Attributes
+    ----------
+    simulation : HipSimulation
+    start : float
+        Coefficient of the runs whose exposure is varied.
+    data : tuple of MeasuredWear
+    """
+
+    simulation: HipSimulation
+    start: float
+    data: tuple[MeasuredWear, ...]
+
+    @cached_property
+    def readings(self) -> tuple[MeasuredWear, ...]:
+        """Rates of the data in all kinds, each only once."""
+        rates = [measured for measured in self.data if measured.rate is not None]
+        readings = [reading for rate in rates for reading in (rate, *rate.other_readings())]
+        return tuple({reading.description: reading for reading in readings}.values())
+
+    @cached_property
+    def counts(self) -> list[float]:
+        """Cycle counts of all data sets and readings, in ascending order."""
+        return sorted({count for measured in (*self.data, *self.readings) for count in measured.counts})
+
+    @property
+    def _is_scale_free(self) -> bool:
+        """True if the result depends on the product of coefficient and cycles alone: without creep and ball wear."""
+        return self.simulation.creep is None and self.simulation.ball_wear is None
+
+    def log_results(self, coefficients: Numbers) -> Numbers:
+        """Compute ln of the results of all data sets, then of all readings, at each coefficient: (nodes, results)."""
+        ratios = coefficients / self.start
+        if self._is_scale_free:
+            exposures = sorted({float(count * ratio) for count in self.counts for ratio in ratios})
+            history = self._run(self.start, exposures)
+            rows = [self._row(history, ratio, float(ratio)) for ratio in ratios]
+        else:
+            rows = [self._row(self._run(float(value), self.counts), 1.0, 1.0) for value in coefficients]
+        return numpy.log(numpy.array(rows))
+
+    def _run(self, coefficient: float, counts: Sequence[float]) -> History:
+        """Run the simulation with a coefficient to cycle counts."""
+        simulation = replace(self.simulation, wear=with_coefficient(self.simulation.wear, coefficient))
+        check_total_wear(simulation, counts[-1] if counts else _MILLION)
+        integrator = WearIntegrator(setup=simulation)
+        reports = run_to_report_points(integrator, counts, lambda cycles: None, None)
+        return History(use=simulation, reports=reports, error=NumericalError(blocks=0, volume=0, depth=0), steps=0)
+
+    def _row(self, history: History, exposure_ratio: float, initial_ratio: float) -> list[float]:
+        """Compute the results of all data sets and readings from a run whose exposures are scaled."""
+        reports = {report.cycles: report for report in history.reports}
+        row: list[float] = []
+        for measured in (*self.data, *self.readings):
+            totals = _totals_of(history, reports, measured.quantity, exposure_ratio)
+            initial = getattr(history.use.first, measured.quantity, nan) * initial_ratio
+            row += measured.predict(totals, initial).tolist()
+        return row
+
+
+def _totals_of(
+    history: History, reports: Mapping[float, Report], quantity: str, ratio: float
+) -> Callable[[float], float]:
+    """Make the function from a cycle count to the total of a quantity, in a run with scaled exposures."""
+
+    def total(count: float) -> float:
+        """Return the total of the quantity after a number of cycles."""
+        report = reports[float(count * ratio)]
+        if quantity == "radiographic_penetration":
+            return history.radiographic_penetration(report)
+        return float(getattr(report, quantity))
+
+    return total
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Nodes:
+    """Interpolation of ln(result) over ln(coefficient), linear beyond the outer nodes.
+
+    Attributes
+    ----------
+    centre : float
+        ln(coefficient) of the middle node.
+    polynomials : array (degree + 1, results)
+        Coefficients by ascending power of ln(coefficient) minus the centre.
+    """
+
+    centre: float
+    polynomials: Numbers
+
+    def interpolate(self, log_coefficient: float) -> Numbers:
+        """Compute ln of all results at a value of ln(coefficient): (results,)."""
+        shift = log_coefficient - self.centre
+        inside = float(numpy.clip(shift, _NODES[0], _NODES[-1]))
+        powers = numpy.arange(len(self.polynomials))
+        value = (inside**powers) @ self.polynomials
+        slope = (powers[1:] * inside ** (powers[1:] - 1)) @ self.polynomials[1:]
+        return numpy.asarray(value + slope * (shift - inside))
+
+    def chi_squared(self, log_coefficient: float, values: Numbers, sigma: Numbers) -> float:
+        """Compute χ² of the measured values at a value of ln(coefficient)."""
+        results = numpy.exp(self.interpolate(log_coefficient)[: len(values)])
+        return float(numpy.sum(((results - values) / sigma) ** 2))
+
+
+def _find_best(model: _WearModel, values: Numbers, sigma: Numbers) -> tuple[_Nodes, float]:
+    """Find ln of the best coefficient, with nodes about it."""
+    from scipy.optimize import minimize_scalar
+
+    first = model.log_results(numpy.array([model.start]))[0, : len(values)]
+    centre = log(model.start) + float(numpy.mean(numpy.log(values) - first))
+    for _ in range(_MAX_CENTRES):
+        log_results = model.log_results(numpy.exp(centre + _NODES))
+        nodes = _Nodes(centre=centre, polynomials=numpy.polynomial.polynomial.polyfit(_NODES, log_results, _DEGREE))
+        ends = (centre - 1.0, centre + 1.0)
+        best = float(minimize_scalar(nodes.chi_squared, bounds=ends, args=(values, sigma), method="bounded").x)
+        if abs(best - centre) < _MAX_SHIFT:
+            break
+        centre = best
+    return nodes, best
+
+
+def _band(
+    nodes: _Nodes, values: Numbers, sigma: Numbers, best: float, noise_estimated: bool
+) -> tuple[float, float, float]:
+    """Compute both ends of the 95 % band of the coefficient, and the factor by which scatter widens it."""
+    from scipy.optimize import brentq
+    from scipy.stats import chi2, norm, t
+
+    if numpy.isnan(sigma).any():
+        return nan, nan, 1.0
+    least, freedom = nodes.chi_squared(best, values, sigma), len(values) - 1
+    widening = max(1.0, (least / freedom) ** 0.5) if freedom and not noise_estimated else 1.0
+    scattered = noise_estimated or (widening > 1 and chi2.sf(least, freedom) < _SIGNIFICANCE)
+    quantile = float(t.ppf(0.975, freedom) if scattered else norm.ppf(0.975))
+
+    def excess(log_coefficient: float) -> float:
+        """Compute the rise of χ² minus the allowed rise."""
+        return (nodes.chi_squared(log_coefficient, values, sigma) - least) / widening**2 - quantile**2
+
+    low, high = best - _MAX_LOG_RANGE, best + _MAX_LOG_RANGE
+    low_end = exp(brentq(excess, low, best)) if excess(low) > 0 else 0.0
+    return low_end, exp(brentq(excess, best, high)), widening
+
+
+def _readings(model: _WearModel, nodes: _Nodes) -> dict[str, float]:
+    """Compute the coefficient for each kind of the measured rates, by its description."""
+    from scipy.optimize import brentq
+
+    readings: dict[str, float] = {}
+    start = sum(map(len, model.data))
+    for reading in model.readings:
+        target = log(float(reading.values.mean()))
+
+        def excess(log_coefficient: float, column: int = start, target: float = target) -> float:
+            """Compute ln of the result minus ln of the measured rate."""
+            return float(nodes.interpolate(log_coefficient)[column]) - target
+
+        ends = nodes.centre - _MAX_LOG_RANGE, nodes.centre + _MAX_LOG_RANGE
+        readings[reading.description] = exp(brentq(excess, *ends))
+        start += len(reading)
+    return readings

@@ -1,0 +1,261 @@
+"""Wear of several hips side by side, and the fit of a wear coefficient: tables, figures, CSV file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy
+
+from ..core.storage.atomic_files import check_parent_folder, write_text
+from ..hip.bands import Bands
+from ..hip.history import History
+from ..hip.wear_fit import WEAR_QUANTITIES, WearFit
+from .hip_tables import print_notes, table_with_units
+from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
+from .terminal import console, print_columns, print_folded
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_COLOURS = (BLUE, VERMILLION, GREEN, ORANGE, PINK, SKY)
+_PANELS = {"volume": "worn volume [mm³]", "penetration": "penetration [mm]"}
+"""Results of the panels of the figure, with the labels of their axes."""
+
+_HEADS = {
+    "cycles, hip": "million",
+    "volume": "mm³",
+    "depth": "mm",
+    "penetration": "mm",
+    "pmax": "MPa",
+    "edge loading": "",
+}
+"""Units of the columns of the terminal's table by their heads."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class HipRun:
+    """Simulation of one hip with its name and its bands, if any.
+
+    Attributes
+    ----------
+    name : str
+        Name of the hip in tables and figures, such as that of its file.
+    history : History
+    bands : Bands, optional
+    """
+
+    name: str
+    history: History
+    bands: Bands | None = None
+
+
+def wear_figure(histories: Mapping[str, History] | Sequence[History]) -> Figure:
+    """Draw worn volume and penetration over the cycles, with a line for each hip.
+
+    Parameters
+    ----------
+    histories : mapping of str to History, or sequence of History
+        Simulations by the name in the legend; by default the name of their joint.
+    """
+    if not isinstance(histories, Mapping):
+        histories = {history.use.joint.name or f"hip {i + 1}": history for i, history in enumerate(histories)}
+    return comparison_figure([HipRun(name=name, history=history) for name, history in histories.items()])
+
+
+def comparison_figure(runs: Sequence[HipRun]) -> Figure:
+    """Draw worn volume and penetration over the cycles, with a line and a band for each hip."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9.2, 4.2), layout="constrained")
+    panels = figure.subplots(1, len(_PANELS), squeeze=False)[0]
+    for axes, (result, label) in zip(panels, _PANELS.items(), strict=True):
+        for index, run in enumerate(runs):
+            _draw_run(axes, run, result, _COLOURS[index % len(_COLOURS)], "-" if index < len(_COLOURS) else "--")
+        axes.set_xlim(left=0)
+        axes.set_ylim(bottom=0)
+        finish(axes, "million cycles", label)
+    if len(runs) > 1 or runs[0].bands is not None:
+        panels[0].legend(**LEGEND)
+    return figure
+
+
+def _draw_run(axes: Axes, run: HipRun, result: str, colour: str, dash: str) -> None:
+    """Draw one result of a hip over the cycles, with its band."""
+    reports = run.history.reports
+    cycles = [0.0, *(report.cycles / 1e6 for report in reports)]
+    values = [0.0, *(float(getattr(report, result)) for report in reports)]
+    axes.plot(cycles, values, "o", linestyle=dash, markersize=4, color=colour, label=run.name or None)
+    if run.bands is not None:
+        low, high = ([0.0, *ends] for ends in run.bands.band(result))
+        label = f"{100 * run.bands.level:g} % of the {run.bands.subject}"
+        axes.fill_between(cycles, low, high, color=colour, alpha=0.15, linewidth=0, label=label)
+
+
+def print_comparison(runs: Sequence[HipRun]) -> None:
+    """Print the wear of several hips, one below the other at each report, and the notes of each."""
+    terminal = console()
+    for run in runs:
+        print_folded(terminal, f"{run.name}: {run.history.use.joint}; {run.history.use.cycle.name}", "bold")
+    print_columns(terminal, _table(runs))
+    for run in runs:
+        verdict = "valid" if run.history.valid else "NOT VALID, see its notes"
+        error = f"estimated numerical error of the volume {100 * run.history.error.volume:.2g} %"
+        print_folded(terminal, f"{run.name}: contact {verdict}; {error}", "")
+    for note, names in _notes_with_names(runs).items():
+        prefix = "" if len(names) == len(runs) else f"{', '.join(names)}: "
+        print_notes([f"{prefix}{note}"])
+
+
+def _table(runs: Sequence[HipRun]) -> Any:
+    """Make the table of all hips at each report, with the ends of their bands."""
+    banded = any(run.bands is not None for run in runs)
+    heads = {**_HEADS, "volume 95 %": "mm³", "penetration 95 %": "mm"} if banded else _HEADS
+    table = table_with_units(heads, left=("cycles, hip",))
+    for cycles in sorted({report.cycles for run in runs for report in run.history.reports}):
+        for run in runs:
+            for row in _rows_at(run, cycles, banded):
+                table.add_row(*row)
+    return table
+
+
+def _rows_at(run: HipRun, cycles: float, banded: bool) -> Iterator[tuple[str, ...]]:
+    """Yield the row of a hip at a number of cycles, if it has a report there."""
+    for index, report in enumerate(run.history.reports):
+        if report.cycles != cycles:
+            continue
+        numbers = (report.volume, report.depth, report.penetration, report.max_pressure)
+        edge = "yes" if report.edge_loaded.any() else "no"
+        row = (f"{cycles / 1e6:.6g} {run.name}", *(f"{number:.4g}" for number in numbers), edge)
+        yield (*row, *(_band_text(run.bands, result, index) for result in _PANELS)) if banded else row
+
+
+def _band_text(bands: Bands | None, result: str, report: int) -> str:
+    """Write the band of a result at a report."""
+    if bands is None:
+        return "-"
+    low, high = bands.band(result)
+    return f"{low[report]:.3g} to {high[report]:.3g}"
+
+
+def _notes_with_names(runs: Sequence[HipRun]) -> dict[str, list[str]]:
+    """Collect the notes of all hips, each with the names of the hips that have it."""
+    notes: dict[str, list[str]] = {}
+    for run in runs:
+        for note in dict.fromkeys((*run.history.notes, *(run.bands.notes if run.bands else ()))):
+            notes.setdefault(note, []).append(run.name)
+    return notes
+
+
+def print_wear_fit(fit: WearFit) -> None:
+    """Print a fitted wear coefficient with its band, its value for each kind of rate, and the measured wear."""
+    terminal, use = console(), fit.simulation
+    print_folded(terminal, f"{use.joint}; {use.cycle.name}: coefficient of the wear law {fit.law_name!r}", "bold")
+    band = f"{fit.low:.4g} to {fit.high:.4g}" if isfinite(fit.high) else "-"
+    table = table_with_units({"": "", "best": fit.unit, "95 %": fit.unit}, left=("",))
+    table.add_row("coefficient", f"{fit.coefficient:.4g}", band)
+    print_columns(terminal, table)
+    if fit.readings:
+        print_folded(terminal, "the same number as a rate of another kind:", "")
+        readings = table_with_units({"rate": "", "coefficient": fit.unit}, left=("rate",))
+        for description, coefficient in fit.readings.items():
+            readings.add_row(description, f"{coefficient:.4g}")
+        print_columns(terminal, readings)
+    print_columns(terminal, _measured_table(fit))
+    print_notes(fit.notes)
+
+
+def _measured_table(fit: WearFit) -> Any:
+    """Make the table of measured and simulated wear."""
+    table = table_with_units({"measured": "", "value": "", "fit": "", "unit": ""}, left=("measured", "unit"))
+    for measured, results in zip(fit.data, fit.results, strict=True):
+        cycles = [""] * len(measured) if measured.rate else [f" after {count:g} cycles" for count in measured.cycles]
+        for value, result, count in zip(measured.values, results, cycles, strict=True):
+            title = measured.description if measured.rate else f"{measured.quantity.replace('_', ' ')}{count}"
+            table.add_row(title, f"{value:.4g}", f"{result:.4g}", measured.unit)
+    return table
+
+
+def wear_fit_figure(fit: WearFit) -> Figure:
+    """Draw the fitted simulation over the cycles, with the measured totals and rates."""
+    from matplotlib.figure import Figure
+
+    quantities = list(dict.fromkeys(measured.quantity for measured in fit.data))
+    figure = Figure(figsize=(4.8 * len(quantities), 4.2), layout="constrained")
+    for axes, quantity in zip(figure.subplots(1, len(quantities), squeeze=False)[0], quantities, strict=True):
+        _draw_fit(axes, fit, quantity)
+        axes.set_xlim(left=0)
+        axes.set_ylim(bottom=0)
+        finish(axes, "million cycles", f"{quantity.replace('_', ' ')} [{WEAR_QUANTITIES[quantity]}]")
+        axes.legend(**LEGEND)
+    return figure
+
+
+def _draw_fit(axes: Axes, fit: WearFit, quantity: str) -> None:
+    """Draw one quantity of the fitted simulation with its measured values."""
+    rows = fit.history.table()
+    column = f"{quantity}_{'mm3' if quantity == 'volume' else 'mm'}"
+    cycles = [0.0, *(row["cycles"] / 1e6 for row in rows)]
+    totals = [0.0, *(row[column] for row in rows)]
+    axes.plot(cycles, totals, color=BLUE, label=f"coefficient {fit.coefficient:.3g} {fit.unit}")
+    for index, measured in enumerate(fit.data):
+        colour = _COLOURS[1 + index % (len(_COLOURS) - 1)]
+        if measured.quantity != quantity:
+            continue
+        if measured.rate is None:
+            axes.plot(measured.cycles / 1e6, measured.values, "o", color=colour, label="measured")
+            continue
+        begin, end = (measured.begin or 0.0) / 1e6, (measured.end or 1e6) / 1e6
+        for number, value in enumerate(measured.values):
+            start = float(numpy.interp(begin, cycles, totals))
+            line = [start, start + value * (end - begin)]
+            axes.plot(
+                [begin, end], line, "--", color=colour, label=None if number else f"measured {measured.rate} rate"
+            )
+
+
+def check_table(path: Path) -> None:
+    """Check that a path ends in .csv and that its folder exists.
+
+    Raises
+    ------
+    ValueError
+        Another ending, or a folder that does not exist.
+    """
+    if path.suffix.lower() != ".csv":
+        raise ValueError(f"table {str(path)!r} must end in .csv")
+    check_parent_folder(path)
+
+
+def write_table(path: Path, runs: Sequence[HipRun]) -> Path:
+    """Write a CSV file with a row for each hip and report, and return its path; heads have units.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    import csv
+    from io import StringIO
+
+    rows: list[dict[str, Any]] = []
+    for run in runs:
+        bands = run.bands.table() if run.bands is not None else [{}] * len(run.history.reports)
+        rows += [{"hip": run.name, **row, **band} for row, band in zip(run.history.table(), bands, strict=True)]
+    heads = list(dict.fromkeys(head for row in rows for head in row))
+    text = StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(heads)
+    writer.writerows([[_cell(row.get(head, "")) for head in heads] for row in rows])
+    return write_text(path, text.getvalue())
+
+
+def _cell(value: Any) -> str:
+    """Write a cell of a table: a truth value as 0 or 1, a missing or infinite number as nothing."""
+    if isinstance(value, str):
+        return value
+    return f"{float(value):.9g}" if numpy.isfinite(value) else ""

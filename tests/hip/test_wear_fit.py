@@ -1,0 +1,183 @@
+"""Wear coefficient from measured wear: simulated data give it back, and each kind of rate gives another one."""
+
+import json
+from math import radians
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import ballsocket as bs
+from ballsocket.cli.root import app
+from ballsocket.hip import (
+    Archard,
+    FrictionEnergyWear,
+    HipSimulation,
+    MeasuredWear,
+    fit_wear_coefficient,
+    iso_14242_1,
+    logarithmic,
+)
+from ballsocket.hip.config import read_wear_test
+from ballsocket.reports.hip_comparison import wear_fit_figure
+
+from .test_file import write_edited_file
+from .test_wear import hip
+
+QUICK = {"cycle": iso_14242_1(16), "ring_width": radians(8.0)}
+COUNTS = [1e5, 2e5, 4e5]
+TRUE = 8e-7
+
+
+def simulated(quantity, **words):
+    history = hip(wear=Archard(coefficient=TRUE), **QUICK, **words).after(COUNTS[-1], COUNTS)
+    return np.array([getattr(report, quantity) for report in history.reports])
+
+
+def test_a_rate_of_38_mm3_gives_three_coefficients():
+    """Those of the new bore, of the second million and from 5 to 10 million cycles; 28 mm, clearance 0.1 mm."""
+    joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
+    cup = bs.Cup(inclination=radians(30.0))
+    use = HipSimulation(joint=joint, cup=cup, wear=Archard(coefficient=1e-6), **QUICK)
+    rate = MeasuredWear(quantity="volume", values=38.0, rate="steady", begin=5e6, end=1e7, uncertainty=3.8)
+    fit = fit_wear_coefficient(use, rate)
+    assert fit.coefficient == pytest.approx(1.08e-6, rel=0.01)
+    assert list(fit.readings.values()) == pytest.approx([1.08e-6, 1.26e-6, 1.13e-6], rel=0.01)
+    assert (fit.low, fit.high) == pytest.approx((0.805 * fit.coefficient, 1.194 * fit.coefficient), rel=0.02)
+    assert fit.notes[0].endswith("volume rate, steady from 5 to 10 million cycles")
+
+
+@pytest.mark.parametrize(
+    ("quantity", "words"),
+    [("volume", {}), ("depth", {}), ("penetration", {"creep": logarithmic()})],
+    ids=["volume", "depth", "penetration with creep"],
+)
+def test_simulated_totals_give_the_coefficient_back(quantity, words):
+    values = simulated(quantity, **words)
+    measured = MeasuredWear(quantity=quantity, values=values, cycles=COUNTS, uncertainty=0.05 * values)
+    fit = fit_wear_coefficient(hip(wear=Archard(coefficient=3e-6), **QUICK, **words), measured)
+    assert fit.coefficient == pytest.approx(TRUE, rel=5e-3)
+    assert fit.low < TRUE < fit.high
+    assert fit.results[0] == pytest.approx(values, rel=5e-3)
+
+
+def test_several_kinds_of_data_and_another_law_are_fitted_together():
+    use = hip(wear=FrictionEnergyWear(coefficient=2e-5, friction=0.05), **QUICK)
+    volumes = simulated("volume")
+    rate = 1e6 * (volumes[2] - volumes[1]) / 2e5
+    data = [
+        MeasuredWear(quantity="volume", values=1e6 * volumes[1] / 2e5, rate="mean", end=2e5, uncertainty=1.0),
+        MeasuredWear(quantity="volume", values=[rate, rate], rate="steady", begin=2e5, end=4e5, uncertainty=1.0),
+        MeasuredWear(quantity="volume", values=volumes, cycles=COUNTS, uncertainty=0.1),
+    ]
+    fit = fit_wear_coefficient(use, data)
+    assert fit.unit == "mm³/J"
+    assert fit.coefficient * 0.05 == pytest.approx(TRUE, rel=5e-3)
+    assert abs(fit.residuals).max() < 0.5
+    assert len(wear_fit_figure(fit).axes) == 1
+
+
+def test_scatter_makes_or_widens_the_band():
+    values = simulated("volume")
+    scattered = values * np.array([1.1, 0.9, 1.0])
+    use = hip(wear=Archard(coefficient=1e-6), **QUICK)
+    unknown = fit_wear_coefficient(use, MeasuredWear(quantity="volume", values=scattered, cycles=COUNTS))
+    assert unknown.noise_estimated
+    assert unknown.uncertainty / scattered == pytest.approx([0.1] * 3, rel=0.1)
+    assert unknown.high / unknown.low > 1.25  # t(2) is 4.3
+    assert any("no uncertainty was stated: it is estimated from the scatter" in note for note in unknown.notes)
+    stated = MeasuredWear(quantity="volume", values=scattered, cycles=COUNTS, uncertainty=0.01 * values)
+    widened = fit_wear_coefficient(use, stated)
+    assert widened.widening > 3
+    assert any(note.startswith("the data scatter more than stated") for note in widened.notes)
+    single = fit_wear_coefficient(use, MeasuredWear(quantity="volume", values=38.0, rate="initial"))
+    assert np.isnan(single.low)
+    assert any(note.startswith("no band") for note in single.notes)
+    assert single.summary()["coefficient"]["low"] is None
+    broad = MeasuredWear(quantity="volume", values=38.0, rate="initial", uncertainty=38.0)
+    assert fit_wear_coefficient(use, broad).low == 0.0
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ({"quantity": "weight"}, "quantity 'weight' is not known"),
+        ({"rate": "final"}, "rate 'final' is not known; did you mean 'initial'"),
+        ({}, "volume needs the cycles of its values, or else the kind of its rate: initial, steady, mean"),
+        ({"cycles": [1e6, 2e6]}, "volume has 1 values and 2 cycles"),
+        ({"cycles": 1e6, "rate": "mean"}, "a rate of volume takes from and to, not cycles"),
+        ({"rate": "steady", "end": 2e6}, "a steady rate of volume needs from and to"),
+        ({"rate": "mean"}, "a mean rate of volume needs to"),
+        ({"rate": "mean", "begin": 1e6, "end": 2e6}, "a mean rate is from 0 cycles"),
+        ({"rate": "steady", "begin": 2e6, "end": 1e6}, "to = 1e.06 is not allowed"),
+        ({"rate": "initial", "end": 1e6}, "an initial rate is that of the new bore"),
+        ({"rate": "initial", "quantity": "penetration"}, "an initial rate of penetration is not defined"),
+        ({"cycles": 1e6, "values": -1.0}, "a measured wear is positive and finite"),
+        ({"cycles": 1e6, "uncertainty": 0.0}, "a standard uncertainty is positive"),
+        ({"cycles": 1e6, "begin": 1.0}, "from and to belong to a rate"),
+    ],
+)
+def test_data_that_mean_nothing_are_refused(words, message):
+    with pytest.raises(ValueError, match=message):
+        MeasuredWear(**{"quantity": "volume", "values": 38.0, **words})
+
+
+DATA = """
+[[data]]
+quantity = "volume"
+values = "38 mm^3/Mc"
+rate = "mean"
+to = 2e5
+uncertainty = "10 %"
+"""
+CHANGES = (
+    ("cycles = 5e6\n", ""),
+    ("report_at = [1e6, 2e6, 5e6]\n", ""),
+    ("instants = 100", "instants = 16"),
+    ('coefficient = "1.066e-6 mm^3/(N m)" # conventional UHMWPE', ""),
+    ('contact = "springs"', f'ring_width = "8 deg"\n{DATA}'),
+)
+
+
+def test_a_file_with_measured_wear_is_identified(tmp_path):
+    file = str(write_edited_file(tmp_path, *CHANGES))
+    done = CliRunner().invoke(app, ["identify", file, "--figure", str(tmp_path / "fit.png")])
+    assert done.exit_code == 0, done.output
+    assert "coefficient of the wear law 'archard'" in " ".join(done.stdout.split())
+    assert (tmp_path / "fit.png").exists()
+    answer = json.loads(CliRunner().invoke(app, ["identify", file, "--json"]).stdout)
+    value = answer["coefficient"]
+    assert value["unit"] == "mm³/(N m)"
+    assert (value["low"], value["high"]) == pytest.approx((0.8 * value["value"], 1.2 * value["value"]), rel=0.03)
+    assert "needs coefficient" in str(CliRunner().invoke(app, ["hip", file]).exception)
+    refused = CliRunner().invoke(app, ["identify", file, "--samples", "100"])
+    assert "--samples needs measurements of a contact" in str(refused.exception)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            'rate = "mean"\nto = 2e5\n',
+            "",
+            r"'38 mm\^3/Mc' is a rate: state its kind, rate = 'initial'",
+        ),
+        ("/Mc", "", r"'38 mm\^3' of a rate needs a unit such as '38 mm\^3/Mc'"),
+        ("/Mc", "/year", "is per year: state cycles_per_year at the top of the file"),
+        ("38 mm^3/Mc", "38 mm/Mc", "must be a number with a unit"),
+        ('values = "38 mm^3/Mc"\n', "", "needs its values"),
+        ('quantity = "volume"\n', "", "needs its quantity"),
+        (DATA, "", "no measured wear: add "),
+        ("volume", "volum", "quantity 'volum' is not known; did you mean 'volume'"),
+    ],
+)
+def test_files_of_measured_wear_that_mean_nothing_are_refused(tmp_path, old, new, message):
+    with pytest.raises(ValueError, match=message):
+        read_wear_test(write_edited_file(tmp_path, *CHANGES, (old, new)))
+
+
+def test_rates_per_year_and_uncertainties_have_units(tmp_path):
+    changes = ("/Mc", "/year"), ('"10 %"', '"0.002 cm^3/year"'), ('name = "hip in use"', "cycles_per_year = 2e6")
+    (measured,) = read_wear_test(write_edited_file(tmp_path, *CHANGES, *changes)).data
+    assert measured.values == pytest.approx([19.0])
+    assert measured.uncertainty == pytest.approx([1.0])
