@@ -1,6 +1,7 @@
 """Tilted loads from the command line and from files."""
 
 import json
+import re
 from types import SimpleNamespace
 
 import numpy as np
@@ -182,10 +183,50 @@ def test_orient_maps_edge_distance_and_pressure(tmp_path):
     assert stood["edge_loaded"][2][2] is True
 
 
+def test_orient_prints_every_orientation_and_the_limits():
+    words = ("orient", "hip-36", "--force", "2.5 kN", "--ring-width", "6 deg", "--limit", "edge_distance>=1 mm")
+    printed = run(*words, "--inclination", "30..70", "--anteversion", "20 deg", columns=60).stdout
+    for angle in range(30, 71, 5):
+        assert printed.count(f" {angle}°  ") + printed.count(f" {angle}°\n") >= 2
+    assert printed.count("\n20°") >= 2
+    assert re.search(r"at 20° anteversion the limit holds up to \d\d° inclination", printed)
+    answer = json.loads(run(*words, "--inclination", "41..52", "--step", "5", "--anteversion", "20", "--json").stdout)
+    assert answer["inclination_deg"] == pytest.approx([41, 45, 50, 52])
+    assert answer["anteversion_deg"] == pytest.approx([20])
+    distances = [row[0] for row in answer["edge_distance"]]
+    assert answer["within_limits"] == [[distance >= 1.0] for distance in distances]
+    assert answer["limits"] == ["edge_distance >= 1 mm"]
+    (ends,) = answer["inclination_ranges"]
+    assert ends["inclination_deg"] == [41.0, [41.0, 45.0, 50.0, 52.0][sum(d >= 1.0 for d in distances) - 1]]
+
+
+def test_a_cup_is_oriented_by_options_as_by_its_file(tmp_path):
+    angles = {"inclination": "43.0795 deg", "anteversion": "20.7536 deg", "orientation": "operative", "side": "left"}
+    words = ("press", "--ball-radius", "18", "--clearance", "0.1", "--liner-thickness", "5", "--liner", "xlpe")
+    table = "".join(f'{key} = "{value}"\n' for key, value in angles.items())
+    text = "[joint]\nball_radius = 18\nclearance = 0.1\nliner_thickness = 5\n[liner]\nmaterial = 'xlpe'\n[cup]\n"
+    (tmp_path / "cup.toml").write_text(f"{text}{table}", encoding="utf-8")
+    options = [word for key, value in angles.items() for word in (f"--{key}", value)]
+    from_file, from_options = (
+        json.loads(run(*call, *COARSE, "--force", "3 kN", "--json", folder=tmp_path).stdout)
+        for call in (("press", "cup.toml"), (*words, *options))
+    )
+    assert from_file["results"] == from_options["results"]
+    assert from_file["results"][0]["model"] == "sphere"
+    assert from_file["orientation"] == from_options["orientation"]
+    shown = from_options["orientation"]["radiographic"]
+    assert (shown["inclination_deg"], shown["anteversion_deg"]) == pytest.approx((45.0, 15.0), abs=1e-4)
+    printed = run(*words, *options, *COARSE, "--force", "3 kN").stdout
+    assert "cup: inclination/anteversion radiographic 45°/15°, operative 43.08°/20.75°" in printed
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("--inclination", "30 to 60"), "inclination = '30 to 60' is not a range, such as '30..60 deg'"),
+        (("--inclination", "30 to 60"), "inclination = '30 to 60' is not an angle, such as '40 deg'"),
+        (("--step", "5"), "--step and --points are one too many: either fixes the other"),
+        (("--limit", "area<=3"), "--limit of area is not possible here; possible: edge_distance, max_pressure"),
+        (("--limit", "edge_distance"), "'edge_distance' is not a limit, such as"),
         (("--inclination", "30..100"), "inclination is 0 to 90 degrees"),
         (("--direction", "0,0,0"), "points somewhere"),
         (("--ring-width", "20 deg"), "0.5 to 6 degrees"),

@@ -102,6 +102,37 @@ def test_every_option_states_its_unit_and_its_default(name):
             assert re.search(stated, text), f"--{option.name} has no default: {text}"
 
 
+def test_help_uses_the_width_of_the_terminal():
+    assert 100 > max(map(len, run("press", "-h", columns=100).stdout.splitlines())) > 80
+
+
+@pytest.mark.parametrize(("words", "program"), [(("--foo",), "ballsocket"), (("press", "--qqq"), "ballsocket press")])
+def test_an_unknown_option_names_the_program_once(words, program):
+    assert run(*words).stderr == f"ballsocket: No such option: {words[-1]}; {program} -h lists them\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [
+        ("ori", "orient"),
+        ("press --incl", "--inclination"),
+        ("press --model hertz", "hertz"),
+        ("press --ball coc", "cocr"),
+    ],
+)
+def test_a_shell_completes_commands_options_and_names(words, completed, monkeypatch):
+    line = f"ballsocket {words}"
+    monkeypatch.setenv("_BALLSOCKET_COMPLETE", "complete_bash")
+    monkeypatch.setenv("COMP_WORDS", line)
+    monkeypatch.setenv("COMP_CWORD", str(len(line.split()) - 1))
+    assert completed in run().stdout.split()
+
+
+def test_a_path_of_windows_is_printed_as_it_was_typed():
+    typed = "C:\\Users\\me\\hip.toml"
+    assert run("press", typed).stderr.startswith(f"ballsocket: '{typed}' ")
+
+
 def test_an_unknown_command_suggests_the_nearest_ones():
     done = run("pres")
     assert (done.returncode, done.stdout) == (2, "")

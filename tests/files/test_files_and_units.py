@@ -361,7 +361,7 @@ def test_numbers_win_over_the_material():
         (
             "[joint]",
             "[joint]\nthickness = 3",
-            r"hip: 'thickness' in .joint. is not known; it belongs in \[\[backing\]\]$",
+            r"hip: 'thickness' in .joint. is not known; it belongs in \[shell\] or \[\[backing\]\]$",
         ),
         (
             "ball_radius = 17.9",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.problem.cup import UP
+from ballsocket.problem.cup import UP, AngleDefinition
 
 CUPS = [
     bs.Cup(inclination=radians(inclination), anteversion=radians(anteversion), side=side)
@@ -101,3 +101,60 @@ def test_directions_need_three_components_and_a_length():
         bs.Cup().tilt([1.0, 0.0])
     with pytest.raises(ValueError, match="length of direction = 0 is not allowed"):
         bs.Cup().tilt([0.0, 0.0, 0.0])
+
+
+MURRAY = {
+    (45.0, 15.0): {"operative": (43.0795, 20.7536), "anatomical": (46.9205, 20.7536)},
+    (40.0, 15.0): {"operative": (38.3808, 19.2790), "anatomical": (42.2735, 22.6291)},
+}
+"""Operative and anatomical angles in degrees of radiographic ones (Murray 1993)."""
+
+
+@pytest.mark.parametrize("angles", MURRAY, ids=str)
+def test_angles_of_a_cup_in_the_definitions_of_murray(angles):
+    cup = bs.Cup.from_angles(*map(radians, angles))
+    assert cup == bs.Cup(inclination=radians(angles[0]), anteversion=radians(angles[1]))
+    for definition, degrees in MURRAY[angles].items():
+        assert np.degrees(cup.angles(definition)) == pytest.approx(degrees, abs=6e-5)
+
+
+def test_each_definition_describes_the_same_axis():
+    """The definitions are projections of the axis: on the frontal, the sagittal and the transverse plane."""
+    random = np.random.default_rng(4)
+    for inclination, anteversion in zip(random.uniform(0.01, 1.56, 200), random.uniform(-1.55, 1.55, 200), strict=True):
+        cup = bs.Cup(inclination=inclination, anteversion=anteversion)
+        x, y, z = cup.opening
+        assert np.sin(cup.angles("operative")[0]) == pytest.approx(x, abs=1e-12)
+        assert np.tan(cup.angles("operative")[1]) == pytest.approx(-y / z, rel=1e-10)
+        assert np.cos(cup.angles("anatomical")[0]) == pytest.approx(-z, abs=1e-12)
+        assert np.tan(cup.angles("anatomical")[1]) == pytest.approx(y / x, rel=1e-10)
+        for definition in AngleDefinition:
+            again = bs.Cup.from_angles(*cup.angles(definition), definition=definition)
+            np.testing.assert_allclose(again.angles(), (inclination, anteversion), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("definition", ["radiographic", "Operative", AngleDefinition.ANATOMICAL])
+@pytest.mark.parametrize("tilt", [-20.0, 10.0])
+def test_a_pelvic_tilt_rotates_the_cup_about_the_transverse_axis(definition, tilt):
+    angles = radians(40.0), radians(18.0)
+    straight, tilted = (
+        bs.Cup.from_angles(*angles, definition=definition, pelvic_tilt=radians(size)) for size in (0.0, tilt)
+    )
+    before, after = straight.angles("operative"), tilted.angles("operative")
+    assert after[0] == pytest.approx(before[0], abs=1e-12)
+    assert after[1] == pytest.approx(before[1] - radians(tilt), abs=1e-12)
+    assert straight.opening[0] == pytest.approx(tilted.opening[0], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"definition": "surgical"}, "definition = 'surgical' is not allowed: radiographic, operative, anatomical"),
+        ({"pelvic_tilt": 2.0}, "pelvic_tilt = 2 is not allowed: a pelvic tilt"),
+        ({"inclination": 2.0}, "inclination = 2 is not allowed"),
+        ({"anteversion": -1.2, "pelvic_tilt": 1.4}, "the cup would open upwards: .* inclination is .*; allowed are 0"),
+    ],
+)
+def test_angles_that_are_not_allowed_are_rejected(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        bs.Cup.from_angles(**{"inclination": 0.8, "anteversion": 0.2, **arguments})

@@ -198,3 +198,17 @@ def test_texts_of_joints():
     assert summary["liner_thickness"] == "inf"
     assert summary["socket_radius"] == 17.25
     assert (summary["ball"], summary["backing"], summary["support"]) == (None, [], "fixed")
+
+
+@pytest.mark.parametrize(
+    ("lengths", "message"),
+    [
+        ({"outer_diameter": 52.0}, "liner_thickness = 6.5 mm, but the others make 7.85 mm$"),
+        ({"outer_diameter": 49.3}, "either fixes the other; leave one out$"),
+        ({"socket_radius": 18.3}, "ball_radius = 18 mm, but the others make 18.15 mm$"),
+    ],
+)
+def test_lengths_that_disagree_are_stated(lengths, message):
+    stated = {"ball_radius": 18.0, "clearance": 0.15, "liner_thickness": 6.5, **lengths}
+    with pytest.raises(ValueError, match=message):
+        bs.Joint(**stated, liner=bs.CROSSLINKED_PE)

@@ -27,7 +27,7 @@ from ..elasticity.off_axis.model import Sphere
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import parse
 from ..problem import Joint
-from ..problem.cup import Cup
+from ..problem.cup import AngleDefinition, Cup
 from ..reports.unit_systems import Units
 from .options import drop_missing
 
@@ -51,9 +51,7 @@ class CupOptions:
 
     def apply_to(self, cup: Cup) -> Cup:
         """Return a cup with the values that the options replace."""
-        options = drop_missing(vars(self))
-        changed = read_cup(options)
-        return replace(cup, **{name: getattr(changed, name) for name in options})
+        return read_cup(drop_missing(vars(self)), cup)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,6 +159,20 @@ class DirectionOptions:
         if self.ring_width is None:
             return Sphere()
         return Sphere(ring_width=parse("ring_width", self.ring_width, Kind.ANGLE))
+
+
+def orientation_summary(cup: Cup) -> dict[str, dict[str, float]]:
+    """Return the angles of a cup in the body in every definition, for JSON; empty without an orientation."""
+    names = ("inclination_deg", "anteversion_deg")
+    angles = {definition.value: map(degrees, cup.angles(definition)) for definition in AngleDefinition}
+    return {name: dict(zip(names, pair, strict=True)) for name, pair in angles.items()} if cup.oriented else {}
+
+
+def orientation_remark(cup: Cup) -> str:
+    """Return one line with the angles of a cup in the body in every definition."""
+    angles = orientation_summary(cup)
+    texts = (f"{name} {pair['inclination_deg']:.4g}°/{pair['anteversion_deg']:.4g}°" for name, pair in angles.items())
+    return f"cup: inclination/anteversion {', '.join(texts)}, {cup.side.value} side"
 
 
 def tilted_cup(cup: Cup, direction: Mapping[str, Any]) -> Cup:

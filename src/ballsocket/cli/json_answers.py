@@ -288,13 +288,15 @@ def _after_list(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
 
 def _joint_arguments(arguments: Arguments) -> tuple[str, ...]:
     """Return the file or preset of the joint, and the options that change it."""
-    return (*_joint_name(arguments), *_selected_options(arguments, *_JOINT_OPTIONS))
+    angles = () if arguments[0] == "orient" else _ANGLE_OPTIONS  # there they are ranges
+    return (*_joint_name(arguments), *_selected_options(arguments, *_JOINT_OPTIONS, *angles))
 
 
-_JOINT_OPTIONS = tuple(
-    f"--{name}".replace("_", "-")
-    for name in (*LENGTHS, "young", "poisson", "liner", "ball_young", "ball_poisson", "ball")
-)
+_PART_OPTIONS = ("young", "poisson", "liner", "ball_young", "ball_poisson", "ball", "shell", "shell_thickness")
+
+_JOINT_OPTIONS = tuple(f"--{name}".replace("_", "-") for name in (*LENGTHS, *_PART_OPTIONS))
+
+_ANGLE_OPTIONS = ("--inclination", "--anteversion", "--side", "--orientation", "--pelvic-tilt")
 
 
 def _joint_name(arguments: Arguments) -> list[str]:

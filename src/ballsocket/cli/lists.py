@@ -14,7 +14,7 @@ from ..core.sources import cite as bibtex_of
 from ..files.schema_keys import json_schema
 from ..mcp.tools import FILE_TABLES, file_table
 from ..problem import Joint, Material
-from ..problem.presets import joints, materials
+from ..problem.presets import find_material, joints, materials
 from ..reports.catalogue_lists import (
     model_summary,
     preset_summary,
@@ -55,7 +55,7 @@ def presets(
 ) -> None:
     """List materials and joints by name, with their sources."""
     known = [*materials, *joints]
-    names = known if name is None else [known_name("preset", name, known)]
+    names = known if name is None else [find_material(name) or known_name("preset", name, known)]
     if as_json:
         kinds: dict[str, Mapping[str, Material | Joint]] = {"materials": materials, "joints": joints}
         listed = {

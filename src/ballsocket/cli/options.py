@@ -4,25 +4,37 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from copy import copy
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from inspect import Parameter, Signature, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, get_args, get_origin
 
 import typer
 
+from ..catalogue import listed_models
 from ..core.checks import nearest, normalise_name
 from ..core.executors.processes import Engine, Processes
 from ..core.input_files import resolve_input
-from ..files.joint_file import JointFile, joint_of, read_joint, read_load, varied
+from ..files.joint_file import JointFile, joint_of, read_cup, read_joint, read_load, varied
 from ..problem.dimensions import LENGTHS
-from ..problem.presets import joints
+from ..problem.presets import joints, materials
 from ..reports.figure_files import check_format, save
 from ..reports.unit_systems import Units
 from .json_answers import echo_json
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+def complete_material(start: str) -> list[str]:
+    """List the preset materials whose names have this start, for a shell."""
+    return [name for name in materials if name.startswith(start.lower())]
+
+
+def complete_model(start: str) -> list[str]:
+    """List the models whose names have this start, for a shell."""
+    return [name for name in listed_models if name.startswith(start.lower())]
+
 
 JointName = Annotated[
     str | None,
@@ -55,14 +67,15 @@ Scheduler = Annotated[
 ModelName = Annotated[
     str | None,
     typer.Option(
-        help="Name of a model, see `ballsocket models`. Default: tabulated; exact for joints outside its tables."
+        help="Name of a model, see `ballsocket models`. Default: tabulated; exact for joints outside its tables.",
+        autocompletion=complete_model,
     ),
 ]
 
 
 @dataclass(frozen=True, kw_only=True)
-class JointOptions:
-    """Options of a joint; they replace single values of a joint file or preset."""
+class JointPartOptions:
+    """Options of a joint without its orientation; they replace single values of a joint file or preset."""
 
     ball_radius: Annotated[str | None, typer.Option(help="Ball radius R1 in mm, or with a unit: '1.6 cm'.")] = None
     head_diameter: Annotated[
@@ -84,11 +97,24 @@ class JointOptions:
         str | None, typer.Option(help="Thickness of the liner in mm: '6 mm'; inf for a massive socket.")
     ] = None
     outer_radius: Annotated[
-        str | None, typer.Option(help="Outer radius of the liner in mm: '24 mm'. Not with --liner-thickness.")
+        str | None,
+        typer.Option(help="Outer radius of liner or shell in mm: '24 mm'. Beside --liner-thickness only with --shell."),
     ] = None
     outer_diameter: Annotated[
-        str | None, typer.Option(help="Outer diameter of the liner in mm: '48 mm'. Not with --liner-thickness.")
+        str | None,
+        typer.Option(
+            help="Outer diameter of liner or shell in mm: '52 mm'. Beside --liner-thickness only with --shell."
+        ),
     ] = None
+    shell: Annotated[
+        str | None,
+        typer.Option(
+            help="Name of the material of a shell right behind the liner: 'titanium'. Its thickness follows from "
+            "--outer-diameter and --liner-thickness, or is --shell-thickness.",
+            autocompletion=complete_material,
+        ),
+    ] = None
+    shell_thickness: Annotated[str | None, typer.Option(help="Thickness of the shell in mm: '2 mm'.")] = None
     young: Annotated[str | None, typer.Option(help="Young's modulus of the liner in MPa, or with a unit: '1 GPa'.")] = (
         None
     )
@@ -96,7 +122,8 @@ class JointOptions:
     liner: Annotated[
         str | None,
         typer.Option(
-            help="Name of the liner material, see `ballsocket presets`. --young and --poisson replace its values."
+            help="Name of the liner material, see `ballsocket presets`. --young and --poisson replace its values.",
+            autocompletion=complete_material,
         ),
     ] = None
     ball_young: Annotated[
@@ -109,7 +136,8 @@ class JointOptions:
     ball: Annotated[
         str | None,
         typer.Option(
-            help="Name of the ball material, see `ballsocket presets`. --ball-young, --ball-poisson replace its values."
+            help="Name of the ball material, see `ballsocket presets`. --ball-young and --ball-poisson replace it.",
+            autocompletion=complete_material,
         ),
     ] = None
 
@@ -118,8 +146,9 @@ class JointOptions:
         lengths = {name: getattr(self, name) for name in LENGTHS if hasattr(self, name)}
         liner = {"material": self.liner, "young": self.young, "poisson": self.poisson}
         ball = {"material": self.ball, "young": self.ball_young, "poisson": self.ball_poisson}
-        tables = {"joint": drop_missing(lengths), "liner": drop_missing(liner), "ball": drop_missing(ball)}
-        return {name: table for name, table in tables.items() if table}
+        shell = {"material": self.shell, "thickness": self.shell_thickness}
+        tables = {"joint": lengths, "liner": liner, "ball": ball, "shell": shell}
+        return {name: drop_missing(table) for name, table in tables.items() if drop_missing(table)}
 
     def read(self, name: str | None) -> JointFile:
         """Read a joint from a file, a preset or the options alone; options replace single values.
@@ -137,6 +166,54 @@ class JointOptions:
         if name is None:
             return joint_of(tables)
         return varied(named_joint(name), tables) if tables else named_joint(name)
+
+
+_IN_FILE = "Default: as in [cup] of the joint file"
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointOptions(JointPartOptions):
+    """Options of a joint and of the orientation of its cup in the body."""
+
+    inclination: Annotated[
+        str | None, typer.Option(help=f"Inclination of the cup in degrees: '45 deg'. {_IN_FILE}, or 0.")
+    ] = None
+    anteversion: Annotated[
+        str | None, typer.Option(help=f"Anteversion of the cup in degrees: '15 deg'. {_IN_FILE}, or 0.")
+    ] = None
+    side: Annotated[str | None, typer.Option(help=f"Side of the body: 'right' or 'left'. {_IN_FILE}, or right.")] = None
+    orientation: Annotated[
+        str | None,
+        typer.Option(
+            help="Definition of both angles (Murray 1993): 'radiographic', 'operative' or 'anatomical'. "
+            "Default: radiographic."
+        ),
+    ] = None
+    pelvic_tilt: Annotated[
+        str | None,
+        typer.Option(
+            help="Tilt of the pelvis in degrees, positive with its top to the front: '10 deg'. The angles of the cup "
+            "are those in the pelvis. Default: 0."
+        ),
+    ] = None
+
+    @property
+    def orients(self) -> bool:
+        """True if an option orients the cup."""
+        return bool(self._angles())
+
+    def _angles(self) -> dict[str, str]:
+        """Return the options of the orientation as keys of the table [cup]."""
+        return drop_missing({key: getattr(self, key) for key in CUP_ANGLES})
+
+    def read(self, name: str | None) -> JointFile:
+        """Read a joint as `JointPartOptions.read`, and turn its cup as the options state."""
+        file = super().read(name)
+        return replace(file, cup=read_cup(self._angles(), file.cup))
+
+
+CUP_ANGLES = ("inclination", "anteversion", "side", "orientation", "pelvic_tilt")
+"""Options of the orientation of a cup, which are also keys of the table [cup]."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from math import degrees
 from typing import Annotated, Any
 
 import numpy
@@ -11,16 +12,19 @@ import typer
 from rich.console import Console
 
 from ..core.arrays import Numbers
+from ..core.checks import require
+from ..core.kinds import Kind
 from ..core.quantities import CUP
 from ..elasticity.finite_elements.progress import progress_to
 from ..elasticity.off_axis.orientations import Orientations
 from ..elasticity.off_axis.orientations import orient as press_orientations
-from ..files.joint_file import JointFile, read_aim
-from ..files.units import as_given
-from ..reports.orientation_results import orientation_figure, print_orientations
-from ..studies.expressions import parse_ends
+from ..files.joint_file import JointFile, read_aim, read_cup
+from ..files.units import as_given, parse
+from ..reports.orientation_results import LIMITED_FIELDS, limits_summary, orientation_figure, print_orientations
+from ..studies.expressions import parse_ends, parse_limit
+from ..studies.limits import Limit
 from .elasticity_options import CupOptions, DirectionOptions
-from .options import JointName, JointOptions, LoadOptions, OutputOptions, drop_missing, expand_groups
+from .options import JointName, JointPartOptions, LoadOptions, OutputOptions, drop_missing, expand_groups
 from .root import FAILURE, app, print_message
 
 
@@ -34,9 +38,29 @@ class OrientationOptions:
             help="Direction of the load 'x,y,z' in the body: right, front, up. Default: as in the file, or up."
         ),
     ] = None
-    inclination: Annotated[str, typer.Option(help="Range of the radiographic inclination in degrees.")] = "30..60 deg"
-    anteversion: Annotated[str, typer.Option(help="Range of the radiographic anteversion in degrees.")] = "0..30 deg"
-    points: Annotated[int, typer.Option(min=1, max=91, help="Number of values of each angle.")] = 13
+    inclination: Annotated[
+        str, typer.Option(help="Radiographic inclinations in degrees: a range '30..60 deg', or one angle '45 deg'.")
+    ] = "30..60 deg"
+    anteversion: Annotated[
+        str, typer.Option(help="Radiographic anteversions in degrees: a range '0..30 deg', or one angle '20 deg'.")
+    ] = "0..30 deg"
+    step: Annotated[
+        str | None,
+        typer.Option(help="Step of both angles in degrees: '5 deg'. Default: a round step, at most 13 values."),
+    ] = None
+    points: Annotated[
+        int | None, typer.Option(min=1, max=91, help="Number of equally spaced values of each angle. Not with --step.")
+    ] = None
+    side: Annotated[
+        str | None, typer.Option(help="Side of the body: 'right' or 'left'. Default: as in the file, or right.")
+    ] = None
+    limit: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Limit of edge_distance, max_pressure or half_angle: 'edge_distance>=1 mm'. Repeat for several. "
+            "Default: no limit."
+        ),
+    ] = None
     ring_width: Annotated[
         str | None,
         typer.Option(
@@ -50,10 +74,39 @@ class OrientationOptions:
 
     def _angle(self, name: str) -> Numbers:
         """Return the values of one angle in rad."""
-        low, high = parse_ends(name, getattr(self, name), CUP[name].kind)
-        with as_given({name: getattr(self, name)}):
-            CUP[name].check(numpy.array([low, high]))
-        return numpy.unique(numpy.linspace(min(low, high), max(low, high), self.points))
+        text = getattr(self, name)
+        ends = parse_ends(name, text, Kind.ANGLE) if ".." in text else (parse(name, text, Kind.ANGLE),) * 2
+        with as_given({name: text}):
+            for end in ends:
+                CUP[name].check(end)
+        (low, high), step = sorted(ends), self._step_degrees()
+        if self.points is not None:
+            return numpy.unique(numpy.linspace(low, high, self.points))
+        return numpy.radians(_even_degrees(round(degrees(low), 9), round(degrees(high), 9), step))
+
+    def _step_degrees(self) -> float | None:
+        """Return the requested step in degrees; None without one."""
+        if self.step is None:
+            return None
+        if self.points is not None:
+            raise ValueError("--step and --points are one too many: either fixes the other")
+        step = degrees(parse("step", self.step, Kind.ANGLE))
+        require("step", step, step > 0, "a step (degrees) is above 0")
+        return step
+
+    def read_limits(self) -> list[Limit]:
+        """Read the limits.
+
+        Raises
+        ------
+        ValueError
+            A limit of a quantity that orientations do not have.
+        """
+        limits = [parse_limit(text) for text in self.limit or ()]
+        for limit in limits:
+            if limit.name not in LIMITED_FIELDS:
+                raise ValueError(f"--limit of {limit.name} is not possible here; possible: {', '.join(LIMITED_FIELDS)}")
+        return limits
 
     def read_direction(self, file: JointFile) -> Mapping[str, Any]:
         """Read the direction from the options or the joint file.
@@ -69,12 +122,34 @@ class OrientationOptions:
         return direction
 
 
+_ROUND_STEPS = (0.5, 1.0, 2.0, 2.5, 5.0, 10.0, 15.0)
+"""Steps in degrees that are used without a request."""
+
+_USUAL_VALUES, _MAX_VALUES = 13, 91
+"""Largest number of values of an angle, without a requested step and with one."""
+
+
+def _even_degrees(low: float, high: float, step: float | None) -> Numbers:
+    """Return the ends of a range in degrees and the multiples of a step between them.
+
+    Raises
+    ------
+    ValueError
+        More than 91 values.
+    """
+    chosen = step or next(size for size in _ROUND_STEPS if (high - low) / size <= _USUAL_VALUES - 1)
+    if (high - low) / chosen > _MAX_VALUES - 1:
+        raise ValueError(f"step = {chosen:g} degrees makes more than {_MAX_VALUES} values of an angle")
+    multiples = chosen * numpy.arange(numpy.ceil(low / chosen), numpy.floor(high / chosen) + 1)
+    return numpy.unique(numpy.round([low, *multiples, high], 9))
+
+
 @app.command()
 @expand_groups
 def orient(
     *,
     joint: JointName = None,
-    joint_options: JointOptions,
+    joint_options: JointPartOptions,
     load: LoadOptions,
     orientation: OrientationOptions,
     cup: CupOptions,
@@ -83,19 +158,25 @@ def orient(
     """Map edge distance and peak pressure over cup orientations.
 
     The load has a fixed direction in the body while the cup rotates through inclinations and anteversions. The model
-    sphere (linear elasticity) solves every orientation.
+    sphere (linear elasticity) solves every orientation. --limit finds the orientations within limits.
 
     Exit status: 0 success, 2 wrong input, 3 no orientation has a result.
     """
     output.check()
+    limits = orientation.read_limits()
     angles: dict[str, Any] = orientation.angles()
     file = joint_options.read(joint)
-    sphere = replace(DirectionOptions(ring_width=orientation.ring_width).model(), cup=cup.apply_to(file.cup))
+    side = drop_missing({"side": orientation.side})
+    rim = read_cup(side, cup.apply_to(file.cup))
+    sphere = replace(DirectionOptions(ring_width=orientation.ring_width).model(), cup=rim)
     model = sphere.with_direction(**orientation.read_direction(file))
     status = Console(stderr=True).status("sphere")
     with status, progress_to(lambda text: status.update(f"sphere: {text}")):
         orientations: Orientations = press_orientations(file.joint, model=model, **angles, **load.read(file))
-    output.print(orientations.summary, lambda: print_orientations(orientations))
+    output.print(
+        lambda: {**orientations.summary(), **limits_summary(orientations, limits)},
+        lambda: print_orientations(orientations, limits),
+    )
     output.draw(lambda: orientation_figure(orientations))
     if not orientations.held.any():
         print_message("no orientation has an answer (see the statuses)")

@@ -32,6 +32,8 @@ from .elasticity_options import (
     MeshOptions,
     TimedModel,
     mesh_remark,
+    orientation_remark,
+    orientation_summary,
     refuse_mesh_options,
     solve_mesh,
     sphere_in_cup,
@@ -39,7 +41,7 @@ from .elasticity_options import (
     tilted_cup,
 )
 from .json_answers import echo_json
-from .options import AsJson, JointName, JointNames, JointOptions, LoadOptions, UnitSystem, expand_groups
+from .options import AsJson, JointName, JointNames, JointOptions, LoadOptions, UnitSystem, complete_model, expand_groups
 from .press_files import FigureOptions, ReportOptions
 from .root import FAILURE, app, print_message
 
@@ -54,7 +56,8 @@ class ModelOptions:
         list[str] | None,
         typer.Option(
             help="Name of a model (see `ballsocket models`), fem or sphere. "
-            f"Repeat for several. Default: {DEFAULT_MODEL}."
+            f"Repeat for several. Default: {DEFAULT_MODEL}.",
+            autocompletion=complete_model,
         ),
     ] = None
     every: Annotated[bool, typer.Option("--all", help="Press by every model of the catalogue.")] = False
@@ -199,6 +202,8 @@ def press(
         held_cup = stated_cup.around_ball(file.joint.clearance)
         assumed_arc = held_cup is not stated_cup
         assumptions = _preload_assumptions(file.joint, held_cup if assumed_arc else None)
+        angles = {} if "tilt" in direction else orientation_summary(stated_cup)
+        remarks += [orientation_remark(stated_cup)] if angles and joint_options.orients else []
         cup = tilted_cup(held_cup, direction)
         needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
         models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
@@ -231,7 +236,7 @@ def press(
             comparison=comparison,
             models=models,
             remarks=remarks,
-            summary=_summary(comparison, friction_options, assumptions, pulled),
+            summary=_summary(comparison, friction_options, {"assumptions": assumptions, "orientation": angles}, pulled),
         )
 
     joints = [press_joint(name) for name in names]
@@ -252,16 +257,15 @@ def press(
 
 
 def _summary(
-    comparison: Comparison, friction: FrictionOptions, assumptions: Sequence[str], pulled: PullOut | None
+    comparison: Comparison, friction: FrictionOptions, circumstances: Mapping[str, Any], pulled: PullOut | None
 ) -> dict[str, Any]:
-    """Return a comparison for JSON, with friction torques, assumptions and pull-out force if there are any."""
+    """Return a comparison for JSON, with friction torques, circumstances and pull-out force if there are any."""
     summary = comparison.summary()
     for result in summary["results"] if friction.friction is not None else ():
         contact = comparison.get(result["model"])
         result["friction"] = None if contact is None else friction.torques(contact)
-    if assumptions:
-        summary["assumptions"] = list(assumptions)
-    return summary if pulled is None else {**summary, "pull_out": pulled.summary()}
+    further = {**circumstances, "pull_out": None if pulled is None else pulled.summary()}
+    return {**summary, **{name: part for name, part in further.items() if part}}
 
 
 def _preload_assumptions(joint: Joint, assumed_cup: Cup | None) -> list[str]:

@@ -23,9 +23,11 @@ from typer.core import TyperCommand, TyperGroup
 from ..version import __version__
 
 UsageError: Any = typer.BadParameter.__base__  # typer contains a copy of click and does not export this class
+PROGRAM = "ballsocket"
 SUCCESS, MISUSE, FAILURE = 0, 2, 3
 INTERRUPTED, BROKEN_PIPE = 130, 141  # 128 + number of the signal, like in a shell
 _MAX_MESSAGE_LENGTH = 600  # characters
+_MAX_HELP_WIDTH = 120  # columns; a narrower terminal has its own width
 _ASCII_REPLACEMENTS = {
     "≤": "<=",
     "≥": ">=",
@@ -87,14 +89,14 @@ class CommandGroup(TyperGroup):
 
 
 app = typer.Typer(
-    name="ballsocket",
+    name=PROGRAM,
     cls=CommandGroup,
     help="Contact of a ball in a socket of nearly its own radius. A number without a unit is in mm, N, MPa or degrees.",
     no_args_is_help=False,
-    add_completion=False,
+    add_completion=True,
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": _MAX_HELP_WIDTH},
 )
 CommandGroup.program = app
 
@@ -169,7 +171,7 @@ def _run() -> int:
     """Run the command of the command line, and return the exit status."""
     status = MISUSE
     try:
-        result = app(standalone_mode=False) or SUCCESS
+        result = app(prog_name=PROGRAM, standalone_mode=False) or SUCCESS
         _flush()
         return int(result)
     except SystemExit as stop:
@@ -188,7 +190,7 @@ def _run() -> int:
             _discard_output()  # the remaining output would fail again when Python exits
         message = f"{error.filename or 'output'}: {error.strerror or error}"
     except ValueError as error:
-        message = str(error)
+        message = str(error).replace("\\\\", "\\")  # quoted paths of Windows
     except ImportError as error:
         message = str(error)
     except RuntimeError as error:  # a worker process died several times
@@ -204,7 +206,7 @@ def _usage_message(error: Any) -> str:
     message: str = error.format_message()
     if not hasattr(error, "option_name") or error.ctx is None or set(error.possibilities or ()) - {"--help"}:
         return message
-    return f"No such option: {error.option_name}; ballsocket {error.ctx.info_name} -h lists them"
+    return f"No such option: {error.option_name}; {error.ctx.command_path} -h lists them"
 
 
 def print_message(message: str) -> None:

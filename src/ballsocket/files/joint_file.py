@@ -13,12 +13,16 @@ from ..core.checks import check_text, nearest, normalise_name, require, shown
 from ..core.input_files import resolve_input
 from ..core.kinds import Kind
 from ..problem import Joint, Layer, Material, Support
-from ..problem.cup import Cup, Interface, Side
-from ..problem.presets import joints, materials, named_material
-from .schema import Angle, Force, Length, PlainNumber, Stress, Table, Text, Value, meaning
+from ..problem.cup import AngleDefinition, Cup, Interface, Side
+from ..problem.dimensions import STORED_LENGTHS, resolve_lengths
+from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
+from .schema import Angle, Force, Length, PlainNumber, Stress, Table, Text, Value, choices_schema, meaning
 from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
+
+DEFAULT_CUP = Cup()
+"""Hemisphere that opens downwards."""
 
 _MAX_LAYERS = 20
 """Largest number of layers behind the liner."""
@@ -44,6 +48,11 @@ class MaterialName(Text):
 
     choices = tuple(materials)
 
+    @classmethod
+    def json_schema(cls) -> dict[str, Any]:
+        """Return the JSON schema of the names and further names of the presets."""
+        return choices_schema((*materials, *MATERIAL_ALIASES))
+
 
 class MaterialTable(Table, frozen=True, kw_only=True):
     """Material: a preset by name, numbers, or both; numbers win over those of the preset."""
@@ -65,6 +74,12 @@ class LayerTable(MaterialTable, frozen=True, kw_only=True):
     thickness: Annotated[Length, meaning("thickness of the layer; inf is a massive body")]
 
 
+class ShellTable(MaterialTable, frozen=True, kw_only=True):
+    """Shell right behind the liner; its thickness may follow from the outer dimension and the liner."""
+
+    thickness: Annotated[Length | None, meaning("thickness of the shell")] = None
+
+
 class CupTable(Table, frozen=True, kw_only=True):
     """Cup: its rim, its interface with the liner, and its orientation in the body."""
 
@@ -74,6 +89,12 @@ class CupTable(Table, frozen=True, kw_only=True):
     anteversion: Angle | None = None
     interface: Annotated[Interface | None, meaning("interface of liner and backing: bonded or sliding")] = None
     side: Annotated[Side | None, meaning("side of the body: right or left")] = None
+    orientation: Annotated[
+        AngleDefinition | None, meaning("definition of inclination and anteversion; radiographic by default")
+    ] = None
+    pelvic_tilt: Annotated[
+        Angle | None, meaning("tilt of the pelvis in which the angles are measured, positive with its top to the front")
+    ] = None
 
 
 class Direction(Value, tuple[float, ...]):
@@ -109,6 +130,7 @@ class JointTables(Table, frozen=True, kw_only=True):
     joint: Annotated[LengthsTable | str | None, meaning("name of a preset, or path of a joint file")] = None
     liner: MaterialTable | None = None
     ball: MaterialTable | None = None
+    shell: ShellTable | None = None
     backing: list[LayerTable] | None = None
     cup: CupTable | None = None
 
@@ -169,7 +191,7 @@ class JointFile:
 
     joint: Joint
     load: dict[str, float]
-    cup: Cup = Cup()  # noqa: RUF009 (frozen)
+    cup: Cup = DEFAULT_CUP
     aim: dict[str, Any] = field(default_factory=dict)
     report: ReportDetails = ReportDetails()
 
@@ -226,6 +248,9 @@ def describe_joint(tables: JointTables, name: str = "", source: str = "") -> Joi
         raise ValueError(f"{len(layers)} layers are behind the liner; at most {_MAX_LAYERS} are read")
     backing = tuple(_layer(f"backing[{number}]", layer) for number, layer in enumerate(layers))
     numbers: Any = quantities_of(lengths)
+    if tables.shell is not None:
+        shell, numbers = _shell(tables.shell, lengths, numbers, {})
+        backing = (shell, *backing)
     with as_given(written_in(lengths)):
         joint = Joint(
             **numbers, liner=liner, ball=ball, backing=backing, support=lengths.support, name=name, source=source
@@ -244,6 +269,12 @@ def varied(file: JointFile, content: Mapping[str, Any]) -> JointFile:
     tables, joint = read_table(content, JointFileTable), file.joint
     lengths = tables.joint or LengthsTable()
     changes: dict[str, Any] = dict(quantities_of(lengths))
+    if tables.shell is not None:
+        if joint.backing:
+            raise ValueError("the joint has layers behind its liner already; change them in its file")
+        current = {name: getattr(joint, name) for name in STORED_LENGTHS}
+        shell, remaining = _shell(tables.shell, lengths, changes, current)
+        changes = {**remaining, "backing": (shell,)}
     for part, material in (("liner", tables.liner), ("ball", tables.ball)):
         if material is not None:
             changes[part] = _material(part, material, getattr(joint, part))
@@ -283,18 +314,74 @@ def _aim_of(table: LoadTable) -> dict[str, Any]:
     return {"tilt": tilt}
 
 
-def read_cup(content: Mapping[str, Any]) -> Cup:
-    """Read a cup; every key is optional."""
-    return cup_of(read_table(content, CupTable))
+def read_cup(content: Mapping[str, Any], base: Cup = DEFAULT_CUP) -> Cup:
+    """Read a cup; every key is optional, and keys replace values of another cup."""
+    return cup_of(read_table(content, CupTable), base)
 
 
-def cup_of(table: CupTable) -> Cup:
-    """Create a cup from its table."""
+def cup_of(table: CupTable, base: Cup = DEFAULT_CUP) -> Cup:
+    """Create a cup from its table, whose keys replace values of another cup."""
     choices = {"interface": table.interface, "side": table.side}
-    arguments: dict[str, Any] = {name: choice for name, choice in choices.items() if choice is not None}
-    arguments |= quantities_of(table, "arc_of_cover", "chamfer", "inclination", "anteversion")
+    changes: dict[str, Any] = {name: choice for name, choice in choices.items() if choice is not None}
+    changes |= quantities_of(table, "arc_of_cover", "chamfer")
+    angles = quantities_of(table, "inclination", "anteversion")
     with as_given(written_in(table)):
-        return Cup(**arguments)
+        if table.orientation is not None or table.pelvic_tilt is not None:
+            angles = _radiographic_angles(table, angles, base)
+        return replace(base, **{**changes, **angles})
+
+
+def _radiographic_angles(table: CupTable, angles: Mapping[str, float], base: Cup) -> dict[str, float]:
+    """Return the radiographic angles in the body of angles of another definition, or in a tilted pelvis."""
+    if not angles and table.orientation is not None:
+        raise ValueError(f"orientation = {table.orientation.value!r} needs an inclination and an anteversion")
+    if not angles and not base.oriented:
+        raise ValueError("pelvic_tilt needs the inclination and the anteversion of the cup")
+    definition = table.orientation or AngleDefinition.RADIOGRAPHIC
+    inclination, anteversion = base.angles(definition)
+    stated = {"inclination": inclination, "anteversion": anteversion, **angles}
+    tilt = 0.0 if table.pelvic_tilt is None else float(table.pelvic_tilt)
+    cup = Cup.from_angles(**stated, definition=definition, pelvic_tilt=tilt)
+    return {"inclination": cup.inclination, "anteversion": cup.anteversion}
+
+
+def _shell(
+    table: ShellTable, lengths: LengthsTable, numbers: Mapping[str, float], current: Mapping[str, Any]
+) -> tuple[Layer, dict[str, float]]:
+    """Create the shell of a joint, and return it with the lengths in mm that remain to define the joint.
+
+    Without a thickness of the shell, an outer dimension and the thickness of the liner determine it.
+
+    Raises
+    ------
+    ValueError
+        A thickness that is missing, or an outer dimension that leaves no shell.
+    """
+    material = _material("shell", table)
+    remaining = dict(numbers)
+    if table.thickness is not None:
+        thickness = float(table.thickness)
+    else:
+        outer = next((key for key in ("outer_diameter", "outer_radius") if key in remaining), "")
+        if not outer:
+            raise ValueError(
+                "the thickness of the shell is missing: state it, or outer_diameter and liner_thickness, which leave it"
+            )
+        if "liner_thickness" not in remaining and not current:
+            raise ValueError(f"liner_thickness is missing: {outer} alone does not tell liner and shell apart")
+        radius = remaining.pop(outer) / (2 if outer == "outer_diameter" else 1)
+        with as_given(written_in(lengths)):
+            stored = resolve_lengths(remaining, current, 0.0)
+        inner = stored["ball_radius"] + stored["clearance"] + stored["liner_thickness"]
+        thickness = round(radius - inner, 12)
+        if not thickness > 0:
+            least = inner * (2 if outer == "outer_diameter" else 1)
+            raise ValueError(
+                f"{outer} = {shown(getattr(lengths, outer).written)} is not allowed: ball, clearance and liner take "
+                f"{least:g} mm, which leaves no shell"
+            )
+    with as_given(written_in(table), "shell."):
+        return Layer(thickness=thickness, material=material), remaining
 
 
 def _layer(name: str, table: LayerTable) -> Layer:
@@ -318,7 +405,7 @@ def _material(name: str, table: MaterialTable, present: Material | None = None) 
         return replace(preset, **numbers) if preset else Material(**numbers)
 
 
-_PARTS = ("liner", "ball", "backing", "cup")
+_PARTS = ("liner", "ball", "shell", "backing", "cup")
 """Tables that describe a joint together with [joint]."""
 
 

@@ -6,7 +6,8 @@ Directions are those of the patient's body: x to the right, y to the front, z up
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, pi, radians, sin
+from math import atan2, cos, degrees, hypot, pi, radians, sin
+from typing import Any, Self
 
 from ..core import arrays
 from ..core.arrays import Array, is_plain_number
@@ -35,6 +36,45 @@ class Side(Choice):
 
     RIGHT = "right"
     LEFT = "left"
+
+
+class AngleDefinition(Choice):
+    """Definition of the inclination and anteversion of a cup (Murray 1993).
+
+    RADIOGRAPHIC: inclination between the axes of body and cup in the frontal view; anteversion between the cup's axis
+    and the frontal plane. OPERATIVE: inclination between the cup's axis and the sagittal plane; anteversion between
+    the axes of body and cup in the sagittal view. ANATOMICAL: inclination between the axes of body and cup;
+    anteversion between the transverse axis and the cup's axis in the view from above.
+    """
+
+    RADIOGRAPHIC = "radiographic"
+    OPERATIVE = "operative"
+    ANATOMICAL = "anatomical"
+
+
+def _opening_of(inclination: float, anteversion: float, definition: AngleDefinition) -> Direction:
+    """Return the axis of a cup out of its opening: lateral, to the front, downwards (Murray 1993, equations 1 to 3)."""
+    if definition is AngleDefinition.OPERATIVE:
+        across = cos(inclination)
+        return sin(inclination), across * sin(anteversion), across * cos(anteversion)
+    if definition is AngleDefinition.ANATOMICAL:
+        level = sin(inclination)
+        return level * cos(anteversion), level * sin(anteversion), cos(inclination)
+    frontal = cos(anteversion)
+    return sin(inclination) * frontal, sin(anteversion), cos(inclination) * frontal
+
+
+def _angles_of(opening: Direction, definition: AngleDefinition) -> tuple[float, float]:
+    """Return the inclination and anteversion in rad of an axis: lateral, to the front, downwards."""
+    lateral, front, down = opening
+    if definition is AngleDefinition.OPERATIVE:
+        return atan2(lateral, hypot(front, down)), atan2(front, down)
+    if definition is AngleDefinition.ANATOMICAL:
+        return atan2(hypot(lateral, front), down), atan2(front, lateral)
+    return atan2(lateral, down), atan2(front, hypot(lateral, down))
+
+
+_MAX_PELVIC_TILT = pi / 2
 
 
 class UnsetAngle(float):
@@ -88,7 +128,8 @@ class Cup:
 
     References
     ----------
-    The angles are those of Murray (1993), doi 10.1302/0301-620X.75B2.8444942.
+    Murray 1993, The definition and measurement of acetabular orientation, J. Bone Joint Surg. Br. 75-B, 228-232, doi
+    10.1302/0301-620X.75B2.8444942.
 
     Examples
     --------
@@ -114,6 +155,84 @@ class Cup:
                 choices = " or ".join(map(str, kind))
                 raise TypeError(f"{name} must be {choices}, got {shown(getattr(self, name))}")
 
+    @classmethod
+    def from_angles(
+        cls,
+        inclination: float,
+        anteversion: float,
+        *,
+        definition: AngleDefinition | str = AngleDefinition.RADIOGRAPHIC,
+        pelvic_tilt: float = 0.0,
+        **others: Any,
+    ) -> Self:
+        """Create a cup from angles of any definition, in a pelvis that may be tilted in the body.
+
+        Parameters
+        ----------
+        inclination, anteversion : float
+            Angles in rad relative to the pelvis; the ranges are those of the radiographic ones.
+        definition : AngleDefinition or str
+            "radiographic" (default), "operative" or "anatomical".
+        pelvic_tilt : float
+            Rotation of the pelvis in the body about the transverse axis in rad, -π/2 to π/2, positive if its top moves
+            to the front. It reduces the operative anteversion by its own size.
+        **others
+            Other attributes of the cup.
+
+        Returns
+        -------
+        Cup
+            Cup with the radiographic angles in the body.
+
+        Raises
+        ------
+        ValueError
+            An angle that is not allowed, or a cup that opens upwards.
+
+        Examples
+        --------
+        >>> from math import degrees, radians
+        >>> cup = Cup.from_angles(radians(43.0795), radians(20.7536), definition="operative")
+        >>> round(degrees(cup.inclination), 3), round(degrees(cup.anteversion), 3)
+        (45.0, 15.0)
+        """
+        chosen = _definition(definition)
+        if not -_MAX_PELVIC_TILT <= pelvic_tilt <= _MAX_PELVIC_TILT:
+            raise ValueError(
+                f"pelvic_tilt = {pelvic_tilt:g} is not allowed: a pelvic tilt (rad) is between -pi/2 and pi/2"
+            )
+        for name, angle in (("inclination", inclination), ("anteversion", anteversion)):
+            CUP[name].check(angle)
+        if chosen is AngleDefinition.RADIOGRAPHIC and pelvic_tilt == 0:
+            return cls(inclination=inclination, anteversion=anteversion, **others)
+        lateral, front, down = _opening_of(inclination, anteversion, chosen)
+        forward, level = sin(pelvic_tilt), cos(pelvic_tilt)
+        opening = (lateral, front * level - down * forward, down * level + front * forward)
+        angles = _angles_of(opening, AngleDefinition.RADIOGRAPHIC)
+        if angles[0] > pi / 2 + 1e-12:
+            raise ValueError(
+                f"the cup would open upwards: with a pelvic tilt of {degrees(pelvic_tilt):g}° its radiographic "
+                f"inclination is {degrees(angles[0]):.4g}°; allowed are 0 to 90°"
+            )
+        return cls(inclination=min(angles[0], pi / 2), anteversion=angles[1], **others)
+
+    def angles(self, definition: AngleDefinition | str = AngleDefinition.RADIOGRAPHIC) -> tuple[float, float]:
+        """Return inclination and anteversion in rad in a definition: "radiographic", "operative" or "anatomical".
+
+        Examples
+        --------
+        >>> from math import degrees, radians
+        >>> cup = Cup(inclination=radians(45.0), anteversion=radians(15.0))
+        >>> [round(degrees(angle), 4) for angle in cup.angles("operative")]
+        [43.0795, 20.7536]
+        >>> [round(degrees(angle), 4) for angle in cup.angles("anatomical")]
+        [46.9205, 20.7536]
+        """
+        chosen = _definition(definition)
+        if chosen is AngleDefinition.RADIOGRAPHIC:
+            return float(self.inclination), float(self.anteversion)
+        return _angles_of(_opening_of(self.inclination, self.anteversion, AngleDefinition.RADIOGRAPHIC), chosen)
+
     @property
     def rim(self) -> float:
         """Polar angle of the rim in rad, half of the arc of cover."""
@@ -135,10 +254,8 @@ class Cup:
     @property
     def opening(self) -> Direction:
         """Unit vector along the axis of the cup, out of its opening, in the body frame."""
-        # (sin RI cos RA, sin RA, -cos RI cos RA) with x lateral
-        lateral = sin(self.inclination) * cos(self.anteversion)
-        down = cos(self.inclination) * cos(self.anteversion)
-        return (lateral if self.side is Side.RIGHT else -lateral), sin(self.anteversion), -down
+        lateral, front, down = _opening_of(self.inclination, self.anteversion, AngleDefinition.RADIOGRAPHIC)
+        return (lateral if self.side is Side.RIGHT else -lateral), front, -down
 
     @property
     def dome(self) -> Direction:
@@ -217,3 +334,12 @@ class Cup:
             Distance in mm.
         """
         return (self.rim - self.tilt(direction) - half_angle) * radius
+
+
+def _definition(value: AngleDefinition | str) -> AngleDefinition:
+    """Return a definition of the angles by its word; raise ValueError for another one."""
+    try:
+        return AngleDefinition(value)
+    except ValueError as error:
+        words = ", ".join(choice.value for choice in AngleDefinition)
+        raise ValueError(f"definition = {shown(value)} is not allowed: {words}") from error

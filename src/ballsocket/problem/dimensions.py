@@ -26,6 +26,9 @@ _EQUIVALENTS = MappingProxyType({**DIAMETERS, "interference": "clearance"})
 _MAX_INTERFERENCE = 0.1
 """Largest interference over the radius of the ball."""
 
+_ROUNDING = 1e-9
+"""Relative difference of two lengths below which they agree."""
+
 STORED_LENGTHS = ("ball_radius", "clearance", "liner_thickness")
 """Lengths that a joint stores; the others are derived."""
 
@@ -119,7 +122,10 @@ def resolve_lengths(lengths: Mapping[str, Array], current: Mapping[str, Array], 
     """
     check_names(lengths, LENGTHS, "among the lengths of a joint")
     numbers = {name: LENGTHS[name].check(value) for name, value in lengths.items()}
-    check_unique_lengths(numbers)
+    try:
+        check_unique_lengths(numbers)
+    except ValueError as error:
+        raise ValueError(f"{error}{_contradiction(numbers, current, shell)}") from None
     if not current:
         _check_sufficient_lengths(numbers)
     stored = derive_lengths(numbers, current, shell)
@@ -170,6 +176,30 @@ def check_unique_lengths(names: Iterable[str]) -> None:
     if "outer_radius" in names_by_length and "liner_thickness" in names_by_length:
         outer = names_by_length["outer_radius"]
         raise ValueError(f"{outer} and liner_thickness are one too many: either fixes the other")
+
+
+def _contradiction(numbers: Mapping[str, Array], current: Mapping[str, Array], shell: Array) -> str:
+    """Describe the first of too many lengths that disagrees with the others; empty for arrays."""
+    if not all(map(is_plain_number, (*numbers.values(), *current.values(), shell))):
+        return ""
+    for name, value in numbers.items():
+        others = {other: number for other, number in numbers.items() if other != name}
+        try:
+            check_unique_lengths(others)
+            implied = _length_of(name, derive_lengths(others, current, shell), shell)
+        except (ValueError, KeyError):  # the others are too many as well, or too few
+            continue
+        if abs(implied - value) > _ROUNDING * abs(value):
+            return f"; {name} = {value:g} mm, but the others make {implied:.6g} mm"
+    return "; leave one out"
+
+
+def _length_of(name: str, stored: Mapping[str, float], shell: float) -> float:
+    """Return a length of a joint by its name, from its stored lengths in mm."""
+    socket = stored["ball_radius"] + stored["clearance"]
+    lengths = {**stored, "socket_radius": socket, "outer_radius": socket + stored["liner_thickness"] + shell}
+    lengths["interference"] = -stored["clearance"]
+    return 2 * lengths[DIAMETERS[name]] if name in DIAMETERS else lengths[name]
 
 
 def _check_sufficient_lengths(names: Iterable[str]) -> None:

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
+from types import MappingProxyType
 from typing import Any
 
-from ..core.checks import NamedItems, check_text, known_name, shown
+from ..core.checks import NamedItems, check_text, shown
 from .joint import Joint
 from .material import Material
 
@@ -125,23 +126,152 @@ CANCELLOUS_BONE = Material(
     young=500.0, poisson=0.2, name="cancellous bone", source="representative; varies widely with its density"
 )
 
-materials: dict[str, Material] = NamedItems(
-    "material",
-    {
-        "uhmwpe": UHMWPE,
-        "crosslinked-pe": CROSSLINKED_PE,
-        "pom": POM,
-        "steel": STEEL,
-        "structural-steel": STRUCTURAL_STEEL,
-        "cocr": COCR,
-        "alumina": ALUMINA,
-        "alumina-composite": ALUMINA_COMPOSITE,
-        "titanium": TITANIUM,
-        "bone-cement": BONE_CEMENT,
-        "cortical-bone": CORTICAL_BONE,
-        "cancellous-bone": CANCELLOUS_BONE,
+_MATERIALS: dict[str, Material] = {
+    "uhmwpe": UHMWPE,
+    "crosslinked-pe": CROSSLINKED_PE,
+    "pom": POM,
+    "steel": STEEL,
+    "structural-steel": STRUCTURAL_STEEL,
+    "cocr": COCR,
+    "alumina": ALUMINA,
+    "alumina-composite": ALUMINA_COMPOSITE,
+    "titanium": TITANIUM,
+    "bone-cement": BONE_CEMENT,
+    "cortical-bone": CORTICAL_BONE,
+    "cancellous-bone": CANCELLOUS_BONE,
+}
+
+_ALIASES = {
+    "uhmwpe": ("pe-uhmw", "conventional-pe", "conventional-uhmwpe", "conventional-polyethylene"),
+    "crosslinked-pe": (
+        *("xlpe", "hxlpe", "xpe", "hxpe", "hxl", "x-uhmwpe", "xl-uhmwpe", "crosslinked-uhmwpe"),
+        *("crosslinked-polyethylene", "highly-crosslinked-pe", "highly-crosslinked-uhmwpe"),
+        "highly-crosslinked-polyethylene",
+    ),
+    "pom": ("acetal", "polyacetal", "polyoxymethylene", "pom-c", "acetal-copolymer"),
+    "steel": ("steel-head",),
+    "structural-steel": ("mild-steel", "s235"),
+    "cocr": (
+        *("cocrmo", "cobalt-chromium", "cobalt-chrome", "cobalt-chromium-molybdenum", "co28cr6mo", "vitallium"),
+        "cobalt-chrome-molybdenum",
+    ),
+    "alumina": ("al2o3", "aluminium-oxide", "aluminum-oxide"),
+    "alumina-composite": ("zta", "zirconia-toughened-alumina", "alumina-matrix-composite", "biolox-delta"),
+    "titanium": ("ti6al4v", "ti-6al-4v-eli", "tial6v4", "ti64", "titanium-alloy"),
+    "bone-cement": ("pmma", "cement"),
+    "cortical-bone": ("compact-bone",),
+    "cancellous-bone": ("trabecular-bone", "spongy-bone"),
+}
+"""Further names of each preset, by its key."""
+
+_AMBIGUOUS = {
+    ("pe", "polyethylene"): ("uhmwpe", "crosslinked-pe"),
+    ("ceramic", "biolox"): ("alumina", "alumina-composite"),
+    ("bone",): ("cortical-bone", "cancellous-bone"),
+}
+"""Names that leave several presets open, and these presets."""
+
+_WITHOUT_DATA = {
+    "PEEK": ("peek", "polyetheretherketone", "peek-optima"),
+    "carbon-fibre PEEK": ("cfr-peek", "cf-peek"),
+    "zirconia": ("zirconia", "zro2", "y-tzp", "zirconium-oxide"),
+    "alumina-toughened zirconia": ("atz", "alumina-toughened-zirconia"),
+    "oxidised zirconium": ("oxinium", "oxidised-zirconium", "oxidized-zirconium"),
+    "silicon nitride": ("silicon-nitride", "si3n4"),
+    "stainless steel": ("stainless-steel", "316l", "orthinox"),
+    "vitamin E polyethylene": ("vepe", "vexlpe", "vitamin-e-pe", "vitamin-e-polyethylene"),
+    "POM homopolymer": ("delrin", "pom-h", "acetal-homopolymer"),
+    "polycarbonate urethane": ("pcu", "polycarbonate-urethane"),
+    "tantalum": ("tantalum",),
+}
+"""Names of materials without a preset, by their plain name."""
+
+_FAR, _SHORT = 2, 6
+"""Largest number of typing errors of a suggestion; shorter names allow only one."""
+
+
+def _compact(name: str) -> str:
+    """Return a name in lower case without hyphens, blanks and other signs."""
+    return "".join(character for character in name.lower() if character.isalnum())
+
+
+MATERIAL_ALIASES = MappingProxyType({alias: key for key, aliases in _ALIASES.items() for alias in aliases})
+"""Preset of each further name of a material."""
+
+_PRESET_OF = {_compact(name): key for name, key in {**{key: key for key in _MATERIALS}, **MATERIAL_ALIASES}.items()}
+_REFUSED = {
+    **{
+        _compact(name): f"may be {' or '.join(map(repr, keys))}: use one of these names"
+        for names, keys in _AMBIGUOUS.items()
+        for name in names
     },
-)
+    **{
+        _compact(name): f"({title}) has no preset, because no numbers with a source are known here: "
+        "give young and poisson from its data sheet"
+        for title, names in _WITHOUT_DATA.items()
+        for name in names
+    },
+}
+_FAMILY = {
+    **_PRESET_OF,
+    **{_compact(name): names[0] for names in (*_AMBIGUOUS, *_WITHOUT_DATA.values()) for name in names},
+}
+"""Family of each compact name: a preset, or the first name of a material without a preset."""
+
+
+def find_material(name: str) -> str | None:
+    """Return the key of a preset by its name or a further one, such as "xlpe"; None for any other name."""
+    return _PRESET_OF.get(_compact(name))
+
+
+def material_hint(name: str) -> str:
+    """Return the end of a sentence on a name that is no preset: the reason, or a suggestion of the same family.
+
+    A suggestion is made only if all similar names are of one family, because another material is a wrong answer.
+    """
+    compact = _compact(name)
+    if compact in _REFUSED:
+        return f" {_REFUSED[compact]}"
+    errors = {other: _typing_errors(compact, other) for other in _FAMILY}
+    for limit, clear in ((1, 1), (_FAR, _FAR + 1)):
+        near = {_FAMILY[other] for other, count in errors.items() if count <= limit}
+        around = {_FAMILY[other] for other, count in errors.items() if count <= clear}
+        if near and (limit == 1 or len(compact) >= _SHORT):
+            return f" is not known; did you mean {near.pop()!r}?" if len(around) == 1 else _unknown_material()
+    return _unknown_material()
+
+
+def _unknown_material() -> str:
+    return f" is not known; known: {', '.join(_MATERIALS)}"
+
+
+def _typing_errors(text: str, other: str) -> int:
+    """Count the fewest insertions, deletions, replacements and exchanges of neighbours between two texts."""
+    if abs(len(text) - len(other)) > _FAR + 1:
+        return _FAR + 2
+    before: list[int] = []
+    row = list(range(len(other) + 1))
+    for i, letter in enumerate(text):
+        last, before, row = before, row, [i + 1]
+        for j, character in enumerate(other):
+            row.append(min(before[j + 1] + 1, row[j] + 1, before[j] + (letter != character)))
+            if i and j and letter == other[j - 1] and text[i - 1] == character:
+                row[-1] = min(row[-1], last[j - 1] + 1)
+    return row[-1]
+
+
+class _Materials(NamedItems[Material]):
+    """Preset materials by name; further names such as "xlpe" find them too."""
+
+    def __missing__(self, name: Any) -> Material:
+        """Return the material of a further name; raise KeyError with a suggestion of the same family."""
+        key = find_material(name) if isinstance(name, str) else None
+        if key is None:
+            raise KeyError(f"material {shown(name)}{material_hint(name if isinstance(name, str) else '')}")
+        return self[key]
+
+
+materials: dict[str, Material] = _Materials("material", _MATERIALS)
 """Materials by the name in files and on the command line: the name of the constant in lower case with hyphens."""
 
 
@@ -196,7 +326,7 @@ joints: dict[str, Joint] = NamedItems("joint", {joint.name: joint for joint in _
 
 
 def named_material(name: str, chosen: Any) -> Material:
-    """Return a preset material by its name, regardless of capitals; `name` is that of the body in messages.
+    """Return a preset material by its name or a further one; `name` is that of the body in messages.
 
     Raises
     ------
@@ -205,4 +335,7 @@ def named_material(name: str, chosen: Any) -> Material:
     """
     if isinstance(chosen, str) and "," in chosen:
         raise ValueError(f"{name} material {shown(chosen)} are several, and one is needed: optimise and studies choose")
-    return materials[known_name(f"{name} material", check_text(f"{name}.material", chosen), materials)]
+    key = find_material(check_text(f"{name}.material", chosen))
+    if key is None:
+        raise ValueError(f"{name} material {shown(chosen)}{material_hint(chosen)}")
+    return materials[key]

@@ -224,7 +224,8 @@ def lubricant_line(history: History) -> str:
     """State the viscosity and the roughness of the surfaces that the film assumes."""
     lubricant = history.lubricant
     ball, cup = (f"{1e3 * roughness:g} µm" for roughness in (lubricant.ball_roughness, lubricant.cup_roughness))
-    return f"assumed for the film: viscosity {1e3 * lubricant.viscosity:g} mPa s, roughness Ra {ball} (ball) and {cup} (cup)"
+    viscosity = f"viscosity {1e3 * lubricant.viscosity:g} mPa s"
+    return f"assumed for the film: {viscosity}, roughness Ra {ball} (ball) and {cup} (cup)"
 
 
 def print_notes(notes: Iterable[str]) -> None:

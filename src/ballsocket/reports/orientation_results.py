@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import degrees
+from collections.abc import Iterator, Sequence
+from math import degrees, isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy
@@ -12,9 +12,10 @@ from rich.text import Text
 
 from ..core.arrays import Numbers
 from ..core.deprecation import renamed_arguments
-from ..core.quantities import CONTACT, CUP, DERIVED, Quantity
+from ..core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
+from ..studies.limits import Limit
 from .style import LEGEND
 from .terminal import console, print_columns, print_folded
 
@@ -140,46 +141,122 @@ def _number(name: str, value: float) -> str:
     return f"{value * unit.factor:.4g} {unit.text}"
 
 
-_MAX_VALUES = 7
-"""Values of each angle that a table shows."""
+LIMITED_FIELDS = ("edge_distance", "max_pressure", "half_angle")
+"""Fields of orientations that can be limited."""
 
 
-def print_orientations(orientations: Orientations) -> None:
-    """Print distance to the rim and largest pressure by orientation, the best orientations, and the duration."""
+def within_limits(orientations: Orientations, limits: Sequence[Limit]) -> Numbers:
+    """Return a mask of the orientations within all limits; false where the bore does not hold the ball."""
+    within = orientations.held.copy()
+    for limit in limits:
+        values = getattr(orientations, limit.name)
+        within &= (values >= limit.low) & (values <= limit.high)
+    return within
+
+
+def inclination_ranges(orientations: Orientations, limits: Sequence[Limit]) -> list[tuple[float, float] | None]:
+    """Find the inclinations within all limits, for each anteversion.
+
+    Returns
+    -------
+    list
+        Ends in rad of the longest row of neighbouring inclinations within the limits; None without one.
+    """
+    ranges: list[tuple[float, float] | None] = []
+    for within in within_limits(orientations, limits).T:
+        edges = numpy.flatnonzero(numpy.diff(numpy.concatenate([[False], within, [False]]).astype(int)))
+        pairs = list(zip(edges[::2], edges[1::2] - 1, strict=True))
+        first, last = max(pairs, key=lambda pair: pair[1] - pair[0], default=(0, -1))
+        ends = float(orientations.inclination[first]), float(orientations.inclination[last])
+        ranges.append(ends if pairs else None)
+    return ranges
+
+
+def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[str, Any]:
+    """Return the limits and the orientations within them for JSON; empty without limits."""
+    if not limits:
+        return {}
+    rows = zip(orientations.anteversion, inclination_ranges(orientations, limits), strict=True)
+    return {
+        "limits": [_limit_text(limit) for limit in limits],
+        "within_limits": within_limits(orientations, limits).tolist(),
+        "inclination_ranges": [
+            {
+                "anteversion_deg": round(degrees(angle), 9),
+                "inclination_deg": None if ends is None else [round(degrees(end), 9) for end in ends],
+            }
+            for angle, ends in rows
+        ],
+    }
+
+
+def print_orientations(orientations: Orientations, limits: Sequence[Limit] = ()) -> None:
+    """Print distance to the rim and largest pressure by orientation, the orientations within limits, and the best ones.
+
+    Every computed orientation is printed; columns that do not fit the terminal follow in a further table.
+    """
     terminal = console()
     print_folded(terminal, str(orientations.joint), "bold")
     print_folded(terminal, load_text(orientations), "bold")
     fields = {DERIVED["edge_distance"]: orientations.edge_distance, CONTACT["max_pressure"]: orientations.max_pressure}
     for quantity, values in fields.items():
         terminal.print(Text(f"{quantity.label()}, anteversion by inclination"))
-        print_columns(terminal, _table(orientations, values))
+        print_columns(terminal, _table(orientations, values, limits))
+    for line in _limit_remarks(orientations, limits) if limits else ():
+        print_folded(terminal, line, "bold")
     for line in _remarks(orientations):
         print_folded(terminal, line, "dim")
 
 
-def _table(orientations: Orientations, values: Numbers) -> Table:
-    """Make the table of a field: anteversion by inclination."""
-    rows, columns = (_chosen_indices(len(angles)) for angles in (orientations.anteversion, orientations.inclination))
+def _limit_remarks(orientations: Orientations, limits: Sequence[Limit]) -> Iterator[str]:
+    """Yield sentences on the inclinations within the limits, one for neighbouring anteversions of the same range."""
+    within = within_limits(orientations, limits)
+    texts = " and ".join(map(_limit_text, limits))
+    yield f"limit: {texts}; {within.sum()} of {within.size} orientations are within it, * marks the others"
+    ranges = inclination_ranges(orientations, limits)
+    starts = [row for row in range(len(ranges)) if row == 0 or ranges[row] != ranges[row - 1]]
+    for first, following in zip(starts, [*starts[1:], len(ranges)], strict=True):
+        angles = [_degree_text(orientations.anteversion[row]) for row in (first, following - 1)]
+        rows = angles[0] if following == first + 1 else f"{angles[0]} to {angles[1]}"
+        yield f"at {rows} anteversion the limit holds {_range_text(orientations, ranges[first])}"
+
+
+def _range_text(orientations: Orientations, ends: tuple[float, float] | None) -> str:
+    """Describe the inclinations within the limits."""
+    low, high = (_degree_text(orientations.inclination[index]) for index in (0, -1))
+    if ends is None:
+        return f"at no inclination from {low} to {high}"
+    first, last = map(_degree_text, ends)
+    if (first, last) == (low, high):
+        return f"at every inclination from {low} to {high}"
+    return f"up to {last} inclination" if first == low else f"from {first} to {last} inclination"
+
+
+def _limit_text(limit: Limit) -> str:
+    """Write a limit with its unit, such as "edge_distance >= 1 mm"."""
+    unit = QUANTITIES[limit.name].written
+    ends = ((">=", limit.low), ("<=", limit.high))
+    return " and ".join(f"{limit.name} {sign} {end * unit.factor:g} {unit.text}" for sign, end in ends if isfinite(end))
+
+
+def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit]) -> Table:
+    """Make the table of a field: anteversion by inclination; a star marks values outside the limits."""
+    within = within_limits(orientations, limits)
+    columns = range(len(orientations.inclination))
     table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 2, 0, 0))
     for head in ("", *(_degree_text(orientations.inclination[i]) for i in columns)):
         table.add_column(head, justify="right", no_wrap=True)
-    for j in rows:
-        cells = (_cell(orientations, values, i, j) for i in columns)
+    for j in range(len(orientations.anteversion)):
+        cells = (_cell(orientations, values, i, j, "*" if limits and not within[i, j] else "") for i in columns)
         table.add_row(Text(_degree_text(orientations.anteversion[j]), style="bold"), *cells)
     return table
 
 
-def _chosen_indices(count: int) -> list[int]:
-    """Choose evenly spaced indices, the first and the last included."""
-    indices = numpy.linspace(0, count - 1, min(count, _MAX_VALUES)).round().astype(int)
-    return [int(index) for index in indices]
-
-
-def _cell(orientations: Orientations, values: Numbers, i: int, j: int) -> Text:
-    """Write one value; yellow if the rim is loaded, a dash if the ball is not held."""
+def _cell(orientations: Orientations, values: Numbers, i: int, j: int, mark: str) -> Text:
+    """Write one value with a mark; yellow if the rim is loaded, a dash if the ball is not held."""
     if not orientations.held[i, j]:
         return Text("-", style="dim")
-    return Text(f"{values[i, j]:.1f}", style="yellow" if orientations.edge_loaded[i, j] else "")
+    return Text(f"{values[i, j]:.1f}{mark}", style="yellow" if orientations.edge_loaded[i, j] else "")
 
 
 def _remarks(orientations: Orientations) -> Iterator[str]:
@@ -210,4 +287,4 @@ def _best_text(orientations: Orientations, values: Numbers, unit: str) -> str:
 
 def _degree_text(angle: float) -> str:
     """Write an angle (rad) in degrees."""
-    return f"{degrees(angle):.3g}°"
+    return f"{degrees(angle):.4g}°"
