@@ -31,7 +31,7 @@ PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
         (lambda: bs.PinInHole().press(HIP, 30.0), "a load needs its name: line_load in N/mm"),
         (lambda: bs.compare(HIP, 3000.0), r"a load needs its name: force=3000\.0 in N"),
         (lambda: bs.compare("hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
-        (lambda: bs.compare(HIP, force=1.0, models=["exact"]), r"models must be a mapping .* got \['exact'\]$"),
+        (lambda: bs.compare(HIP, force=1.0, models="exact"), r"models must be a list .* got 'exact'$"),
         (lambda: bs.compare(HIP, force=1.0, models={"exact": "exact"}), r"models\['exact'\] must be a model"),
         pytest.param(
             lambda: bs.study("exact", HIP, force=1.0),

@@ -1,6 +1,6 @@
-"""What pages take from the package itself, written anew for each build as Markdown that they include.
+"""Parts of the pages that are made from the package itself, written by each build as Markdown that pages include.
 
-The paper's pieces are kept range_text builds by `Plan.run`; everything else takes a second.
+Results and report of the paper are computed once for each version of the code; everything else takes a few seconds.
 """
 
 import json
@@ -13,6 +13,7 @@ import ballsocket as bs
 from ballsocket.catalogue import listed_models
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.sources import Source, bibliography
+from ballsocket.core.storage.pieces import fingerprint
 from ballsocket.evidence.comparators import PUBLISHED, range_text
 from ballsocket.evidence.validity import measure, models_with_promise
 from ballsocket.files.schema_keys import Key, keys_of
@@ -35,7 +36,7 @@ def write(folder: Path) -> None:
     report = folder / "report"
     report.mkdir(parents=True, exist_ok=True)
     results = quick_plan().results(folder / "paper")
-    write_report(results, report)
+    _write_report(results, report, folder / "report.code")
     pages = {
         "bibliography": _bibliography(),
         "catalogue": "\n".join(map(_model, listed_models.values())),
@@ -55,6 +56,15 @@ def write(folder: Path) -> None:
     }
     for name, text in pages.items():
         (folder / f"{name}.md").write_text(text + "\n", encoding="utf-8")
+
+
+def _write_report(results, report: Path, stamp: Path) -> None:
+    """Write the report of the paper with its pictures, unless it is there from the same code."""
+    code = fingerprint()
+    if stamp.is_file() and stamp.read_text(encoding="utf-8") == code:
+        return
+    write_report(results, report)
+    stamp.write_text(code, encoding="utf-8")
 
 
 def _table(heads, rows) -> str:

@@ -1,5 +1,6 @@
 """Pictures for light and for dark pages: each figure twice, transparent, and the page shows the one that suits it."""
 
+from os import getpid
 from pathlib import Path
 
 import numpy as np
@@ -47,7 +48,9 @@ def write(picture: Path, path: Path, coloured) -> None:
     if path.is_file() and path.stat().st_mtime >= picture.stat().st_mtime:
         return
     path.parent.mkdir(parents=True, exist_ok=True)
-    imsave(path, coloured(imread(picture)))
+    part = path.with_suffix(f".{getpid()}.png")  # pages with the same picture are read at the same time
+    imsave(part, coloured(imread(picture)))
+    part.replace(path)
 
 
 def on_light(pixels: np.ndarray) -> np.ndarray:

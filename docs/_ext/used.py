@@ -9,6 +9,7 @@ SHOWN = 6
 def setup(app):
     app.connect("autodoc-process-docstring", _used)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
 def _used(app, what, name, thing, options, lines):

@@ -16,7 +16,7 @@ from .catalogue import catalogue
 from .compare import compare
 from .contact import Contact, Model
 from .core.deprecation import present_module_path, register_old_paths
-from .core.sources import cite
+from .core.sources import Source, cite
 from .core.validity import OutsideDomainError, Range, Status
 from .dynamics.element import ForceElement
 from .elasticity.exact.exact_curve import ExactCurve
@@ -149,6 +149,7 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "ClosedForm",
     "Model",
     "RadialFoundation",
+    "Source",
     "as_constant",
     "as_corrected_vessel",
     "as_polynomial",
@@ -180,18 +181,22 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "UHMWPE",
 ]
 
+_DOORS = ("dynamics", "evidence", "export", "hip")
+"""Subpackages for users, which are imported on first use."""
+
 if TYPE_CHECKING:
     from .files.joint_file import read_joint
 else:
 
     def __getattr__(name: str) -> Any:
-        """Import the reader of joint files on first use, or a moved module that version 1.0 offered as an attribute."""
+        """Import the reader of joint files, a subpackage, or a moved module of version 1.0 on first use."""
         if name == "read_joint":
             return import_module("ballsocket.files.joint_file").read_joint
-        if present_module_path(f"{__name__}.{name}") is None:
+        if name not in _DOORS and present_module_path(f"{__name__}.{name}") is None:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         return import_module(f"{__name__}.{name}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    """List the names for users; other modules of the package can still be imported."""
+    return sorted({*__all__, *_DOORS, "__doc__", "__version__"})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from math import inf, radians
@@ -15,6 +15,7 @@ from .contact import Contact, Model
 from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count_text, number_text
 from .core.arrays import Array, to_list, where
 from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
+from .core.display import html_table
 from .core.plotting import load_plot
 from .core.quantities import HEADLINE
 from .core.sources import Source
@@ -149,10 +150,8 @@ class Comparison(Mapping[str, Contact]):
         return "\n".join([str(self.joint), *lines, *self.notes()])
 
     def _repr_html_(self) -> str:
-        cells = "".join(f"<th>{escape(text)}</th>" for text in COLUMN_HEADS)
-        rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in self.rows())
         notes = "".join(f"<div>{escape(reason)}</div>" for reason in self.notes())
-        return f"<div>{escape(str(self.joint))}</div><table><tr>{cells}</tr>{rows}</table>{notes}"
+        return f"<div>{escape(str(self.joint))}</div>{html_table(COLUMN_HEADS, self.rows())}{notes}"
 
 
 def relative_deviation(value: Array, truth: Array) -> Array:
@@ -180,7 +179,7 @@ def compare(
     force: Array | None = None,
     indentation: Array | None = None,
     half_angle: Array | None = None,
-    models: Mapping[str, Model] | None = None,
+    models: Mapping[str, Model] | Sequence[Model | str] | None = None,
     cup: Cup | None = None,
 ) -> Comparison:
     """Compute the contact of one joint and load with several models.
@@ -190,8 +189,8 @@ def compare(
     joint : Joint
     force, indentation, half_angle : float or array
         Exactly one of them, in N, mm or rad.
-    models : mapping of str to Model, optional
-        Models by name; all models of the catalogue by default.
+    models : mapping of str to Model, or list of Model or str, optional
+        Models by name, or models and names of the catalogue; all models of the catalogue by default.
     cup : Cup, optional
         Rim of the socket. Models without a rim are then invalid near it.
 
@@ -203,9 +202,9 @@ def compare(
     Raises
     ------
     ValueError
-        A load that is not allowed.
+        A load that is not allowed; two models of one name in a list.
     TypeError
-        A load without its name; `models` that is not a mapping of models.
+        A load without its name; `models` that is not a mapping or a list of models.
 
     Examples
     --------
@@ -215,20 +214,39 @@ def compare(
     11.717
     """
     reject_unnamed_loads(unnamed)
-    if not (models is None or isinstance(models, Mapping)):
-        raise TypeError(f"models must be a mapping such as {{'exact': bs.Exact()}}, got {shown(models)}")
-    for name, model in ({} if models is None else models).items():
-        if isinstance(model, type) or not hasattr(model, "press"):
-            raise TypeError(f"models[{name!r}] must be a model, such as bs.Exact(), got {shown(model)}")
+    named = catalogue if models is None else _models_by_name(models)
     kind, load = select_load(force=force, indentation=indentation, half_angle=half_angle)
     keyword: dict[str, Any] = {kind: load}
     contacts, missing = {}, {}
-    for name, model in (catalogue if models is None else models).items():
+    for name, model in named.items():
         try:
             contacts[name] = (model if cup is None else model.in_cup(cup)).press(joint, **keyword)
         except OutsideDomainError as error:
             missing[name] = str(error)
     return Comparison(joint, contacts, missing)
+
+
+def _models_by_name(models: Any) -> dict[str, Model]:
+    """Return the models to compare by name, from a mapping or from a list of models and names of the catalogue."""
+    if not isinstance(models, Mapping | list | tuple):
+        raise TypeError(
+            f"models must be a list such as [bs.Exact(), bs.Hertz()] or a mapping {{'exact': bs.Exact()}}, "
+            f"got {shown(models)}"
+        )
+    if isinstance(models, Mapping):
+        pairs = list(models.items())
+    else:
+        listed = [catalogue[model] if isinstance(model, str) else model for model in models]
+        pairs = [(getattr(model, "name", number), model) for number, model in enumerate(listed)]
+    for name, model in pairs:
+        if isinstance(model, type) or not hasattr(model, "press"):
+            raise TypeError(f"models[{name!r}] must be a model, such as bs.Exact(), got {shown(model)}")
+    named = dict(pairs)
+    if len(named) < len(pairs):
+        names = [name for name, _ in pairs]
+        double = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"two of the models are named {double!r}: use a mapping with two names")
+    return named
 
 
 def successful_contacts(comparison: Mapping[str, Contact]) -> dict[str, Contact]:

@@ -343,7 +343,7 @@ def test_press_writes_a_figure_in_each_format(tmp_path, ending):
         (["evidence"], "a question file is needed, or --check with the folder of a pack"),
         (["evidence", "--check", "."], "holds no pack of evidence: checksums.txt is missing"),
         (["pres"], "No such command 'pres'"),
-        (["cite", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
+        (["cite", "herz"], "model, material or joint 'herz' is not known; did you mean 'hertz'?"),
     ],
 )
 def test_wrong_input_is_reported_in_one_line_with_the_remedy(words, message):
@@ -529,6 +529,10 @@ def test_lists_references_version_and_help_are_printed():
     assert "cocr" in presets.stdout
     assert run("cite", "hertz").stdout.startswith("@article{hertz1882,")
     assert "@phdthesis{persson1964" in run("cite").stdout
+    assert "@article{plank2007," in run("cite", "hip-28").stdout
+    unpublished = run("cite", "titanium")
+    assert (unpublished.returncode, unpublished.stdout) == (2, "")
+    assert "no known publication is named in the source of titanium" in unpublished.stderr
     assert run("--version").stdout == f"ballsocket {bs.__version__}\n"
     for words in ([], ["--help"], ["press", "--help"]):
         assert "Usage" in run(*words).stdout

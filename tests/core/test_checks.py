@@ -81,7 +81,7 @@ def test_angles_in_degrees_are_converted_for_hints():
 
 def test_missing_modules_are_named_with_their_extra():
     checks.needs("study", "numpy")
-    with pytest.raises(ImportError, match=r"no_such_module is not .*: pip install 'ballsocket\[study\]'") as error:
+    with pytest.raises(ImportError, match=r'no_such_module is not .*: pip install "ballsocket\[study\]"') as error:
         checks.needs("study", "numpy", "no_such_module")
     assert error.value.name == "no_such_module"
 

@@ -237,4 +237,4 @@ def test_content_may_be_an_object_that_follows_the_schema_of_the_file(tmp_path):
 def test_a_missing_extra_is_reported_with_the_install_command(tmp_path, monkeypatch):
     monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
     done = run("serve-mcp", "--folder", str(tmp_path))
-    assert (done.returncode, done.stderr) == (2, "ballsocket: mcp is not installed: pip install 'ballsocket[mcp]'\n")
+    assert (done.returncode, done.stderr) == (2, 'ballsocket: mcp is not installed: pip install "ballsocket[mcp]"\n')

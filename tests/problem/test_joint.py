@@ -135,7 +135,7 @@ BONE = bs.Layer(thickness=np.inf, material=bs.CORTICAL_BONE)
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"backing": SHELL}, "backing must be a tuple of Layers from the liner outwards, got Layer"),
+        ({"backing": SHELL}, "backing must be a tuple of Layers from the liner outwards, got <Layer"),
         ({"backing": (SHELL, 3.0)}, r"backing\[1\] must be a Layer, got 3\.0"),
         ({"support": "free"}, "support must be Support.FIXED or Support.FREE, got 'free'"),
     ],

@@ -14,7 +14,7 @@ add_commands(  # in the order in which `ballsocket --help` lists them
         "hip": CommandEntry("ballsocket.cli.hip", "Simulate wear of a hip over millions of gait cycles."),
         "models": CommandEntry("ballsocket.cli.lists", "List contact models with their ranges and sources."),
         "presets": CommandEntry("ballsocket.cli.lists", "List materials and joints by name, with their sources."),
-        "cite": CommandEntry("ballsocket.cli.lists", "Print the BibTeX references of models."),
+        "cite": CommandEntry("ballsocket.cli.lists", "Print the BibTeX references of models, materials and joints."),
         "identify": CommandEntry("ballsocket.cli.identify", "Identify parameters of a joint from measurements."),
         "calibrate": CommandEntry("ballsocket.cli.identify", "Fit a foundation modulus to the exact solution."),
         "build-tables": CommandEntry(

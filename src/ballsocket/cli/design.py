@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..catalogue import named_model, reference
+from ..catalogue import reference
 from ..contact import Model
 from ..core.checks import require
 from ..core.kinds import Choice
@@ -28,6 +28,7 @@ from ..studies.run import check_model_domain, default_model, study
 from ..studies.sensitivity import sensitivity as find_sensitivity
 from ..studies.task import DEFAULT_QUANTITIES, QUANTITIES
 from ..version import __version__
+from .model_file import requested_model
 from .options import (
     JointName,
     JointOptions,
@@ -76,7 +77,7 @@ class PressOptions:
             if model.name == reference.name:
                 print_message(f"model {model.name} is used, since none of these joints is in the tables of tabulated")
         else:
-            model = named_model(self.model)
+            model = requested_model(self.model)
             check_model_domain(model, file.joint, ends)
         return model.in_cup(file.cup)
 

@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from ..catalogue import named_model, off_axis
+from ..catalogue import off_axis
 from ..core.checks import known_name
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
@@ -24,6 +24,7 @@ from ..problem.cup import Cup
 from ..reports.accuracy_results import print_rival, print_tilted_rival
 from ..studies.run import default_model
 from .elasticity_options import CupOptions, MeshOptions, solve_mesh
+from .model_file import requested_model
 from .options import JointName, JointOptions, LoadOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 
@@ -69,7 +70,7 @@ class ForceElementOptions:
             stated_cup = replace(file.cup, arc_of_cover=read_cup({"arc_of_cover": self.arc_of_cover}).arc_of_cover)
         if file.joint.clearance < 0:
             return self._preloaded_element(file.joint, stated_cup, friction)
-        model = default_model(file.joint, {}) if self.model is None else named_model(self.model)
+        model = default_model(file.joint, {}) if self.model is None else requested_model(self.model)
         cup = None if stated_cup == Cup() else stated_cup
         try:
             return ForceElement(model, file.joint, damping=self._damping(), friction=friction, cup=cup)

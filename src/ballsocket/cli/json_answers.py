@@ -164,7 +164,8 @@ def _after_press(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
             yield from (NextStep((*bare, "--model", name), why) for name in (judge.name, off_axis.name))
         else:
             yield NextStep((*bare, "--model", judge.name), "check by finite elements, with estimated errors")
-    yield from (NextStep(("cite", name), "references of the model") for name in valid_models[:1] if name in requested)
+    cited = [name for name in valid_models[:1] if name in requested and name in listed_models]
+    yield from (NextStep(("cite", name), "references of the model") for name in cited)
 
 
 def _differs_on_hemisphere(result: Answer) -> bool:
@@ -182,7 +183,8 @@ def _after_curve(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     if answer["valid"] is not True and answer["model"] != reference.name:
         why = f"{answer['model']} is outside its valid range at some points"
         yield NextStep((*_without_options(arguments, "--model"), "--model", reference.name), why)
-    yield NextStep(("cite", answer["model"]), "references of the model")
+    if answer["model"] in listed_models:
+        yield NextStep(("cite", answer["model"]), "references of the model")
 
 
 def _after_optimum(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:

@@ -71,11 +71,17 @@ def presets(
 
 @app.command()
 def cite(
-    names: Annotated[list[str] | None, typer.Argument(help="Names of models. Default: all models.")] = None,
+    names: Annotated[
+        list[str] | None, typer.Argument(help="Names of models, materials or joints. Default: all models.")
+    ] = None,
 ) -> None:
-    """Print the BibTeX references of models."""
-    chosen = [known_name("model", name, listed_models) for name in names or listed_models]
-    typer.echo(bibtex_of(*(listed_models[name] for name in chosen)))
+    """Print the BibTeX references of models, materials or joints."""
+    citable = {**joints, **materials, **listed_models}
+    chosen = [known_name("model, material or joint", name, citable) for name in names or listed_models]
+    try:
+        typer.echo(bibtex_of(*(citable[name] for name in chosen)))
+    except TypeError as error:  # the source of a material or joint names no publication
+        raise ValueError(str(error)) from error
 
 
 @app.command()

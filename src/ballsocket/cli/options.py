@@ -67,7 +67,8 @@ Scheduler = Annotated[
 ModelName = Annotated[
     str | None,
     typer.Option(
-        help="Name of a model, see `ballsocket models`. Default: tabulated; exact for joints outside its tables.",
+        help="Name of a model (see `ballsocket models`), or FILE.py:NAME for a custom model. "
+        "Default: tabulated; exact for joints outside its tables.",
         autocompletion=complete_model,
     ),
 ]

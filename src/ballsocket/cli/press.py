@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import numpy
 import typer
 
-from ..catalogue import catalogue, judge, named_model, off_axis, reference
+from ..catalogue import catalogue, judge, off_axis, reference
 from ..compare import Comparison, compare, successful_contacts
 from ..contact import Contact, Model
 from ..core.checks import known_name
@@ -41,7 +41,17 @@ from .elasticity_options import (
     tilted_cup,
 )
 from .json_answers import echo_json
-from .options import AsJson, JointName, JointNames, JointOptions, LoadOptions, UnitSystem, complete_model, expand_groups
+from .model_file import is_model_file, requested_model
+from .options import (
+    AsJson,
+    JointName,
+    JointNames,
+    JointOptions,
+    LoadOptions,
+    UnitSystem,
+    complete_model,
+    expand_groups,
+)
 from .press_files import FigureOptions, ReportOptions
 from .root import FAILURE, app, print_message
 
@@ -55,7 +65,7 @@ class ModelOptions:
     model: Annotated[
         list[str] | None,
         typer.Option(
-            help="Name of a model (see `ballsocket models`), fem or sphere. "
+            help="Name of a model (see `ballsocket models`), fem, sphere, or FILE.py:NAME for a custom model. "
             f"Repeat for several. Default: {DEFAULT_MODEL}.",
             autocompletion=complete_model,
         ),
@@ -64,8 +74,9 @@ class ModelOptions:
 
     @property
     def names(self) -> list[str]:
-        """Names of the requested models, as in the catalogue."""
-        return [known_name("model", name, (*catalogue, judge.name, off_axis.name)) for name in self.model or ()]
+        """Names of the requested models, as in the catalogue; custom models as FILE.py:NAME."""
+        known = (*catalogue, judge.name, off_axis.name)
+        return [name if is_model_file(name) else known_name("model", name, known) for name in self.model or ()]
 
     @property
     def has_finite_elements(self) -> bool:
@@ -75,9 +86,13 @@ class ModelOptions:
     def models(self, default: str) -> dict[str, Model]:
         """Return the requested models by name, or the default one."""
         if self.every:
-            return dict(catalogue)
-        elastic = {judge.name: judge, off_axis.name: off_axis}
-        return {name: elastic.get(name) or catalogue[name] for name in self.names or [default]}
+            custom = [requested_model(name) for name in self.names if is_model_file(name)]
+            return {**{model.name: model for model in custom}, **catalogue}
+        models = [requested_model(name) for name in self.names or [default]]
+        named = {model.name: model for model in models}
+        if len(named) < len(set(self.names)):
+            raise ValueError("two of the models have one name: give each custom model a name of its own")
+        return named
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -148,13 +163,35 @@ class FrictionOptions:
 
 @dataclass(kw_only=True)
 class PressedJoint:
-    """Results of one joint of the command: contacts, remarks on their computation, and all for JSON."""
+    """Results of one joint of the command, with remarks on their computation.
+
+    Attributes
+    ----------
+    assumptions : list of str
+        Sentences on what was assumed for a preloaded joint.
+    orientation : dict
+        Inclination and anteversion of the cup by each definition, in degrees; empty for a cup without orientation.
+    pulled : PullOut or None
+        Pull-out force, if it was asked for.
+    """
 
     file: JointFile
     comparison: Comparison
     models: Mapping[str, Model]
     remarks: list[str]
-    summary: dict[str, Any]
+    assumptions: list[str]
+    orientation: dict[str, Any]
+    pulled: PullOut | None
+
+    def summary(self, friction: FrictionOptions) -> dict[str, Any]:
+        """Return the results as plain data, with the friction torques and the pull-out force if asked for."""
+        summary = self.comparison.summary()
+        for result in summary["results"] if friction.friction is not None else ():
+            contact = self.comparison.get(result["model"])
+            result["friction"] = None if contact is None else friction.torques(contact)
+        pull_out = None if self.pulled is None else self.pulled.summary()
+        further = {"assumptions": self.assumptions, "orientation": self.orientation, "pull_out": pull_out}
+        return {**summary, **{key: part for key, part in further.items() if part}}
 
 
 @app.command()
@@ -202,8 +239,8 @@ def press(
         held_cup = stated_cup.around_ball(file.joint.clearance)
         assumed_arc = held_cup is not stated_cup
         assumptions = _preload_assumptions(file.joint, held_cup if assumed_arc else None)
-        angles = {} if "tilt" in direction else orientation_summary(stated_cup)
-        remarks += [orientation_remark(stated_cup)] if angles and joint_options.orients else []
+        orientation = {} if "tilt" in direction else orientation_summary(stated_cup)
+        remarks += [orientation_remark(stated_cup)] if orientation else []
         cup = tilted_cup(held_cup, direction)
         needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
         models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
@@ -236,7 +273,9 @@ def press(
             comparison=comparison,
             models=models,
             remarks=remarks,
-            summary=_summary(comparison, friction_options, {"assumptions": assumptions, "orientation": angles}, pulled),
+            assumptions=assumptions,
+            orientation=orientation,
+            pulled=pulled,
         )
 
     joints = [press_joint(name) for name in names]
@@ -247,25 +286,13 @@ def press(
     ]
     report.write(designs, units)
     if as_json:
-        summaries = [pressed.summary for pressed in joints]
+        summaries = [pressed.summary(friction_options) for pressed in joints]
         echo_json(summaries[0] if len(summaries) == 1 else {"joints": summaries})
     else:
         for pressed in joints:
             print_press(pressed.comparison, pressed.remarks, units)
     for pressed in joints:
         _exit_on_failure(pressed.comparison, pressed.models)
-
-
-def _summary(
-    comparison: Comparison, friction: FrictionOptions, circumstances: Mapping[str, Any], pulled: PullOut | None
-) -> dict[str, Any]:
-    """Return a comparison for JSON, with friction torques, circumstances and pull-out force if there are any."""
-    summary = comparison.summary()
-    for result in summary["results"] if friction.friction is not None else ():
-        contact = comparison.get(result["model"])
-        result["friction"] = None if contact is None else friction.torques(contact)
-    further = {**circumstances, "pull_out": None if pulled is None else pulled.summary()}
-    return {**summary, **{name: part for name, part in further.items() if part}}
 
 
 def _preload_assumptions(joint: Joint, assumed_cup: Cup | None) -> list[str]:
@@ -326,7 +353,7 @@ def curve(
     joint: JointName = None,
     joint_options: JointOptions,
     load_options: LoadOptions,
-    model: Annotated[str, typer.Option(help="Name of a model, see `ballsocket models`.")] = "exact",
+    model: Annotated[str, typer.Option(help="Name of a model (see `ballsocket models`), or FILE.py:NAME.")] = "exact",
     points: Annotated[
         int, typer.Option(min=2, max=500, help="Number of loads in equal steps from zero to the given load.")
     ] = 21,
@@ -339,7 +366,7 @@ def curve(
 
     Exit status: 0 success, 2 wrong input, 3 no result at any load.
     """
-    file, named = joint_options.read(joint), named_model(model)
+    file, named = joint_options.read(joint), requested_model(model)
     fractions = numpy.linspace(0.0, 1.0, points)
     steps: dict[str, Any] = {name: end * fractions for name, end in load_options.read(file).items()}
     contact = named.in_cup(cup.apply_to(file.cup)).press(file.joint, **steps)

@@ -16,6 +16,7 @@ from ..core.validity import Status, check_domain
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..models.closed_form import ClosedFormSolution
 from ..models.foundation import RadialFoundation
+from ..models.modulus import FunctionModulus
 from ..models.refined import Refined
 from ..problem import Joint
 from . import kernels
@@ -73,6 +74,8 @@ class Compiled(ModelWrapper):
     def _is_compilable(self, joint: Joint, load: Array) -> bool:
         """Return True if all arrays are float64 and the model's constants are plain numbers."""
         large = [number for number in (*joint.numbers(), load) if not arrays.is_plain_number(number)]
+        if isinstance(getattr(self.model, "modulus", None), FunctionModulus):
+            return False
         return bool(large) and all(map(_is_float64, large)) and all(map(arrays.is_plain_number, self.parameters))
 
     def _solve_forces(self, model: RadialFoundation, joint: Joint, force: Array) -> Contact:

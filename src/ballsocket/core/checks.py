@@ -13,6 +13,7 @@ from unicodedata import category
 import numpy
 
 from .arrays import Array, all_true, is_plain_number, namespace, to_common_arrays
+from .display import html_list
 
 Value = TypeVar("Value")
 
@@ -204,7 +205,7 @@ def needs(extra: str, *modules: str) -> None:
     """
     for module in modules:
         if find_spec(module) is None:
-            raise ImportError(f"{module} is not installed: pip install 'ballsocket[{extra}]'", name=module)
+            raise ImportError(f'{module} is not installed: pip install "ballsocket[{extra}]"', name=module)
 
 
 def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
@@ -288,6 +289,13 @@ class NamedItems(dict[str, Value]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self._kind, dict(self))
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} {self._kind}s: {', '.join(self)}>"
+
+    def _repr_html_(self) -> str:
+        rows = [(name, str(getattr(item, "title", item))) for name, item in self.items()]
+        return html_list(f"{len(self)} {self._kind}s", rows)
 
 
 def check_text(name: str, value: Any) -> str:

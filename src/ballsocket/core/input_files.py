@@ -55,6 +55,11 @@ def restriction_variables(folders: Iterable[Path]) -> Mapping[str, str]:
     return {_VARIABLE: json.dumps([str(resolve_path(folder)) for folder in folders])}
 
 
+def is_restricted() -> bool:
+    """Return True in a process that a server restricts to certain folders."""
+    return _VARIABLE in os.environ
+
+
 def resolve_input(path: Path) -> Path:
     """Resolve the path of an input file, and check that it lies in the allowed folders.
 
@@ -82,7 +87,7 @@ def open_input(path: Path) -> BinaryIO:
         The file cannot be read.
     """
     resolved = resolve_input(path)
-    if _VARIABLE in os.environ and resolved.exists() and not resolved.is_file():
+    if is_restricted() and resolved.exists() and not resolved.is_file():
         raise ValueError(f"{shown(str(path))} is not a regular file")
     stream = resolved.open("rb")
     opened = _opened.get()

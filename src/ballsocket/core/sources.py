@@ -20,20 +20,50 @@ class Source:
         Key of `data/references.bib`.
     place : str
         Equations or tables; empty for the complete text.
+    bibtex : str
+        BibTeX entry of a publication that the project's bibliography does not have.
+
+    Raises
+    ------
+    ValueError
+        A `bibtex` that is not one BibTeX entry with the key.
+
+    Examples
+    --------
+    >>> entry = "@article{doe2026,\n author = {Doe, Jane},\n year = {2026},\n}"
+    >>> print(Source("doe2026", "(3)", bibtex=entry))
+    Doe 2026, (3)
     """
 
     key: str
     place: str = ""
+    bibtex: str = ""
+
+    def __post_init__(self) -> None:
+        if self.bibtex and not re.match(rf"\s*@\w+\s*\{{\s*{re.escape(self.key)}\s*,", self.bibtex):
+            raise ValueError(
+                f"bibtex must be one entry with the key {self.key!r}, such as '@article{{{self.key}, ...}}'"
+            )
+
+    @property
+    def entry(self) -> str:
+        """BibTeX entry of the publication."""
+        if not self.bibtex and self.key not in bibliography():
+            raise ValueError(
+                f"source {self.key!r} is not in the bibliography of ballsocket: "
+                f"give its entry, Source({self.key!r}, bibtex='@article{{{self.key}, ...}}')"
+            )
+        return self.bibtex.strip() or bibliography()[self.key]
 
     @property
     def doi(self) -> str:
         """DOI of the publication; empty if its entry has none."""
-        return _read_field(bibliography()[self.key], "doi")
+        return _read_field(self.entry, "doi")
 
     @property
     def authors_and_year(self) -> str:
         """Authors and year, such as "Plank et al. 2007"."""
-        entry = bibliography()[self.key]
+        entry = self.entry
         people = _read_field(entry, "author") or _read_field(entry, "editor")
         names = [person.split(",")[0] for person in people.split(" and ")]
         authors = f"{names[0]} et al." if len(names) > 2 else " & ".join(names)
@@ -57,7 +87,8 @@ def cite(*used: Any) -> str:
     ----------
     *used
         Models, moduli, contacts, comparisons, materials or joints. The `source` of a material or a joint is text.
-        Publications of the project's bibliography that it names by authors and year, or by DOI, are cited.
+        Publications of the project's bibliography that it names by authors and year, or by DOI, are cited. The
+        `source` of a custom model or modulus becomes an entry `@misc` unless it names such a publication.
 
     Returns
     -------
@@ -76,31 +107,42 @@ def cite(*used: Any) -> str:
     >>> "10.3390/app112311170" in bs.cite(bs.HessForsbach())
     True
     """
-    keys = dict.fromkeys(key for item in used for key in _list_bibtex_keys(item))
-    return "\n\n".join(bibliography()[key] for key in keys)
+    return "\n\n".join(dict.fromkeys(entry for item in used for entry in _list_entries(item)))
 
 
-def _list_bibtex_keys(item: Any) -> list[str]:
-    """List the BibTeX keys of an item; raise TypeError if the item cannot be cited."""
+def _list_entries(item: Any) -> list[str]:
+    """List the BibTeX entries of an item; raise TypeError if the item cannot be cited."""
     if isinstance(item, Source):
-        return [item.key]
+        return [item.entry]
     if isinstance(item, type) or not any(hasattr(item, mark) for mark in ("sources", "source", "model")):
         raise TypeError(f"models, contacts, comparisons, materials and joints can be cited, not {_format_item(item)}")
-    keys = list(_yield_bibtex_keys(item))
-    if not keys and hasattr(item, "source"):
+    entries = list(_yield_entries(item))
+    if not entries and hasattr(item, "source"):
         raise TypeError(f"no known publication is named in the source of {item}: {item.source!r}")
-    return keys
+    return entries
 
 
-def _yield_bibtex_keys(item: Any) -> Iterator[str]:
-    """Yield the BibTeX keys of an item, its model, joint, materials and layers."""
-    yield from (source.key for source in getattr(item, "sources", ()))
-    yield from find_cited_keys(str(getattr(item, "source", "")))
+def _yield_entries(item: Any) -> Iterator[str]:
+    """Yield the BibTeX entries of an item, its model, joint, materials and layers."""
+    yield from (source.entry for source in getattr(item, "sources", ()))
+    text = str(getattr(item, "source", "") or "")
+    entries = [Source(key).entry for key in find_cited_keys(text)]
+    is_model = hasattr(item, "sources")  # the source of a material or a joint may be any text
+    yield from entries or ([_own_entry(item, text)] if text and is_model else [])
     for layer in getattr(item, "backing", ()):
-        yield from _yield_bibtex_keys(layer)
+        yield from _yield_entries(layer)
     for attribute in ("model", "joint", "liner", "ball", "material"):
         if getattr(item, attribute, None) is not None:
-            yield from _yield_bibtex_keys(getattr(item, attribute))
+            yield from _yield_entries(getattr(item, attribute))
+
+
+def _own_entry(item: Any, text: str) -> str:
+    """Return the BibTeX entry of a custom model or modulus from the text of its source."""
+    if text.lstrip().startswith("@"):
+        return text.strip()
+    key = re.sub(r"[^a-z0-9-]+", "-", str(getattr(item, "name", "model")).lower()).strip("-")
+    title, note = (re.sub(r"[{}\\]", "", part) for part in (str(getattr(item, "title", key)), text))
+    return f"@misc{{{key},\n  title = {{{title}}},\n  note  = {{{note}}},\n}}"
 
 
 def find_cited_keys(text: str) -> Iterator[str]:

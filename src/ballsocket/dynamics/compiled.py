@@ -1,6 +1,6 @@
 """Force element for compiled programs, with the formulas of `ForceElement` for one state or for arrays.
 
-Needs numba (`pip install 'ballsocket[fast]'`).
+Needs numba (`pip install "ballsocket[fast]"`).
 """
 
 from __future__ import annotations

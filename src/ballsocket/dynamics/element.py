@@ -17,6 +17,7 @@ from ..core import arrays
 from ..core.arrays import Array, concrete_values, is_plain_number, to_common_arrays, where
 from ..core.checks import check_number, check_vectors, require, shown
 from ..core.deprecation import RenamedAttribute
+from ..core.display import OneLine
 from ..core.validity import Range
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
@@ -49,8 +50,8 @@ _SEQUENCES = (tuple, list)
 _NUMPY_FLOAT = numpy.float64
 
 
-@dataclass(frozen=True, eq=False)
-class ForceElement:
+@dataclass(frozen=True, eq=False, repr=False)
+class ForceElement(OneLine):
     """Force element of a ball joint for time-stepping programs.
 
     Parameters
@@ -113,6 +114,12 @@ class ForceElement:
         require("smoothing", smoothing, valid, f"it must be between 0 and the clearance, {clearance:g} mm")
         object.__setattr__(self, "potential", potential)
         object.__setattr__(self, "constants", self._collect_constants(smoothing))
+
+    def __str__(self) -> str:
+        parts = {"damping": self.damping, "friction": self.friction, "cup": self.cup}
+        named = [f"{name} {type(part).__name__}" for name, part in parts.items() if part is not None]
+        smoothing = [f"smoothing {self.smoothing:g} mm"] if self.smoothing else []
+        return "; ".join([f"{self.model.name} on {self.joint.name or self.joint.dimensions}", *named, *smoothing])
 
     def _elastic_energy(self) -> Potential:
         """Return the elastic energy of model and joint over the indentation."""

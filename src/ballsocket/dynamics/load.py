@@ -110,6 +110,18 @@ class Load(NamedTuple):
     deflection_rate: Any = (0.0, 0.0, 0.0, 0.0)
     bristle_dissipation: Array = 0.0
 
+    def __repr__(self) -> str:
+        return f"<Load {self}>"
+
+    def __str__(self) -> str:
+        """Force, moment and energy of one state, or the shape of several."""
+        try:
+            (force, moment), energy = ([float(part) for part in vector] for vector in self[:2]), float(self.energy)
+        except (TypeError, ValueError):  # arrays, or a tracer without a value
+            return f"of states of shape {tuple(getattr(self.force, 'shape', ()))[:-1]}"
+        texts = [", ".join(f"{part + 0.0:.5g}" for part in vector) for vector in (force, moment)]
+        return f"force ({texts[0]}) N, moment ({texts[1]}) N mm, energy {energy:.5g} N mm"
+
     @property
     def socket_force(self) -> Any:
         """Force on the socket in N."""

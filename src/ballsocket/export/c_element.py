@@ -13,6 +13,7 @@ from typing import Any
 
 from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
+from ..core.display import full_repr
 from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement, preloaded, reaction
 from ..dynamics.load import contact_state_of
@@ -294,7 +295,7 @@ class CElement:
     @property
     def about(self) -> dict[str, str]:
         """Version, model and joint as texts for the comments in generated files."""
-        joint = re.sub(r"[^\x20-\x7e]|\*/|/\*|--|\\", "?", repr(self.element.joint.with_floats()))
+        joint = re.sub(r"[^\x20-\x7e]|\*/|/\*|--|\\", "?", full_repr(self.element.joint.with_floats()))
         return {"version": __version__, "model": self.element.model.name, "joint": joint}
 
 

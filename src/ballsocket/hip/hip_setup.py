@@ -14,6 +14,7 @@ from ..contact import Model
 from ..core.arrays import Numbers, is_plain_number
 from ..core.checks import require, shown
 from ..core.deprecation import RenamedAttribute, renamed_arguments
+from ..core.display import OneLine, html_list
 from ..core.validity import check_domain
 from ..elasticity.finite_elements.mesh import socket_shape
 from ..elasticity.off_axis.grid import Grid, even_grid, graded_grid
@@ -47,8 +48,8 @@ _CYCLES_PER_MILLION = 1e6
 """Cycles to which wear rates refer."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class HipSetup:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class HipSetup(OneLine):
     """Joint, cup, cycle and laws of a hip, with the contacts and the wear of a single cycle.
 
     Attributes
@@ -151,6 +152,16 @@ class HipSetup:
     def seconds(self) -> float:
         """Time in s that each cycle represents in the creep of the liner."""
         return self.cycle.duration if self.seconds_per_cycle is None else self.seconds_per_cycle
+
+    def __str__(self) -> str:
+        parts = (self.wear, self.ball_wear, self.creep, self.surface)
+        laws = ", ".join(type(part).__name__ for part in parts if part is not None)
+        return f"of {self.joint.name or self.joint.dimensions} under {self.cycle.name}: {laws}"
+
+    def _repr_html_(self) -> str:
+        named = {"joint": self.joint, "cup": self.cup, "cycle": self.cycle.name, "wear": self.wear}
+        named |= {"wear of the ball": self.ball_wear, "creep": self.creep, "foundation": self.surface}
+        return html_list(type(self).__name__, [(name, str(part)) for name, part in named.items() if part is not None])
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from html import escape
 from itertools import chain
 from math import degrees, inf, nan
 from typing import Any
@@ -14,6 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import needs
 from ..core.deprecation import RenamedAttribute, renamed_names
+from ..core.display import OneLine, html_table
 from ..core.plotting import load_plot
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes
 from .film import Lubricant
@@ -22,8 +24,8 @@ from .law_fields import law_summary
 from .rim import ClosestApproach, RimDistance
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Report:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Report(OneLine):
     """Results of a wear simulation after a number of cycles.
 
     Attributes
@@ -102,6 +104,10 @@ class Report:
             edge_loaded=self.edge_loaded,
         )
 
+    def __str__(self) -> str:
+        numbers = f"{self.volume:.4g} mm³ worn, penetration {self.penetration:.4g} mm"
+        return f"after {self.cycles:g} cycles: {numbers}, largest pressure {self.max_pressure:.4g} MPa"
+
     def summary(self) -> dict[str, Any]:
         """Return the report as a dictionary for JSON, in mm, MPa and mm³."""
         return {
@@ -138,7 +144,7 @@ class NumericalError:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class History:
+class History(OneLine):
     """Results of a wear simulation: reports at several cycle counts.
 
     Attributes
@@ -220,13 +226,6 @@ class History:
         """Draw worn volume and penetration over the cycles; return the matplotlib figure."""
         return load_plot("wear")({"": self})
 
-    def __repr__(self) -> str:
-        last = self.last
-        return (
-            f"History({self.use.cycle.name}, {len(self.reports)} reports: {last.volume:.4g} mm³ and a penetration of "
-            f"{last.penetration:.3g} mm after {last.cycles:g} cycles)"
-        )
-
     @property
     def converged(self) -> bool:
         """True if the contacts balance their loads in all reports."""
@@ -301,6 +300,21 @@ class History:
             return _EDGE_LOADING.format(stage, worst.steps_edge_loaded, count, worst.location, worst.pressure)
         distance = 0.0 if self.worst is None else self.worst.distance
         return _WORN_TO_RIM.format(stage, worst.steps_at_rim, count, distance, worst.pressure)
+
+    def __str__(self) -> str:
+        joint, count = self.use.joint, len(self.reports)
+        state = "" if self.converged else "; not converged"
+        return f"of {joint.name or joint.dimensions}, {count} report{'s' * (count > 1)}, last {self.last}{state}"
+
+    def _repr_html_(self) -> str:
+        heads = ("cycles", "volume [mm³]", "depth [mm]", "penetration [mm]", "pmax [MPa]", "edge distance [mm]")
+        rows = []
+        for report in self.reports:
+            edge = report.edge_distance.min() if len(report.edge_distance) else numpy.nan
+            values = (report.cycles, report.volume, report.depth, report.penetration, report.max_pressure, edge)
+            rows.append([f"{value:.4g}" for value in values])
+        notes = "".join(f"<div>{escape(note)}</div>" for note in self.notes)
+        return f"<div>{escape(str(self.use))}</div>{html_table(heads, rows)}{notes}"
 
     def summary(self) -> dict[str, Any]:
         """Return the results as a dictionary for JSON."""

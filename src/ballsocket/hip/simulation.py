@@ -230,7 +230,7 @@ def _solve_contacts(setup: HipSetup, depth: Numbers) -> CycleEquilibrium:
     return setup.solve_equilibrium(depth) if depth.any() else setup.unworn
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class HipSimulation(HipSetup):
     """Wear simulation of a hip joint.
 

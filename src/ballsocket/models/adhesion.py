@@ -15,7 +15,7 @@ from ..core.validity import SMALL_STRAIN, Range
 from ..problem import Joint
 from .closed_form import ClosedForm
 from .kinematics import angle_of, linear_displacement, linear_indentation, versine_of
-from .modulus import Modulus, hess_forsbach
+from .modulus import Modulus, as_modulus, hess_forsbach
 
 
 def _adhesion_number(model: AdhesiveSocket, contact: Any) -> Array:
@@ -51,6 +51,13 @@ class AdhesiveSocket(ClosedForm):
     -----
     Forces may be negative at small indentations, where adhesion holds the ball. A press by force finds the stable state
     for forces of zero or more.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.AdhesiveSocket().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.06
     """
 
     work_of_adhesion: Array = 5e-5
@@ -60,6 +67,7 @@ class AdhesiveSocket(ClosedForm):
         w = check_numeric("work_of_adhesion", self.work_of_adhesion)
         require("work_of_adhesion", w, (w >= 0) & (w < inf), "a work of adhesion (N/mm) must be 0 or more and finite")
         object.__setattr__(self, "work_of_adhesion", w)
+        object.__setattr__(self, "modulus", as_modulus(self.modulus))
 
     @property
     def parameters(self) -> tuple[Array, ...]:

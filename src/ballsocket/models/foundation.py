@@ -7,12 +7,13 @@ from math import nan
 
 from ..contact.law import ForceLaw, finite_or_nan
 from ..core.arrays import Array, cos, where
+from ..core.checks import shown
 from ..core.sources import Source
 from ..core.validity import SMALL_STRAIN, Promise, Range
 from ..problem import Joint
 from .closed_form import ClosedForm
 from .kinematics import Kinematics, angle_of, cosine_kinematics, exact_kinematics, linear_kinematics, versine_of
-from .modulus import Modulus, bonded_layer, hess_forsbach, spherical_vessel
+from .modulus import Modulus, as_modulus, bonded_layer, hess_forsbach, spherical_vessel
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -21,9 +22,9 @@ class RadialFoundation(ClosedForm):
 
     Parameters
     ----------
-    modulus : Modulus
+    modulus : Modulus or function
         Foundation modulus: `hess_forsbach` (default), `spherical_vessel`, `bonded_layer`, `polynomial(...)`,
-        `constant(...)`.
+        `constant(...)`, or a function that computes K in MPa/mm of a joint.
     kinematics : Kinematics
         Shape of the ball: `linear_kinematics` (Eq. 6, default), `exact_kinematics` (Eq. 5) or
         `cosine_kinematics` (Eq. 6 without clearance).
@@ -32,10 +33,28 @@ class RadialFoundation(ClosedForm):
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (4)-(13). The closed form for exact kinematics, which the
     paper calls numerical, is derived in the docs (theory).
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.RadialFoundation().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.06
+    >>> def winkler(joint):
+    ...     return 1.5 * joint.liner.young / joint.liner_thickness
+    >>> round(bs.RadialFoundation(modulus=winkler).press(bs.joints["hip-28"], force=3000.0).max_pressure, 2)
+    15.76
     """
 
     modulus: Modulus = hess_forsbach
     kinematics: Kinematics = linear_kinematics
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "modulus", as_modulus(self.modulus))
+        if not isinstance(self.kinematics, Kinematics):
+            raise TypeError(
+                f"kinematics must be a Kinematics, such as bs.linear_kinematics, got {shown(self.kinematics)}"
+            )
 
     @property
     def name(self) -> str:
@@ -50,6 +69,11 @@ class RadialFoundation(ClosedForm):
     def sources(self) -> tuple[Source, ...]:
         related = _RELATED_SOURCES.get((self.modulus.name, self.kinematics.name), ())
         return (*self.modulus.sources, *self.kinematics.sources, *related)
+
+    @property
+    def source(self) -> str:
+        """Source of a custom modulus, as text; empty for a published one."""
+        return self.modulus.source
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -156,6 +180,18 @@ def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as t
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (18).
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.HessForsbach().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.06
     """
     return RadialFoundation()
 
@@ -169,6 +205,18 @@ def Vessel() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (14).
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.Vessel().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.68
     """
     return RadialFoundation(modulus=spherical_vessel)
 
@@ -179,6 +227,18 @@ def Bartel() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Bartel et al. 1985, doi 10.1115/1.3138540; the closed form is derived in the docs (theory).
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.Bartel().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.77
     """
     return RadialFoundation(modulus=spherical_vessel, kinematics=exact_kinematics)
 
@@ -189,6 +249,18 @@ def BondedLayer() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (15); Johnson 1985.
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.BondedLayer().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    18.01
     """
     return RadialFoundation(modulus=bonded_layer)
 
@@ -201,6 +273,18 @@ def BondedLayerExact() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Askari & Andersen 2018, doi 10.1177/0954411918810044.
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.BondedLayerExact().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    18.1
     """
     return RadialFoundation(modulus=bonded_layer, kinematics=exact_kinematics)
 
@@ -213,5 +297,17 @@ def CosineLimit() -> RadialFoundation:  # noqa: N802
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6) and (13) with c = 0.
+
+    Methods
+    -------
+    press(joint, force=..., indentation=..., half_angle=...)
+        Compute the contact of a joint under one of these loads.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.CosineLimit().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    7.2
     """
     return RadialFoundation(kinematics=cosine_kinematics)

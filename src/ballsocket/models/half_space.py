@@ -149,6 +149,13 @@ class Hertz(HalfSpace):
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (1)-(3); Johnson 1985, chapter 4, doi 10.1017/CBO9781139171731.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.Hertz().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    5.94
     """
 
     @property
@@ -179,6 +186,13 @@ class Steuermann(HalfSpace):
     References
     ----------
     Steuermann 1939; Johnson 1985, doi 10.1017/CBO9781139171731, section 5.3.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.Steuermann().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    6.08
     """
 
     exponent: int = 2
@@ -232,6 +246,13 @@ class LiuReconstruction(ClosedForm):
     References
     ----------
     Liu, Zhang & Yang 2006, doi 10.1115/1.2162872, after Heß & Forsbach 2021, doi 10.3390/app112311170, section 2.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.LiuReconstruction().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    8.65
     """
 
     coefficient: float = 0.5

@@ -11,7 +11,7 @@ from typing import Any
 import numpy
 
 from ..core.arrays import Array, clip
-from ..core.checks import check_numeric, require
+from ..core.checks import check_numeric, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, RIGID_BALL, Promise, Range, check_domain
@@ -38,6 +38,8 @@ class Modulus:
         Accuracy of the springs inside the validity.
     domain, validity : tuple of Range
         Ranges in which the formula exists (open), and in which it is accurate (closed).
+    source : str
+        Source of custom constants or of a custom formula, as text; `cite` includes it.
 
     Examples
     --------
@@ -55,6 +57,7 @@ class Modulus:
     domain: tuple[Range, ...] = ()
     validity: tuple[Range, ...] = ()
     promise: Promise | None = None
+    source: str = ""
 
     def __call__(self, joint: Joint) -> Array:
         """Compute the foundation modulus K of a joint in MPa/mm.
@@ -79,6 +82,53 @@ class Modulus:
 
     def __repr__(self) -> str:
         return self.name.replace("-", "_")
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class FunctionModulus(Modulus):
+    """Foundation modulus K in MPa/mm from a custom function of a joint, `formula(joint)`."""
+
+    def evaluate(self, joint: Joint) -> Array:
+        """Compute the foundation modulus K of a joint in MPa/mm; a scalar function takes one joint at a time."""
+        numbers = joint.numbers()
+        try:
+            value = check_numeric(f"modulus {self.name}", self.formula(joint))
+        except (TypeError, ValueError):
+            if not any(isinstance(number, numpy.ndarray) for number in numbers):
+                raise
+            rows = numpy.broadcast_arrays(*numbers)
+            joints = (joint.with_numbers(map(float, row)) for row in zip(*(part.ravel() for part in rows), strict=True))
+            value = numpy.array([float(self.formula(single)) for single in joints]).reshape(rows[0].shape)
+        valid = (value > 0) & (value < inf)
+        require(f"modulus {self.name}", value, valid, "a foundation modulus (MPa/mm) must be above 0 and finite")
+        return value
+
+
+def as_modulus(value: Any) -> Modulus:
+    """Return a foundation modulus, also from a function that computes K in MPa/mm of a joint.
+
+    Raises
+    ------
+    TypeError
+        Another value.
+    """
+    if isinstance(value, Modulus):
+        return value
+    name = getattr(value, "__name__", "")
+    if not callable(value) or isinstance(value, type) or getattr(value, "__module__", "") == __name__:
+        hint = f"call it, such as bs.{name}(...)" if callable(value) else "for a number, use bs.constant(number)"
+        raise TypeError(
+            f"modulus must be a Modulus, such as bs.hess_forsbach, or a function of a joint that returns K in MPa/mm, "
+            f"got {shown(value)}; {hint}"
+        )
+    summary = (getattr(value, "__doc__", None) or "").strip().partition("\n")[0]
+    return FunctionModulus(
+        name=name.strip("<>").replace("_", "-") or "custom",
+        title=summary.rstrip(".") or f"custom modulus {name}".strip(),
+        formula=value,
+        validity=(RIGID_BALL, RIGID_BACKING),
+        source=str(getattr(value, "source", "")),
+    )
 
 
 @lru_cache(maxsize=256)
@@ -205,7 +255,14 @@ def polynomial(c1: Array, c2: Array, c3: Array, *, source: str = "") -> Modulus:
     require("c1 + c2 + c3", total, total > 0, "at least one constant of Eq. (18) must be above 0")
     title = f"Eq. (18) with constants {c1}, {c2}, {c3}" + (f" ({source})" if source else "")
     sources = (Source("hess2021", "(18)"),)
-    return Modulus(name="polynomial", title=title, formula=polynomial_formula, constants=constants, sources=sources)
+    return Modulus(
+        name="polynomial",
+        title=title,
+        formula=polynomial_formula,
+        constants=constants,
+        sources=sources,
+        source=source,
+    )
 
 
 def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Modulus:
@@ -242,6 +299,7 @@ def corrected_vessel(a0: Array, a1: Array, a2: Array, *, source: str = "") -> Mo
         sources=spherical_vessel.sources,
         domain=spherical_vessel.domain,
         validity=(RIGID_BALL, RIGID_BACKING),
+        source=source,
     )
 
 

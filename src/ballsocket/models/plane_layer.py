@@ -49,6 +49,13 @@ class PlaneLayer(Model):
     References
     ----------
     Jin 2000, Proc. IMechE H 214, 425.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.PlaneLayer().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    12.71
     """
 
     seconds_a_press: ClassVar[float] = 2e-3

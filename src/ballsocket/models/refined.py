@@ -32,6 +32,13 @@ class Refined(Model):
     References
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, for the problem; the formulas are derived in the docs (refined).
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.Refined().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    17.02
     """
 
     seconds_a_press: ClassVar[float] = 4e-6

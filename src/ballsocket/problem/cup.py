@@ -233,6 +233,12 @@ class Cup:
             return float(self.inclination), float(self.anteversion)
         return _angles_of(_opening_of(self.inclination, self.anteversion, AngleDefinition.RADIOGRAPHIC), chosen)
 
+    def __str__(self) -> str:
+        angles = ("arc_of_cover", "inclination", "anteversion")
+        texts = [f"{CUP[name].title} {degrees(getattr(self, name)):.4g}°" for name in angles]
+        chamfer = [f"chamfer {self.chamfer:g} mm"] if self.chamfer else []
+        return ", ".join([*texts, *chamfer, f"{self.interface.value} liner", f"{self.side.value} side"])
+
     @property
     def rim(self) -> float:
         """Polar angle of the rim in rad, half of the arc of cover."""

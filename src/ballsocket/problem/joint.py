@@ -11,7 +11,9 @@ from typing import Any, Unpack
 
 from ..core.arrays import Array, is_plain_number, to_list, where
 from ..core.checks import check_names, require, shown
+from ..core.display import OneLine, html_list
 from ..core.kinds import Choice
+from ..core.quantities import JOINT
 from .dimensions import LENGTHS, STORED_LENGTHS, Dimensions, Lengths, resolve_lengths
 from .material import Layer, Material, elementwise_maximum, make_unchecked, set_fields, short_text
 
@@ -26,8 +28,8 @@ class Support(Choice):
     FREE = "free"
 
 
-@dataclass(frozen=True, kw_only=True, init=False)
-class Joint(Dimensions):
+@dataclass(frozen=True, kw_only=True, init=False, repr=False)
+class Joint(OneLine, Dimensions):
     """Ball in a socket of nearly equal radius, lined with an elastic layer.
 
     The support of the liner is rigid unless `backing` or `support` define it. The validity of a model states if it
@@ -269,6 +271,14 @@ class Joint(Dimensions):
         """Text of ball radius, clearance and liner thickness, with units."""
         liner = _thickness_text(self.liner_thickness)
         return f"R1 {short_text(self.ball_radius)} mm, clearance {short_text(self.clearance)} mm, {liner}"
+
+    def _repr_html_(self) -> str:
+        lengths = ("ball_radius", "socket_radius", "clearance", "liner_thickness")
+        rows = [(JOINT[name].title, f"{short_text(getattr(self, name))} mm") for name in lengths]
+        rows += [("liner", str(self.liner)), ("ball", "rigid" if self.ball is None else str(self.ball))]
+        rows += [(f"layer {number} behind the liner", str(layer)) for number, layer in enumerate(self.backing, start=1)]
+        rows += [("outermost surface", self.support.value)] if self.backing else []
+        return html_list(self.name or "joint", [*rows, *([("source", self.source)] if self.source else [])])
 
     def __str__(self) -> str:
         ball = "rigid" if self.ball is None else str(self.ball)

@@ -7,6 +7,7 @@ from typing import Any
 
 from ..core.arrays import Array, is_plain_number, to_list, where
 from ..core.checks import shown
+from ..core.display import OneLine, html_list
 from ..core.quantities import LAYER, MATERIAL, STRENGTH, STRESS_LIMITS
 
 
@@ -40,8 +41,8 @@ def elementwise_maximum(x: Array, y: Array) -> Array:
     return max(x, y) if is_plain_number(x) and is_plain_number(y) else where(x > y, x, y)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Material:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Material(OneLine):
     """Linear elastic, isotropic material.
 
     Parameters
@@ -108,13 +109,22 @@ class Material:
         numbers = {"young": self.young, "poisson": self.poisson, **self.stress_limits}
         return {"name": self.name, **{name: to_list(number) for name, number in numbers.items()}}
 
+    def _repr_html_(self) -> str:
+        elastic = {name: getattr(self, name) for name in MATERIAL}
+        rows = [
+            (quantity.title, f"{short_text(value)} {quantity.unit}".removesuffix(" 1"))
+            for name, value in {**elastic, **self.stress_limits}.items()
+            for quantity in [{**MATERIAL, **STRESS_LIMITS}[name]]
+        ]
+        return html_list(self.name or "material", [*rows, *([("source", self.source)] if self.source else [])])
+
     def __str__(self) -> str:
         numbers = f"E {short_text(self.young)} MPa, nu {short_text(self.poisson)}"
         return f"{self.name} ({numbers})" if self.name else numbers
 
 
-@dataclass(frozen=True, kw_only=True)
-class Layer:
+@dataclass(frozen=True, kw_only=True, repr=False)
+class Layer(OneLine):
     """Layer behind the liner: a metal shell, cement or bone.
 
     Parameters

@@ -102,11 +102,12 @@ def _joint_numbers(at: Row) -> Iterator[tuple[str, float]]:
 def heat_map(rows: Sequence[Mapping[str, Any]]) -> Figure:
     """Draw the errors of every model by quantity; the colour is the 95th percentile."""
     from matplotlib.colors import LogNorm
-    from matplotlib.figure import Figure
+
+    from .notebook_figure import NotebookFigure
 
     errors = [[row["errors"][name] for name in HEADS] for row in rows]
     high = numpy.array([[100 * error["percentile_95"] for error in line] for line in errors])
-    figure = Figure(figsize=(8.6, 0.42 * len(rows) + 1.3), layout="constrained")
+    figure = NotebookFigure(figsize=(8.6, 0.42 * len(rows) + 1.3), layout="constrained")
     axes = figure.subplots()
     norm = LogNorm(*_HEAT_ENDS)
     image = axes.imshow(high, cmap="YlOrRd", norm=norm, aspect="auto")

@@ -47,11 +47,12 @@ def cup_figure(contact: OffAxisContact, units: Units = Units.SI) -> Figure:
     ValueError
         More than one contact, a contact without load, or a failed one.
     """
-    from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+    from .notebook_figure import NotebookFigure
+
     _ = contact.single_state
-    figure = Figure(figsize=(11.0, 5.2), layout=ConstrainedLayoutEngine(rect=(0.0, 0.09, 1.0, 0.91)))
+    figure = NotebookFigure(figsize=(11.0, 5.2), layout=ConstrainedLayoutEngine(rect=(0.0, 0.09, 1.0, 0.91)))
     map_axes, section_axes = figure.subplots(1, 2, width_ratios=(1.15, 1.0))
     filled = draw_map(map_axes, contact, units)
     bar = figure.colorbar(filled, ax=map_axes, shrink=0.8, pad=0.02, format="%g", ticks=list(filled.levels)[1:])

@@ -261,11 +261,11 @@ def _legend(axes: Axes) -> None:
 
 def bands_figure(record: Record) -> Figure:
     """Draw the band of each result from the tolerances beside the Sobol indices of the tolerances."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     uncertainty = record["uncertainty"]
     names, keys = list(next(iter(uncertainty["sobol"].values()))), list(uncertainty["bands"])
-    figure = Figure(figsize=(9.6, 1.5 + 0.34 * max(len(names), len(keys))), layout="constrained")
+    figure = NotebookFigure(figsize=(9.6, 1.5 + 0.34 * max(len(names), len(keys))), layout="constrained")
     band_axes, sobol_axes = figure.subplots(1, 2)
     reach = 0.0
     for row, key in enumerate(keys):
@@ -313,9 +313,9 @@ def wear_figure(record: Record) -> Figure:
 
 def _single_axes(width: float, height: float) -> tuple[Figure, Axes]:
     """Create a figure with one pair of axes; sizes in inches."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = NotebookFigure(figsize=(width, height), layout="constrained")
     return figure, figure.subplots()
 
 

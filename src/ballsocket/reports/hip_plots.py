@@ -29,9 +29,9 @@ _HEADROOM = 1.2
 
 def _figure(size: tuple[float, float] = _SIZE, polar: bool = False) -> tuple[Figure, Any]:
     """Create a figure with one pair of axes, polar or with a grid; the size is in inches."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=size, layout="constrained")
+    figure = NotebookFigure(figsize=size, layout="constrained")
     axes = figure.add_subplot(projection="polar" if polar else None)
     if not polar:
         axes.spines[["top", "right"]].set_visible(False)
@@ -217,10 +217,10 @@ def _over_the_cycle(axes: Any, use: HipSetup) -> None:
 
 def share_figure(bands: Bands) -> Figure:
     """Draw first and total Sobol indices of the inputs that differ between patients, with 95 % intervals."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     names, indices = list(bands.variability.distributions), bands.indices or {}
-    figure = Figure(figsize=(3.0 * len(INFLUENCED_RESULTS) + 1.2, 0.5 * len(names) + 1.6), layout="constrained")
+    figure = NotebookFigure(figsize=(3.0 * len(INFLUENCED_RESULTS) + 1.2, 0.5 * len(names) + 1.6), layout="constrained")
     rows = numpy.arange(len(names))
     panels = figure.subplots(1, len(INFLUENCED_RESULTS), squeeze=False, sharey=True).ravel()
     for number, (axes, result) in enumerate(zip(panels, INFLUENCED_RESULTS, strict=True)):
@@ -252,9 +252,9 @@ def course_figure(phase: Numbers, courses: Mapping[str, Numbers], title: str) ->
     -------
     matplotlib.figure.Figure
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=(6.4, 1.6 * len(courses) + 0.9), layout="constrained")
+    figure = NotebookFigure(figsize=(6.4, 1.6 * len(courses) + 0.9), layout="constrained")
     panels = figure.subplots(len(courses), 1, sharex=True, squeeze=False)[:, 0]
     for axes, (label, values) in zip(panels, courses.items(), strict=True):
         axes.plot(phase, values, color=BLUE)

@@ -36,10 +36,10 @@ _CONTENTS = (0.5, 0.95)
 @renamed_arguments(found="result")
 def fit_figure(result: IdentificationResult) -> Figure:
     """Draw measured values with the fitted model above, and residuals in units of the uncertainty below."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     indices = [index for index, data in enumerate(result.data) if data.load]
-    figure = Figure(figsize=(4.2 * max(1, len(indices)), 5.2), layout="constrained")
+    figure = NotebookFigure(figsize=(4.2 * max(1, len(indices)), 5.2), layout="constrained")
     if not indices:
         figure.text(0.5, 0.5, "nothing was measured at a load", ha="center")
         return figure
@@ -100,12 +100,12 @@ def corner_figure(result: IdentificationResult, posterior: Posterior | None = No
 
     Without a posterior, samples of the normal distribution about the best fit are drawn.
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     samples = _approximate_samples(result) if posterior is None else posterior.samples
     unknowns = result.transform.unknowns
     count = len(unknowns)
-    figure = Figure(figsize=(2.3 * count + 1.2, 2.1 * count + 1.0), layout="constrained")
+    figure = NotebookFigure(figsize=(2.3 * count + 1.2, 2.1 * count + 1.0), layout="constrained")
     panels = figure.subplots(count, count, squeeze=False, sharex="col")
     columns = [unknown.quantity.shown.factor * samples[:, index] for index, unknown in enumerate(unknowns)]
     for row in range(count):
@@ -173,9 +173,9 @@ def _smoothed(counts: Numbers) -> Numbers:
 
 def experiment_figure(experiment: Experiment) -> Figure:
     """Draw the expected information gain of each candidate for the next measurement over its load."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+    figure = NotebookFigure(figsize=(6.4, 4.2), layout="constrained")
     axes = figure.subplots()
     names = list(dict.fromkeys(gain.candidate.quantity for gain in experiment.gains))
     for number, name in enumerate(names):

@@ -51,11 +51,11 @@ def orientation_figure(orientations: Orientations, units: Units = Units.SI) -> F
     ValueError
         Fewer orientations.
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     if min(orientations.status.shape) < 2:
         raise ValueError(f"a map needs two values of each angle, got {' x '.join(map(str, orientations.status.shape))}")
-    figure = Figure(figsize=(10.4, 4.6), layout="constrained")
+    figure = NotebookFigure(figsize=(10.4, 4.6), layout="constrained")
     distance_axes, pressure_axes = figure.subplots(1, 2, sharey=True)
     _draw(distance_axes, orientations, orientations.edge_distance, DERIVED["edge_distance"], units)
     _draw(pressure_axes, orientations, orientations.max_pressure, CONTACT["max_pressure"], units)

@@ -70,9 +70,9 @@ def press_figure(
     matplotlib.figure.Figure
         Figure; curves outside the validity of their model are thin.
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure, axes = Figure(figsize=(10.0, 4.6), layout="constrained"), force_axes(units)
+    figure, axes = NotebookFigure(figsize=(10.0, 4.6), layout="constrained"), force_axes(units)
     pressure = units.unit_of(FIELD["pressure"])
     pressure_axes, force_panel = figure.subplots(1, 2)
     for name, contact in contacts.items():
@@ -189,9 +189,9 @@ _DASHES = ("-", "--", "-.", ":")
 
 def _axes(count: int = 1, size: tuple[float, float] = (6.4, 4.2)) -> tuple[Figure, Any]:
     """Create a figure with axes side by side."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=size, layout="constrained")
+    figure = NotebookFigure(figsize=size, layout="constrained")
     panels = figure.subplots(1, count, squeeze=False)[0]
     for axes in panels:
         axes.spines[["top", "right"]].set_visible(False)

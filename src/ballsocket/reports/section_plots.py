@@ -75,9 +75,9 @@ def joint_section(joint: Joint, cup: Cup, contact: Contact | None = None, units:
     -------
     matplotlib.figure.Figure
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=(6.6, 5.4), layout="constrained")
+    figure = NotebookFigure(figsize=(6.6, 5.4), layout="constrained")
     axes = figure.add_subplot()
     axes.set_aspect("equal")
     axes.axis("off")
@@ -184,9 +184,9 @@ def section_figure(contact: MeshedContact, exact: Contact | None = None) -> Figu
     ValueError
         More than one contact, a contact without load, or a failed one.
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=(11.0, 4.8), layout="constrained")
+    figure = NotebookFigure(figsize=(11.0, 4.8), layout="constrained")
     section_axes, pressure_axes = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     _draw_section(figure, section_axes, contact)
     _draw_pressure(pressure_axes, contact, exact)

@@ -56,11 +56,11 @@ def design_map(
     ValueError
         A study without exactly two axes of more than one value.
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     names = [name for name in quantities if name in study.data_vars]
     across, up = _two_axes(study)
-    figure = Figure(figsize=(4.4 * len(names) + 0.4, 4.4), layout="constrained")
+    figure = NotebookFigure(figsize=(4.4 * len(names) + 0.4, 4.4), layout="constrained")
     answered, trusted = (condition.transpose(up, across).values for condition in (allowed(study, ()), study.valid))
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
         values = read(study, name, units).transpose(up, across).values
@@ -178,13 +178,13 @@ def band_figure(
     ValueError
         A study without samples, or without exactly one more axis.
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     axis_names = [str(dim) for dim in study.sizes if dim != "sample"]
     if "sample" not in study.sizes or len(axis_names) != 1:
         raise ValueError("bands need samples and one more axis, such as the force")
     names = [name for name in quantities if name in study.data_vars]
-    figure = Figure(figsize=(5.0 * len(names), 4.0), layout="constrained")
+    figure = NotebookFigure(figsize=(5.0 * len(names), 4.0), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
         values, x = read(study, name, units), read(study, axis_names[0], units).values
         for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
@@ -208,9 +208,9 @@ def front_figure(
     minimise : tuple of two str
     limits : sequence of Limit
     """
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=(6.4, 4.6), layout="constrained")
+    figure = NotebookFigure(figsize=(6.4, 4.6), layout="constrained")
     axes = figure.subplots()
     good = allowed(study, limits)
     first, second = (read(study, name).where(good).values.ravel() for name in minimise)
@@ -233,10 +233,10 @@ _INDEX_STYLES = {
 @renamed_arguments(found="indices")
 def sensitivity_figure(indices: xarray.Dataset) -> Figure:
     """Draw first and total indices, and Shapley effects, of every quantity with their intervals."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     quantities, parameters = indices.quantity.values.tolist(), indices.parameter.values.tolist()
-    figure = Figure(figsize=(3.4 * len(quantities) + 1.2, 0.55 * len(parameters) + 1.8), layout="constrained")
+    figure = NotebookFigure(figsize=(3.4 * len(quantities) + 1.2, 0.55 * len(parameters) + 1.8), layout="constrained")
     rows = numpy.arange(len(parameters))
     for axes, quantity in zip(
         figure.subplots(1, len(quantities), squeeze=False, sharey=True).ravel(), quantities, strict=True

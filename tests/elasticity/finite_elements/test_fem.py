@@ -504,7 +504,7 @@ def test_a_mesh_larger_than_the_memory_is_refused_before_it_is_built():
 
 def test_a_missing_extra_is_reported_with_its_install_command(monkeypatch):
     monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda module: None)
-    with pytest.raises(ImportError, match=r"skfem is not installed: pip install 'ballsocket\[fem\]'"):
+    with pytest.raises(ImportError, match=r'skfem is not installed: pip install "ballsocket\[fem\]"'):
         bs.FiniteElement().press(HIP, force=1000.0)
 
 

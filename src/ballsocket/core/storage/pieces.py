@@ -18,6 +18,7 @@ from typing import Any
 
 from ...version import __version__
 from ..deprecation import renamed_arguments
+from ..display import full_repr
 from ..executors.processes import Engine, Serial, Work
 from .atomic_files import write_text
 
@@ -56,8 +57,8 @@ def check_worker_code(code: str) -> None:
 
 
 def hash_inputs(*inputs: object) -> str:
-    """Compute the SHA-256 digest of the `repr` of inputs, as 64 hexadecimal characters."""
-    return sha256(repr(inputs).encode()).hexdigest()
+    """Compute the SHA-256 digest of the `full_repr` of inputs, as 64 hexadecimal characters."""
+    return sha256(full_repr(inputs).encode()).hexdigest()
 
 
 class PieceStore(ABC):

@@ -57,6 +57,13 @@ class Exact(Model):
     References
     ----------
     The equation is derived in the docs (theory). The problem of two bodies of one size is Goodman & Keer's (1965).
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.Exact().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    16.94
     """
 
     tolerance: float = 1e-6

@@ -19,7 +19,7 @@ import numpy
 
 from ...core.arrays import Numbers, gauss_legendre
 from ...core.storage.atomic_files import cached_array
-from ...models.modulus import Modulus, hess_forsbach
+from ...models.modulus import Modulus, as_modulus, hess_forsbach
 from ...problem import Joint
 from ...problem.cup import Cup
 from ..exact.modes import socket_of
@@ -267,6 +267,9 @@ class Springs:
     """
 
     modulus: Modulus = hess_forsbach
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "modulus", as_modulus(self.modulus))
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
         """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""

@@ -264,6 +264,13 @@ class Tabulated(Model):
     References
     ----------
     The equation behind the tables is derived in the docs (theory).
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.Tabulated().press(bs.joints["hip-28"], force=3000.0)
+    >>> round(contact.max_pressure, 2)  # MPa
+    16.94
     """
 
     file: str = ""

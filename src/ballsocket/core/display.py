@@ -1,0 +1,52 @@
+"""Display of values in terminals and notebooks: one line as text, tables as HTML."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import fields, is_dataclass
+from html import escape
+from typing import Any
+
+
+class OneLine:
+    """Base class whose `repr` is one line: the name of the class and the text of the instance."""
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
+
+
+def full_repr(value: Any) -> str:
+    """Return the `repr` with every field of the dataclasses in a value, also of those with a repr in one line.
+
+    Digests and generated files use it.
+    """
+    if isinstance(value, OneLine) or (is_dataclass(value) and hasattr(type(value).__repr__, "__wrapped__")):
+        parts = (f"{part.name}={full_repr(getattr(value, part.name))}" for part in fields(value) if part.repr)  # type: ignore[arg-type]
+        return f"{type(value).__qualname__}({', '.join(parts)})"
+    if type(value) is tuple:
+        return f"({', '.join(map(full_repr, value))}{',' if len(value) == 1 else ''})"
+    if type(value) is list:
+        return f"[{', '.join(map(full_repr, value))}]"
+    if type(value) is dict:
+        return f"{{{', '.join(f'{full_repr(key)}: {full_repr(entry)}' for key, entry in value.items())}}}"
+    return repr(value)
+
+
+def html_table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return an HTML table of texts, the first column on the left."""
+    align = " style='text-align:left'"
+    cells = "".join(f"<th{'' if number else align}>{escape(text)}</th>" for number, text in enumerate(heads))
+    body = "".join(
+        "<tr>"
+        + "".join(f"<td{'' if number else align}>{escape(text)}</td>" for number, text in enumerate(row))
+        + "</tr>"
+        for row in rows
+    )
+    return f"<table><tr>{cells}</tr>{body}</table>"
+
+
+def html_list(title: str, rows: Iterable[tuple[str, str]]) -> str:
+    """Return names and values in two columns below a title, as HTML."""
+    align = "style='text-align:left'"
+    body = "".join(f"<tr><td {align}>{escape(name)}</td><td {align}>{escape(text)}</td></tr>" for name, text in rows)
+    return f"<b>{escape(title)}</b><table>{body}</table>"
