@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from hashlib import sha256
-from math import degrees, inf, isfinite
+from math import ceil, degrees, inf, isfinite
 from pathlib import Path
 
 from ..compare import Comparison, successful_contacts
@@ -301,7 +301,7 @@ def _rim_verdict(contact: Contact, units: Units, uncertainty: LocalUncertainty |
         return []
     distance = units.short_length(abs(float(contact.edge_distance)))
     if contact.edge_loaded:
-        return [(f"edge loading: the contact reaches the rim, which cuts off {distance} of it", "fails")]
+        return [(f"edge loading: the contact reaches the rim (CPER -{distance})", "fails")]
     verdict = f"no edge loading: the contact ends {distance} from the rim (CPER)"
     least = uncertainty.band.get(EDGE_DISTANCE, (inf,))[0] if uncertainty else inf
     if least > 0:
@@ -326,8 +326,9 @@ def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str,
 def _comparison(designs: Sequence[PressedDesign], units: Units) -> str:
     """Return tables of the designs beside each other as HTML."""
     tables = []
-    for start in range(0, len(designs), _MAX_COLUMNS):
-        group = designs[start : start + _MAX_COLUMNS]
+    count = ceil(len(designs) / ceil(len(designs) / _MAX_COLUMNS))
+    for start in range(0, len(designs), count):
+        group = designs[start : start + count]
         columns = [list(_summary(design, units)) for design in group]
         rows = [(name, *(column[index][1] for column in columns)) for index, (name, _) in enumerate(columns[0])]
         tables.append((("", *(design.title for design in group)), rows))
