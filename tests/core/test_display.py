@@ -44,7 +44,7 @@ def test_tables_of_notebooks_escape_names_and_list_numbers():
     assert "<td style='text-align:left'>0.4</td>" in bs.UHMWPE._repr_html_()
     assert bs.catalogue._repr_html_().count("<tr>") == len(bs.catalogue)
     assert f"<td>{HISTORY.last.volume:.4g}</td>" in HISTORY._repr_html_()
-    assert "Archard(coefficient=1e-06)" in SIMULATION._repr_html_()
+    assert "Archard(coefficient=1e-06" in SIMULATION._repr_html_()
 
 
 def test_digests_take_every_number():

@@ -97,7 +97,7 @@ def test_a_history_is_a_frame_and_a_figure(monkeypatch):
     assert len(wear_figure([history, history]).axes[0].lines) == 2
     assert ", 2 reports, last " in repr(history)
     monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
-    with pytest.raises(ImportError, match=r"pandas is not installed: pip install 'ballsocket\[study\]'"):
+    with pytest.raises(ImportError, match=r'pandas is not installed: pip install "ballsocket\[study\]"'):
         history.to_frame()
     assert len(history.table()) == 2
 

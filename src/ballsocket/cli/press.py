@@ -101,7 +101,10 @@ class FrictionOptions:
 
     friction: Annotated[
         float | None,
-        typer.Option(help="Coefficient of sliding friction. Adds running and breakaway torque to the results."),
+        typer.Option(
+            help="Coefficient of sliding friction. Adds running and breakaway torque to the results. "
+            "Default: no torques."
+        ),
     ] = None
     static_friction: Annotated[
         float | None,
