@@ -32,14 +32,18 @@ class LandmarkOptions:
     """Options of landmark files and of the pelvis."""
 
     landmarks: Annotated[
-        list[Path] | None, typer.Option(help="Landmark file of 3D Slicer (.mrk.json, .fcsv). Repeat for several.")
+        list[Path] | None,
+        typer.Option(help="Landmark file of 3D Slicer (.mrk.json, .fcsv). Repeat for several. Default: none."),
     ] = None
     rename: Annotated[
         list[str] | None,
-        typer.Option(help="Point of a landmark: 'right_asis=F-1'. Repeat for several."),
+        typer.Option(help="Point of a landmark: 'right_asis=F-1'. Repeat for several. Default: none."),
     ] = None
     coordinates: Annotated[
-        str | None, typer.Option(help="RAS or LPS, for landmark files that do not state their coordinate system.")
+        str | None,
+        typer.Option(
+            help="RAS or LPS, for landmark files that do not state their coordinate system. Default: as in the file."
+        ),
     ] = None
     side: Annotated[
         str | None, typer.Option(help="Side of the cup: right or left. Default: from names and position.")
@@ -71,8 +75,8 @@ class LandmarkOptions:
 class ImplantOptions:
     """Options of the STL files."""
 
-    liner: Annotated[Path | None, typer.Option(help="STL file of the liner.")] = None
-    head: Annotated[Path | None, typer.Option(help="STL file of the head.")] = None
+    liner: Annotated[Path | None, typer.Option(help="STL file of the liner. Default: none.")] = None
+    head: Annotated[Path | None, typer.Option(help="STL file of the head. Default: none.")] = None
     stl_units: Annotated[str, typer.Option(help="Unit of the STL files: mm, cm, m, um or in.")] = "mm"
     placed: Annotated[
         str | None,
@@ -99,13 +103,17 @@ class ImplantOptions:
 class PlannedJointOptions:
     """Options of the joint file."""
 
-    clearance: Annotated[str | None, typer.Option(help="Radial clearance in mm: '0.15 mm'. Needed for --out.")] = None
+    clearance: Annotated[
+        str | None, typer.Option(help="Radial clearance in mm: '0.15 mm'. Needed for --out. Default: none.")
+    ] = None
     liner_thickness: Annotated[
         str | None, typer.Option(help="Thickness of the liner in mm. Default: the measured wall.")
     ] = None
     liner_material: Annotated[str, typer.Option(help="Name of a material, see `ballsocket presets`.")] = "uhmwpe"
     head_material: Annotated[str | None, typer.Option(help="Name of a material. Default: a rigid head.")] = None
-    force: Annotated[str | None, typer.Option(help="Load of the joint file in N, or with a unit: '3 kN'.")] = None
+    force: Annotated[
+        str | None, typer.Option(help="Load of the joint file in N, or with a unit: '3 kN'. Default: no load.")
+    ] = None
     out: Annotated[Path | None, typer.Option(help="Write a joint file (.toml) for `ballsocket press`.")] = None
 
     def check(self, has_head: bool, has_liner: bool) -> None:

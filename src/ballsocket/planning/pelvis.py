@@ -158,8 +158,8 @@ def _check_sides(axes: Numbers) -> None:
     """Raise ValueError for a frame that is mirrored or turned in the coordinates of the scanner."""
     if axes[0, 0] < 0:
         raise ValueError(
-            "the right ASIS lies to the left of the left one: the names of the sides are mirrored, or the file is in LPS "
-            "coordinates where it states RAS"
+            "the right ASIS lies to the left of the left one: the names of the sides are mirrored, or the file is in "
+            "LPS coordinates where it states RAS"
         )
     if axes[2, 2] < 0:
         raise ValueError("the pubis lies above the spines: their names are exchanged, or the pelvis is upside down")
