@@ -36,7 +36,7 @@ ASKED = {
     "models": ("models", "exact"),
     "presets": ("presets", "hip-36"),
 }
-ELSEWHERE = {"hip", "evidence"}  # these take seconds: their own tests look
+ELSEWHERE = {"hip", "evidence", "planning"}  # these take seconds: their own tests look
 
 
 def said(*words, folder=None):

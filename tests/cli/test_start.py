@@ -19,7 +19,7 @@ from .command import run
 COMMANDS = load_commands()
 HEAVY = ("dask", "jinja2", "matplotlib", "mcp", "numba", "pandas", "panel", "pint", "scipy", "skfem", "xarray")
 ORDER = (
-    *("press", "curve", "orient", "map", "optimise", "sensitivity", "study", "hip", "models", "presets", "cite"),
+    *("press", "curve", "orient", "map", "optimise", "sensitivity", "study", "hip", "planning", "models", "presets", "cite"),
     *("identify", "calibrate", "evidence", "deck", "fmu", "export", "schema", "app", "serve-mcp", "reproduce"),
 )
 

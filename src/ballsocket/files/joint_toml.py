@@ -66,7 +66,8 @@ def _file_table(file: JointFile) -> JointFileTable:
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(
             ball_radius=Length(joint.ball_radius),
-            clearance=Length(joint.clearance),
+            clearance=Length(joint.clearance) if joint.clearance >= 0 else None,
+            interference=Length(-joint.clearance) if joint.clearance < 0 else None,
             liner_thickness=Length(joint.liner_thickness),
             support=joint.support,
         ),

@@ -1,0 +1,496 @@
+"""Liners and heads from STL files: spheres of the bearing and of the outer surface, opening, and wall thickness."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import acos, cos, degrees, pi, radians, sin
+from pathlib import Path
+from types import MappingProxyType
+from typing import BinaryIO
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import shown
+from ..core.input_files import open_input
+from .geometry import fit_plane_robustly, fit_sphere, robust_scale
+
+_MAX_FILE_SIZE = 200_000_000
+"""Largest size of an STL file in bytes."""
+
+_BINARY_HEADER, _BINARY_FACET = 84, 50
+"""Bytes of the header and of a facet of a binary STL file."""
+
+_HEAD_OF_TEXT = 1000
+"""Bytes after the header in which a facet begins in an ASCII STL file."""
+
+_VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
+
+_FACET = re.compile(rb"\bfacet\s+normal", re.IGNORECASE)
+
+STL_UNITS = MappingProxyType({"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "in": 25.4})
+"""Length in mm of each unit of an STL file."""
+
+_SIZES = (12.0, 200.0)
+"""Allowed largest extent of a liner or head in mm."""
+
+_RADII = (7.0, 40.0)
+"""Allowed radius of a head or bore in mm; heads have diameters of 22 to 60 mm."""
+
+_MAX_OUTER_RADIUS = 60.0  # mm
+_SEED = 20260101
+_SAMPLE = 1200
+_BATCH, _MAX_BATCHES = 4000, 15
+_CANDIDATES = 60
+"""Number of spheres through four corners from which the best is chosen."""
+
+_FINALISTS = 4
+_START_TOLERANCE, _MAX_TOLERANCE = 0.004, 0.02
+"""Distance from a sphere over its radius, up to which a facet belongs to it: at first, and at most."""
+
+_MIN_RESOLUTION = 3e-4
+"""Smallest distance from the fitted sphere over its radius, up to which a facet belongs to it."""
+
+_SIGMAS = 4.0
+_MIN_ALIGNMENT = 0.9
+"""Least cosine between the normal of a facet and the radial direction at its corners."""
+
+_MIN_COVERAGE = 0.06
+"""Least share of the full sphere that facets must cover."""
+
+_MAX_ROUGHNESS = 0.015
+"""Largest standard deviation of a bearing from its sphere, over the radius."""
+
+_MIN_OPENING = 0.005
+"""Distance of the centroid of a spherical surface from its centre over the radius, below which it is complete."""
+
+_RIM_SECTORS = 120
+_RIM_TOLERANCE = radians(1.0)
+"""Distance of points from the plane of a rim over the radius, up to which they belong to it."""
+
+_MIN_SECTORS = 0.5
+"""Least share of the sectors around the axis in which a rim must have points."""
+
+_MAX_OPEN_AREA = 0.2
+"""Sum of the area vectors over the total area, below which the volume of a mesh has a sign in spite of holes."""
+
+_FLAT_FACETS = 0.02
+"""Depth in mm of facets below the sphere through their corners from which a note is given."""
+
+_UNEVEN_RIM = radians(3.0)
+"""Deviation of the rim from a plane from which a note is given."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles of an STL file.
+
+    Attributes
+    ----------
+    triangles : array (n, 3, 3)
+        Corners in mm.
+    name : str
+        Name of the file, for messages.
+    space : str or None
+        "RAS" or "LPS" if the header states the coordinates of a scan, as 3D Slicer writes it.
+    """
+
+    triangles: Numbers
+    name: str = "mesh"
+    space: str | None = None
+
+    @cached_property
+    def _area_vectors(self) -> Numbers:
+        """Return the normals times the areas in mm², out of a closed body."""
+        first, second, third = self.triangles.transpose(1, 0, 2)
+        vectors: Numbers = numpy.cross(second - first, third - first) / 2
+        closed = numpy.linalg.norm(vectors.sum(axis=0)) < _MAX_OPEN_AREA * numpy.linalg.norm(vectors, axis=1).sum()
+        volume = numpy.sum((self.triangles.mean(axis=1) - self.triangles.mean(axis=(0, 1))) * vectors)
+        return -vectors if closed and volume < 0 else vectors
+
+    @cached_property
+    def areas(self) -> Numbers:
+        """Areas of the triangles in mm²: (n,)."""
+        return numpy.linalg.norm(self._area_vectors, axis=1)
+
+    @cached_property
+    def normals(self) -> Numbers:
+        """Unit normals of the triangles: (n, 3)."""
+        return self._area_vectors / self.areas[:, None]
+
+    def part(self, selection: Numbers, equal_areas: bool = False) -> Mesh:
+        """Return the triangles of a mask or of indices with their normals, and with equal areas if required."""
+        part = replace(self, triangles=self.triangles[selection])
+        part.__dict__["_area_vectors"] = (self.normals if equal_areas else self._area_vectors)[selection]
+        return part
+
+
+def read_stl(path: str | Path, *, units: str = "mm") -> Mesh:
+    """Read a binary or ASCII STL file.
+
+    Parameters
+    ----------
+    path : str or Path
+    units : str
+        Unit of the coordinates, which STL files do not state: "mm" (default), "cm", "m", "um" or "in".
+
+    Raises
+    ------
+    ValueError
+        A file that is truncated, too large or no STL; coordinates that are not finite; a size that no liner or head
+        has in that unit.
+    OSError
+        The file cannot be read.
+    """
+    path = Path(path)
+    if units not in STL_UNITS:
+        raise ValueError(f"units = {shown(units)} is not allowed: {', '.join(STL_UNITS)}")
+    with open_input(path) as stream:
+        size = stream.seek(0, 2)
+        stream.seek(0)
+        if size > _MAX_FILE_SIZE:
+            raise ValueError(f"{path.name} has {size / 1e6:.0f} MB: at most {_MAX_FILE_SIZE // 1_000_000} are read")
+        triangles, header = _read_triangles(stream, size, path.name)
+    if not len(triangles):
+        raise ValueError(f"{path.name} has no triangles")
+    if not numpy.isfinite(triangles).all():
+        raise ValueError(f"{path.name}: {(~numpy.isfinite(triangles)).sum()} coordinates are not finite numbers")
+    _check_size(triangles, units, path.name)
+    mesh = Mesh(triangles * STL_UNITS[units], path.name, _space(header))
+    return mesh.part(mesh.areas > 0)
+
+
+def _read_triangles(stream: BinaryIO, size: int, name: str) -> tuple[Numbers, bytes]:
+    """Return the triangles (n, 3, 3) of a file of some size in bytes, and its header."""
+    start = stream.read(_BINARY_HEADER)
+    count = int.from_bytes(start[80:84], "little") if len(start) == _BINARY_HEADER else -1
+    if size == _BINARY_HEADER + _BINARY_FACET * count:
+        kind = numpy.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+        return numpy.frombuffer(stream.read(), dtype=kind)["corners"].astype(float), start[:80]
+    text = start + stream.read(_HEAD_OF_TEXT)
+    if text.lstrip()[:5].lower() != b"solid" or b"facet" not in text:
+        expected = f"its header states {count} triangles, {_BINARY_HEADER + _BINARY_FACET * count} bytes"
+        raise ValueError(
+            f"{name} is a truncated or damaged binary STL: {size} bytes, "
+            + (expected if count >= 0 else f"less than the header of {_BINARY_HEADER}")
+        )
+    text += stream.read()
+    if b"endsolid" not in text[-1000:].lower():
+        raise ValueError(f"{name} is a truncated or damaged ASCII STL: `endsolid` is missing at its end")
+    try:
+        numbers = numpy.fromiter((float(word) for match in _VERTEX.finditer(text) for word in match.groups()), float)
+    except ValueError as error:
+        raise ValueError(f"{name}: a vertex is not three numbers ({shown(str(error))})") from error
+    if len(numbers) % 9 or len(numbers) // 9 != sum(1 for _ in _FACET.finditer(text)):
+        raise ValueError(f"{name} is a damaged ASCII STL: a facet has not three vertices")
+    return numbers.reshape(-1, 3, 3), text[:80]
+
+
+def _space(header: bytes) -> str | None:
+    """Return the coordinate system in a header of 3D Slicer, "SPACE=LPS"."""
+    match = re.search(rb"SPACE=(RAS|LPS)", header)
+    return match[1].decode() if match else None
+
+
+def _check_size(triangles: Numbers, units: str, name: str) -> None:
+    """Raise ValueError for an extent that no liner or head has."""
+    low, high = _SIZES
+    extent = float(numpy.ptp(triangles.reshape(-1, 3), axis=0).max())
+    if not low <= extent * STL_UNITS[units] <= high:
+        fitting = [f"{unit} ({extent * length:.3g} mm)" for unit, length in STL_UNITS.items()]
+        fitting = [
+            text for text, length in zip(fitting, STL_UNITS.values(), strict=True) if low <= extent * length <= high
+        ]
+        raise ValueError(
+            f"{name} is {extent:.3g} {units} large: a liner or head has {low:g} to {high:g} mm; "
+            + (f"its unit may be {' or '.join(fitting)}" if fitting else "in no known unit it is one")
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ImplantFit:
+    """Fitted bearing of a liner or head.
+
+    Attributes
+    ----------
+    radius : float
+        Radius in mm of the sphere through the corners of the facets.
+    centre : array (3,)
+        Centre in mm, in the coordinates of the file.
+    residual : float
+        Root mean square distance in mm of these corners from the sphere.
+    axis : array (3,) or None
+        Unit vector from the centre out of the opening; None for a complete sphere.
+    arc_of_cover : float
+        Angle in rad that the spherical surface covers in a section through its axis; 2π for a complete sphere.
+    rim_deviation : float
+        Largest angle in rad of the end of the surface from a plane rim.
+    facet_depth : float
+        Mean depth in mm of the middle of the facets below the sphere through their corners.
+    wall_thickness : float or None
+        Wall of a liner at the pole in mm, to the sphere of the outer surface; None for a head or without such a sphere.
+    wall_range : tuple of float or None
+        Smallest and largest distance in mm of both spheres within 80 % of the polar angle of the rim.
+    wall_residual : float or None
+        Root mean square distance in mm of the outer surface from its sphere.
+    name : str
+        Name of the file.
+    """
+
+    radius: float
+    centre: Numbers
+    residual: float
+    axis: Numbers | None
+    arc_of_cover: float
+    rim_deviation: float
+    facet_depth: float
+    wall_thickness: float | None = None
+    wall_range: tuple[float, float] | None = None
+    wall_residual: float | None = None
+    name: str = "mesh"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on facets and rims that limit the accuracy."""
+        notes = []
+        if self.facet_depth > _FLAT_FACETS:
+            notes.append(
+                f"{self.name}: the radius is that of the sphere through the corners of the facets, whose middles lie "
+                f"{self.facet_depth:.2g} mm inside it; a mesh whose facets straddle the surface has a smaller one"
+            )
+        if self.rim_deviation > _UNEVEN_RIM:
+            notes.append(
+                f"{self.name}: the end of the sphere is not plane and deviates by up to "
+                f"{degrees(self.rim_deviation):.0f}°; the arc of cover is that of most of the rim"
+            )
+        return tuple(notes)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Sphere:
+    """Sphere in a mesh: centre, radius, mask (n,) of its facets, and residual of their corners."""
+
+    centre: Numbers
+    radius: float
+    facets: Numbers
+    residual: float
+
+
+def fit_liner(mesh: Mesh) -> ImplantFit:
+    """Fit bore, opening and outer surface of a liner.
+
+    The bore is the largest concave spherical surface. Its radius is that of the corners of the facets, which a CAD
+    program puts on the surface. Chamfers, holes, ribs and cylinders are left out.
+
+    Raises
+    ------
+    ValueError
+        A mesh without a bore, or with one that no hip has.
+    """
+    bore = _find_sphere(mesh, -1.0, _RADII)
+    if bore is None:
+        solid = _find_sphere(mesh, 1.0, _RADII)
+        seen = f"; its sphere of radius {solid.radius:.4g} mm is convex, as of a head" if solid is not None else ""
+        raise ValueError(f"{mesh.name} has no bore, no concave spherical surface of {_range_text(_RADII)}{seen}")
+    fit = _describe(mesh, bore)
+    if fit.axis is None:
+        raise ValueError(f"{mesh.name}: the bore of radius {bore.radius:.4g} mm has no opening")
+    return _with_wall(mesh, fit)
+
+
+def fit_head(mesh: Mesh) -> ImplantFit:
+    """Fit the sphere and the taper's opening of a head.
+
+    Raises
+    ------
+    ValueError
+        A mesh without a ball, or with one that no hip has.
+    """
+    ball = _find_sphere(mesh, 1.0, _RADII)
+    if ball is None:
+        raise ValueError(f"{mesh.name} has no ball, no convex spherical surface of {_range_text(_RADII)}")
+    return _describe(mesh, ball)
+
+
+def _range_text(limits: tuple[float, float]) -> str:
+    """Return a range of radii as text."""
+    return f"radius {limits[0]:g} to {limits[1]:g} mm"
+
+
+def _find_sphere(mesh: Mesh, sign: float, radii: tuple[float, float]) -> _Sphere | None:
+    """Find the sphere with the largest surface in a mesh: convex (sign 1) or concave (-1); None without one.
+
+    Candidates pass through four random corners. The best ones are fitted to their facets, with a tolerance that
+    follows their scatter.
+    """
+    generator = numpy.random.default_rng(_SEED)
+    if len(mesh.triangles) < 4:
+        return None
+    chosen = generator.choice(len(mesh.areas), size=_SAMPLE, p=mesh.areas / mesh.areas.sum())
+    sample = mesh.part(chosen, equal_areas=True)
+    candidates: list[tuple[Numbers, float]] = []
+    for _ in range(_MAX_BATCHES):
+        candidates += _candidates(sample, sign, radii, generator)
+        if len(candidates) >= _CANDIDATES:
+            break
+    ranked = sorted(candidates, key=lambda pair: -_belonging(sample, *pair, _START_TOLERANCE * pair[1], sign).sum())
+    spheres = [_refine(sample, centre, radius, sign) for centre, radius in ranked[:_FINALISTS]]
+    best = max((sphere for sphere in spheres if sphere), key=lambda sphere: sphere.facets.sum(), default=None)
+    sphere = best and _refine(mesh, best.centre, best.radius, sign)
+    if sphere is None or not radii[0] <= sphere.radius <= radii[1] or sphere.residual > _MAX_ROUGHNESS * sphere.radius:
+        return None
+    covered = mesh.areas[sphere.facets].sum() / (4 * pi * sphere.radius**2)
+    return sphere if covered >= _MIN_COVERAGE else None
+
+
+def _candidates(
+    sample: Mesh, sign: float, radii: tuple[float, float], generator: numpy.random.Generator
+) -> list[tuple[Numbers, float]]:
+    """Return centres and radii of spheres through four random corners, whose normals fit."""
+    indices = generator.integers(len(sample.triangles), size=(_BATCH, 4))
+    points, normals = sample.triangles[indices, 0], sample.normals[indices]
+    edges = points[:, 1:] - points[:, :1]
+    size = numpy.linalg.norm(edges, axis=2).max(axis=1)
+    solid = abs(numpy.linalg.det(edges)) > 1e-3 * size**3
+    points, normals, edges = points[solid], normals[solid], edges[solid]
+    offset = numpy.linalg.solve(2 * edges, numpy.sum(edges**2, axis=2)[..., None])[..., 0]
+    radius = numpy.linalg.norm(offset, axis=1)
+    centre = points[:, 0] + offset
+    radial = (points - centre[:, None]) / radius[:, None, None]
+    good = (sign * numpy.sum(radial * normals, axis=2) > _MIN_ALIGNMENT).all(axis=1)
+    good &= (radius > 0.8 * radii[0]) & (radius < 1.2 * radii[1])
+    return list(zip(centre[good], radius[good].tolist(), strict=True))[:_CANDIDATES]
+
+
+def _belonging(mesh: Mesh, centre: Numbers, radius: float, tolerance: float, sign: float) -> Numbers:
+    """Return the mask of the facets whose corners lie on a sphere and whose normals are radial."""
+    offset = mesh.triangles - centre
+    near = (abs(numpy.linalg.norm(offset, axis=2) - radius) < tolerance).all(axis=1)
+    height = numpy.sum(offset[:, 0] * mesh.normals, axis=1)
+    mask: Numbers = near & (sign * height > _MIN_ALIGNMENT * radius)
+    return mask
+
+
+def _refine(mesh: Mesh, centre: Numbers, radius: float, sign: float) -> _Sphere | None:
+    """Fit a sphere to the facets near it, until they stay the same; None if too few are left."""
+    tolerance, before = _START_TOLERANCE * radius, numpy.zeros(len(mesh.triangles), dtype=bool)
+    for _ in range(25):
+        mask = _belonging(mesh, centre, radius, tolerance, sign)
+        if mask.sum() < 4:
+            return None
+        points, weights = mesh.triangles[mask].reshape(-1, 3), numpy.repeat(mesh.areas[mask], 3)
+        centre, radius = fit_sphere(points, weights)
+        residuals = numpy.linalg.norm(points - centre, axis=1) - radius
+        residual = float(numpy.sqrt(weights @ residuals**2 / weights.sum()))
+        if (mask == before).all():
+            break
+        before = mask
+        tolerance = max(min(_SIGMAS * robust_scale(residuals), _MAX_TOLERANCE * radius), _MIN_RESOLUTION * radius)
+    return _Sphere(centre=centre, radius=radius, facets=mask, residual=residual)
+
+
+def _describe(mesh: Mesh, sphere: _Sphere) -> ImplantFit:
+    """Return the fit of a sphere with its opening."""
+    offset = mesh.triangles[sphere.facets] - sphere.centre
+    middles, weights = offset.mean(axis=1), mesh.areas[sphere.facets] / mesh.areas[sphere.facets].sum()
+    depth = sphere.radius - float(weights @ numpy.linalg.norm(middles, axis=1))
+    complete = numpy.linalg.norm(weights @ middles) < _MIN_OPENING * sphere.radius
+    axis, angle, deviation = (
+        (None, pi, 0.0) if complete else _fit_rim(offset / sphere.radius, weights @ middles, mesh.name)
+    )
+    return ImplantFit(
+        radius=sphere.radius,
+        centre=sphere.centre,
+        residual=sphere.residual,
+        axis=axis,
+        arc_of_cover=2 * angle,
+        rim_deviation=deviation,
+        facet_depth=depth,
+        name=mesh.name,
+    )
+
+
+def _fit_rim(corners: Numbers, pole: Numbers, name: str) -> tuple[Numbers, float, float]:
+    """Fit a plane to the end of a spherical surface, given by its facets (n, 3, 3) and its approximate pole.
+
+    The facets are relative to the centre, in radii. Points on the edges count: the edges of a rim lie in its plane.
+
+    Returns
+    -------
+    axis : array (3,)
+        Unit vector out of the opening.
+    angle : float
+        Polar angle in rad of the rim from the pole.
+    deviation : float
+        Largest angle in rad of the rim from the plane.
+    """
+    dome = pole / numpy.linalg.norm(pole)
+    steps = min(int(numpy.ceil(_largest_edge(corners) / (pi / _RIM_SECTORS))), 20) or 1
+    points = corners.reshape(-1, 3) if steps == 1 else numpy.concatenate(list(_along_edges(corners, steps)))
+    for _ in range(8):
+        ends = _farthest_points(points, dome)
+        if len(ends) < _MIN_SECTORS * _RIM_SECTORS:
+            raise ValueError(f"{name}: the spherical surface has no rim around its axis")
+        plane = fit_plane_robustly(ends, _RIM_TOLERANCE)
+        normal = plane.normal if plane.normal @ dome > 0 else -plane.normal
+        change, dome = float(normal @ dome), normal
+        if change > 1 - 1e-12:
+            break
+    angle = acos(float(numpy.clip(plane.centre @ dome, -1.0, 1.0)))
+    deviation = abs((ends - plane.centre) @ dome) / max(sin(angle), 0.1)
+    return -dome, angle, float(numpy.quantile(deviation, 0.95))
+
+
+def _largest_edge(corners: Numbers) -> float:
+    """Return the length of the longest edge of facets (n, 3, 3)."""
+    return float(numpy.linalg.norm(corners - numpy.roll(corners, -1, axis=1), axis=2).max())
+
+
+def _along_edges(corners: Numbers, steps: int) -> Iterable[Numbers]:
+    """Yield points (3 n, 3) along the edges of facets, one set for each step."""
+    following = numpy.roll(corners, -1, axis=1)
+    for step in range(steps):
+        share = step / steps
+        yield ((1 - share) * corners + share * following).reshape(-1, 3)
+
+
+def _farthest_points(points: Numbers, dome: Numbers) -> Numbers:
+    """Return the point of the largest polar angle from the dome in each sector around it."""
+    seed = numpy.eye(3)[abs(dome).argmin()]
+    first = numpy.cross(dome, seed)
+    first /= numpy.linalg.norm(first)
+    height = points @ dome / numpy.linalg.norm(points, axis=1)
+    azimuth = numpy.arctan2(points @ numpy.cross(dome, first), points @ first)
+    sector = ((azimuth + pi) * (_RIM_SECTORS / (2 * pi))).astype(int) % _RIM_SECTORS
+    order = numpy.argsort(-height, kind="stable")
+    farthest = numpy.full(_RIM_SECTORS, -1)
+    farthest[sector[order]] = order  # the last one stays
+    ends: Numbers = points[farthest[farthest >= 0]]
+    return ends
+
+
+def _with_wall(mesh: Mesh, fit: ImplantFit) -> ImplantFit:
+    """Add the wall thickness of a liner to its fit, if the outer surface is a sphere."""
+    dome = -numpy.asarray(fit.axis)
+    offset = mesh.triangles.mean(axis=1) - fit.centre
+    distance = numpy.linalg.norm(offset, axis=1)
+    behind = (distance > 1.02 * fit.radius) & (offset @ dome > distance * cos(fit.arc_of_cover / 2))
+    outwards = numpy.sum(offset * mesh.normals, axis=1) > 0
+    outer = _find_sphere(mesh.part(behind & outwards), 1.0, (fit.radius, _MAX_OUTER_RADIUS))
+    if outer is None or numpy.linalg.norm(outer.centre - fit.centre) > 0.5 * fit.radius:
+        return fit
+    angles = numpy.linspace(0.0, 0.8 * min(fit.arc_of_cover / 2, pi / 2), 9)
+    shift = outer.centre - fit.centre
+    along = float(shift @ dome)
+    across = float(numpy.sqrt(max(shift @ shift - along**2, 0.0)))
+    projections = numpy.array([along * numpy.cos(angles) + sign * across * numpy.sin(angles) for sign in (1.0, -1.0)])
+    walls = projections + numpy.sqrt(projections**2 + outer.radius**2 - shift @ shift) - fit.radius
+    return replace(
+        fit,
+        wall_thickness=float(walls[0, 0]),
+        wall_range=(float(walls.min()), float(walls.max())),
+        wall_residual=outer.residual,
+    )

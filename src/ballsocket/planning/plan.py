@@ -1,0 +1,276 @@
+"""Planned joint: cup orientation, liner and head of one patient, and the joint file that follows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import degrees, pi, radians
+from typing import Any
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.checks import require, shown
+from ..files.joint_file import JointFile, joint_of
+from ..problem.cup import Cup, Side
+from .implants import ImplantFit
+from .landmarks import Landmarks, read_side
+from .pelvis import CupOrientation, PelvicFrame, cup_orientation, orientation_of_axis
+
+CLEARANCE_REFUSAL = (
+    "no clearance is derived from two STL files, because their radii are nominal: public sets give -0.098 and "
+    "+0.002 mm; state it with --clearance"
+)
+"""Sentence on the difference of the radii of two files."""
+
+_MAX_DIFFERENCE = 1.0
+"""Largest difference in mm of the radii of a bore and its head; neighbouring sizes of heads differ by 2 mm."""
+
+_ROUGH_RIM = 1.0
+"""Root mean square distance in mm of rim points from their plane from which a note is given."""
+
+_UNCERTAIN_AXIS = radians(2.0)
+_UNEVEN_TUBERCLES = 10.0  # mm
+_ARCS = (radians(40.0), radians(340.0))
+
+_LPS = numpy.diag([-1.0, -1.0, 1.0])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Plan:
+    """Planning data of one hip: any of pelvic frame, orientation of the cup, liner and head.
+
+    Attributes
+    ----------
+    frame : PelvicFrame or None
+    orientation : CupOrientation or None
+    liner, head : ImplantFit or None
+
+    Raises
+    ------
+    ValueError
+        A head that does not belong to the bore.
+    """
+
+    frame: PelvicFrame | None = None
+    orientation: CupOrientation | None = None
+    liner: ImplantFit | None = None
+    head: ImplantFit | None = None
+
+    def __post_init__(self) -> None:
+        if self.orientation is not None:
+            self.orientation.cup()  # refuses angles that no cup has
+        if self.liner is None or self.head is None:
+            return
+        if abs(self.liner.radius - self.head.radius) > _MAX_DIFFERENCE:
+            raise ValueError(
+                f"the head of radius {self.head.radius:.3f} mm does not belong to the bore of radius "
+                f"{self.liner.radius:.3f} mm: they differ by more than {_MAX_DIFFERENCE:g} mm"
+            )
+
+    @property
+    def cup(self) -> Cup:
+        """Cup with the measured arc of cover, orientation and side; defaults for the rest."""
+        arc = {} if self.liner is None else {"arc_of_cover": self.liner.arc_of_cover}
+        return Cup(**arc) if self.orientation is None else self.orientation.cup(**arc)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on the accuracy and on what is not known."""
+        notes = [note for fit in (self.liner, self.head) if fit is not None for note in fit.notes]
+        if self.liner is not None and self.liner.wall_thickness is None:
+            notes.append(f"{self.liner.name}: the outer surface is no sphere around the bore: no wall thickness")
+        notes += [*self._orientation_notes()]
+        if self.liner is not None and self.head is not None:
+            notes.append(CLEARANCE_REFUSAL)
+        return tuple(notes)
+
+    def _orientation_notes(self) -> list[str]:
+        """Return sentences on landmarks, rim points and tilt."""
+        frame, orientation, notes = self.frame, self.orientation, []
+        if frame is not None and (frame.tubercle_offset or 0.0) > _UNEVEN_TUBERCLES:
+            notes.append(
+                f"the pubic tubercles are {frame.tubercle_offset:.0f} mm apart across the line of the spines: "
+                "look at the landmarks"
+            )
+        if orientation is None and frame is not None:
+            notes.append(
+                "the orientation of the cup is not known: the landmarks have no points named rim, and no liner lies in "
+                "the coordinates of the scan"
+            )
+        if orientation is None:
+            return notes
+        if (orientation.residual or 0.0) > _ROUGH_RIM and orientation.largest_deviation is not None:
+            name, distance = orientation.largest_deviation
+            notes.append(
+                f"the rim's points are {orientation.residual:.1f} mm from their plane (rms), {shown(name)} "
+                f"{distance:.1f} mm: look at it"
+            )
+        if orientation.points == 3:
+            notes.append("three points on the rim leave no residual: more points show how exact the angles are")
+        if (orientation.angle_error or 0.0) > _UNCERTAIN_AXIS:
+            notes.append(f"the axis of the cup has a standard error of {degrees(orientation.angle_error or 0.0):.1f}°")
+        if orientation.frame.vertical is None:
+            notes.append("the angles are those in the anterior pelvic plane: the pelvic tilt is not known")
+        return notes
+
+    def joint_file(
+        self,
+        clearance: float,
+        *,
+        liner: str = "uhmwpe",
+        ball: str | None = None,
+        liner_thickness: float | None = None,
+        force: float | None = None,
+        name: str = "",
+    ) -> JointFile:
+        """Create the joint with a stated clearance.
+
+        The ball has the radius of the head; without a head, that of the bore less the clearance.
+
+        Parameters
+        ----------
+        clearance : float
+            Radial clearance in mm. It is never derived from two files, because their radii are nominal.
+        liner, ball : str, optional
+            Names of preset materials. Default: UHMWPE, and a rigid ball.
+        liner_thickness : float, optional
+            Thickness in mm in place of the measured wall.
+        force : float, optional
+            Load in N.
+        name : str
+            Name of the joint.
+
+        Raises
+        ------
+        ValueError
+            No radius or no thickness, or a number that is not allowed.
+        """
+        require("clearance", clearance, clearance < numpy.inf, "a radial clearance (mm) is finite")
+        thickness = liner_thickness if liner_thickness is not None else self.liner and self.liner.wall_thickness
+        if self.head is None and self.liner is None:
+            raise ValueError("a joint needs a radius: read the STL file of a liner or a head")
+        if thickness is None:
+            raise ValueError("a joint needs the liner's thickness: the files have none, state --liner-thickness")
+        radius = self.head.radius if self.head is not None else self.liner.radius - clearance  # type: ignore[union-attr]
+        if not _ARCS[0] <= self.cup.arc_of_cover <= _ARCS[1]:
+            raise ValueError(f"the arc of cover of {degrees(self.cup.arc_of_cover):.0f}° is not allowed: 40° to 340°")
+        tables: dict[str, Any] = {
+            "joint": {
+                "ball_radius": round(radius, 4),
+                "clearance": clearance,
+                "liner_thickness": round(thickness, 4),
+            },
+            "liner": {"material": liner},
+        }
+        tables |= {"ball": {"material": ball}} if ball else {}
+        tables |= {"load": {"force": force}} if force is not None else {}
+        tables |= {"name": name} if name else {}
+        return replace(joint_of(tables), cup=_rounded(self.cup))
+
+    def summary(self) -> dict[str, Any]:
+        """Return all results for JSON, in mm and degrees; a missing number is None."""
+        return {
+            "side": None if self.orientation is None else self.orientation.side.value,
+            "pelvis": None if self.frame is None else _pelvis_summary(self.frame),
+            "cup": None if self.orientation is None else _cup_summary(self.orientation),
+            "liner": None if self.liner is None else _fit_summary(self.liner),
+            "head": None if self.head is None else _fit_summary(self.head),
+            "notes": list(self.notes),
+        }
+
+
+def make_plan(
+    *,
+    frame: PelvicFrame | None = None,
+    landmarks: Landmarks | None = None,
+    liner: ImplantFit | None = None,
+    head: ImplantFit | None = None,
+    side: Side | str | None = None,
+    space: str | None = None,
+) -> Plan:
+    """Combine landmarks and implants to a plan.
+
+    The orientation is that of the rim's points. Without them, it is that of the liner if its file has the coordinates
+    of the scan.
+
+    Parameters
+    ----------
+    frame : PelvicFrame, optional
+    landmarks : Landmarks, optional
+        Points with those of the rim.
+    liner, head : ImplantFit, optional
+    side : Side or str, optional
+        "right" or "left", if the landmarks do not determine it.
+    space : str, optional
+        "RAS" or "LPS": the liner's file has these coordinates of the scan.
+
+    Raises
+    ------
+    ValueError
+        A frame without any orientation, and the errors of `cup_orientation`.
+    """
+    orientation = None
+    if frame is not None:
+        if landmarks is not None and len(landmarks.rim(read_side(side))[1]):
+            orientation = cup_orientation(landmarks, frame, side=side)
+        elif liner is not None and liner.axis is not None and space is not None:
+            turn: Numbers = {"RAS": numpy.eye(3), "LPS": _LPS}[space.upper()]
+            axis, centre = frame.axes @ turn @ liner.axis, frame.convert(turn @ liner.centre)
+            orientation = orientation_of_axis(axis, centre, frame, side=side, signed=True)
+    return Plan(frame=frame, orientation=orientation, liner=liner, head=head)
+
+
+def _rounded(cup: Cup) -> Cup:
+    """Round the angles of a cup to a thousandth of a degree."""
+    names = ("arc_of_cover", *(("inclination", "anteversion") if cup.oriented else ()))
+    return replace(cup, **{name: radians(round(degrees(getattr(cup, name)), 3)) for name in names})
+
+
+def _pelvis_summary(frame: PelvicFrame) -> dict[str, Any]:
+    """Return the pelvic frame for JSON."""
+    return {
+        "origin": frame.origin.tolist(),
+        "axes": frame.axes.tolist(),
+        "asis_distance": frame.asis_distance,
+        "height": frame.height,
+        "tilt_deg": _degrees(frame.tilt),
+        "obliquity_deg": _degrees(frame.obliquity),
+    }
+
+
+def _cup_summary(orientation: CupOrientation) -> dict[str, Any]:
+    """Return the orientation of a cup for JSON."""
+    in_pelvis, in_body = orientation.cup(upright=False), orientation.cup()
+    return {
+        "inclination_deg": degrees(in_body.inclination),
+        "anteversion_deg": degrees(in_body.anteversion),
+        "pelvic_inclination_deg": degrees(in_pelvis.inclination),
+        "pelvic_anteversion_deg": degrees(in_pelvis.anteversion),
+        "axis": orientation.axis.tolist(),
+        "centre": orientation.centre.tolist(),
+        "points": orientation.points,
+        "residual": orientation.residual,
+        "angle_error_deg": _degrees(orientation.angle_error),
+    }
+
+
+def _fit_summary(fit: ImplantFit) -> dict[str, Any]:
+    """Return the fit of a liner or head for JSON."""
+    return {
+        "file": fit.name,
+        "radius": fit.radius,
+        "residual": fit.residual,
+        "facet_depth": fit.facet_depth,
+        "centre": fit.centre.tolist(),
+        "axis": None if fit.axis is None else fit.axis.tolist(),
+        "arc_of_cover_deg": degrees(fit.arc_of_cover),
+        "rim_deviation_deg": degrees(fit.rim_deviation),
+        "wall_thickness": fit.wall_thickness,
+        "wall_range": None if fit.wall_range is None else list(fit.wall_range),
+        "wall_residual": fit.wall_residual,
+    }
+
+
+def _degrees(angle: float | None) -> float | None:
+    """Convert an angle in rad to degrees; None stays None."""
+    return None if angle is None else angle * 180 / pi

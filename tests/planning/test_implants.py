@@ -1,0 +1,153 @@
+"""Liners and heads from STL files: radius, arc of cover, axis and wall within 0.02 mm and 0.5°, and refusals."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from ballsocket.planning import Mesh, fit_head, fit_liner, read_stl
+
+from . import meshes
+
+SHIFT = np.array([30.0, -50.0, 800.0])
+PLAIN, SMALL = meshes.liner(steps=24, segments=48), meshes.liner(steps=6, segments=12)
+
+
+def placed(triangles, seed=3):
+    """Return a mesh that is turned and moved, in the precision of a file, and its opening."""
+    turn = meshes.rotation(seed)
+    return Mesh((triangles @ turn.T + SHIFT).astype(np.float32).astype(float)), turn[:, 2]
+
+
+def angle(first, second):
+    return np.degrees(np.arccos(np.clip(first @ second, -1.0, 1.0)))
+
+
+def eccentric(triangles, shift):
+    """Move the outer surface."""
+    return triangles + np.where(np.linalg.norm(triangles, axis=2) > 20.0, 1.0, 0.0)[..., None] * shift
+
+
+def lipped(triangles, lift=15.0):
+    """Raise the rim by an angle over a part of the circumference."""
+    distance = np.linalg.norm(triangles, axis=2)
+    polar, azimuth = np.arccos(-triangles[..., 2] / distance), np.arctan2(triangles[..., 1], triangles[..., 0])
+    part = np.clip((np.cos(azimuth) - 0.3) / 0.2, 0, 1) * np.clip((np.degrees(polar) - 40.0) / 45.0, 0, 1)
+    polar += np.radians(lift) * part
+    directions = [np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), -np.cos(polar)]
+    return distance[..., None] * np.stack(directions, axis=-1)
+
+
+LINERS = {
+    "plain": (PLAIN, 170.0, 8.0),
+    "twelve facets": (meshes.liner(steps=8, segments=16), 170.0, 8.0),
+    "chamfer and scatter": (meshes.scattered(meshes.liner(chamfer=1.0, steps=30), 0.02), 170.0, 8.0),
+    "ribs": (meshes.scattered(meshes.ribbed(meshes.liner(steps=40, segments=80), 24.0, height=0.5), 0.01), 170.0, 8.0),
+    "open by a hole": (meshes.with_hole(meshes.scattered(PLAIN, 0.01), [0.5, 0.3, -0.8]), 170.0, 8.0),
+    "cylinder beyond the sphere": (meshes.liner(arc_of_cover=180.0, cylinder=2.0, steps=30), 180.0, 8.0),
+    "over-hemispherical": (meshes.liner(wall=4.0, arc_of_cover=200.0, steps=30), 200.0, 4.0),
+    "inside out": (PLAIN[:, ::-1], 170.0, 8.0),
+    "eccentric": (eccentric(PLAIN, [0.0, 0.0, -1.0]), 170.0, 9.0),
+    "lipped": (lipped(meshes.liner(steps=40, segments=96)), 170.0, 8.0),
+}
+
+
+@pytest.mark.parametrize("name", LINERS)
+def test_a_liner_is_measured_within_its_tolerances(name):
+    triangles, arc_of_cover, wall = LINERS[name]
+    mesh, opening = placed(triangles)
+    fit = fit_liner(mesh)
+    assert fit.radius == pytest.approx(16.0, abs=0.01)
+    assert np.linalg.norm(fit.centre - SHIFT) < 0.02
+    assert np.degrees(fit.arc_of_cover) == pytest.approx(arc_of_cover, abs=0.2)
+    assert angle(fit.axis, opening) < 0.1
+    assert fit.wall_thickness == pytest.approx(wall, abs=0.01)
+    assert any("not plane" in note for note in fit.notes) == (name == "lipped")
+
+
+@pytest.mark.parametrize(("steps", "scatter"), [(40, 0.0), (40, 0.02), (10, 0.0)])
+def test_a_head_is_measured_to_the_edge_of_its_taper(steps, scatter):
+    mesh, opening = placed(meshes.scattered(meshes.head(steps=steps, segments=2 * steps), scatter))
+    fit = fit_head(mesh)
+    assert fit.radius == pytest.approx(16.0, abs=0.005)
+    assert np.degrees(fit.arc_of_cover) == pytest.approx(280.0, abs=0.2)
+    assert angle(fit.axis, opening) < 0.1
+    assert fit.wall_thickness is None
+
+
+def test_the_depth_of_coarse_facets_is_noted_and_a_complete_ball_has_no_axis():
+    """The middle of an equilateral facet of edge a lies a²/(6 R) below the sphere."""
+    ball = fit_head(Mesh(meshes.turned(meshes.arc(16.0, 180.0, 0.0, 19), 36)))
+    assert (ball.axis, ball.arc_of_cover) == (None, 2 * np.pi)
+    assert ball.radius == pytest.approx(16.0, abs=1e-9)
+    assert 0.02 < ball.facet_depth < (16.0 * np.radians(10.0)) ** 2 / (4 * 16.0)
+    assert "a mesh whose facets straddle the surface has a smaller one" in ball.notes[0]
+
+
+@pytest.mark.parametrize(
+    ("triangles", "message"),
+    [
+        (meshes.head(steps=20, segments=40), "no bore.*; its sphere of radius 16 mm is convex, as of a head"),
+        (meshes.turned(np.array([[16, 0], [24, 0], [24, 40], [16, 40], [16, 0.0]])), "mesh has no bore, no concave"),
+        (np.array([[[0, 0, 0], [30, 0, 0], [0, 30, 0.0]]]), "mesh has no bore"),
+        (meshes.turned(np.array([[0, 0], [16, 14], [24, 14], [24, -8], [0, -8.0]])), "mesh has no bore"),
+        (np.random.default_rng(2).normal(0.0, 20.0, (2000, 3, 3)), "mesh has no bore"),
+        (meshes.turned(meshes.arc(16.0, 0.0, 180.0, 19), 36), "no bore"),
+    ],
+    ids=["head", "tube", "triangle", "cone", "soup", "closed ball inside out"],
+)
+def test_a_mesh_without_a_bore_is_refused(triangles, message):
+    with pytest.raises(ValueError, match=message):
+        fit_liner(Mesh(triangles))
+
+
+def test_a_tube_is_no_head_and_a_bore_alone_has_no_wall():
+    with pytest.raises(ValueError, match="mesh has no ball, no convex spherical surface of radius 7 to 40 mm"):
+        fit_head(Mesh(meshes.turned(np.array([[0, 0], [16, 0], [16, 40], [0, 40.0]]))))
+    bore = PLAIN[(abs(np.linalg.norm(PLAIN, axis=2) - 16.0) < 1e-6).all(axis=1)]
+    assert fit_liner(Mesh(bore)).wall_thickness is None
+
+
+BINARY, ASCII = meshes.binary(PLAIN, b"solid 3D Slicer output. SPACE=LPS"), meshes.ascii_stl(SMALL)
+
+
+def test_binary_and_ascii_files_hold_the_same_triangles(tmp_path):
+    path = tmp_path / "a.stl"
+    path.write_bytes(meshes.binary(PLAIN / 25.4))
+    assert np.allclose(read_stl(path, units="in").triangles, PLAIN, atol=1e-5)
+    path.write_bytes(ASCII)
+    assert np.allclose(read_stl(path).triangles, SMALL, atol=1e-5)
+    path.write_bytes(BINARY)
+    assert (read_stl(path).space, len(read_stl(path).triangles)) == ("LPS", len(PLAIN))
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"", "a.stl is a truncated or damaged binary STL: 0 bytes, less than the header of 84"),
+        (BINARY[:-1], "truncated or damaged binary STL: .* bytes, its header states"),
+        (bytes(80) + struct.pack("<I", 2**32 - 1) + bytes(500), r"states 4294967295 triangles, 214748364834 bytes"),
+        (bytes(84), "a.stl has no triangles"),
+        (meshes.binary(PLAIN * np.nan), "coordinates are not finite numbers"),
+        (ASCII[:-100], "truncated or damaged ASCII STL: `endsolid` is missing"),
+        (ASCII.replace(b"vertex", b"vortex", 1), "damaged ASCII STL: a facet has not three vertices"),
+        (ASCII.replace(b".", b",", 3), "a vertex is not three numbers"),
+        (b"solid\nendsolid\n", "truncated or damaged binary STL"),
+        (meshes.binary(PLAIN / 1000), r"a.stl is 0\.0478 mm large: .* 12 to 200 mm; its unit may be m \(47\.8 mm\)"),
+        (meshes.binary(PLAIN * 1000), r"4\.78e\+04 mm large: .* its unit may be um \(47\.8 mm\)"),
+        (meshes.binary(PLAIN / 25.4), r"1\.88 mm large: .* its unit may be cm \(18\.8 mm\) or in \(47\.8 mm\)"),
+    ],
+)
+def test_damaged_files_and_impossible_sizes_are_refused(tmp_path, content, message):
+    (tmp_path / "a.stl").write_bytes(content)
+    with np.errstate(all="ignore"), pytest.raises(ValueError, match=message):
+        read_stl(tmp_path / "a.stl")
+
+
+def test_large_files_are_refused_before_they_are_read(tmp_path):
+    with (tmp_path / "a.stl").open("wb") as stream:
+        stream.truncate(2_000_000_000)  # sparse: takes no space
+    with pytest.raises(ValueError, match=r"a\.stl has 2000 MB: at most 200 are read"):
+        read_stl(tmp_path / "a.stl")
+    with pytest.raises(ValueError, match="units = 'inch' is not allowed: mm, cm, m, um, in"):
+        read_stl(tmp_path / "a.stl", units="inch")

@@ -1,0 +1,215 @@
+"""Landmarks of a pelvis: files of 3D Slicer, pelvic frame, side and angles of a cup, and refusals."""
+
+import json
+from math import degrees, radians
+
+import numpy as np
+import pytest
+
+from ballsocket.planning import (
+    Landmarks,
+    cup_orientation,
+    make_plan,
+    orientation_of_axis,
+    pelvic_frame,
+    read_landmarks,
+)
+from ballsocket.problem.cup import Side
+
+from . import pelves
+
+NAMES, POINTS = pelves.pelvis()
+
+
+def oriented(names, points, **frame):
+    """Return the orientation of a cup from landmarks."""
+    landmarks = Landmarks(names=tuple(names), points=points)
+    return cup_orientation(landmarks, pelvic_frame(landmarks, **frame))
+
+
+def angles(cup):
+    return degrees(cup.inclination), degrees(cup.anteversion)
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS, "LPS", "4.11")),
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS, "RAS", "4.11")),
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS, "0", "4.6")),
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS, "1", "4.6")),
+        ("a.mrk.json", pelves.markups(NAMES, POINTS, "LPS")),
+        ("a.mrk.json", pelves.markups(NAMES, POINTS, "RAS")),
+        ("a.mrk.json", pelves.markups(NAMES, POINTS, "LPS", unit="m", scale=1e-3)),
+        ("a.mrk.json", pelves.markups(NAMES, POINTS, "LPS", unit=["mm", "mm", "mm"])),
+    ],
+    ids=["4.11 LPS", "4.11 RAS", "4.6 RAS", "4.6 LPS", "json LPS", "json RAS", "json in m", "json with three units"],
+)
+def test_every_file_of_slicer_gives_the_same_points(tmp_path, name, text):
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    landmarks = read_landmarks(tmp_path / name)
+    assert landmarks.names == tuple(NAMES)
+    assert np.allclose(landmarks.points, POINTS, atol=1e-4)
+
+
+def test_files_of_slicer_3_need_a_coordinate_system_and_points_without_a_position_are_skipped(tmp_path):
+    path = tmp_path / "old.fcsv"
+    path.write_text("# name = F\n# columns = label,x,y,z,sel,visible\nright ASIS,1,2,3,1,1\n")
+    with pytest.raises(ValueError, match=r"old\.fcsv: the file states no coordinate system: give it, RAS or LPS"):
+        read_landmarks(path)
+    assert read_landmarks(path, coordinates="lps").points.tolist() == [[-1.0, -2.0, 3.0]]
+    content = json.loads(pelves.markups(NAMES, POINTS))
+    content["markups"][0]["controlPoints"][3]["positionStatus"] = "undefined"
+    (tmp_path / "a.mrk.json").write_text(json.dumps(content))
+    assert len(read_landmarks(tmp_path / "a.mrk.json").names) == len(NAMES) - 1
+
+
+@pytest.mark.parametrize("side", ["right", "left"])
+@pytest.mark.parametrize("pair", [(40.0, 15.0), (45.0, 20.0), (60.0, -5.0), (20.0, 35.0)])
+def test_angles_in_the_pelvic_plane_do_not_depend_on_the_pose_in_the_scanner(side, pair):
+    turn = pelves.rotated(pitch=-12.0, roll=6.0, yaw=-9.0)
+    found = oriented(*pelves.pelvis(*pair, side=side, turn=turn, shift=(12.0, 200.0, -900.0)))
+    assert angles(found.cup()) == pytest.approx(pair, abs=1e-9)
+    assert (found.side, found.cup().side) == (Side(side), Side(side))
+    assert found.residual == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("tilt", [-15.0, 0.0, 8.0])
+def test_pelvic_tilt_to_the_front_reduces_the_operative_anteversion_by_its_own_size(tilt):
+    """The pelvis rotates about the transverse axis, as the operative anteversion does (Murray 1993)."""
+    names, points = pelves.pelvis(45.0, 15.0, turn=pelves.rotated(pitch=tilt, yaw=4.0))
+    found = oriented(names, points, vertical=(0.0, 0.0, 2.0))
+    _, front, up = found.frame.body_axes @ found.axis
+    assert degrees(found.frame.tilt) == pytest.approx(tilt, abs=1e-9)
+    assert degrees(found.frame.obliquity) == pytest.approx(0.0, abs=1e-9)
+    assert degrees(np.arctan2(front, -up)) == pytest.approx(20.7536 - tilt, abs=1e-3)
+    stated = oriented(names, points, pelvic_tilt=radians(tilt))
+    assert angles(stated.cup()) == pytest.approx(angles(found.cup()), abs=1e-9)
+    assert angles(found.cup(upright=False)) == pytest.approx((45.0, 15.0), abs=1e-9)
+
+
+def test_a_higher_right_side_is_a_positive_obliquity():
+    names, points = pelves.pelvis(45.0, 0.0, turn=pelves.rotated(roll=5.0))
+    found = oriented(names, points, vertical=(0.0, 0.0, 1.0))
+    assert degrees(found.frame.obliquity) == pytest.approx(5.0, abs=1e-9)
+    assert angles(found.cup()) == pytest.approx((50.0, 0.0), abs=1e-9)
+
+
+def test_scatter_of_rim_points_gives_the_error_of_the_angles():
+    """The standard error is that of repeated measurements."""
+    results = []
+    for seed in range(60):
+        points = POINTS.copy()
+        points[3:] += np.random.default_rng(seed).normal(0.0, 0.8, points[3:].shape)
+        results.append(oriented(NAMES, points))
+    scatter = np.std([angles(found.cup()) for found in results], axis=0)
+    stated = degrees(np.sqrt(np.mean([found.angle_error**2 for found in results])))
+    assert stated == pytest.approx(1.8 / 1.4, rel=0.4)
+    assert scatter == pytest.approx([stated, stated], rel=0.35)
+    assert make_plan(frame=results[0].frame).notes[0].startswith("the orientation of the cup is not known")
+
+
+def test_tubercles_replace_the_symphysis_and_names_are_read_freely():
+    names = ["RASIS", "ASIS_L", "R pubic tubercle", "tubercle left", *(f"Cup Rim {k}" for k in range(8))]
+    points = np.concatenate([POINTS[:2], POINTS[2] + [[25.0, 0, 0], [-25.0, 0, 0]], POINTS[3:]])
+    found = oriented(names, points)
+    assert angles(found.cup()) == pytest.approx((42.0, 17.0), abs=1e-9)
+    assert found.frame.tubercle_offset == pytest.approx(0.0, abs=1e-9)
+    points[2:4] = points[3:1:-1]
+    with pytest.raises(ValueError, match="the right pubic tubercle lies to the left of the left one"):
+        oriented(names, points)
+
+
+def test_names_are_replaced_and_rims_of_both_sides_need_a_choice(tmp_path):
+    both = [*("F-1", "F-2", "F-3"), *(f"right {name}" for name in NAMES[3:]), *(f"left rim {k}" for k in range(8))]
+    points = np.concatenate([POINTS, pelves.pelvis(50.0, 10.0, side="left")[1][3:]])
+    (tmp_path / "a.fcsv").write_text(pelves.fcsv(both, points))
+    rename = {"right_asis": "F-1", "left_asis": "F-2", "symphysis": "F-3"}
+    landmarks = read_landmarks(tmp_path / "a.fcsv", rename=rename)
+    frame = pelvic_frame(landmarks)
+    with pytest.raises(ValueError, match="rim points of both sides: choose the side, right or left"):
+        cup_orientation(landmarks, frame)
+    assert angles(cup_orientation(landmarks, frame, side="left").cup()) == pytest.approx((50.0, 10.0), abs=1e-4)
+    assert angles(cup_orientation(landmarks, frame, side="right").cup()) == pytest.approx((42.0, 17.0), abs=1e-4)
+    for wrong, message in (({"asis": "F-1"}, "landmark 'asis' is not known"), ({"rim": "F-9"}, "point 'F-9' does not")):
+        with pytest.raises(ValueError, match=message):
+            read_landmarks(tmp_path / "a.fcsv", rename=wrong)
+
+
+def changed(points=POINTS, **rows):
+    """Return the points of the pelvis with some replaced, by index in their keyword: p0."""
+    points = points.copy()
+    for key, value in rows.items():
+        points[int(key[1:])] = value
+    return points
+
+
+@pytest.mark.parametrize(
+    ("names", "points", "message"),
+    [
+        (NAMES[1:], POINTS[1:], r"the landmarks lack the right ASIS; the points are left ASIS, pubic symphysis, rim-1"),
+        (["a", "b", "c"], POINTS[:3], "lack the right ASIS, the left ASIS, the pubic symphysis or both pubic tub"),
+        (NAMES[:5], POINTS[:5], "lack the cup's rim: 2 of at least 3 points with names like rim-1"),
+        ([NAMES[1], NAMES[0], *NAMES[2:]], POINTS, "the right ASIS lies to the left of the left one"),
+        (NAMES, POINTS * [-1.0, -1.0, 1.0], "mirrored, or the file is in LPS coordinates where it"),
+        (NAMES, POINTS * [1.0, 1.0, -1.0], "the pubis lies above the spines"),
+        (NAMES, changed(p2=POINTS[:2].mean(axis=0)), "the pubis is 0 mm from the line through both spines"),
+        (NAMES, POINTS / 1000.0, r"spines are 0\.24 mm apart: 100 to 400 mm are allowed"),
+        ([*NAMES, "RASIS"], np.concatenate([POINTS, POINTS[:1]]), "2 points are the landmark right_asis"),
+        (NAMES[:6], changed(POINTS[:6], p5=2 * POINTS[4] - POINTS[3]), "the 3 points of the rim lie on a line: rim-1"),
+        ([*NAMES[:3], *(f"left {n}" for n in NAMES[3:])], POINTS, "90 mm to the right of the middle, but its side is"),
+        (NAMES, np.concatenate([POINTS[:3], POINTS[3:] - [90.0, 0, 0]]), "0 mm from the middle of the pelvis: state"),
+    ],
+)
+def test_impossible_landmarks_are_refused_in_a_sentence(names, points, message):
+    with pytest.raises(ValueError, match=message):
+        oriented(names, points)
+
+
+@pytest.mark.parametrize(
+    ("frame", "message"),
+    [
+        ({"vertical": (0, 0, -1)}, "the vertical is 180° from the pelvic plane's up: at most 60°"),
+        ({"vertical": (0, 0, 0)}, "a direction with a length"),
+        ({"vertical": (0, 0, 1), "pelvic_tilt": 0.1}, "either vertical or pelvic_tilt is needed, got both"),
+        ({"pelvic_tilt": float("nan")}, "at most 60° are allowed"),
+    ],
+)
+def test_an_impossible_vertical_is_refused(frame, message):
+    with pytest.raises(ValueError, match=message):
+        oriented(NAMES, POINTS, **frame)
+
+
+def test_a_cup_that_opens_to_the_middle_is_refused():
+    frame = pelvic_frame(Landmarks(names=tuple(NAMES), points=POINTS))
+    inwards = orientation_of_axis(np.array([-0.5, 0.0, -0.87]), np.array([90.0, 0, 0]), frame, signed=True)
+    with pytest.raises(
+        ValueError, match=r"inclination is -29\.9°: 0 to 90° are allowed, opening downwards and to the r"
+    ):
+        make_plan(frame=frame).__class__(frame=frame, orientation=inwards)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("a.csv", "", "landmarks are read from .fcsv and .mrk.json files"),
+        ("a.fcsv", "", "the file states no coordinate system"),
+        ("a.fcsv", "# CoordinateSystem = RAS\n", "a.fcsv has no points"),
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS, "2", "4.6"), "coordinate system '2' is not read: RAS"),
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS)[:-60], "a row of .* columns is incomplete"),
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS * np.nan), "'right ASIS' at nan, nan, nan is not allowed"),
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS).replace("-125.0000", "12mm", 1), "point 'right ASIS' has no three numb"),
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS).replace(",label", ",name"), "the columns lack label"),
+        ("a.mrk.json", pelves.markups(NAMES, POINTS)[:-60], "a.mrk.json: not JSON, or truncated"),
+        ("a.mrk.json", "[" * 100_000, "not JSON, or truncated"),
+        ("a.mrk.json", "[]", "the list `markups` of a 3D Slicer file is missing"),
+        ("a.mrk.json", pelves.markups(NAMES, POINTS, unit="inch"), "coordinateUnits = 'inch' is not allowed"),
+        ("a.mrk.json", pelves.markups(NAMES, POINTS, scale=np.inf), "is not allowed: coordinates are finite"),
+        ("a.mrk.json", pelves.markups(NAMES, POINTS).replace("[-125.0", "[1.0, -125.0", 1), "three coordinates, got 4"),
+        ("a.mrk.json", "x" * 10_000_001, "a landmark file has at most 10 MB"),
+    ],
+)
+def test_damaged_files_are_refused_with_their_name(tmp_path, name, text, message):
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    with pytest.raises(ValueError, match=message):
+        read_landmarks(tmp_path / name)

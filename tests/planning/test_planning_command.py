@@ -1,0 +1,118 @@
+"""Command `planning`: table, joint file, JSON, and the refusal to derive a clearance."""
+
+import json
+import re
+from math import degrees
+
+import numpy as np
+import pytest
+
+from ballsocket import read_joint
+from ballsocket.planning import Plan, fit_head, fit_liner, read_stl
+
+from ..cli.command import run
+from . import meshes, pelves
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Folder with landmarks, liner and head of one patient."""
+    folder = tmp_path_factory.mktemp("plan")
+    names, points = pelves.pelvis(scatter=0.3, turn=pelves.rotated(pitch=8.0))
+    (folder / "pelvis.mrk.json").write_text(pelves.markups(names, points))
+    (folder / "anatomy.fcsv").write_text(pelves.fcsv(names[:3], points[:3]))
+    turn = np.linalg.qr(np.column_stack([pelves.axis(42.0, 17.0), [0, 1, 0], [0, 0, 1]]))[0]
+    turn = np.column_stack([turn[:, 1], turn[:, 2], pelves.axis(42.0, 17.0)])
+    turn[:, 0] *= np.sign(np.linalg.det(turn))
+    liner = meshes.liner(steps=24, segments=48)
+    scan = (liner @ turn.T + [90.0, -40.0, -85.0]) @ pelves.rotated(pitch=8.0).T + [5.0, -40.0, 900.0]
+    (folder / "liner.stl").write_bytes(meshes.binary(liner))
+    (folder / "placed.stl").write_bytes(meshes.binary(scan * [-1, -1, 1], b"3D Slicer output. SPACE=LPS"))
+    (folder / "head.stl").write_bytes(meshes.ascii_stl(meshes.head(steps=16, segments=32)))
+    (folder / "small.stl").write_bytes(meshes.binary(meshes.head(radius=14.0, steps=16, segments=32)))
+    return folder
+
+
+LANDMARKS, LINER, HEAD = ("--landmarks", "pelvis.mrk.json"), ("--liner", "liner.stl"), ("--head", "head.stl")
+
+
+def test_a_stated_clearance_makes_a_joint_that_press_reads(folder):
+    words = (*LANDMARKS, *LINER, *HEAD, "--clearance", "0.15 mm", "--pelvic-tilt", "8 deg", "--out", "joint.toml")
+    done = run("planning", *words, "--force", "3 kN", "--head-material", "cocr", folder=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    for row in (
+        r"side +right",
+        r"inclination +4\d\.\d° +±0\.\d°, 8 rim points",
+        r"pelvic tilt +8\.0°",
+        r"bore radius +16\.000",
+    ):
+        assert re.search(row, done.stdout)
+    file = read_joint(folder / "joint.toml")
+    assert (file.joint.ball_radius, file.joint.clearance, file.load) == (16.0, 0.15, {"force": 3000.0})
+    assert file.joint.liner_thickness == pytest.approx(8.0, abs=0.001)
+    assert degrees(file.cup.arc_of_cover) == pytest.approx(170.0, abs=0.01)
+    assert (degrees(file.cup.inclination), degrees(file.cup.anteversion)) == pytest.approx((42.7, 10.9), abs=1.5)
+    assert run("press", "joint.toml", "--model", "hess-forsbach", folder=folder).returncode == 0
+
+
+def test_json_has_all_results_and_an_stl_file_in_the_scan_orients_the_cup(folder):
+    words = ("--landmarks", "anatomy.fcsv", "--liner", "placed.stl", "--vertical", "0,0,1", "--json")
+    done = run("planning", *words, folder=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    answer = json.loads(done.stdout)
+    cup = answer["cup"]
+    assert answer["side"] == "right"
+    assert answer["pelvis"]["tilt_deg"] == pytest.approx(8.0, abs=0.01)
+    assert cup["pelvic_inclination_deg"] == pytest.approx(42.0, abs=0.1)
+    assert cup["pelvic_anteversion_deg"] == pytest.approx(17.0, abs=0.1)
+    assert {"valid", "error", "notes", "sources", "next"} <= set(answer)
+    assert (answer["liner"]["wall_thickness"], answer["head"]) == (pytest.approx(8.0, abs=0.01), None)
+
+
+def test_no_clearance_is_derived_from_two_files(folder):
+    sentence = "no clearance is derived from two STL files, because their radii are nominal: public sets give -0.098"
+    done = run("planning", *LINER, *HEAD, "--out", "other.toml", folder=folder)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert sentence in done.stderr
+    assert not (folder / "other.toml").exists()
+    done = run("planning", *LINER, *HEAD, folder=folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert sentence in " ".join(done.stdout.split())
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ((), "planning data are needed: --landmarks, --liner or --head"),
+        ((*LINER, "--out", "a.toml"), "--out needs a clearance: state it with --clearance"),
+        ((*LINER, "--clearance", "0.1 mm", "--out", "a.stl"), "is not a name for a joint file: it ends with .toml"),
+        ((*HEAD, "--clearance", "0.1 mm", "--out", "a.toml"), "state --liner-thickness"),
+        ((*LANDMARKS, "--clearance", "0.1 mm", "--out", "a.toml"), "a joint needs a radius"),
+        ((*LINER, "--clearance", "3 kN", "--out", "a.toml"), "clearance = '3 kN' is not a length"),
+        ((*LINER, "--clearance", "0 mm", "--out", "a.toml"), "clearance = 0.0 is not allowed"),
+        ((*LINER, "--head", "small.stl"), "radius 14.000 mm does not belong to the bore of radius 16.000 mm"),
+        ((*LINER, "--stl-units", "m"), r"48 m large"),
+        ((*LINER, "--placed", "ijk"), "placed = 'ijk' is not allowed: RAS or LPS"),
+        ((*LANDMARKS, "--side", "up"), "side = 'up' is not allowed: right or left"),
+        ((*LANDMARKS, "--side", "left"), "but its side is stated as left: the sides are mirrored"),
+        ((*LANDMARKS, "--vertical", "0,0"), "vertical"),
+        ((*LANDMARKS, "--coordinates", "RAS"), "the file states LPS coordinates, not RAS"),
+        (("--landmarks", "none.fcsv"), "none.fcsv: No such file or directory"),
+    ],
+)
+def test_wrong_input_is_refused_in_a_line(folder, words, message):
+    done = run("planning", *words, folder=folder)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert message in done.stderr
+    assert not (folder / "a.toml").exists()
+
+
+def test_a_joint_file_of_a_liner_alone_has_the_ball_that_the_clearance_leaves(folder):
+    plan = Plan(liner=fit_liner(read_stl(folder / "liner.stl")))
+    file = plan.joint_file(0.1, ball="cocr")
+    assert file.joint.ball_radius == pytest.approx(15.9, abs=1e-3)
+    assert file.joint.socket_radius == pytest.approx(16.0, abs=1e-3)
+    assert not file.cup.oriented
+    assert "no clearance" not in " ".join(plan.notes)
+    head = Plan(head=fit_head(read_stl(folder / "head.stl")))
+    assert head.joint_file(0.1, liner_thickness=6.0).joint.liner_thickness == 6.0
