@@ -36,7 +36,7 @@ _LPS = numpy.diag([-1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Plan:
+class HipPlan:
     """Planning data of one hip: any of pelvic frame, orientation of the cup, liner and head.
 
     Attributes
@@ -187,7 +187,7 @@ def make_plan(
     head: ImplantFit | None = None,
     side: Side | str | None = None,
     space: str | None = None,
-) -> Plan:
+) -> HipPlan:
     """Combine landmarks and implants to a plan.
 
     The orientation is that of the rim's points. Without them, it is that of the liner if its file has the coordinates
@@ -214,10 +214,10 @@ def make_plan(
         if landmarks is not None and len(landmarks.rim(read_side(side))[1]):
             orientation = cup_orientation(landmarks, frame, side=side)
         elif liner is not None and liner.axis is not None and space is not None:
-            turn: Numbers = {"RAS": numpy.eye(3), "LPS": _LPS}[space.upper()]
-            axis, centre = frame.axes @ turn @ liner.axis, frame.convert(turn @ liner.centre)
+            to_ras: Numbers = {"RAS": numpy.eye(3), "LPS": _LPS}[space.upper()]
+            axis, centre = frame.axes @ to_ras @ liner.axis, frame.convert(to_ras @ liner.centre)
             orientation = orientation_of_axis(axis, centre, frame, side=side, signed=True)
-    return Plan(frame=frame, orientation=orientation, liner=liner, head=head)
+    return HipPlan(frame=frame, orientation=orientation, liner=liner, head=head)
 
 
 def _rounded(cup: Cup) -> Cup:
