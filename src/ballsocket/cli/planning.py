@@ -88,7 +88,7 @@ class ImplantOptions:
         liner = None if self.liner is None else self._mesh(self.liner)
         head = None if self.head is None else fit_head(self._mesh(self.head))
         fit = None if liner is None else fit_liner(liner)
-        return fit, head, self.placed or (liner and liner.space)
+        return fit, head, self.placed or (None if liner is None else liner.space)
 
     def _mesh(self, path: Path) -> Mesh:
         """Read an STL file."""

@@ -346,7 +346,10 @@ def _find_sphere(mesh: Mesh, sign: float, radii: tuple[float, float]) -> _Sphere
         candidates += _candidates(sample, sign, radii, generator)
         if len(candidates) >= _CANDIDATES:
             break
-    ranked = sorted(candidates, key=lambda pair: -_belonging(sample, *pair, _START_TOLERANCE * pair[1], sign).sum())
+    scores = [
+        _belonging(sample, centre, radius, _START_TOLERANCE * radius, sign).sum() for centre, radius in candidates
+    ]
+    ranked = [candidates[index] for index in numpy.argsort(scores, kind="stable")[::-1]]
     spheres = [_refine(sample, centre, radius, sign) for centre, radius in ranked[:_FINALISTS]]
     best = max((sphere for sphere in spheres if sphere), key=lambda sphere: sphere.facets.sum(), default=None)
     sphere = best and _refine(mesh, best.centre, best.radius, sign)

@@ -70,8 +70,8 @@ class HipPlan:
     @property
     def cup(self) -> Cup:
         """Cup with the measured arc of cover, orientation and side; defaults for the rest."""
-        arc = {} if self.liner is None else {"arc_of_cover": self.liner.arc_of_cover}
-        return Cup(**arc) if self.orientation is None else self.orientation.cup(**arc)
+        cup = Cup() if self.orientation is None else self.orientation.cup()
+        return cup if self.liner is None else replace(cup, arc_of_cover=self.liner.arc_of_cover)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -146,12 +146,16 @@ class HipPlan:
             No radius or no thickness, or a number that is not allowed.
         """
         require("clearance", clearance, clearance < numpy.inf, "a radial clearance (mm) is finite")
-        thickness = liner_thickness if liner_thickness is not None else self.liner and self.liner.wall_thickness
-        if self.head is None and self.liner is None:
+        if self.head is not None:
+            radius = self.head.radius
+        elif self.liner is not None:
+            radius = self.liner.radius - clearance
+        else:
             raise ValueError("a joint needs a radius: read the STL file of a liner or a head")
+        wall = None if self.liner is None else self.liner.wall_thickness
+        thickness = wall if liner_thickness is None else liner_thickness
         if thickness is None:
             raise ValueError("a joint needs the liner's thickness: the files have none, state --liner-thickness")
-        radius = self.head.radius if self.head is not None else self.liner.radius - clearance  # type: ignore[union-attr]
         if not _ARCS[0] <= self.cup.arc_of_cover <= _ARCS[1]:
             raise ValueError(f"the arc of cover of {degrees(self.cup.arc_of_cover):.0f}° is not allowed: 40° to 340°")
         tables: dict[str, Any] = {
@@ -222,8 +226,11 @@ def make_plan(
 
 def _rounded(cup: Cup) -> Cup:
     """Round the angles of a cup to a thousandth of a degree."""
-    names = ("arc_of_cover", *(("inclination", "anteversion") if cup.oriented else ()))
-    return replace(cup, **{name: radians(round(degrees(getattr(cup, name)), 3)) for name in names})
+    arc = radians(round(degrees(cup.arc_of_cover), 3))
+    if not cup.oriented:
+        return replace(cup, arc_of_cover=arc)
+    inclination, anteversion = (radians(round(degrees(angle), 3)) for angle in (cup.inclination, cup.anteversion))
+    return replace(cup, arc_of_cover=arc, inclination=inclination, anteversion=anteversion)
 
 
 def _pelvis_summary(frame: PelvicFrame) -> dict[str, Any]:
