@@ -32,6 +32,10 @@ TABLES = {
     "sensitivity": ("hip-36", *LOAD, "--spread", "clearance=0.1+-0.05 mm", "--count", "16", "--model", "hess-forsbach"),
     "study": ("study.toml",),
     "hip": (f"{EXAMPLES / 'hip_in_use.toml'}",),
+    "planning": (
+        *("--landmarks", f"{EXAMPLES / 'planning' / 'pelvis.mrk.json'}", "--vertical", "0,0,1"),
+        *("--liner", f"{EXAMPLES / 'planning' / 'liner.stl'}", "--head", f"{EXAMPLES / 'planning' / 'head.stl'}"),
+    ),
     "models": (),
     "presets": (),
     "identify": (f"{EXAMPLES / 'measured_areas.toml'}",),
