@@ -40,7 +40,6 @@ TABLES = {
     "presets": (),
     "identify": (f"{EXAMPLES / 'measured_areas.toml'}",),
     "calibrate": (),
-    "planning": ("--landmarks", "pelvis.fcsv"),
 }
 """Commands that print a table, with arguments that take little time."""
 
