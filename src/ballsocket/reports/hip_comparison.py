@@ -70,9 +70,9 @@ def wear_figure(histories: Mapping[str, History] | Sequence[History]) -> Figure:
 
 def comparison_figure(runs: Sequence[HipRun], units: Units = Units.SI) -> Figure:
     """Draw worn volume and penetration over the cycles, with a line and a band for each hip."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=(9.2, 4.2), layout="constrained")
+    figure = NotebookFigure(figsize=(9.2, 4.2), layout="constrained")
     panels = figure.subplots(1, len(_PANELS), squeeze=False)[0]
     for axes, (result, label) in zip(panels, _PANELS.items(), strict=True):
         written, factor = units.axis(label)
@@ -185,10 +185,10 @@ def _measured_table(fit: WearFit) -> Any:
 
 def wear_fit_figure(fit: WearFit) -> Figure:
     """Draw the fitted simulation over the cycles, with the measured totals and rates."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     quantities = list(dict.fromkeys(measured.quantity for measured in fit.data))
-    figure = Figure(figsize=(4.8 * len(quantities), 4.2), layout="constrained")
+    figure = NotebookFigure(figsize=(4.8 * len(quantities), 4.2), layout="constrained")
     for axes, quantity in zip(figure.subplots(1, len(quantities), squeeze=False)[0], quantities, strict=True):
         _draw_fit(axes, fit, quantity)
         axes.set_xlim(left=0)
