@@ -15,7 +15,7 @@ from pathlib import Path
 from textwrap import wrap
 
 import ballsocket as bs
-from ballsocket.core.plotting import load_plot
+from ballsocket.core.display import load_plot
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = Path(bs.__file__).parent

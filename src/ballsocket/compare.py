@@ -15,8 +15,7 @@ from .contact import Contact, Model
 from .contact.describe import COLUMNS, UTILISATION, UTILISATION_NOTE, count_text, number_text
 from .core.arrays import Array, to_list, where
 from .core.checks import nearest, needs, reject_unnamed_loads, select_load, shown
-from .core.display import html_table
-from .core.plotting import load_plot
+from .core.display import html_table, load_plot
 from .core.quantities import HEADLINE
 from .core.sources import Source
 from .core.validity import OutsideDomainError

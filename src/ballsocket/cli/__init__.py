@@ -28,7 +28,7 @@ add_commands(  # in the order in which `ballsocket --help` lists them
         "schema": CommandEntry("ballsocket.cli.lists", "Print the JSON schema of a kind of input file."),
         "app": CommandEntry("ballsocket.cli.servers", "Open the explorer, an interactive page, in a browser."),
         "serve-mcp": CommandEntry("ballsocket.cli.servers", "Offer the commands to AI assistants (MCP)."),
-        "reproduce": CommandEntry("ballsocket.cli.reproduce", "Recompute the results of Heß & Forsbach 2021."),
+        "reproduce": CommandEntry("ballsocket.cli.evidence", "Recompute the results of Heß & Forsbach 2021."),
     }
 )
 

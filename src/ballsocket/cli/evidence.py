@@ -1,10 +1,11 @@
-"""Command `evidence`: evidence packs, folders that document and check a computed number."""
+"""Commands of documents that are computed: `evidence` packs, and `reproduce`, the results of Heß & Forsbach 2021."""
 
 from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -193,3 +194,29 @@ def _show_progress() -> Iterator[Listener]:
     with Progress(console=console, transient=True, disable=not console.is_terminal) as progress:
         task = progress.add_task("gathering", total=None)
         yield lambda name: progress.update(task, description=name)
+
+
+@app.command()
+def reproduce(
+    out: Annotated[Path, typer.Option(help="Output folder; created if it does not exist.")] = Path("reproduced"),
+    quick: Annotated[bool, typer.Option("--quick", help="Only the exact solution, without finite elements.")] = False,
+    workers: Annotated[int | None, typer.Option(help="Number of worker processes. Default: number of cores.")] = None,
+) -> None:
+    """Recompute the results of Heß & Forsbach 2021.
+
+    The report shows every table, figure and claim of the paper with a verdict. The same command resumes a stopped run.
+    """
+    from ..paper.plan import full_plan, quick_plan
+    from ..reports.paper_report import write_report
+
+    if not quick:
+        needs("fem", "skfem", "meshio", "psutil")
+    engine = Processes(workers=workers)
+    plan = quick_plan() if quick else full_plan()
+    with Progress(console=Console(stderr=True)) as progress:
+        task = progress.add_task("reproducing", total=len(plan))
+        advance = partial(progress.update, task, advance=1)
+        results = plan.results(out / "data", lambda name: advance(description=name), engine)
+        advance(advance=0, description="drawing")
+        report = write_report(results, out, engine)
+    echo_path(report)

@@ -15,8 +15,8 @@ from ..core import arrays
 from ..core.arrays import Array
 from ..core.checks import check_numeric, check_vectors, degrees_hint, require, shown
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
+from ..core.display import load_plot
 from ..core.kinds import Unit
-from ..core.plotting import load_plot
 from ..core.quantities import QUANTITIES
 from ..core.validity import Range
 from . import describe, strength

@@ -208,6 +208,7 @@ MOVED = {
     "ballsocket.cli.questions": "ballsocket.cli.design",
     "ballsocket.cli.deck": "ballsocket.cli.export",
     "ballsocket.cli.tools": "ballsocket.mcp",
+    "ballsocket.cli.reproduce": "ballsocket.cli.evidence",
     "ballsocket.cli.tools.limited": "ballsocket.cli.servers",
     "ballsocket.cli.tools.run": "ballsocket.mcp.call",
     "ballsocket.cli.tools.server": "ballsocket.mcp",

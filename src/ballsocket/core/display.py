@@ -1,8 +1,8 @@
-"""Display of values in terminals and notebooks: one line as text, tables as HTML."""
+"""Display of values: one line of text, tables of a notebook as HTML, and plots that rooms above register."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import fields, is_dataclass
 from html import escape
 from typing import Any
@@ -50,3 +50,31 @@ def html_list(title: str, rows: Iterable[tuple[str, str]]) -> str:
     align = "style='text-align:left'"
     body = "".join(f"<tr><td {align}>{escape(name)}</td><td {align}>{escape(text)}</td></tr>" for name, text in rows)
     return f"<b>{escape(title)}</b><table>{body}</table>"
+
+
+Plot = Callable[..., Any]
+"""A function that returns a matplotlib figure."""
+
+_LOADERS: dict[str, Callable[[], Plot]] = {}
+
+
+def register_plot(name: str, loader: Callable[[], Plot]) -> None:
+    """Register a function that imports and returns a plot function, by the name of the plot.
+
+    Matplotlib is thus imported only when a plot is made.
+    """
+    _LOADERS[name] = loader
+
+
+def load_plot(name: str) -> Plot:
+    """Import and return the plot function registered under a name.
+
+    Raises
+    ------
+    LookupError
+        A name that no room has registered.
+    """
+    if name not in _LOADERS:
+        known = ", ".join(sorted(_LOADERS)) or "none"
+        raise LookupError(f"plot {name!r} is not registered; registered plots: {known}")
+    return _LOADERS[name]()

@@ -15,8 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import needs
 from ..core.deprecation import RenamedAttribute, renamed_names
-from ..core.display import OneLine, html_table
-from ..core.plotting import load_plot
+from ..core.display import OneLine, html_table, load_plot
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes
 from .film import Lubricant
 from .hip_setup import HipSetup

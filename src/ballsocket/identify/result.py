@@ -10,7 +10,7 @@ from typing import Any
 import numpy
 
 from ..core.deprecation import RenamedAttribute
-from ..core.plotting import load_plot
+from ..core.display import load_plot
 from .experiment import Experiment, experiment
 from .fit import FittedModel
 from .information import Estimate

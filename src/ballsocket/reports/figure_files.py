@@ -8,7 +8,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..core.plotting import Plot, register_plot
+from ..core.display import Plot, register_plot
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
 
 if TYPE_CHECKING:

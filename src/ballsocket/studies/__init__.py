@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from ..core.checks import nearest
-from ..core.plotting import load_plot
+from ..core.display import load_plot
 from .axes import Method, Span
 from .derivatives import elasticities
 from .design import Design, grid, sample, table
