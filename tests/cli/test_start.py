@@ -19,8 +19,9 @@ from .command import run
 COMMANDS = load_commands()
 HEAVY = ("dask", "jinja2", "matplotlib", "mcp", "numba", "pandas", "panel", "pint", "scipy", "skfem", "xarray")
 ORDER = (
-    *("press", "curve", "orient", "map", "optimise", "sensitivity", "study", "hip", "planning", "models", "presets", "cite"),
-    *("identify", "calibrate", "evidence", "deck", "fmu", "export", "schema", "app", "serve-mcp", "reproduce"),
+    *("press", "curve", "orient", "map", "optimise", "sensitivity", "study", "hip", "planning"),
+    *("models", "presets", "cite", "identify", "calibrate", "evidence", "deck", "fmu", "export"),
+    *("schema", "app", "serve-mcp", "reproduce"),
 )
 
 

@@ -266,6 +266,12 @@ def _after_hip(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
         yield NextStep((*arguments, "--report", "hip.html"), "a page with figures of load, contact and wear")
 
 
+def _after_planning(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
+    """Suggest a press of the written joint file."""
+    if answer["file"] is not None:
+        yield NextStep(("press", answer["file"], "--force", "3 kN", "--all"), "every model on that joint")
+
+
 def _after_evidence(answer: Answer, arguments: Arguments) -> Iterator[NextStep]:
     """Suggest the check of a new pack."""
     if _selected_options(arguments, "--check"):
@@ -347,6 +353,7 @@ _NEXT_STEPS: Mapping[str, Callable[[Answer, Arguments], Iterator[NextStep]]] = M
         "orient": _after_orient,
         "identify": _after_identify,
         "hip": _after_hip,
+        "planning": _after_planning,
         "evidence": _after_evidence,
         "calibrate": _after_calibrate,
         "models": _after_list,

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
-from math import degrees
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from rich.table import Table
 
 from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_parent_folder, write_text
@@ -17,9 +14,10 @@ from ..files.joint_toml import toml_of
 from ..files.units import parse
 from ..planning.implants import ImplantFit, Mesh, fit_head, fit_liner, read_stl
 from ..planning.landmarks import Landmarks, read_landmarks
-from ..planning.pelvis import CupOrientation, PelvicFrame, pelvic_frame
-from ..planning.plan import CLEARANCE_REFUSAL, Plan, make_plan
-from ..reports.terminal import console, print_columns, print_folded
+from ..planning.pelvis import PelvicFrame, pelvic_frame
+from ..planning.plan import CLEARANCE_REFUSAL, HipPlan, make_plan
+from ..reports.planning_results import print_plan
+from .elasticity_options import orientation_remark, orientation_summary
 from .json_answers import echo_json
 from .options import AsJson, expand_groups
 from .root import app, echo_path
@@ -32,14 +30,16 @@ class LandmarkOptions:
     """Options of landmark files and of the pelvis."""
 
     landmarks: Annotated[
-        list[Path] | None, typer.Option(help="Landmark file of 3D Slicer (.mrk.json, .fcsv). Repeat for several.")
+        list[Path] | None,
+        typer.Option(help="Landmark file of 3D Slicer (.mrk.json, .fcsv). Repeat for several. Default: none."),
     ] = None
     rename: Annotated[
         list[str] | None,
-        typer.Option(help="Point of a landmark: 'right_asis=F-1'. Repeat for several."),
+        typer.Option(help="Point of a landmark: 'right_asis=F-1'. Repeat for several. Default: names as in the file."),
     ] = None
     coordinates: Annotated[
-        str | None, typer.Option(help="RAS or LPS, for landmark files that do not state their coordinate system.")
+        str | None,
+        typer.Option(help="RAS or LPS, for landmark files that do not state their system. Default: as in the file."),
     ] = None
     side: Annotated[
         str | None, typer.Option(help="Side of the cup: right or left. Default: from names and position.")
@@ -71,8 +71,8 @@ class LandmarkOptions:
 class ImplantOptions:
     """Options of the STL files."""
 
-    liner: Annotated[Path | None, typer.Option(help="STL file of the liner.")] = None
-    head: Annotated[Path | None, typer.Option(help="STL file of the head.")] = None
+    liner: Annotated[Path | None, typer.Option(help="STL file of the liner. Default: none.")] = None
+    head: Annotated[Path | None, typer.Option(help="STL file of the head. Default: none.")] = None
     stl_units: Annotated[str, typer.Option(help="Unit of the STL files: mm, cm, m, um or in.")] = "mm"
     placed: Annotated[
         str | None,
@@ -88,7 +88,7 @@ class ImplantOptions:
         liner = None if self.liner is None else self._mesh(self.liner)
         head = None if self.head is None else fit_head(self._mesh(self.head))
         fit = None if liner is None else fit_liner(liner)
-        return fit, head, self.placed or (liner and liner.space)
+        return fit, head, self.placed or (None if liner is None else liner.space)
 
     def _mesh(self, path: Path) -> Mesh:
         """Read an STL file."""
@@ -99,13 +99,19 @@ class ImplantOptions:
 class PlannedJointOptions:
     """Options of the joint file."""
 
-    clearance: Annotated[str | None, typer.Option(help="Radial clearance in mm: '0.15 mm'. Needed for --out.")] = None
+    clearance: Annotated[
+        str | None, typer.Option(help="Radial clearance in mm: '0.15 mm'. Needed for --out. Default: none.")
+    ] = None
     liner_thickness: Annotated[
         str | None, typer.Option(help="Thickness of the liner in mm. Default: the measured wall.")
     ] = None
-    liner_material: Annotated[str, typer.Option(help="Name of a material, see `ballsocket presets`.")] = "uhmwpe"
-    head_material: Annotated[str | None, typer.Option(help="Name of a material. Default: a rigid head.")] = None
-    force: Annotated[str | None, typer.Option(help="Load of the joint file in N, or with a unit: '3 kN'.")] = None
+    liner_material: Annotated[str, typer.Option(help="Name of the liner material, see `ballsocket presets`.")] = (
+        "uhmwpe"
+    )
+    head_material: Annotated[str | None, typer.Option(help="Name of the head material. Default: a rigid head.")] = None
+    force: Annotated[
+        str | None, typer.Option(help="Load of the joint file in N, or with a unit: '3 kN'. Default: none.")
+    ] = None
     out: Annotated[Path | None, typer.Option(help="Write a joint file (.toml) for `ballsocket press`.")] = None
 
     def check(self, has_head: bool, has_liner: bool) -> None:
@@ -120,7 +126,7 @@ class PlannedJointOptions:
             raise ValueError(f"{self.out.name!r:.60} is not a name for a joint file: it ends with .toml")
         check_parent_folder(self.out)
 
-    def write(self, plan: Plan) -> None:
+    def write(self, plan: HipPlan) -> None:
         """Write the joint file, if it has a path."""
         if self.out is None:
             return
@@ -160,77 +166,15 @@ def planning(
     plan = make_plan(frame=frame, landmarks=landmarks, liner=liner, head=head, side=landmark_options.side, space=space)
     joint_options.write(plan)
     if as_json:
-        echo_json({**plan.summary(), "file": joint_options.out and str(joint_options.out)})
+        orientation = {} if plan.orientation is None else orientation_summary(plan.cup)
+        file = None if joint_options.out is None else str(joint_options.out)
+        echo_json({**plan.summary(), "orientation": orientation or None, "file": file})
         return
-    _print_plan(plan, joint_options)
+    materials = f"materials: liner {joint_options.liner_material}, head {joint_options.head_material or 'rigid'}"
+    remarks = () if plan.orientation is None else (orientation_remark(plan.cup),)
+    if joint_options.clearance is None:
+        print_plan(plan, (*remarks, *plan.notes))
+    else:
+        print_plan(plan, (*remarks, *(note for note in plan.notes if note != CLEARANCE_REFUSAL), materials))
     if joint_options.out is not None:
         echo_path(joint_options.out)
-
-
-def _print_plan(plan: Plan, options: PlannedJointOptions) -> None:
-    """Print the table of a plan and its notes."""
-    terminal, table = console(), Table(box=None, pad_edge=False)
-    for title in ("quantity", "value", "accuracy"):
-        table.add_column(title, no_wrap=title == "value")
-    for row in (
-        *_pelvis_rows(plan.frame),
-        *_cup_rows(plan.orientation),
-        *_fit_rows("bore", plan.liner),
-        *_fit_rows("head", plan.head),
-    ):
-        table.add_row(*row)
-    print_columns(terminal, table)
-    for note in plan.notes:
-        if note != CLEARANCE_REFUSAL or options.clearance is None:
-            print_folded(terminal, note, "dim")
-    if options.out is not None:
-        head = options.head_material or "rigid"
-        print_folded(terminal, f"materials: liner {options.liner_material}, head {head}", "dim")
-
-
-Row = tuple[str, str, str]
-
-
-def _pelvis_rows(frame: PelvicFrame | None) -> Iterator[Row]:
-    """Yield the rows of the pelvis."""
-    if frame is None:
-        return
-    yield "distance of the ASIS", f"{frame.asis_distance:.1f} mm", ""
-    if frame.tilt is not None and frame.obliquity is not None:
-        yield "pelvic tilt", f"{degrees(frame.tilt):.1f}°", f"obliquity {degrees(frame.obliquity):.1f}°"
-
-
-def _cup_rows(orientation: CupOrientation | None) -> Iterator[Row]:
-    """Yield the rows of the orientation of the cup."""
-    if orientation is None:
-        return
-    yield "side", orientation.side.value, ""
-    error = "" if orientation.angle_error is None else f"±{degrees(orientation.angle_error):.1f}°, "
-    plane = (
-        "axis of the liner's file"
-        if orientation.residual is None
-        else (f"{error}{orientation.points} rim points, {orientation.residual:.2f} mm rms")
-    )
-    for upright, title in ((True, ""), (False, " to the pelvic plane")):
-        if not upright and orientation.frame.vertical is None:
-            return
-        cup: Any = orientation.cup(upright=upright)
-        yield f"inclination{title}", f"{degrees(cup.inclination):.1f}°", plane
-        yield f"anteversion{title}", f"{degrees(cup.anteversion):.1f}°", ""
-        plane = ""
-
-
-def _fit_rows(part: str, fit: ImplantFit | None) -> Iterator[Row]:
-    """Yield the rows of a liner or head."""
-    if fit is None:
-        return
-    yield f"{part} radius", f"{fit.radius:.3f} mm", f"{fit.residual:.3f} mm rms"
-    rim = f"rim within {degrees(fit.rim_deviation):.1f}° of a plane" if fit.axis is not None else "complete"
-    yield f"{part} arc of cover", f"{degrees(fit.arc_of_cover):.1f}°", rim
-    if fit.wall_thickness is not None and fit.wall_range is not None and fit.wall_residual is not None:
-        low, high = fit.wall_range
-        yield (
-            "wall thickness",
-            f"{fit.wall_thickness:.2f} mm",
-            f"{low:.2f} to {high:.2f} mm, {fit.wall_residual:.3f} mm rms",
-        )

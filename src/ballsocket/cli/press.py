@@ -284,7 +284,9 @@ def press(
     joints = [press_joint(name) for name in names]
     for pressed in joints:
         files.write(pressed.comparison, next(iter(pressed.models)), units)
-    designs = [report.design(pressed.comparison, pressed.file, pressed.models, units) for pressed in joints]
+    designs = [
+        report.design(pressed.comparison, pressed.file, pressed.models, units, pressed.remarks) for pressed in joints
+    ]
     report.write(designs, units)
     if as_json:
         summaries = [pressed.summary(friction_options) for pressed in joints]

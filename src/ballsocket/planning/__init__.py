@@ -10,15 +10,15 @@ Lengths are in mm, angles in rad.
 from .implants import ImplantFit, Mesh, fit_head, fit_liner, read_stl
 from .landmarks import Landmarks, read_landmarks
 from .pelvis import CupOrientation, PelvicFrame, cup_orientation, orientation_of_axis, pelvic_frame
-from .plan import Plan, make_plan
+from .plan import HipPlan, make_plan
 
 __all__ = [
     "CupOrientation",
+    "HipPlan",
     "ImplantFit",
     "Landmarks",
     "Mesh",
     "PelvicFrame",
-    "Plan",
     "cup_orientation",
     "fit_head",
     "fit_liner",

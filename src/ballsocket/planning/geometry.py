@@ -72,8 +72,8 @@ def fit_plane_robustly(points: Numbers, tolerance: float) -> Plane:
     lengths = numpy.linalg.norm(normals, axis=1)
     wide = lengths > 0.1 * lengths.max()
     normals, origins = normals[wide] / lengths[wide, None], triples[wide, 0]
-    near = abs(normals @ points.T - numpy.sum(normals * origins, axis=1)[:, None]) < tolerance
-    mask = near[near.sum(axis=1).argmax()]
+    inliers = abs(normals @ points.T - numpy.sum(normals * origins, axis=1)[:, None]) < tolerance
+    mask = inliers[inliers.sum(axis=1).argmax()]
     plane = fit_plane(points, numpy.where(mask, 1.0, 1e-9))
     for _ in range(_ITERATIONS):
         scale = max(robust_scale(plane.distances[mask]), 0.01 * tolerance)

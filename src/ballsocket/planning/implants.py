@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import acos, cos, degrees, pi, radians, sin
@@ -24,12 +23,8 @@ _MAX_FILE_SIZE = 200_000_000
 _BINARY_HEADER, _BINARY_FACET = 84, 50
 """Bytes of the header and of a facet of a binary STL file."""
 
-_HEAD_OF_TEXT = 1000
-"""Bytes after the header in which a facet begins in an ASCII STL file."""
-
-_VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
-
-_FACET = re.compile(rb"\bfacet\s+normal", re.IGNORECASE)
+_MAX_LINE = 1000
+"""Largest length of a line of an ASCII STL file in bytes; the first facet begins within as many bytes."""
 
 STL_UNITS = MappingProxyType({"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "in": 25.4})
 """Length in mm of each unit of an STL file."""
@@ -170,29 +165,44 @@ def _read_triangles(stream: BinaryIO, size: int, name: str) -> tuple[Numbers, by
     if size == _BINARY_HEADER + _BINARY_FACET * count:
         kind = numpy.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
         return numpy.frombuffer(stream.read(), dtype=kind)["corners"].astype(float), start[:80]
-    text = start + stream.read(_HEAD_OF_TEXT)
-    if text.lstrip()[:5].lower() != b"solid" or b"facet" not in text:
+    beginning = start + stream.read(_MAX_LINE)
+    if beginning.lstrip()[:5].lower() != b"solid" or b"facet" not in beginning.lower():
         expected = f"its header states {count} triangles, {_BINARY_HEADER + _BINARY_FACET * count} bytes"
         raise ValueError(
             f"{name} is a truncated or damaged binary STL: {size} bytes, "
             + (expected if count >= 0 else f"less than the header of {_BINARY_HEADER}")
         )
-    text += stream.read()
-    if b"endsolid" not in text[-1000:].lower():
-        raise ValueError(f"{name} is a truncated or damaged ASCII STL: `endsolid` is missing at its end")
+    stream.seek(0)
     try:
-        numbers = numpy.fromiter((float(word) for match in _VERTEX.finditer(text) for word in match.groups()), float)
+        numbers = numpy.fromiter(_ascii_coordinates(stream), float)
     except ValueError as error:
-        raise ValueError(f"{name}: a vertex is not three numbers ({shown(str(error))})") from error
-    if len(numbers) % 9 or len(numbers) // 9 != sum(1 for _ in _FACET.finditer(text)):
-        raise ValueError(f"{name} is a damaged ASCII STL: a facet has not three vertices")
-    return numbers.reshape(-1, 3, 3), text[:80]
+        raise ValueError(f"{name} is a truncated or damaged ASCII STL: {error}") from error
+    return numbers.reshape(-1, 3, 3), beginning[:80]
+
+
+def _ascii_coordinates(stream: BinaryIO) -> Iterator[float]:
+    """Yield the coordinates of an ASCII STL file, nine for each facet."""
+    vertices, facets, complete = 0, 0, False
+    for line in iter(lambda: stream.readline(_MAX_LINE), b""):
+        words = line.split()
+        keyword = words[0].lower() if words else b""
+        if keyword == b"vertex":
+            if len(words) != 4:
+                raise ValueError(f"a vertex is not three numbers, {shown(line.decode('latin-1').strip())}")
+            vertices += 1
+            yield from map(float, words[1:])
+        elif keyword == b"endfacet":
+            facets += 1
+            if vertices != 3 * facets:
+                raise ValueError(f"facet {facets} has not three vertices")
+        complete = keyword == b"endsolid" or (complete and not words)
+    if not complete or vertices != 3 * facets:
+        raise ValueError("`endsolid` is missing at its end")
 
 
 def _space(header: bytes) -> str | None:
     """Return the coordinate system in a header of 3D Slicer, "SPACE=LPS"."""
-    match = re.search(rb"SPACE=(RAS|LPS)", header)
-    return match[1].decode() if match else None
+    return next((word for word in ("RAS", "LPS") if f"SPACE={word}".encode() in header), None)
 
 
 def _check_size(triangles: Numbers, units: str, name: str) -> None:
@@ -270,7 +280,7 @@ class ImplantFit:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Sphere:
+class _SphereFit:
     """Sphere in a mesh: centre, radius, mask (n,) of its facets, and residual of their corners."""
 
     centre: Numbers
@@ -320,7 +330,7 @@ def _range_text(limits: tuple[float, float]) -> str:
     return f"radius {limits[0]:g} to {limits[1]:g} mm"
 
 
-def _find_sphere(mesh: Mesh, sign: float, radii: tuple[float, float]) -> _Sphere | None:
+def _find_sphere(mesh: Mesh, sign: float, radii: tuple[float, float]) -> _SphereFit | None:
     """Find the sphere with the largest surface in a mesh: convex (sign 1) or concave (-1); None without one.
 
     Candidates pass through four random corners. The best ones are fitted to their facets, with a tolerance that
@@ -336,7 +346,10 @@ def _find_sphere(mesh: Mesh, sign: float, radii: tuple[float, float]) -> _Sphere
         candidates += _candidates(sample, sign, radii, generator)
         if len(candidates) >= _CANDIDATES:
             break
-    ranked = sorted(candidates, key=lambda pair: -_belonging(sample, *pair, _START_TOLERANCE * pair[1], sign).sum())
+    scores = [
+        _belonging(sample, centre, radius, _START_TOLERANCE * radius, sign).sum() for centre, radius in candidates
+    ]
+    ranked = [candidates[index] for index in numpy.argsort(scores, kind="stable")[::-1]]
     spheres = [_refine(sample, centre, radius, sign) for centre, radius in ranked[:_FINALISTS]]
     best = max((sphere for sphere in spheres if sphere), key=lambda sphere: sphere.facets.sum(), default=None)
     sphere = best and _refine(mesh, best.centre, best.radius, sign)
@@ -368,13 +381,13 @@ def _candidates(
 def _belonging(mesh: Mesh, centre: Numbers, radius: float, tolerance: float, sign: float) -> Numbers:
     """Return the mask of the facets whose corners lie on a sphere and whose normals are radial."""
     offset = mesh.triangles - centre
-    near = (abs(numpy.linalg.norm(offset, axis=2) - radius) < tolerance).all(axis=1)
+    close = (abs(numpy.linalg.norm(offset, axis=2) - radius) < tolerance).all(axis=1)
     height = numpy.sum(offset[:, 0] * mesh.normals, axis=1)
-    mask: Numbers = near & (sign * height > _MIN_ALIGNMENT * radius)
+    mask: Numbers = close & (sign * height > _MIN_ALIGNMENT * radius)
     return mask
 
 
-def _refine(mesh: Mesh, centre: Numbers, radius: float, sign: float) -> _Sphere | None:
+def _refine(mesh: Mesh, centre: Numbers, radius: float, sign: float) -> _SphereFit | None:
     """Fit a sphere to the facets near it, until they stay the same; None if too few are left."""
     tolerance, before = _START_TOLERANCE * radius, numpy.zeros(len(mesh.triangles), dtype=bool)
     for _ in range(25):
@@ -389,10 +402,10 @@ def _refine(mesh: Mesh, centre: Numbers, radius: float, sign: float) -> _Sphere 
             break
         before = mask
         tolerance = max(min(_SIGMAS * robust_scale(residuals), _MAX_TOLERANCE * radius), _MIN_RESOLUTION * radius)
-    return _Sphere(centre=centre, radius=radius, facets=mask, residual=residual)
+    return _SphereFit(centre=centre, radius=radius, facets=mask, residual=residual)
 
 
-def _describe(mesh: Mesh, sphere: _Sphere) -> ImplantFit:
+def _describe(mesh: Mesh, sphere: _SphereFit) -> ImplantFit:
     """Return the fit of a sphere with its opening."""
     offset = mesh.triangles[sphere.facets] - sphere.centre
     middles, weights = offset.mean(axis=1), mesh.areas[sphere.facets] / mesh.areas[sphere.facets].sum()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,12 +32,11 @@ _NUMBERED_SYSTEMS = MappingProxyType({"0": "RAS", "1": "LPS"})
 _LENGTH_UNITS = MappingProxyType({"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "µm": 0.001})
 
 _SIDES = MappingProxyType({"right": ("right", "r"), "left": ("left", "l")})
-_SIDE_WORDS = MappingProxyType({None: None} | {word: side for side, words in _SIDES.items() for word in words})
 _ASIS = ("asis", "sias", "anteriorsuperioriliacspine")
 _TUBERCLE = ("pubictubercle", "tubercle", "pt")
 _SYMPHYSIS = ("pubicsymphysis", "symphysis", "symphysispubis", "ps")
 
-_RIM = re.compile(r"(?P<before>right|left|r|l)?(?:cup|acetabul(?:um|ar)|liner)?rim.*?(?P<after>right|left)?\d*")
+_RIMS = ("rim", "cuprim", "linerrim", "acetabularrim", "acetabulumrim")
 
 
 def _with_side(side: str, names: tuple[str, ...]) -> tuple[str, ...]:
@@ -99,8 +97,8 @@ class Landmarks:
         ValueError
             Points of both sides without `side`.
         """
-        matches = [(index, _RIM.fullmatch(_squeeze(name))) for index, name in enumerate(self.names)]
-        sides = {index: _SIDE_WORDS[match["before"] or match["after"]] for index, match in matches if match}
+        squeezed = [_squeeze(name) for name in self.names]
+        sides = {index: _rim_side(name) for index, name in enumerate(squeezed) if _is_rim(name)}
         stated = {word for word in sides.values() if word}
         if side is None and len(stated) > 1:
             raise ValueError("the landmarks have rim points of both sides: choose the side, right or left")
@@ -108,6 +106,22 @@ class Landmarks:
         indices = [index for index, word in sides.items() if word is None or word == chosen]
         named = Side(chosen) if chosen in stated else None
         return tuple(self.names[index] for index in indices), self.points[indices], named
+
+
+def _is_rim(name: str) -> bool:
+    """Check if a squeezed name is that of a point on the rim, with or without a side before it."""
+    sides = ("", *(word for words in _SIDES.values() for word in words))
+    return name.startswith(tuple(side + rim for side in sides for rim in _RIMS))
+
+
+def _rim_side(name: str) -> str | None:
+    """Return the side in the squeezed name of a point on the rim: before it, or as its last word."""
+    for side, words in _SIDES.items():
+        if name.startswith(tuple(word + rim for word in words for rim in _RIMS)):
+            return side
+        if name.rstrip("0123456789").endswith(side):
+            return side
+    return None
 
 
 def read_side(side: Side | str | None) -> Side | None:
@@ -156,7 +170,7 @@ def read_landmarks(
         raise ValueError(f"{len(named)} landmarks: at most {_MAX_POINTS} are read")
     names = [name for name, _ in named]
     for role, name in (rename or {}).items():
-        if role not in ROLES and not _RIM.fullmatch(_squeeze(role)):
+        if role not in ROLES and not _is_rim(_squeeze(role)):
             raise ValueError(f"landmark {shown(role)} is not known: {', '.join(ROLES)} or rim")
         if name not in names:
             raise ValueError(f"point {shown(name)} does not exist; the points are {_list(names)}")

@@ -111,11 +111,11 @@ def pelvic_frame(landmarks: Landmarks, *, vertical: Any = None, pelvic_tilt: flo
     ValueError
         Missing landmarks, mirrored sides, points on a line, or distances that no pelvis has.
     """
-    right, left, middle, offset = _landmarks_of_plane(landmarks)
-    across = right - left
+    right_spine, left_spine, middle, offset = _landmarks_of_plane(landmarks)
+    across = right_spine - left_spine
     distance = float(numpy.linalg.norm(across))
     _check_distance("the anterior superior iliac spines are {} apart", distance, _ASIS_DISTANCES)
-    x, origin = across / distance, (right + left) / 2
+    x, origin = across / distance, (right_spine + left_spine) / 2
     up = origin - middle
     up -= (up @ x) * x
     height = float(numpy.linalg.norm(up))
@@ -129,22 +129,24 @@ def pelvic_frame(landmarks: Landmarks, *, vertical: Any = None, pelvic_tilt: flo
 
 def _landmarks_of_plane(landmarks: Landmarks) -> tuple[Numbers, Numbers, Numbers, float | None]:
     """Return both spines, the pubis, and the distance of the tubercles across the line of the spines."""
-    right, left = landmarks.find("right_asis"), landmarks.find("left_asis")
+    right_spine, left_spine = landmarks.find("right_asis"), landmarks.find("left_asis")
     tubercles = landmarks.find("right_tubercle"), landmarks.find("left_tubercle")
     symphysis = landmarks.find("symphysis")
-    lacking = [name for name, point in (("the right ASIS", right), ("the left ASIS", left)) if point is None]
+    lacking = [
+        name for name, point in (("the right ASIS", right_spine), ("the left ASIS", left_spine)) if point is None
+    ]
     if symphysis is None and (tubercles[0] is None or tubercles[1] is None):
         lacking.append("the pubic symphysis or both pubic tubercles")
-    if right is None or left is None or lacking:
+    if right_spine is None or left_spine is None or lacking:
         raise missing_landmarks(landmarks, ", ".join(lacking))
     if tubercles[0] is None or tubercles[1] is None:
-        return right, left, numpy.asarray(symphysis), None
-    x = (right - left) / max(float(numpy.linalg.norm(right - left)), 1e-9)
+        return right_spine, left_spine, numpy.asarray(symphysis), None
+    x = (right_spine - left_spine) / max(float(numpy.linalg.norm(right_spine - left_spine)), 1e-9)
     middle = (tubercles[0] + tubercles[1]) / 2
     across = tubercles[0] - tubercles[1]
     if across @ x < 0:
         raise ValueError("the right pubic tubercle lies to the left of the left one: the names are mirrored")
-    return right, left, middle, float(numpy.linalg.norm(across - (across @ x) * x))
+    return right_spine, left_spine, middle, float(numpy.linalg.norm(across - (across @ x) * x))
 
 
 def _check_distance(text: str, distance: float, allowed: tuple[float, float]) -> None:
@@ -158,8 +160,8 @@ def _check_sides(axes: Numbers) -> None:
     """Raise ValueError for a frame that is mirrored or turned in the coordinates of the scanner."""
     if axes[0, 0] < 0:
         raise ValueError(
-            "the right ASIS lies to the left of the left one: the names of the sides are mirrored, or the file is in LPS "
-            "coordinates where it states RAS"
+            "the right ASIS lies to the left of the left one: the names of the sides are mirrored, or the file is in "
+            "LPS coordinates where it states RAS"
         )
     if axes[2, 2] < 0:
         raise ValueError("the pubis lies above the spines: their names are exchanged, or the pelvis is upside down")
@@ -220,7 +222,7 @@ class CupOrientation:
     angle_error: float | None = None
     largest_deviation: tuple[str, float] | None = None
 
-    def cup(self, upright: bool = True, **others: Any) -> Cup:
+    def cup(self, upright: bool = True, **attributes: Any) -> Cup:
         """Create the cup with its radiographic angles in the upright body, or in the pelvic frame.
 
         Without a vertical, both are equal.
@@ -238,7 +240,7 @@ class CupOrientation:
                 f"the cup's radiographic inclination is {degrees(inclination):.1f}°: 0 to 90° are allowed, opening "
                 f"downwards and to the {self.side.value}"
             )
-        return Cup(inclination=inclination, anteversion=atan2(front, hypot(lateral, up)), side=self.side, **others)
+        return Cup(inclination=inclination, anteversion=atan2(front, hypot(lateral, up)), side=self.side, **attributes)
 
 
 def cup_orientation(landmarks: Landmarks, frame: PelvicFrame, *, side: Side | str | None = None) -> CupOrientation:
@@ -286,7 +288,7 @@ def orientation_of_axis(
     *,
     side: Side | str | None = None,
     signed: bool = False,
-    **others: Any,
+    **attributes: Any,
 ) -> CupOrientation:
     """Return the orientation of a cup from its axis and centre in the pelvic frame.
 
@@ -310,4 +312,4 @@ def orientation_of_axis(
     chosen = stated or lies
     outwards = numpy.array([1.0 if chosen is Side.RIGHT else -1.0, 0.0, -1.0])
     opening = axis if signed or axis @ outwards >= 0 else -axis
-    return CupOrientation(axis=opening, centre=centre, side=chosen, frame=frame, **others)
+    return CupOrientation(axis=opening, centre=centre, side=chosen, frame=frame, **attributes)

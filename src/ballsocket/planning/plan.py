@@ -36,7 +36,7 @@ _LPS = numpy.diag([-1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Plan:
+class HipPlan:
     """Planning data of one hip: any of pelvic frame, orientation of the cup, liner and head.
 
     Attributes
@@ -70,8 +70,8 @@ class Plan:
     @property
     def cup(self) -> Cup:
         """Cup with the measured arc of cover, orientation and side; defaults for the rest."""
-        arc = {} if self.liner is None else {"arc_of_cover": self.liner.arc_of_cover}
-        return Cup(**arc) if self.orientation is None else self.orientation.cup(**arc)
+        cup = Cup() if self.orientation is None else self.orientation.cup()
+        return cup if self.liner is None else replace(cup, arc_of_cover=self.liner.arc_of_cover)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -146,12 +146,16 @@ class Plan:
             No radius or no thickness, or a number that is not allowed.
         """
         require("clearance", clearance, clearance < numpy.inf, "a radial clearance (mm) is finite")
-        thickness = liner_thickness if liner_thickness is not None else self.liner and self.liner.wall_thickness
-        if self.head is None and self.liner is None:
+        if self.head is not None:
+            radius = self.head.radius
+        elif self.liner is not None:
+            radius = self.liner.radius - clearance
+        else:
             raise ValueError("a joint needs a radius: read the STL file of a liner or a head")
+        wall = None if self.liner is None else self.liner.wall_thickness
+        thickness = wall if liner_thickness is None else liner_thickness
         if thickness is None:
             raise ValueError("a joint needs the liner's thickness: the files have none, state --liner-thickness")
-        radius = self.head.radius if self.head is not None else self.liner.radius - clearance  # type: ignore[union-attr]
         if not _ARCS[0] <= self.cup.arc_of_cover <= _ARCS[1]:
             raise ValueError(f"the arc of cover of {degrees(self.cup.arc_of_cover):.0f}° is not allowed: 40° to 340°")
         tables: dict[str, Any] = {
@@ -187,7 +191,7 @@ def make_plan(
     head: ImplantFit | None = None,
     side: Side | str | None = None,
     space: str | None = None,
-) -> Plan:
+) -> HipPlan:
     """Combine landmarks and implants to a plan.
 
     The orientation is that of the rim's points. Without them, it is that of the liner if its file has the coordinates
@@ -214,16 +218,19 @@ def make_plan(
         if landmarks is not None and len(landmarks.rim(read_side(side))[1]):
             orientation = cup_orientation(landmarks, frame, side=side)
         elif liner is not None and liner.axis is not None and space is not None:
-            turn: Numbers = {"RAS": numpy.eye(3), "LPS": _LPS}[space.upper()]
-            axis, centre = frame.axes @ turn @ liner.axis, frame.convert(turn @ liner.centre)
+            to_ras: Numbers = {"RAS": numpy.eye(3), "LPS": _LPS}[space.upper()]
+            axis, centre = frame.axes @ to_ras @ liner.axis, frame.convert(to_ras @ liner.centre)
             orientation = orientation_of_axis(axis, centre, frame, side=side, signed=True)
-    return Plan(frame=frame, orientation=orientation, liner=liner, head=head)
+    return HipPlan(frame=frame, orientation=orientation, liner=liner, head=head)
 
 
 def _rounded(cup: Cup) -> Cup:
     """Round the angles of a cup to a thousandth of a degree."""
-    names = ("arc_of_cover", *(("inclination", "anteversion") if cup.oriented else ()))
-    return replace(cup, **{name: radians(round(degrees(getattr(cup, name)), 3)) for name in names})
+    arc = radians(round(degrees(cup.arc_of_cover), 3))
+    if not cup.oriented:
+        return replace(cup, arc_of_cover=arc)
+    inclination, anteversion = (radians(round(degrees(angle), 3)) for angle in (cup.inclination, cup.anteversion))
+    return replace(cup, arc_of_cover=arc, inclination=inclination, anteversion=anteversion)
 
 
 def _pelvis_summary(frame: PelvicFrame) -> dict[str, Any]:

@@ -53,7 +53,7 @@ class AngleDefinition(Choice):
 
 
 def _opening_of(inclination: float, anteversion: float, definition: AngleDefinition) -> Direction:
-    """Return the axis of a cup out of its opening: lateral, to the front, downwards (Murray 1993, equations 1 to 3)."""
+    """Return the axis of a cup out of its opening: lateral, to the front, downwards."""
     if definition is AngleDefinition.OPERATIVE:
         across = cos(inclination)
         return sin(inclination), across * sin(anteversion), across * cos(anteversion)
