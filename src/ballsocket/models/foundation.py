@@ -183,7 +183,8 @@ def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as t
 
     Notes
     -----
-    ``press(joint, force=..., indentation=..., half_angle=...)`` computes the contact of a joint under one of these loads.
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -207,7 +208,8 @@ def Vessel() -> RadialFoundation:  # noqa: N802
 
     Notes
     -----
-    ``press(joint, force=..., indentation=..., half_angle=...)`` computes the contact of a joint under one of these loads.
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -228,7 +230,8 @@ def Bartel() -> RadialFoundation:  # noqa: N802
 
     Notes
     -----
-    ``press(joint, force=..., indentation=..., half_angle=...)`` computes the contact of a joint under one of these loads.
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -249,7 +252,8 @@ def BondedLayer() -> RadialFoundation:  # noqa: N802
 
     Notes
     -----
-    ``press(joint, force=..., indentation=..., half_angle=...)`` computes the contact of a joint under one of these loads.
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -272,7 +276,8 @@ def BondedLayerExact() -> RadialFoundation:  # noqa: N802
 
     Notes
     -----
-    ``press(joint, force=..., indentation=..., half_angle=...)`` computes the contact of a joint under one of these loads.
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -295,7 +300,8 @@ def CosineLimit() -> RadialFoundation:  # noqa: N802
 
     Notes
     -----
-    ``press(joint, force=..., indentation=..., half_angle=...)`` computes the contact of a joint under one of these loads.
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
