@@ -8,7 +8,6 @@ from ballsocket.cli.root import load_commands
 from ballsocket.core.quantities import CONTACT
 
 from ..places import EXAMPLES
-from ..planning import pelves
 from .command import run
 
 LOAD = ("--force", "3 kN")
@@ -52,9 +51,8 @@ WITHOUT_TABLE = {
 
 @pytest.fixture
 def folder(tmp_path):
-    """Folder with the files that the commands read."""
+    """Folder with the file of the study."""
     (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
-    (tmp_path / "pelvis.fcsv").write_text(pelves.fcsv(*pelves.pelvis()), encoding="utf-8")
     return tmp_path
 
 

@@ -88,7 +88,7 @@ def test_help_of_a_model_shows_how_to_press(name):
 @pytest.mark.parametrize("name", ["HessForsbach", "Vessel", "Bartel", "BondedLayer", "BondedLayerExact", "CosineLimit"])
 def test_help_of_a_function_that_makes_a_model_lists_its_methods(name):
     text = inspect.getdoc(getattr(bs, name))
-    assert "Methods\n-------\npress(joint, force=..." in text
+    assert "Notes\n-----\n``press(joint, force=..." in text
     assert f"bs.{name}().press(bs.joints" in text
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Source:
-    """Reference to a publication, with the equations or tables used.
+    r"""Reference to a publication, with the equations or tables used.
 
     Attributes
     ----------

@@ -181,10 +181,10 @@ def HessForsbach() -> RadialFoundation:  # noqa: N802 - named like a class, as t
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (18).
 
-    Methods
-    -------
-    press(joint, force=..., indentation=..., half_angle=...)
-        Compute the contact of a joint under one of these loads.
+    Notes
+    -----
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -206,10 +206,10 @@ def Vessel() -> RadialFoundation:  # noqa: N802
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (14).
 
-    Methods
-    -------
-    press(joint, force=..., indentation=..., half_angle=...)
-        Compute the contact of a joint under one of these loads.
+    Notes
+    -----
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -228,10 +228,10 @@ def Bartel() -> RadialFoundation:  # noqa: N802
     ----------
     Bartel et al. 1985, doi 10.1115/1.3138540; the closed form is derived in the docs (theory).
 
-    Methods
-    -------
-    press(joint, force=..., indentation=..., half_angle=...)
-        Compute the contact of a joint under one of these loads.
+    Notes
+    -----
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -250,10 +250,10 @@ def BondedLayer() -> RadialFoundation:  # noqa: N802
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6), (8), (13), (15); Johnson 1985.
 
-    Methods
-    -------
-    press(joint, force=..., indentation=..., half_angle=...)
-        Compute the contact of a joint under one of these loads.
+    Notes
+    -----
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -274,10 +274,10 @@ def BondedLayerExact() -> RadialFoundation:  # noqa: N802
     ----------
     Askari & Andersen 2018, doi 10.1177/0954411918810044.
 
-    Methods
-    -------
-    press(joint, force=..., indentation=..., half_angle=...)
-        Compute the contact of a joint under one of these loads.
+    Notes
+    -----
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
@@ -298,10 +298,10 @@ def CosineLimit() -> RadialFoundation:  # noqa: N802
     ----------
     Heß & Forsbach 2021, doi 10.3390/app112311170, Eqs. (6) and (13) with c = 0.
 
-    Methods
-    -------
-    press(joint, force=..., indentation=..., half_angle=...)
-        Compute the contact of a joint under one of these loads.
+    Notes
+    -----
+    ``press(joint, force=..., indentation=..., half_angle=...)``
+    computes the contact of a joint under one of these loads.
 
     Examples
     --------
