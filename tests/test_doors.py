@@ -34,6 +34,7 @@ OWN_FILES = {
     "paper/cases.py": "a table of the package",
     "core/sources.py": "the bibliography of the package",
     "elasticity/off_axis/deck.py": "results in a folder of decks, named by its user in Python",
+    "reports/study_tables.py": "writes the indices of a sensitivity",
     "studies/export.py": "writes the numbers of a study",
     "core/executors/processes.py": "memory of the machine",
     "studies/store.py": "the label of a store",

@@ -59,7 +59,7 @@ from .models.pin_in_hole import PinInHole
 from .models.plane_layer import PlaneLayer
 from .models.refined import Refined
 from .problem import Joint, Layer, Material, Support
-from .problem.cup import Cup, Interface, Side
+from .problem.cup import AngleDefinition, Cup, Interface, Side
 from .problem.gaps import CircularGap, LinearGap
 from .problem.presets import (
     ALUMINA,
@@ -86,6 +86,7 @@ register_plots()
 
 __all__ = [  # noqa: RUF022, grouped by subject
     # problem
+    "AngleDefinition",
     "CircularGap",
     "Cup",
     "Interface",

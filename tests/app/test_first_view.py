@@ -83,8 +83,8 @@ def test_a_contact_over_the_rim_is_said():
 @pytest.mark.parametrize(
     ("strengths", "force", "holds", "words"),
     [
-        ({"allowable_pressure": 20.0}, 3000.0, True, "The liner bears it, with little to spare"),
-        ({"allowable_pressure": 40.0}, 3000.0, True, "The liner bears it"),
+        ({"allowable_pressure": 20.0}, 3000.0, True, "The liner is within its strength, by a small margin"),
+        ({"allowable_pressure": 40.0}, 3000.0, True, "The liner is within its strength"),
         ({"allowable_pressure": 10.0}, 3000.0, False, "1.7 times the allowable pressure of the liner"),
         ({"yield_stress": 21.0, "allowable_pressure": 100.0}, 12000.0, False, "the yield stress of the liner"),
         ({}, 3000.0, None, "No verdict"),

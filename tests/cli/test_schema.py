@@ -18,6 +18,7 @@ KIND_OF_EXAMPLE = {
     "evidence.toml": "evidence",
     "hip_in_use.toml": "hip",
     "hip_of_many.toml": "hip",
+    "wear_test.toml": "hip",
     "measured_areas.toml": "identify",
     "measured_joint.toml": "identify",
 }

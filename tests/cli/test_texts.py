@@ -147,7 +147,8 @@ def test_uncertainty_of_a_hip_simulates_count_times_parameters_plus_two_patients
     monkeypatch.setattr(hip, "_progress_bar", lambda *words: bars.append(words) or nullcontext(print))
     module = import_module("ballsocket.hip.uncertainty")
     monkeypatch.setattr(module, "uncertainty", lambda variability, history, **options: options["count"])
-    variability = SimpleNamespace(distributions={"clearance": None, "force": None, "wear": None})
+    distributions = {"clearance": None, "force": None, "wear": None}
+    variability = SimpleNamespace(distributions=distributions, noun="patients")
     scatter = SimpleNamespace(count=16, seed=1, variability=variability)
     assert hip._uncertainty_bands(SimpleNamespace(uncertain=scatter), None, None) == 16
     assert bars == [("other patients", 80, "patients")]

@@ -154,3 +154,34 @@ def test_values_are_shown_on_one_short_line():
     assert checks.shown("x" * 58) == "'" + "x" * 39 + "..."
     assert checks.shown(np.eye(2)) == "array([[1., 0.], [0., 1.]])"
     assert checks.shown(10**5000) == "(int too long to show)"
+
+
+@pytest.mark.parametrize("value", [7, 10_001, 8.5, 72.0, True, "8", None])
+def test_whole_numbers_out_of_range_are_rejected(value):
+    with pytest.raises(ValueError, match=r"^steps = .* is not allowed: a whole number from 8 to 10000$"):
+        checks.check_whole_number("steps", value, 8, 10_000)
+
+
+def test_whole_numbers_in_range_are_returned():
+    assert [checks.check_whole_number("steps", value, 8, 10) for value in (8, 9, 10)] == [8, 9, 10]
+    assert checks.check_whole_number("seed", 2**53 - 1) == 2**53 - 1
+    for value in (-1, 2**53):
+        with pytest.raises(ValueError, match="seed = .* is not allowed"):
+            checks.check_whole_number("seed", value)
+
+
+@pytest.mark.parametrize(
+    ("text", "number"),
+    [("10 %", "10"), (" 2.5e-1% ", "2.5e-1"), ("-3 %", "-3"), ("10", None), ("% 10", None), (10, None), ("", None)],
+)
+def test_percentages_are_recognised(text, number):
+    assert checks.number_of_percent(text) == number
+
+
+def test_blank_texts_are_rejected():
+    assert checks.check_filled("path", "a b") == "a b"
+    for text in ("", " \t"):
+        with pytest.raises(ValueError, match="^path is empty: table to read$"):
+            checks.check_filled("path", text, "table to read")
+        with pytest.raises(ValueError, match="^path is empty$"):
+            checks.check_filled("path", text)

@@ -382,14 +382,14 @@ def test_jax_derivatives_of_the_energy_equal_force_and_tangent():
 def _check_jax_derivatives(jax):
     for model in (bs.HessForsbach(), bs.Tabulated()):
         element = bs.ForceElement(model, HIP, cup=CUPS["leaning cup"], smoothing=0.02)
+        slope, bend = (derive(lambda r, e=element: e(r).energy) for derive in (jax.grad, jax.hessian))
+        push = jax.jit(lambda r, e=element: e(r, 10.0 * r, r).force)
         for centre in ([0.01, 0.02, C], [0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05], [C + 0.04, 0.0, 0.02]):
             position = jax.numpy.asarray(centre)
             load = element(position)
-            slope, bend = (derive(lambda r, e=element: e(r).energy)(position) for derive in (jax.grad, jax.hessian))
-            np.testing.assert_allclose(-slope, load.force, atol=1e-9)
-            np.testing.assert_allclose(bend, load.tangent, atol=1e-8)
-            pushed = jax.jit(lambda r, e=element: e(r, 10.0 * r, r).force)(position)
-            np.testing.assert_allclose(pushed, element(position, 10.0 * position, position).force, atol=1e-9)
+            np.testing.assert_allclose(-slope(position), load.force, atol=1e-9)
+            np.testing.assert_allclose(bend(position), load.tangent, atol=1e-8)
+            np.testing.assert_allclose(push(position), element(position, 10.0 * position, position).force, atol=1e-9)
 
 
 def test_summary_of_a_load_is_json():

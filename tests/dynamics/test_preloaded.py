@@ -38,6 +38,7 @@ def test_forces_are_those_of_the_solver_in_every_direction(element, positions):
     error = np.linalg.norm(element(positions).force - force, axis=1) / np.linalg.norm(force, axis=1)
     assert error.max() < 0.015
     assert np.median(error) < 3e-3
+    assert 0.5 * error.max() < element.table.error < 2.0 * error.max()
 
 
 def test_in_equilibrium_there_is_no_force_and_the_stiffness_of_the_solver(element):
@@ -94,6 +95,8 @@ def test_states_beyond_the_table_have_a_status_and_no_load(element):
     far, unknown = element((1.0, 0.0, 0.0)), element((np.nan, 0.0, 0.0))
     assert (far.status, unknown.status) == (ContactState.THROUGH_WALL, ContactState.NO_NUMBER)
     assert np.isnan(far.force).all()
+    assert repr(far) == "<PreloadedLoad force (nan, nan, nan) N, moment (nan, nan, nan) N mm, energy nan N mm>"
+    assert repr(element).startswith("<PreloadedElement sphere on R1 13.5 mm, ")
     assert far.notes[0].endswith(f"the limit is {element.wall:.4g} mm from equilibrium")
 
 

@@ -100,7 +100,6 @@ def test_the_commands_export_an_interference(tmp_path):
     ("command", "options", "said"),
     [
         (("export", "table"), ("--arc-of-cover", "240"), "export c, drake, modelica or mujoco"),
-        (("export", "opensim"), ("--arc-of-cover", "240"), "export c, drake, modelica or mujoco"),
         (("export", "c"), ("--arc-of-cover", "180"), "above 180 deg"),
         (("fmu",), ("--model", "exact"), "the model exact does not solve a preloaded joint: use sphere"),
     ],

@@ -94,6 +94,11 @@ def _creep(law):
     return numbers([getattr(law, name) for name in names if hasattr(law, name)])
 
 
+def _wear(law):
+    """List the numbers of a wear law, without the source of its coefficient, which version 1.0 does not have."""
+    return [number for field in fields(law) if field.name != "source" for number in numbers(getattr(law, field.name))]
+
+
 def _hip(file):
     use = file.use
     surface = use.surface
@@ -102,7 +107,7 @@ def _hip(file):
         numbers(use.cup),
         numbers(use.cycle.forces),
         numbers(use.forces),
-        numbers(use.wear),
+        _wear(use.wear),
         _creep(use.creep),
         float(surface.modulus(use.joint)) if hasattr(surface, "modulus") else type(surface).__name__,
         use.seconds,

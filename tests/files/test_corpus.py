@@ -4,6 +4,7 @@
 """
 
 import json
+import re
 from collections import Counter
 
 import pytest
@@ -15,6 +16,9 @@ from .read_files import outcome
 CASES = json.loads((DATA / "files_of_1_0.json").read_text("utf-8"))
 READ = [case for case in CASES if "refusal" not in case]
 REFUSED = [case for case in CASES if "refusal" in case]
+NOW_ALLOWED = "how uncertain is indentation\\?|with values needs its uncertainty"
+"""Refusals of version 1.0 that a later version withdrew: it estimates an uncertainty that is not stated."""
+
 KINDS = sorted({case["kind"] for case in CASES})
 
 
@@ -38,6 +42,8 @@ def test_files_of_1_0_are_read_with_the_same_numbers(kind):
 @pytest.mark.parametrize("kind", KINDS)
 def test_files_that_1_0_refused_are_refused_in_one_sentence(kind):
     for case in of_kind(REFUSED, kind):
+        if re.search(NOW_ALLOWED, case["refusal"]):
+            continue
         refusal = outcome(kind, case["text"]).get("refusal", "")
         assert refusal.startswith(("file.toml", "[Errno 2]")), case["text"]
         check_sentence(refusal)

@@ -78,6 +78,7 @@ HIPS = (
     b'instants = 10\n[[activity]]\nname = "stairs-up"\nper_year = 1e4\ninstants = 10\n',
     (EXAMPLES / "hip_in_use.toml").read_bytes(),
     (EXAMPLES / "hip_of_many.toml").read_bytes(),
+    (EXAMPLES / "wear_test.toml").read_bytes().replace(b'law = "archard"', b"coefficient = 1e-6"),
 )
 MEASURED = (
     b'joint = "hip-28"\n[free]\nclearance = "0.02..0.3 mm"\nliner.young = {median = "1 GPa", factor = 1.5}\n'

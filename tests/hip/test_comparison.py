@@ -12,16 +12,15 @@ from typer.testing import CliRunner
 
 import ballsocket as bs
 from ballsocket.cli.root import app
-from ballsocket.hip import WEAR_FACTORS, Archard, iso_14242_1, logarithmic
+from ballsocket.hip import WEAR_FACTORS, Archard, logarithmic
 from ballsocket.hip.rim import RimDistance, mask_edge_loading
 from ballsocket.hip.wear_laws import read_wear_law
 from ballsocket.reports.hip_comparison import wear_figure
 
 from .test_file import write_edited_file
-from .test_wear import TILTED, hip
+from .test_wear import QUICK, TILTED, hip
 
 SHORT = (("5e6\n", "2e5\n"), ("[1e6, 2e6, 5e6]", "[1e5]"), ("instants = 100", "instants = 16"))
-QUICK = {"cycle": iso_14242_1(16), "ring_width": radians(8.0)}
 
 
 @pytest.fixture
@@ -97,7 +96,7 @@ def test_a_history_is_a_frame_and_a_figure(monkeypatch):
     assert len(wear_figure([history, history]).axes[0].lines) == 2
     assert ", 2 reports, last " in repr(history)
     monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
-    with pytest.raises(ImportError, match=r"pandas is not installed: pip install 'ballsocket\[study\]'"):
+    with pytest.raises(ImportError, match=r'pandas is not installed: pip install "ballsocket\[study\]"'):
         history.to_frame()
     assert len(history.table()) == 2
 

@@ -8,7 +8,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.hip import Archard, HipSimulation, KelvinVoigtChain, constrained_share, iso_14242_1, logarithmic
 
-from .test_wear import TILTED, K, hip
+from .test_wear import QUICK, TILTED, K, hip
 
 LADDER = KelvinVoigtChain(compliances=(1e-3, 5e-4, 2e-3), times=(30.0, 4e3, 7e5))
 
@@ -66,7 +66,7 @@ def test_invalid_kelvin_voigt_chains_are_refused(words, refused):
 
 
 def test_creep_without_wear_balances_its_loads():
-    use = hip(wear=Archard(coefficient=0.0), creep=LADDER)
+    use = hip(wear=Archard(coefficient=0.0), creep=LADDER, **QUICK)
     report = use.after(1e7).last
     rest = use.solve_equilibrium((report.wear + report.crept).ravel())
     carried = np.einsum("tp,kp,p->tk", rest.pressure, use.foundation.normals, use.foundation.areas)
@@ -114,7 +114,7 @@ def test_confinement_scales_the_strain_of_a_free_bar():
 
 
 def test_confined_liner_creeps_less_and_has_a_note():
-    free, confined = (hip(creep=logarithmic(share)) for share in (1.0, constrained_share(0.4)))
+    free, confined = (hip(creep=logarithmic(share), **QUICK) for share in (1.0, constrained_share(0.4)))
     deep, less = (use.after(1e3).last.creep_depth for use in (free, confined))
     assert constrained_share(0.4) * deep < less < deep  # pressures fall less where less creeps
     assert any("the strain of a laterally constrained liner is 0.47 of that" in note for note in free.notes)
@@ -124,7 +124,7 @@ def test_confined_liner_creeps_less_and_has_a_note():
 def test_creep_does_not_depend_on_the_block_length(monkeypatch):
     from ballsocket.hip import wear_integrator
 
-    use = hip(creep=LADDER)
+    use = hip(creep=LADDER, **QUICK)
     usual = use.after(3e5).last
     monkeypatch.setattr(wear_integrator, "_CREEP_GROWTH", wear_integrator._CREEP_GROWTH / 2)
     finer = use.after(3e5).last
@@ -133,8 +133,8 @@ def test_creep_does_not_depend_on_the_block_length(monkeypatch):
 
 
 def test_creep_depends_on_time_and_not_on_cycles():
-    slow = hip(creep=LADDER, seconds_per_cycle=100.0).after(1e4).last
-    usual = hip(creep=LADDER, wear=Archard(coefficient=1e-2 * K)).after(1e6).last
+    slow = hip(creep=LADDER, seconds_per_cycle=100.0, **QUICK).after(1e4).last
+    usual = hip(creep=LADDER, wear=Archard(coefficient=1e-2 * K), **QUICK).after(1e6).last
     assert slow.creep_depth == pytest.approx(usual.creep_depth, rel=1e-2)
 
 

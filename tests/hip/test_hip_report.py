@@ -19,7 +19,9 @@ from .test_wear import hip, walked
 
 
 def test_a_report_has_figures_and_results(tmp_path):
-    file = write_edited_file(tmp_path, ("5e6\n", "2e5\n"), ("[1e6, 2e6, 5e6]", "[1e5]"))
+    file = write_edited_file(
+        tmp_path, ("5e6\n", "2e5\n"), ("[1e6, 2e6, 5e6]", "[1e5]"), ("instants = 100", "instants = 24")
+    )
     done = run("hip", str(file), "--report", str(tmp_path / "hip.html"), "--store", str(tmp_path / "store"))
     assert done.returncode == 0, done.stderr
     page = (tmp_path / "hip.html").read_text(encoding="utf-8")

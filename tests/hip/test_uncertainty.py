@@ -30,7 +30,11 @@ LIGHT = Normal(mean=800.0, deviation=80.0)
 
 def short_file(path, *changes, extra=UNCERTAINTY):
     """Write the example of a hip in use with few cycles and more text."""
-    few = (("cycles = 5e6", "cycles = 1e4"), ("report_at = [1e6, 2e6, 5e6]", "report_at = [5e3]"))
+    few = (
+        ("cycles = 5e6", "cycles = 1e4"),
+        ("report_at = [1e6, 2e6, 5e6]", "report_at = [5e3]"),
+        ("instants = 100", "instants = 24"),
+    )
     return write_edited_file(path, *few, *changes, text=TEXT + extra)
 
 

@@ -15,16 +15,14 @@ from ballsocket.hip import (
     HipSimulation,
     MeasuredWear,
     fit_wear_coefficient,
-    iso_14242_1,
     logarithmic,
 )
 from ballsocket.hip.config import read_wear_test
 from ballsocket.reports.hip_comparison import wear_fit_figure
 
 from .test_file import write_edited_file
-from .test_wear import hip
+from .test_wear import QUICK, hip
 
-QUICK = {"cycle": iso_14242_1(16), "ring_width": radians(8.0)}
 COUNTS = [1e5, 2e5, 4e5]
 TRUE = 8e-7
 

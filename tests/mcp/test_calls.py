@@ -201,10 +201,10 @@ def test_a_call_beyond_the_time_limit_is_stopped(tmp_path):
 
 def test_a_tool_returns_what_the_command_prints(tmp_path):
     mcp = pytest.importorskip("mcp", reason="the extra for assistants is not installed")
-    from ballsocket.mcp import server
+    from ballsocket.mcp import make_server
 
     async def asked():
-        async with mcp.Client(server(tmp_path, 60.0, COMMANDS, LIMITED_PROGRAM)) as client:
+        async with mcp.Client(make_server(tmp_path, 60.0, COMMANDS, LIMITED_PROGRAM)) as client:
             listed = await client.list_tools()
             half = await client.call_tool("press", {"joint": "hip-36", "force": 1e12, "model": ["bartel"]})
             refusal = await client.call_tool("press", {"forces": 1})

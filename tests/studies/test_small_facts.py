@@ -1,14 +1,15 @@
 """Parts of a study: blocks, times, identities of arrays, rows beside samples, and limits on a plane."""
 
-from math import inf
+from math import inf, radians
 
 import numpy
 import pytest
 import xarray
 
-from ballsocket import joints
+from ballsocket import Cup, Sphere, joints
 from ballsocket.core.kinds import Unit
 from ballsocket.studies import Progress
+from ballsocket.studies.derivatives import off_axis_uncertainty
 from ballsocket.studies.distributions import Normal, Rectangular, check_nominal, tolerance
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit, margin_on_plane
@@ -90,3 +91,21 @@ def test_rows_of_a_table_are_combined_with_samples(tmp_path):
         'clearance = { low = "0.08 mm", high = "0.12 mm" }\n'
     )
     assert read_study(tmp_path / "study.toml").design.shape == (2, 4)
+
+
+def test_tolerances_off_the_axis_have_the_band_of_presses_at_their_ends():
+    """Results change in one direction with the force: ends of a band are presses at the ends of the force."""
+    joint, force = joints["hip-36"], tolerance(2000.0, 600.0)
+    model = Sphere(ring_width=radians(6.0), cup=Cup(inclination=radians(45.0), anteversion=radians(15.0)))
+    effect = off_axis_uncertainty(joint, model, {"force": 2000.0}, {"force": force})
+    ends = [float(force.frozen.ppf(share)) for share in (0.025, 0.5, 0.975)]
+    pressed = model.press(joint, force=numpy.array(ends))
+    for name in ("max_pressure", "indentation", "area"):
+        assert effect.band[name] == pytest.approx(getattr(pressed, name), rel=3e-3)
+    assert effect.band["edge_distance"][0] == pytest.approx(pressed.edge_distance[2], abs=0.05)
+    assert effect.presses == 3
+    assert 0.3 < effect.changes["max_pressure"]["force"] < 0.8
+    with pytest.raises(ValueError, match="force = 3000 N lies outside its tolerance"):
+        off_axis_uncertainty(joint, model, {"force": 3000.0}, {"force": force})
+    with pytest.raises(ValueError, match="tilt has a tolerance, and the direction of the load is set by inclination"):
+        off_axis_uncertainty(joint, model, {"force": 2000.0}, {"tilt": tolerance(0.5, 0.1)})

@@ -9,6 +9,7 @@ from scipy import stats
 
 import ballsocket as bs
 from ballsocket.studies.distributions import LogNormal, Normal, Rectangular, copula_matrix
+from ballsocket.studies.file import read_study
 from ballsocket.studies.run import study
 from ballsocket.studies.sensitivity import sensitivity
 from ballsocket.studies.variance_indices import check_sample_memory, shapley_effects, sobol_indices
@@ -129,6 +130,31 @@ def test_samples_have_the_rank_correlation_and_their_own_distributions():
         assert stats.kstest(values[name], spread.frozen.cdf).statistic < 0.01
     pressed = study(bs.HessForsbach(), HIP, design * bs.studies.grid(force=1000.0))
     assert '"correlation": [[["liner_young", "clearance"], -0.7]]' in pressed.attrs["design"]
+
+
+def test_a_study_file_states_correlations(tmp_path):
+    text = """
+        joint = "hip-36"
+        [axes]
+        force = 1000
+        [samples]
+        count = 8
+        clearance = {nominal = 0.1, plus_minus = 0.05}
+        liner_young = {low = 700, high = 1100}
+        correlation = ["clearance, liner_young = 0.5"]
+    """
+    path = tmp_path / "s.toml"
+    path.write_text(text, encoding="utf-8")
+    (axis,) = read_study(path).design.axes
+    assert axis.correlation == ((("clearance", "liner_young"), 0.5),)
+    for wrong, message in (
+        ('"clearance: 0.5"', "s.toml: .*is not a correlation, such as 'clearance, liner_young = 0.5'"),
+        ('"clearance, clearance = 0.5"', "correlation of clearance and clearance needs two parameters"),
+        ('"clearance, tilt = 0.5"', "'tilt' among the correlated parameters is not known"),
+    ):
+        path.write_text(text.replace('"clearance, liner_young = 0.5"', wrong), encoding="utf-8")
+        with pytest.raises(ValueError, match=message):
+            read_study(path)
 
 
 @pytest.mark.parametrize(

@@ -160,13 +160,11 @@ def verdict_sentence(contact: Contact, strength_use: StrengthUse | None) -> tupl
     if strength_use is None or (strength_use.ratio <= 1 and not contact.joint.liner.strengths):
         return None, f"No verdict: {unchecked_strength_reason(contact.joint)}. Enter the liner's allowable pressure."
     if strength_use.ratio > 1:
-        return False, f"The {strength_use.part} does not bear it: {strength_use}"
+        return False, f"The {strength_use.part} is overloaded: {strength_use}"
     if not bool(contact.valid):
         return None, "No verdict: this contact is outside the range of its model"
-    return (
-        True,
-        f"The {strength_use.part} bears it{', with little to spare' if strength_use.ratio > _LITTLE_MARGIN else ''}",
-    )
+    margin = ", by a small margin" if strength_use.ratio > _LITTLE_MARGIN else ""
+    return True, f"The {strength_use.part} is within its strength{margin}"
 
 
 _MAIN_QUANTITY = "max_pressure"

@@ -16,7 +16,7 @@ add_commands(  # in the order in which `ballsocket --help` lists them
         "models": CommandEntry("ballsocket.cli.lists", "List contact models with their ranges and sources."),
         "presets": CommandEntry("ballsocket.cli.lists", "List materials and joints by name, with their sources."),
         "cite": CommandEntry("ballsocket.cli.lists", "Print the BibTeX references of models, materials and joints."),
-        "identify": CommandEntry("ballsocket.cli.identify", "Identify parameters of a joint from measurements."),
+        "identify": CommandEntry("ballsocket.cli.identify", "Identify a joint or its wear coefficient from data."),
         "calibrate": CommandEntry("ballsocket.cli.identify", "Fit a foundation modulus to the exact solution."),
         "build-tables": CommandEntry(
             "ballsocket.cli.identify", "Build the tables of the model `tabulated`.", hidden=True

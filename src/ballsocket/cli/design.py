@@ -192,7 +192,7 @@ def _show_front(result: Any, goals: tuple[str, str], limits: list[Limit], output
     output.draw(lambda: study_plots.front_figure(result, front, goals, limits))
 
 
-class Intervals(Choice):
+class IntervalMethod(Choice):
     """Methods of computing intervals."""
 
     BOOTSTRAP = "bootstrap"
@@ -239,8 +239,8 @@ def sensitivity(
         bool, typer.Option("--second-order", help="Also compute the indices of pairs of parameters.")
     ] = False,
     intervals: Annotated[
-        Intervals, typer.Option(help="Method of the 95 % intervals: bootstrap, or none to save time.")
-    ] = Intervals.BOOTSTRAP,
+        IntervalMethod, typer.Option(help="Method of the 95 % intervals: bootstrap, or none to save time.")
+    ] = IntervalMethod.BOOTSTRAP,
     seed: Annotated[int, typer.Option(help="Seed of the samples, 0 or more.")] = 0,
     csv: Annotated[
         Path | None, typer.Option("--csv", help="Write all indices with their intervals to this file (.csv).")
@@ -267,7 +267,7 @@ def sensitivity(
         quantities=list(dict.fromkeys(of or _SENSITIVITY_RESULTS)),
         count=count,
         seed=seed,
-        confidence=0.95 if intervals is Intervals.BOOTSTRAP else None,
+        confidence=0.95 if intervals is IntervalMethod.BOOTSTRAP else None,
         load=load,
         second_order=second_order,
         correlation=parse_correlations(correlation or ()),

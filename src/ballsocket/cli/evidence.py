@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,7 +17,7 @@ from ..core.executors.processes import Engine, Processes
 from ..core.storage.pieces import fingerprint
 from ..evidence.comparison import compare
 from ..evidence.credibility_levels import Record
-from ..evidence.folder import RECORD, WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
+from ..evidence.folder import WORK, Signed, check_folder, digest_of, sign_pack, signature_of, write
 from ..evidence.pack import Listener, gather_evidence
 from ..evidence.plan import count_stored_pieces, remove_stored_pieces
 from ..evidence.question import Question, read_question
@@ -158,11 +157,10 @@ def _check(
         typer.echo(_describe_signature(signed, defect, key is not None))
     if not good:
         raise typer.Exit(FAILURE)
-    record: Record = json.loads((folder / RECORD).read_bytes())
     if not as_json:
-        for conclusion in conclusions(record):
+        for conclusion in conclusions(comparison.record):
             typer.echo(conclusion)
-    return record
+    return comparison.record
 
 
 def _signature(folder: Path, expected: PublicKey | None, sums: bytes) -> tuple[Signed | None, str]:

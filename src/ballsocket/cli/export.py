@@ -28,6 +28,12 @@ from .model_file import requested_model
 from .options import JointName, JointOptions, LoadOptions, ModelName, expand_groups
 from .root import app, echo_path, print_message
 
+_RING_WIDTH = radians(3.0)
+"""Width of the rings that tabulate a preloaded joint, in rad."""
+
+_NOTED_ERROR = 0.02
+"""Relative error of the force of a preloaded element above which a message states it."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class ForceElementOptions:
@@ -86,7 +92,13 @@ class ForceElementOptions:
             print_message(
                 f"arc of cover {degrees(cup.arc_of_cover):g}° assumed for a preloaded joint; set --arc-of-cover"
             )
-        return PreloadedElement(Sphere(cup=cup), joint, damping=self._damping(), friction=friction)
+        element = PreloadedElement(
+            Sphere(cup=cup, ring_width=_RING_WIDTH), joint, damping=self._damping(), friction=friction
+        )
+        error = element.table.error
+        if error > _NOTED_ERROR:
+            print_message(f"the tabulated forces differ from the solver's by up to about {100 * error:.2g} %")
+        return element
 
     def _damping(self) -> Damping | None:
         """Return the damping of the options; None without damping."""

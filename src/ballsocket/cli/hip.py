@@ -12,9 +12,10 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 from ..core.executors.processes import Engine, Serial
+from ..reports.unit_systems import Units
 from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson, Scheduler, Workers, choose_executor
+from .options import AsJson, Scheduler, UnitSystem, Workers, choose_executor
 from .root import FAILURE, app, echo_path
 
 if TYPE_CHECKING:  # imported on use: the solver of wear is slow to import
@@ -30,12 +31,15 @@ def hip(
         list[Path],
         typer.Argument(metavar="FILE...", help="Hip files (TOML): joint, gait cycle, wear law. Several are compared."),
     ],
+    units: UnitSystem = Units.SI,
     as_json: AsJson = False,
     figure: Annotated[
         Path | None, typer.Option(help="Write a figure of volume and penetration over cycles (.png, .svg, .pdf).")
     ] = None,
     csv: Annotated[Path | None, typer.Option(help="Write a table with a row for each report (.csv).")] = None,
-    report: Annotated[Path | None, typer.Option(help="Write a report with figures to this file (.html).")] = None,
+    report: Annotated[
+        Path | None, typer.Option(help="Write a report with figures to this file (.html, or .pdf with the extra pdf).")
+    ] = None,
     store: Annotated[
         Path | None,
         typer.Option(help="Folder that stores the run; the same command resumes a stopped run. Default: not stored."),
@@ -57,10 +61,11 @@ def hip(
     from ..hip.config import read_hip
     from ..reports.figure_files import check_format, save
     from ..reports.hip_comparison import HipRun, check_table, comparison_figure, print_comparison, write_table
-    from ..reports.hip_report import check_page, write_hip_report
+    from ..reports.hip_report import write_hip_report
     from ..reports.hip_tables import print_bands, print_hip
+    from ..reports.pages import check_page_path
 
-    for path, check in ((report, check_page), (figure, check_format), (csv, check_table)):
+    for path, check in ((report, check_page_path), (figure, check_format), (csv, check_table)):
         if path is not None:
             check(path)
     hip_files, engine = [read_hip(path) for path in files], choose_executor(workers, scheduler, Serial())
@@ -71,8 +76,10 @@ def hip(
                 raise ValueError(f"{option} shows one hip: leave out {option} or --patients")
         if several:
             raise ValueError(f"--patients needs one file, got {len(files)}")
-        _simulate_cohort(hip_files[0], patients, engine, store, as_json)
+        _simulate_cohort(hip_files[0], patients, engine, store, as_json, units)
         return
+    if report is not None and units is not Units.SI:
+        raise ValueError("--report of a hip is in mm, N and MPa: leave out --units or --report")
     if several and report is not None:
         raise ValueError(f"--report shows one hip, got {len(files)} files: use --figure or --csv to compare them")
     runs = []
@@ -82,15 +89,15 @@ def hip(
     if as_json:
         _echo_runs(runs, files)
     elif several:
-        print_comparison(runs)
+        print_comparison(runs, units)
     else:
-        print_hip(runs[0].history)
+        print_hip(runs[0].history, units)
         if runs[0].bands is not None:
-            print_bands(runs[0].bands)
+            print_bands(runs[0].bands, units)
     if report is not None:  # last: if a file cannot be written, the result is already printed
         write_hip_report(runs[0].history, report, runs[0].bands)
     if figure is not None:
-        save(comparison_figure(runs), figure)
+        save(comparison_figure(runs, units), figure)
     if csv is not None:
         write_table(csv, runs)
     if not all(run.history.converged for run in runs):
@@ -154,7 +161,9 @@ def _summarize_run(run: HipRun) -> dict[str, Any]:
     return answer
 
 
-def _simulate_cohort(hip_file: HipFile, patients: int, engine: Engine, store: Path | None, as_json: bool) -> None:
+def _simulate_cohort(
+    hip_file: HipFile, patients: int, engine: Engine, store: Path | None, as_json: bool, units: Units
+) -> None:
     """Simulate and print a patient cohort; with a store, also write a table of the patients."""
     from ..hip.cohort import cohort_store, write_csv
     from ..hip.uncertainty import population
@@ -179,8 +188,8 @@ def _simulate_cohort(hip_file: HipFile, patients: int, engine: Engine, store: Pa
         notes = [*bands.nominal_notes, *bands.notes]
         echo_json({"version": __version__, "valid": bands.valid, **bands.summary(), "notes": notes})
     else:
-        print_bands(bands)
-        print_notes(bands.nominal_notes)
+        print_bands(bands, units)
+        print_notes(bands.nominal_notes, units)
     if store is not None:
         path = write_csv(store / "patients.csv", cohort, bands.cohort)
         if not as_json:

@@ -54,7 +54,7 @@ def identify(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Identify parameters of a joint from measurements, or a wear coefficient from measured wear.
+    """Identify a joint or its wear coefficient from data.
 
     The table shows each parameter with its uncertainty and names the parameters that are not identifiable.
     A hip file with measured volumes, penetrations or rates in [[data]] gives its wear coefficient.

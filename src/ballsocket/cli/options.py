@@ -198,11 +198,19 @@ class JointOptions(JointPartOptions):
         ),
     ] = None
 
+    @property
+    def orients(self) -> bool:
+        """True if an option orients the cup."""
+        return bool(self._angles())
+
+    def _angles(self) -> dict[str, str]:
+        """Return the options of the orientation as keys of the table [cup]."""
+        return drop_missing({key: getattr(self, key) for key in CUP_ANGLES})
+
     def read(self, name: str | None) -> JointFile:
         """Read a joint as `JointPartOptions.read`, and turn its cup as the options state."""
         file = super().read(name)
-        angles = {key: getattr(self, key) for key in CUP_ANGLES}
-        return replace(file, cup=read_cup(drop_missing(angles), file.cup))
+        return replace(file, cup=read_cup(self._angles(), file.cup))
 
 
 CUP_ANGLES = ("inclination", "anteversion", "side", "orientation", "pelvic_tilt")

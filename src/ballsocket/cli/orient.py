@@ -21,10 +21,19 @@ from ..elasticity.off_axis.orientations import orient as press_orientations
 from ..files.joint_file import JointFile, read_aim, read_cup
 from ..files.units import as_given, parse
 from ..reports.orientation_results import LIMITED_FIELDS, limits_summary, orientation_figure, print_orientations
+from ..reports.unit_systems import Units
 from ..studies.expressions import parse_ends, parse_limit
 from ..studies.limits import Limit
 from .elasticity_options import CupOptions, DirectionOptions
-from .options import JointName, JointPartOptions, LoadOptions, OutputOptions, drop_missing, expand_groups
+from .options import (
+    JointName,
+    JointPartOptions,
+    LoadOptions,
+    OutputOptions,
+    UnitSystem,
+    drop_missing,
+    expand_groups,
+)
 from .root import FAILURE, app, print_message
 
 
@@ -153,6 +162,7 @@ def orient(
     load: LoadOptions,
     orientation: OrientationOptions,
     cup: CupOptions,
+    units: UnitSystem = Units.SI,
     output: OutputOptions,
 ) -> None:
     """Map edge distance and peak pressure over cup orientations.
@@ -175,9 +185,9 @@ def orient(
         orientations: Orientations = press_orientations(file.joint, model=model, **angles, **load.read(file))
     output.print(
         lambda: {**orientations.summary(), **limits_summary(orientations, limits)},
-        lambda: print_orientations(orientations, limits),
+        lambda: print_orientations(orientations, limits, units),
     )
-    output.draw(lambda: orientation_figure(orientations))
+    output.draw(lambda: orientation_figure(orientations, units))
     if not orientations.held.any():
         print_message("no orientation has an answer (see the statuses)")
         raise typer.Exit(FAILURE)

@@ -101,7 +101,10 @@ class FrictionOptions:
 
     friction: Annotated[
         float | None,
-        typer.Option(help="Coefficient of sliding friction. Adds running and breakaway torque to the results."),
+        typer.Option(
+            help="Coefficient of sliding friction. Adds running and breakaway torque to the results. "
+            "Default: no torques."
+        ),
     ] = None
     static_friction: Annotated[
         float | None,
@@ -240,7 +243,7 @@ def press(
         assumed_arc = held_cup is not stated_cup
         assumptions = _preload_assumptions(file.joint, held_cup if assumed_arc else None)
         orientation = {} if "tilt" in direction else orientation_summary(stated_cup)
-        remarks += [orientation_remark(stated_cup)] if orientation else []
+        remarks += [orientation_remark(stated_cup)] if orientation and joint_options.orients else []
         cup = tilted_cup(held_cup, direction)
         needs_sphere = friction_options.pull_out or direction or cup.tilt(UP) > 0 or file.joint.clearance < 0
         models = model_options.models(off_axis.name if needs_sphere else DEFAULT_MODEL)
@@ -281,7 +284,9 @@ def press(
     joints = [press_joint(name) for name in names]
     for pressed in joints:
         files.write(pressed.comparison, next(iter(pressed.models)), units)
-    designs = [report.design(pressed.comparison, pressed.file, pressed.models, units) for pressed in joints]
+    designs = [
+        report.design(pressed.comparison, pressed.file, pressed.models, units, pressed.remarks) for pressed in joints
+    ]
     report.write(designs, units)
     if as_json:
         summaries = [pressed.summary(friction_options) for pressed in joints]

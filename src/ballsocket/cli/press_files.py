@@ -166,7 +166,9 @@ class ReportOptions:
                 raise ValueError(f"{name} has {names.count(name)} tolerances; one is needed")
         return dict(parsed)
 
-    def design(self, comparison: Comparison, file: JointFile, models: Iterable[str], units: Units) -> Any:
+    def design(
+        self, comparison: Comparison, file: JointFile, models: Iterable[str], units: Units, remarks: Sequence[str]
+    ) -> Any:
         """Return a design of the report with the effect of its tolerances; None without a report."""
         if self.report is None:
             return None
@@ -178,6 +180,7 @@ class ReportOptions:
             leading=_verdict_model(comparison),
             uncertainty=self._tolerance_study(comparison, file),
             command=self._command(comparison, models, units),
+            remarks=remarks,
         )
 
     def write(self, designs: Sequence[Any], units: Units) -> None:

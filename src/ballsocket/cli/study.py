@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from datetime import timedelta
 from math import ceil, inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.console import Console
@@ -16,6 +16,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from ..core.executors.processes import count_text
 from ..reports import study_plots, study_tables
 from ..reports.figure_files import check_format, save
+from ..reports.unit_systems import Units
 from ..studies.export import check_suffix, export
 from ..studies.file import StudyFile, read_study
 from ..studies.run import Listener
@@ -24,7 +25,7 @@ from ..studies.run import study as run_study
 from ..studies.store import check_store
 from ..version import __version__
 from .json_answers import echo_json
-from .options import AsJson, Scheduler, Workers, choose_executor
+from .options import AsJson, Scheduler, UnitSystem, Workers, choose_executor
 from .root import app, echo_path, print_message
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ def study(
         Path | None,
         typer.Option(help="Write a figure (.png, .svg, .pdf): a map over two axes, or bands of samples over one axis."),
     ] = None,
+    units: UnitSystem = Units.SI,
     as_json: AsJson = False,
 ) -> None:
     """Press a joint at every point of a study file.
@@ -77,17 +79,17 @@ def study(
         summary = study_tables.study_summary(result)
         echo_json({"version": __version__, "joint": study_file.joint.summary(), **summary})
     else:
-        study_tables.print_study(result)
+        study_tables.print_study(result, units)
     if out is not None:
         export(result, out)
     if draw is not None and figure is not None:
-        save(draw(result), figure)
+        save(draw(result, units=units), figure)
     for path in () if as_json else (folder, out, figure):
         if path is not None:
             echo_path(path)
 
 
-def _choose_plot(study_file: StudyFile, path: Path) -> Callable[[Any], Figure]:
+def _choose_plot(study_file: StudyFile, path: Path) -> Callable[..., Figure]:
     """Return the plot of a study, before it runs.
 
     Raises

@@ -115,12 +115,7 @@ class Load(NamedTuple):
 
     def __str__(self) -> str:
         """Force, moment and energy of one state, or the shape of several."""
-        try:
-            (force, moment), energy = ([float(part) for part in vector] for vector in self[:2]), float(self.energy)
-        except (TypeError, ValueError):  # arrays, or a tracer without a value
-            return f"of states of shape {tuple(getattr(self.force, 'shape', ()))[:-1]}"
-        texts = [", ".join(f"{part + 0.0:.5g}" for part in vector) for vector in (force, moment)]
-        return f"force ({texts[0]}) N, moment ({texts[1]}) N mm, energy {energy:.5g} N mm"
+        return describe_load(self.force, self.moment, self.energy)
 
     @property
     def socket_force(self) -> Any:
@@ -227,6 +222,16 @@ class Load(NamedTuple):
         """Split a vector into its three components."""
         x, y, z = packed if type(packed) is tuple else (packed[..., axis] for axis in range(3))
         return x, y, z
+
+
+def describe_load(force: Any, moment: Any, energy: Any) -> str:
+    """Describe force (N), moment (N mm) and energy (N mm) of one state, or the shape of several."""
+    try:
+        vectors, number = [[float(part) for part in vector] for vector in (force, moment)], float(energy)
+    except (TypeError, ValueError):  # arrays, or a tracer without a value
+        return f"of states of shape {tuple(getattr(force, 'shape', ()))[:-1]}"
+    texts = [", ".join(f"{part + 0.0:.5g}" for part in vector) for vector in vectors]
+    return f"force ({texts[0]}) N, moment ({texts[1]}) N mm, energy {number:.5g} N mm"
 
 
 _OLD_DISSIPATION = RenamedAttribute("bristle_dissipation")

@@ -9,7 +9,7 @@ U is a quadratic form in s. The force is the gradient of U, so that no cycle gai
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, pi
 from typing import Any, NamedTuple
@@ -21,13 +21,14 @@ from ..contact.law import CurveLaw
 from ..core import arrays
 from ..core.arrays import Array, Numbers, clip, is_plain_number, isfinite, sqrt, to_common_arrays, where
 from ..core.checks import check_vectors, shown
+from ..core.display import OneLine
 from ..elasticity.off_axis import Preload, Sphere
 from ..problem import Joint
 from .bristles import Bristles
 from .damping import Damping
 from .element import as_array_like, components, split_components
 from .friction import Friction, friction_coefficient
-from .load import OVERFLOW_GUARD, ContactState
+from .load import OVERFLOW_GUARD, ContactState, describe_load
 from .matrices import join_matrix, join_vector
 from .potential import CurvePotential
 from .reaction import Constants, Vector
@@ -95,6 +96,8 @@ class PreloadTable:
         Stiffness in equilibrium across and along the axis of the dome in N/mm.
     drill_ratio : float
         Torque of friction about the axis of the dome over that about an axis across it.
+    error : float
+        Largest error of the force between the tabulated directions, relative to the solver's force there.
     curves : dict
         Curves over the displacement from equilibrium by quantity, one for each direction.
     """
@@ -105,6 +108,7 @@ class PreloadTable:
     stiffness_along: float
     drill_ratio: float
     curves: dict[str, tuple[CurveLaw, ...]]
+    error: float = 0.0
 
     @cached_property
     def evaluators(self) -> dict[str, tuple[CurvePotential, ...]]:
@@ -117,7 +121,7 @@ class PreloadTable:
 
 
 def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
-    """Solve the contacts of a preloaded joint in seven directions, and fit a curve to each quantity.
+    """Solve the contacts of a preloaded joint in seven directions, fit a curve to each quantity, and check the force.
 
     Raises
     ------
@@ -133,9 +137,7 @@ def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
     distances = numpy.geomspace(_SHALLOWEST * interference, limit, _PIECES + 1)
     curves: dict[str, list[CurveLaw]] = {name: [] for name in QUANTITIES}
     for cosine in node_cosines():
-        direction = numpy.array([numpy.sqrt(max(1.0 - cosine * cosine, 0.0)), 0.0, cosine])
-        centres = numpy.array([0.0, 0.0, offset]) + distances[:, None] * direction
-        contact: Any = model.press(joint, displacement=centres @ numpy.array(model.cup.frame))
+        contact, direction = _contact_along(model, joint, offset, distances, cosine)
         force, (levers, _) = contact.force_vector @ direction, _friction_levers(contact)
         pressure, half_angle = _cell_values(contact)
         solved = numpy.isfinite(force) & (force > 0.0)
@@ -148,7 +150,7 @@ def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
         curves["half_angle"].append(_curve(distances, half_angle))
         curves["max_pressure"].append(_curve(distances, pressure))
     across, along = (lever[0] for lever in _friction_levers(equilibrium))
-    return PreloadTable(
+    table = PreloadTable(
         offset=offset,
         limit=float(distances[-1]),
         stiffness_across=float(stiffness[0, 0] + stiffness[1, 1]) / 2.0,
@@ -156,6 +158,30 @@ def tabulate_preload(model: Sphere, joint: Joint) -> PreloadTable:
         drill_ratio=float(along / across),
         curves={name: tuple(rows) for name, rows in curves.items()},
     )
+    return replace(table, error=_interpolation_error(model, joint, table, distances))
+
+
+def _contact_along(
+    model: Sphere, joint: Joint, offset: float, distances: Numbers, cosine: float
+) -> tuple[Any, Numbers]:
+    """Solve the contacts at distances (mm) from equilibrium along a direction, and return that in the cup's frame."""
+    direction = numpy.array([numpy.sqrt(max(1.0 - cosine * cosine, 0.0)), 0.0, cosine])
+    centres = numpy.array([0.0, 0.0, offset]) + distances[:, None] * direction
+    return model.press(joint, displacement=centres @ numpy.array(model.cup.frame)), direction
+
+
+def _interpolation_error(model: Sphere, joint: Joint, table: PreloadTable, distances: Numbers) -> float:
+    """Compute the largest error of the force halfway between the tabulated directions, relative to the force."""
+    largest, dome = 0.0, numpy.array([0.0, 0.0, 1.0])
+    for angle in pi * (numpy.arange(NODES - 1) + 0.5) / (NODES - 1):
+        contact, direction = _contact_along(model, joint, table.offset, distances, float(numpy.cos(angle)))
+        energy, slope, _ = zip(*table.evaluate("energy", distances), strict=True)
+        across = interpolate(energy, numpy.cos(angle), 1) / distances
+        force = interpolate(slope, numpy.cos(angle))[:, None] * direction
+        force = force + across[:, None] * (dome - numpy.cos(angle) * direction)
+        error = numpy.linalg.norm(force - contact.force_vector, axis=1)
+        largest = max(largest, float((error / numpy.linalg.norm(contact.force_vector, axis=1)).max()))
+    return largest
 
 
 def _friction_levers(contact: Any) -> tuple[Numbers, Numbers]:
@@ -352,6 +378,13 @@ class PreloadedLoad(NamedTuple):
     elastic: PreloadedForce
     is_finite: Array
 
+    def __repr__(self) -> str:
+        return f"<PreloadedLoad {self}>"
+
+    def __str__(self) -> str:
+        """Force, moment and energy of one state, or the shape of several."""
+        return describe_load(self.force, self.moment, self.energy)
+
     @property
     def half_angle(self) -> Array:
         """Half angle in rad of a round contact of the same area."""
@@ -387,13 +420,14 @@ class PreloadedLoad(NamedTuple):
         )
 
 
-@dataclass(frozen=True, eq=False)
-class PreloadedElement:
+@dataclass(frozen=True, eq=False, repr=False)
+class PreloadedElement(OneLine):
     """Force element of a preloaded joint for time-stepping programs, tabulated by the off-axis solver.
 
     A ball with an interference touches its socket without a load. The element has a force for displacements in any
-    direction, and a friction torque from the pressures of the preload. The law is within about 1 % of the solver's
-    forces, up to a displacement of a tenth of the liner's thickness (`wall`).
+    direction, and a friction torque from the pressures of the preload. The law covers displacements up to a tenth of
+    the liner's thickness (`wall`). `table.error` is its largest error relative to the solver's force: about 1 % for an
+    arc of cover of 220° and more, 3 % for 200°, and 10 % for 190°.
 
     Parameters
     ----------
@@ -444,6 +478,11 @@ class PreloadedElement:
             raise TypeError("a force element needs one joint: its numbers must be plain, not arrays")
         object.__setattr__(self, "table", tabulate_preload(self.model, self.joint))
         object.__setattr__(self, "constants", self._collect_constants())
+
+    def __str__(self) -> str:
+        parts = {"damping": self.damping, "friction": self.friction}
+        named = [f"{name} {type(part).__name__}" for name, part in parts.items() if part is not None]
+        return "; ".join([f"{self.model.name} on {self.joint.name or self.joint.dimensions}", *named])
 
     internal_state = ""
     stretch = 0.0

@@ -20,6 +20,7 @@ from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..core.storage.pieces import fingerprint
 from .credibility import assess
+from .credibility_levels import Record
 from .folder import (
     MAX_FILE_SIZE,
     PAGE,
@@ -91,6 +92,8 @@ class PackComparison:
         Version of ballsocket that wrote the pack.
     sums : bytes
         Compared content of the checksum file: a signature is made and verified for these bytes.
+    record : mapping
+        Compared record.
     """
 
     count: int
@@ -98,6 +101,7 @@ class PackComparison:
     digest: str
     made_by: str
     sums: bytes
+    record: Record
 
 
 @renamed_arguments(listen="progress")
@@ -165,6 +169,7 @@ def compare(
         digest=digest(files),
         made_by=str(record.get("version", "unknown")),
         sums=contents[SUMS],
+        record=record,
     )
 
 

@@ -16,7 +16,7 @@ from ..problem import Joint, Layer, Material, Support
 from ..problem.cup import AngleDefinition, Cup, Interface, Side
 from ..problem.dimensions import STORED_LENGTHS, resolve_lengths
 from ..problem.presets import MATERIAL_ALIASES, joints, materials, named_material
-from .schema import Angle, Force, Length, PlainNumber, Stress, Table, Text, Value, choices_schema, meaning
+from .schema import Angle, Force, Length, PlainNumber, Pressure, Table, Text, Value, choices_schema, meaning
 from .tables import quantities_of, read_table, written_in
 from .toml import parse_toml, read_toml
 from .units import as_given, parse
@@ -60,12 +60,12 @@ class MaterialTable(Table, frozen=True, kw_only=True):
     qualified: ClassVar[bool] = True
 
     material: Annotated[MaterialName | None, meaning("name of a preset material")] = None
-    young: Stress | None = None
+    young: Pressure | None = None
     poisson: PlainNumber | None = None
-    proportional_limit: Stress | None = None
-    yield_stress: Stress | None = None
-    fatigue_limit: Stress | None = None
-    allowable_pressure: Stress | None = None
+    proportional_limit: Pressure | None = None
+    yield_stress: Pressure | None = None
+    fatigue_limit: Pressure | None = None
+    allowable_pressure: Pressure | None = None
 
 
 class LayerTable(MaterialTable, frozen=True, kw_only=True):

@@ -21,7 +21,7 @@ from .joint_file import (
     ReportDetails,
     ReportTable,
 )
-from .schema import Angle, Force, Length, PlainNumber, Stress, Text
+from .schema import Angle, Force, Length, PlainNumber, Pressure, Text
 from .tables import write_table
 from .toml import toml_text
 
@@ -66,7 +66,8 @@ def _file_table(file: JointFile) -> JointFileTable:
         source=Text(joint.source) if joint.source else None,
         joint=LengthsTable(
             ball_radius=Length(joint.ball_radius),
-            clearance=Length(joint.clearance),
+            clearance=Length(joint.clearance) if joint.clearance >= 0 else None,
+            interference=Length(-joint.clearance) if joint.clearance < 0 else None,
             liner_thickness=Length(joint.liner_thickness),
             support=joint.support,
         ),
@@ -115,7 +116,7 @@ def _layer(layer: Layer) -> LayerTable:
 def _material(material: Material) -> dict[str, Any]:
     """Return the keys of a material: the name of its preset with the numbers that differ, or all numbers."""
     numbers = {"young": material.young, "poisson": material.poisson, **material.stress_limits}
-    values = {name: (PlainNumber if name == "poisson" else Stress)(value) for name, value in numbers.items()}
+    values = {name: (PlainNumber if name == "poisson" else Pressure)(value) for name, value in numbers.items()}
     for key, preset in materials.items():
         if preset.name == material.name and set(preset.stress_limits) <= set(values):
             changed = {name: value for name, value in values.items() if getattr(preset, name) != value}

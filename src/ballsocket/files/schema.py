@@ -204,7 +204,7 @@ class Force(QuantityValue):
     kind = Kind.FORCE
 
 
-class Stress(QuantityValue):
+class Pressure(QuantityValue):
     """Modulus, stress or pressure in MPa."""
 
     kind = Kind.MODULUS

@@ -18,8 +18,8 @@ from ..files.schema import (
     QUANTITIES_SCHEMA,
     QUANTITY_SCHEMA,
     Parsed,
+    Pressure,
     QuantityValue,
-    Stress,
     Table,
     Text,
     Texts,
@@ -179,7 +179,7 @@ class DataTable(Table, frozen=True, kw_only=True):
     name: Annotated[Text | None, meaning("name of the data in tables and notes")] = None
     uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty; from the scatter by default")] = None
     load_uncertainty: Annotated[Uncertainty | None, meaning("standard uncertainty of the loads")] = None
-    saturation: Annotated[Stress | None, meaning("largest reading of a film or sensor")] = None
+    saturation: Annotated[Pressure | None, meaning("largest reading of a film or sensor")] = None
     machine: Annotated[Text | None, meaning("name of the machine: [machine.NAME]")] = None
 
 

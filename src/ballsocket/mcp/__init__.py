@@ -28,7 +28,7 @@ INSTRUCTIONS = (
 )
 
 
-def server(folder: Path, longest: float, commands: Commands, program: Sequence[str]) -> Server[Any]:
+def make_server(folder: Path, longest: float, commands: Commands, program: Sequence[str]) -> Server[Any]:
     """Return a server of the tools; see `ToolCalls` for the parameters."""
     import mcp_types as types
     from mcp.server.lowlevel import Server
@@ -55,7 +55,7 @@ async def serve(folder: Path, longest: float, commands: Commands, program: Seque
     """Serve the tools until standard input closes; see `ToolCalls` for the parameters."""
     from mcp.server.stdio import stdio_server
 
-    tool_server = server(folder, longest, commands, program)
+    tool_server = make_server(folder, longest, commands, program)
     async with stdio_server() as (requests, answers):
         await tool_server.run(requests, answers, tool_server.create_initialization_options())
 

@@ -53,7 +53,7 @@ class AngleDefinition(Choice):
 
 
 def _opening_of(inclination: float, anteversion: float, definition: AngleDefinition) -> Direction:
-    """Return the axis of a cup out of its opening: lateral, to the front, downwards (Murray 1993, equations 1 to 3)."""
+    """Return the axis of a cup out of its opening: lateral, to the front, downwards."""
     if definition is AngleDefinition.OPERATIVE:
         across = cos(inclination)
         return sin(inclination), across * sin(anteversion), across * cos(anteversion)
@@ -163,7 +163,7 @@ class Cup:
         *,
         definition: AngleDefinition | str = AngleDefinition.RADIOGRAPHIC,
         pelvic_tilt: float = 0.0,
-        **others: Any,
+        **attributes: Any,
     ) -> Self:
         """Create a cup from angles of any definition, in a pelvis that may be tilted in the body.
 
@@ -176,8 +176,8 @@ class Cup:
         pelvic_tilt : float
             Rotation of the pelvis in the body about the transverse axis in rad, -π/2 to π/2, positive if its top moves
             to the front. It reduces the operative anteversion by its own size.
-        **others
-            Other attributes of the cup.
+        **attributes
+            Further attributes of the cup.
 
         Returns
         -------
@@ -204,7 +204,7 @@ class Cup:
         for name, angle in (("inclination", inclination), ("anteversion", anteversion)):
             CUP[name].check(angle)
         if chosen is AngleDefinition.RADIOGRAPHIC and pelvic_tilt == 0:
-            return cls(inclination=inclination, anteversion=anteversion, **others)
+            return cls(inclination=inclination, anteversion=anteversion, **attributes)
         lateral, front, down = _opening_of(inclination, anteversion, chosen)
         forward, level = sin(pelvic_tilt), cos(pelvic_tilt)
         opening = (lateral, front * level - down * forward, down * level + front * forward)
@@ -214,7 +214,7 @@ class Cup:
                 f"the cup would open upwards: with a pelvic tilt of {degrees(pelvic_tilt):g}° its radiographic "
                 f"inclination is {degrees(angles[0]):.4g}°; allowed are 0 to 90°"
             )
-        return cls(inclination=min(angles[0], pi / 2), anteversion=angles[1], **others)
+        return cls(inclination=min(angles[0], pi / 2), anteversion=angles[1], **attributes)
 
     def angles(self, definition: AngleDefinition | str = AngleDefinition.RADIOGRAPHIC) -> tuple[float, float]:
         """Return inclination and anteversion in rad in a definition: "radiographic", "operative" or "anatomical".

@@ -183,10 +183,10 @@ def _contradiction(numbers: Mapping[str, Array], current: Mapping[str, Array], s
     if not all(map(is_plain_number, (*numbers.values(), *current.values(), shell))):
         return ""
     for name, value in numbers.items():
-        others = {other: number for other, number in numbers.items() if other != name}
+        remaining = {key: number for key, number in numbers.items() if key != name}
         try:
-            check_unique_lengths(others)
-            implied = _length_of(name, derive_lengths(others, current, shell), shell)
+            check_unique_lengths(remaining)
+            implied = _length_of(name, derive_lengths(remaining, current, shell), shell)
         except (ValueError, KeyError):  # the others are too many as well, or too few
             continue
         if abs(implied - value) > _ROUNDING * abs(value):

@@ -232,12 +232,12 @@ def material_hint(name: str) -> str:
     compact = _compact(name)
     if compact in _REFUSED:
         return f" {_REFUSED[compact]}"
-    errors = {other: _typing_errors(compact, other) for other in _FAMILY}
+    errors = {known_name: _typing_errors(compact, known_name) for known_name in _FAMILY}
     for limit, clear in ((1, 1), (_FAR, _FAR + 1)):
-        near = {_FAMILY[other] for other, count in errors.items() if count <= limit}
-        around = {_FAMILY[other] for other, count in errors.items() if count <= clear}
-        if near and (limit == 1 or len(compact) >= _SHORT):
-            return f" is not known; did you mean {near.pop()!r}?" if len(around) == 1 else _unknown_material()
+        similar = {_FAMILY[known_name] for known_name, count in errors.items() if count <= limit}
+        possible = {_FAMILY[known_name] for known_name, count in errors.items() if count <= clear}
+        if similar and (limit == 1 or len(compact) >= _SHORT):
+            return f" is not known; did you mean {similar.pop()!r}?" if len(possible) == 1 else _unknown_material()
     return _unknown_material()
 
 
@@ -245,17 +245,17 @@ def _unknown_material() -> str:
     return f" is not known; known: {', '.join(_MATERIALS)}"
 
 
-def _typing_errors(text: str, other: str) -> int:
+def _typing_errors(text: str, target: str) -> int:
     """Count the fewest insertions, deletions, replacements and exchanges of neighbours between two texts."""
-    if abs(len(text) - len(other)) > _FAR + 1:
+    if abs(len(text) - len(target)) > _FAR + 1:
         return _FAR + 2
     before: list[int] = []
-    row = list(range(len(other) + 1))
+    row = list(range(len(target) + 1))
     for i, letter in enumerate(text):
         last, before, row = before, row, [i + 1]
-        for j, character in enumerate(other):
+        for j, character in enumerate(target):
             row.append(min(before[j + 1] + 1, row[j] + 1, before[j] + (letter != character)))
-            if i and j and letter == other[j - 1] and text[i - 1] == character:
+            if i and j and letter == target[j - 1] and text[i - 1] == character:
                 row[-1] = min(row[-1], last[j - 1] + 1)
     return row[-1]
 

@@ -16,7 +16,8 @@ from ..hip.history import History
 from ..hip.wear_fit import WEAR_QUANTITIES, WearFit
 from .hip_tables import print_notes, table_with_units
 from .style import BLUE, GREEN, LEGEND, ORANGE, PINK, SKY, VERMILLION, finish
-from .terminal import console, print_columns, print_folded
+from .terminal import console, print_columns, print_folded, print_joint
+from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -67,40 +68,42 @@ def wear_figure(histories: Mapping[str, History] | Sequence[History]) -> Figure:
     return comparison_figure([HipRun(name=name, history=history) for name, history in histories.items()])
 
 
-def comparison_figure(runs: Sequence[HipRun]) -> Figure:
+def comparison_figure(runs: Sequence[HipRun], units: Units = Units.SI) -> Figure:
     """Draw worn volume and penetration over the cycles, with a line and a band for each hip."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
-    figure = Figure(figsize=(9.2, 4.2), layout="constrained")
+    figure = NotebookFigure(figsize=(9.2, 4.2), layout="constrained")
     panels = figure.subplots(1, len(_PANELS), squeeze=False)[0]
     for axes, (result, label) in zip(panels, _PANELS.items(), strict=True):
+        written, factor = units.axis(label)
         for index, run in enumerate(runs):
-            _draw_run(axes, run, result, _COLOURS[index % len(_COLOURS)], "-" if index < len(_COLOURS) else "--")
+            dash = "-" if index < len(_COLOURS) else "--"
+            _draw_run(axes, run, result, _COLOURS[index % len(_COLOURS)], dash, factor)
         axes.set_xlim(left=0)
         axes.set_ylim(bottom=0)
-        finish(axes, "million cycles", label)
+        finish(axes, "million cycles", written)
     if len(runs) > 1 or runs[0].bands is not None:
         panels[0].legend(**LEGEND)
     return figure
 
 
-def _draw_run(axes: Axes, run: HipRun, result: str, colour: str, dash: str) -> None:
+def _draw_run(axes: Axes, run: HipRun, result: str, colour: str, dash: str, factor: float) -> None:
     """Draw one result of a hip over the cycles, with its band."""
     reports = run.history.reports
     cycles = [0.0, *(report.cycles / 1e6 for report in reports)]
-    values = [0.0, *(float(getattr(report, result)) for report in reports)]
+    values = [0.0, *(factor * float(getattr(report, result)) for report in reports)]
     axes.plot(cycles, values, "o", linestyle=dash, markersize=4, color=colour, label=run.name or None)
     if run.bands is not None:
-        low, high = ([0.0, *ends] for ends in run.bands.band(result))
+        low, high = ([0.0, *(factor * end for end in ends)] for ends in run.bands.band(result))
         label = f"{100 * run.bands.level:g} % of the {run.bands.subject}"
         axes.fill_between(cycles, low, high, color=colour, alpha=0.15, linewidth=0, label=label)
 
 
-def print_comparison(runs: Sequence[HipRun]) -> None:
+def print_comparison(runs: Sequence[HipRun], units: Units = Units.SI) -> None:
     """Print the wear of several hips, one below the other at each report, and the notes of each."""
-    terminal = console()
+    terminal = console(units)
     for run in runs:
-        print_folded(terminal, f"{run.name}: {run.history.use.joint}; {run.history.use.cycle.name}", "bold")
+        print_joint(terminal, run.history.use.joint, f"; {run.history.use.cycle.name}", f"{run.name}: ")
     print_columns(terminal, _table(runs))
     for run in runs:
         verdict = "valid" if run.history.valid else "NOT VALID, see its notes"
@@ -108,7 +111,7 @@ def print_comparison(runs: Sequence[HipRun]) -> None:
         print_folded(terminal, f"{run.name}: contact {verdict}; {error}", "")
     for note, names in _notes_with_names(runs).items():
         prefix = "" if len(names) == len(runs) else f"{', '.join(names)}: "
-        print_notes([f"{prefix}{note}"])
+        print_notes([f"{prefix}{note}"], units)
 
 
 def _table(runs: Sequence[HipRun]) -> Any:
@@ -182,10 +185,10 @@ def _measured_table(fit: WearFit) -> Any:
 
 def wear_fit_figure(fit: WearFit) -> Figure:
     """Draw the fitted simulation over the cycles, with the measured totals and rates."""
-    from matplotlib.figure import Figure
+    from .notebook_figure import NotebookFigure
 
     quantities = list(dict.fromkeys(measured.quantity for measured in fit.data))
-    figure = Figure(figsize=(4.8 * len(quantities), 4.2), layout="constrained")
+    figure = NotebookFigure(figsize=(4.8 * len(quantities), 4.2), layout="constrained")
     for axes, quantity in zip(figure.subplots(1, len(quantities), squeeze=False)[0], quantities, strict=True):
         _draw_fit(axes, fit, quantity)
         axes.set_xlim(left=0)

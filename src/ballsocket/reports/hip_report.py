@@ -7,7 +7,6 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from ..core.storage.atomic_files import check_parent_folder, write_text
 from ..hip.bands import Bands
 from ..hip.film import CONFORMITY_NOTE
 from ..hip.history import History
@@ -25,7 +24,7 @@ from .hip_tables import (
     radiograph_line,
     rim_lines,
 )
-from .pages import picture, render_page
+from .pages import check_page_path, picture, render_page, write_page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -76,19 +75,6 @@ _WEAR_HEADS = (
 )
 
 
-def check_page(path: Path) -> None:
-    """Check that a path ends in .html and that its folder exists.
-
-    Raises
-    ------
-    ValueError
-        Another ending, or a folder that does not exist.
-    """
-    if path.suffix.lower() != ".html":
-        raise ValueError(f"report {str(path)!r} must end in .html")
-    check_parent_folder(path)
-
-
 def write_hip_report(history: History, path: Path, bands: Bands | None = None) -> Path:
     """Write the page of a wear simulation and return its path.
 
@@ -97,19 +83,22 @@ def write_hip_report(history: History, path: Path, bands: Bands | None = None) -
     history : History
         Results of the simulation.
     path : Path
-        File to write, which ends in .html.
+        File to write, which ends in .html or .pdf.
     bands : Bands, optional
         Bands of patients who differ, for two more sections.
 
     Raises
     ------
     ValueError
-        Another ending than .html, or a folder that does not exist.
+        Another ending, or a folder that does not exist.
+    ImportError
+        A .pdf without the extra `pdf`.
     OSError
         The page cannot be written.
     """
-    check_page(path)
-    return write_text(path, hip_report(history, bands))
+    check_page_path(path)
+    write_page(hip_report(history, bands), path)
+    return path
 
 
 def hip_report(history: History, bands: Bands | None = None) -> str:

@@ -12,7 +12,8 @@ from rich.table import Table
 from ..hip.bands import INFLUENCED_RESULTS, Bands
 from ..hip.contact_checks import largest_utilisation
 from ..hip.history import History
-from .terminal import console, print_columns, print_folded
+from .terminal import console, print_columns, print_folded, print_joint
+from .unit_systems import Units
 
 _WEAR_UNITS = {
     "cycles": "million",
@@ -159,10 +160,10 @@ def sobol_lines(bands: Bands) -> Iterator[str]:
         yield f"Sobol indices of {result} (total order): {indices}"
 
 
-def print_hip(history: History) -> None:
+def print_hip(history: History, units: Units = Units.SI) -> None:
     """Print the first cycle, the wear at each report, contacts, film, accuracy and notes."""
-    terminal, use, first = console(), history.use, history.use.first
-    print_folded(terminal, str(use.joint), "bold")
+    terminal, use, first = console(units), history.use, history.use.first
+    print_joint(terminal, use.joint)
     print_folded(
         terminal,
         f"{use.cycle.name}: slide {first.slide:.4g} mm a cycle, pressure times slide {first.work:.4g} N m, "
@@ -185,12 +186,12 @@ def print_hip(history: History) -> None:
         print_folded(terminal, lubricant_line(history), "dim")
     accuracy = f"estimated numerical error of the volume {100 * history.error.volume:.2g} %"
     print_folded(terminal, f"{accuracy}, {history.steps} blocks of cycles", "dim")
-    print_notes(history.notes)
+    print_notes(history.notes, units)
 
 
-def print_bands(bands: Bands) -> None:
+def print_bands(bands: Bands, units: Units = Units.SI) -> None:
     """Print the bands of patients who differ as a table, the Sobol indices of each result, and notes."""
-    terminal = console()
+    terminal = console(units)
     print_folded(terminal, f"{band_summary(bands)} lie between", "bold")
     table = table_with_units(band_units(bands))
     tail = (1 - bands.level) / 2
@@ -199,7 +200,7 @@ def print_bands(bands: Bands) -> None:
     print_columns(terminal, table)
     for line in (*rim_lines(bands), band_contact_line(bands), *sobol_lines(bands)):
         print_folded(terminal, line, "")
-    print_notes(bands.notes)
+    print_notes(bands.notes, units)
 
 
 def table_with_units(heads: Mapping[str, str], left: Sequence[str] = ()) -> Table:
@@ -228,9 +229,9 @@ def lubricant_line(history: History) -> str:
     return f"assumed for the film: {viscosity}, roughness Ra {ball} (ball) and {cup} (cup)"
 
 
-def print_notes(notes: Iterable[str]) -> None:
+def print_notes(notes: Iterable[str], units: Units = Units.SI) -> None:
     """Print notes, each on its own line."""
-    terminal = console()
+    terminal = console(units)
     for note in notes:
         print_folded(terminal, note, "dim")
 

@@ -17,7 +17,8 @@ from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from ..studies.limits import Limit
 from .style import LEGEND
-from .terminal import console, print_columns, print_folded
+from .terminal import console, print_columns, print_folded, print_joint
+from .unit_systems import Units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +29,7 @@ _LOST_BALL_HATCH, _RIM_HATCH = "xxx", "///"
 
 
 @renamed_arguments(stood="orientations")
-def orientation_figure(orientations: Orientations) -> Figure:
+def orientation_figure(orientations: Orientations, units: Units = Units.SI) -> Figure:
     """Draw distance to the rim and largest pressure over inclination and anteversion.
 
     The contact reaches the rim on the dotted line. Two hatchings mark cups that do not hold the ball, and cups whose
@@ -38,6 +39,8 @@ def orientation_figure(orientations: Orientations) -> Figure:
     ----------
     stood : Orientations
         Results for at least two inclinations and two anteversions.
+    units : Units
+        Units of every number.
 
     Returns
     -------
@@ -54,11 +57,12 @@ def orientation_figure(orientations: Orientations) -> Figure:
         raise ValueError(f"a map needs two values of each angle, got {' x '.join(map(str, orientations.status.shape))}")
     figure = NotebookFigure(figsize=(10.4, 4.6), layout="constrained")
     distance_axes, pressure_axes = figure.subplots(1, 2, sharey=True)
-    _draw(distance_axes, orientations, orientations.edge_distance, DERIVED["edge_distance"])
-    _draw(pressure_axes, orientations, orientations.max_pressure, CONTACT["max_pressure"])
+    _draw(distance_axes, orientations, orientations.edge_distance, DERIVED["edge_distance"], units)
+    _draw(pressure_axes, orientations, orientations.max_pressure, CONTACT["max_pressure"], units)
     pressure_axes.set_ylabel("")
     _draw_legend(figure)
-    figure.suptitle(f"{orientations.joint.dimensions}; {load_text(orientations)}", fontsize=10, parse_math=False)
+    title = units.sentence(f"{orientations.joint.dimensions}; {load_text(orientations)}")
+    figure.suptitle(title, fontsize=10, parse_math=False)
     return figure
 
 
@@ -71,10 +75,11 @@ def _draw_legend(figure: Figure) -> None:
         figure.legend(list(pairs.values()), list(pairs), loc="outside lower center", ncols=len(pairs), **LEGEND)
 
 
-def _draw(axes: Axes, orientations: Orientations, values: Numbers, quantity: Quantity) -> None:
+def _draw(axes: Axes, orientations: Orientations, values: Numbers, quantity: Quantity, units: Units) -> None:
     """Draw one field with contours, and hatch orientations without a number."""
     x, y = numpy.degrees(orientations.inclination), numpy.degrees(orientations.anteversion)
-    shown = numpy.where(orientations.held & numpy.isfinite(values), values, numpy.nan).T
+    label, factor = units.axis(quantity.label(quantity.written))
+    shown = factor * numpy.where(orientations.held & numpy.isfinite(values), values, numpy.nan).T
     if numpy.isfinite(shown).any() and numpy.nanmax(shown) > numpy.nanmin(shown):
         axes.contourf(x, y, shown, levels=_LEVELS, cmap="viridis")
         lines = axes.contour(x, y, shown, levels=_LEVELS // 2, colors="white", linewidths=0.6)
@@ -85,7 +90,7 @@ def _draw(axes: Axes, orientations: Orientations, values: Numbers, quantity: Qua
     _mark(axes, orientations)
     axes.set_xlabel(CUP["inclination"].label())
     axes.set_ylabel(CUP["anteversion"].label())
-    axes.set_title(quantity.label(), fontsize=10)
+    axes.set_title(label, fontsize=10)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]))
 
 
@@ -190,21 +195,23 @@ def limits_summary(orientations: Orientations, limits: Sequence[Limit]) -> dict[
     }
 
 
-def print_orientations(orientations: Orientations, limits: Sequence[Limit] = ()) -> None:
+def print_orientations(orientations: Orientations, limits: Sequence[Limit] = (), units: Units = Units.SI) -> None:
     """Print distance to the rim and largest pressure by orientation, the orientations within limits, and the best ones.
 
     Every computed orientation is printed; columns that do not fit the terminal follow in a further table.
     """
-    terminal = console()
-    print_folded(terminal, str(orientations.joint), "bold")
+    terminal = console(units)
+    print_joint(terminal, orientations.joint)
     print_folded(terminal, load_text(orientations), "bold")
     fields = {DERIVED["edge_distance"]: orientations.edge_distance, CONTACT["max_pressure"]: orientations.max_pressure}
     for quantity, values in fields.items():
-        terminal.print(Text(f"{quantity.label()}, anteversion by inclination"))
-        print_columns(terminal, _table(orientations, values, limits))
+        label, factor = units.axis(quantity.label(quantity.written))
+        digits = 1 if units is Units.SI else 3 if quantity.name == "edge_distance" else 0
+        terminal.print(Text(f"{label}, anteversion by inclination"))
+        print_columns(terminal, _table(orientations, factor * values, limits, digits))
     for line in _limit_remarks(orientations, limits) if limits else ():
         print_folded(terminal, line, "bold")
-    for line in _remarks(orientations):
+    for line in _remarks(orientations, units):
         print_folded(terminal, line, "dim")
 
 
@@ -239,7 +246,7 @@ def _limit_text(limit: Limit) -> str:
     return " and ".join(f"{limit.name} {sign} {end * unit.factor:g} {unit.text}" for sign, end in ends if isfinite(end))
 
 
-def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit]) -> Table:
+def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit], digits: int) -> Table:
     """Make the table of a field: anteversion by inclination; a star marks values outside the limits."""
     within = within_limits(orientations, limits)
     columns = range(len(orientations.inclination))
@@ -247,24 +254,25 @@ def _table(orientations: Orientations, values: Numbers, limits: Sequence[Limit])
     for head in ("", *(_degree_text(orientations.inclination[i]) for i in columns)):
         table.add_column(head, justify="right", no_wrap=True)
     for j in range(len(orientations.anteversion)):
-        cells = (_cell(orientations, values, i, j, "*" if limits and not within[i, j] else "") for i in columns)
+        marks = ("*" if limits and not within[i, j] else "" for i in columns)
+        cells = (_cell(orientations, values, i, j, mark, digits) for i, mark in zip(columns, marks, strict=True))
         table.add_row(Text(_degree_text(orientations.anteversion[j]), style="bold"), *cells)
     return table
 
 
-def _cell(orientations: Orientations, values: Numbers, i: int, j: int, mark: str) -> Text:
+def _cell(orientations: Orientations, values: Numbers, i: int, j: int, mark: str, digits: int) -> Text:
     """Write one value with a mark; yellow if the rim is loaded, a dash if the ball is not held."""
     if not orientations.held[i, j]:
         return Text("-", style="dim")
-    return Text(f"{values[i, j]:.1f}{mark}", style="yellow" if orientations.edge_loaded[i, j] else "")
+    return Text(f"{values[i, j]:.{digits}f}{mark}", style="yellow" if orientations.edge_loaded[i, j] else "")
 
 
-def _remarks(orientations: Orientations) -> Iterator[str]:
+def _remarks(orientations: Orientations, units: Units) -> Iterator[str]:
     """Yield sentences about the best orientations, loaded rims, failures and the duration."""
     if orientations.held.any():
-        yield f"furthest from the rim: {_best_text(orientations, orientations.edge_distance, 'mm')}"
+        yield f"furthest from the rim: {_best_text(orientations, orientations.edge_distance, units)}"
     if (orientations.held & numpy.isfinite(orientations.max_pressure)).any():
-        yield f"least pressure: {_best_text(orientations, -orientations.max_pressure, 'MPa')}"
+        yield f"least pressure: {_best_text(orientations, -orientations.max_pressure, units)}"
     loaded = int((orientations.edge_loaded & orientations.held).sum())
     if loaded:
         yield f"{loaded} of {orientations.status.size} orientations load the rim (below 0: how far beyond first touch)"
@@ -278,11 +286,12 @@ def _remarks(orientations: Orientations) -> Iterator[str]:
     yield f"{orientations.model.name}: rings of {degrees(orientations.model.ring_width):.3g}°, {took}"
 
 
-def _best_text(orientations: Orientations, values: Numbers, unit: str) -> str:
+def _best_text(orientations: Orientations, values: Numbers, units: Units) -> str:
     """Describe the best orientation with its value."""
     inclination, anteversion, index = orientations.best(values)
-    size = abs(float(values.flat[index])) if unit == "MPa" else float(values.flat[index])
-    return f"{size:.1f} {unit} at inclination {_degree_text(inclination)}, anteversion {_degree_text(anteversion)}"
+    value = float(values.flat[index])
+    size = units.short_length(value) if values is orientations.edge_distance else units.sentence(f"{-value:.4g} MPa")
+    return f"{size} at inclination {_degree_text(inclination)}, anteversion {_degree_text(anteversion)}"
 
 
 def _degree_text(angle: float) -> str:

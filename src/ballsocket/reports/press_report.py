@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from hashlib import sha256
-from math import degrees, inf, isfinite
+from math import ceil, degrees, inf, isfinite
 from pathlib import Path
 
 from ..compare import Comparison, successful_contacts
@@ -59,6 +59,8 @@ class PressedDesign:
         Sensitivity of the results to each number and to the tolerances.
     command : str
         Options of the command line that compute the results from the joint file.
+    remarks : sequence of str
+        Remarks on the computation, such as friction torques.
     """
 
     comparison: Comparison
@@ -66,6 +68,7 @@ class PressedDesign:
     leading: str
     uncertainty: LocalUncertainty | None = None
     command: str = ""
+    remarks: Sequence[str] = ()
 
     @property
     def contact(self) -> Contact:
@@ -217,7 +220,7 @@ def _joint_sections(
 def _design_sections(design: PressedDesign, units: Units) -> TitledHtml:
     """Return all sections of a design."""
     contact = design.contact
-    answers, *more = press_sections(design.comparison, units, design.uncertainty).items()
+    answers, *more = press_sections(design.comparison, units, design.uncertainty, design.remarks).items()
     drawn: TitledHtml = {"figures": ("Pressure and force", _figures(design.comparison, contact, units))}
     if isinstance(contact, OffAxisContact) and not contact.status.failed:
         rows = list(_position(contact, units))
@@ -298,7 +301,7 @@ def _rim_verdict(contact: Contact, units: Units, uncertainty: LocalUncertainty |
         return []
     distance = units.short_length(abs(float(contact.edge_distance)))
     if contact.edge_loaded:
-        return [(f"edge loading: the contact reaches the rim, which cuts off {distance} of it", "fails")]
+        return [(f"edge loading: the contact reaches the rim (CPER -{distance})", "fails")]
     verdict = f"no edge loading: the contact ends {distance} from the rim (CPER)"
     least = uncertainty.band.get(EDGE_DISTANCE, (inf,))[0] if uncertainty else inf
     if least > 0:
@@ -323,8 +326,9 @@ def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str,
 def _comparison(designs: Sequence[PressedDesign], units: Units) -> str:
     """Return tables of the designs beside each other as HTML."""
     tables = []
-    for start in range(0, len(designs), _MAX_COLUMNS):
-        group = designs[start : start + _MAX_COLUMNS]
+    count = ceil(len(designs) / ceil(len(designs) / _MAX_COLUMNS))
+    for start in range(0, len(designs), count):
+        group = designs[start : start + count]
         columns = [list(_summary(design, units)) for design in group]
         rows = [(name, *(column[index][1] for column in columns)) for index, (name, _) in enumerate(columns[0])]
         tables.append((("", *(design.title for design in group)), rows))
@@ -357,11 +361,14 @@ def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
 
 
 def press_sections(
-    comparison: Comparison, units: Units = Units.SI, surroundings: LocalUncertainty | None = None
+    comparison: Comparison,
+    units: Units = Units.SI,
+    surroundings: LocalUncertainty | None = None,
+    remarks: Sequence[str] = (),
 ) -> TitledHtml:
     """Return the sections of a press without its figures: title and HTML by id."""
     return {
-        "answers": ("Results", _results(comparison, units)),
+        "answers": ("Results", _results(comparison, units, remarks)),
         "tolerances": ("Sensitivity and tolerances", _tolerances(surroundings, units)),
         "sources": ("Sources", _sources(comparison)),
     }
@@ -374,7 +381,7 @@ def _number(contact: Contact, name: str, units: Units) -> str:
     return f"{number_text(column.values_of(contact), 4, 'no result')}{gap}{column.unit}"
 
 
-def _results(comparison: Comparison, units: Units) -> str:
+def _results(comparison: Comparison, units: Units, remarks: Sequence[str]) -> str:
     """Return tables of the results, with the models as columns, and the notes, as HTML."""
     columns = units.columns_of(comparison.joint)
     names = list(comparison)
@@ -391,7 +398,8 @@ def _results(comparison: Comparison, units: Units) -> str:
         ]
         valid = ("valid", *("yes" if contact.valid else "no" for contact in contacts), "")
         tables.append((("", *names[start : start + _MAX_MODELS], "unit"), [*rows, valid]))
-    return render_part(_TEMPLATE, "answers", tables, [units.sentence(note) for note in comparison.notes()])
+    notes = [units.sentence(note) for note in (*remarks, *comparison.notes())]
+    return render_part(_TEMPLATE, "answers", tables, notes)
 
 
 def _figures(comparison: Comparison, leading: Contact, units: Units) -> str:

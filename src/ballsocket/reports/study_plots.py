@@ -13,6 +13,7 @@ from ..core.deprecation import renamed_arguments
 from ..core.quantities import QUANTITIES
 from ..studies.limits import Limit, allowed, margin_on_plane
 from .style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish
+from .unit_systems import Units
 
 if TYPE_CHECKING:
     import xarray
@@ -28,7 +29,11 @@ _VEIL = 0.65
 
 
 def design_map(
-    study: xarray.Dataset, limits: Sequence[Limit] = (), quantities: Iterable[str] = SHOWN, best: Any = None
+    study: xarray.Dataset,
+    limits: Sequence[Limit] = (),
+    quantities: Iterable[str] = SHOWN,
+    best: Any = None,
+    units: Units = Units.SI,
 ) -> Figure:
     """Draw contours of results over the two axes of a study, with limits and validity.
 
@@ -43,6 +48,8 @@ def design_map(
     quantities : iterable of str
     best : mapping of str to float, optional
         A point to mark.
+    units : Units
+        Units of the axes.
 
     Raises
     ------
@@ -56,8 +63,8 @@ def design_map(
     figure = NotebookFigure(figsize=(4.4 * len(names) + 0.4, 4.4), layout="constrained")
     answered, trusted = (condition.transpose(up, across).values for condition in (allowed(study, ()), study.valid))
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values = read(study, name).transpose(up, across).values
-        x, y = read(study, across).values, read(study, up).values
+        values = read(study, name, units).transpose(up, across).values
+        x, y = read(study, across, units).values, read(study, up, units).values
         axes.contourf(x, y, values, levels=14, cmap="viridis")
         lines = axes.contour(x, y, values, levels=7, colors="white", linewidths=0.6)
         if not answered.all():
@@ -66,24 +73,29 @@ def design_map(
             hatching = axes.contourf(x, y, (~trusted).astype(float), levels=[0.5, 1.5], colors="none", hatches=["//"])
             hatching.set_edgecolor("0.85")
             hatching.set_linewidth(0)
-        _draw_limits(axes, study, limits, across, up)
+        _draw_limits(axes, study, limits, (across, up), units)
         _label_lines(axes, lines)
         if best is not None:
-            position = (best[axis] * QUANTITIES[axis].shown.factor for axis in (across, up))
+            position = (best[axis] * units.unit_of(QUANTITIES[axis]).factor for axis in (across, up))
             axes.plot(*position, "o", color="white", markeredgecolor="black", markersize=8)
-        axes.set_xlabel(QUANTITIES[across].label())
-        axes.set_ylabel(QUANTITIES[up].label())
-        axes.set_title(QUANTITIES[name].label(), fontsize=10)
-    figure.suptitle(_title(study), fontsize=10, parse_math=False)
+        axes.set_xlabel(_label(across, units))
+        axes.set_ylabel(_label(up, units))
+        axes.set_title(_label(name, units), fontsize=10)
+    figure.suptitle(_title(study, units), fontsize=10, parse_math=False)
     within = allowed(study, limits).transpose(up, across).values
     texts = [(within, "pale: a limit is broken, or no result"), (trusted, "hatched: the model is not valid")]
     figure.supxlabel("; ".join(words for where, words in texts if not where.all()), fontsize=8, color="0.3")
     return figure
 
 
-def read(study: xarray.Dataset, name: str) -> xarray.DataArray:
+def read(study: xarray.Dataset, name: str, units: Units = Units.SI) -> xarray.DataArray:
     """Return a quantity or axis of a study in the unit of figures."""
-    return study[name] * QUANTITIES[name].shown.factor
+    return study[name] * units.unit_of(QUANTITIES[name]).factor
+
+
+def _label(name: str, units: Units) -> str:
+    """Return the label of an axis."""
+    return QUANTITIES[name].label(units.unit_of(QUANTITIES[name]))
 
 
 def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
@@ -97,10 +109,10 @@ def _two_axes(study: xarray.Dataset) -> tuple[str, str]:
     return long[0], long[1]
 
 
-def _title(study: xarray.Dataset) -> str:
+def _title(study: xarray.Dataset, units: Units) -> str:
     """Describe the joint, the fixed parameters and the model of a study."""
     fixed = [
-        _value_text(str(name), "=", float(coordinate))
+        _value_text(str(name), "=", float(coordinate), units)
         for name, coordinate in study.coords.items()
         if not coordinate.dims and name in QUANTITIES and numpy.issubdtype(coordinate.dtype, numpy.number)
     ]
@@ -108,15 +120,18 @@ def _title(study: xarray.Dataset) -> str:
     return "; ".join([*([joint] if joint else []), *fixed, f"model {study.attrs['model']}"])
 
 
-def _value_text(name: str, sign: str, value: float) -> str:
+def _value_text(name: str, sign: str, value: float, units: Units) -> str:
     """Write a quantity with a sign, a value and its unit."""
-    quantity = QUANTITIES[name]
-    return f"{quantity.title} {sign} {value * quantity.shown.factor:.4g} {quantity.shown.text}".strip()
+    quantity, unit = QUANTITIES[name], units.unit_of(QUANTITIES[name])
+    return f"{quantity.title} {sign} {value * unit.factor:.4g} {unit.text}".strip()
 
 
-def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], across: str, up: str) -> None:
+def _draw_limits(
+    axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], names: tuple[str, str], units: Units
+) -> None:
     """Draw a veil over the area that each limit forbids, bounded by a dotted line with its text."""
-    x, y = read(study, across).values, read(study, up).values
+    across, up = names
+    x, y = (read(study, name, units).values for name in names)
     nearest = numpy.full((len(y), len(x)), numpy.inf)
     for limit in limits:
         values = margin_on_plane(study, limit, across, up)
@@ -129,7 +144,7 @@ def _draw_limits(axes: Axes, study: xarray.Dataset, limits: Iterable[Limit], acr
             values = margin_on_plane(study, end, across, up)
             if numpy.nanmin(values) < 0 < numpy.nanmax(values):
                 line = axes.contour(x, y, values, levels=[0.0], colors="black", linestyles=":")
-                _label_lines(axes, line, _limit_text(end))
+                _label_lines(axes, line, _limit_text(end, units))
 
 
 def _one_sided_limits(limit: Limit) -> list[Limit]:
@@ -138,11 +153,10 @@ def _one_sided_limits(limit: Limit) -> list[Limit]:
     return [end for end in ends if (end.low, end.high) != (-numpy.inf, numpy.inf)]
 
 
-def _limit_text(limit: Limit) -> str:
+def _limit_text(limit: Limit, units: Units) -> str:
     """Write a limit with one finite end."""
-    return (
-        _value_text(limit.name, "≤", limit.high) if limit.high < numpy.inf else _value_text(limit.name, "≥", limit.low)
-    )
+    sign, end = ("≤", limit.high) if limit.high < numpy.inf else ("≥", limit.low)
+    return _value_text(limit.name, sign, end, units)
 
 
 def _label_lines(axes: Axes, lines: ContourSet, text: str = "") -> None:
@@ -154,7 +168,9 @@ def _label_lines(axes: Axes, lines: ContourSet, text: str = "") -> None:
         label.set_path_effects([withStroke(linewidth=2.0, foreground="white", alpha=0.8)])
 
 
-def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressure", "half_angle")) -> Figure:
+def band_figure(
+    study: xarray.Dataset, quantities: Iterable[str] = ("max_pressure", "half_angle"), units: Units = Units.SI
+) -> Figure:
     """Draw the median of results over an axis, with bands that contain 50, 90 and 99 % of the samples.
 
     Raises
@@ -170,12 +186,12 @@ def band_figure(study: xarray.Dataset, quantities: Iterable[str] = ("max_pressur
     names = [name for name in quantities if name in study.data_vars]
     figure = NotebookFigure(figsize=(5.0 * len(names), 4.0), layout="constrained")
     for axes, name in zip(figure.subplots(1, len(names), squeeze=False).ravel(), names, strict=True):
-        values, x = read(study, name), read(study, axis_names[0]).values
+        values, x = read(study, name, units), read(study, axis_names[0], units).values
         for share, shade in ((0.99, "0.85"), (0.90, "0.7"), (0.50, "0.5")):
             low, high = (values.quantile(end, dim="sample").values for end in ((1 - share) / 2, (1 + share) / 2))
             axes.fill_between(x, low, high, color=shade, label=f"{100 * share:g} % of the joints", linewidth=0)
         axes.plot(x, values.median(dim="sample").values, color="black", linewidth=1.8, label="median")
-        finish(axes, QUANTITIES[axis_names[0]].label(), QUANTITIES[name].label())
+        finish(axes, _label(axis_names[0], units), _label(name, units))
     figure.axes[0].legend(**LEGEND)
     return figure
 

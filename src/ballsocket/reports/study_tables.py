@@ -22,6 +22,7 @@ from ..studies.export import dimension_names, iterate_chunks
 from ..studies.limits import Limit, allowed, refusal_reason
 from ..studies.parameters import MATERIAL_PARTS
 from .terminal import print_columns
+from .unit_systems import Units
 
 if TYPE_CHECKING:
     import xarray
@@ -251,7 +252,7 @@ def coordinates(study: xarray.Dataset, flat: int) -> dict[str, Any]:
     return values
 
 
-def print_study(study: xarray.Dataset) -> None:
+def print_study(study: xarray.Dataset, units: Units = Units.SI) -> None:
     """Print least, median and largest value of each result, with the coordinates of the ends."""
     shape = " x ".join(f"{size} {dim}" for dim, size in study.sizes.items())
     Console().print(f"{study.attrs['model']}, {shape or 'one point'}", highlight=False)
@@ -259,11 +260,17 @@ def print_study(study: xarray.Dataset) -> None:
     report = StudyReport.of(study)
     for name, (low, high) in report.ends.items():
         if numpy.isnan(low.value):
-            table.add_row(name, _unit(name), *["no answer"] * 3, "", "")
+            table.add_row(name, _unit(name, units), *["no answer"] * 3, "", "")
             continue
         middle = float(numpy.nanmedian(numpy.concatenate(report.sampled[name])))
-        numbers = (_value_text(name, value) for value in (low.value, middle, high.value))
-        table.add_row(name, _unit(name), *numbers, _point_text(study, low.place), _point_text(study, high.place))
+        numbers = (_value_text(name, value, units) for value in (low.value, middle, high.value))
+        table.add_row(
+            name,
+            _unit(name, units),
+            *numbers,
+            _point_text(study, low.place, units),
+            _point_text(study, high.place, units),
+        )
     print_columns(Console(), table)
     failed = "".join(f"; {count} {status.sentence}" for status, count in report.failed.items() if count)
     Console().print(f"{study.status.size} points, {report.valid} of them valid{failed}", highlight=False)
@@ -362,15 +369,15 @@ def _number_text(value: float | None) -> str:
     return "nan" if value is None else f"{round(value, 2) + 0.0:.2f}"  # without the sign of -0.00
 
 
-def _point_text(study: xarray.Dataset, flat: int) -> str:
+def _point_text(study: xarray.Dataset, flat: int, units: Units) -> str:
     """Describe the varied parameters at a point."""
     at = coordinates(study, flat)
-    return _parameter_text({name: at[name] for name in varying_parameters(study)})
+    return _parameter_text({name: at[name] for name in varying_parameters(study)}, units)
 
 
-def _parameter_text(at: Mapping[str, Any]) -> str:
+def _parameter_text(at: Mapping[str, Any], units: Units = Units.SI) -> str:
     """Write parameters with symbol and value."""
-    return ", ".join(f"{_symbol(name)} {_value_text(name, value)}" for name, value in at.items())
+    return ", ".join(f"{_symbol(name)} {_value_text(name, value, units)}" for name, value in at.items())
 
 
 def _symbol(name: str) -> str:
@@ -383,19 +390,19 @@ def _head(name: str) -> str:
     return QUANTITIES[name].head() if name in QUANTITIES else name
 
 
-def _unit(name: str) -> str:
+def _unit(name: str, units: Units = Units.SI) -> str:
     """Return the unit of a quantity in tables."""
-    return QUANTITIES[name].shown.text
+    return units.unit_of(QUANTITIES[name]).text
 
 
-def _factor(name: str) -> float:
+def _factor(name: str, units: Units = Units.SI) -> float:
     """Return the factor to the unit of tables."""
-    return QUANTITIES[name].shown.factor
+    return units.unit_of(QUANTITIES[name]).factor
 
 
-def _value_text(name: str, value: float | str) -> str:
+def _value_text(name: str, value: float | str, units: Units = Units.SI) -> str:
     """Write a value in the unit of tables."""
-    return value if isinstance(value, str) else f"{value * _factor(name):.4g}"
+    return value if isinstance(value, str) else f"{value * _factor(name, units):.4g}"
 
 
 def _table(*heads: str) -> Table:

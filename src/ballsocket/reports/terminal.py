@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import replace
 from math import pi
+from typing import Any
 
 import numpy
 from rich.console import Console
@@ -19,6 +20,7 @@ from ..compare import Comparison, relative_deviation
 from ..contact import Contact
 from ..contact.describe import COLUMNS, Column, number_text
 from ..core.quantities import CONTACT, HEADLINE
+from ..problem import Joint
 from .unit_systems import Units
 
 _BARS = " ▁▂▃▄▅▆▇█"
@@ -39,12 +41,12 @@ def print_press(comparison: Comparison, remarks: Iterable[str] = (), units: Unit
 
     Bars beside the numbers show the pressure from the pole to 90 degrees. Symbols, remarks and notes follow below.
     """
-    terminal, ordered = console(), _exact_first(comparison)
-    print_folded(terminal, units.joint(ordered.joint), "bold")
+    terminal, ordered = console(units), _exact_first(comparison)
+    print_joint(terminal, ordered.joint)
     table, shown = _fitting_table(ordered, terminal, units)
     terminal.print(table)
     for line in (_symbols_text(ordered, shown), *_omitted_text(ordered, shown, units), *remarks, *ordered.notes()):
-        print_folded(terminal, units.sentence(line), "dim")
+        print_folded(terminal, line, "dim")
 
 
 def _exact_first(comparison: Comparison) -> Comparison:
@@ -88,22 +90,69 @@ def print_curve(contact: Contact) -> None:
         print_folded(terminal, note, "dim")
 
 
-def console() -> Console:
+class Terminal(Console):
+    """Console that does not colour numbers, with the units of its sentences and tables."""
+
+    def __init__(self, units: Units = Units.SI) -> None:
+        super().__init__(highlight=False)
+        self.units = units
+
+
+def console(units: Units = Units.SI) -> Terminal:
     """Create a console that does not colour numbers."""
-    return Console(highlight=False)
+    return Terminal(units)
 
 
 def print_folded(console: Console, text: str, style: str) -> None:
-    """Print a line folded between words, with continuation lines indented."""
-    folded = textwrap.fill(text, max(console.width, 20), subsequent_indent="    ", break_on_hyphens=False)
-    console.print(Text(folded, style=style), soft_wrap=True)
+    """Print a line in the units of the console, folded between words, with continuation lines indented."""
+    console.print(Text(_folded(_units_of(console).sentence(text), console), style=style), soft_wrap=True)
+
+
+def _folded(text: str, console: Console) -> str:
+    """Fold a line between words, with continuation lines indented."""
+    return textwrap.fill(text, max(console.width, 20), subsequent_indent="    ", break_on_hyphens=False)
+
+
+def print_joint(terminal: Console, joint: Joint, end: str = "", start: str = "") -> None:
+    """Print the description of a joint, whose name is not converted to other units."""
+    folded = _folded(start + _units_of(terminal).joint(joint) + end, terminal)
+    terminal.print(Text(folded, style="bold"), soft_wrap=True)
+
+
+def _units_of(terminal: Console) -> Units:
+    """Return the units of a console; SI for one of another kind."""
+    return terminal.units if isinstance(terminal, Terminal) else Units.SI
+
+
+def _converted(table: Table, units: Units) -> Table:
+    """Return a table in a system of units; units are in brackets in the heads, or in the first row."""
+    if units is Units.SI:
+        return table
+    converted = copy(table)
+    converted.columns = [replace(column, _cells=list(_converted_cells(column, units))) for column in table.columns]
+    for column in converted.columns:
+        column.header = Text(units.axis(str(column.header))[0])  # rich takes "[psi]" in a plain text for a style
+    return converted
+
+
+def _converted_cells(column: RichColumn, units: Units) -> Iterator[Any]:
+    """Yield the cells of a column in a system of units."""
+    cells = list(column.cells)
+    unit = str(column.header).rpartition("[")[2].removesuffix("]")
+    if cells and units.of_text(str(cells[0])).text != str(cells[0]):
+        unit = str(cells.pop(0))
+        yield units.of_text(unit).text
+    for cell in cells:
+        text = units.cell(str(cell), unit)
+        yield Text(text, style=cell.style) if isinstance(cell, Text) else text
 
 
 def print_columns(terminal: Console, table: Table) -> None:
     """Print a table without a cut number: columns that do not fit follow below, beside the first column again.
 
-    Columns without `no_wrap` are folded between words first.
+    Columns without `no_wrap` are folded between words first. The table is converted to the units of the console.
     """
+    table = _converted(table, _units_of(terminal))
     limits = [_width_limits(terminal, column) for column in table.columns]
     gap = table.padding[1] + table.padding[3]
     for indices in _column_blocks([least for least, _ in limits], gap, terminal.width):

@@ -144,10 +144,26 @@ class Units(StrEnum):
         """
         return text if self is Units.SI else _QUANTITY.sub(_imperial, text)
 
+    def of_text(self, unit: str) -> Unit:
+        """Return the unit of this system for a metric unit as text; other texts stay, with the factor 1."""
+        return _WRITTEN_UNITS.get(unit, Unit(unit)) if self is Units.IMPERIAL else Unit(unit)
+
+    def axis(self, label: str) -> tuple[str, float]:
+        """Return the label of an axis such as "penetration [mm]" in this system, and the factor of its numbers."""
+        head, bracket, unit = label.removesuffix("]").rpartition("[")
+        written = self.of_text(unit)
+        return (f"{head}{bracket}{written.text}]", written.factor) if bracket else (label, 1.0)
+
+    def cell(self, text: str, unit: str) -> str:
+        """Convert the numbers of a cell below a metric unit; a cell with other text stays."""
+        converted = self.sentence(f"{text.rstrip('*')} {unit}")
+        changed = converted.removesuffix(self.of_text(unit).text).rstrip()
+        return text if converted == f"{text.rstrip('*')} {unit}" else changed + "*" * text.endswith("*")
+
     def joint(self, joint: Joint) -> str:
         """Describe a joint in one line; its name stays as it is."""
-        head, _, described = str(joint).rpartition(f"{joint.name}: ") if joint.name else ("", "", str(joint))
-        return f"{f'{joint.name}: ' if joint.name else head}{self.sentence(described)}"
+        head = f"{joint.name}: " if joint.name else ""
+        return head + self.sentence(str(joint).removeprefix(head))
 
     def columns_of(self, joint: Joint) -> tuple[Column, ...]:
         """Return the columns of a contact of a joint: without stress ratios whose strength is unknown."""
@@ -163,8 +179,11 @@ class Units(StrEnum):
 
 
 def _legible(unit: Unit, number: float) -> Unit:
-    """Return ksi in place of psi for a number that would need more than four digits."""
-    return Unit("ksi", 1e-3 * unit.factor) if unit.text == "psi" and abs(number) * unit.factor >= _LARGE else unit
+    """Return ksi in place of psi for large numbers, and millionths of an inch in place of mil for small ones."""
+    size = abs(number) * unit.factor
+    if unit.text == "psi" and size >= _LARGE:
+        return Unit("ksi", 1e-3 * unit.factor)
+    return Unit("µin", 1e3 * unit.factor) if unit.text == "mil" and 0 < size < 0.1 else unit
 
 
 def _imperial(match: re.Match[str]) -> str:

@@ -1,5 +1,5 @@
-/* ln of a quantity as polynomials of ln d, piece by piece, the highest power first: the quantity and three slopes.
-   Below the shallowest d a power of d; 0 where nothing touches; beyond the deepest d there is none. */
+/* Logarithm of a quantity as piecewise polynomials of ln d, the highest power first; `out` has the quantity and three
+   derivatives. Below the shallowest d it is a power of d, without contact 0, and beyond the deepest d NaN. */
 typedef struct {
     double shallowest, deepest, first, density;
     int pieces, terms;

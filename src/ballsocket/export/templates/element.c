@@ -25,7 +25,7 @@ $sentences
     return "an unknown status";
 }
 
-/* Whether numbers can be squared, with room for what squares are multiplied with. */
+/* Return 1 if all numbers and 1e8 times their squares are finite, else 0. */
 static int finite_numbers(const double *numbers, int count)
 {
     double none = 0.0;
@@ -41,7 +41,7 @@ static int fill(double *numbers, int count, double value, int status)
     return status;
 }
 
-/* Whether nothing touches; the very centre is for the formulas. */
+/* Return 1 if there is no contact, else 0; the formulas cover the centre. */
 static int apart(const double position[3])
 {
     const double x = position[0], y = position[1], z = position[2], e = sqrt(x * x + y * y + z * z);

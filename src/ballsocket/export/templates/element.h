@@ -4,12 +4,12 @@
    joint: $joint
 
    Units are mm, s, rad, N, N mm, MPa. The position is that of the ball's centre from the socket's, in axes that are
-   fixed to the socket; the velocity is that of the centre as it is seen from the socket, the spin the angular velocity
-   of the ball less that of the socket. Force and moment act on the ball, the moment about its centre; the socket is
-   met by the opposite force at the ball's centre, and by the opposite moment.
+   fixed to the socket. The velocity is that of the centre relative to the socket, and the spin the angular velocity of
+   the ball relative to the socket. Force and moment act on the ball, the moment about its centre. The opposite force at
+   the ball's centre and the opposite moment act on the socket.
 
-   No function allocates memory, prints, stops the program or keeps anything between calls. Where the status is
-   ${NAME}_THROUGH_WALL or more there is no answer: the numbers are NaN. */
+   No function allocates memory, prints, stops the program or stores data between calls. Where the status is
+   ${NAME}_THROUGH_WALL or more there is no load: the numbers are NaN. */
 #ifndef ${NAME}_H
 #define ${NAME}_H
 
@@ -17,7 +17,7 @@
 extern "C" {
 #endif
 
-/* What may be tuned; see ${name}_defaults and ${name}_complaint. */
+/* Parameters that can be changed; see ${name}_defaults and ${name}_complaint. */
 typedef struct ${name}_parameters {
 $fields
 } ${name}_parameters;
@@ -30,24 +30,24 @@ $codes
 /* The parameters of the element that was exported. */
 extern const ${name}_parameters ${name}_defaults;
 
-/* 0, or what is wrong with parameters. */
+/* Message on invalid parameters; 0 if all are valid. */
 const char *${name}_complaint(const ${name}_parameters *p);
 
-/* What a status says. */
+/* Description of a status. */
 const char *${name}_sentence(int status);
 
-/* Force in N, moment in N mm, energy in N mm. Parameters are taken as they are. */
+/* Force in N, moment in N mm, energy in N mm. Parameters are not checked. */
 int ${name}_load(const ${name}_parameters *p, const double position[3], const double velocity[3], const double spin[3],
                  double force[3], double moment[3], double *energy);
 
 /* Half angle of the contact in rad, its largest pressure in MPa. */
 int ${name}_contact(const double position[3], double *half_angle, double *max_pressure);
 
-/* The second slopes of the energy in N/mm, row by row: less the slope of the elastic force. */
+/* Second derivatives of the energy in N/mm, row by row: minus the derivative of the elastic force. */
 int ${name}_tangent(const double position[3], double tangent[9]);
 
-/* How force (3), moment (3), energy, half angle and largest pressure change along a way of position, velocity and
-   spin. */
+/* Derivatives of force (3), moment (3), energy, half angle and largest pressure along a direction of position, velocity
+   and spin. */
 int ${name}_slope(const ${name}_parameters *p, const double position[3], const double velocity[3],
                   const double spin[3], const double way[9], double slope[9]);
 

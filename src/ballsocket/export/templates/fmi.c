@@ -494,7 +494,8 @@ API fmi3SetBinary(UNIT, REFERENCES, const size_t sizes[], const fmi3Binary value
 }
 
 /* Functions on clocks, of which there are none. */
-#define NO_CLOCKS(function, type) API function(UNIT, REFERENCES, type x[]) { (void)vr, (void)x; return no_variables(c, n); }
+#define NO_CLOCKS(function, type) API function(UNIT, REFERENCES, type x[]) \
+    { (void)vr, (void)x; return no_variables(c, n); }
 #define NO_CLOCK_PAIRS(function, first, second) API function(UNIT, REFERENCES, first x[], second y[]) \
     { (void)vr, (void)x, (void)y; return no_variables(c, n); }
 NO_CLOCKS(fmi3GetClock, fmi3Clock)
