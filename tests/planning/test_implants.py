@@ -45,6 +45,11 @@ LINERS = {
     "ribs": (meshes.scattered(meshes.ribbed(meshes.liner(steps=40, segments=80), 24.0, height=0.5), 0.01), 170.0, 8.0),
     "open by a hole": (meshes.with_hole(meshes.scattered(PLAIN, 0.01), [0.5, 0.3, -0.8]), 170.0, 8.0),
     "cylinder beyond the sphere": (meshes.liner(arc_of_cover=180.0, cylinder=2.0, steps=30), 180.0, 8.0),
+    "cylinder in its scatter": (
+        meshes.scattered(meshes.liner(arc_of_cover=180.0, cylinder=0.8, steps=30), 0.02),
+        180.0,
+        8.0,
+    ),
     "over-hemispherical": (meshes.liner(wall=4.0, arc_of_cover=200.0, steps=30), 200.0, 4.0),
     "inside out": (PLAIN[:, ::-1], 170.0, 8.0),
     "eccentric": (eccentric(PLAIN, [0.0, 0.0, -1.0]), 170.0, 9.0),
@@ -153,3 +158,19 @@ def test_large_files_are_refused_before_they_are_read(tmp_path):
         read_stl(tmp_path / "a.stl")
     with pytest.raises(ValueError, match="units = 'inch' is not allowed: mm, cm, m, um, in"):
         read_stl(tmp_path / "a.stl", units="inch")
+
+
+@pytest.mark.parametrize("content", [BINARY, ASCII], ids=["binary", "ASCII"])
+def test_changed_bytes_give_a_mesh_or_a_sentence(tmp_path, content):
+    generator, messages = np.random.default_rng(4), []
+    for _ in range(12):
+        damaged = bytearray(content)
+        for position in generator.integers(len(content), size=8):
+            damaged[position] = generator.integers(256)
+        (tmp_path / "a.stl").write_bytes(damaged[: generator.integers(len(content) // 2, 2 * len(content))])
+        try:
+            with np.errstate(all="ignore"):
+                fit_liner(read_stl(tmp_path / "a.stl"))
+        except ValueError as error:
+            messages.append(str(error))
+    assert all(message.startswith("a.stl") for message in messages)

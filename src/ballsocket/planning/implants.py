@@ -75,6 +75,15 @@ _MAX_OPEN_AREA = 0.2
 _FLAT_FACETS = 0.02
 """Depth in mm of facets below the sphere through their corners from which a note is given."""
 
+_TANGENT_BAND = radians(20.0)
+"""Width of the band at the rim in which a cylinder may continue the sphere."""
+
+_MIN_TANGENT = radians(0.4)
+"""Smallest polar angle in rad of a cylinder that is left out."""
+
+_MIN_GAIN = 25.0
+"""Least decrease of the sum of squares over its mean per facet that is evidence for a cylinder."""
+
 _UNEVEN_RIM = radians(3.0)
 """Deviation of the rim from a plane from which a note is given."""
 
@@ -394,26 +403,41 @@ def _refine(mesh: Mesh, centre: Numbers, radius: float, sign: float) -> _SphereF
         mask = _belonging(mesh, centre, radius, tolerance, sign)
         if mask.sum() < 4:
             return None
-        points, weights = mesh.triangles[mask].reshape(-1, 3), numpy.repeat(mesh.areas[mask], 3)
-        centre, radius = fit_sphere(points, weights)
-        residuals = numpy.linalg.norm(points - centre, axis=1) - radius
-        residual = float(numpy.sqrt(weights @ residuals**2 / weights.sum()))
+        sphere = _fit_facets(mesh, mask)
+        centre, radius = sphere.centre, sphere.radius
+        residuals = numpy.linalg.norm(mesh.triangles[mask] - centre, axis=2) - radius
         if (mask == before).all():
             break
         before = mask
         tolerance = max(min(_SIGMAS * robust_scale(residuals), _MAX_TOLERANCE * radius), _MIN_RESOLUTION * radius)
-    return _SphereFit(centre=centre, radius=radius, facets=mask, residual=residual)
+    return sphere
 
 
-def _describe(mesh: Mesh, sphere: _SphereFit) -> ImplantFit:
-    """Return the fit of a sphere with its opening."""
-    offset = mesh.triangles[sphere.facets] - sphere.centre
-    middles, weights = offset.mean(axis=1), mesh.areas[sphere.facets] / mesh.areas[sphere.facets].sum()
-    depth = sphere.radius - float(weights @ numpy.linalg.norm(middles, axis=1))
-    complete = numpy.linalg.norm(weights @ middles) < _MIN_OPENING * sphere.radius
-    axis, angle, deviation = (
-        (None, pi, 0.0) if complete else _fit_rim(offset / sphere.radius, weights @ middles, mesh.name)
-    )
+def _fit_facets(mesh: Mesh, facets: Numbers) -> _SphereFit:
+    """Fit a sphere to the corners of facets, given by a mask or indices."""
+    points, weights = mesh.triangles[facets].reshape(-1, 3), numpy.repeat(mesh.areas[facets], 3)
+    centre, radius = fit_sphere(points, weights)
+    residuals = numpy.linalg.norm(points - centre, axis=1) - radius
+    residual = float(numpy.sqrt(weights @ residuals**2 / weights.sum()))
+    return _SphereFit(centre=centre, radius=radius, facets=facets, residual=residual)
+
+
+def _describe(mesh: Mesh, sphere: _SphereFit, passes: int = 2) -> ImplantFit:
+    """Return the fit of a sphere with its opening, without a cylinder that continues it."""
+    part = mesh.part(sphere.facets)
+    corners = (part.triangles - sphere.centre) / sphere.radius
+    middles, weights = corners.mean(axis=1), part.areas / part.areas.sum()
+    axis, angle, deviation = None, pi, 0.0
+    if numpy.linalg.norm(weights @ middles) >= _MIN_OPENING:
+        axis, angle, deviation = _fit_rim(corners, weights @ middles, mesh.name)
+        end = _find_tangent_end(corners, part, -axis, angle)
+        inner = middles @ -axis > cos(end) * numpy.linalg.norm(middles, axis=1)
+        if passes and end < angle and not inner.all():
+            facets = numpy.flatnonzero(sphere.facets)[inner]
+            reduced = _fit_facets(mesh, facets)
+            return _describe(
+                mesh, replace(reduced, facets=numpy.isin(numpy.arange(len(mesh.areas)), facets)), passes - 1
+            )
     return ImplantFit(
         radius=sphere.radius,
         centre=sphere.centre,
@@ -421,9 +445,34 @@ def _describe(mesh: Mesh, sphere: _SphereFit) -> ImplantFit:
         axis=axis,
         arc_of_cover=2 * angle,
         rim_deviation=deviation,
-        facet_depth=depth,
+        facet_depth=sphere.radius * (1.0 - float(weights @ numpy.linalg.norm(middles, axis=1))),
         name=mesh.name,
     )
+
+
+def _find_tangent_end(corners: Numbers, part: Mesh, dome: Numbers, angle: float) -> float:
+    """Find the polar angle in rad from which a cylinder continues the sphere; `angle` of the rim without one.
+
+    The distances from the sphere do not show a short cylinder in their scatter. Its normals do: their polar angle
+    stays that of the end of the sphere.
+    """
+    polar = numpy.arccos(numpy.clip(corners @ dome / numpy.linalg.norm(corners, axis=2), -1.0, 1.0))
+    middle = (polar.min(axis=1) + polar.max(axis=1)) / 2
+    band = (middle > angle - _TANGENT_BAND) & (middle < angle)
+    if not band.any():
+        return angle
+    outward = numpy.sign(numpy.sum(part.normals * corners[:, 0], axis=1))
+    slopes = (numpy.arccos(numpy.clip(outward * (part.normals @ dome), -1.0, 1.0)) - middle)[band]
+    weights, middle = part.areas[band] / part.areas[band].sum(), middle[band]
+    ends = numpy.linspace(angle - _TANGENT_BAND, angle, 200)
+    misfits = numpy.array([weights @ (slopes + numpy.clip(middle - end, 0.0, None)) ** 2 for end in ends])
+    best, floor = int(misfits.argmin()), _MIN_TANGENT**2 / 16
+    gain = (misfits[-1] - misfits[best]) * len(slopes) / (misfits[best] + floor)
+    edges = numpy.linalg.norm(corners - numpy.roll(corners, -1, axis=1), axis=2).max(axis=1)
+    facet_error = float(numpy.median(edges)) ** 2 / 8  # angle between a facet and the sphere
+    beyond = middle > ends[best]
+    evident = beyond.any() and -numpy.average(slopes[beyond], weights=weights[beyond]) > 3 * facet_error
+    return float(ends[best]) if evident and gain > _MIN_GAIN and angle - ends[best] > _MIN_TANGENT else angle
 
 
 def _fit_rim(corners: Numbers, pole: Numbers, name: str) -> tuple[Numbers, float, float]:
