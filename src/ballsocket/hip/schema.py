@@ -9,7 +9,7 @@ import msgspec
 
 from ..catalogue import catalogue
 from ..core.checks import shown
-from ..files.joint_file import CupTable, JointTables
+from ..files.joint_file import CupTable, JointTables, ReportTable
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     Angle,
@@ -345,3 +345,4 @@ class HipTable(CycleTables, frozen=True, kw_only=True):
     film: FilmTable = FilmTable()
     uncertainty: UncertaintyTable | None = None
     data: Annotated[list[WearDataTable] | None, meaning("measured wear, for ballsocket identify")] = None
+    report: ReportTable | None = None
