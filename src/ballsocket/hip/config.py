@@ -302,7 +302,7 @@ class UncertaintySettings:
     variability : PatientVariability
         Distributions of the patients.
     count : int
-        Number of samples, a power of two.
+        Number of samples, 2 or more.
     seed : int
         Seed of the samples.
     """
@@ -323,8 +323,7 @@ def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulat
         if name in stated
     }
     count = int(table.count)
-    if count < 2 or count & (count - 1):
-        raise ValueError(f"count = {count} is not allowed: it must be a power of two, such as {DEFAULT_COUNT}")
+    require("count", count, count >= 2, f"it must be at least 2, such as {DEFAULT_COUNT}")
     weight = _body_weight(tables) if "body_weight" in distributions else None
     variability = PatientVariability(use=use, distributions=distributions, body_weight=weight)
     for name, value in _nominal_values(use).items():

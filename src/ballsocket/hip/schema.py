@@ -278,7 +278,9 @@ class FilmTable(Table, frozen=True, kw_only=True):
 class UncertaintyTable(Table, frozen=True, kw_only=True):
     """Quantities that differ between patients, with their distributions."""
 
-    count: Annotated[SampleNumber, meaning("number of samples, a power of two")] = SampleNumber(DEFAULT_COUNT)
+    count: Annotated[SampleNumber, meaning("number of samples from 2; a power of two fills the space most evenly")] = (
+        SampleNumber(DEFAULT_COUNT)
+    )
     seed: Annotated[SampleNumber, meaning("seed of the samples")] = SampleNumber(0)
 
 
