@@ -2,8 +2,8 @@
 
 import json
 import re
-from itertools import product
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
