@@ -27,7 +27,7 @@ def test_import_loads_no_heavy_packages():
     assert done.stdout == "[]\n"
 
 
-@pytest.mark.parametrize("room", [bs, bs.studies], ids=lambda room: room.__name__)
+@pytest.mark.parametrize("room", [bs, bs.hip, bs.studies], ids=lambda room: room.__name__)
 def test_exported_names_exist_and_are_unique(room):
     assert len(set(room.__all__)) == len(room.__all__)
     assert set(room.__all__) <= set(dir(room))
@@ -42,6 +42,12 @@ def test_studies_exports_its_functions_and_suggests_similar_names():
     assert bs.studies.pareto is pareto  # and not the file of that name
     with pytest.raises(AttributeError, match="has no attribute 'optimize'; did you mean 'optimise'?"):
         bs.studies.optimize  # noqa: B018
+
+
+def test_a_press_of_the_package_names_that_of_the_models():
+    with pytest.raises(AttributeError, match=r"no attribute 'press'; .* bs\.Exact\(\)\.press.*; bs\.compare"):
+        bs.press  # noqa: B018
+    assert bs.Exact().press(HIP, force=3000.0).force == bs.compare(HIP, force=3000.0)["exact"].force
 
 
 def test_every_named_material_is_a_constant():

@@ -182,6 +182,12 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "UHMWPE",
 ]
 
+_HINTS = {
+    "press": "press is a method of models, such as bs.Exact().press(joint, force=3000.0); "
+    "bs.compare(joint, force=3000.0) presses with all models"
+}
+"""Sentences on names that users look for here."""
+
 _DOORS = ("dynamics", "evidence", "export", "hip")
 """Subpackages for users, which are imported on first use."""
 
@@ -194,7 +200,8 @@ else:
         if name == "read_joint":
             return import_module("ballsocket.files.joint_file").read_joint
         if name not in _DOORS and present_module_path(f"{__name__}.{name}") is None:
-            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            hint = f"; {_HINTS[name]}" if name in _HINTS else ""
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")
         return import_module(f"{__name__}.{name}")
 
 

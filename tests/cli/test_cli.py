@@ -418,10 +418,15 @@ def test_presets_describes_one_preset_in_full():
         "alumina",
     ):
         assert words in text
-    assert bs.UHMWPE.source[:30] in run("presets", "UHMWPE").stdout
+    text = run("presets", "UHMWPE").stdout
+    assert bs.UHMWPE.source[:30] in text
+    assert "wear factor           1.066e-06 mm³/(N m), range 7e-07 to 1.6e-06" in text
+    assert "687 (unverified); range: a factor of 1.5 (assumed)" in " ".join(text.split())
+    assert "wear factor" not in run("presets", "pom").stdout
     listed = json.loads(run("presets", "--json").stdout)
     assert (set(listed["joints"]), set(listed["materials"])) == (set(bs.joints), set(bs.materials))
     assert listed["joints"]["hip-36"]["source"] == bs.joints["hip-36"].source
+    assert listed["materials"]["crosslinked-pe"]["wear_factor"]["high"] == 4e-7
     assert "did you mean 'hip-36'?" in run("presets", "hip36").stderr
 
 

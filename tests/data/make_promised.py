@@ -52,6 +52,7 @@ def present() -> dict[str, Any]:
     tilted = bs.Sphere(ring_width=0.1).press(hip, tilt=0.5, **LOAD)
     return {
         "names of ballsocket": sorted(bs.__all__),
+        "names of ballsocket.hip": sorted(bs.hip.__all__),
         "parameters": {
             name: _parameters(getattr(bs, name)) for name in sorted(bs.__all__) if callable(getattr(bs, name))
         },

@@ -28,6 +28,7 @@ def files(tmp_path):
     """Two hips, of which the second has a published wear factor and a scatter of the clearance."""
     file = write_edited_file(tmp_path, *SHORT)
     text = file.read_text(encoding="utf-8").replace('contact = "springs"', 'ring_width = "8 deg"')
+    text = text.replace('name = "hip in use"', "")
     (tmp_path / "a.toml").write_text(text, encoding="utf-8")
     coefficient = 'coefficient = "1.066e-6 mm^3/(N m)"'
     assert coefficient in text
@@ -69,6 +70,28 @@ def test_json_of_several_files_has_an_entry_for_each(files, monkeypatch):
     assert answer["valid"] is all(result["valid"] for result in answer["results"])
     assert answer["results"][1]["laws"]["wear"]["source"].startswith("wear factor of crosslinked-pe")
     assert "results" not in alone
+    assert alone["name"] == "a"
+
+
+def test_a_stated_name_stands_in_table_csv_figure_and_json(files, tmp_path):
+    named = []
+    for number, stem in enumerate("abc"):
+        path = tmp_path / f"named_{stem}.toml"
+        name = "" if number == 2 else 'name = "conventional 28"\n'
+        quick = (tmp_path / "a.toml").read_text(encoding="utf-8").replace("2e5", "1e4").replace("[1e5]", "[1e4]")
+        path.write_text(name + quick, encoding="utf-8")
+        named.append(str(path))
+    names = ["conventional 28 (named_a)", "conventional 28 (named_b)", "named_c"]
+    done = invoke(*named, "--csv", str(tmp_path / "n.csv"), "--figure", str(tmp_path / "n.svg"))
+    assert done.exit_code == 0, done.output
+    assert all(f"0.01 {name}" in done.stdout for name in names)
+    assert [
+        row["hip"] for row in csv.DictReader((tmp_path / "n.csv").read_text(encoding="utf-8").splitlines())
+    ] == names
+    assert all(name in (tmp_path / "n.svg").read_text(encoding="utf-8") for name in names)
+    alone = invoke(named[0], "--csv", str(tmp_path / "n.csv")).stdout
+    assert alone.startswith("conventional 28: R1 14 mm")
+    assert "conventional 28," in (tmp_path / "n.csv").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

@@ -22,10 +22,18 @@ def test_a_report_has_figures_and_results(tmp_path):
     file = write_edited_file(
         tmp_path, ("5e6\n", "2e5\n"), ("[1e6, 2e6, 5e6]", "[1e5]"), ("instants = 100", "instants = 24")
     )
+    head = '\n[report]\ncustomer = "Acme <Ortho>"\nlogo = "logo.svg"\n'
+    file.write_text(file.read_text(encoding="utf-8") + head, encoding="utf-8")
+    words = ("hip", str(file), "--report", str(tmp_path / "hip.html"))
+    assert "logo.svg" in run(*words).stderr  # refused before the run
+    (tmp_path / "logo.svg").write_text("<svg/>", encoding="utf-8")
     done = run("hip", str(file), "--report", str(tmp_path / "hip.html"), "--store", str(tmp_path / "store"))
     assert done.returncode == 0, done.stderr
     page = (tmp_path / "hip.html").read_text(encoding="utf-8")
     assert page.count("data:image/png;base64") == 6
+    assert "<h1>Wear of a hip: hip in use</h1>" in page
+    assert "<dd>Acme &lt;Ortho&gt;</dd>" in page
+    assert "<img class='logo'" in page
     assert "Cross-shear" in page
     assert "mm³ worn and a penetration of" in page
     assert not re.search(r"(src|href)='http", page)

@@ -63,7 +63,7 @@ def hip(
     from ..reports.hip_comparison import HipRun, check_table, comparison_figure, print_comparison, write_table
     from ..reports.hip_report import write_hip_report
     from ..reports.hip_tables import print_bands, print_hip
-    from ..reports.pages import check_page_path
+    from ..reports.pages import check_page_path, letterhead
 
     for path, check in ((report, check_page_path), (figure, check_format), (csv, check_table)):
         if path is not None:
@@ -82,20 +82,23 @@ def hip(
         raise ValueError("--report of a hip is in mm, N and MPa: leave out --units or --report")
     if several and report is not None:
         raise ValueError(f"--report shows one hip, got {len(files)} files: use --figure or --csv to compare them")
+    if report is not None:
+        letterhead(hip_files[0].report)  # a logo that cannot be shown is refused before the run
     runs = []
-    for name, hip_file in zip(_short_names(files), hip_files, strict=True):
-        history = _simulate(hip_file, store / name if store is not None and several else store, name if several else "")
+    stems = _short_names(files)
+    for stem, name, hip_file in zip(stems, _titles(hip_files, stems), hip_files, strict=True):
+        history = _simulate(hip_file, store / stem if store is not None and several else store, name if several else "")
         runs.append(HipRun(name=name, history=history, bands=_uncertainty_bands(hip_file, history, engine)))
     if as_json:
         _echo_runs(runs, files)
     elif several:
         print_comparison(runs, units)
     else:
-        print_hip(runs[0].history, units)
+        print_hip(runs[0].history, units, runs[0].name)
         if runs[0].bands is not None:
             print_bands(runs[0].bands, units)
     if report is not None:  # last: if a file cannot be written, the result is already printed
-        write_hip_report(runs[0].history, report, runs[0].bands)
+        write_hip_report(runs[0].history, report, runs[0].bands, runs[0].name, hip_files[0].report)
     if figure is not None:
         save(comparison_figure(runs, units), figure)
     if csv is not None:
@@ -113,6 +116,12 @@ def _short_names(files: Sequence[Path]) -> list[str]:
     if len(set(files)) < len(files):
         raise ValueError("two files are the same: give each file once")
     return [str(path.with_suffix("")) for path in files]
+
+
+def _titles(hip_files: Sequence[HipFile], stems: Sequence[str]) -> list[str]:
+    """Return the name that each file states, else its short name; equal names have the short name beside."""
+    names = [hip_file.name or stem for hip_file, stem in zip(hip_files, stems, strict=True)]
+    return [f"{name} ({stem})" if names.count(name) > 1 else name for name, stem in zip(names, stems, strict=True)]
 
 
 def _simulate(hip_file: HipFile, store: Path | None, name: str) -> History:
@@ -139,13 +148,11 @@ def _uncertainty_bands(hip_file: HipFile, history: History, engine: Engine) -> B
 
 def _echo_runs(runs: Sequence[HipRun], files: Sequence[Path]) -> None:
     """Print simulations as JSON: the result of one file, or `results` with an entry for each of several files."""
-    answers = [_summarize_run(run) for run in runs]
+    answers = [{"name": run.name, **_summarize_run(run)} for run in runs]
     if len(answers) == 1:
         echo_json({"version": __version__, **answers[0]})
         return
-    results = [
-        {"file": str(path), "name": run.name, **answer} for path, run, answer in zip(files, runs, answers, strict=True)
-    ]
+    results = [{"file": str(path), **answer} for path, answer in zip(files, answers, strict=True)]
     notes = [f"{run.name}: {note}" for run, answer in zip(runs, answers, strict=True) for note in answer["notes"]]
     valid = all(answer["valid"] for answer in answers)
     echo_json({"version": __version__, "valid": valid, "results": results, "notes": notes})

@@ -173,6 +173,10 @@ class ReportDetails:
     logo: str = ""
 
 
+NO_DETAILS = ReportDetails()
+"""Head of a report without names and logo."""
+
+
 @dataclass(frozen=True)
 class JointFile:
     """Contents of a joint file: a joint, its load, its cup and the direction of the load.
@@ -193,7 +197,7 @@ class JointFile:
     load: dict[str, float]
     cup: Cup = DEFAULT_CUP
     aim: dict[str, Any] = field(default_factory=dict)
-    report: ReportDetails = ReportDetails()
+    report: ReportDetails = NO_DETAILS
 
 
 def read_joint(path: str | Path) -> JointFile:
@@ -215,9 +219,7 @@ def read_joint(path: str | Path) -> JointFile:
         The file cannot be read.
     """
     file = read_toml(Path(path), "joint", joint_of)
-    if not file.report.logo:
-        return file
-    return replace(file, report=replace(file.report, logo=str(Path(path).parent / file.report.logo)))
+    return replace(file, report=_logo_in(Path(path).parent, file.report))
 
 
 def parse_joint(raw: bytes, title: str) -> JointFile:
@@ -236,6 +238,16 @@ def joint_of(content: Mapping[str, Any]) -> JointFile:
 def _details_of(table: ReportTable) -> ReportDetails:
     """Return the head of a report."""
     return ReportDetails(**{name: str(text) for name, text in table.stated().items()})
+
+
+def _logo_in(folder: Path, details: ReportDetails) -> ReportDetails:
+    """Return the head of a report whose logo is in a folder."""
+    return replace(details, logo=str(folder / details.logo)) if details.logo else details
+
+
+def report_details(table: ReportTable, folder: Path) -> ReportDetails:
+    """Return the head of a report from its table; the path of the logo starts at a folder."""
+    return _logo_in(folder, _details_of(table))
 
 
 def describe_joint(tables: JointTables, name: str = "", source: str = "") -> JointFile:

@@ -1,6 +1,7 @@
 """Wear simulation of hip joints: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
 from .bands import Bands
+from .config import read_hip
 from .creep_law import constrained_share
 from .creep_laws import KelvinVoigtChain, LogarithmicCreep, logarithmic
 from .cycle import Cycle, Frame, Spring
@@ -70,6 +71,7 @@ __all__ = [
     "logarithmic",
     "named_cycle",
     "population",
+    "read_hip",
     "rocking",
     "two_axis",
     "uncertainty",

@@ -16,7 +16,7 @@ from ..core.checks import number_of_percent, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.kinds import Kind
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
-from ..files.joint_file import CupTable, JointFile, cup_of, joint_in
+from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, cup_of, joint_in, report_details
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import convert, parse, parse_units, split_quantity
@@ -57,6 +57,10 @@ class HipFile:
         Distributions of quantities that differ between patients; None without a table [uncertainty].
     data : tuple of MeasuredWear
         Measured wear of the tables [[data]].
+    name : str
+        Name of the simulation; empty if the file states none.
+    report : ReportDetails
+        Head of a report; without [report] that of the joint file.
     """
 
     use: HipSimulation
@@ -65,6 +69,8 @@ class HipFile:
     lubricant: Lubricant
     uncertain: UncertaintySettings | None = None
     data: tuple[MeasuredWear, ...] = ()
+    name: str = ""
+    report: ReportDetails = NO_DETAILS
 
 
 def read_hip(path: str | Path) -> HipFile:
@@ -137,6 +143,8 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         lubricant=Lubricant(**quantities_of(tables.film)),
         uncertain=None if tables.uncertainty is None else _read_uncertainty(tables, tables.uncertainty, use),
         data=tuple(_parse_measured_wear(table, cycle.per_year, tables) for table in tables.data or ()),
+        name=str(tables.name or ""),
+        report=joint_file.report if tables.report is None else report_details(tables.report, folder),
     )
 
 
@@ -294,7 +302,7 @@ class UncertaintySettings:
     variability : PatientVariability
         Distributions of the patients.
     count : int
-        Number of samples, a power of two.
+        Number of samples, 2 or more.
     seed : int
         Seed of the samples.
     """
@@ -315,8 +323,7 @@ def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulat
         if name in stated
     }
     count = int(table.count)
-    if count < 2 or count & (count - 1):
-        raise ValueError(f"count = {count} is not allowed: it must be a power of two, such as {DEFAULT_COUNT}")
+    require("count", count, count >= 2, f"it must be at least 2, such as {DEFAULT_COUNT}")
     weight = _body_weight(tables) if "body_weight" in distributions else None
     variability = PatientVariability(use=use, distributions=distributions, body_weight=weight)
     for name, value in _nominal_values(use).items():

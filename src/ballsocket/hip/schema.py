@@ -9,7 +9,7 @@ import msgspec
 
 from ..catalogue import catalogue
 from ..core.checks import shown
-from ..files.joint_file import CupTable, JointTables
+from ..files.joint_file import CupTable, JointTables, ReportTable
 from ..files.schema import (
     QUANTITIES_SCHEMA,
     Angle,
@@ -278,7 +278,9 @@ class FilmTable(Table, frozen=True, kw_only=True):
 class UncertaintyTable(Table, frozen=True, kw_only=True):
     """Quantities that differ between patients, with their distributions."""
 
-    count: Annotated[SampleNumber, meaning("number of samples, a power of two")] = SampleNumber(DEFAULT_COUNT)
+    count: Annotated[SampleNumber, meaning("number of samples from 2; a power of two fills the space most evenly")] = (
+        SampleNumber(DEFAULT_COUNT)
+    )
     seed: Annotated[SampleNumber, meaning("seed of the samples")] = SampleNumber(0)
 
 
@@ -345,3 +347,4 @@ class HipTable(CycleTables, frozen=True, kw_only=True):
     film: FilmTable = FilmTable()
     uncertainty: UncertaintyTable | None = None
     data: Annotated[list[WearDataTable] | None, meaning("measured wear, for ballsocket identify")] = None
+    report: ReportTable | None = None

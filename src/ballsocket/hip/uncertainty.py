@@ -57,8 +57,8 @@ def uncertainty(
     history : History
         Simulation of the nominal patient. The bands have the same reports.
     count : int
-        Number of samples in each sample set, a power of two. There are two sets more than sampled quantities. The bands
-        are those of the first two sets.
+        Number of samples in each sample set, 2 or more; a power of two fills the space most evenly. There are two sets
+        more than sampled quantities. The bands are those of the first two sets.
     seed : int
         Seed of the samples. The same seed gives the same results.
     engine : Engine
@@ -69,9 +69,9 @@ def uncertainty(
     Raises
     ------
     ValueError
-        A count that is not a power of two, or a negative seed.
+        A count below 2, or a negative seed.
     """
-    require("count", count, count >= 2 and count & (count - 1) == 0, "it must be a power of two")
+    require("count", count, count >= 2, "it must be at least 2")
     require("seed", seed, seed >= 0, "it must be at least 0")
     check_sample_memory(count)
     counts = tuple(report.cycles for report in history.reports)

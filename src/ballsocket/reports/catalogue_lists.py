@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rich.table import Table
 from rich.text import Text
@@ -16,6 +16,9 @@ from ..core.validity import Range
 from ..problem import Joint, Material
 from ..problem.presets import joints, materials
 from .terminal import console, print_folded
+
+if TYPE_CHECKING:
+    from ..hip.wear_laws import WearFactor
 
 
 def model_summary(model: ModelInfo) -> dict[str, Any]:
@@ -32,8 +35,20 @@ def model_summary(model: ModelInfo) -> dict[str, Any]:
 
 
 def preset_summary(preset: Material | Joint) -> dict[str, Any]:
-    """Summarise a material or joint with its source."""
-    return {**preset.summary(), "source": preset.source}
+    """Summarise a material or joint with its source, and the wear factor of a material that has one."""
+    summary = {**preset.summary(), "source": preset.source}
+    factor = _wear_factor(preset)
+    if factor is not None:
+        numbers = {"value": factor.value, "low": factor.low, "high": factor.high}
+        summary["wear_factor"] = {**numbers, "unit": "mm³/(N m)", "source": factor.source}
+    return summary
+
+
+def _wear_factor(preset: Material | Joint) -> WearFactor | None:
+    """Return the published wear factor of a preset; None if none is known."""
+    from ..hip.wear_laws import WEAR_FACTORS  # imported on use: the room of hips is slow to import
+
+    return next((factor for name, factor in WEAR_FACTORS.items() if materials[name] is preset), None)
 
 
 def _range(limit: Range) -> dict[str, Any]:
@@ -86,11 +101,15 @@ def print_model(model: ModelInfo) -> None:
 
 
 def print_preset(name: str) -> None:
-    """Print one material or joint with all its numbers."""
+    """Print one material or joint with all its numbers, and the wear factor of a material that has one."""
     terminal = console()
     preset: Material | Joint = materials[name] if name in materials else joints[name]
     print_folded(terminal, name, "bold")
-    for title, text in (*_titled_numbers(preset), ("source", preset.source)):
+    rows, factor = [*_titled_numbers(preset), ("source", preset.source)], _wear_factor(preset)
+    if factor is not None:
+        numbers = f"{factor.value:g} mm³/(N m), range {factor.low:g} to {factor.high:g}"
+        rows += [("wear factor", numbers), ("its source", factor.source)]
+    for title, text in rows:
         print_folded(terminal, f"  {title:<22}{text}", "")
 
 

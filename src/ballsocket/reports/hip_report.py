@@ -7,6 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from ..files.joint_file import NO_DETAILS, ReportDetails
 from ..hip.bands import Bands
 from ..hip.film import CONFORMITY_NOTE
 from ..hip.history import History
@@ -24,7 +25,7 @@ from .hip_tables import (
     radiograph_line,
     rim_lines,
 )
-from .pages import check_page_path, picture, render_page, write_page
+from .pages import check_page_path, letterhead, picture, render_page, write_page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -75,7 +76,9 @@ _WEAR_HEADS = (
 )
 
 
-def write_hip_report(history: History, path: Path, bands: Bands | None = None) -> Path:
+def write_hip_report(
+    history: History, path: Path, bands: Bands | None = None, name: str = "", details: ReportDetails = NO_DETAILS
+) -> Path:
     """Write the page of a wear simulation and return its path.
 
     Parameters
@@ -86,36 +89,43 @@ def write_hip_report(history: History, path: Path, bands: Bands | None = None) -
         File to write, which ends in .html or .pdf.
     bands : Bands, optional
         Bands of patients who differ, for two more sections.
+    name : str
+        Name of the hip in the title.
+    details : ReportDetails
+        Head of the page.
 
     Raises
     ------
     ValueError
-        Another ending, or a folder that does not exist.
+        Another ending, a folder that does not exist, or a logo that cannot be shown.
     ImportError
         A .pdf without the extra `pdf`.
     OSError
-        The page cannot be written.
+        The page cannot be written, or the logo cannot be read.
     """
     check_page_path(path)
-    write_page(hip_report(history, bands), path)
+    write_page(hip_report(history, bands, name, details), path)
     return path
 
 
-def hip_report(history: History, bands: Bands | None = None) -> str:
-    """Return the page of a wear simulation as HTML."""
+def hip_report(
+    history: History, bands: Bands | None = None, name: str = "", details: ReportDetails = NO_DETAILS
+) -> str:
+    """Return the page of a wear simulation as HTML; see `write_hip_report`."""
     sections: dict[str, tuple[str, str | None]] = {"numbers": ("Numbers", None)}
     if history.use.unworn_checks:
         sections["contact"] = ("Validity of the contact", None)
     if len(history.use.loaded):
         figures = _FIGURES if history.use.ball_wear is None else _FIGURES | _BALL_FIGURES
-        for name, (title, draw, caption) in figures.items():
-            sections[name] = (title, picture(figure_bytes(draw(history)), title, caption))
+        for section, (title, draw, caption) in figures.items():
+            sections[section] = (title, picture(figure_bytes(draw(history)), title, caption))
     if bands is not None:
         sections |= _band_sections(history, bands)
     return render_page(
         "hip_report.html",
-        "Wear of a hip",
+        f"Wear of a hip: {name}" if name else "Wear of a hip",
         sections,
+        **letterhead(details),
         summary=_summary(history),
         notes=history.notes,
         first_cycle=_first_cycle(history),

@@ -160,10 +160,10 @@ def sobol_lines(bands: Bands) -> Iterator[str]:
         yield f"Sobol indices of {result} (total order): {indices}"
 
 
-def print_hip(history: History, units: Units = Units.SI) -> None:
-    """Print the first cycle, the wear at each report, contacts, film, accuracy and notes."""
+def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None:
+    """Print the name of a hip, if any, the first cycle, the wear at each report, contacts, film, accuracy and notes."""
     terminal, use, first = console(units), history.use, history.use.first
-    print_joint(terminal, use.joint)
+    print_joint(terminal, use.joint, start=f"{name}: " if name else "")
     print_folded(
         terminal,
         f"{use.cycle.name}: slide {first.slide:.4g} mm a cycle, pressure times slide {first.work:.4g} N m, "

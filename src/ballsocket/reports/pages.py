@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
+from datetime import date
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,7 @@ from ..core.checks import needs
 from ..core.input_files import open_input
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
 from ..core.storage.pieces import fingerprint
+from ..files.joint_file import ReportDetails
 from .figure_files import figure_bytes
 
 if TYPE_CHECKING:
@@ -137,6 +139,21 @@ def logo_address(path: Path) -> str:
     if not (data.startswith(b"\x89PNG\r\n") if form == "png" else b"<svg" in data):
         raise ValueError(f"logo {str(path)!r} is no {form[:3].upper()} picture")
     return data_address(data, form)
+
+
+def letterhead(details: ReportDetails, day: date | None = None) -> dict[str, Any]:
+    """Return the head of a report as values of its template; the date is by default today.
+
+    Raises
+    ------
+    ValueError, OSError
+        As `logo_address`.
+    """
+    rows = [(name, getattr(details, name)) for name in ("customer", "project", "author") if getattr(details, name)]
+    return {
+        "logo": logo_address(Path(details.logo)) if details.logo else "",
+        "details": [*rows, ("date", (day or date.today()).isoformat())],
+    }
 
 
 def render_page(template: str, title: str, sections: Sections, **context: Any) -> str:

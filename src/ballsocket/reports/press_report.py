@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from datetime import date
 from hashlib import sha256
 from math import ceil, degrees, inf, isfinite
-from pathlib import Path
 
 from ..compare import Comparison, successful_contacts
 from ..contact import Contact
@@ -25,7 +24,7 @@ from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
-from .pages import logo_address, render_page, render_part, svg_address, trusted_html
+from .pages import letterhead, render_page, render_part, svg_address, trusted_html
 from .section_plots import joint_section
 from .unit_systems import Units
 
@@ -153,15 +152,7 @@ def _trusted(parts: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
 
 def _page(title: str, sections: TitledHtml, details: ReportDetails, day: date | None, lede: str = "") -> str:
     """Return a page with the head of a report."""
-    rows = [(name, getattr(details, name)) for name in ("customer", "project", "author") if getattr(details, name)]
-    return render_page(
-        "joint_report.html",
-        title,
-        sections,
-        lede=trusted_html(lede),
-        logo=logo_address(Path(details.logo)) if details.logo else "",
-        details=[*rows, ("date", (day or date.today()).isoformat())],
-    )
+    return render_page("joint_report.html", title, sections, lede=trusted_html(lede), **letterhead(details, day))
 
 
 def joint_report(
