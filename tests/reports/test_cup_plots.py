@@ -11,6 +11,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.reports.cup_map import on_page, shown_maximum, shown_pressure
 from ballsocket.reports.cup_plots import cup_figure
+from ballsocket.reports.unit_systems import Units
 
 from ..joints import HIP
 
@@ -46,6 +47,11 @@ def test_areas_on_the_page_are_areas_on_the_bore():
     area = abs(along[:, 0] * around[:, 1] - along[:, 1] * around[:, 0])
     assert area == pytest.approx(np.sin(polar), rel=1e-6)
     assert np.hypot(*on_page((1.0, 0.0, 0.0))) == pytest.approx(sqrt(2))
+
+
+def test_the_legend_has_the_pressure_of_the_table(contact):
+    (legend,) = [text for text in labels(cup_figure(contact, Units.IMPERIAL).axes[0]) if text.startswith("largest")]
+    assert legend == f"largest pressure, {contact.max_pressure * 145.0377377:.4g} psi"
 
 
 def test_the_load_is_where_it_points_seen_from_the_opening(contact):

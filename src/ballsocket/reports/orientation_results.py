@@ -290,7 +290,8 @@ def _best_text(orientations: Orientations, values: Numbers, units: Units) -> str
     """Describe the best orientation with its value."""
     inclination, anteversion, index = orientations.best(values)
     value = float(values.flat[index])
-    size = units.short_length(value) if values is orientations.edge_distance else units.sentence(f"{-value:.4g} MPa")
+    is_distance = values is orientations.edge_distance
+    size = units.short_length(value) if is_distance else units.text_of(CONTACT["max_pressure"], -value)
     return f"{size} at inclination {_degree_text(inclination)}, anteversion {_degree_text(anteversion)}"
 
 
