@@ -120,16 +120,16 @@ def press_report(
 def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, day: date | None = None) -> str:
     """Return the page of one design, or of several with a table that compares them, as HTML.
 
-    The head of the page is that of the first design that has one.
+    Customer, project and author that differ are stated for each design.
 
     Raises
     ------
     ValueError
-        A logo that cannot be shown.
+        A logo that cannot be shown, or two designs with different logos.
     OSError
         A logo that cannot be read.
     """
-    details = next((design.file.report for design in designs if design.file.report != ReportDetails()), ReportDetails())
+    details = _common_details(designs)
     if len(designs) == 1:
         (design,) = designs
         return _page(design.title, _design_sections(design, units), details, day, _lede(design, units))
@@ -139,6 +139,32 @@ def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, da
         html = render_part(_TEMPLATE, "design", trusted_html(_lede(design, units)), _trusted(parts))
         sections[f"design-{number}"] = (design.title, html)
     return _page(f"{len(designs)} designs", sections, details, day)
+
+
+def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
+    """Return the head of the page of several designs; texts that differ stand with the name of their design.
+
+    Raises
+    ------
+    ValueError
+        A logo that cannot be shown, or two designs with different logos.
+    """
+
+    def text_of(name: str) -> str:
+        """Return one text for all designs, or that of each design."""
+        texts = [(text, design.title) for design in designs if (text := getattr(design.file.report, name))]
+        if len({text for text, _ in texts}) < 2:
+            return texts[0][0] if texts else ""
+        return ", ".join(f"{text} ({title})" for text, title in texts)
+
+    logos = dict.fromkeys(design.file.report.logo for design in designs if design.file.report.logo)
+    if len({logo_address(Path(logo)) for logo in logos}) > 1:
+        raise ValueError(f"the designs have different logos, {' and '.join(map(repr, logos))}; a report has one")
+    return ReportDetails(**{name: text_of(name) for name in _HEAD}, logo=next(iter(logos), ""))
+
+
+_HEAD = ("customer", "project", "author")
+"""Texts of the head of a report."""
 
 
 def _lede(design: PressedDesign, units: Units) -> str:
@@ -153,7 +179,7 @@ def _trusted(parts: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
 
 def _page(title: str, sections: TitledHtml, details: ReportDetails, day: date | None, lede: str = "") -> str:
     """Return a page with the head of a report."""
-    rows = [(name, getattr(details, name)) for name in ("customer", "project", "author") if getattr(details, name)]
+    rows = [(name, getattr(details, name)) for name in _HEAD if getattr(details, name)]
     return render_page(
         "joint_report.html",
         title,
