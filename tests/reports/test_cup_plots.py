@@ -68,7 +68,7 @@ def test_the_load_is_where_it_points_seen_from_the_opening(contact):
 def test_the_largest_pressure_stands_in_the_legend_where_it_is(contact):
     figure = cup_figure(contact)
     marked = next(name for name in labels(figure.axes[0]) if name.startswith("largest pressure"))
-    assert f"{contact.max_pressure:.3g} MPa" in marked
+    assert f"{contact.max_pressure:.4g} MPa" in marked
     assert drawn_as(figure.axes[0], marked)[0] == pytest.approx(np.array(on_page(contact.max_pressure_at)))
     assert f"{contact.edge_distance:.1f} mm from contact to rim" in labels(figure.axes[1])
     assert f"{degrees(contact.tilt):.3g}° from the cup's axis" in figure.get_suptitle()
