@@ -56,6 +56,7 @@ def test_heads_that_differ_stand_with_their_design(tmp_path):
     differing = page({"customer": "Acme", "author": "A. B."}, {"customer": "Other", "author": "A. B."})
     assert "Acme (cup 1), Other (cup 2)" in differing
     assert "A. B. (" not in differing
+    assert "<meta name='author' content='A. B.'>" in differing
     logos = [tmp_path / name for name in ("one.svg", "two.svg")]
     for logo in logos:
         logo.write_text(f"<svg xmlns='http://www.w3.org/2000/svg' id='{logo.stem}'></svg>")

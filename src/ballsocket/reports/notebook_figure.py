@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from importlib import import_module
 from io import BytesIO
 from typing import Any
 
@@ -33,8 +34,6 @@ class NotebookFigure(Figure):
         if self.canvas.manager is not None:
             super().show(warn)
         elif ipython is not None and hasattr(ipython.get_ipython(), "kernel"):
-            from IPython.display import display
-
-            display(self)
+            import_module("IPython.display").display(self)
         else:
             raise RuntimeError("a figure is displayed in notebooks only; write it with figure.savefig('contact.png')")
