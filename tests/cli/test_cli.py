@@ -645,6 +645,13 @@ def test_an_invalid_exact_result_is_not_first():
     assert shown.index("\nsphere ") < shown.index("\nexact ")
 
 
+def test_unknown_units_are_refused_in_one_sentence():
+    done = run("press", "hip-36", "--force", "3 kN", "--units", "inch")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "Value error" not in done.stderr
+    assert "'inch' is not one of 'si', 'imperial'" in done.stderr
+
+
 def test_imperial_units_show_inches_and_pounds():
     words = ("press", "hess-forsbach", "--force", "3 kN", "--model", "exact")
     shown = run(*words, "--units", "Imperial").stdout.splitlines()

@@ -100,3 +100,15 @@ def test_json_of_a_small_study_has_extremes_and_all_values(tmp_path):
     assert answer["values"]["force"] == [1000.0, 2000.0]
     assert answer["quantities"]["max_pressure"]["largest"]["at"]["force"] == 2000.0
     assert answer["values"]["max_pressure"][1] == answer["quantities"]["max_pressure"]["largest"]["value"]
+
+
+def test_several_joints_have_an_answer_and_next_steps_each():
+    names = ("hip-32", "hip-36")
+    answer = said("press", *names, "--force", "3 kN")
+    assert [each for each in FIELDS if each not in answer] == []
+    for name, joint in zip(names, answer["joints"], strict=True):
+        alone = said("press", name, "--force", "3 kN")
+        assert joint == alone
+        assert all(step in answer["next"] for step in alone["next"])
+        assert all(f"{name}: {note}" in answer["notes"] for note in alone["notes"])
+    assert answer["sources"]

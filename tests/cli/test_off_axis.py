@@ -189,7 +189,12 @@ def test_orient_prints_every_orientation_and_the_limits():
     for angle in range(30, 71, 5):
         assert printed.count(f" {angle}°  ") + printed.count(f" {angle}°\n") >= 2
     assert printed.count("\n20°") >= 2
-    assert re.search(r"at 20° anteversion the limit holds up to \d\d° inclination", printed)
+    assert re.search(
+        r"at 20° anteversion the limit holds up to \d\d° inclination \(steps of 5°\)", " ".join(printed.split())
+    )
+    alone = run(*words, "--inclination", "45", "--anteversion", "20", "--figure", "a.png")
+    assert (alone.returncode, alone.stdout) == (2, "")
+    assert "--figure needs a range of an angle" in alone.stderr
     answer = json.loads(run(*words, "--inclination", "41..52", "--step", "5", "--anteversion", "20", "--json").stdout)
     assert answer["inclination_deg"] == pytest.approx([41, 45, 50, 52])
     assert answer["anteversion_deg"] == pytest.approx([20])

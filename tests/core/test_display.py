@@ -2,7 +2,9 @@
 
 import inspect
 import re
+import sys
 from dataclasses import fields
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -70,6 +72,18 @@ def test_a_figure_shows_itself_once(magic):
     if magic:
         formatter.for_type(Figure, lambda figure: b"by the magic")
     assert formatter(figure) == b"by the magic" if magic else formatter(figure).startswith(b"\x89PNG")
+
+
+def test_a_figure_is_shown_in_a_notebook_and_hints_to_savefig_elsewhere(monkeypatch):
+    figure = bs.HessForsbach().press(HIP, force=3000.0).plot()
+    with pytest.raises(RuntimeError, match="in notebooks only; write it with figure.savefig"):
+        figure.show()
+    displayed = []
+    notebook = SimpleNamespace(get_ipython=lambda: SimpleNamespace(kernel=None))
+    monkeypatch.setitem(sys.modules, "IPython", notebook)
+    monkeypatch.setitem(sys.modules, "IPython.display", SimpleNamespace(display=displayed.append))
+    figure.show()
+    assert displayed == [figure]
 
 
 def test_dir_lists_what_users_call():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core import plotting
+from ballsocket.core import display
 from ballsocket.core.input_files import (
     AllowedFolders,
     open_input,
@@ -121,13 +121,13 @@ def test_items_without_sources_cannot_be_cited():
 
 
 def test_plots_are_loaded_when_they_are_needed(monkeypatch):
-    monkeypatch.setattr(plotting, "_LOADERS", {})
+    monkeypatch.setattr(display, "_LOADERS", {})
     with pytest.raises(LookupError, match="plot 'a' is not registered; registered plots: none"):
-        plotting.load_plot("a")
-    plotting.register_plot("b", lambda: max)
-    assert plotting.load_plot("b")(1, 2) == 2
+        display.load_plot("a")
+    display.register_plot("b", lambda: max)
+    assert display.load_plot("b")(1, 2) == 2
     with pytest.raises(LookupError, match="registered plots: b"):
-        plotting.load_plot("a")
+        display.load_plot("a")
 
 
 def test_inputs_are_limited_to_allowed_folders(tmp_path, monkeypatch):

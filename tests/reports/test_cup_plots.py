@@ -11,6 +11,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.reports.cup_map import on_page, shown_maximum, shown_pressure
 from ballsocket.reports.cup_plots import cup_figure
+from ballsocket.reports.unit_systems import Units
 
 from ..joints import HIP
 
@@ -48,6 +49,11 @@ def test_areas_on_the_page_are_areas_on_the_bore():
     assert np.hypot(*on_page((1.0, 0.0, 0.0))) == pytest.approx(sqrt(2))
 
 
+def test_the_legend_has_the_pressure_of_the_table(contact):
+    (legend,) = [text for text in labels(cup_figure(contact, Units.IMPERIAL).axes[0]) if text.startswith("largest")]
+    assert legend == f"largest pressure, {contact.max_pressure * 145.0377377:.4g} psi"
+
+
 def test_the_load_is_where_it_points_seen_from_the_opening(contact):
     """Upwards on the page is the cup's x; to the right its y, as for an eye that looks to the dome."""
     cup_map = cup_figure(contact).axes[0]
@@ -62,7 +68,7 @@ def test_the_load_is_where_it_points_seen_from_the_opening(contact):
 def test_the_largest_pressure_stands_in_the_legend_where_it_is(contact):
     figure = cup_figure(contact)
     marked = next(name for name in labels(figure.axes[0]) if name.startswith("largest pressure"))
-    assert f"{contact.max_pressure:.3g} MPa" in marked
+    assert f"{contact.max_pressure:.4g} MPa" in marked
     assert drawn_as(figure.axes[0], marked)[0] == pytest.approx(np.array(on_page(contact.max_pressure_at)))
     assert f"{contact.edge_distance:.1f} mm from contact to rim" in labels(figure.axes[1])
     assert f"{degrees(contact.tilt):.3g}° from the cup's axis" in figure.get_suptitle()

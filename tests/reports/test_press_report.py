@@ -12,9 +12,9 @@ from html import unescape
 import pytest
 
 import ballsocket as bs
-from ballsocket.files.joint_file import JointFile, parse_joint
+from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
 from ballsocket.reports.pages import table, write_page
-from ballsocket.reports.press_report import press_report
+from ballsocket.reports.press_report import PressedDesign, designs_report, press_report
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
@@ -42,6 +42,26 @@ def test_the_page_has_the_verdict_the_drawing_and_every_input(pages):
         assert cell in text, cell
     assert text.count("data:image/svg+xml;base64,") == 2
     assert bs.materials["crosslinked-pe"].source in text
+
+
+def test_heads_that_differ_stand_with_their_design(tmp_path):
+    def page(*heads):
+        comparison = bs.compare(HIP, models=TWO, force=3000.0)
+        files = [
+            replace(FILE, joint=HIP.replace(name=f"cup {number}"), report=ReportDetails(**head))
+            for number, head in enumerate(heads, 1)
+        ]
+        return designs_report([PressedDesign(comparison=comparison, file=file, leading="exact") for file in files])
+
+    differing = page({"customer": "Acme", "author": "A. B."}, {"customer": "Other", "author": "A. B."})
+    assert "Acme (cup 1), Other (cup 2)" in differing
+    assert "A. B. (" not in differing
+    assert "<meta name='author' content='A. B.'>" in differing
+    logos = [tmp_path / name for name in ("one.svg", "two.svg")]
+    for logo in logos:
+        logo.write_text(f"<svg xmlns='http://www.w3.org/2000/svg' id='{logo.stem}'></svg>")
+    with pytest.raises(ValueError, match="different logos"):
+        page(*({"logo": str(logo)} for logo in logos))
 
 
 def test_imperial_holds_for_every_number(pages):

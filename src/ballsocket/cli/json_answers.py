@@ -59,6 +59,8 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
         checked. `error` has estimated relative errors, by model where there are several, and null where none are known.
         `notes` are sentences, `sources` publications with `key`, `text`, `doi`, and `next` steps with `command`, `why`.
     """
+    if "next" in answer:  # of several joints
+        return dict(answer)
     results = [result for result in answer.get("results", []) if "model" in result]
     requested = requested_results(results, arguments)
     notes = [f"{result['model']}: {note}" for result in results for note in result["notes"]]
@@ -70,6 +72,34 @@ def add_provenance(answer: Answer, arguments: Arguments) -> dict[str, Any]:
         "sources": [source_summary(source) for source in dict.fromkeys(_sources(answer))],
     }
     return {**full, "next": [step.summary() for step in next_steps(full, arguments)]}
+
+
+def several_joints(answers: Sequence[Answer], names: Sequence[str], arguments: Arguments) -> dict[str, Any]:
+    """Return the answer of `press` for several joints: each with its provenance, and all their notes and next steps.
+
+    Parameters
+    ----------
+    answers : sequence of mapping
+        JSON answer of each joint.
+    names : sequence of str
+        Files or presets of the joints, as in the arguments.
+    arguments : sequence of str
+        Name of the command and its arguments.
+    """
+    joints: list[dict[str, Any]] = []
+    for answer, name in zip(answers, names, strict=True):
+        single = [part for part in arguments if part == name or part not in names]
+        joints.append(add_provenance(answer, single))
+    steps = {step["command"]: step for joint in joints for step in joint["next"]}
+    sources = {source["text"]: source for joint in joints for source in joint["sources"]}
+    return {
+        "joints": joints,
+        "valid": all(joint["valid"] for joint in joints),
+        "error": None,
+        "notes": [f"{name}: {note}" for joint, name in zip(joints, names, strict=True) for note in joint["notes"]],
+        "sources": list(sources.values()),
+        "next": list(steps.values()),
+    }
 
 
 def _errors(results: Iterable[Answer]) -> dict[str, Any] | None:

@@ -175,6 +175,8 @@ def orient(
     output.check()
     limits = orientation.read_limits()
     angles: dict[str, Any] = orientation.angles()
+    if output.figure is not None and all(len(values) == 1 for values in angles.values()):
+        raise ValueError("--figure needs a range of an angle, such as --inclination 30..60; got one orientation")
     file = joint_options.read(joint)
     side = drop_missing({"side": orientation.side})
     rim = read_cup(side, cup.apply_to(file.cup))
@@ -187,7 +189,7 @@ def orient(
         lambda: {**orientations.summary(), **limits_summary(orientations, limits)},
         lambda: print_orientations(orientations, limits, units),
     )
-    output.draw(lambda: orientation_figure(orientations, units))
+    output.draw(lambda: orientation_figure(orientations, units, limits))
     if not orientations.held.any():
         print_message("no orientation has an answer (see the statuses)")
         raise typer.Exit(FAILURE)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import degrees, pi
@@ -40,7 +41,7 @@ from .elasticity_options import (
     sphere_remark,
     tilted_cup,
 )
-from .json_answers import echo_json
+from .json_answers import echo_json, several_joints
 from .model_file import is_model_file, requested_model
 from .options import (
     AsJson,
@@ -290,7 +291,8 @@ def press(
     report.write(designs, units)
     if as_json:
         summaries = [pressed.summary(friction_options) for pressed in joints]
-        echo_json(summaries[0] if len(summaries) == 1 else {"joints": summaries})
+        single = len(summaries) == 1
+        echo_json(summaries[0] if single else several_joints(summaries, joint or (), sys.argv[1:]))
     else:
         for pressed in joints:
             print_press(pressed.comparison, pressed.remarks, units)

@@ -203,7 +203,7 @@ def _run() -> int:
 
 def _usage_message(error: Any) -> str:
     """Return the message of a wrong command line; for an unknown option with no similar one, add where to look."""
-    message: str = error.format_message()
+    message: str = error.format_message().replace(": Value error, ", ": ", 1)  # of typer's check of a type
     if not hasattr(error, "option_name") or error.ctx is None or set(error.possibilities or ()) - {"--help"}:
         return message
     return f"No such option: {error.option_name}; {error.ctx.command_path} -h lists them"

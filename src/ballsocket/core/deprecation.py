@@ -61,6 +61,7 @@ MOVED = {
     "ballsocket.atomic": "ballsocket.core.storage.atomic_files",
     "ballsocket.fingerprint": "ballsocket.core.storage.pieces",
     "ballsocket.npz": "ballsocket.core.storage.atomic_files",
+    "ballsocket.core.plotting": "ballsocket.core.display",
     "ballsocket.engines": "ballsocket.core.executors",
     "ballsocket.engines.local": "ballsocket.core.executors.processes",
     "ballsocket.output": "ballsocket.reports",

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.quantities import FIELD
+from ..core.quantities import CONTACT, FIELD
 from ..elasticity.off_axis.contact import OffAxisContact
 from ..elasticity.off_axis.directions import unit_vectors
 from .style import INK, VERMILLION
@@ -125,7 +125,7 @@ def _draw_marks(axes: Axes, contact: OffAxisContact, units: Units) -> None:
         axes.plot(*load, "x", color=INK, markersize=7, markeredgewidth=1.6, linestyle="", label="load")
     if not numpy.isfinite(contact.max_pressure):
         return
-    label = f"largest pressure, {units.sentence(f'{contact.max_pressure:.3g} MPa')}"
+    label = f"largest pressure, {units.text_of(CONTACT['max_pressure'], float(contact.max_pressure))}"
     mark: Any = {"markersize": 8, "markerfacecolor": "none", "markeredgecolor": VERMILLION, "markeredgewidth": 2.0}
     axes.plot(*on_page(contact.max_pressure_at), "o", linestyle="", label=label, **mark)
 

@@ -16,7 +16,7 @@ from ..core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ..core.validity import Status
 from ..elasticity.off_axis.orientations import Orientations
 from ..studies.limits import Limit
-from .style import LEGEND
+from .style import BLUE, INK, LEGEND, VERMILLION
 from .terminal import console, print_columns, print_folded, print_joint
 from .unit_systems import Units
 
@@ -29,18 +29,21 @@ _LOST_BALL_HATCH, _RIM_HATCH = "xxx", "///"
 
 
 @renamed_arguments(stood="orientations")
-def orientation_figure(orientations: Orientations, units: Units = Units.SI) -> Figure:
-    """Draw distance to the rim and largest pressure over inclination and anteversion.
+def orientation_figure(orientations: Orientations, units: Units = Units.SI, limits: Sequence[Limit] = ()) -> Figure:
+    """Draw distance to the rim and largest pressure over inclination and anteversion, or over one of them.
 
     The contact reaches the rim on the dotted line. Two hatchings mark cups that do not hold the ball, and cups whose
-    rim digs in, where the pressure is unbounded. A circle marks the orientation of the cup, if it is set.
+    rim digs in, where the pressure is unbounded. A circle marks the orientation of the cup, if it is set. Results for
+    one value of the other angle are drawn as curves.
 
     Parameters
     ----------
-    stood : Orientations
-        Results for at least two inclinations and two anteversions.
+    orientations : Orientations
+        Results for at least two inclinations or two anteversions.
     units : Units
         Units of every number.
+    limits : sequence of Limit
+        Limits that are drawn as dashed lines.
 
     Returns
     -------
@@ -49,21 +52,69 @@ def orientation_figure(orientations: Orientations, units: Units = Units.SI) -> F
     Raises
     ------
     ValueError
-        Fewer orientations.
+        A single orientation.
     """
     from .notebook_figure import NotebookFigure
 
-    if min(orientations.status.shape) < 2:
-        raise ValueError(f"a map needs two values of each angle, got {' x '.join(map(str, orientations.status.shape))}")
+    if orientations.status.size < 2:
+        raise ValueError("a figure needs two values of an angle, got one orientation")
+    is_map = min(orientations.status.shape) > 1
     figure = NotebookFigure(figsize=(10.4, 4.6), layout="constrained")
-    distance_axes, pressure_axes = figure.subplots(1, 2, sharey=True)
-    _draw(distance_axes, orientations, orientations.edge_distance, DERIVED["edge_distance"], units)
-    _draw(pressure_axes, orientations, orientations.max_pressure, CONTACT["max_pressure"], units)
-    pressure_axes.set_ylabel("")
+    axes_pair = figure.subplots(1, 2, sharey=is_map)
+    quantities = DERIVED["edge_distance"], CONTACT["max_pressure"]
+    for axes, quantity in zip(axes_pair, quantities, strict=True):
+        if is_map:
+            _draw(axes, orientations, getattr(orientations, quantity.name), quantity, units)
+            _draw_limits(axes, orientations, limits, units)
+        else:
+            _draw_curve(axes, orientations, quantity, units, limits)
+    if is_map:
+        axes_pair[1].set_ylabel("")
     _draw_legend(figure)
-    title = units.sentence(f"{orientations.joint.dimensions}; {load_text(orientations)}")
+    fixed = "" if is_map else f"; {_fixed_angle(orientations)}"
+    title = units.sentence(f"{orientations.joint.dimensions}; {load_text(orientations)}") + fixed
     figure.suptitle(title, fontsize=10, parse_math=False)
     return figure
+
+
+_LIMIT_LINE: Any = {"color": VERMILLION, "linestyle": "--", "linewidth": 1.6}
+
+
+def _draw_limits(axes: Axes, orientations: Orientations, limits: Sequence[Limit], units: Units) -> None:
+    """Draw each limit as a dashed line over the map, where it lies between the values."""
+    x, y = numpy.degrees(orientations.inclination), numpy.degrees(orientations.anteversion)
+    for limit in limits:
+        values = getattr(orientations, limit.name).T
+        values = numpy.where(numpy.isfinite(values), values, numpy.nan)
+        levels = [end for end in (limit.low, limit.high) if (values < end).any() and (values > end).any()]
+        if levels:
+            axes.contour(x, y, values, levels=sorted(set(levels)), colors=VERMILLION, linestyles="--", linewidths=1.6)
+            axes.plot([], [], label=units.sentence(_limit_text(limit)), **_LIMIT_LINE)
+
+
+def _draw_curve(
+    axes: Axes, orientations: Orientations, quantity: Quantity, units: Units, limits: Sequence[Limit]
+) -> None:
+    """Draw one field over the angle that changes, with its limits; orientations without a number are left out."""
+    name = "inclination" if orientations.status.shape[1] == 1 else "anteversion"
+    label, factor = units.axis(quantity.label(quantity.written))
+    values = getattr(orientations, quantity.name)
+    shown = factor * numpy.where(orientations.held & numpy.isfinite(values), values, numpy.nan)
+    axes.plot(numpy.degrees(getattr(orientations, name)), shown.ravel(), "o-", color=BLUE, markersize=4)
+    for limit in (limit for limit in limits if limit.name == quantity.name):
+        for end in filter(isfinite, (limit.low, limit.high)):
+            axes.axhline(factor * end, label=units.sentence(_limit_text(limit)), **_LIMIT_LINE)
+    if quantity.name == "edge_distance" and numpy.nanmin(shown, initial=0.0) < 0:
+        axes.axhline(0.0, linestyle=":", color=INK, linewidth=1.8, label="the contact reaches the rim")
+    axes.set_xlabel(CUP[name].label())
+    axes.set_ylabel(label)
+    axes.grid(alpha=0.3)
+
+
+def _fixed_angle(orientations: Orientations) -> str:
+    """Describe the angle that has one value."""
+    name = "anteversion" if orientations.status.shape[1] == 1 else "inclination"
+    return f"{name} {_degree_text(float(getattr(orientations, name)[0]))}"
 
 
 def _draw_legend(figure: Figure) -> None:
@@ -236,7 +287,9 @@ def _range_text(orientations: Orientations, ends: tuple[float, float] | None) ->
     first, last = map(_degree_text, ends)
     if (first, last) == (low, high):
         return f"at every inclination from {low} to {high}"
-    return f"up to {last} inclination" if first == low else f"from {first} to {last} inclination"
+    step = _degree_text(float(numpy.diff(orientations.inclination).max()))
+    reach = f"up to {last}" if first == low else f"from {first} to {last}"
+    return f"{reach} inclination (steps of {step})"
 
 
 def _limit_text(limit: Limit) -> str:
@@ -290,7 +343,8 @@ def _best_text(orientations: Orientations, values: Numbers, units: Units) -> str
     """Describe the best orientation with its value."""
     inclination, anteversion, index = orientations.best(values)
     value = float(values.flat[index])
-    size = units.short_length(value) if values is orientations.edge_distance else units.sentence(f"{-value:.4g} MPa")
+    is_distance = values is orientations.edge_distance
+    size = units.short_length(value) if is_distance else units.text_of(CONTACT["max_pressure"], -value)
     return f"{size} at inclination {_degree_text(inclination)}, anteversion {_degree_text(anteversion)}"
 
 

@@ -141,6 +141,10 @@ def logo_address(path: Path) -> str:
     return data_address(data, form)
 
 
+HEAD_TEXTS = ("customer", "project", "author")
+"""Texts of the head of a report."""
+
+
 def letterhead(details: ReportDetails, day: date | None = None) -> dict[str, Any]:
     """Return the head of a report as values of its template; the date is by default today.
 
@@ -149,7 +153,7 @@ def letterhead(details: ReportDetails, day: date | None = None) -> dict[str, Any
     ValueError, OSError
         As `logo_address`.
     """
-    rows = [(name, getattr(details, name)) for name in ("customer", "project", "author") if getattr(details, name)]
+    rows = [(name, getattr(details, name)) for name in HEAD_TEXTS if getattr(details, name)]
     return {
         "logo": logo_address(Path(details.logo)) if details.logo else "",
         "details": [*rows, ("date", (day or date.today()).isoformat())],

@@ -24,7 +24,7 @@ from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
-from .pages import letterhead, render_page, render_part, svg_address, trusted_html
+from .pages import HEAD_TEXTS, letterhead, render_page, render_part, svg_address, trusted_html
 from .section_plots import joint_section
 from .unit_systems import Units
 
@@ -119,16 +119,16 @@ def press_report(
 def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, day: date | None = None) -> str:
     """Return the page of one design, or of several with a table that compares them, as HTML.
 
-    The head of the page is that of the first design that has one.
+    Customer, project and author that differ are stated for each design.
 
     Raises
     ------
     ValueError
-        A logo that cannot be shown.
+        A logo that cannot be shown, or two designs with different logos.
     OSError
         A logo that cannot be read.
     """
-    details = next((design.file.report for design in designs if design.file.report != ReportDetails()), ReportDetails())
+    details = _common_details(designs)
     if len(designs) == 1:
         (design,) = designs
         return _page(design.title, _design_sections(design, units), details, day, _lede(design, units))
@@ -138,6 +138,28 @@ def designs_report(designs: Sequence[PressedDesign], units: Units = Units.SI, da
         html = render_part(_TEMPLATE, "design", trusted_html(_lede(design, units)), _trusted(parts))
         sections[f"design-{number}"] = (design.title, html)
     return _page(f"{len(designs)} designs", sections, details, day)
+
+
+def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
+    """Return the head of the page of several designs; texts that differ stand with the name of their design.
+
+    Raises
+    ------
+    ValueError
+        A logo that cannot be shown, or two designs with different logos.
+    """
+
+    def text_of(name: str) -> str:
+        """Return one text for all designs, or that of each design."""
+        texts = [(text, design.title) for design in designs if (text := getattr(design.file.report, name))]
+        if len({text for text, _ in texts}) < 2:
+            return texts[0][0] if texts else ""
+        return ", ".join(f"{text} ({title})" for text, title in texts)
+
+    logos = dict.fromkeys(design.file.report.logo for design in designs if design.file.report.logo)
+    if len({logo_address(Path(logo)) for logo in logos}) > 1:
+        raise ValueError(f"the designs have different logos, {' and '.join(map(repr, logos))}; a report has one")
+    return ReportDetails(**{name: text_of(name) for name in HEAD_TEXTS}, logo=next(iter(logos), ""))
 
 
 def _lede(design: PressedDesign, units: Units) -> str:

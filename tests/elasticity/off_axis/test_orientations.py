@@ -10,6 +10,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.elasticity.finite_elements.progress import progress_to
 from ballsocket.reports.orientation_results import orientation_figure
+from ballsocket.studies.expressions import parse_limit
 
 from ...joints import HIP
 
@@ -77,8 +78,24 @@ def test_map_is_hatched_without_a_number(oriented):
         "the contact reaches the rim",
         "the rim digs in: unbounded pressure",
     ]
-    with pytest.raises(ValueError, match="two values of each angle, got 1 x 2"):
-        orientation_figure(bs.orient(HIP, model=SPHERE, force=1500.0, inclination=0.2, anteversion=[0.0, 0.1]))
+    with pytest.raises(ValueError, match="two values of an angle, got one orientation"):
+        orientation_figure(bs.orient(HIP, model=SPHERE, force=1500.0, inclination=0.2, anteversion=0.1))
+
+
+def test_figure_of_one_changing_angle_is_a_curve_with_its_limits(oriented):
+    limits = [parse_limit("edge_distance>=1 mm"), parse_limit("max_pressure<=1 GPa")]
+    row = bs.orient(HIP, model=SPHERE, force=1500.0, inclination=INCLINATION, anteversion=ANTEVERSION[1])
+    figure = orientation_figure(row, limits=limits)
+    distance, pressure = figure.axes
+    assert "anteversion 30°" in figure.get_suptitle()
+    x, y = distance.lines[0].get_xydata().T
+    assert x == pytest.approx([20, 45, 85])
+    assert y[:2] == pytest.approx(row.edge_distance[:2, 0])
+    assert np.isnan(y[2])  # the ball is not held
+    assert distance.lines[1].get_ydata() == pytest.approx([1.0, 1.0])
+    assert pressure.lines[1].get_ydata() == pytest.approx([1000.0, 1000.0])
+    assert "edge_distance >= 1 mm" in legend(figure)
+    assert "edge_distance >= 1 mm" in legend(orientation_figure(oriented, limits=limits))
 
 
 def test_map_shows_its_fields_and_the_original_cup():
