@@ -158,6 +158,9 @@ def fmu(
     unit = Fmu(element=element_options.element(joint_options.read(joint)), name=identifier(path), version=fmi)
     written = unit.write(path)
     echo_path(written.path)
+    if isinstance(unit.element, PreloadedElement):
+        position = ", ".join(f"{1e-3 * component:.4g}" for component in unit.element.rest_position)
+        print_message(f"the ball is at rest, without a force, at position ({position}) m: the start values of the unit")
     for extra_path in write_cross_check(unit.element, path):
         echo_path(extra_path)
     if written.missing:
