@@ -300,6 +300,8 @@ def _rim_verdict(contact: Contact, units: Units, uncertainty: LocalUncertainty |
     if not isinstance(contact, OffAxisContact) or contact.status.failed:
         return []
     distance = units.short_length(abs(float(contact.edge_distance)))
+    if contact.edge_loaded and contact.joint.clearance < 0:
+        return [("the contact reaches the rim, as is normal in a preloaded joint", "holds")]
     if contact.edge_loaded:
         return [(f"edge loading: the contact reaches the rim (CPER -{distance})", "fails")]
     verdict = f"no edge loading: the contact ends {distance} from the rim (CPER)"
