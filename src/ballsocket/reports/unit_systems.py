@@ -83,9 +83,12 @@ _WRITTEN_UNITS = MappingProxyType(
 )
 """Imperial units by the metric unit of a text, longest first."""
 
-_NUMBER = r"(?:[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf|nan)"
-_LIST = rf"{_NUMBER}(?:(?:, | to | and | or |\.\.| ± | x ){_NUMBER})*"
-_QUANTITY = re.compile(rf"(?<![\w.])({_LIST}) ({'|'.join(map(re.escape, _WRITTEN_UNITS))})(?![\w²³^]|/(?!10|Mc))")
+_NUMBER = r"(?:[-+]?(?:\d++\.?\d*+|\.\d++)(?:e[-+]?\d++)?|inf|nan)"
+_SEPARATORS = (", ", " to ", " and ", " or ", "..", " ± ", " x ")
+_LIST = rf"{_NUMBER}(?:(?:{'|'.join(map(re.escape, _SEPARATORS))}){_NUMBER})*+"
+_LIST_START = r"(?<![\w.])" + "".join(rf"(?<!\d{re.escape(text)})" for text in _SEPARATORS)
+_UNIT = rf"(?:{'|'.join(map(re.escape, _WRITTEN_UNITS))})(?![\w²³^]|/(?!10|Mc))"
+_QUANTITY = re.compile(rf"{_LIST_START}({_LIST}) ({_UNIT})")
 """Numbers with a unit behind them, such as "2.7 mm" and "1 to 3 kN"."""
 
 
