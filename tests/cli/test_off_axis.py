@@ -65,7 +65,9 @@ def test_an_interference_selects_the_model_sphere():
 
 @pytest.mark.parametrize(("distance", "loaded"), [(0.02, True), (-0.02, True), (0.02, False)])
 def test_a_distance_of_minus_zero_is_shown_as_zero(distance, loaded):
-    assert "-0.0" not in elasticity_options._rim_text(SimpleNamespace(edge_distance=distance, edge_loaded=loaded))
+    joint = SimpleNamespace(clearance=0.1)
+    contact = SimpleNamespace(edge_distance=distance, edge_loaded=loaded, joint=joint)
+    assert "-0.0" not in elasticity_options._rim_text(contact)
 
 
 def test_direction_options_replace_the_direction_of_the_file():
