@@ -65,7 +65,9 @@ def test_an_interference_selects_the_model_sphere():
 
 @pytest.mark.parametrize(("distance", "loaded"), [(0.02, True), (-0.02, True), (0.02, False)])
 def test_a_distance_of_minus_zero_is_shown_as_zero(distance, loaded):
-    assert "-0.0" not in elasticity_options._rim_text(SimpleNamespace(edge_distance=distance, edge_loaded=loaded))
+    joint = SimpleNamespace(clearance=0.1)
+    contact = SimpleNamespace(edge_distance=distance, edge_loaded=loaded, joint=joint)
+    assert "-0.0" not in elasticity_options._rim_text(contact)
 
 
 def test_direction_options_replace_the_direction_of_the_file():
@@ -262,6 +264,19 @@ def test_a_preloaded_joint_gets_a_socket_that_holds_it_and_its_friction_torques(
     wide = run("press", *HELD, "--arc-of-cover", "260", "--young", "1300 MPa", columns=200).stdout
     assert "assumed" not in wide
     assert "1000 hours" not in wide  # the modulus of a long load is stated
+
+
+def test_a_preloaded_joint_without_a_load_is_at_rest_and_states_the_wear_that_loosens_it():
+    words = ("press", *TIGHT, *COARSE)
+    printed, at_rest = run(*words, columns=200).stdout, json.loads(run(*words, "--json").stdout)
+    assert "uniform wear of the bore by 0.03 mm ends the preload" in printed
+    assert "force 0 assumed, the ball is at rest in its socket; set --force" in printed
+    assert "sphere: the contact reaches the rim, as is normal in a preloaded joint" in printed
+    assert "p, 0° to 120°" in printed
+    assert "edge loading" not in printed
+    assert at_rest["preload"]["wear_depth_to_loosen"] == pytest.approx(0.03, rel=1e-3)
+    assert at_rest["results"][0]["force"] == pytest.approx(0.0, abs=1.0)
+    assert "clearance 0" in run("press", *TIGHT, "--interference", "0").stderr
 
 
 def test_friction_of_several_models_stands_beside_each():

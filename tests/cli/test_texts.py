@@ -18,15 +18,17 @@ from .command import run
 
 
 @pytest.mark.parametrize(
-    ("distance", "loaded", "text"),
+    ("distance", "loaded", "clearance", "text"),
     [
-        (1.26, False, "contact 1.3 mm from the rim"),
-        (-2.34, True, "contact cut off by 2.3 mm at the rim"),
-        (0.2, True, "contact cut off by 0.0 mm at the rim"),
+        (1.26, False, 0.1, "contact 1.3 mm from the rim"),
+        (-2.34, True, 0.1, "contact cut off by 2.3 mm at the rim"),
+        (0.2, True, 0.0, "contact cut off by 0.0 mm at the rim"),
+        (-9.4, True, -0.03, "contact up to the rim"),
     ],
 )
-def test_the_distance_from_the_rim_is_positive_on_both_sides(distance, loaded, text):
-    assert elasticity_options._rim_text(SimpleNamespace(edge_distance=distance, edge_loaded=loaded)) == text
+def test_the_distance_from_the_rim_is_positive_on_both_sides(distance, loaded, clearance, text):
+    contact = SimpleNamespace(edge_distance=distance, edge_loaded=loaded, joint=SimpleNamespace(clearance=clearance))
+    assert elasticity_options._rim_text(contact) == text
 
 
 def test_estimated_errors_are_in_percent_without_those_of_other_quantities():

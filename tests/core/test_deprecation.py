@@ -1,9 +1,11 @@
 """Names of version 1.0: each one still works; names inside modules warn."""
 
+import pydoc
 import subprocess
 import sys
 from dataclasses import dataclass, replace
 from importlib import import_module
+from types import SimpleNamespace
 
 import pytest
 
@@ -97,6 +99,37 @@ def test_renamed_names_attributes_and_arguments_warn():
     assert work(progress=2) == 2
     with pytest.raises(TypeError, match="got both 'progress' and its old name 'listen'"):
         work(progress=2, listen=1)
+
+
+class Fit:
+    def solve(self):
+        """Solve the fit."""
+        return 3.0
+
+    @property
+    def total(self):
+        """Total."""
+        return 4.0
+
+    run, whole = RenamedAttribute("solve"), RenamedAttribute("total")
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning")
+def test_help_states_that_old_names_are_deprecated():
+    text = pydoc.plain(pydoc.render_doc(Fit))
+    assert text.count("Deprecated: use `solve`; removed in 2.0.") == 1
+    assert text.count("Deprecated: use `total`; removed in 2.0.") == 1
+    assert Fit.run(Fit()) == Fit().run() == 3.0
+    assert Fit.whole.fget(Fit()) == Fit().whole == 4.0
+
+
+def test_functions_of_version_1_that_became_properties_still_work():
+    old = import_module("ballsocket.export.trusted")
+    for name in ("trusted_depth", "valid_depth"):
+        with pytest.warns(DeprecationWarning, match="use the property ForceElement.valid_depth"):
+            assert getattr(old, name)(SimpleNamespace(valid_depth=0.5)) == 0.5
+    with pytest.raises(AttributeError, match="no attribute 'trust'"):
+        old.trust  # noqa: B018
 
 
 def test_a_renamed_field_is_accepted_and_read_with_a_warning():

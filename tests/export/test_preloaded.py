@@ -1,6 +1,8 @@
 """A preloaded joint as C sources and as an FMU, against its element in Python."""
 
 from math import radians
+from xml.etree.ElementTree import fromstring
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -63,6 +65,15 @@ def test_a_host_receives_force_and_friction_of_the_preload(element, version, tmp
     Fmu(element=element, name="rod", version=version).write(tmp_path / "rod.fmu")
     write_cross_check(element, tmp_path / "rod.fmu")
     host = Host(tmp_path / "rod.fmu", tmp_path)
+    status, at_rest = host.get("force[1]", "force[2]", "force[3]")
+    assert status == 0
+    assert_allclose(at_rest, 0.0, atol=0.01)  # N, of 24 kN at the centre of the socket
+    with ZipFile(tmp_path / "rod.fmu") as archive:
+        root = fromstring(archive.read("modelDescription.xml"))
+    found = [float(node.get("start")) for node in root.iter() if node.get("start") is not None][:3]
+    assert_allclose(found, 1e-3 * np.array(element.rest_position))
+    assert element.rest_position[2] < 0
+    assert "at rest" in root.get("description")
     host.set(position=(1e-5, 0.0, -2e-5), spin=(0.0, 0.0, 1.0))
     load = element((0.01, 0.0, -0.02), spin=(0.0, 0.0, 1.0))
     status, (force, moment) = host.get("force[1]", "moment[3]")

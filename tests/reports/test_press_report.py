@@ -8,13 +8,14 @@ from dataclasses import replace
 from datetime import date
 from hashlib import sha256
 from html import unescape
+from math import radians
 
 import pytest
 
 import ballsocket as bs
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
 from ballsocket.reports.pages import table, write_page
-from ballsocket.reports.press_report import PressedDesign, designs_report, press_report
+from ballsocket.reports.press_report import PressedDesign, _rim_verdict, designs_report, press_report
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
@@ -152,6 +153,13 @@ def test_the_report_of_a_tilted_cup_locates_the_contact_and_computes_its_toleran
     assert "in which the ball pushes into the cup, in the body: straight up" in unescape(text)
     assert "From 3 presses by sphere" in text
     assert "largest over allowable pressure pmax/pa" in text
+
+
+def test_contact_at_the_rim_is_no_failure_of_a_preloaded_joint():
+    joint = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
+    contact = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(240.0)), ring_width=radians(5.0)).press(joint, force=0.0)
+    verdict = ("the contact reaches the rim, as is normal in a preloaded joint", "holds")
+    assert _rim_verdict(contact, Units.SI) == [verdict]
 
 
 def test_the_head_of_a_report_is_escaped_and_its_logo_is_inside(tilted):

@@ -222,6 +222,8 @@ def sphere_remark(contact: Any, seconds: float, units: Units = Units.SI) -> str:
 def _rim_text(contact: OffAxisContact, units: Units = Units.SI) -> str:
     """Return the distance of the contact from the rim as text."""
     distance = contact.edge_distance
+    if contact.edge_loaded and contact.joint.clearance < 0:
+        return "contact up to the rim"
     return (
         f"contact cut off by {units.short_length(max(-distance, 0.0))} at the rim"
         if contact.edge_loaded

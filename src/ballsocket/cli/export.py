@@ -157,11 +157,19 @@ def fmu(
     path = checked_path(out, ".fmu")
     unit = Fmu(element=element_options.element(joint_options.read(joint)), name=identifier(path), version=fmi)
     written = unit.write(path)
-    echo_path(written.path)
+    echo_path(written.path, _rest_text(unit.element))
     for extra_path in write_cross_check(unit.element, path):
         echo_path(extra_path)
     if written.missing:
         print_message(written.missing)
+
+
+def _rest_text(element: ForceElement | PreloadedElement) -> str:
+    """Return the start position of a preloaded ball as text; empty for other joints."""
+    if not isinstance(element, PreloadedElement):
+        return ""
+    position = ", ".join(f"{1e-3 * component:.4g}" for component in element.rest_position)
+    return f": starts at rest, with force 0 at position ({position}) m"
 
 
 def checked_path(out: Path, ending: str) -> Path:

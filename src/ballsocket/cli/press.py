@@ -18,7 +18,7 @@ from ..core.checks import known_name
 from ..core.quantities import CONTACT
 from ..core.validity import Status
 from ..dynamics import Friction
-from ..elasticity.off_axis import PullOut
+from ..elasticity.off_axis import Preload, PullOut
 from ..elasticity.off_axis import pull_out as compute_pull_out
 from ..files.joint_file import JointFile
 from ..problem import Joint
@@ -173,6 +173,8 @@ class PressedJoint:
     ----------
     assumptions : list of str
         Sentences on what was assumed for a preloaded joint.
+    wear_depth_to_loosen : float or None
+        Uniform wear of the bore in mm at which a preloaded joint loses its preload; None without a preload.
     orientation : dict
         Inclination and anteversion of the cup by each definition, in degrees; empty for a cup without orientation.
     pulled : PullOut or None
@@ -184,6 +186,7 @@ class PressedJoint:
     models: Mapping[str, Model]
     remarks: list[str]
     assumptions: list[str]
+    wear_depth_to_loosen: float | None
     orientation: dict[str, Any]
     pulled: PullOut | None
 
@@ -194,7 +197,13 @@ class PressedJoint:
             contact = self.comparison.get(result["model"])
             result["friction"] = None if contact is None else friction.torques(contact)
         pull_out = None if self.pulled is None else self.pulled.summary()
-        further = {"assumptions": self.assumptions, "orientation": self.orientation, "pull_out": pull_out}
+        preload = {} if self.wear_depth_to_loosen is None else {"wear_depth_to_loosen": self.wear_depth_to_loosen}
+        further = {
+            "assumptions": self.assumptions,
+            "preload": preload,
+            "orientation": self.orientation,
+            "pull_out": pull_out,
+        }
         return {**summary, **{key: part for key, part in further.items() if part}}
 
 
@@ -223,6 +232,7 @@ def press(
     The table compares the chosen models with the exact solution. The finite elements (--model fem) also include rims,
     chamfers and sliding liners. The model sphere solves loads at an angle to the cup's axis (--tilt, --direction).
     Several joints are pressed one after the other; --report puts them on one page.
+    A preloaded joint (--interference) without a load is solved at rest, with force 0.
 
     Exit status: 0 success, 2 wrong input, 3 an iteration did not converge or no model has a result.
     """
@@ -237,12 +247,14 @@ def press(
     def press_joint(name: str | None) -> PressedJoint:
         """Press one joint by the requested models."""
         file = joint_options.read(name)
-        load = load_options.read(file)
+        is_at_rest = file.joint.clearance < 0 and load_options.are_missing(file)
+        load = {"force": 0.0} if is_at_rest else load_options.read(file)
         direction, remarks = direction_options.read(file), []
         stated_cup = cup_options.apply_to(file.cup)
         held_cup = stated_cup.around_ball(file.joint.clearance)
         assumed_arc = held_cup is not stated_cup
-        assumptions = _preload_assumptions(file.joint, held_cup if assumed_arc else None)
+        assumptions = ["force 0 assumed, the ball is at rest in its socket; set --force"] if is_at_rest else []
+        assumptions += _preload_assumptions(file.joint, held_cup if assumed_arc else None)
         orientation = {} if "tilt" in direction else orientation_summary(stated_cup)
         remarks += [orientation_remark(stated_cup)] if orientation and joint_options.orients else []
         cup = tilted_cup(held_cup, direction)
@@ -268,6 +280,10 @@ def press(
             contacts = successful_contacts(comparison)
             remarks += [friction_options.remark(name, contacts[name], units) for name in models if name in contacts]
         remarks += assumptions
+        wear_depth = None
+        if off_axis.name in comparison and file.joint.clearance < 0 and held_cup.arc_of_cover > pi:
+            wear_depth = Preload(model=timed.model, joint=file.joint).wear_depth_to_loosen()
+            remarks.append(f"uniform wear of the bore by {units.length(wear_depth)} ends the preload")
         pulled = None
         if friction_options.pull_out:
             pulled = compute_pull_out(timed.model, file.joint, friction_options.friction or 0.0)
@@ -278,6 +294,7 @@ def press(
             models=models,
             remarks=remarks,
             assumptions=assumptions,
+            wear_depth_to_loosen=wear_depth,
             orientation=orientation,
             pulled=pulled,
         )

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any, ParamSpec, TypeVar
 
 P = ParamSpec("P")
@@ -324,7 +324,24 @@ class RenamedAttribute:
 
     def __get__(self, instance: Any, owner: type) -> Any:
         _warn_renamed(f"{owner.__name__}.{self._old}", self._new)
-        return getattr(owner if instance is None else instance, self._new)
+        if instance is not None:
+            return getattr(instance, self._new)
+        return self._documented(getattr(owner, self._new))
+
+    def _documented(self, member: Any) -> Any:
+        """Return a function or property of the class with a docstring for `help` that states the new name."""
+        note = f"Deprecated: use `{self._new}`; removed in 2.0."
+        if isinstance(member, FunctionType):
+
+            @functools.wraps(member)
+            def renamed(*args: Any, **kwargs: Any) -> Any:
+                return member(*args, **kwargs)
+
+            renamed.__doc__ = note
+            return renamed
+        if isinstance(member, property | functools.cached_property):
+            return property(member.fget if isinstance(member, property) else member.func, doc=note)
+        return member
 
 
 def renamed_arguments(**names: str) -> Callable[[Callable[P, T]], Callable[P, T]]:

@@ -265,7 +265,8 @@ JOINT = _make_quantity_table(
 FIT = _make_quantity_table(
     Quantity("interference", "-c", "interference", Kind.LENGTH,
              "Excess R1 - R2 of the ball's radius over the socket's in a preloaded joint, in place of a clearance.",
-             allows=_is_positive, allowed="an interference (mm) is above 0 and finite"),
+             allows=_is_positive,
+             allowed="an interference (mm) is above 0 and finite; a ball of the socket's radius has clearance 0"),
 )
 """Alternative to the clearance for a joint that is preloaded without a load."""
 

@@ -497,6 +497,12 @@ class PreloadedElement(OneLine):
         """Largest tabulated indentation in mm, measured from first touch."""
         return self.table.limit - float(self.joint.clearance)
 
+    @property
+    def rest_position(self) -> tuple[float, float, float]:
+        """Position in mm of the ball's centre without a load, relative to the socket's centre."""
+        dome_x, dome_y, dome_z = (self.table.offset * component + 0.0 for component in self.model.cup.dome)
+        return dome_x, dome_y, dome_z
+
     def _collect_constants(self) -> Constants:
         """Collect the constants of joint, damping, friction and cup."""
         joint, damping = self.joint.with_floats(), self.damping or Damping()

@@ -24,7 +24,7 @@ from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
-from .pages import HEAD_TEXTS, letterhead, render_page, render_part, svg_address, trusted_html
+from .pages import HEAD_TEXTS, letterhead, logo_address, render_page, render_part, svg_address, trusted_html
 from .section_plots import joint_section
 from .unit_systems import Units
 
@@ -313,6 +313,8 @@ def _rim_verdict(contact: Contact, units: Units, uncertainty: LocalUncertainty |
     if not isinstance(contact, OffAxisContact) or contact.status.failed:
         return []
     distance = units.short_length(abs(float(contact.edge_distance)))
+    if contact.edge_loaded and contact.joint.clearance < 0:
+        return [("the contact reaches the rim, as is normal in a preloaded joint", "holds")]
     if contact.edge_loaded:
         return [(f"edge loading: the contact reaches the rim (CPER -{distance})", "fails")]
     verdict = f"no edge loading: the contact ends {distance} from the rim (CPER)"

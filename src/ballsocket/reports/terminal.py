@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 from copy import copy
 from dataclasses import replace
-from math import pi
+from math import degrees, pi
 from typing import Any
 
 import numpy
@@ -223,7 +223,7 @@ def _press_table(comparison: Comparison, columns: Sequence[Column], bars: str) -
     for column in columns:
         table.add_column(column.symbol, justify="right", no_wrap=True)
     if bars:
-        table.add_column(" p, 0° to 90°", no_wrap=True)
+        table.add_column(f" p, 0° to {degrees(_profile_end(comparison)):.0f}°", no_wrap=True)
     table.add_column("valid", justify="center", no_wrap=True)
     table.add_row("", *(Text(column.unit, style="dim") for column in columns))
     profiles = _profiles(comparison, bars) if bars else {}
@@ -259,11 +259,19 @@ def _cells(name: str, contact: Contact, columns: Sequence[Column], profile: Sequ
 
 
 def _profiles(comparison: Comparison, bars: str) -> dict[str, str]:
-    """Draw the pressure of every model from the pole to 90 degrees as a row of bars, to one scale."""
-    angle = numpy.linspace(0.0, pi / 2, 12)
+    """Draw the pressure of every model from the pole to the end of the profile as a row of bars, to one scale."""
+    angle = numpy.linspace(0.0, _profile_end(comparison), 12)
     pressures = {name: _pressure(contact, angle) for name, contact in comparison.items()}
     highest = max((pressure.max() for pressure in pressures.values()), default=0.0)
     return {name: _bars(pressure / highest if highest > 0 else 0 * angle, bars) for name, pressure in pressures.items()}
+
+
+def _profile_end(comparison: Comparison) -> float:
+    """Return the last angle (rad) of the pressure profiles: the end of the socket of a preloaded joint, else π/2."""
+    if comparison.joint.clearance >= 0:
+        return pi / 2
+    cups = (contact.model.cup for contact in comparison.values() if hasattr(contact.model, "cup"))
+    return max((float(cup.arc_of_cover) / 2 for cup in cups), default=pi / 2)
 
 
 def _pressure(contact: Contact, angle: numpy.ndarray) -> numpy.ndarray:

@@ -44,6 +44,20 @@ def test_springs_separate_at_the_interference(interference):
     assert fitted.separation_displacement((0.0, 5.0, 0.0)) == fitted.separation_displacement((0.0, 1.0, 0.0))
 
 
+@pytest.mark.parametrize("arc", [200.0, 240.0])
+def test_uniform_wear_loosens_a_socket_with_an_open_dome_at_the_interference(arc):
+    """Pressures are proportional to the interference that is left, even where the opening pushes the ball outwards."""
+    fitted = bs.Preload(model=held(arc), joint=TIGHT)
+    assert fitted.equilibrium.pressure_map[2].min() == 0.0
+    assert fitted.separation_displacement((1.0, 0.0, 0.0)) == 0.0
+    assert fitted.wear_depth_to_loosen() == pytest.approx(0.05, rel=1e-3)
+    deviation = bs.BoreDeviation(of=lambda n: 0.01 + 0.0 * n[2])
+    assert bs.Preload(model=held(arc, worn=deviation), joint=TIGHT).wear_depth_to_loosen() == pytest.approx(
+        0.04, rel=1e-3
+    )
+    assert fitted.equilibrium.notes[-1] == "the contact reaches the rim, as is normal in a preloaded joint"
+
+
 def test_open_contact_separates_at_zero():
     groove = bs.BoreDeviation(of=lambda n: np.where(n[2] > 0.9, 0.2, 0.0))
     fitted = bs.Preload(model=replace(SPRINGS, worn=groove), joint=TIGHT)

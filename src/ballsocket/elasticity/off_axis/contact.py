@@ -176,9 +176,10 @@ class OffAxisContact(SolvedContact):
         if not self._all_points_failed:
             unbounded = self.laws.combine(lambda contacts: contacts.state.unbounded) == 1
             notes += self._note_on_invalid_points(~(arrays.to_numpy(unbounded)), _SHARP_RIM_NOTE)
-            notes += self._note_on_invalid_points(
-                ~(arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)), _RIM_NOTE
-            )
+            bounded = arrays.to_numpy(self.edge_loaded) & ~arrays.to_numpy(unbounded)
+            preloaded = arrays.to_numpy(self.joint.clearance) < 0
+            notes += self._note_on_invalid_points(~(bounded & ~preloaded), _RIM_NOTE)
+            notes += self._note_on_invalid_points(~(bounded & preloaded), _PRELOADED_RIM_NOTE)
         return tuple(notes)
 
     @property
@@ -232,6 +233,7 @@ class OffAxisContact(SolvedContact):
 
 
 _RIM_NOTE = "edge loading: the contact reaches the rim"
+_PRELOADED_RIM_NOTE = "the contact reaches the rim, as is normal in a preloaded joint"
 _SHARP_RIM_NOTE = (
     "edge loading: the end of the bore indents the ball like the edge of a punch, where the pressure is unbounded; "
     "force and indentation are valid"

@@ -29,7 +29,10 @@ _MAX_BISECTIONS = 40
 _RELATIVE_TOLERANCE = 1e-4
 
 _MAX_INTERFERENCES = 4.0
-"""Displacement, as a multiple of the interference, at which every ball has lost contact somewhere."""
+"""Displacement or wear, as a multiple of the interference, at which every preload is lost."""
+
+_MIN_PRESSURE_RATIO = 1e-4
+"""Smallest pressure of an unloaded ball over that in the unworn bore that counts as a preload."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,6 +97,9 @@ class Preload:
     def separation_displacement(self, direction: Array) -> float:
         """Compute the displacement in mm from equilibrium at which the ball first loses contact in any cell.
 
+        It is 0 where the opening pushes the ball off its dome: a part of the bore is then open in equilibrium. The
+        joint is still preloaded, see `wear_depth_to_loosen`.
+
         Parameters
         ----------
         direction : array (3,)
@@ -116,23 +122,36 @@ class Preload:
         return self._bisect_length(is_closed)
 
     def wear_depth_to_loosen(self) -> float:
-        """Compute the uniform wear of the bore in mm at which the unloaded ball first loses contact in any cell."""
+        """Compute the uniform wear of the bore in mm at which the unloaded ball loses its preload.
 
-        def is_closed(depth: float) -> bool:
-            """Check if the bore touches the ball everywhere at a uniform wear depth in mm."""
-            worn = replace(self.model, worn=BoreDeviation(of=lambda n: depth + 0.0 * n[2]))
-            return _touches_everywhere(worn.press(self.joint, force=0.0))  # type: ignore[arg-type]
+        Pressure and friction torque of the unloaded ball vanish at this depth, and the ball has play beyond it. In a
+        bore without `worn` it is the interference, for every arc of cover. Wear adds to the depth of `worn`.
+        """
+        unworn_pressure = self._unloaded_pressure(0.0)
+        return self._bisect_length(
+            lambda depth: self._unloaded_pressure(depth) > _MIN_PRESSURE_RATIO * unworn_pressure,
+        )
 
-        return self._bisect_length(is_closed)
+    def _unloaded_pressure(self, depth: float) -> float:
+        """Compute the largest pressure in MPa of the unloaded ball in any cell at a uniform wear depth in mm."""
+        worn = self.model.worn
 
-    def _bisect_length(self, is_closed: Callable[[float], bool]) -> float:
-        """Find the largest length in mm at which the contact is closed, or 0 if it is open at 0."""
+        def total_depth(directions: Numbers) -> Numbers:
+            """Add the uniform wear to the depth of the model's bore."""
+            return depth + (0.0 * directions[2] if worn is None else worn.depth(directions))
+
+        model = replace(self.model, worn=BoreDeviation(of=total_depth))
+        contact: OffAxisContact = model.press(self.joint, force=0.0)  # type: ignore[assignment]
+        return float(contact.pressure_map[2].max())
+
+    def _bisect_length(self, holds: Callable[[float], bool]) -> float:
+        """Find the largest length in mm up to which a condition holds, or 0 if it does not hold at 0."""
         low, high = 0.0, _MAX_INTERFERENCES * float(self.joint.interference)
-        if not is_closed(low):
+        if not holds(low):
             return 0.0
         for _ in range(_MAX_BISECTIONS):
             middle = (low + high) / 2
-            low, high = (middle, high) if is_closed(middle) else (low, middle)
+            low, high = (middle, high) if holds(middle) else (low, middle)
             if high - low < _RELATIVE_TOLERANCE * high:
                 break
         return low

@@ -21,7 +21,7 @@ from ..c_text import c_number
 from ..compiler import LIBRARY_ENDING, THIS_PLATFORM, NoCompiler, Platform, compile_library
 from ..targets import ExportJob
 from ..tunable import TUNABLES
-from .variables import STEP, STOP, UNITS, Variable, variables
+from .variables import STEP, STOP, UNITS, Variable, start_inputs, variables
 
 _ARCHIVE_DATE = (1980, 1, 1, 0, 0, 0)
 """Fixed date of all files, so that equal elements give equal archives."""
@@ -251,7 +251,7 @@ class Fmu:
     """Force element as an FMU (functional mock-up unit) for model exchange and co-simulation, in SI units.
 
     Inputs are position, velocity and spin; outputs are force, moment, energy, half angle and largest pressure. The unit
-    has no states. Damping and friction are tunable parameters.
+    has no states. Damping and friction are tunable parameters. The start position of a preloaded ball is that at rest.
 
     Parameters
     ----------
@@ -305,6 +305,7 @@ class Fmu:
         """Start values, and the limit of validity with its message, for placeholders of the C template."""
         element, depth = self.element, self._job.depth
         return {
+            "inputs": ", ".join(map(c_number, start_inputs(element))),
             "starts": ", ".join(
                 c_number(getattr(element.constants, number.constant) * number.si) for number in TUNABLES
             ),
@@ -317,6 +318,8 @@ class Fmu:
         """Name, identifier and texts for the description file of the FMU."""
         c_sources = [name for name in self.sources if name.endswith(".c")]
         description = f"ball in a socket, {self.element.model.title}"
+        if isinstance(self.element, PreloadedElement):
+            description += "; the start values of the position are those of the ball at rest, without a force"
         return UnitInformation(
             name=self.name, guid=self.guid, text=description, tool=f"ballsocket {__version__}", sources=c_sources
         )

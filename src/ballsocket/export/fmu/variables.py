@@ -67,18 +67,26 @@ _STATE, _POSITION = tuple(range(1, 10)), (1, 2, 3)
 
 def variables(element: ForceElement | PreloadedElement) -> tuple[Variable, ...]:
     """List all variables of an FMU in the order of their reference numbers, from 1."""
-    properties = [*_input_properties(), *_output_properties(), *_parameter_properties(element)]
+    properties = [*_input_properties(element), *_output_properties(), *_parameter_properties(element)]
     return tuple(
         Variable(reference=reference, **variable_properties)
         for reference, variable_properties in enumerate(properties, 1)
     )
 
 
-def _input_properties() -> Iterator[dict]:
+def start_inputs(element: ForceElement | PreloadedElement) -> tuple[float, ...]:
+    """Return the start values of position, velocity and spin in SI units: the ball at rest."""
+    position = element.rest_position if isinstance(element, PreloadedElement) else (0.0, 0.0, 0.0)
+    return (*(_MM * component for component in position), *(0.0,) * 6)
+
+
+def _input_properties(element: ForceElement | PreloadedElement) -> Iterator[dict]:
     """Yield the properties of all inputs: position, velocity and spin."""
+    starts = iter(start_inputs(element))
     for name, (unit, meaning) in _VECTORS.items():
         for axis in (1, 2, 3):
-            yield {"name": f"{name}[{axis}]", "causality": "input", "unit": unit, "description": meaning, "start": 0.0}
+            properties = {"causality": "input", "unit": unit, "description": meaning, "start": next(starts)}
+            yield {"name": f"{name}[{axis}]", **properties}
 
 
 def _output_properties() -> Iterator[dict]:

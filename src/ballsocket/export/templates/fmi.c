@@ -120,7 +120,9 @@ static result report(instance *i, int level, const char *message)
 static void set_defaults(instance *i)
 {
     const double defaults[PARAMETERS] = {$starts};
+    const double at_rest[INPUTS] = {$inputs};
     memset(&i->now, 0, sizeof i->now);
+    memcpy(i->now.input, at_rest, sizeof at_rest);
     memcpy(i->now.parameter, defaults, sizeof defaults);
     memset(i->logged, 0, sizeof i->logged);
     i->evaluated = 0;
