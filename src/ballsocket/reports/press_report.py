@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from datetime import date
 from hashlib import sha256
 from math import ceil, degrees, inf, isfinite
+from pathlib import Path
 
 from ..compare import Comparison, successful_contacts
 from ..contact import Contact
