@@ -33,7 +33,8 @@ def pages(language, mark):
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """Beside the examples, as the pages take it."""
-    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    no_bytecode = shutil.ignore_patterns("__pycache__")  # which another process may be writing
+    shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=no_bytecode)
     monkeypatch.chdir(tmp_path)
 
 
