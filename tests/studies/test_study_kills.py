@@ -113,6 +113,7 @@ def test_a_study_killed_many_times_is_that_of_an_undisturbed_one(tmp_path, engin
     assert equal_to_undisturbed(tmp_path / "s.zarr")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("engine", some(["processes", "dask"], 1))
 def test_killed_workers_cost_retries(tmp_path, engine):
     """One or two of them, at random moments."""
@@ -131,6 +132,7 @@ def test_killed_workers_cost_retries(tmp_path, engine):
     assert equal_to_undisturbed(tmp_path / "s.zarr")
 
 
+@pytest.mark.long
 def test_workers_leave_when_the_study_is_killed_alone(tmp_path):
     counts = {"clearances": 60, "radii": 30, "model": "exact"}  # more than it will be given time for
     (tmp_path / "s.toml").write_text(STUDY.format(engine="processes", **counts), encoding="utf-8")
