@@ -92,7 +92,7 @@ class ModelOptions:
         models = [requested_model(name) for name in self.names or [default]]
         named = {model.name: model for model in models}
         if len(named) < len(set(self.names)):
-            raise ValueError("two of the models have one name: give each custom model a name of its own")
+            raise ValueError("two of the models have one name: give each custom model a different name")
         return named
 
 
@@ -178,7 +178,7 @@ class PressedJoint:
     orientation : dict
         Inclination and anteversion of the cup by each definition, in degrees; empty for a cup without orientation.
     pulled : PullOut or None
-        Pull-out force, if it was asked for.
+        Pull-out force, if requested.
     """
 
     file: JointFile
@@ -191,7 +191,7 @@ class PressedJoint:
     pulled: PullOut | None
 
     def summary(self, friction: FrictionOptions) -> dict[str, Any]:
-        """Return the results as plain data, with the friction torques and the pull-out force if asked for."""
+        """Return the results as plain data, with the friction torques and the pull-out force if requested."""
         summary = self.comparison.summary()
         for result in summary["results"] if friction.friction is not None else ():
             contact = self.comparison.get(result["model"])

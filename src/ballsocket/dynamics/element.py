@@ -148,21 +148,14 @@ class ForceElement(OneLine):
     def _collect_constants(self, smoothing: float) -> Constants:
         """Collect the constants of joint, damping, friction and cup."""
         joint, cup = self.joint.with_floats(), self.cup
-        damping = self.damping or Damping()
-        friction = self.friction if isinstance(self.friction, Friction) else Friction(coefficient=0.0)
+        friction = self.friction if isinstance(self.friction, Friction) else None
         return Constants(
             ball_radius=joint.ball_radius,
             socket_radius=joint.socket_radius,
             clearance=joint.clearance - self.stretch,
             wall=min(joint.liner_thickness, joint.socket_radius, self.potential.deepest) + self.stretch,
             smoothing=smoothing,
-            hysteresis=damping.hysteresis,
-            time=damping.time,
-            sliding=friction.coefficient,
-            static=friction.breakaway_coefficient,
-            transition_speed=friction.transition_speed,
-            stribeck_speed=friction.stribeck_speed,
-            viscous=friction.viscous,
+            **loss_constants(self.damping, friction),
             rim=0.0 if cup is None else cup.rim,
             **dict(zip(("dome_x", "dome_y", "dome_z"), (Cup() if cup is None else cup).dome, strict=True)),
         )
@@ -224,11 +217,7 @@ class ForceElement(OneLine):
 
     def _load_of_arrays(self, position: Any, velocity: Any, spin: Any, attached: Any) -> Load:
         """Compute the loads at many states, given as arrays (..., 3)."""
-        names = ("position", "velocity", "spin")
-        axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
-        position = check_vectors("position", position, axes[0])
-        states = [as_array_like(position, value) for value in (position, velocity, spin)]
-        r, v, w = (split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
+        r, v, w = split_states(position, velocity, spin)
         with numpy.errstate(all="ignore"):  # states without a result have a status
             centre = self._centre_if_attached(ball_centre_at(*r, self.constants.clearance), attached)
             self._validity_monitor.check_array(centre.indentation)
@@ -305,6 +294,37 @@ def as_array_like(position: Any, value: Any) -> Any:
         return value
     like = to_common_arrays(position)[0]
     return arrays.namespace(like).asarray(value, dtype=like.dtype, device=arrays.device(like))
+
+
+def split_states(position: Any, velocity: Any, spin: Any) -> tuple[Vector, Vector, Vector]:
+    """Split states of a ball, arrays (..., 3), into components in arrays of the position's library.
+
+    Raises
+    ------
+    ValueError
+        A vector without three components.
+    """
+    names = ("position", "velocity", "spin")
+    axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
+    position = check_vectors("position", position, axes[0])
+    states = [as_array_like(position, value) for value in (position, velocity, spin)]
+    r, v, w = (split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
+    return r, v, w
+
+
+def loss_constants(damping: Damping | None, friction: Friction | None) -> dict[str, float]:
+    """Return the constants of damping and friction by their names in `Constants`; None has no losses."""
+    damping = damping or Damping()
+    friction = friction or Friction(coefficient=0.0)
+    return {
+        "hysteresis": damping.hysteresis,
+        "time": damping.time,
+        "sliding": friction.coefficient,
+        "static": friction.breakaway_coefficient,
+        "transition_speed": friction.transition_speed,
+        "stribeck_speed": friction.stribeck_speed,
+        "viscous": friction.viscous,
+    }
 
 
 def split_components(value: Any) -> Vector:

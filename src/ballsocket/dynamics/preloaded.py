@@ -19,14 +19,14 @@ import numpy
 from ..contact.assembly import check_joint
 from ..contact.law import CurveLaw
 from ..core import arrays
-from ..core.arrays import Array, Numbers, clip, is_plain_number, isfinite, sqrt, to_common_arrays, where
-from ..core.checks import check_vectors, shown
+from ..core.arrays import Array, Numbers, clip, is_plain_number, isfinite, sqrt, where
+from ..core.checks import shown
 from ..core.display import OneLine
 from ..elasticity.off_axis import Preload, Sphere
 from ..problem import Joint
 from .bristles import Bristles
 from .damping import Damping
-from .element import as_array_like, components, split_components
+from .element import components, loss_constants, split_states
 from .friction import Friction, friction_coefficient
 from .load import OVERFLOW_GUARD, ContactState, describe_load
 from .matrices import join_matrix, join_vector
@@ -505,21 +505,14 @@ class PreloadedElement(OneLine):
 
     def _collect_constants(self) -> Constants:
         """Collect the constants of joint, damping, friction and cup."""
-        joint, damping = self.joint.with_floats(), self.damping or Damping()
-        friction = self.friction or Friction(coefficient=0.0)
+        joint = self.joint.with_floats()
         return Constants(
             ball_radius=joint.ball_radius,
             socket_radius=joint.socket_radius,
             clearance=joint.clearance,
             wall=self.table.limit,
             smoothing=0.0,
-            hysteresis=damping.hysteresis,
-            time=damping.time,
-            sliding=friction.coefficient,
-            static=friction.breakaway_coefficient,
-            transition_speed=friction.transition_speed,
-            stribeck_speed=friction.stribeck_speed,
-            viscous=friction.viscous,
+            **loss_constants(self.damping, self.friction),
             rim=0.0,
             **dict(zip(("dome_x", "dome_y", "dome_z"), self.model.cup.dome, strict=True)),
         )
@@ -544,11 +537,7 @@ class PreloadedElement(OneLine):
         """
         if type(position) in (tuple, list):
             return self._load(tuple, components(position), components(velocity), components(spin))
-        names = ("position", "velocity", "spin")
-        axes = ("x, y, z (mm)", "x, y, z (mm/s)", "x, y, z (rad/s)")
-        position = check_vectors("position", position, axes[0])
-        states = [as_array_like(position, value) for value in (position, velocity, spin)]
-        r, v, w = (split_components(value) for value in to_common_arrays(*map(check_vectors, names, states, axes)))
+        r, v, w = split_states(position, velocity, spin)
         return self._load(object, r, v, w)
 
     def _load(self, kind: type, position: Vector, velocity: Vector, spin: Vector) -> PreloadedLoad:
