@@ -46,3 +46,17 @@ def test_a_full_socket_has_a_slope_at_its_rim():
     contact = bs.CosineLimit().press(JOINT, force=1500.0)
     assert contact.edge_slope == pytest.approx(contact.pole_pressure / JOINT.socket_radius, rel=1e-6)
     assert cos(contact.half_angle) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.4])
+def test_mean_coefficient_off_the_axis_is_that_of_the_round_contact(tilt):
+    """The cells of 2 degrees resolve the root to 2 %."""
+    contact = bs.Sphere(surface=bs.ClosedShell()).press(JOINT, force=1500.0, tilt=tilt)
+    assert contact.edge_coefficient == pytest.approx(2.046, rel=0.02)
+    assert np.isnan(contact.edge_slope)
+
+
+def test_mean_slope_of_springs_off_the_axis():
+    contact = bs.Sphere(surface=bs.Springs()).press(JOINT, force=np.array([1500.0, 1600.0]), tilt=0.4)
+    expected = bs.HessForsbach().press(JOINT, force=np.array([1500.0, 1600.0])).edge_slope
+    assert contact.edge_slope == pytest.approx(expected, rel=0.005)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 
 import numpy
@@ -52,12 +52,17 @@ class FilmMesh:
         """Number of cells."""
         return len(self.area)
 
+    def in_frame(self, frame: Numbers) -> FilmMesh:
+        """Rotate the mesh: rows of `frame` (3, 3) are its x, y and z axes in the new coordinates."""
+        names = ("direction", "axis", "rim_axis")
+        return replace(self, **{name: getattr(self, name) @ frame for name in names})
+
     def face_velocity(self, spin: Numbers) -> tuple[Numbers, Numbers]:
         """Compute the velocity of the ball's surface across the faces and the rim faces in mm/s; spin in rad/s."""
         return self.radius * (self.axis @ spin), self.radius * (self.rim_axis @ spin)
 
 
-def polar_mesh(radius: float, ring_edges: Numbers, meridians: int) -> FilmMesh:
+def polar_mesh(radius: float, ring_edges: Numbers, meridians: int | Numbers) -> FilmMesh:
     """Divide a sphere about its z axis into rings and meridians.
 
     Parameters
@@ -66,51 +71,84 @@ def polar_mesh(radius: float, ring_edges: Numbers, meridians: int) -> FilmMesh:
         Radius of the sphere in mm.
     ring_edges : array (rings + 1,)
         Polar angles of the lines between the rings in rad, from 0 to the rim.
-    meridians : int
-        Number of cells in a ring.
+    meridians : int or array of int (rings,)
+        Number of cells in each ring.
     """
-    require("meridians", meridians, meridians >= 4, "at least 4 cells in a ring")
     rings = len(ring_edges) - 1
-    step = 2 * pi / meridians
+    counts = numpy.broadcast_to(meridians, rings).astype(int)
+    require("meridians", counts.min(), bool((counts >= 4).all()), "at least 4 cells in a ring")
+    first = numpy.concatenate([[0], numpy.cumsum(counts)])
     theta = 0.5 * (ring_edges[1:] + ring_edges[:-1])
-    phi = (numpy.arange(meridians) + 0.5) * step
-    cell = numpy.arange(rings * meridians).reshape(rings, meridians)
-    inner = ring_edges[1:-1]
-    ring_shape = (rings - 1, meridians)
-    # Velocity of the surface is R ω × n, so its part along a unit tangent t is R ω · (n × t): n × e_θ = e_φ, n × e_φ = -e_θ.
-    east = numpy.stack([-numpy.sin(phi), numpy.cos(phi), numpy.zeros(meridians)], axis=-1)
-    border_phi = numpy.arange(1, meridians + 1) * step
-    south = _meridian_tangents(theta[:, None], border_phi[None, :])
+    ring = numpy.repeat(numpy.arange(rings), counts)
+    around = numpy.arange(first[-1]) - first[ring]
+    step = 2 * pi / counts
+    phi = (around + 0.5) * step[ring]
+    across = [_ring_faces(radius, ring_edges, theta, first, counts, index) for index in range(rings - 1)]
+    half_width = radius * numpy.sin(theta[ring]) * step[ring] / 2
+    rows = across + [
+        (
+            numpy.arange(first[-1]),
+            first[ring] + (around + 1) % counts[ring],
+            radius * numpy.diff(ring_edges)[ring],
+            half_width,
+            half_width,
+            # Velocity of the surface is R ω × n, its part along a tangent t is R ω · (n × t), and n × e_φ = -e_θ.
+            -_meridian_tangents(theta[ring], (around + 1) * step[ring]),
+        )
+    ]
+    left, right, width, left_distance, right_distance, axis = (
+        numpy.concatenate(columns) for columns in zip(*rows, strict=True)
+    )
+    last = slice(first[-2], first[-1])
     return FilmMesh(
-        area=numpy.repeat(radius**2 * -numpy.diff(numpy.cos(ring_edges)) * step, meridians),
-        direction=_directions(theta[:, None], phi[None, :]).reshape(-1, 3),
-        left=numpy.concatenate([cell[:-1].ravel(), cell.ravel()]),
-        right=numpy.concatenate([cell[1:].ravel(), numpy.roll(cell, -1, axis=1).ravel()]),
-        width=numpy.concatenate(
-            [
-                numpy.repeat(radius * numpy.sin(inner) * step, meridians),
-                numpy.repeat(radius * numpy.diff(ring_edges), meridians),
-            ]
-        ),
-        left_distance=numpy.concatenate(
-            [
-                numpy.repeat(radius * (inner - theta[:-1]), meridians),
-                numpy.repeat(radius * numpy.sin(theta) * step / 2, meridians),
-            ]
-        ),
-        right_distance=numpy.concatenate(
-            [
-                numpy.repeat(radius * (theta[1:] - inner), meridians),
-                numpy.repeat(radius * numpy.sin(theta) * step / 2, meridians),
-            ]
-        ),
-        axis=numpy.concatenate([numpy.broadcast_to(east, (*ring_shape, 3)).reshape(-1, 3), -south.reshape(-1, 3)]),
-        rim_cell=cell[-1],
-        rim_width=numpy.full(meridians, radius * numpy.sin(ring_edges[-1]) * step),
-        rim_distance=numpy.full(meridians, radius * (ring_edges[-1] - theta[-1])),
-        rim_axis=east,
+        area=(radius**2 * -numpy.diff(numpy.cos(ring_edges)) * step)[ring],
+        direction=_directions(theta[ring], phi),
+        left=left,
+        right=right,
+        width=width,
+        left_distance=left_distance,
+        right_distance=right_distance,
+        axis=axis,
+        rim_cell=numpy.arange(first[-2], first[-1]),
+        rim_width=numpy.full(counts[-1], radius * numpy.sin(ring_edges[-1]) * step[-1]),
+        rim_distance=numpy.full(counts[-1], radius * (ring_edges[-1] - theta[-1])),
+        rim_axis=_east(phi[last]),
         radius=radius,
     )
+
+
+def _ring_faces(
+    radius: float, ring_edges: Numbers, theta: Numbers, first: Numbers, counts: Numbers, inner: int
+) -> tuple[Numbers, ...]:
+    """Make the faces between a ring and the next one: both cells, width, both distances, axis.
+
+    Rings of different numbers of cells share one face for each piece of the line between them.
+    """
+    outer = inner + 1
+    if counts[inner] == counts[outer]:
+        marks = numpy.arange(counts[inner] + 1) / counts[inner]
+    else:
+        marks = numpy.unique(
+            numpy.concatenate([numpy.arange(count + 1) / count for count in counts[[inner, outer]]]).round(12)
+        )
+    middle = 0.5 * (marks[1:] + marks[:-1])
+    pieces = len(middle)
+    return (
+        first[inner] + (middle * counts[inner]).astype(int),
+        first[outer] + (middle * counts[outer]).astype(int),
+        radius * numpy.sin(ring_edges[outer]) * 2 * pi * numpy.diff(marks),
+        numpy.full(pieces, radius * (ring_edges[outer] - theta[inner])),
+        numpy.full(pieces, radius * (theta[outer] - ring_edges[outer])),
+        _east(2 * pi * middle),  # n × e_θ = e_φ
+    )
+
+
+def thinned_meridians(ring_edges: Numbers, meridians: int) -> Numbers:
+    """Choose the number of cells of each ring, a divisor of `meridians`, so that cells near the pole are not narrow."""
+    divisors = numpy.array([count for count in range(6, meridians + 1) if meridians % count == 0])
+    middle = 0.5 * (ring_edges[1:] + ring_edges[:-1])
+    wanted = meridians * numpy.sin(numpy.minimum(middle, pi / 2))
+    return divisors[numpy.searchsorted(divisors, wanted - 1e-9).clip(0, len(divisors) - 1)]
 
 
 def strip_mesh(edges: Numbers) -> FilmMesh:
@@ -135,9 +173,7 @@ def strip_mesh(edges: Numbers) -> FilmMesh:
     )
 
 
-def graded_rings(
-    edge: float, *, finest: float, coarsest: float, rim: float = pi / 2, growth: float = 1.12
-) -> Numbers:
+def graded_rings(edge: float, *, finest: float, coarsest: float, rim: float = pi / 2, growth: float = 1.12) -> Numbers:
     """Make the angles between rings that are finest at the edge of the dry contact.
 
     Parameters
@@ -166,12 +202,15 @@ def _graded_line(length: float, finest: float, coarsest: float, growth: float) -
     return points * (length / points[-1])
 
 
+def _east(phi: Numbers) -> Numbers:
+    """Compute the unit tangents (..., 3) towards growing azimuth."""
+    return numpy.stack([-numpy.sin(phi), numpy.cos(phi), numpy.zeros_like(phi)], axis=-1)
+
+
 def _directions(theta: Numbers, phi: Numbers) -> Numbers:
     """Compute unit vectors (..., 3) at polar and azimuth angles in rad."""
     return numpy.stack(
-        numpy.broadcast_arrays(
-            numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)
-        ),
+        numpy.broadcast_arrays(numpy.sin(theta) * numpy.cos(phi), numpy.sin(theta) * numpy.sin(phi), numpy.cos(theta)),
         axis=-1,
     )
 
@@ -179,8 +218,6 @@ def _directions(theta: Numbers, phi: Numbers) -> Numbers:
 def _meridian_tangents(theta: Numbers, phi: Numbers) -> Numbers:
     """Compute the unit tangents (..., 3) towards growing polar angle."""
     return numpy.stack(
-        numpy.broadcast_arrays(
-            numpy.cos(theta) * numpy.cos(phi), numpy.cos(theta) * numpy.sin(phi), -numpy.sin(theta)
-        ),
+        numpy.broadcast_arrays(numpy.cos(theta) * numpy.cos(phi), numpy.cos(theta) * numpy.sin(phi), -numpy.sin(theta)),
         axis=-1,
     )

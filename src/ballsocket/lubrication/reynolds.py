@@ -130,9 +130,7 @@ def _newton_step(
     mesh = problem.mesh
     thickness = problem.thickness(state)
     pressure, void = state.pressure, state.void
-    balance = balance_cells(
-        mesh, problem.spin, problem.viscosity, thickness, pressure, void, problem.rim_pressure
-    )
+    balance = balance_cells(mesh, problem.spin, problem.viscosity, thickness, pressure, void, problem.rim_pressure)
     outflow, by_pressure, by_void = _add_storage(balance, mesh.area, thickness, void, volume, step, problem.compliance)
     by_thickness = balance.by_thickness
     if step < inf:
