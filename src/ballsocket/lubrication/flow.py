@@ -55,33 +55,33 @@ def balance_cells(
         Pressure of the lubricant at the rim in MPa.
     """
     velocity, rim_velocity = mesh.face_velocity(spin)
-    left, right = mesh.left, mesh.right
-    left_film, right_film = thickness[left], thickness[right]
+    first, second = mesh.first, mesh.second
+    first_film, second_film = thickness[first], thickness[second]
     # Conductances of the two sides of a face; in series they carry the flow from centre to centre.
-    left_side = left_film**3 / mesh.left_distance
-    right_side = right_film**3 / mesh.right_distance
-    both = left_side + right_side
-    conductance = mesh.width / (12 * viscosity) * left_side * right_side / both
-    film = (left_film * right_side + right_film * left_side) / both
-    left_slope = 3 * left_side / left_film
-    right_slope = 3 * right_side / right_film
-    conductance_by_left = mesh.width / (12 * viscosity) * (right_side / both) ** 2 * left_slope
-    conductance_by_right = mesh.width / (12 * viscosity) * (left_side / both) ** 2 * right_slope
-    film_by_left = right_side / both + (right_film - left_film) * right_side / both**2 * left_slope
-    film_by_right = left_side / both + (left_film - right_film) * left_side / both**2 * right_slope
+    first_side = first_film**3 / mesh.first_distance
+    second_side = second_film**3 / mesh.second_distance
+    both = first_side + second_side
+    conductance = mesh.width / (12 * viscosity) * first_side * second_side / both
+    film = (first_film * second_side + second_film * first_side) / both
+    first_slope = 3 * first_side / first_film
+    second_slope = 3 * second_side / second_film
+    conductance_by_first = mesh.width / (12 * viscosity) * (second_side / both) ** 2 * first_slope
+    conductance_by_second = mesh.width / (12 * viscosity) * (first_side / both) ** 2 * second_slope
+    film_by_first = second_side / both + (second_film - first_film) * second_side / both**2 * first_slope
+    film_by_second = first_side / both + (first_film - second_film) * first_side / both**2 * second_slope
     carried = 0.5 * velocity * mesh.width
-    upstream = numpy.where(velocity > 0, left, right)
+    upstream = numpy.where(velocity > 0, first, second)
     full = 1 - void[upstream]
-    fall = pressure[left] - pressure[right]
+    fall = pressure[first] - pressure[second]
     flow = conductance * fall + carried * film * full
-    rows = _FaceRows(mesh.cells, left, right)
-    by_pressure = rows.matrix((left, conductance), (right, -conductance))
+    rows = _FaceRows(mesh.cells, first, second)
+    by_pressure = rows.matrix((first, conductance), (second, -conductance))
     by_void = rows.matrix((upstream, -carried * film))
     by_thickness = rows.matrix(
-        (left, conductance_by_left * fall + carried * full * film_by_left),
-        (right, conductance_by_right * fall + carried * full * film_by_right),
+        (first, conductance_by_first * fall + carried * full * film_by_first),
+        (second, conductance_by_second * fall + carried * full * film_by_second),
     )
-    outflow = numpy.bincount(left, flow, mesh.cells) - numpy.bincount(right, flow, mesh.cells)
+    outflow = numpy.bincount(first, flow, mesh.cells) - numpy.bincount(second, flow, mesh.cells)
     # The rim: the film of the last cell, and lubricant without vapour outside.
     cell = mesh.rim_cell
     rim_film = thickness[cell]
@@ -105,12 +105,12 @@ class _FaceRows:
     """Rows of the two cells of each face in a sparse matrix."""
 
     cells: int
-    left: Numbers
-    right: Numbers
+    first: Numbers
+    second: Numbers
 
     def matrix(self, *terms: tuple[Numbers, Numbers]) -> scipy.sparse.csr_matrix:
-        """Add (column, flow from left to right) of each face to its two cells."""
-        rows = numpy.concatenate([side for _ in terms for side in (self.left, self.right)])
+        """Add (column, flow from first to second) of each face to its two cells."""
+        rows = numpy.concatenate([side for _ in terms for side in (self.first, self.second)])
         columns = numpy.concatenate([column for column, _ in terms for _ in range(2)])
         values = numpy.concatenate([part for _, flow in terms for part in (flow, -flow)])
         return scipy.sparse.csr_matrix((values, (rows, columns)), (self.cells, self.cells))

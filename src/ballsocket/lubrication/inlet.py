@@ -1,7 +1,7 @@
 """Film at the inlet edge of a dry contact in closed form: radial springs and elastic bodies.
 
-A thin film is set where the ball draws lubricant under the edge of the dry contact. Its thickness depends on the rise of
-the dry pressure there: p = G s on springs, p = A sqrt(s) in elastic bodies, with the arc s from the edge.
+The ball draws lubricant under the edge of the dry contact. The film depends on the rise of the dry pressure there:
+p = G s on springs, p = A sqrt(s) in elastic bodies, with the arc s from the edge.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ class Edge(Protocol):
 
     @property
     def leakage(self) -> float:
-        """Relative loss of film on the way across the contact, which the inlet formula neglects."""
+        """Relative loss of film on the way across the contact to its thinnest point, which the inlet neglects."""
         ...
 
     def inlet_film(self, viscosity: float, speed: Numbers) -> Numbers:
@@ -47,6 +47,10 @@ class Edge(Protocol):
 
     def inlet_length(self, viscosity: float, speed: Numbers) -> Numbers:
         """Compute the length in mm over which the inlet changes the dry pressure."""
+        ...
+
+    def side_speed(self, viscosity: float, speed: float, radius: float) -> float:
+        """Compute the speed in mm/s into the contact at its sides, where the ball moves along the edge."""
         ...
 
     def wave_error(self, viscosity: float, speed: float, radius: float) -> float:
@@ -71,7 +75,7 @@ class SpringEdge:
 
     prescribed: ClassVar[bool] = False
     outlet_ratio: ClassVar[float] = 1.0
-    leakage: ClassVar[float] = 0.2
+    leakage: ClassVar[float] = 0.4
 
     def inlet_film(self, viscosity: float, speed: Numbers) -> Numbers:
         """Compute the film in mm at surface speeds U across the edge in mm/s; viscosity in MPa s."""
@@ -82,6 +86,10 @@ class SpringEdge:
     def inlet_length(self, viscosity: float, speed: Numbers) -> Numbers:
         """Compute the length K h/G in mm over which the inlet changes the dry pressure."""
         return self.modulus * self.inlet_film(viscosity, speed) / self.slope
+
+    def side_speed(self, viscosity: float, speed: float, radius: float) -> float:
+        """Return the speed of the surface in mm/s: on springs the wave itself has the film at the sides."""
+        return speed
 
     def wave_error(self, viscosity: float, speed: float, radius: float) -> float:
         """Estimate the relative error of a thin film on a contact of a radius in mm: 1.4 (ℓ/a)^(2/3)."""
@@ -115,6 +123,15 @@ class ElasticEdge:
     def inlet_length(self, viscosity: float, speed: Numbers) -> Numbers:
         """Compute the length (η U E*²/A³)^(2/5) in mm over which the inlet changes the dry pressure."""
         return (viscosity * numpy.maximum(speed, 0.0) * self.modulus**2 / self.coefficient**3) ** 0.4
+
+    def side_speed(self, viscosity: float, speed: float, radius: float) -> float:
+        """Compute the speed in mm/s into the contact at its sides, where the ball moves along the edge.
+
+        At an angle ψ from a side the inward speed is U ψ and the chord of the edge a ψ²/2 deep. The inlet is as long as
+        that at ψ = (2 ℓ/a)^(5/8), with the inlet length ℓ of the speed U; nearer to the side no thinner film enters.
+        """
+        length = float(self.inlet_length(viscosity, numpy.asarray(speed)))
+        return speed * min((2 * length / radius) ** 0.625, 1.0)
 
     def wave_error(self, viscosity: float, speed: float, radius: float) -> float:
         """Estimate the relative error of a thin film on a contact of a radius in mm: (ℓ/a)^(2/3)."""

@@ -21,25 +21,25 @@ class FilmMesh:
         Areas of the cells in mm².
     direction : array (cells, 3)
         Unit vectors from the centre of the cup to the cells; zeros on a plane film.
-    left, right : array of int (faces,)
+    first, second : array of int (faces,)
         Cells on both sides of each face.
     width : array (faces,)
         Lengths of the faces in mm.
-    left_distance, right_distance : array (faces,)
+    first_distance, second_distance : array (faces,)
         Distances from the face to the centres of its two cells in mm.
     axis : array (faces, 3)
-        Rotation that drives a unit flow through the face: the velocity from left to right is R ω · axis.
+        Rotation that drives a unit flow through the face: the velocity from first to second is R ω · axis.
     rim_cell, rim_width, rim_distance, rim_axis : arrays (rim faces, ...)
         The same of the faces at the rim, whose outward side is the lubricant around the joint.
     """
 
     area: Numbers
     direction: Numbers
-    left: Numbers
-    right: Numbers
+    first: Numbers
+    second: Numbers
     width: Numbers
-    left_distance: Numbers
-    right_distance: Numbers
+    first_distance: Numbers
+    second_distance: Numbers
     axis: Numbers
     rim_cell: Numbers
     rim_width: Numbers
@@ -77,39 +77,40 @@ def polar_mesh(radius: float, ring_edges: Numbers, meridians: int | Numbers) -> 
     rings = len(ring_edges) - 1
     counts = numpy.broadcast_to(meridians, rings).astype(int)
     require("meridians", counts.min(), bool((counts >= 4).all()), "at least 4 cells in a ring")
-    first = numpy.concatenate([[0], numpy.cumsum(counts)])
+    starts = numpy.concatenate([[0], numpy.cumsum(counts)])
     theta = 0.5 * (ring_edges[1:] + ring_edges[:-1])
     ring = numpy.repeat(numpy.arange(rings), counts)
-    around = numpy.arange(first[-1]) - first[ring]
+    column = numpy.arange(starts[-1]) - starts[ring]
     step = 2 * pi / counts
-    phi = (around + 0.5) * step[ring]
-    across = [_ring_faces(radius, ring_edges, theta, first, counts, index) for index in range(rings - 1)]
+    phi = (column + 0.5) * step[ring]
+    across = [_ring_faces(radius, ring_edges, theta, starts, counts, index) for index in range(rings - 1)]
     half_width = radius * numpy.sin(theta[ring]) * step[ring] / 2
-    rows = across + [
+    rows = [
+        *across,
         (
-            numpy.arange(first[-1]),
-            first[ring] + (around + 1) % counts[ring],
+            numpy.arange(starts[-1]),
+            starts[ring] + (column + 1) % counts[ring],
             radius * numpy.diff(ring_edges)[ring],
             half_width,
             half_width,
             # Velocity of the surface is R ω × n, its part along a tangent t is R ω · (n × t), and n × e_φ = -e_θ.
-            -_meridian_tangents(theta[ring], (around + 1) * step[ring]),
-        )
+            -_meridian_tangents(theta[ring], (column + 1) * step[ring]),
+        ),
     ]
-    left, right, width, left_distance, right_distance, axis = (
+    first, second, width, first_distance, second_distance, axis = (
         numpy.concatenate(columns) for columns in zip(*rows, strict=True)
     )
-    last = slice(first[-2], first[-1])
+    last = slice(starts[-2], starts[-1])
     return FilmMesh(
         area=(radius**2 * -numpy.diff(numpy.cos(ring_edges)) * step)[ring],
         direction=_directions(theta[ring], phi),
-        left=left,
-        right=right,
+        first=first,
+        second=second,
         width=width,
-        left_distance=left_distance,
-        right_distance=right_distance,
+        first_distance=first_distance,
+        second_distance=second_distance,
         axis=axis,
-        rim_cell=numpy.arange(first[-2], first[-1]),
+        rim_cell=numpy.arange(starts[-2], starts[-1]),
         rim_width=numpy.full(counts[-1], radius * numpy.sin(ring_edges[-1]) * step[-1]),
         rim_distance=numpy.full(counts[-1], radius * (ring_edges[-1] - theta[-1])),
         rim_axis=_east(phi[last]),
@@ -118,7 +119,7 @@ def polar_mesh(radius: float, ring_edges: Numbers, meridians: int | Numbers) -> 
 
 
 def _ring_faces(
-    radius: float, ring_edges: Numbers, theta: Numbers, first: Numbers, counts: Numbers, inner: int
+    radius: float, ring_edges: Numbers, theta: Numbers, starts: Numbers, counts: Numbers, inner: int
 ) -> tuple[Numbers, ...]:
     """Make the faces between a ring and the next one: both cells, width, both distances, axis.
 
@@ -134,8 +135,8 @@ def _ring_faces(
     middle = 0.5 * (marks[1:] + marks[:-1])
     pieces = len(middle)
     return (
-        first[inner] + (middle * counts[inner]).astype(int),
-        first[outer] + (middle * counts[outer]).astype(int),
+        starts[inner] + (middle * counts[inner]).astype(int),
+        starts[outer] + (middle * counts[outer]).astype(int),
         radius * numpy.sin(ring_edges[outer]) * 2 * pi * numpy.diff(marks),
         numpy.full(pieces, radius * (ring_edges[outer] - theta[inner])),
         numpy.full(pieces, radius * (theta[outer] - ring_edges[outer])),
@@ -160,11 +161,11 @@ def strip_mesh(edges: Numbers) -> FilmMesh:
     return FilmMesh(
         area=numpy.diff(edges),
         direction=numpy.zeros((cells, 3)),
-        left=inner,
-        right=inner + 1,
+        first=inner,
+        second=inner + 1,
         width=numpy.ones(cells - 1),
-        left_distance=edges[1:-1] - centre[:-1],
-        right_distance=centre[1:] - edges[1:-1],
+        first_distance=edges[1:-1] - centre[:-1],
+        second_distance=centre[1:] - edges[1:-1],
         axis=numpy.tile(along, (cells - 1, 1)),
         rim_cell=numpy.array([0, cells - 1]),
         rim_width=numpy.ones(2),

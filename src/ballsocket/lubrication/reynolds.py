@@ -10,7 +10,8 @@ Source: Woloszynski, Podsiadlo, Stachowiak, Tribology Letters 58 (2015) 18, doi:
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import inf
+from math import inf, sqrt
+from typing import Any
 
 import numpy
 import scipy.sparse
@@ -22,6 +23,15 @@ from .mesh import FilmMesh
 
 _LARGEST_FALL = 0.6
 """Largest part of a cell's film that one Newton step may take away."""
+
+_MIN_STEP = 0.02
+"""Smallest factor of a damped Newton step."""
+
+_GROWTH = 1.8
+"""Growth of the time steps on the way to the steady film."""
+
+_EASY_ITERATIONS = 10
+"""Number of Newton steps up to which the next time step grows."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -85,9 +95,30 @@ class FilmProblem:
         return (pressure * self.mesh.area) @ self.mesh.direction
 
 
-def solve_steady(problem: FilmProblem, start: FilmState, *, tolerance: float = 1e-8, most: int = 100) -> FilmState:
-    """Solve for the steady film."""
-    return advance(problem, start, volume=None, step=inf, tolerance=tolerance, most=most)
+def solve_steady(problem: FilmProblem, start: FilmState, *, tolerance: float = 1e-8, max_steps: int = 100) -> FilmState:
+    """Solve for the steady film by Newton's method from a close estimate."""
+    return advance(problem, start, volume=None, step=inf, tolerance=tolerance, max_steps=max_steps)
+
+
+def develop_film(problem: FilmProblem, start: FilmState, first_step: float, last_step: float) -> FilmState:
+    """Solve for the steady film by time steps in s that grow from the first to the last one.
+
+    The result is not converged if a step fails again and again; it is then the last film that was reached.
+    """
+    state, step, iterations = start, first_step, 0
+    while first_step / 1e3 < step < last_step:
+        volume = problem.thickness(state) * (1 - state.void)
+        later = advance(problem, state, volume=volume, step=step, tolerance=1e-6, max_steps=25)
+        iterations += later.iterations
+        if not later.converged:
+            step /= 3
+            continue
+        state = later
+        step *= _GROWTH if later.iterations < _EASY_ITERATIONS else 1.0
+    steady = solve_steady(problem, state)
+    if not steady.converged:
+        return replace(state, converged=False, iterations=iterations)
+    return replace(steady, iterations=iterations + steady.iterations)
 
 
 def advance(
@@ -97,7 +128,7 @@ def advance(
     volume: Numbers | None,
     step: float,
     tolerance: float = 1e-8,
-    most: int = 60,
+    max_steps: int = 60,
 ) -> FilmState:
     """Solve for the film after a time step, by implicit Euler.
 
@@ -112,92 +143,115 @@ def advance(
         Time step in s; `inf` for the steady film.
     tolerance : float
         Largest change of the last Newton step, relative to the largest pressure and to the film.
-    most : int
+    max_steps : int
         Largest number of Newton steps.
     """
     state = start
-    for iteration in range(most):
+    for iteration in range(max_steps):
         state, change = _newton_step(problem, state, volume, step)
         if change < tolerance:
             return replace(state, converged=True, iterations=iteration + 1)
-    return replace(state, converged=False, iterations=most)
+    return replace(state, converged=False, iterations=max_steps)
 
 
 def _newton_step(
     problem: FilmProblem, state: FilmState, volume: Numbers | None, step: float
 ) -> tuple[FilmState, float]:
     """Take one damped Newton step; return the new state and the largest relative change."""
-    mesh = problem.mesh
     thickness = problem.thickness(state)
-    pressure, void = state.pressure, state.void
-    balance = balance_cells(mesh, problem.spin, problem.viscosity, thickness, pressure, void, problem.rim_pressure)
-    outflow, by_pressure, by_void = _add_storage(balance, mesh.area, thickness, void, volume, step, problem.compliance)
-    by_thickness = balance.by_thickness
-    if step < inf:
-        by_thickness = by_thickness + scipy.sparse.diags_array(mesh.area * (1 - void) / step)
-    scale = max(float(pressure.max()), 1e-6)
-    # Fischer-Burmeister: a + b - sqrt(a² + b²) = 0 with a = p/scale and b = void.
-    share = pressure / scale
-    length = numpy.hypot(share, void)
-    safe = numpy.where(length > 0, length, 1.0)
-    pressure_slope = numpy.where(length > 0, 1 - share / safe, 1 - numpy.sqrt(0.5)) / scale
-    void_slope = numpy.where(length > 0, 1 - void / safe, 1 - numpy.sqrt(0.5))
-    complement = share + void - length
-    # Where the film is full the pressure is the unknown of a cell, else the void.
-    full = void_slope * 1.0 >= pressure_slope * scale
-    # full: dvoid = (-complement - pressure_slope dp)/void_slope;  vapour: dp = (-complement - void_slope dvoid)/pressure_slope
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        void_by = numpy.where(full, -pressure_slope / void_slope, 1.0)
-        void_at = numpy.where(full, -complement / void_slope, 0.0)
-        pressure_by = numpy.where(full, 1.0, -void_slope / pressure_slope)
-        pressure_at = numpy.where(full, 0.0, -complement / pressure_slope)
-    matrix = by_pressure @ scipy.sparse.diags_array(pressure_by) + by_void @ scipy.sparse.diags_array(void_by)
-    right_side = -outflow - by_pressure @ pressure_at - by_void @ void_at
-    rows = 1 / numpy.maximum(abs(matrix).max(axis=1).toarray().ravel(), 1e-300)
-    factor = scipy.sparse.linalg.splu((scipy.sparse.diags_array(rows) @ matrix).tocsc())
-    unknown = factor.solve(rows * right_side)
-    shift = numpy.zeros(3)
-    if problem.force is not None:
-        by_shift = -(by_thickness @ mesh.direction)
-        response = numpy.stack([factor.solve(-rows * by_shift[:, axis]) for axis in range(3)], axis=1)
-        weight = (mesh.area[:, None] * mesh.direction).T
-        missing = problem.force - problem.load(pressure + pressure_at + pressure_by * unknown)
-        shift = numpy.linalg.solve((weight * pressure_by) @ response, missing)
-        unknown = unknown + response @ shift
-    pressure_change = pressure_at + pressure_by * unknown
-    void_change = void_at + void_by * unknown
-    film_change = problem.compliance * pressure_change - mesh.direction @ shift
-    thin = film_change < -_LARGEST_FALL * thickness
-    factor_of_step = 1.0
-    if thin.any():
-        factor_of_step = max(0.02, float((_LARGEST_FALL * thickness[thin] / -film_change[thin]).min()))
-    new_pressure = pressure + factor_of_step * pressure_change
-    new_void = numpy.clip(void + factor_of_step * void_change, 0.0, 1.0)
-    new = replace(
-        state,
-        pressure=numpy.maximum(new_pressure, 0.0),
-        void=new_void,
-        eccentricity=state.eccentricity + factor_of_step * shift,
+    balance = balance_cells(
+        problem.mesh, problem.spin, problem.viscosity, thickness, state.pressure, state.void, problem.rim_pressure
     )
-    change = float(numpy.abs(new.pressure - pressure).max()) / max(float(new.pressure.max()), 1e-9)
-    change += float(numpy.abs(new.void - void).max())
-    return new, change / factor_of_step
+    if volume is not None:
+        balance = _add_storage(balance, problem.mesh.area, thickness, state.void, volume, step)
+    choice = _CellUnknown.of(state.pressure, state.void)
+    unknown, shift = _solve_linear(problem, state, balance, choice)
+    pressure_change = choice.pressure_at + choice.pressure_by * unknown
+    void_change = choice.void_at + choice.void_by * unknown
+    film_change = problem.compliance * pressure_change - problem.mesh.direction @ shift
+    length = _step_length(thickness, film_change)
+    later = replace(
+        state,
+        pressure=numpy.maximum(state.pressure + length * pressure_change, 0.0),
+        void=numpy.clip(state.void + length * void_change, 0.0, 1.0),
+        eccentricity=state.eccentricity + length * shift,
+    )
+    change = float(numpy.abs(later.pressure - state.pressure).max()) / max(float(later.pressure.max()), 1e-9)
+    change += float(numpy.abs(later.void - state.void).max())
+    return later, change / length
+
+
+def _solve_linear(
+    problem: FilmProblem, state: FilmState, balance: Balance, choice: _CellUnknown
+) -> tuple[Numbers, Numbers]:
+    """Solve the linear balance of a Newton step for the unknown of each cell and the shift of the ball in mm."""
+    by_pressure = balance.by_pressure + balance.by_thickness @ scipy.sparse.diags_array(problem.compliance)
+    matrix = by_pressure @ scipy.sparse.diags_array(choice.pressure_by)
+    matrix = matrix + balance.by_void @ scipy.sparse.diags_array(choice.void_by)
+    constant = -balance.outflow - by_pressure @ choice.pressure_at - balance.by_void @ choice.void_at
+    scale = 1 / numpy.maximum(abs(matrix).max(axis=1).toarray().ravel(), 1e-300)
+    factor: Any = scipy.sparse.linalg.splu((scipy.sparse.diags_array(scale) @ matrix).tocsc())
+    unknown = factor.solve(scale * constant)
+    if problem.force is None:
+        return unknown, numpy.zeros(3)
+    # the three displacements of the ball balance the load: a border of three columns and rows
+    by_shift = balance.by_thickness @ problem.mesh.direction
+    response = numpy.stack([factor.solve(scale * by_shift[:, axis]) for axis in range(3)], axis=1)
+    weight = (problem.mesh.area[:, None] * problem.mesh.direction).T
+    pressure = state.pressure + choice.pressure_at + choice.pressure_by * unknown
+    shift = numpy.linalg.solve((weight * choice.pressure_by) @ response, problem.force - problem.load(pressure))
+    return unknown + response @ shift, shift
+
+
+def _step_length(thickness: Numbers, film_change: Numbers) -> float:
+    """Choose the factor of a Newton step so that no cell loses most of its film."""
+    thin = film_change < -_LARGEST_FALL * thickness
+    if not thin.any():
+        return 1.0
+    return max(_MIN_STEP, float((_LARGEST_FALL * thickness[thin] / -film_change[thin]).min()))
+
+
+@dataclass(frozen=True)
+class _CellUnknown:
+    """Unknown of each cell, its pressure where the film is full and its void elsewhere.
+
+    Change of pressure and of void are linear in the unknown: `at + by * unknown`. They solve the linear form of the
+    Fischer-Burmeister function a + b - sqrt(a² + b²) = 0 of a = p/scale and b = void.
+    """
+
+    pressure_at: Numbers
+    pressure_by: Numbers
+    void_at: Numbers
+    void_by: Numbers
+
+    @classmethod
+    def of(cls, pressure: Numbers, void: Numbers) -> _CellUnknown:
+        """Choose the unknowns at a state."""
+        scale = max(float(pressure.max()), 1e-6)
+        share = pressure / scale
+        length = numpy.hypot(share, void)
+        safe = numpy.where(length > 0, length, 1.0)
+        at_zero = 1 - sqrt(0.5)
+        by_pressure = numpy.where(length > 0, 1 - share / safe, at_zero) / scale
+        by_void = numpy.where(length > 0, 1 - void / safe, at_zero)
+        complement = share + void - length
+        full = by_void >= by_pressure * scale
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            return cls(
+                pressure_at=numpy.where(full, 0.0, -complement / by_pressure),
+                pressure_by=numpy.where(full, 1.0, -by_void / by_pressure),
+                void_at=numpy.where(full, -complement / by_void, 0.0),
+                void_by=numpy.where(full, -by_pressure / by_void, 1.0),
+            )
 
 
 def _add_storage(
-    balance: Balance,
-    area: Numbers,
-    thickness: Numbers,
-    void: Numbers,
-    volume: Numbers | None,
-    step: float,
-    compliance: Numbers,
-) -> tuple[Numbers, scipy.sparse.csr_matrix, scipy.sparse.csr_matrix]:
-    """Add the growth of the lubricant in each cell to the outflow, and the film's dependence on pressure."""
-    by_thickness, by_void, outflow = balance.by_thickness, balance.by_void, balance.outflow
-    if step < inf:
-        outflow = outflow + area * (thickness * (1 - void) - volume) / step
-        by_thickness = by_thickness + scipy.sparse.diags_array(area * (1 - void) / step)
-        by_void = by_void - scipy.sparse.diags_array(area * thickness / step)
-    by_pressure = balance.by_pressure + by_thickness @ scipy.sparse.diags_array(compliance)
-    return outflow, by_pressure, by_void
+    balance: Balance, area: Numbers, thickness: Numbers, void: Numbers, volume: Numbers, step: float
+) -> Balance:
+    """Add the growth of the lubricant in each cell over a time step to the outflow."""
+    return Balance(
+        outflow=balance.outflow + area * (thickness * (1 - void) - volume) / step,
+        by_pressure=balance.by_pressure,
+        by_void=balance.by_void - scipy.sparse.diags_array(area * thickness / step),
+        by_thickness=balance.by_thickness + scipy.sparse.diags_array(area * (1 - void) / step),
+    )
