@@ -16,7 +16,6 @@ from ..hip import HipSimulation, History, Lubricant, PatientVariability, populat
 from ..hip.ball_wear import interpolation_at
 from ..hip.contact_checks import largest_utilisation, list_check_notes
 from ..hip.cycle_registry import CYCLES
-from ..hip.film import film
 from ..problem.cup import Cup
 from ..reports.figure_files import figure_bytes
 from ..reports.hip_plots import penetration_curve
@@ -69,7 +68,7 @@ def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, repor
     report(Reached(share=0.3, words="pressing through the cycle"))
     unworn, lubricant = hip.unworn, Lubricant()
     report(Reached(share=0.7, words="film and edge"))
-    lubrication, edge = film(hip.frame, hip.foundation, hip.sliding, unworn, lubricant), hip.edge(unworn)
+    lubrication, edge = hip.film(lubricant), hip.edge(unworn)
     worst, first = edge.closest_approach(hip), hip.first
     checks = hip.unworn_checks
     utilisation, valid = largest_utilisation(checks), all(check.valid for check in checks)

@@ -155,11 +155,12 @@ def _points(reach: float) -> Numbers:
 
 
 def film_figure(history: History) -> Figure:
-    """Draw the film thickness by Hamrock and Dowson and the friction moment over the first cycle."""
+    """Draw the film thickness, that by Hamrock and Dowson, and the friction moment over the first cycle."""
     use, film = history.use, history.use.film(history.lubricant)
     figure, axes = _figure()
     axes.plot(*_course(use, 1e6 * film.least), color=_INK, label="least film")
     axes.plot(*_course(use, 1e6 * film.central), "--", color=_INK, label="central film")
+    axes.plot(*_course(use, 1e6 * film.comparison), "-.", color="0.5", label="least film, Hamrock-Dowson")
     axes.set_ylabel("film [nm]")
     moment_axes = axes.twinx()
     moment_axes.plot(*_course(use, 1e-3 * numpy.linalg.norm(film.moment, axis=1)), ":", color=_SECOND)

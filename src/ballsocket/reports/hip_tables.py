@@ -275,6 +275,8 @@ def _film_lines(history: History) -> Iterator[str]:
         yield "no film thickness: without a clearance the surfaces do not converge, and no formula applies"
     else:
         thickness = f"{1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm"
-        yield f"film (Hamrock-Dowson) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
+        yield f"film ({film.method}) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
+        formula = f"{1e6 * film.comparison.min():.3g} to {1e6 * film.comparison.max():.3g} nm"
+        yield f"film by the formula of Hamrock and Dowson, for comparison: {formula}"
     friction = f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"
     yield f"{friction}, with a coefficient of {history.lubricant.friction:g}"
