@@ -36,6 +36,9 @@ WAVE_NOTE = "Film carried over the dry contacts from instant to instant until th
 METHODS = ("wave", "hamrock-dowson")
 """Names of the methods; the first is the default."""
 
+_SMALL_SHARE = 0.01
+"""Share of a contact without fresh lubricant up to which it is not noted."""
+
 _MAX_ERROR = 0.1
 """Largest estimated error of a valid film."""
 
@@ -110,6 +113,8 @@ class Film:
         Film thickness in mm by the wave on the cells of the bore; NaN outside the contacts.
     error : array (instants,), optional
         Estimated relative error of the wave.
+    unreached : float
+        Largest share of a contact that fresh lubricant does not reach; its film falls with the root of time.
     converged : bool
         True unless the wave did not repeat.
     """
@@ -126,6 +131,7 @@ class Film:
     comparison: Numbers
     thickness: Numbers | None = None
     error: Numbers | None = None
+    unreached: float = 0.0
     converged: bool = True
 
     @property
@@ -140,7 +146,11 @@ class Film:
             return CONFORMITY_NOTE
         if not self.converged:
             return f"{WAVE_NOTE}; it did not repeat, and this is the last cycle"
-        return f"{WAVE_NOTE}; estimated error up to {100 * self.error.max(initial=0.0):.0f} %"
+        error = f"{WAVE_NOTE}; estimated error up to {100 * self.error.max(initial=0.0):.0f} %"
+        if self.unreached < _SMALL_SHARE:
+            return error
+        share = f"{100 * self.unreached:.0f} % of the contact"
+        return f"{error}; fresh lubricant does not reach {share}, where the film after 100 cycles is given"
 
     @property
     def regime(self) -> str:
@@ -269,6 +279,7 @@ def _carry_film(
         "central": numpy.concatenate([film.central for film in films]),
         "thickness": numpy.concatenate([film.thickness for film in films])[:, merged],
         "error": numpy.concatenate([film.error for film in films]),
+        "unreached": max(film.unreached for film in films),
         "converged": all(film.converged for film in films),
     }
 

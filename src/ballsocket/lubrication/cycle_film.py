@@ -14,13 +14,19 @@ from .inlet import Edge
 from .mesh import FilmMesh
 from .wave import FilmWave
 
-REPEAT_TOLERANCE = 1e-3
-"""Largest mean change of the film from one cycle to the next, relative to the mean film; its error is below 1 %."""
+REPEAT_TOLERANCE = 0.01
+"""Largest mean change of the film from one cycle to the next, relative to the mean film."""
 
-_MAX_CYCLES = 60
-"""Number of cycles after which a film that does not repeat is returned as it is."""
+_FIRST_CYCLES, _LEAP, _MAX_LEAPS = 3, 94, 3
+"""Cycles before a leap over others, number of cycles in it, and largest number of leaps."""
 
-_FLOODED = 4.0
+_FALLING = 2e-3
+"""Relative fall of the film in a cycle from which a cell counts as out of reach of fresh lubricant."""
+
+_NO_FILM = 1e-30
+"""Film in mm, and area in mm², that count as none."""
+
+_FLOODED = 3.0
 """Film around the contacts, relative to the largest inlet film of the cycle."""
 
 
@@ -64,8 +70,10 @@ class CycleFilm:
         Film in mm at the load, and the smallest in the contact.
     error : array (instants,)
         Estimated relative error of a steady film at each instant.
+    unreached : float
+        Share of the last contact that fresh lubricant does not reach: there the film falls with the root of time.
     cycles : int
-        Number of computed cycles.
+        Number of cycles from a flooded bore.
     converged : bool
         True if the film at the end of a cycle equals that at its start to 1 %.
     """
@@ -74,6 +82,7 @@ class CycleFilm:
     central: Numbers
     minimum: Numbers
     error: Numbers
+    unreached: float
     cycles: int
     converged: bool
 
@@ -91,16 +100,32 @@ def carry_over_cycle(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleI
         Loaded instants in their order; the first follows the last.
     """
     waves = _waves(mesh, viscosity, instants)
-    film, inside = numpy.full(mesh.cells, waves[0].flood), waves[-1].contact.inside
+    film = numpy.full(mesh.cells, waves[0].flood)
     thickness = numpy.full((len(waves), mesh.cells), numpy.nan)
     cycles, change = 0, numpy.inf
-    while change > REPEAT_TOLERANCE and cycles < _MAX_CYCLES:
-        start = thickness[-1].copy()
-        film = _carry_once(waves, instants, film, thickness)
-        cycles += 1
-        if cycles > 1:
-            change = float(numpy.abs(thickness[-1] - start)[inside].mean() / thickness[-1][inside].mean())
-    return _summarise(waves, thickness, cycles, change <= REPEAT_TOLERANCE)
+    for _ in range(_MAX_LEAPS + 1):
+        for _ in range(_FIRST_CYCLES):
+            start = film
+            film = _carry_once(waves, instants, film, thickness)
+        cycles += _FIRST_CYCLES
+        inside = waves[-1].contact.inside
+        change = float(numpy.abs(film - start)[inside].sum() / max(float(film[inside].sum()), _NO_FILM))
+        if change < REPEAT_TOLERANCE:
+            break
+        film, cycles = _leap(start, film), cycles + _LEAP
+    falling = mesh.area[inside & (film < (1 - _FALLING) * start)].sum() / mesh.area[inside].sum(initial=_NO_FILM)
+    return _summarise(waves, thickness, float(falling), cycles, change < REPEAT_TOLERANCE)
+
+
+def _leap(start: Numbers, film: Numbers) -> Numbers:
+    """Estimate the film after many more cycles from the films at both ends of one.
+
+    Fresh lubricant repeats. A film out of its reach is squeezed: 1/h² grows by the same amount in each cycle.
+    """
+    with numpy.errstate(divide="ignore"):
+        growth = numpy.maximum(film**-2.0 - start**-2.0, 0.0)
+        later: Numbers = (film**-2.0 + _LEAP * growth) ** -0.5
+    return numpy.where(film > 0, later, film)
 
 
 def _carry_once(
@@ -156,7 +181,9 @@ def _smallest(wave: FilmWave, film: Numbers) -> float:
     return wave.contact.edge.outlet_ratio * float(film[cells].min(initial=numpy.inf))
 
 
-def _summarise(waves: Sequence[FilmWave], thickness: Numbers, cycles: int, converged: bool) -> CycleFilm:
+def _summarise(
+    waves: Sequence[FilmWave], thickness: Numbers, unreached: float, cycles: int, converged: bool
+) -> CycleFilm:
     """Collect central and smallest films, and the errors, of the last cycle."""
     nearest = [int((wave.contact.mesh.direction @ wave.contact.axis).argmax()) for wave in waves]
     central = thickness[numpy.arange(len(waves)), nearest]
@@ -172,6 +199,7 @@ def _summarise(waves: Sequence[FilmWave], thickness: Numbers, cycles: int, conve
         central=central,
         minimum=numpy.array(minimum),
         error=numpy.array(error),
+        unreached=unreached,
         cycles=cycles,
         converged=converged,
     )

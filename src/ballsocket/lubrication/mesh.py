@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import pi
+from typing import Any
 
 import numpy
 
@@ -56,6 +58,34 @@ class FilmMesh:
         """Rotate the mesh: rows of `frame` (3, 3) are its x, y and z axes in the new coordinates."""
         names = ("direction", "axis", "rim_axis")
         return replace(self, **{name: getattr(self, name) @ frame for name in names})
+
+    @cached_property
+    def face_slopes(self) -> tuple[Any, Any]:
+        """Sparse matrices (faces, cells) from a field to its change from one centre of a face to the other one.
+
+        The first matrix has the gradient in the first cell, the second that in the second cell, by least squares over
+        the neighbours.
+        """
+        from scipy.sparse import csr_matrix, diags_array  # slow to import
+
+        tangents = _tangent_bases(self.direction)
+        rows, columns = numpy.concatenate([self.first, self.second]), numpy.concatenate([self.second, self.first])
+        steps = self.direction[columns] - self.direction[rows]
+        local = numpy.einsum("ij,ikj->ik", steps, tangents[rows])
+        weight = 1 / (local * local).sum(axis=1)
+        moments = numpy.zeros((self.cells, 2, 2))
+        numpy.add.at(moments, rows, weight[:, None, None] * local[:, :, None] * local[:, None, :])
+        solved = numpy.einsum("ikl,il->ik", numpy.linalg.inv(moments)[rows], weight[:, None] * local)
+        matrices = []
+        for cells, others in ((self.first, self.second), (self.second, self.first)):
+            step = numpy.einsum("ij,ikj->ik", self.direction[others] - self.direction[cells], tangents[cells])
+            slope = 0
+            for axis in range(2):
+                gradient = csr_matrix((solved[:, axis], (rows, columns)), (self.cells, self.cells))
+                gradient = gradient - diags_array(numpy.asarray(gradient.sum(axis=1)).ravel())
+                slope = slope + diags_array(step[:, axis]) @ gradient[cells]
+            matrices.append(slope.tocsr())
+        return matrices[0], matrices[1]
 
     def face_velocity(self, spin: Numbers) -> tuple[Numbers, Numbers]:
         """Compute the velocity of the ball's surface across the faces and the rim faces in mm/s; spin in rad/s."""
@@ -201,6 +231,14 @@ def _graded_line(length: float, finest: float, coarsest: float, growth: float) -
         steps.append(min(steps[-1] * growth, coarsest))
     points = numpy.concatenate([[0.0], numpy.cumsum(steps)])
     return points * (length / points[-1])
+
+
+def _tangent_bases(directions: Numbers) -> Numbers:
+    """Make two orthogonal unit tangents at each direction: (cells, 2, 3)."""
+    helper = numpy.where(numpy.abs(directions[:, [2]]) < 0.8, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
+    second = numpy.cross(directions, helper)
+    second = second / numpy.linalg.norm(second, axis=1)[:, None]
+    return numpy.stack([numpy.cross(second, directions), second], axis=1)
 
 
 def _east(phi: Numbers) -> Numbers:

@@ -13,13 +13,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
 from .dry_contact import DryContact
 
-_COURANT = 0.8
+_COURANT = 0.5
 """Largest part of a cell that the film may cross in one step."""
 
 _EDGE_LENGTHS = 3.0
@@ -61,95 +62,125 @@ class FilmWave:
         return max(self.flood, _FLOODED * self.inlet_film)
 
     @cached_property
-    def _cells(self) -> tuple[Numbers, Numbers, Numbers]:
-        """Faces with a cell in contact, and the cells on both sides of them."""
+    def _faces(self) -> Numbers:
+        """Numbers of the faces with a cell in contact."""
         mesh, inside = self.contact.mesh, self.contact.inside
-        faces = numpy.flatnonzero(inside[mesh.first] | inside[mesh.second])
-        return faces, mesh.first[faces], mesh.second[faces]
+        return numpy.flatnonzero(inside[mesh.first] | inside[mesh.second])
 
     @cached_property
-    def _border(self) -> tuple[Numbers, Numbers]:
-        """Masks of the faces whose first, or second, cell lies outside the contact."""
-        _, first, second = self._cells
-        inside = self.contact.inside
-        return ~inside[first], ~inside[second]
+    def _cells(self) -> Numbers:
+        """Numbers of the cells in contact."""
+        return numpy.flatnonzero(self.contact.inside)
+
+    @cached_property
+    def _sides(self) -> tuple[Numbers, Numbers]:
+        """Cells on both sides of each face, numbered within the contact; all cells outside have the last number."""
+        mesh = self.contact.mesh
+        numbers = numpy.full(mesh.cells, len(self._cells))
+        numbers[self._cells] = numpy.arange(len(self._cells))
+        return numbers[mesh.first[self._faces]], numbers[mesh.second[self._faces]]
 
     @cached_property
     def _carried(self) -> Numbers:
         """Half the velocity across each face times its width, in mm²/s."""
         velocity, _ = self.contact.mesh.face_velocity(self.spin)
-        return (0.5 * velocity * self.contact.mesh.width)[self._cells[0]]
+        return (0.5 * velocity * self.contact.mesh.width)[self._faces]
 
     @cached_property
     def _pressed(self) -> Numbers:
         """Factor of h³ in the flow against the pressure across each face, in 1/s."""
-        mesh, (faces, first, second) = self.contact.mesh, self._cells
-        pressure = self.contact.pressure
+        mesh, faces, pressure = self.contact.mesh, self._faces, self.contact.pressure
+        rise = pressure[mesh.second[faces]] - pressure[mesh.first[faces]]
         distance = (mesh.first_distance + mesh.second_distance)[faces]
-        pressed = mesh.width[faces] * (pressure[second] - pressure[first]) / (distance * 12 * self.viscosity)
+        pressed = mesh.width[faces] * rise / (distance * 12 * self.viscosity)
         return numpy.where(self._near_edge, 0.0, pressed)
 
     @cached_property
     def _near_edge(self) -> Numbers:
         """Mask of the faces so near an elastic edge that the film changes the dry pressure."""
-        _, first, second = self._cells
+        mesh, faces = self.contact.mesh, self._faces
         if not self.contact.edge.prescribed:
-            return numpy.zeros(len(first), dtype=bool)
+            return numpy.zeros(len(faces), dtype=bool)
         speed = numpy.asarray(self.contact.speed(self.spin))
         reach = _EDGE_LENGTHS * float(self.contact.edge.inlet_length(self.viscosity, speed))
-        deepest = numpy.maximum(self.contact.edge_distance[first], self.contact.edge_distance[second])
-        return deepest < reach
+        depth = self.contact.edge_distance
+        return numpy.maximum(depth[mesh.first[faces]], depth[mesh.second[faces]]) < reach
 
     @cached_property
-    def _inflow(self) -> Numbers:
-        """Prescribed flow from first to second across faces at an elastic inlet, in mm³/s; NaN elsewhere."""
-        _, first, second = self._cells
-        first_outside, second_outside = self._border
-        inner = numpy.where(first_outside, second, first)
-        enters = numpy.where(first_outside, self._carried > 0, self._carried < 0) & (first_outside | second_outside)
+    def _inflow(self) -> tuple[Numbers, Numbers]:
+        """Mask of the faces at an elastic inlet, and the flow through each from first to second cell in mm³/s."""
+        mesh, faces = self.contact.mesh, self._faces
+        none = numpy.zeros(len(faces), dtype=bool)
         if not self.contact.edge.prescribed:
-            return numpy.full(len(first), numpy.nan)
-        speed = self.contact.inward_speed(self.spin, self.contact.mesh.direction[inner])
-        film = self.contact.edge.inlet_film(self.viscosity, speed)
-        return numpy.where(enters, self._carried * film, numpy.nan)
+            return none, numpy.zeros(len(faces))
+        first_inside = self.contact.inside[mesh.first[faces]]
+        second_inside = self.contact.inside[mesh.second[faces]]
+        enters = numpy.where(second_inside, self._carried > 0, self._carried < 0) & (first_inside != second_inside)
+        inner = numpy.where(second_inside, mesh.second[faces], mesh.first[faces])
+        speed = self.contact.inward_speed(self.spin, mesh.direction[inner])
+        return enters, self._carried * self.contact.edge.inlet_film(self.viscosity, speed)
 
     @cached_property
-    def _is_inflow(self) -> Numbers:
-        """Mask of the faces with a prescribed flow."""
-        return ~numpy.isnan(self._inflow)
+    def _reconstruction(self) -> tuple[Any, Any, Numbers, Numbers]:
+        """Slopes at the faces from both sides, and their factors: 0 in cells next to the edge of the contact."""
+        mesh, faces, inside = self.contact.mesh, self._faces, self.contact.inside
+        interior = inside.copy()
+        borders = inside[mesh.first] != inside[mesh.second]
+        interior[mesh.first[borders]] = interior[mesh.second[borders]] = False
+        total = mesh.first_distance[faces] + mesh.second_distance[faces]
+        from_first, from_second = (matrix[faces][:, self._cells] for matrix in mesh.face_slopes)
+        return (
+            from_first,
+            from_second,
+            interior[mesh.first[faces]] * mesh.first_distance[faces] / total,
+            interior[mesh.second[faces]] * mesh.second_distance[faces] / total,
+        )
 
-    def rate(self, film: Numbers) -> tuple[Numbers, float]:
-        """Compute the growth rate of the film in mm/s, and the largest stable time step in s.
-
-        Parameters
-        ----------
-        film : array (cells,)
-            Film thickness in mm; only cells in contact are used.
-        """
-        mesh, inside = self.contact.mesh, self.contact.inside
-        _, first, second = self._cells
-        surrounded = numpy.where(inside, film, self._flood)
+    def _at_faces(self, film: Numbers) -> tuple[Numbers, Numbers]:
+        """Compute the film on both sides of each face by linear functions in the cells, without new extremes."""
+        first, second = self._sides
+        from_first, from_second, first_share, second_share = self._reconstruction
+        surrounded = numpy.append(film, self._flood)
         upstream, downstream = surrounded[first], surrounded[second]
-        flow = godunov_flow(self._carried, self._pressed, upstream, downstream)
-        flow = numpy.where(self._is_inflow, self._inflow, flow)
-        cells = mesh.cells
-        growth = (numpy.bincount(second, flow, cells) - numpy.bincount(first, flow, cells)) / mesh.area
-        first_outside, second_outside = self._border
-        highest = numpy.maximum(numpy.where(first_outside, 0.0, upstream), numpy.where(second_outside, 0.0, downstream))
+        step = downstream - upstream
+        return (
+            upstream + first_share * limited_slope(2 * (from_first @ film) - step, step),
+            downstream + second_share * limited_slope(2 * (from_second @ film) + step, -step),
+        )
+
+    def _growth(self, film: Numbers) -> Numbers:
+        """Compute the growth rate of the film in mm/s in the cells in contact."""
+        flow = godunov_flow(self._carried, self._pressed, *self._at_faces(film))
+        at_inlet, inflow = self._inflow
+        flow = numpy.where(at_inlet, inflow, flow)
+        first, second = self._sides
+        count = len(self._cells) + 1
+        balance = numpy.bincount(second, flow, count) - numpy.bincount(first, flow, count)
+        return balance[:-1] / self.contact.mesh.area[self._cells]
+
+    def _stable_step(self, film: Numbers) -> float:
+        """Compute the largest time step in s in which no film crosses more than a part of its cell."""
+        first, second = self._sides
+        inner = numpy.append(film, 0.0)
+        highest = numpy.maximum(inner[first], inner[second])
         speed = numpy.abs(self._carried) + 3 * numpy.abs(self._pressed) * highest**2
-        crossing = (numpy.bincount(first, speed, cells) + numpy.bincount(second, speed, cells)) / mesh.area
-        fastest = float(crossing[inside].max(initial=0.0))
-        return numpy.where(inside, growth, 0.0), _COURANT / fastest if fastest > 0 else numpy.inf
+        count = len(self._cells) + 1
+        crossing = (numpy.bincount(first, speed, count) + numpy.bincount(second, speed, count))[:-1]
+        fastest = float((crossing / self.contact.mesh.area[self._cells]).max(initial=0.0))
+        return _COURANT / fastest if fastest > 0 else numpy.inf
 
     def advance(self, film: Numbers, duration: float) -> Numbers:
-        """Carry the film over a time in s; return its thickness in mm."""
-        time = 0.0
-        while time < duration:
-            growth, stable = self.rate(film)
-            step = min(stable, duration - time)
-            film = numpy.clip(film + step * growth, 0.0, self._flood)
+        """Carry a film (cells,) in mm over a time in s by Heun's method; return its thickness in mm."""
+        time, inner = 0.0, film[self._cells]
+        while time < duration and len(inner):
+            step = min(self._stable_step(inner), duration - time)
+            growth = self._growth(inner)
+            predicted = numpy.clip(inner + step * growth, 0.0, self._flood)
+            inner = numpy.clip(inner + step / 2 * (growth + self._growth(predicted)), 0.0, self._flood)
             time += step
-        return film
+        later = film.copy()
+        later[self._cells] = inner
+        return later
 
     def solve_steady(self, tolerance: float = 1e-3, max_steps: int = 12) -> tuple[Numbers, bool]:
         """Solve for the steady film in mm, and state whether it is steady.
@@ -183,6 +214,13 @@ class FilmWave:
             return float(film[self.contact.inside].min())
         side = edge.side_speed(self.viscosity, speed, self.contact.contact_radius)
         return min(edge.outlet_ratio * central, float(edge.inlet_film(self.viscosity, numpy.asarray(side))))
+
+
+def limited_slope(upwind: Numbers, centred: Numbers) -> Numbers:
+    """Compute a slope between two slopes of one sign, and 0 where their signs differ (van Leer's limiter)."""
+    product = upwind * centred
+    total = upwind + centred
+    return numpy.where(product > 0, 2 * product / numpy.where(total != 0, total, 1.0), 0.0)
 
 
 def godunov_flow(carried: Numbers, pressed: Numbers, upstream: Numbers, downstream: Numbers) -> Numbers:
