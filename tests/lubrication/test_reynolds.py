@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import spsolve
 
-from ballsocket.lubrication.flow import balance_cells
 from ballsocket.lubrication.mesh import polar_mesh, strip_mesh
-from ballsocket.lubrication.reynolds import FilmProblem, FilmState, advance, solve_steady
+from ballsocket.lubrication.reynolds import FilmProblem, FilmState, advance, balance_cells, solve_steady
 from ballsocket.lubrication.rigid_fields import squeeze_pressure, wedge_pressure
 
 from ..extent import either

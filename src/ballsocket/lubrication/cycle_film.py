@@ -1,10 +1,11 @@
-"""Film over a cycle of load and motion: the kinematic wave carried from instant to instant until it repeats."""
+"""Film over a cycle of load and motion: by the kinematic wave until it repeats, and by Reynolds' equation."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import acos, pi
+from typing import TYPE_CHECKING
 
 import numpy
 
@@ -14,11 +15,14 @@ from .inlet import Edge
 from .mesh import FilmMesh
 from .wave import FilmWave
 
+if TYPE_CHECKING:
+    from .reynolds import FilmProblem, FilmState
+
 REPEAT_TOLERANCE = 0.01
 """Largest mean change of the film from one cycle to the next, relative to the mean film."""
 
-_FIRST_CYCLES, _LEAP, _MAX_LEAPS = 3, 94, 3
-"""Cycles before a leap over others, number of cycles in it, and largest number of leaps."""
+_FIRST_CYCLES, _LEAP, _LAST_CYCLES = 3, 94, 12
+"""Cycles before a leap over others, number of cycles in the leap, and largest number of cycles after it."""
 
 _FALLING = 2e-3
 """Relative fall of the film in a cycle from which a cell counts as out of reach of fresh lubricant."""
@@ -100,21 +104,19 @@ def carry_over_cycle(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleI
         Loaded instants in their order; the first follows the last.
     """
     waves = _waves(mesh, viscosity, instants)
-    film = numpy.full(mesh.cells, waves[0].flood)
+    film = start = numpy.full(mesh.cells, waves[0].flood)
     thickness = numpy.full((len(waves), mesh.cells), numpy.nan)
+    inside = waves[-1].contact.inside
     cycles, change = 0, numpy.inf
-    for _ in range(_MAX_LEAPS + 1):
-        for _ in range(_FIRST_CYCLES):
-            start = film
-            film = _carry_once(waves, instants, film, thickness)
-        cycles += _FIRST_CYCLES
-        inside = waves[-1].contact.inside
+    while change > REPEAT_TOLERANCE and cycles < _FIRST_CYCLES + _LEAP + _LAST_CYCLES:
+        if cycles == _FIRST_CYCLES:
+            film, cycles = _leap(start, film), cycles + _LEAP
+        start = film
+        film = _carry_once(waves, instants, film, thickness)
+        cycles += 1
         change = float(numpy.abs(film - start)[inside].sum() / max(float(film[inside].sum()), _NO_FILM))
-        if change < REPEAT_TOLERANCE:
-            break
-        film, cycles = _leap(start, film), cycles + _LEAP
     falling = mesh.area[inside & (film < (1 - _FALLING) * start)].sum() / mesh.area[inside].sum(initial=_NO_FILM)
-    return _summarise(waves, thickness, float(falling), cycles, change < REPEAT_TOLERANCE)
+    return _summarise(waves, thickness, float(falling), cycles, change <= REPEAT_TOLERANCE)
 
 
 def _leap(start: Numbers, film: Numbers) -> Numbers:
@@ -203,3 +205,68 @@ def _summarise(
         cycles=cycles,
         converged=converged,
     )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LoadStep:
+    """Load and motion of one step of a cycle on springs.
+
+    Attributes
+    ----------
+    force : array (3,)
+        Load on the ball in N.
+    spin : array (3,)
+        Rotation rate of the ball in rad/s.
+    duration : float
+        Duration in s.
+    """
+
+    force: Numbers
+    spin: Numbers
+    duration: float
+
+
+def solve_cycle(
+    problem: FilmProblem, start: FilmState, steps: Sequence[LoadStep], cycles: int = 1
+) -> tuple[list[FilmState], bool]:
+    """Solve Reynolds' equation over cycles of load and motion, by implicit Euler.
+
+    Parameters
+    ----------
+    problem : FilmProblem
+        Film, mesh and springs; its force and spin are replaced by those of the steps.
+    start : FilmState
+    steps : sequence of LoadStep
+    cycles : int
+        Number of cycles.
+
+    Returns
+    -------
+    pair
+        States at the end of each step of the last cycle, and True if all steps converged.
+    """
+    state, converged, states = start, True, [start]
+    for _ in range(cycles):
+        states = []
+        for step in steps:
+            state, has_converged = _solve_step(replace(problem, force=step.force, spin=step.spin), state, step.duration)
+            converged &= has_converged
+            states.append(state)
+    return states, converged
+
+
+def _solve_step(problem: FilmProblem, state: FilmState, duration: float) -> tuple[FilmState, bool]:
+    """Solve one step, in parts if Newton's method does not converge."""
+    from .reynolds import advance  # slow to import
+
+    for parts in (1, 4):
+        later, converged = state, True
+        for _ in range(parts):
+            volume = problem.thickness(later) * (1 - later.void)
+            later = advance(problem, later, volume=volume, step=duration / parts, tolerance=1e-4, max_steps=25)
+            converged = later.converged
+            if not converged:
+                break
+        if converged:
+            return later, True
+    return later, False
