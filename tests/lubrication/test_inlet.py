@@ -41,3 +41,22 @@ def test_films_and_errors_vanish_with_the_speed(edge):
     assert (np.diff(edge.inlet_film(2.5e-9, speed)) > 0).all()
     assert edge.inlet_film(2.5e-9, -speed) == pytest.approx(0.0)
     assert edge.wave_error(2.5e-9, 0.0, 10.0) == 0.0
+
+
+def test_films_of_hertzian_contacts_are_similar():
+    """h/(R sqrt(U)) depends on the Moes number alone, as M^(-2/15), and is near the published asymptote.
+
+    Nijenbanning, Venner and Moes (Wear 176 (1994) 217): 1.460 at M = 1000 for circular contacts.
+    """
+    joint = bs.Joint(ball_radius=10.0, clearance=9.0, liner_thickness=np.inf, liner=bs.Material(young=1e3, poisson=0.4))
+    radius, modulus, viscosity = 190 / 9, 2 * float(joint.effective_modulus), 1e-8
+    films = []
+    for speed_number, moes in ((1e-9, 1e3), (1e-13, 1e3), (1e-17, 1e3), (1e-13, 1e4)):
+        contact = bs.Hertz().press(joint, force=moes * speed_number**0.75 * modulus * radius**2)
+        speed = speed_number * modulus * radius / viscosity
+        film = bs.film(contact, spin=(2 * speed / 19, 0, 0), lubricant=bs.Lubricant(viscosity=1e6 * viscosity))
+        films.append(film.central / radius / np.sqrt(speed_number))
+    assert films[1] == pytest.approx(films[0], rel=1e-3)
+    assert films[2] == pytest.approx(films[0], rel=1e-3)
+    assert films[3] / films[1] == pytest.approx(10 ** (-2 / 15), rel=0.04)
+    assert films[0] == pytest.approx(1.460, rel=0.03)
