@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import radians
 from time import perf_counter
+from typing import Any
 
 import numpy
 
@@ -17,7 +19,7 @@ JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs
 VISCOSITY, SPEED = 2.5e-9, (1.5, 0.0, 0.0)
 
 
-def timed(function, *words, **named):
+def timed(function: Callable[..., Any], *words: Any, **named: Any) -> tuple[float, Any]:
     """Seconds of a call, the best of three, and its result."""
     seconds = []
     for _ in range(3):
@@ -27,7 +29,7 @@ def timed(function, *words, **named):
     return min(seconds), result
 
 
-def loop_in_numpy(contact, rings: int, meridians: int, duration: float):
+def loop_in_numpy(contact: Any, rings: int, meridians: int, duration: float) -> float:
     """Carry a film over the dry pressure by upwind differences on a polar grid, explicit in time: central film in nm.
 
     This is the wave as a first program has it: no Godunov flux, no thinning near the pole.
@@ -52,7 +54,7 @@ def loop_in_numpy(contact, rings: int, meridians: int, duration: float):
         turning = numpy.where(around > 0, film - numpy.roll(film, 1, 1), numpy.roll(film, -1, 1) - film) / step
         squeezed = film**3 * spread / (12 * VISCOSITY)
         film = numpy.maximum(film + time_step * (squeezed - velocity * radial - 0.5 * around * turning), 0.0)
-    return 1e6 * film[0].mean()
+    return float(1e6 * film[0].mean())
 
 
 def measure() -> Report:

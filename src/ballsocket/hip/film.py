@@ -246,7 +246,7 @@ def film(
         force_magnitudes > 0, force_magnitudes, 1.0
     )
     formula = film_thickness(frame.joint, force_magnitudes, spin / durations, lubricant.viscosity)
-    thickness = {"least": formula[0], "central": formula[1]}
+    thickness: dict[str, Any] = {"least": formula[0], "central": formula[1]}
     if name == "wave" and foundation.clearance > 0 and len(forces):
         thickness = _carry_film(frame, foundation, equilibrium, lubricant.viscosity_mpa, grid)
     roughness = lubricant.roughness

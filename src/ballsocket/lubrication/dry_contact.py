@@ -65,8 +65,8 @@ class DryContact:
 
     @cached_property
     def edge_distance(self) -> Numbers:
-        """Distance of each cell from an elastic edge in mm, (p/A)² of the pressure p = A sqrt(s); 0 outside."""
-        return (self.pressure / self.edge.coefficient) ** 2
+        """Estimated distance of each cell from the edge in mm; 0 outside."""
+        return self.edge.distance(self.pressure)
 
     def speed(self, spin: Numbers) -> float:
         """Compute the speed in mm/s of the ball's surface at the pole of the load, across the load."""

@@ -189,7 +189,7 @@ def film(
     >>> import ballsocket as bs
     >>> contact = bs.HessForsbach().press(bs.joints["hip-36"], force=1500.0)
     >>> bs.film(contact, spin=(1.5, 0.0, 0.0), lubricant=bs.Lubricant(viscosity=2.5e-3))
-    film by wave on hess-forsbach: central 196.5 nm, minimum 166.6 nm, λ = 0.167, estimated error 3.7 %
+    film by wave on hess-forsbach: central 194.8 nm, minimum 165.2 nm, λ = 0.165, estimated error 3.7 %
     """
     solve = METHODS[known_name("method", method, METHODS)]
     check_single_contact(contact)

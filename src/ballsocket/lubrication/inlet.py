@@ -49,6 +49,10 @@ class Edge(Protocol):
         """Compute the length in mm over which the inlet changes the dry pressure."""
         ...
 
+    def distance(self, pressure: Numbers) -> Numbers:
+        """Estimate the distance from the edge in mm at dry pressures in MPa."""
+        ...
+
     def side_speed(self, viscosity: float, speed: float, radius: float) -> float:
         """Compute the speed in mm/s into the contact at its sides, where the ball moves along the edge."""
         ...
@@ -87,6 +91,10 @@ class SpringEdge:
         """Compute the length K h/G in mm over which the inlet changes the dry pressure."""
         return self.modulus * self.inlet_film(viscosity, speed) / self.slope
 
+    def distance(self, pressure: Numbers) -> Numbers:
+        """Estimate the distance from the edge in mm, p/G, at dry pressures in MPa."""
+        return pressure / self.slope
+
     def side_speed(self, viscosity: float, speed: float, radius: float) -> float:
         """Return the speed of the surface in mm/s: on springs the wave itself has the film at the sides."""
         return speed
@@ -123,6 +131,10 @@ class ElasticEdge:
     def inlet_length(self, viscosity: float, speed: Numbers) -> Numbers:
         """Compute the length (η U E*²/A³)^(2/5) in mm over which the inlet changes the dry pressure."""
         return (viscosity * numpy.maximum(speed, 0.0) * self.modulus**2 / self.coefficient**3) ** 0.4
+
+    def distance(self, pressure: Numbers) -> Numbers:
+        """Estimate the distance from the edge in mm, (p/A)², at dry pressures in MPa."""
+        return (pressure / self.coefficient) ** 2
 
     def side_speed(self, viscosity: float, speed: float, radius: float) -> float:
         """Compute the speed in mm/s into the contact at its sides, where the ball moves along the edge.

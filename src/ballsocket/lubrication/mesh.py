@@ -79,7 +79,7 @@ class FilmMesh:
         matrices = []
         for cells, others in ((self.first, self.second), (self.second, self.first)):
             step = numpy.einsum("ij,ikj->ik", self.direction[others] - self.direction[cells], tangents[cells])
-            slope = 0
+            slope: Any = 0
             for axis in range(2):
                 gradient = csr_matrix((solved[:, axis], (rows, columns)), (self.cells, self.cells))
                 gradient = gradient - diags_array(numpy.asarray(gradient.sum(axis=1)).ravel())
