@@ -136,8 +136,12 @@ class Film:
 
     @property
     def valid(self) -> bool:
-        """True if the wave repeats and its estimated error is at most 10 %; a formula for other bodies is not valid."""
-        return self.error is not None and self.converged and bool((self.error <= _MAX_ERROR).all())
+        """True if the wave repeats, fresh lubricant reaches the contacts, and the estimated error is at most 10 %.
+
+        A formula for other bodies is not valid.
+        """
+        refreshed = self.converged and self.unreached < _SMALL_SHARE
+        return self.error is not None and refreshed and bool((self.error <= _MAX_ERROR).all())
 
     @property
     def note(self) -> str:

@@ -24,8 +24,8 @@ REPEAT_TOLERANCE = 0.01
 _FIRST_CYCLES, _LEAP, _LAST_CYCLES = 3, 94, 12
 """Cycles before a leap over others, number of cycles in the leap, and largest number of cycles after it."""
 
-_FALLING = 2e-3
-"""Relative fall of the film in a cycle from which a cell counts as out of reach of fresh lubricant."""
+_FALLING = 0.05
+"""Relative fall of the film in the third cycle from which a cell counts as out of reach of fresh lubricant."""
 
 _NO_FILM = 1e-30
 """Film in mm, and area in mm², that count as none."""
@@ -107,16 +107,17 @@ def carry_over_cycle(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleI
     film = start = numpy.full(mesh.cells, waves[0].flood)
     thickness = numpy.full((len(waves), mesh.cells), numpy.nan)
     inside = waves[-1].contact.inside
-    cycles, change = 0, numpy.inf
+    cycles, change, unreached = 0, numpy.inf, numpy.zeros(mesh.cells, dtype=bool)
     while change > REPEAT_TOLERANCE and cycles < _FIRST_CYCLES + _LEAP + _LAST_CYCLES:
         if cycles == _FIRST_CYCLES:
+            unreached = inside & (film < (1 - _FALLING) * start)
             film, cycles = _leap(start, film), cycles + _LEAP
         start = film
         film = _carry_once(waves, instants, film, thickness)
         cycles += 1
         change = float(numpy.abs(film - start)[inside].sum() / max(float(film[inside].sum()), _NO_FILM))
-    falling = mesh.area[inside & (film < (1 - _FALLING) * start)].sum() / mesh.area[inside].sum(initial=_NO_FILM)
-    return _summarise(waves, thickness, float(falling), cycles, change <= REPEAT_TOLERANCE)
+    share = float(mesh.area[unreached].sum() / mesh.area[inside].sum(initial=_NO_FILM))
+    return _summarise(waves, thickness, share, cycles, change <= REPEAT_TOLERANCE)
 
 
 def _leap(start: Numbers, film: Numbers) -> Numbers:
