@@ -58,7 +58,7 @@ def test_figure_is_written(tmp_path):
         (("--spin", "3 mm"), "is not a rotation rate"),
         (("--method", "magic"), "method"),
         (("--clearance", "0"), "without clearance no lubricant enters"),
-        (("--model", "exact", "--method", "reynolds"), "springs"),
+        (("--model", "refined", "--method", "reynolds"), "springs"),
     ],
 )
 def test_bad_input_is_refused(words, message):

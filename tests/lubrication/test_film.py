@@ -49,17 +49,28 @@ def test_the_film_pressure_tends_to_the_dry_one():
 
 def test_wave_films_on_springs_scale_with_the_root_of_viscosity_and_speed():
     """One map of shape for each dry contact: 155.8 and 131.4 nm per root of rad/s in the limit of small cells."""
-    slow = bs.film(CONTACT, spin=(1.0, 0.0, 0.0), cell_width=radians(1.0))
-    fast = bs.film(CONTACT, spin=(4.0, 0.0, 0.0), cell_width=radians(1.0))
-    assert 1e6 * slow.central == pytest.approx(155.8, rel=0.015)
-    assert 1e6 * slow.minimum == pytest.approx(131.4, rel=0.02)
+    slow, fast = (bs.film(CONTACT, spin=(rate, 0.0, 0.0), cell_width=radians(4.0)) for rate in (1.0, 4.0))
     assert fast.thickness[fast.dry.inside] == pytest.approx(2 * slow.thickness[slow.dry.inside], rel=1e-9)
+    fine = bs.film(CONTACT, spin=(1.0, 0.0, 0.0), cell_width=radians(1.5))
+    assert 1e6 * fine.central == pytest.approx(155.8, rel=0.015)
+    assert 1e6 * fine.minimum == pytest.approx(131.4, rel=0.02)
 
 
 def test_the_direction_of_the_motion_turns_the_map():
     along, across = bs.film(CONTACT, spin=(2.0, 0.0, 0.0)), bs.film(CONTACT, spin=(0.0, 2.0, 0.0))
     assert along.central == pytest.approx(across.central, rel=0.005)
     assert along.minimum == pytest.approx(across.minimum, rel=0.005)
+
+
+def test_reynolds_on_elastic_bodies_confirms_the_wave():
+    """Central 468 and least 285 nm; with 48 meridians in place of 40 they are 467 and 288 nm."""
+    contact = bs.Exact().press(JOINT, force=1500.0)
+    judge, wave = (bs.film(contact, spin=(10.0, 0.0, 0.0), method=method) for method in ("reynolds", "wave"))
+    assert judge.status is Status.OK
+    assert 1e6 * judge.central == pytest.approx(467.5, rel=0.01)
+    assert wave.central == pytest.approx(judge.central, rel=wave.error)
+    assert wave.minimum == pytest.approx(judge.minimum, rel=wave.error)
+    assert (judge.pressure * judge.areas) @ judge.directions == pytest.approx([0.0, 0.0, 1500.0], abs=0.01)
 
 
 def test_film_at_the_exact_contact_loses_little_on_its_way():
@@ -150,7 +161,7 @@ def test_a_film_that_does_not_become_steady_is_returned_with_its_status(monkeypa
         (CONTACT, {"spin": [[1.0, 0.0, 0.0]]}, "one rotation rate"),
         (CONTACT, {"method": "magic"}, "inlet"),
         (CONTACT, {"cell_width": 1.0}, "cell_width = 1 is not allowed"),
-        (bs.Exact().press(JOINT, force=1500.0), {"method": "reynolds"}, "springs"),
+        (bs.Hertz().press(JOINT, force=1.0), {"method": "reynolds"}, "springs"),
         (SPRINGS.press(JOINT, force=np.array([1.0, 2.0])), {}, "single contact"),
         (SPRINGS.press(JOINT, force=0.0), {}, "force = 0 N is not allowed"),
         (SPRINGS.press(replace(JOINT, clearance=0.0), force=10.0), {}, "clearance = 0 mm is not allowed"),

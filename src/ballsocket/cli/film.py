@@ -63,9 +63,9 @@ class FilmOptions:
     viscosity: Annotated[str, typer.Option(help="Viscosity of the lubricant in Pa s, or with a unit: '2.5 mPa s'.")] = (
         "2.5 mPa s"
     )
-    method: Annotated[str, typer.Option(help=f"Method: {', '.join(METHODS)}. reynolds is for models on springs.")] = (
-        "wave"
-    )
+    method: Annotated[
+        str, typer.Option(help=f"Method: {', '.join(METHODS)}. reynolds is for models on springs, exact and tabulated.")
+    ] = "wave"
     ball_roughness: Annotated[str, typer.Option(help="Roughness Ra of the ball in mm, or with a unit: '20 nm'.")] = (
         "20 nm"
     )

@@ -12,6 +12,9 @@ from ..contact import Contact
 from ..core.arrays import Numbers
 from ..core.validity import Status
 from ..elasticity.off_axis.contact import OffAxisContact
+from ..elasticity.off_axis.grid import Grid
+from ..problem import Joint
+from ..problem.cup import Cup
 from .inlet import Edge, ElasticEdge, SpringEdge
 from .mesh import FilmMesh, polar_mesh, thinned_meridians
 
@@ -173,3 +176,20 @@ def _frame(axis: Numbers) -> Numbers:
     second = numpy.cross(axis, helper)
     second /= numpy.linalg.norm(second)
     return numpy.stack([numpy.cross(second, axis), second, axis])
+
+
+def elastic_softness(joint: Joint, ring_edges: Numbers, meridians: int) -> Numbers:
+    """Compute the matrix (cells, cells) of displacements per pressure in mm/MPa of a closed shell and its ball.
+
+    Cells are numbered as in `polar_mesh`, with the same number in every ring.
+    """
+    from ..elasticity.off_axis.compliance import make_compliance  # slow to import
+    from ..elasticity.off_axis.surfaces import ClosedShell
+
+    grid = Grid(edges=ring_edges, meridians=meridians)
+    softness = make_compliance(ClosedShell(), joint, Cup(), grid).softness
+    unit = numpy.zeros((grid.rings, grid.rings, meridians))
+    unit[numpy.arange(grid.rings), numpy.arange(grid.rings), 0] = 1.0
+    response = softness(unit)  # of a unit pressure at the first meridian: (loaded ring, ring, meridian)
+    turn = (numpy.arange(meridians)[:, None] - numpy.arange(meridians)) % meridians
+    return response.transpose(1, 2, 0)[:, turn].transpose(0, 1, 3, 2).reshape(2 * (grid.rings * meridians,))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, inf, pi, radians
 from typing import Any
 
@@ -14,7 +14,7 @@ from ..core.arrays import Array, Numbers
 from ..core.checks import check_vectors, known_name, require
 from ..core.display import load_plot
 from ..core.validity import Status
-from .dry_contact import DryContact, check_single_contact, dry_contact
+from .dry_contact import DryContact, check_single_contact, dry_contact, elastic_softness
 from .inlet import SpringEdge
 from .lubricant import Lubricant
 from .mesh import graded_rings, polar_mesh
@@ -27,14 +27,38 @@ CELL_WIDTH = radians(2.0)
 MAX_ERROR = 0.1
 """Largest estimated error of a valid film."""
 
-_REYNOLDS_ERROR = 0.005
-"""Largest relative change of the films of Reynolds' equation when its rings and meridians are halved."""
 
-_RINGS_OF_INLET = 6.0
-"""Number of rings in the inlet length for Reynolds' equation."""
+@dataclass(frozen=True, kw_only=True)
+class _MeshSettings:
+    """Mesh of Reynolds' equation: rings in the inlet length, angles in rad, cells in a ring, and the error it has.
 
-_COARSEST_RING, _MERIDIANS = radians(2.0), 64
-"""Width of the other rings in rad, and number of cells in a ring."""
+    The error is the largest relative change of the films when rings and meridians are halved.
+    """
+
+    rings_of_inlet: float
+    coarsest: float
+    growth: float
+    margin: float
+    meridians: int
+    first_turn: float
+    error: float
+
+
+_ON_SPRINGS = _MeshSettings(
+    rings_of_inlet=6.0, coarsest=radians(2.0), growth=1.12, margin=pi, meridians=64, first_turn=1e-3, error=0.005
+)
+_ELASTIC = _MeshSettings(
+    rings_of_inlet=5.0,
+    coarsest=radians(3.0),
+    growth=1.25,
+    margin=radians(12.0),
+    meridians=40,
+    first_turn=5e-3,
+    error=0.03,
+)
+
+_ELASTIC_MODELS = ("exact", "tabulated")
+"""Models whose elastic operator Reynolds' equation has."""
 
 _NO_ENTRAINMENT = "the ball does not turn across the load: no lubricant enters, and the film is squeezed out"
 _RIM_NOTE = "the rim cuts the contact: no lubricant enters there, and the film behind it is thinner than computed"
@@ -168,7 +192,8 @@ def film(
     lubricant : Lubricant
     method : str
         "inlet" is the closed form at the edge. "wave" (default) carries the film over the dry contact. "reynolds"
-        solves Reynolds' equation with the deformation and the balance of the load, for contacts on springs.
+        solves Reynolds' equation with the deformation and the balance of the load, for axial contacts on springs and
+        those of `exact` and `tabulated`.
     cell_width : float
         Width of the cells of the wave in rad; 2° by default.
 
@@ -182,7 +207,7 @@ def film(
         Another object than a contact or a lubricant.
     ValueError
         More than one contact; a contact without a result, load or clearance; a spin that is not finite; an unknown
-        method; Reynolds' equation for a contact that is not on springs.
+        method; Reynolds' equation for a contact of another model.
 
     Examples
     --------
@@ -273,48 +298,61 @@ def _central(dry: DryContact, film: Numbers) -> float:
 
 
 def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity: float) -> dict[str, Any]:
-    """Solve Reynolds' equation on springs, with the balance of the load and cavitation."""
-    if not isinstance(dry.edge, SpringEdge) or getattr(contact.model, "off_axis", False):
+    """Solve Reynolds' equation with the deformation, the balance of the load and cavitation."""
+    on_springs = isinstance(dry.edge, SpringEdge)
+    if getattr(contact.model, "off_axis", False) or not (on_springs or contact.model.name in _ELASTIC_MODELS):
         raise ValueError(
             f"method = 'reynolds' is not possible for {contact.model.name}: it needs an axial contact on springs, such "
-            "as hess-forsbach; use method='wave'"
+            f"as hess-forsbach, or that of {' or '.join(_ELASTIC_MODELS)}; use method='wave'"
         )
-    clearance, depth = float(contact.joint.clearance), float(contact.indentation)
+    settings = _ON_SPRINGS if on_springs else _ELASTIC
     speed = numpy.asarray(dry.speed(spin))
-    inlet = float(dry.edge.inlet_film(viscosity, speed))
-    finest = float(dry.edge.inlet_length(viscosity, speed)) / dry.radius / _RINGS_OF_INLET
-    rings = graded_rings(dry.half_angle, finest=min(finest, _COARSEST_RING), coarsest=_COARSEST_RING)
-    mesh = polar_mesh(dry.radius, rings, _MERIDIANS)
+    finest = float(dry.edge.inlet_length(viscosity, speed)) / dry.radius / settings.rings_of_inlet
+    rings = graded_rings(
+        dry.half_angle,
+        finest=min(finest, settings.coarsest),
+        coarsest=settings.coarsest,
+        rim=min(dry.half_angle + settings.margin, pi / 2),
+        growth=settings.growth,
+    )
+    mesh = polar_mesh(dry.radius, rings, settings.meridians)
     problem = FilmProblem(
         mesh=mesh,
         viscosity=viscosity,
         spin=spin,
-        gap=numpy.full(mesh.cells, clearance),
-        compliance=numpy.full(mesh.cells, 1 / dry.edge.modulus),
+        gap=numpy.full(mesh.cells, float(contact.joint.clearance)),
+        compliance=numpy.full(mesh.cells, 1 / dry.edge.modulus if isinstance(dry.edge, SpringEdge) else 0.0),
         rim_pressure=numpy.zeros(len(mesh.rim_cell)),
         force=float(contact.force) * dry.axis,
+        softness=None if on_springs else elastic_softness(contact.joint, rings, settings.meridians),
     )
     theta = numpy.arccos(mesh.direction[:, 2])
-    start = FilmState(
-        pressure=numpy.where(theta < dry.half_angle, contact.pressure(numpy.minimum(theta, dry.half_angle)), 0.0),
-        void=numpy.zeros(mesh.cells),
-        eccentricity=(clearance + depth - inlet) * dry.axis,
-    )
+    start = _dry_start(problem, contact, theta, dry, float(dry.edge.inlet_film(viscosity, speed)))
     rate = float(numpy.linalg.norm(spin))
-    state = develop_film(problem, start, 1e-3 / rate, 3 / rate)
+    state = develop_film(problem, start, settings.first_turn / rate, 3 / rate)
     film = problem.thickness(state)
-    inside = theta < dry.half_angle
     return {
         "directions": mesh.direction,
         "areas": mesh.area,
         "pressure": state.pressure,
         "thickness": film,
-        "central": float(film[:_MERIDIANS].mean()),
-        "minimum": float(film[inside].min()),
-        "error": _REYNOLDS_ERROR,
+        "central": float(film[: settings.meridians].mean()),
+        "minimum": float(film[theta < dry.half_angle].min()),
+        "error": settings.error,
         "status": Status.OK if state.converged else Status.NOT_CONVERGED,
         "displacement": state.eccentricity,
     }
+
+
+def _dry_start(problem: FilmProblem, contact: Contact, theta: Numbers, dry: DryContact, film: float) -> FilmState:
+    """Make the dry contact with the ball lifted to a mean film in mm; no film is below a third of it."""
+    inside = theta < dry.half_angle
+    pressure = numpy.where(inside, contact.pressure(numpy.minimum(theta, dry.half_angle)), 0.0)
+    depth = (float(contact.joint.clearance) + float(contact.indentation)) * dry.axis
+    state = FilmState(pressure=pressure, void=numpy.zeros(len(theta)), eccentricity=depth)
+    gap = problem.thickness(state)
+    lift = max(film - float(gap[inside].mean()), film / 3 - float(gap.min()))
+    return replace(state, eccentricity=depth - lift * dry.axis)
 
 
 def _number(value: float) -> float | None:

@@ -9,11 +9,13 @@ Source: Woloszynski, Podsiadlo, Stachowiak, Tribology Letters 58 (2015) 18, doi:
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import inf, sqrt
 from typing import Any
 
 import numpy
+import scipy.linalg
 import scipy.sparse
 import scipy.sparse.linalg
 
@@ -192,6 +194,8 @@ class FilmProblem:
         Pressure of the lubricant at the rim in MPa.
     force : array (3,) or None
         Load on the ball in N; None holds the ball where it is.
+    softness : array (cells, cells), optional
+        Further displacements of the surfaces per pressure in mm/MPa, of elastic bodies.
     """
 
     mesh: FilmMesh
@@ -201,10 +205,21 @@ class FilmProblem:
     compliance: Numbers
     rim_pressure: Numbers
     force: Numbers | None = None
+    softness: Numbers | None = None
+
+    def displacement(self, pressure: Numbers) -> Numbers:
+        """Compute the displacement of the surfaces in mm under pressures in MPa."""
+        springs: Numbers = self.compliance * pressure
+        return springs if self.softness is None else springs + self.softness @ pressure
+
+    def slope_by_pressure(self, balance: Balance) -> Any:
+        """Compute the derivative of the outflow by pressure at a fixed ball; of elastic bodies it is a full matrix."""
+        springs = balance.by_pressure + balance.by_thickness @ scipy.sparse.diags_array(self.compliance)
+        return springs if self.softness is None else springs.toarray() + balance.by_thickness @ self.softness
 
     def thickness(self, state: FilmState) -> Numbers:
         """Compute the film thickness of each cell in mm."""
-        return self.gap - self.mesh.direction @ state.eccentricity + self.compliance * state.pressure
+        return self.gap - self.mesh.direction @ state.eccentricity + self.displacement(state.pressure)
 
     def load(self, pressure: Numbers) -> Numbers:
         """Integrate the pressure over the cup to a force (3,) in N."""
@@ -284,7 +299,7 @@ def _newton_step(
     unknown, shift = _solve_linear(problem, state, balance, choice)
     pressure_change = choice.pressure_at + choice.pressure_by * unknown
     void_change = choice.void_at + choice.void_by * unknown
-    film_change = problem.compliance * pressure_change - problem.mesh.direction @ shift
+    film_change = problem.displacement(pressure_change) - problem.mesh.direction @ shift
     length = _step_length(thickness, film_change)
     later = replace(
         state,
@@ -301,22 +316,37 @@ def _solve_linear(
     problem: FilmProblem, state: FilmState, balance: Balance, choice: _CellUnknown
 ) -> tuple[Numbers, Numbers]:
     """Solve the linear balance of a Newton step for the unknown of each cell and the shift of the ball in mm."""
-    by_pressure = balance.by_pressure + balance.by_thickness @ scipy.sparse.diags_array(problem.compliance)
-    matrix = by_pressure @ scipy.sparse.diags_array(choice.pressure_by)
-    matrix = matrix + balance.by_void @ scipy.sparse.diags_array(choice.void_by)
-    constant = -balance.outflow - by_pressure @ choice.pressure_at - balance.by_void @ choice.void_at
-    scale = 1 / numpy.maximum(abs(matrix).max(axis=1).toarray().ravel(), 1e-300)
-    factor: Any = scipy.sparse.linalg.splu((scipy.sparse.diags_array(scale) @ matrix).tocsc())
-    unknown = factor.solve(scale * constant)
+    by_pressure = problem.slope_by_pressure(balance)
+    matrix = _scale_columns(by_pressure, choice.pressure_by) + _scale_columns(balance.by_void, choice.void_by)
+    right_side = -balance.outflow - by_pressure @ choice.pressure_at - balance.by_void @ choice.void_at
+    solve = _factorise(matrix)
+    unknown = solve(right_side)
     if problem.force is None:
         return unknown, numpy.zeros(3)
     # the three displacements of the ball balance the load: a border of three columns and rows
     by_shift = balance.by_thickness @ problem.mesh.direction
-    response = numpy.stack([factor.solve(scale * by_shift[:, axis]) for axis in range(3)], axis=1)
+    response = numpy.stack([solve(by_shift[:, axis]) for axis in range(3)], axis=1)
     weight = (problem.mesh.area[:, None] * problem.mesh.direction).T
     pressure = state.pressure + choice.pressure_at + choice.pressure_by * unknown
     shift = numpy.linalg.solve((weight * choice.pressure_by) @ response, problem.force - problem.load(pressure))
     return unknown + response @ shift, shift
+
+
+def _scale_columns(matrix: Any, factors: Numbers) -> Any:
+    """Multiply the columns of a sparse or a full matrix by factors."""
+    return matrix @ scipy.sparse.diags_array(factors) if scipy.sparse.issparse(matrix) else matrix * factors
+
+
+def _factorise(matrix: Any) -> Callable[[Numbers], Numbers]:
+    """Factorise a sparse or a full matrix with scaled rows; return the function that solves with it."""
+    largest = abs(matrix).max(axis=1)
+    largest = largest.toarray().ravel() if scipy.sparse.issparse(matrix) else numpy.asarray(largest).ravel()
+    scale = 1 / numpy.maximum(largest, 1e-300)
+    if scipy.sparse.issparse(matrix):
+        sparse: Any = scipy.sparse.linalg.splu((scipy.sparse.diags_array(scale) @ matrix).tocsc())
+        return lambda right_side: sparse.solve(scale * right_side)
+    full = scipy.linalg.lu_factor(numpy.asarray(matrix) * scale[:, None], overwrite_a=True, check_finite=False)
+    return lambda right_side: scipy.linalg.lu_solve(full, scale * right_side, check_finite=False)
 
 
 def _step_length(thickness: Numbers, film_change: Numbers) -> float:
