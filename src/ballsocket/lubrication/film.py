@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import degrees, inf, pi, radians
+from math import ceil, degrees, inf, pi, radians
 from typing import Any
 
 import numpy
@@ -56,6 +56,9 @@ _ELASTIC = _MeshSettings(
     first_turn=5e-3,
     error=0.03,
 )
+
+_CELLS_OF_SIDES, _MAX_MERIDIANS = 9.0, 72
+"""Number of cells in a ring times the angle of the sides in rad, and the largest number of cells."""
 
 _ELASTIC_MODELS = ("exact", "tabulated")
 """Models whose elastic operator Reynolds' equation has."""
@@ -315,7 +318,8 @@ def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity:
         rim=min(dry.half_angle + settings.margin, pi / 2),
         growth=settings.growth,
     )
-    mesh = polar_mesh(dry.radius, rings, settings.meridians)
+    meridians = _meridians(dry, viscosity, float(speed), settings.meridians)
+    mesh = polar_mesh(dry.radius, rings, meridians)
     problem = FilmProblem(
         mesh=mesh,
         viscosity=viscosity,
@@ -324,7 +328,7 @@ def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity:
         compliance=numpy.full(mesh.cells, 1 / dry.edge.modulus if isinstance(dry.edge, SpringEdge) else 0.0),
         rim_pressure=numpy.zeros(len(mesh.rim_cell)),
         force=float(contact.force) * dry.axis,
-        softness=None if on_springs else elastic_softness(contact.joint, rings, settings.meridians),
+        softness=None if on_springs else elastic_softness(contact.joint, rings, meridians),
     )
     theta = numpy.arccos(mesh.direction[:, 2])
     start = _dry_start(problem, contact, theta, dry, float(dry.edge.inlet_film(viscosity, speed)))
@@ -336,12 +340,18 @@ def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity:
         "areas": mesh.area,
         "pressure": state.pressure,
         "thickness": film,
-        "central": float(film[: settings.meridians].mean()),
+        "central": float(film[:meridians].mean()),
         "minimum": float(film[theta < dry.half_angle].min()),
         "error": settings.error,
         "status": Status.OK if state.converged else Status.NOT_CONVERGED,
         "displacement": state.eccentricity,
     }
+
+
+def _meridians(dry: DryContact, viscosity: float, speed: float, least: int) -> int:
+    """Choose the number of cells in a ring so that several lie in the sides of an elastic contact."""
+    share = dry.edge.side_speed(viscosity, speed, dry.contact_radius) / speed
+    return min(max(least, 8 * ceil(_CELLS_OF_SIDES / share / 8)), _MAX_MERIDIANS)
 
 
 def _dry_start(problem: FilmProblem, contact: Contact, theta: Numbers, dry: DryContact, film: float) -> FilmState:

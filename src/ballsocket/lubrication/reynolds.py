@@ -31,6 +31,9 @@ _MIN_STEP = 0.02
 _GROWTH = 1.8
 """Growth of the time steps on the way to the steady film."""
 
+_MAX_TIME_STEPS = 40
+"""Number of time steps on the way to the steady film after which it counts as not converged."""
+
 _EASY_ITERATIONS = 10
 """Number of Newton steps up to which the next time step grows."""
 
@@ -237,7 +240,9 @@ def develop_film(problem: FilmProblem, start: FilmState, first_step: float, last
     The result is not converged if a step fails again and again; it is then the last film that was reached.
     """
     state, step, iterations = start, first_step, 0
-    while first_step / 1e3 < step < last_step:
+    for _ in range(_MAX_TIME_STEPS):
+        if not first_step / 1e3 < step < last_step:
+            break
         volume = problem.thickness(state) * (1 - state.void)
         later = advance(problem, state, volume=volume, step=step, tolerance=1e-6, max_steps=25)
         iterations += later.iterations
