@@ -89,7 +89,7 @@ def _cycles() -> Rows:
         )
         _ = use.unworn
         begun = perf_counter()
-        film = use.film(Lubricant())
+        film = use.film(Lubricant(), method="wave")
         seconds = perf_counter() - begun
         rows.add(f"{width:g} deg", len(film.phases), f"{seconds:.2f}", f"{1e6 * film.least.min():.1f}")
     return rows

@@ -1,7 +1,7 @@
 """Lubricant film between ball and socket over a cycle, and friction: moment, power, heat.
 
-Method "wave" carries the film over the dry contacts from instant to instant until it repeats. Method "hamrock-dowson"
-has a formula for each instant alone; it is fitted to bodies of low conformity and serves as a comparison.
+Method "hamrock-dowson" has a formula for each instant alone; it is fitted to bodies of low conformity. Method "wave"
+carries the film over the dry contacts from instant to instant.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ CONFORMITY_NOTE = (
 )
 """Note on the film thickness of a conforming joint."""
 
-WAVE_NOTE = "Film carried over the dry contacts from instant to instant until the cycle repeats"
+WAVE_NOTE = "Film carried over the dry contacts from instant to instant"
 """Note on the film thickness by the kinematic wave."""
 
-METHODS = ("wave", "hamrock-dowson")
+METHODS = ("hamrock-dowson", "wave")
 """Names of the methods; the first is the default."""
 
 _SMALL_SHARE = 0.01
@@ -150,11 +150,12 @@ class Film:
             return CONFORMITY_NOTE
         if not self.converged:
             return f"{WAVE_NOTE}; it did not repeat, and this is the last cycle"
-        error = f"{WAVE_NOTE}; estimated error up to {100 * self.error.max(initial=0.0):.0f} %"
+        error = f"{WAVE_NOTE}; estimated error of a steady film up to {100 * self.error.max(initial=0.0):.0f} %"
         if self.unreached < _SMALL_SHARE:
             return error
         share = f"{100 * self.unreached:.0f} % of the contact"
-        return f"{error}; fresh lubricant does not reach {share}, where the film after 100 cycles is given"
+        unsettled = "its film falls without limit, here after about 100 cycles"
+        return f"{error}; fresh lubricant does not reach {share}: {unsettled}"
 
     @property
     def regime(self) -> str:
@@ -179,7 +180,6 @@ class Film:
             "heat_J_per_cycle": self.heat,
         }
         finite_values = {name: float(value) if numpy.isfinite(value) else None for name, value in values.items()}
-        comparison = self.comparison.max(initial=0.0)
         largest_moment = [float(component) for component in self.moment[moment_magnitudes.argmax()]]
         return {
             **finite_values,
@@ -189,7 +189,6 @@ class Film:
             "method": self.method,
             "valid": self.valid,
             "error": None if self.error is None else float(self.error.max(initial=0.0)),
-            "hamrock_dowson_largest_nm": float(1e6 * comparison) if numpy.isfinite(comparison) else None,
         }
 
 

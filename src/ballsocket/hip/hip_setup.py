@@ -332,8 +332,8 @@ class HipSetup(OneLine):
         depth : array (cells,)
             Worn depth of the bore in mm.
         method : str
-            "wave" (default) carries the film from instant to instant until it repeats. "hamrock-dowson" is a formula
-            for bodies of low conformity.
+            "hamrock-dowson" (default) is a formula for bodies of low conformity. "wave" carries the film from instant
+            to instant; its `valid` and `note` state whether the film settles.
 
         Raises
         ------

@@ -49,7 +49,11 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
             hip_plots.cross_shear_map,
             "Cross-shear of the first cycle; each sliding distance is weighted by its pressure.",
         ),
-        "film": ("Film and friction", hip_plots.film_figure, f"{WAVE_NOTE}. {CONFORMITY_NOTE}."),
+        "film": (
+            "Film and friction",
+            hip_plots.film_figure,
+            f"{CONFORMITY_NOTE}. Wave: {WAVE_NOTE[0].lower()}{WAVE_NOTE[1:]}.",
+        ),
         "edge": (
             "Edge distance",
             hip_plots.edge_figure,
