@@ -61,6 +61,7 @@ from .models.refined import Refined
 from .problem import Joint, Layer, Material, Support
 from .problem.cup import AngleDefinition, Cup, Interface, Side
 from .problem.gaps import CircularGap, LinearGap
+from .problem.lubricant import Lubricant
 from .problem.presets import (
     ALUMINA,
     ALUMINA_COMPOSITE,
@@ -93,6 +94,7 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "Joint",
     "Layer",
     "LinearGap",
+    "Lubricant",
     "Material",
     "Side",
     "Support",
