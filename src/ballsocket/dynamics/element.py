@@ -6,7 +6,7 @@ import logging
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from math import inf
+from math import inf, pi
 from operator import attrgetter
 from typing import Any
 
@@ -24,22 +24,15 @@ from ..core.validity import Range
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
+from ..problem.lubricant import Lubricant
+from .ball_centre import BallCentre, Constants, Vector, ball_centre_at
 from .bristles import Bristles
 from .damping import Damping
 from .friction import Friction
 from .load import Load, add_bristle_loads
 from .matrices import join_vector
 from .potential import Potential, adhesion_potential, evaluate_curve, fit_quantity_curve, potential_of
-from .reaction import (
-    NO_CONTACT,
-    BallCentre,
-    Constants,
-    Vector,
-    ball_centre_at,
-    elastic_contact,
-    force_and_moment,
-    remove_tension_damping,
-)
+from .reaction import NO_CONTACT, elastic_contact, force_and_moment, remove_tension_damping
 
 _log = logging.getLogger("ballsocket.dynamics")
 
@@ -48,6 +41,15 @@ _DEPTHS = 129
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
 _ZERO_DEFLECTION = (0.0, 0.0, 0.0, 0.0)
+_PARTS: dict[str, Any] = {
+    "model": Model,
+    "damping": Damping,
+    "friction": Friction | Bristles,
+    "cup": Cup,
+    "lubricant": Lubricant,
+}
+"""Types of the parts of a force element by their names."""
+
 _SEQUENCES = (tuple, list)
 _NUMPY_FLOAT = numpy.float64
 
@@ -71,13 +73,18 @@ class ForceElement(OneLine):
     smoothing : float
         Indentation in mm on both sides of first touch over which the law is rounded off. The force is then twice
         continuously differentiable, as optimal control needs it. 0, the default, is the law of the model.
+    lubricant : Lubricant, optional
+        Adds squeeze, wedge and spin forces of the film between a rigid ball and a rigid socket. The film is never
+        thinner than the combined roughness of the surfaces, also where they touch. Dry friction is that of `friction`;
+        the coefficient of the lubricant is not used. None, the default, is a dry socket.
 
     Raises
     ------
     ValueError
-        A joint outside the domain of the model; a smoothing below 0 or above the clearance.
+        A joint outside the domain of the model; a smoothing below 0 or above the clearance; a lubricant in a joint
+        with a clearance below twice its combined roughness, or without roughness.
     TypeError
-        A model without a force law, arrays in the joint, or a wrong type of damping, friction or cup.
+        A model without a force law, arrays in the joint, or a wrong type of damping, friction, cup or lubricant.
 
     Examples
     --------
@@ -97,13 +104,14 @@ class ForceElement(OneLine):
     friction: Friction | Bristles | None = None
     cup: Cup | None = None
     smoothing: float = 0.0
+    lubricant: Lubricant | None = None
     potential: Potential = field(init=False, repr=False)
     constants: Constants = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check the parts of the element, and set its potential and constants."""
         check_joint(self.joint)
-        for name, kind in (("model", Model), ("damping", Damping), ("friction", Friction | Bristles), ("cup", Cup)):
+        for name, kind in _PARTS.items():
             value = getattr(self, name)
             if not (isinstance(value, kind) or (value is None and name != "model")):
                 raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(value)}")
@@ -118,7 +126,7 @@ class ForceElement(OneLine):
         object.__setattr__(self, "constants", self._collect_constants(smoothing))
 
     def __str__(self) -> str:
-        parts = {"damping": self.damping, "friction": self.friction, "cup": self.cup}
+        parts = {name: getattr(self, name) for name in _PARTS if name != "model"}
         named = [f"{name} {type(part).__name__}" for name, part in parts.items() if part is not None]
         smoothing = [f"smoothing {self.smoothing:g} mm"] if self.smoothing else []
         return "; ".join([f"{self.model.name} on {self.joint.name or self.joint.dimensions}", *named, *smoothing])
@@ -127,8 +135,8 @@ class ForceElement(OneLine):
         """Return the elastic energy of model and joint over the indentation."""
         if not isinstance(self.model, AdhesiveSocket):
             return potential_of(self.model, self.joint)
-        if self.friction or self.cup or self.smoothing:
-            raise TypeError("friction, cup and smoothing are not supported with AdhesiveSocket")
+        if self.friction or self.cup or self.smoothing or self.lubricant:
+            raise TypeError("friction, cup, smoothing and lubricant are not supported with AdhesiveSocket")
         return adhesion_potential(self.model, self.joint)
 
     @cached_property
@@ -158,6 +166,7 @@ class ForceElement(OneLine):
             **loss_constants(self.damping, friction),
             rim=0.0 if cup is None else cup.rim,
             **dict(zip(("dome_x", "dome_y", "dome_z"), (Cup() if cup is None else cup).dome, strict=True)),
+            **film_constants(self.lubricant, joint),
         )
 
     def __call__(
@@ -205,7 +214,7 @@ class ForceElement(OneLine):
         is_adhesive = self.stretch > 0.0
         if is_adhesive:
             centre = self._centre_if_attached(centre, attached)
-        if centre.indentation <= -constants.smoothing and centre.distance > 0.0:
+        if centre.indentation <= -constants.smoothing and centre.distance > 0.0 and constants.film_damping == 0.0:
             return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, NO_CONTACT, position, velocity, spin)
         if centre.indentation > self._validity_monitor.limit:
             self._validity_monitor.check(centre.indentation)
@@ -325,6 +334,24 @@ def loss_constants(damping: Damping | None, friction: Friction | None) -> dict[s
         "stribeck_speed": friction.stribeck_speed,
         "viscous": friction.viscous,
     }
+
+
+def film_constants(lubricant: Lubricant | None, joint: Joint) -> dict[str, float]:
+    """Return the constants of the lubricant's film by their names in `Constants`; None has no film."""
+    if lubricant is None:
+        return {"film_damping": 0.0, "least_film": 0.0}
+    clearance, roughness = float(joint.clearance), lubricant.combined_roughness
+    require("clearance", clearance, clearance > 0.0, "a lubricant needs a film, and so a clearance above 0 mm")
+    allowed = f"the least film (mm) of a lubricant must be above 0 and at most half of the clearance, {clearance:g} mm"
+    require("combined_roughness", roughness, 0.0 < roughness <= 0.5 * clearance, allowed)
+    radii_product = float(joint.ball_radius * joint.socket_radius)
+    damping = pi * _MPA_S_PER_PA_S * lubricant.viscosity * radii_product**2 / clearance**3
+    require("viscosity", lubricant.viscosity, 0.0 < damping < inf, "the damping of its film must be a finite number")
+    return {"film_damping": damping, "least_film": roughness}
+
+
+_MPA_S_PER_PA_S = 1e-6
+"""Pa s in MPa s."""
 
 
 def split_components(value: Any) -> Vector:

@@ -1,0 +1,151 @@
+"""Hydrodynamic forces of a lubricant between a rigid ball and its rigid socket, in closed form.
+
+The film of a ball at r = e n is h = c - e cos θ, with the angle θ from n. Reynolds' equation of the ball's velocity v
+and spin ω has the right-hand side -V·m at the direction m, with V = v - ½ ω x r. So squeeze and wedge are one linear
+problem, solved by the pressures
+
+    p = 3 η R² V_n/(e h²) + constant,   p = 12 η R² V_t (2c - e cos θ) sin θ cos φ/[(4c² + e²) h²].
+
+Their resultants, with κ = e/c, g = (artanh κ - κ)/κ³ and G = 1 + (1 + κ²) g, are the force and the moment
+
+    f = -D_n V_n n - D_t V_t,   m = -½ r x f - C_n ω_n n - C_t ω_t,
+    D_n = 12 D [1/(1 - κ²) - g],   D_t = 24 D G/(4 + κ²),   D = π η R⁴/c³,
+    C_n = 4 D c² [1 - (1 - κ²) g],   C_t = 2 D c² G.
+
+C_n and C_t are the shear of the film. The damping matrix is symmetric and positive semidefinite. No pressure is cut
+off (full Sommerfeld): the fluid bears tension. R² = R1 R2 makes the concentric limits exact to (c/R)²; elsewhere the
+error is that of Reynolds' equation, of the order c/R.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from ..core.arrays import Array, cos, log1p, sin, sqrt, where
+from .ball_centre import BallCentre, Constants, Vector, smooth_ramp
+
+
+class FilmDamping(NamedTuple):
+    """Damping by the film: `along` and `across` the eccentricity in N s/mm, `drilling` and `turning` in N mm s.
+
+    `along` is D_n, `across` D_t, `drilling` C_n and `turning` C_t. `steepening` is a bound of the increase of D_n with
+    the eccentricity in N s/mm², for the iterations of a time step.
+    """
+
+    along: Array
+    across: Array
+    drilling: Array
+    turning: Array
+    steepening: Array
+
+
+def film_damping(centre: BallCentre, constants: Constants) -> FilmDamping:
+    """Compute the damping coefficients of the film at a position of the ball."""
+    c, D = constants.clearance, constants.film_damping
+    gap, slope = film_thickness(centre, constants)
+    share = gap / c
+    kappa, one_minus_square = 1.0 - share, share * (2.0 - share)
+    square = kappa * kappa
+    g = _eccentricity_function(kappa, share)
+    G = 1.0 + (1.0 + square) * g
+    along, across = 12.0 * D * (1.0 / one_minus_square - g), 24.0 * D * G / (4.0 + square)
+    drilling, turning = 4.0 * D * c * c * (1.0 - one_minus_square * g), 2.0 * D * c * c * G
+    if constants.rim > 0.0:
+        covered, rim_loss = _covered_share(kappa, one_minus_square, centre, constants)
+        along, across = covered * covered * along, covered * covered * (across - rim_loss * square * D)
+        drilling, turning = covered * drilling, covered * turning
+    return FilmDamping(along, across, drilling, turning, along * slope / gap)
+
+
+def film_thickness(centre: BallCentre, constants: Constants) -> tuple[Array, Array]:
+    """Compute the least thickness of the gap in mm, and its decrease over the distance of the centres.
+
+    It is c - e from two least films on, and falls smoothly to one least film where the surfaces touch.
+    """
+    least = constants.least_film
+    ramp, slope, _ = smooth_ramp(constants.clearance - centre.distance - least, least)
+    return least + ramp, slope
+
+
+_SMALL_ECCENTRICITY = 0.1
+"""Relative eccentricity below which the function g is a series, because its closed form cancels."""
+
+
+def _eccentricity_function(kappa: Array, share: Array) -> Array:
+    """Compute g = (artanh κ - κ)/κ³ = Σ κ^(2k)/(2k + 3); `share` is 1 - κ."""
+    x = kappa * kappa
+    series = 1 / 3 + x * (1 / 5 + x * (1 / 7 + x * (1 / 9 + x * (1 / 11 + x * (1 / 13 + x * (1 / 15 + x / 17))))))
+    large = kappa > _SMALL_ECCENTRICITY
+    divisor = where(large, kappa, 1.0)
+    closed_form = (0.5 * log1p(2.0 * kappa / share) - kappa) / (divisor * divisor * divisor)
+    return where(large, closed_form, series)
+
+
+_RIM_LOSS = 5.0
+"""Damping across the eccentricity that a rim at the equator takes from a nearly touching ball, in units of D."""
+
+
+def _covered_share(
+    kappa: Array, one_minus_square: Array, centre: BallCentre, constants: Constants
+) -> tuple[Array, Array]:
+    """Compute the share of the film inside the rim of a cup, and the damping lost through the rim in units of D.
+
+    The square of the share is exactly the mean of the damping over all directions for a concentric ball, the part of a
+    film next to a rim for a ball that nearly touches. Both are fits to Reynolds' equation in between.
+    """
+    rim_cosine, rim_sine = cos(constants.rim), sin(constants.rim)
+    dome_cosine = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
+    # κ n·dome with its derivative where the centres coincide
+    inverse_distance, c = centre.inverse_distance, constants.clearance
+    reach = where(centre.distance > 0.0, kappa * inverse_distance, 1.0 / c) / inverse_distance
+    inside = reach * dome_cosine - rim_cosine
+    covered = 0.5 + 0.5 * inside / sqrt(inside * inside + one_minus_square * rim_sine * rim_sine)
+    return covered, _RIM_LOSS * (1.0 + rim_cosine)
+
+
+def film_force_and_moment(
+    centre: BallCentre, velocity: Vector, spin: Vector, constants: Constants
+) -> tuple[Array, ...]:
+    """Compute force (N) and moment (N mm) of the film on the ball about its centre, as six components."""
+    damping = film_damping(centre, constants)
+    nx, ny, nz, (wx, wy, wz) = centre.x, centre.y, centre.z, spin
+    speed, ax, ay, az = mean_velocity(centre, velocity, spin)
+    turning = wx * nx + wy * ny + wz * nz
+    fx, fy, fz = -damping.across * ax, -damping.across * ay, -damping.across * az
+    lever, drill = 0.5 / centre.inverse_distance, damping.drilling - damping.turning
+    squeeze = damping.along * speed
+    return (
+        fx - squeeze * nx,
+        fy - squeeze * ny,
+        fz - squeeze * nz,
+        -lever * (ny * fz - nz * fy) - damping.turning * wx - drill * turning * nx,
+        -lever * (nz * fx - nx * fz) - damping.turning * wy - drill * turning * ny,
+        -lever * (nx * fy - ny * fx) - damping.turning * wz - drill * turning * nz,
+    )
+
+
+def mean_velocity(centre: BallCentre, velocity: Vector, spin: Vector) -> tuple[Array, Array, Array, Array]:
+    """Compute the velocity V = v - ½ ω x r in mm/s: its component along n, and the vector across n.
+
+    r is n over the inverse distance, which has the right derivative where the centres coincide.
+    """
+    (vx, vy, vz), (wx, wy, wz), half = velocity, spin, 0.5 / centre.inverse_distance
+    nx, ny, nz = centre.x, centre.y, centre.z
+    speed = vx * nx + vy * ny + vz * nz
+    return (
+        speed,
+        vx - speed * nx - half * (wy * nz - wz * ny),
+        vy - speed * ny - half * (wz * nx - wx * nz),
+        vz - speed * nz - half * (wx * ny - wy * nx),
+    )
+
+
+def film_dissipation(centre: BallCentre, velocity: Vector, spin: Vector, constants: Constants) -> Array:
+    """Compute the power in N mm/s that the film dissipates."""
+    damping, (wx, wy, wz) = film_damping(centre, constants), spin
+    speed, ax, ay, az = mean_velocity(centre, velocity, spin)
+    turning = wx * centre.x + wy * centre.y + wz * centre.z
+    tx, ty, tz = wx - turning * centre.x, wy - turning * centre.y, wz - turning * centre.z
+    pressure_power = damping.along * speed * speed + damping.across * (ax * ax + ay * ay + az * az)
+    shear_power = damping.drilling * turning * turning + damping.turning * (tx * tx + ty * ty + tz * tz)
+    return pressure_power + shear_power
