@@ -21,8 +21,11 @@ LOSSES = {
 }
 CUP = bs.Cup(inclination=0.7, anteversion=0.2)
 ELEMENTS = {
-    "springs of a cup": lambda: ForceElement(bs.Bartel(), HIP, **LOSSES, cup=CUP, smoothing=0.02),
+    "springs of a cup": lambda: ForceElement(
+        bs.Bartel(), HIP, **LOSSES, cup=CUP, smoothing=0.02, lubricant=bs.Lubricant()
+    ),
     "springs": lambda: ForceElement(bs.HessForsbach(), HIP, **LOSSES),
+    "wet springs": lambda: ForceElement(bs.HessForsbach(), HIP, **LOSSES, lubricant=bs.Lubricant()),
     "formula": lambda: ForceElement(bs.Hertz(), HIP, **LOSSES),
     "curve": lambda: ForceElement(bs.Tabulated(), HIP, **LOSSES, cup=CUP),
 }

@@ -13,8 +13,9 @@ Their resultants, with κ = e/c, g = (artanh κ - κ)/κ³ and G = 1 + (1 + κ²
     C_n = 4 D c² [1 - (1 - κ²) g],   C_t = 2 D c² G.
 
 C_n and C_t are the shear of the film. The damping matrix is symmetric and positive semidefinite. No pressure is cut
-off (full Sommerfeld): the fluid bears tension. R² = R1 R2 makes the concentric limits exact to (c/R)²; elsewhere the
-error is that of Reynolds' equation, of the order c/R.
+off (full Sommerfeld), so that the fluid bears tension. Without the tension (half Sommerfeld) the damping would depend
+on the motion, and its matrix would not be symmetric. R² = R1 R2 makes the concentric limits exact to (c/R)². Elsewhere
+the error is that of Reynolds' equation, of the order c/R.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ def film_damping(centre: BallCentre, constants: Constants) -> FilmDamping:
     drilling, turning = 4.0 * D * c * c * (1.0 - one_minus_square * g), 2.0 * D * c * c * G
     if constants.rim > 0.0:
         covered, rim_loss = _covered_share(kappa, one_minus_square, centre, constants)
-        along, across = covered * covered * along, covered * covered * (across - rim_loss * square * D)
+        along, across = covered * covered * along, covered * covered * (across - rim_loss * D)
         drilling, turning = covered * drilling, covered * turning
     return FilmDamping(along, across, drilling, turning, along * slope / gap)
 
@@ -81,7 +82,7 @@ def _eccentricity_function(kappa: Array, share: Array) -> Array:
     return where(large, closed_form, series)
 
 
-_RIM_LOSS = 5.0
+_RIM_LOSS = 5.6
 """Damping across the eccentricity that a rim at the equator takes from a nearly touching ball, in units of D."""
 
 
@@ -90,8 +91,8 @@ def _covered_share(
 ) -> tuple[Array, Array]:
     """Compute the share of the film inside the rim of a cup, and the damping lost through the rim in units of D.
 
-    The square of the share is exactly the mean of the damping over all directions for a concentric ball, the part of a
-    film next to a rim for a ball that nearly touches. Both are fits to Reynolds' equation in between.
+    The square of the share is exactly the mean of the damping over all directions for a concentric ball. Share and
+    loss are fits to solutions of Reynolds' equation with pressure 0 at the rim: `docs/explanation/dynamics.md`.
     """
     rim_cosine, rim_sine = cos(constants.rim), sin(constants.rim)
     dome_cosine = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
@@ -100,7 +101,8 @@ def _covered_share(
     reach = where(centre.distance > 0.0, kappa * inverse_distance, 1.0 / c) / inverse_distance
     inside = reach * dome_cosine - rim_cosine
     covered = 0.5 + 0.5 * inside / sqrt(inside * inside + one_minus_square * rim_sine * rim_sine)
-    return covered, _RIM_LOSS * (1.0 + rim_cosine)
+    square = kappa * kappa
+    return covered, _RIM_LOSS * (1.0 + rim_cosine) * 2.0 * square / (1.0 + square)
 
 
 def film_force_and_moment(

@@ -64,7 +64,7 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     mean_rows = translation_rows - (0.5 / constants.ball_radius) * centre.distance[..., None, None] * rotation_rows
     drilling_axis = xp.concat([0.0 * direction, direction], axis=-1)[..., None, :]
     normal_axis = xp.concat([direction, 0.0 * direction], axis=-1)[..., None, :]
-    turning_rows = rotation_rows / constants.ball_radius
+    turning_rows = xp.concat([zero_block, tangential], axis=-1)
     return contact_matrix + _film_matrix(centre, (normal_axis, mean_rows, drilling_axis, turning_rows), constants)
 
 
