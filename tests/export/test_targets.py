@@ -30,7 +30,8 @@ PLAIN = ForceElement(bs.HessForsbach(), HIP)
 DAMPED = ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.004))
 HERTZ = ForceElement(bs.Hertz(), HIP)
 TABULATED = ForceElement(bs.Tabulated(), HIP, damping=DAMPED.damping)
-LOSSY = ForceElement(bs.HessForsbach(), HIP, damping=DAMPED.damping, friction=Friction(coefficient=0.05))
+LOSSES = {"damping": DAMPED.damping, "friction": Friction(coefficient=0.05)}
+LOSSY = ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant(viscosity=1e-5), **LOSSES)
 STATE = (1e-5, 0.0, 1.2e-4), (0.001, 0.0, 0.02), (0.0, 1.0, 2.0)
 IN_MM = (0.01, 0.0, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0)
 
