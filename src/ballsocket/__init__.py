@@ -41,6 +41,7 @@ from .elasticity.off_axis import (
     read_scan,
 )
 from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
+from .lubrication import Lubricant
 from .models.adhesion import AdhesiveSocket
 from .models.closed_form import ClosedForm
 from .models.foundation import (
@@ -61,7 +62,6 @@ from .models.refined import Refined
 from .problem import Joint, Layer, Material, Support
 from .problem.cup import AngleDefinition, Cup, Interface, Side
 from .problem.gaps import CircularGap, LinearGap
-from .problem.lubricant import Lubricant
 from .problem.presets import (
     ALUMINA,
     ALUMINA_COMPOSITE,
@@ -94,7 +94,6 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "Joint",
     "Layer",
     "LinearGap",
-    "Lubricant",
     "Material",
     "Side",
     "Support",
@@ -108,6 +107,7 @@ __all__ = [  # noqa: RUF022, grouped by subject
     # presets
     "joints",
     "materials",
+    "Lubricant",
     # functions and results
     "Contact",
     "OutsideDomainError",

@@ -21,10 +21,10 @@ from ..core.checks import check_number, check_vectors, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.display import OneLine
 from ..core.validity import Range
+from ..lubrication import Lubricant
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
-from ..problem.lubricant import Lubricant
 from .ball_centre import BallCentre, Constants, Vector, ball_centre_at
 from .bristles import Bristles
 from .damping import Damping
@@ -340,18 +340,14 @@ def film_constants(lubricant: Lubricant | None, joint: Joint) -> dict[str, float
     """Return the constants of the lubricant's film by their names in `Constants`; None has no film."""
     if lubricant is None:
         return {"film_damping": 0.0, "least_film": 0.0}
-    clearance, roughness = float(joint.clearance), lubricant.combined_roughness
+    clearance, roughness = float(joint.clearance), lubricant.roughness
     require("clearance", clearance, clearance > 0.0, "a lubricant needs a film, and so a clearance above 0 mm")
     allowed = f"the least film (mm) of a lubricant must be above 0 and at most half of the clearance, {clearance:g} mm"
-    require("combined_roughness", roughness, 0.0 < roughness <= 0.5 * clearance, allowed)
+    require("roughness", roughness, 0.0 < roughness <= 0.5 * clearance, allowed)
     radii_product = float(joint.ball_radius * joint.socket_radius)
-    damping = pi * _MPA_S_PER_PA_S * lubricant.viscosity * radii_product**2 / clearance**3
+    damping = pi * lubricant.viscosity_mpa * radii_product**2 / clearance**3
     require("viscosity", lubricant.viscosity, 0.0 < damping < inf, "the damping of its film must be a finite number")
     return {"film_damping": damping, "least_film": roughness}
-
-
-_MPA_S_PER_PA_S = 1e-6
-"""Pa s in MPa s."""
 
 
 def split_components(value: Any) -> Vector:

@@ -9,8 +9,8 @@ from typing import Any, Protocol
 import numpy
 
 from ..core.arrays import Numbers
+from ..lubrication import Lubricant
 from ..problem import Joint, Material
-from ..problem.lubricant import Lubricant
 from .cycle import Cycle
 from .kinematics import SurfaceSliding
 from .mix import Mix
@@ -165,7 +165,7 @@ def film(
         force_magnitudes > 0, force_magnitudes, 1.0
     )
     least, central = film_thickness(frame.joint, force_magnitudes, spin / durations, lubricant.viscosity)
-    roughness = lubricant.combined_roughness
+    roughness = lubricant.roughness
     work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.distances, foundation.areas)
     return Film(
         phases=frame.cycle.phases[frame.loaded],

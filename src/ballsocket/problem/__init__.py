@@ -1,8 +1,8 @@
 """Definition of the problem: a joint, its materials, layers and lengths, and the cup around its socket.
 
 `joint`, a ball in a lined socket; `material`, materials and layers; `dimensions`, the lengths of a joint from radii or
-diameters; `cup`, rim and orientation of a socket; `gaps`, the displacement that a rigid ball prescribes; `lubricant`,
-viscosity and roughness; `presets`, materials and joints with sources.
+diameters; `cup`, rim and orientation of a socket; `gaps`, the displacement that a rigid ball prescribes; `presets`,
+materials and joints with sources.
 """
 
 from .joint import Joint, Support

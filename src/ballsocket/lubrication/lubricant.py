@@ -1,4 +1,4 @@
-"""Lubricant between ball and socket, with the roughness of both surfaces."""
+"""Lubricant between ball and socket, with roughness and friction of their surfaces."""
 
 from __future__ import annotations
 
@@ -20,6 +20,11 @@ class Lubricant:
         Roughness Ra in mm, 2e-5 and 1e-3 by default.
     friction : float
         Coefficient of friction, 0.06 by default.
+
+    Raises
+    ------
+    ValueError
+        A viscosity that is not positive and finite; a roughness or friction that is negative or not finite.
     """
 
     viscosity: float = 2.5e-3
@@ -35,6 +40,11 @@ class Lubricant:
         require("friction", self.friction, 0 <= self.friction < 10, "a coefficient of friction is 0 to 10")
 
     @property
-    def combined_roughness(self) -> float:
+    def roughness(self) -> float:
         """Combined roughness of both surfaces in mm, the root of the sum of squares."""
         return hypot(self.ball_roughness, self.cup_roughness)
+
+    @property
+    def viscosity_mpa(self) -> float:
+        """Viscosity in MPa s."""
+        return 1e-6 * self.viscosity
