@@ -10,6 +10,7 @@ from scipy.sparse.linalg import splu
 
 import ballsocket as bs
 from ballsocket.dynamics import Bristles, ContactState, Damping, Friction, simulate
+from ballsocket.lubrication import rigid_fields
 
 from ..joints import HIP
 
@@ -42,16 +43,16 @@ def quadrature(polar_count=200, azimuth_count=16):
     return theta, phi, normal, RADIUS**2 * (2 * pi / azimuth_count) * weight[:, None] * np.ones_like(phi)
 
 
-def squeeze_pressure(theta, phi, e, speed, spin):
-    """Pressure of a ball that approaches the wall: p = 3 η R² (ė/e)/h²."""
-    return 3 * ETA * RADIUS**2 * speed / e / (C - e * np.cos(theta)) ** 2
+def squeeze(theta, phi, e, speed, spin):
+    """Pressure of a ball that approaches the wall; any constant may be added in a full cavity."""
+    motion = {"radius": RADIUS, "clearance": C, "eccentricity": e, "speed": speed, "viscosity": ETA}
+    return rigid_fields.squeeze_pressure(theta, rim=pi / 2, **motion) + 0 * phi
 
 
-def wedge_pressure(theta, phi, e, speed, spin):
+def wedge(theta, phi, e, speed, spin):
     """Pressure of a ball that turns about y, across its eccentricity."""
-    reach = e * np.cos(theta)
-    share = e * np.sin(theta) * np.cos(phi) * (2 * C - reach)
-    return -6 * ETA * spin * RADIUS**2 * share / ((4 * C**2 + e**2) * (C - reach) ** 2)
+    motion = {"radius": RADIUS, "clearance": C, "eccentricity": e, "spin": spin, "viscosity": ETA}
+    return rigid_fields.wedge_pressure(theta, phi, **motion)
 
 
 def integrated_load(pressure, e, speed, spin):
@@ -61,7 +62,7 @@ def integrated_load(pressure, e, speed, spin):
     """
     theta, phi, normal, area = quadrature()
     step = 1e-5
-    p, slope_theta = pressure(theta, phi, e, speed, spin), np.zeros_like(theta)
+    p = pressure(theta, phi, e, speed, spin)
     slope_theta = (pressure(theta + step, phi, e, speed, spin) - pressure(theta - step, phi, e, speed, spin)) / step / 2
     slope_phi = (pressure(theta, phi + step, e, speed, spin) - pressure(theta, phi - step, e, speed, spin)) / step / 2
     along = np.stack([np.cos(theta) * np.cos(phi), np.cos(theta) * np.sin(phi), -np.sin(theta)], axis=-1)
@@ -77,11 +78,11 @@ def integrated_load(pressure, e, speed, spin):
 @pytest.mark.parametrize("share", [0.02, 0.099, 0.101, 0.5, 0.9, 0.98])
 def test_force_and_moment_are_the_resultants_of_the_exact_pressures_and_of_the_shear(share):
     e = share * C
-    force, moment = integrated_load(squeeze_pressure, e, 2.0, 0.0)
+    force, moment = integrated_load(squeeze, e, 2.0, 0.0)
     load = WET((0.0, 0.0, e), (0.0, 0.0, 2.0))
     np.testing.assert_allclose(load.force, force, rtol=1e-6, atol=1e-9 * abs(force[2]))
     np.testing.assert_allclose(load.moment, moment, atol=1e-9 * abs(force[2]))
-    force, moment = integrated_load(wedge_pressure, e, 0.0, 3.0)
+    force, moment = integrated_load(wedge, e, 0.0, 3.0)
     load = WET((0.0, 0.0, e), spin=(0.0, 3.0, 0.0))
     np.testing.assert_allclose(load.force, force, rtol=1e-6, atol=1e-9 * abs(force[0]))
     np.testing.assert_allclose(load.moment, moment, rtol=1e-6, atol=1e-9 * abs(moment[1]))
