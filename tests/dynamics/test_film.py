@@ -108,6 +108,14 @@ def test_concentric_limits_are_those_of_stokes_flow_between_spheres():
     assert load.moment[0] == pytest.approx(-torque, rel=2 * (C / R1) ** 2)
 
 
+def test_the_squeeze_pressure_is_that_of_the_exact_field_and_zero_without_a_lubricant():
+    state = (0.0, 0.0, 0.95 * C), (1.0, 2.0, -3.0)
+    tension = squeeze(0.0, 0.0, 0.95 * C, -3.0, 0.0)
+    assert WET(*state).squeeze_pressure == pytest.approx(tension, rel=1e-9)
+    assert WET(*map(np.array, state)).squeeze_pressure == pytest.approx(tension, rel=1e-9)
+    assert DRY(*state).squeeze_pressure == DRY((0.0, 0.0, C + 0.1), state[1]).squeeze_pressure == 0.0
+
+
 def test_a_thin_film_squeezes_as_between_spheres_of_the_reduced_radius():
     """Taylor: 6 π η R_eff²/h with R_eff = R1 R2/c."""
     gap = 3 * WET.constants.least_film

@@ -20,9 +20,10 @@ the error is that of Reynolds' equation, of the order c/R.
 
 from __future__ import annotations
 
+from math import pi
 from typing import NamedTuple
 
-from ..core.arrays import Array, cos, log1p, sin, sqrt, where
+from ..core.arrays import Array, cos, log1p, safe_divisor, sin, sqrt, where
 from .ball_centre import BallCentre, Constants, Vector, smooth_ramp
 
 
@@ -140,6 +141,18 @@ def mean_velocity(centre: BallCentre, velocity: Vector, spin: Vector) -> tuple[A
         vy - speed * ny - half * (wz * nx - wx * nz),
         vz - speed * nz - half * (wx * ny - wy * nx),
     )
+
+
+def squeeze_pressure(centre: BallCentre, velocity: Vector, constants: Constants) -> Array:
+    """Compute the pressure of the squeezed film in MPa where it is thinnest, above that where its thickness is c.
+
+    p = 3 η R² (ė/e) (1/h² - 1/c²) with h = c - e, negative for a ball that leaves the wall.
+    """
+    c, (vx, vy, vz) = constants.clearance, velocity
+    gap = film_thickness(centre, constants)[0]
+    speed = vx * centre.x + vy * centre.y + vz * centre.z
+    stiffness = 3.0 * constants.film_damping * c / (pi * constants.ball_radius * constants.socket_radius)
+    return stiffness * speed * (c + gap) / safe_divisor(gap * gap)
 
 
 def film_dissipation(centre: BallCentre, velocity: Vector, spin: Vector, constants: Constants) -> Array:

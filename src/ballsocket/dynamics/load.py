@@ -17,7 +17,7 @@ from ..core.deprecation import RenamedAttribute
 from . import reaction as formulas
 from .ball_centre import BallCentre, Constants, Vector
 from .bristles import Bristles, Deflections, bristle_forces
-from .film import film_thickness
+from .film import film_thickness, squeeze_pressure
 from .matrices import damping_matrix, join_matrix, join_vector
 from .reaction import Elastic, normal_force, sliding_state
 
@@ -159,6 +159,16 @@ class Load(NamedTuple):
     def film_thickness(self) -> Array:
         """Least gap between ball and socket in mm; with a lubricant at least its combined roughness."""
         return film_thickness(self.centre, self.element.constants)[0]
+
+    @property
+    @_without_warnings
+    def squeeze_pressure(self) -> Array:
+        """Pressure in MPa of the squeezed film where it is thinnest, relative to a film as thick as the clearance.
+
+        It is negative for a ball that leaves the wall. A fluid at atmospheric pressure cavitates at about -0.1 MPa,
+        which the element does not model.
+        """
+        return squeeze_pressure(self.centre, self.velocity, self.element.constants)
 
     @property
     def tangent(self) -> Any:
