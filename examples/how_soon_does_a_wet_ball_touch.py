@@ -32,9 +32,7 @@ def dropped(viscosity: float | None):
     element = bs.ForceElement(bs.HessForsbach(), JOINT, lubricant=lubricant)
     weight = (0.0, 0.0, -MASS * GRAVITY)
     duration = 6.0 if viscosity == FLUIDS["oil"] else 0.1
-    return simulate(
-        element, mass=MASS, position=(0.0, 0.0, 0.0), pull=weight, duration=duration, step=duration / 2000
-    )
+    return simulate(element, mass=MASS, position=(0.0, 0.0, 0.0), pull=weight, duration=duration, step=duration / 2000)
 
 
 def sinking_time(gap: np.ndarray, viscosity: float) -> np.ndarray:

@@ -294,7 +294,7 @@ def test_a_free_ball_in_a_film_has_no_contact_but_a_load():
     ("joint", "lubricant", "message"),
     [
         ({"clearance": 0.0}, {}, "clearance = 0 is not allowed: a lubricant needs a film"),
-        ({"clearance": 1e-3}, {}, "at most half of the clearance, 0.001 mm"),
+        ({"clearance": 1e-3}, {}, "at most half of the clearance: 0.0005"),
         ({}, {"ball_roughness": 0.0, "cup_roughness": 0.0}, "roughness = 0 is not allowed"),
         ({}, {"viscosity": 0.0}, "viscosity = 0 is not allowed"),
         ({}, {"viscosity": -1.0}, "viscosity = -1 is not allowed"),

@@ -210,6 +210,9 @@ def test_the_velocity_of_the_trajectory_is_that_of_its_position():
         (("--out", "hip.fmu", "--hysteresis", "-1"), "hysteresis"),
         (("--out", "hip.fmu", "--restitution", "0.5"), "a restitution and the speed of its impact belong together"),
         (("--out", "hip.fmu", "--friction", "-0.1"), "coefficient"),
+        (("--out", "hip.fmu", "--viscosity", "2.5 mm"), "viscosity must be a number of Pa s, or such as '2.5 mPa s'"),
+        (("--out", "hip.fmu", "--viscosity", "0 Pa s"), "viscosity = 0 is not allowed"),
+        (("--out", "hip.fmu", "--roughness", "1 um"), "add --viscosity"),
     ],
 )
 def test_invalid_options_are_refused_in_one_line(words, said, tmp_path):

@@ -211,6 +211,16 @@ def test_every_target_writes_a_joint_without_a_load_and_reports_a_missing_compil
         fromstring(path.read_bytes())
 
 
+def test_the_command_exports_a_lubricated_hemisphere(tmp_path):
+    """A lubricated cup has a rim, because the pressure of its film is 0 there."""
+    words = ("hip-28", "--model", "hess-forsbach", "--viscosity", "2.5 mPa s", "--roughness", "2 um")
+    assert run("export", "c", *words, "--out", "hip", folder=tmp_path).returncode == 0
+    lubricant = bs.Lubricant(viscosity=2.5e-3, ball_roughness=0.0, cup_roughness=2e-3)
+    element = ForceElement(bs.HessForsbach(), bs.joints["hip-28"], cup=bs.Cup(), lubricant=lubricant)
+    wanted = CElement(element=element, name="hip").source
+    assert (tmp_path / "hip" / "hip.c").read_text("utf-8") == wanted
+
+
 @pytest.fixture
 def recording_compiler(tmp_path, monkeypatch):
     """A compiler that writes the header of this Python as a library, and a file with its arguments."""

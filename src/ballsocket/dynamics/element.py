@@ -342,7 +342,9 @@ def film_constants(lubricant: Lubricant | None, joint: Joint) -> dict[str, float
         return {"film_damping": 0.0, "least_film": 0.0}
     clearance, roughness = float(joint.clearance), lubricant.roughness
     require("clearance", clearance, clearance > 0.0, "a lubricant needs a film, and so a clearance above 0 mm")
-    allowed = f"the least film (mm) of a lubricant must be above 0 and at most half of the clearance, {clearance:g} mm"
+    allowed = (
+        f"the least film (mm) of a lubricant must be above 0 and at most half of the clearance: {0.5 * clearance:g}"
+    )
     require("roughness", roughness, 0.0 < roughness <= 0.5 * clearance, allowed)
     radii_product = float(joint.ball_radius * joint.socket_radius)
     damping = pi * lubricant.viscosity_mpa * radii_product**2 / clearance**3
