@@ -6,7 +6,7 @@ import logging
 import warnings
 from dataclasses import dataclass, field
 from functools import cached_property, partial
-from math import inf, pi
+from math import inf
 from operator import attrgetter
 from typing import Any
 
@@ -28,6 +28,7 @@ from ..problem.cup import Cup
 from .ball_centre import BallCentre, Constants, Vector, ball_centre_at
 from .bristles import Bristles
 from .damping import Damping
+from .film import film_constants
 from .friction import Friction
 from .load import Load, add_bristle_loads
 from .matrices import join_vector
@@ -334,22 +335,6 @@ def loss_constants(damping: Damping | None, friction: Friction | None) -> dict[s
         "stribeck_speed": friction.stribeck_speed,
         "viscous": friction.viscous,
     }
-
-
-def film_constants(lubricant: Lubricant | None, joint: Joint) -> dict[str, float]:
-    """Return the constants of the lubricant's film by their names in `Constants`; None has no film."""
-    if lubricant is None:
-        return {"film_damping": 0.0, "least_film": 0.0}
-    clearance, roughness = float(joint.clearance), lubricant.roughness
-    require("clearance", clearance, clearance > 0.0, "a lubricant needs a film, and so a clearance above 0 mm")
-    allowed = (
-        f"the least film (mm) of a lubricant must be above 0 and at most half of the clearance: {0.5 * clearance:g}"
-    )
-    require("roughness", roughness, 0.0 < roughness <= 0.5 * clearance, allowed)
-    radii_product = float(joint.ball_radius * joint.socket_radius)
-    damping = pi * lubricant.viscosity_mpa * radii_product**2 / clearance**3
-    require("viscosity", lubricant.viscosity, 0.0 < damping < inf, "the damping of its film must be a finite number")
-    return {"film_damping": damping, "least_film": roughness}
 
 
 def split_components(value: Any) -> Vector:

@@ -20,11 +20,30 @@ the error is that of Reynolds' equation, of the order c/R.
 
 from __future__ import annotations
 
-from math import pi
+from math import inf, pi
 from typing import NamedTuple
 
 from ..core.arrays import Array, cos, log1p, safe_divisor, sin, sqrt, where
+from ..core.checks import require
+from ..lubrication import Lubricant
+from ..problem import Joint
 from .ball_centre import BallCentre, Constants, Vector, smooth_ramp
+
+
+def film_constants(lubricant: Lubricant | None, joint: Joint) -> dict[str, float]:
+    """Return the constants of the lubricant's film by their names in `Constants`; None has no film."""
+    if lubricant is None:
+        return {"film_damping": 0.0, "least_film": 0.0}
+    clearance, roughness = float(joint.clearance), lubricant.roughness
+    require("clearance", clearance, clearance > 0.0, "a lubricant needs a film, and so a clearance above 0 mm")
+    allowed = (
+        f"the least film (mm) of a lubricant must be above 0 and at most half of the clearance: {0.5 * clearance:g}"
+    )
+    require("roughness", roughness, 0.0 < roughness <= 0.5 * clearance, allowed)
+    radii_product = float(joint.ball_radius * joint.socket_radius)
+    damping = pi * lubricant.viscosity_mpa * radii_product**2 / clearance**3
+    require("viscosity", lubricant.viscosity, 0.0 < damping < inf, "the damping of its film must be a finite number")
+    return {"film_damping": damping, "least_film": roughness}
 
 
 class FilmDamping(NamedTuple):
