@@ -177,7 +177,7 @@ def test_force_vanishes_over_the_rim_and_the_notes_report_it():
 
 
 def test_numbers_and_arrays_of_any_library_agree():
-    parts = {"cup": CUPS["leaning cup"], "smoothing": 0.01, "lubricant": bs.Lubricant(), **LOSSY}
+    parts = {"cup": CUPS["leaning cup"], "smoothing": 0.01, "lubricant": bs.Lubricant(), "film_tension": 0.1, **LOSSY}
     element = bs.ForceElement(bs.Tabulated(), HIP, **parts)
     position, velocity, spin = states(12)
     load = element(position, velocity, spin)

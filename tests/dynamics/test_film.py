@@ -21,6 +21,7 @@ WET = bs.ForceElement(bs.HessForsbach(), HIP, lubricant=OIL)
 DRY = replace(WET, lubricant=None)
 LOSSY = {"damping": Damping(hysteresis=0.01, time=1e-4), "friction": Friction(coefficient=0.05, viscous=1e-4)}
 CUPS = {"sphere": None, "cup": bs.Cup(inclination=radians(50.0), arc_of_cover=radians(150.0))}
+EVERY_TENSION = pytest.mark.parametrize("tension", [inf, 0.1], ids=["linear", "cavitating"])
 EVERY_CUP = pytest.mark.parametrize("cup", CUPS.values(), ids=CUPS)
 
 
@@ -125,9 +126,10 @@ def test_a_thin_film_squeezes_as_between_spheres_of_the_reduced_radius():
 
 
 @EVERY_CUP
-def test_the_film_takes_energy_in_every_state_and_its_loss_balances_the_power(cup):
+@EVERY_TENSION
+def test_the_film_takes_energy_in_every_state_and_its_loss_balances_the_power(cup, tension):
     """Check 10^5 random positions, velocities and spins."""
-    element = replace(WET, cup=cup)
+    element = replace(WET, cup=cup, film_tension=tension)
     position, velocity, spin = states(10**5)
     load, elastic = element(position, velocity, spin), replace(DRY, cup=cup)(position).force
     touched = load.status != ContactState.FREE
@@ -140,7 +142,9 @@ def test_the_film_takes_energy_in_every_state_and_its_loss_balances_the_power(cu
 
 
 @EVERY_CUP
-@pytest.mark.parametrize("losses", [{}, LOSSY], ids=["film", "film, damping and friction"])
+@pytest.mark.parametrize(
+    "losses", [{}, LOSSY, {"film_tension": 0.1}], ids=["film", "film, damping and friction", "cavitating film"]
+)
 def test_the_damping_matrix_is_symmetric_and_positive_semidefinite(cup, losses):
     position, velocity, spin = states(2000)
     load = replace(WET, cup=cup, **losses)(position, velocity, spin)
@@ -181,6 +185,57 @@ def test_the_film_has_its_least_thickness_in_the_contact_and_adds_to_the_dry_loa
     squeeze = 12 * pi * ETA * RADIUS**4 / C**3 * (1 / (1 - kappa**2) - g) * 4.0
     expected = DRY(position, velocity).force[2] - squeeze
     assert WET(position, velocity).force[2] == pytest.approx(expected, rel=1e-9)
+
+
+def capped_tension(kappa, largest, tension, cells=400):
+    """Tensile force over π R² of a ball that leaves a hemisphere; Reynolds' equation with a least pressure.
+
+    `largest` is the constant s of the uncapped tension s (c²/h² - 1). The active set of capped cells is iterated.
+    """
+    scale = np.sqrt(2 * (1 - kappa)) / 2
+    edges = scale * np.sinh(np.linspace(0.0, np.arcsinh(pi / 2 / scale), cells + 1))
+    middle = (edges[1:] + edges[:-1]) / 2
+    film = 1 - kappa * np.cos(edges)
+    flow = np.sin(edges[1:]) * film[1:] ** 3 / np.diff(np.append(middle, pi / 2))
+    matrix = np.diag(flow) + np.diag(np.append(0.0, flow[:-1]))
+    matrix -= np.diag(flow[:-1], 1) + np.diag(flow[:-1], -1)
+    uncapped = largest * ((1 - kappa * np.cos(middle)) ** -2 - 1)
+    source, capped, solved = matrix @ uncapped, np.zeros(cells, bool), uncapped
+    for _ in range(100):
+        following = capped & (source > matrix @ solved) | (solved > tension)
+        if (following == capped).all():
+            break
+        capped = following
+        solved = np.full(cells, tension)
+        free = ~capped
+        solved[free] = np.linalg.solve(matrix[np.ix_(free, free)], (source - matrix[:, capped].sum(1) * tension)[free])
+    return np.sum(solved * np.diff(np.sin(edges) ** 2))
+
+
+@pytest.mark.parametrize(("share", "speed"), [(0.9, 0.01), (0.9, 0.3), (0.9, 10.0), (0.98, 0.01), (0.98, 1.0)])
+def test_the_tension_of_a_ball_that_leaves_is_limited_as_by_cavitation(share, speed):
+    element = replace(WET, cup=bs.Cup(), film_tension=0.1)
+    load = element((0.0, 0.0, share * C), (0.0, 0.0, -speed))
+    largest = 3 * ETA * RADIUS**2 * speed / (share * C) / C**2
+    expected = pi * RADIUS**2 * capped_tension(share, largest, 0.1)
+    assert -0.2 <= load.force[2] / expected - 1 <= 0.25
+    assert load.force[2] <= 1.02 * pi * RADIUS**2 * 0.1
+    approach = [wet((0.0, 0.0, share * C), (0.0, 0.0, speed)).force for wet in (element, replace(WET, cup=bs.Cup()))]
+    assert approach[0] == approach[1]
+
+
+def test_the_damping_matrix_of_a_cavitating_film_is_the_derivative_over_the_speeds():
+    position, velocity, spin = states(300)
+    element, step = replace(WET, film_tension=0.1), 1e-4 * np.eye(3)
+    D = element(position, velocity, spin).damping_matrix
+    differences = []
+    for change in step:
+        ends = (element(position, velocity + sign * change, spin) for sign in (-1, 1))
+        low, high = (np.concatenate([end.force, end.moment], axis=1) for end in ends)
+        differences.append((low - high) / 2e-4)
+    size = np.abs(D).max(axis=(1, 2), keepdims=True)
+    assert (np.abs(D[:, :, :3] - np.stack(differences, axis=-1)) <= 1e-3 * size).all()
+    assert (np.abs(D[:, 2, 2] - WET(position, velocity, spin).damping_matrix[:, 2, 2]) > 0.1 * size[:, 0, 0]).any()
 
 
 def test_a_ball_that_orbits_at_half_its_spin_meets_no_resistance_of_the_pressure():
@@ -250,7 +305,7 @@ def test_a_ball_pressed_into_a_wet_socket_settles_in_the_time_of_the_closed_form
 
 
 def test_energy_balances_in_an_impact_through_the_film():
-    element = replace(WET, cup=bs.Cup(), lubricant=bs.Lubricant(viscosity=1e-4), **LOSSY)
+    element = replace(WET, cup=bs.Cup(), lubricant=bs.Lubricant(viscosity=1e-4), film_tension=0.1, **LOSSY)
     throw = {"position": (0.01, 0.02, 0.0), "velocity": (30.0, 10.0, 500.0), "spin": (0.0, 4.0, 0.0)}
     motion = simulate(element, mass=1.0, duration=2e-3, step=2e-5, **throw)
     assert motion.energy.max() > 0.0
@@ -306,6 +361,14 @@ def test_a_free_ball_in_a_film_has_no_contact_but_a_load():
 def test_a_film_that_cannot_be_is_refused(joint, lubricant, message):
     with pytest.raises(ValueError, match=message):
         bs.ForceElement(bs.HessForsbach(), replace(HIP, **joint), lubricant=bs.Lubricant(**lubricant))
+
+
+def test_a_tension_that_cannot_be_is_refused():
+    for tension in (0.0, -0.1, nan):
+        with pytest.raises(ValueError, match="is not allowed: a tension"):
+            replace(WET, film_tension=tension)
+    with pytest.raises(ValueError, match=r"film_tension = 0\.1 needs a lubricant"):
+        replace(DRY, film_tension=0.1)
 
 
 def test_a_preloaded_joint_with_a_lubricant_is_refused():

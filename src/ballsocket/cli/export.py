@@ -90,9 +90,9 @@ class ForceElementOptions:
         model = default_model(file.joint, {}) if self.model is None else requested_model(self.model)
         lubricant = self._lubricant()
         cup = None if stated_cup == Cup() and lubricant is None else stated_cup
-        losses = {"damping": self._damping(), "friction": friction, "lubricant": lubricant}
+        damping = self._damping()
         try:
-            return ForceElement(model, file.joint, cup=cup, **losses)
+            return ForceElement(model, file.joint, damping, friction, cup, lubricant=lubricant)
         except TypeError as error:  # the model has no force law
             raise ValueError(str(error)) from error
 

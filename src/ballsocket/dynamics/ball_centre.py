@@ -6,7 +6,7 @@ follow e = |r|, n = r/e and d = e - c, with the radial clearance c.
 
 from __future__ import annotations
 
-from math import pi
+from math import inf, pi
 from typing import NamedTuple
 
 from ..core.arrays import Array, atan2, clip, safe_divisor, sqrt, where
@@ -20,7 +20,7 @@ class Constants(NamedTuple):
 
     `rim` is the polar angle of the cup rim in rad, 0 without a rim. `dome` is the unit vector to the pole of the bore.
     `film_damping` is π η (R1 R2)²/c³ in N s/mm with the viscosity η, 0 without a lubricant. `least_film` is the least
-    thickness of its film.
+    thickness of its film, and `film_tension` the largest tensile force in N that the squeezed film bears.
     """
 
     ball_radius: float
@@ -41,6 +41,7 @@ class Constants(NamedTuple):
     dome_z: float
     film_damping: float = 0.0
     least_film: float = 0.0
+    film_tension: float = inf
 
 
 class BallCentre(NamedTuple):

@@ -233,6 +233,7 @@ for _formula in (
     film.film_thickness,
     film._eccentricity_function,
     film._covered_share,
+    film.squeeze_damping,
     film.film_force_and_moment,
     film.mean_velocity,
     film.film_dissipation,

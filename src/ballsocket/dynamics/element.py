@@ -78,12 +78,16 @@ class ForceElement(OneLine):
         Adds squeeze, wedge and spin forces of the film between a rigid ball and a rigid socket. The film is never
         thinner than the combined roughness of the surfaces, also where they touch. Dry friction is that of `friction`;
         the coefficient of the lubricant is not used. None, the default, is a dry socket.
+    film_tension : float
+        Largest tension of the lubricant in MPa, above 0, for a ball that leaves the wall: about 0.1 for a fluid at
+        atmospheric pressure, which cavitates. Infinite, the default, is Reynolds' equation without cavitation.
 
     Raises
     ------
     ValueError
         A joint outside the domain of the model; a smoothing below 0 or above the clearance; a lubricant in a joint
-        with a clearance below twice its combined roughness, or without roughness.
+        with a clearance below twice its combined roughness, or without roughness; a `film_tension` that is not above
+        0, or without a lubricant.
     TypeError
         A model without a force law, arrays in the joint, or a wrong type of damping, friction, cup or lubricant.
 
@@ -106,6 +110,7 @@ class ForceElement(OneLine):
     cup: Cup | None = None
     smoothing: float = 0.0
     lubricant: Lubricant | None = None
+    film_tension: float = inf
     potential: Potential = field(init=False, repr=False)
     constants: Constants = field(init=False, repr=False)
 
@@ -140,6 +145,13 @@ class ForceElement(OneLine):
             raise TypeError("friction, cup, smoothing and lubricant are not supported with AdhesiveSocket")
         return adhesion_potential(self.model, self.joint)
 
+    @property
+    def _checked_tension(self) -> float:
+        """Largest tension of the lubricant in MPa; ValueError if it is not above 0."""
+        tension = check_number("film_tension", self.film_tension)
+        require("film_tension", tension, tension > 0.0, "a tension (MPa) must be above 0")
+        return tension
+
     @cached_property
     def stretch(self) -> float:
         """Stretch u_c in mm of a spring at which an adhesive ball separates; 0 for other models."""
@@ -167,7 +179,7 @@ class ForceElement(OneLine):
             **loss_constants(self.damping, friction),
             rim=0.0 if cup is None else cup.rim,
             **dict(zip(("dome_x", "dome_y", "dome_z"), (Cup() if cup is None else cup).dome, strict=True)),
-            **film_constants(self.lubricant, joint),
+            **film_constants(self.lubricant, self._checked_tension, joint),
         )
 
     def __call__(

@@ -13,8 +13,8 @@ Their resultants, with κ = e/c, g = (artanh κ - κ)/κ³ and G = 1 + (1 + κ²
     C_n = 4 D c² [1 - (1 - κ²) g],   C_t = 2 D c² G.
 
 C_n and C_t are the shear of the film. The damping matrix is symmetric and positive semidefinite. No pressure is cut
-off (full Sommerfeld), so that the fluid bears tension. Without the tension (half Sommerfeld) the damping would depend
-on the motion, and its matrix would not be symmetric. R² = R1 R2 makes the concentric limits exact to (c/R)². Elsewhere
+off (full Sommerfeld), so that the fluid bears tension; `squeeze_damping` may limit it along n. With all negative
+pressures set to 0 (half Sommerfeld) the damping matrix would not be symmetric. R² = R1 R2 makes the concentric limits exact to (c/R)². Elsewhere
 the error is that of Reynolds' equation, of the order c/R.
 """
 
@@ -30,10 +30,15 @@ from ..problem import Joint
 from .ball_centre import BallCentre, Constants, Vector, smooth_ramp
 
 
-def film_constants(lubricant: Lubricant | None, joint: Joint) -> dict[str, float]:
-    """Return the constants of the lubricant's film by their names in `Constants`; None has no film."""
+def film_constants(lubricant: Lubricant | None, tension: float, joint: Joint) -> dict[str, float]:
+    """Return the constants of the lubricant's film by their names in `Constants`; None has no film.
+
+    `tension` is the largest tension in MPa that the fluid bears.
+    """
     if lubricant is None:
-        return {"film_damping": 0.0, "least_film": 0.0}
+        if tension < inf:
+            raise ValueError(f"film_tension = {tension:g} needs a lubricant")
+        return {}
     clearance, roughness = float(joint.clearance), lubricant.roughness
     require("clearance", clearance, clearance > 0.0, "a lubricant needs a film, and so a clearance above 0 mm")
     allowed = (
@@ -43,14 +48,14 @@ def film_constants(lubricant: Lubricant | None, joint: Joint) -> dict[str, float
     radii_product = float(joint.ball_radius * joint.socket_radius)
     damping = pi * lubricant.viscosity_mpa * radii_product**2 / clearance**3
     require("viscosity", lubricant.viscosity, 0.0 < damping < inf, "the damping of its film must be a finite number")
-    return {"film_damping": damping, "least_film": roughness}
+    return {"film_damping": damping, "least_film": roughness, "film_tension": pi * radii_product * tension}
 
 
 class FilmDamping(NamedTuple):
     """Damping by the film: `along` and `across` the eccentricity in N s/mm, `drilling` and `turning` in N mm s.
 
     `along` is D_n, `across` D_t, `drilling` C_n and `turning` C_t. `steepening` is a bound of the increase of D_n with
-    the eccentricity in N s/mm², for the iterations of a time step.
+    the eccentricity in N s/mm², for the iterations of a time step. `share` is the least film over the clearance.
     """
 
     along: Array
@@ -58,6 +63,7 @@ class FilmDamping(NamedTuple):
     drilling: Array
     turning: Array
     steepening: Array
+    share: Array
 
 
 def film_damping(centre: BallCentre, constants: Constants) -> FilmDamping:
@@ -75,7 +81,7 @@ def film_damping(centre: BallCentre, constants: Constants) -> FilmDamping:
         covered, rim_loss = _covered_share(kappa, one_minus_square, centre, constants)
         along, across = covered * covered * along, covered * covered * (across - rim_loss * D)
         drilling, turning = covered * drilling, covered * turning
-    return FilmDamping(along, across, drilling, turning, along * slope / gap)
+    return FilmDamping(along, across, drilling, turning, along * slope / gap, share)
 
 
 def film_thickness(centre: BallCentre, constants: Constants) -> tuple[Array, Array]:
@@ -125,6 +131,27 @@ def _covered_share(
     return covered, _RIM_LOSS * (1.0 + rim_cosine) * 2.0 * square / (1.0 + square)
 
 
+def squeeze_damping(damping: FilmDamping, speed: Array, constants: Constants) -> tuple[Array, Array]:
+    """Compute the squeeze force over the speed along n, and its derivative by the speed, in N s/mm.
+
+    Both are D_n for an approaching ball. For a ball that leaves, the tension of the film is limited::
+
+        f = D_n V_n/[1 + x/(5 h/c) + x²]^½,   x = D_n |V_n|/S κ²/[κ² + 0.05 (1 - κ²)],
+
+    with the largest tensile force S. It is a fit to solutions of Reynolds' equation with a least pressure; the last
+    factor makes the force continuous at the centre of the socket, where no direction is that of a leaving ball.
+    """
+    if constants.film_tension == inf:
+        return damping.along, damping.along
+    square = (1.0 - damping.share) * (1.0 - damping.share)
+    weight = square / (square + 0.05 * (1.0 - square)) / constants.film_tension
+    ratio = where(speed < 0.0, -damping.along * speed * weight, 0.0 * speed)
+    slope = 0.2 * ratio / damping.share
+    divisor = 1.0 + slope + ratio * ratio
+    secant = damping.along / sqrt(divisor)
+    return secant, secant * (1.0 + 0.5 * slope) / divisor
+
+
 def film_force_and_moment(
     centre: BallCentre, velocity: Vector, spin: Vector, constants: Constants
 ) -> tuple[Array, ...]:
@@ -135,7 +162,7 @@ def film_force_and_moment(
     turning = wx * nx + wy * ny + wz * nz
     fx, fy, fz = -damping.across * ax, -damping.across * ay, -damping.across * az
     lever, drill = 0.5 / centre.inverse_distance, damping.drilling - damping.turning
-    squeeze = damping.along * speed
+    squeeze = squeeze_damping(damping, speed, constants)[0] * speed
     return (
         fx - squeeze * nx,
         fy - squeeze * ny,
@@ -180,6 +207,7 @@ def film_dissipation(centre: BallCentre, velocity: Vector, spin: Vector, constan
     speed, ax, ay, az = mean_velocity(centre, velocity, spin)
     turning = wx * centre.x + wy * centre.y + wz * centre.z
     tx, ty, tz = wx - turning * centre.x, wy - turning * centre.y, wz - turning * centre.z
-    pressure_power = damping.along * speed * speed + damping.across * (ax * ax + ay * ay + az * az)
+    along = squeeze_damping(damping, speed, constants)[0]
+    pressure_power = along * speed * speed + damping.across * (ax * ax + ay * ay + az * az)
     shear_power = damping.drilling * turning * turning + damping.turning * (tx * tx + ty * ty + tz * tz)
     return pressure_power + shear_power

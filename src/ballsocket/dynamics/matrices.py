@@ -10,7 +10,7 @@ from ..core import arrays
 from ..core.arrays import Array, where
 from . import friction
 from .ball_centre import BallCentre, Constants, Vector, smooth_ramp
-from .film import film_damping
+from .film import film_damping, squeeze_damping
 from .reaction import SMOOTHING_SHARE, Elastic, Sliding, normal_force, sliding_state, versine
 
 
@@ -65,15 +65,17 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     drilling_axis = xp.concat([0.0 * direction, direction], axis=-1)[..., None, :]
     normal_axis = xp.concat([direction, 0.0 * direction], axis=-1)[..., None, :]
     turning_rows = xp.concat([zero_block, tangential], axis=-1)
-    return contact_matrix + _film_matrix(centre, (normal_axis, mean_rows, drilling_axis, turning_rows), constants)
+    directions = normal_axis, mean_rows, drilling_axis, turning_rows
+    return contact_matrix + _film_matrix(centre, _normal_speed(centre, velocity), directions, constants)
 
 
-def _film_matrix(centre: BallCentre, directions: tuple[Array, ...], constants: Constants) -> Array:
+def _film_matrix(centre: BallCentre, speed: Array, directions: tuple[Array, ...], constants: Constants) -> Array:
     """Compute the damping matrix (..., 6, 6) of the film, from its rows along, across, drilling and turning."""
     damping = film_damping(centre, constants)
+    coefficients = squeeze_damping(damping, speed, constants)[1], damping.across, damping.drilling, damping.turning
     terms = [
         coefficient[..., None, None] * _sum_outer_products(rows, rows)
-        for coefficient, rows in zip(damping[:4], directions, strict=True)
+        for coefficient, rows in zip(coefficients, directions, strict=True)
     ]
     return terms[0] + terms[1] + terms[2] + terms[3]
 

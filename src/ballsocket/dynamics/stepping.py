@@ -315,7 +315,8 @@ def newton_correction(
     damping_rate = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
     if constants.film_damping > 0.0:
         film_damping, lever = film.film_damping(centre, constants), 0.5 * centre.distance / R1
-        damping_rate = damping_rate + film_damping.along + 0.5 * h * max(speed, 0.0) * film_damping.steepening
+        damping_rate = damping_rate + film.squeeze_damping(film_damping, speed, constants)[1]
+        damping_rate = damping_rate + 0.5 * h * max(speed, 0.0) * film_damping.steepening
         push, mixed = push + film_damping.across, mixed - lever * film_damping.across
         rotation = rotation + lever * lever * film_damping.across + film_damping.turning / (R1 * R1)
         drill = drill + film_damping.drilling
