@@ -14,8 +14,8 @@ Their resultants, with κ = e/c, g = (artanh κ - κ)/κ³ and G = 1 + (1 + κ²
 
 C_n and C_t are the shear of the film. The damping matrix is symmetric and positive semidefinite. No pressure is cut
 off (full Sommerfeld), so that the fluid bears tension; `squeeze_damping` may limit it along n. With all negative
-pressures set to 0 (half Sommerfeld) the damping matrix would not be symmetric. R² = R1 R2 makes the concentric limits exact to (c/R)². Elsewhere
-the error is that of Reynolds' equation, of the order c/R.
+pressures set to 0 (half Sommerfeld) the damping matrix would not be symmetric. R² = R1 R2 makes the concentric limits
+exact to (c/R)². Elsewhere the error is that of Reynolds' equation, of the order c/R.
 """
 
 from __future__ import annotations
