@@ -41,6 +41,7 @@ from .elasticity.off_axis import (
     read_scan,
 )
 from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
+from .lubrication import Lubricant
 from .models.adhesion import AdhesiveSocket
 from .models.closed_form import ClosedForm
 from .models.foundation import (
@@ -106,6 +107,7 @@ __all__ = [  # noqa: RUF022, grouped by subject
     # presets
     "joints",
     "materials",
+    "Lubricant",
     # functions and results
     "Contact",
     "OutsideDomainError",

@@ -189,7 +189,7 @@ MOVED = {
     **{f"ballsocket.identify.{n}": "ballsocket.identify.unknown_kinds" for n in ("machine_errors", "model_numbers")},
     **{f"ballsocket.sphere.{old}": f"ballsocket.elasticity.off_axis.{new}" for old, new in _OFF_AXIS_MODULES.items()},
     **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.load" for name in ("brushed", "touch")},
-    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.reaction" for name in ("rim", "smooth")},
+    **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.ball_centre" for name in ("rim", "smooth")},
     **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.simulation" for name in ("carried", "stateful_motion")},
     **{f"ballsocket.dynamics.{name}": "ballsocket.dynamics.damping" for name in ("drop_test", "rebound")},
     "ballsocket.dynamics.prony": "ballsocket.dynamics.viscoelastic",

@@ -1,12 +1,13 @@
 """Wear simulation of hip joints: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
+from ..lubrication import Lubricant
 from .bands import Bands
 from .config import read_hip
 from .creep_law import constrained_share
 from .creep_laws import KelvinVoigtChain, LogarithmicCreep, logarithmic
 from .cycle import Cycle, Frame, Spring
 from .cycle_registry import named_cycle
-from .film import Film, Lubricant
+from .film import Film
 from .history import History
 from .in_vivo import in_vivo
 from .mix import Activity, Mix

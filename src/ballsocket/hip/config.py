@@ -20,6 +20,7 @@ from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, c
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import convert, parse, parse_units, split_quantity
+from ..lubrication import Lubricant
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from ..studies.distributions import check_nominal
@@ -27,7 +28,6 @@ from ..studies.file import Read, distribution_of
 from .creep_law import CreepLaw
 from .creep_laws import read_creep_law
 from .cycle_file import cycle_of
-from .film import Lubricant
 from .law_fields import select_law_class
 from .schema import HipCupTable, HipTable, PatientNumber, UncertaintyTable, WearDataTable
 from .simulation import HipSimulation, check_cycles

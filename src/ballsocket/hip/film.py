@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import require
+from ..lubrication import Lubricant
 from ..problem import Joint, Material
 from .cycle import Cycle
 from .kinematics import SurfaceSliding
@@ -23,33 +23,6 @@ CONFORMITY_NOTE = (
 
 _MIXED_RATIO, _FULL_RATIO = 1.0, 3.0
 """Film ratios at which mixed and full-film lubrication begin."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Lubricant:
-    """Lubricant between ball and socket, with roughness and friction of the surfaces.
-
-    Parameters
-    ----------
-    viscosity : float
-        Viscosity in Pa s: 2.5e-3 (default) in a joint, about 1e-3 in diluted serum.
-    ball_roughness, cup_roughness : float
-        Roughness Ra in mm, 2e-5 and 1e-3 by default.
-    friction : float
-        Coefficient of friction, 0.06 by default.
-    """
-
-    viscosity: float = 2.5e-3
-    ball_roughness: float = 2e-5
-    cup_roughness: float = 1e-3
-    friction: float = 0.06
-
-    def __post_init__(self) -> None:
-        require("viscosity", self.viscosity, 0 < self.viscosity < inf, "a viscosity (Pa s) is positive and finite")
-        for name in ("ball_roughness", "cup_roughness"):
-            value = getattr(self, name)
-            require(name, value, 0 <= value < inf, "a roughness (mm) is at least 0, and finite")
-        require("friction", self.friction, 0 <= self.friction < 10, "a coefficient of friction is 0 to 10")
 
 
 def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float) -> tuple[Numbers, Numbers]:
@@ -192,7 +165,7 @@ def film(
         force_magnitudes > 0, force_magnitudes, 1.0
     )
     least, central = film_thickness(frame.joint, force_magnitudes, spin / durations, lubricant.viscosity)
-    roughness = float(numpy.hypot(lubricant.ball_roughness, lubricant.cup_roughness))
+    roughness = lubricant.roughness
     work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.distances, foundation.areas)
     return Film(
         phases=frame.cycle.phases[frame.loaded],

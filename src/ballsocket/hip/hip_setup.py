@@ -20,6 +20,7 @@ from ..elasticity.finite_elements.mesh import socket_shape
 from ..elasticity.off_axis.grid import Grid, even_grid, graded_grid
 from ..elasticity.off_axis.model import Sphere
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
+from ..lubrication import Lubricant
 from ..models.foundation import RadialFoundation
 from ..problem import Joint
 from ..problem.cup import Cup
@@ -28,7 +29,7 @@ from .creep_law import CreepLaw, creep_notes
 from .cup_frame import CupFrame, FromFrame
 from .cycle import Cycle
 from .elastic_foundation import elastic_foundation
-from .film import Film, Lubricant, film
+from .film import Film, film
 from .kinematics import SurfaceSliding
 from .mix import Mix
 from .rim import Microseparation, RimDistance, rim_distance

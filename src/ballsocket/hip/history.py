@@ -16,8 +16,8 @@ from ..core.arrays import Numbers
 from ..core.checks import needs
 from ..core.deprecation import RenamedAttribute, renamed_names
 from ..core.display import OneLine, html_table, load_plot
+from ..lubrication import Lubricant
 from .contact_checks import COLUMNS, ContactCheck, largest_utilisation, list_check_notes
-from .film import Lubricant
 from .hip_setup import HipSetup
 from .law_fields import law_summary
 from .rim import ClosestApproach, RimDistance

@@ -17,8 +17,8 @@ from ..core.checks import require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..core.storage.atomic_files import read_arrays, write_arrays
 from ..core.storage.pieces import hash_inputs
+from ..lubrication import Lubricant
 from .ball_wear import map_counterface
-from .film import Lubricant
 from .hip_setup import MIN_RING_WIDTH, HipSetup
 from .history import History, NumericalError, Report
 from .rim import mask_edge_loading
