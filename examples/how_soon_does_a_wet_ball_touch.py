@@ -31,7 +31,7 @@ def dropped(viscosity: float | None):
     lubricant = None if viscosity is None else bs.Lubricant(viscosity=viscosity)
     element = bs.ForceElement(bs.HessForsbach(), JOINT, lubricant=lubricant)
     weight = (0.0, 0.0, -MASS * GRAVITY)
-    duration = 6.0 if viscosity == FLUIDS["oil"] else 0.1
+    duration = 6.0 if viscosity == FLUIDS["oil"] else 0.2
     return simulate(element, mass=MASS, position=(0.0, 0.0, 0.0), pull=weight, duration=duration, step=duration / 2000)
 
 
@@ -52,7 +52,7 @@ for (name, viscosity), colour in zip(FLUIDS.items(), ("#666666", "#0072B2", "#D5
     label = name if viscosity is None else f"{name}, {1e3 * viscosity:g} mPa s"
     panel.plot(1e3 * motion.time, gap, color=colour, label=label, linewidth=1.0 if name == "dry" else 1.6)
     touched = motion.time[gap < 1.5]
-    end = "does not touch" if not len(touched) else f"at 1.5 µm after {1e3 * touched[0]:.0f} ms"
+    end = f"at 1.5 µm after {1e3 * touched[0]:.0f} ms" if len(touched) else f"at {gap[-1]:.1f} µm in the end"
     print(f"{label:22s}: {motion.bounces} bounces, {end}, energy balanced to {motion.drift:.0e}")
 thickness = np.array([80.0, 50.0, 20.0, 10.0, 5.0, 2.5])
 slow.plot(1e3 * sinking_time(1e-3 * thickness, FLUIDS["oil"]), thickness, "o", color="#009E73", fillstyle="none")
@@ -60,8 +60,8 @@ fast.set_ylabel("gap [µm]")
 for panel in (fast, slow):
     panel.set_xlabel("time [ms]")
     panel.set_yscale("log")
-    panel.set_ylim(0.5, 130.0)
+    panel.set_ylim(0.5, 600.0)
     panel.grid(color="0.9", linewidth=0.6)
     panel.spines[["top", "right"]].set_visible(False)
-    panel.legend(frameon=False, fontsize=8)
+    panel.legend(loc="upper right", edgecolor="none", framealpha=1.0, fontsize=8)
 figure.savefig("how_soon_does_a_wet_ball_touch.png", dpi=150)
