@@ -11,7 +11,7 @@ from dataclasses import replace
 from math import degrees, radians
 
 import ballsocket as bs
-from ballsocket.app.screen import START, MapAxis, link_of
+from ballsocket.app.state.screen import START, MapAxis, link_of
 from ballsocket.files.joint_file import JointFile
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.reports.figure_files import save

@@ -57,7 +57,7 @@ def user(profile, address):
 def served():
     """A server in this process, whose loop turns while it is asked."""
     pytest.importorskip("panel", reason="the explorer's extra is not installed")
-    from ballsocket.app import serve
+    from ballsocket.app import server as serve
 
     loop = asyncio.new_event_loop()
     asyncio.set_event_loop(loop)

@@ -14,7 +14,7 @@ from ..extent import some
 from .user import AT_REST, NARROW, PICTURES, WIDE, User, opened_profile
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
-from ballsocket.app.screen import VIEWS
+from ballsocket.app.state.screen import VIEWS
 
 expect = pytest.importorskip("playwright.sync_api", reason="playwright is not installed").expect
 

@@ -13,14 +13,15 @@ from .asking import does, edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("skfem")
-from ballsocket.app import elasticity_tasks
-from ballsocket.app.cup_pictures import angle_map, pressed_bore
-from ballsocket.app.elasticity_tasks import Stood
 from ballsocket.app.jobs import Job
-from ballsocket.app.page import Page
-from ballsocket.app.reading import Reading
+from ballsocket.app.pictures.bore import pressed_bore
 from ballsocket.app.running import RunFinished
-from ballsocket.app.views.cup import _hint
+from ballsocket.app.session import Page
+from ballsocket.app.views.cup import worker
+from ballsocket.app.views.cup.charts import angle_map
+from ballsocket.app.views.cup.view import _hint
+from ballsocket.app.views.cup.worker import Stood
+from ballsocket.app.widgets.reading import Reading
 from ballsocket.problem.cup import Cup, Side
 from ballsocket.reports.unit_systems import Units
 
@@ -175,8 +176,8 @@ def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
 @pytest.mark.long
 def test_the_map_is_that_of_python():
     page = opened()
-    found = elasticity_tasks.stood(page.screen.file, lambda news: None)
-    angles = {"inclination": elasticity_tasks.INCLINATIONS[::5], "anteversion": elasticity_tasks.ANTEVERSIONS[::5]}
+    found = worker.stood(page.screen.file, lambda news: None)
+    angles = {"inclination": worker.INCLINATIONS[::5], "anteversion": worker.ANTEVERSIONS[::5]}
     asked = bs.orient(JOINT, model=bs.Sphere(cup=Cup(side=Side.RIGHT)), force=3000.0, **angles)
     assert found.edge_distance[::5, ::5] == pytest.approx(asked.edge_distance, rel=1e-5)  # as far as a press is solved
     assert found.figure.startswith(b"\x89PNG")

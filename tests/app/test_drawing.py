@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.app.drawing import petals
+from ballsocket.app.pictures.section import petals
 from ballsocket.files.joint_file import JointFile
 
 from ..joints import HIP

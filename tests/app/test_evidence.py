@@ -17,12 +17,13 @@ from .asking import edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
-from ballsocket.app.evidence_pack import DEFAULT_QUESTION, EvidencePack, EvidenceQuestion, gather_pack, write_question
-from ballsocket.app.in_use import DEFAULT_USE, Use
 from ballsocket.app.jobs import Job
-from ballsocket.app.page import Page
 from ballsocket.app.running import RunFinished
-from ballsocket.app.views import evidence
+from ballsocket.app.session import Page
+from ballsocket.app.state.evidence_question import DEFAULT_QUESTION, EvidenceQuestion
+from ballsocket.app.state.use import DEFAULT_USE, Use
+from ballsocket.app.views.evidence import view as evidence
+from ballsocket.app.views.evidence.worker import EvidencePack, gather_pack, write_question
 
 LINK = "view=evidence&preset=hip-36&load.force=3000"
 CUP = bs.Cup(inclination=radians(40.0))

@@ -12,9 +12,9 @@ from ballsocket.files.joint_file import JointFile
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
-from ballsocket.app.drawing import petals
-from ballsocket.app.page import Page
-from ballsocket.app.words import accuracy_sentence, estimate_von_mises, most_used, verdict_sentence
+from ballsocket.app.pictures.section import petals
+from ballsocket.app.session import Page
+from ballsocket.app.widgets.words import accuracy_sentence, estimate_von_mises, most_used, verdict_sentence
 from ballsocket.reports.section_plots import gap_factor
 
 from .asking import does, edits, trouble

@@ -15,11 +15,11 @@ from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named
 from .asking import does, edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
-from ballsocket.app.hip_tasks import MERIDIANS, RINGS, simulate_gait
-from ballsocket.app.in_use import DEFAULT_USE
 from ballsocket.app.jobs import Job
-from ballsocket.app.page import Page
 from ballsocket.app.running import RunFinished, RunRefused
+from ballsocket.app.session import Page
+from ballsocket.app.state.use import DEFAULT_USE
+from ballsocket.app.views.gait.worker import MERIDIANS, RINGS, simulate_gait
 
 LINK = "view=gait&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
 CUP = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))

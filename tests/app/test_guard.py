@@ -15,7 +15,7 @@ from tornado.httputil import HTTPHeaders, HTTPServerRequest, RequestStartLine
 from tornado.web import Application, RequestHandler
 from tornado.websocket import websocket_connect
 
-from ballsocket.app.serve import guard
+from ballsocket.app.server import guard
 
 from .browser import served_explorer
 

@@ -12,8 +12,8 @@ from ballsocket.problem.cup import Cup
 pytest.importorskip("skfem")
 pytest.importorskip("bokeh")
 from ballsocket.app import running
-from ballsocket.app.elasticity_tasks import judged
 from ballsocket.app.running import Reached, Run, RunFinished, RunRefused
+from ballsocket.app.views.finite_elements.worker import judged
 
 HIP = JointFile(bs.joints["hip-28"], {"force": 3000.0})
 

@@ -11,8 +11,8 @@ from ballsocket.problem import Support
 from .asking import edits, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
-from ballsocket.app.controls import layers_edited
-from ballsocket.app.page import Page
+from ballsocket.app.session import Page
+from ballsocket.app.widgets.joint_fields import layers_edited
 
 HIP = "preset=hip-28&load.force=3000"
 

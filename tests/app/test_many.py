@@ -11,9 +11,9 @@ from panel.io.state import set_curdoc
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 from tornado.websocket import websocket_connect
 
-from ballsocket.app import serve
+from ballsocket.app import server as serve
 from ballsocket.app.jobs import run_in_thread
-from ballsocket.app.serve import OpenPages
+from ballsocket.app.server import OpenPages
 
 
 async def session_of(served):

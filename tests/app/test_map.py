@@ -7,8 +7,8 @@ import ballsocket as bs
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 from bokeh.events import Tap
 
-from ballsocket.app.mapping import catalogue_sizes, mapped, models_of
-from ballsocket.app.page import Page
+from ballsocket.app.session import Page
+from ballsocket.app.views.design_map.worker import catalogue_sizes, mapped, models_of
 
 LINK = "view=map&preset=hip-28&load.force=3000&across=ball_radius=11..23"
 

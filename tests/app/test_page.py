@@ -15,11 +15,11 @@ pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
 from bokeh.events import Tap
 
-from ballsocket.app import serve
-from ballsocket.app.mapping import mapped
-from ballsocket.app.page import Page
+from ballsocket.app import server as serve
+from ballsocket.app.session import Page
 from ballsocket.app.view import make_file
-from ballsocket.app.views.press import Press
+from ballsocket.app.views.contact.view import Press
+from ballsocket.app.views.design_map.worker import mapped
 from ballsocket.files.joint_toml import toml_of
 
 

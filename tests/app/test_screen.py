@@ -17,7 +17,18 @@ from ballsocket.problem.presets import materials
 
 pytest.importorskip("tomli_w")
 pytest.importorskip("xarray")
-from ballsocket.app.screen import ANGLES, MAP_MODELS, SIZES, START, THEMES, VIEWS, MapAxis, Screen, link_of, read_link
+from ballsocket.app.state.screen import (
+    ANGLES,
+    MAP_MODELS,
+    SIZES,
+    START,
+    THEMES,
+    VIEWS,
+    MapAxis,
+    Screen,
+    link_of,
+    read_link,
+)
 
 REST = "joint.clearance=1&joint.liner_thickness=2&liner.material=pom"
 lengths = st.floats(1e-3, 1e3)

@@ -17,10 +17,10 @@ from panel.io.state import set_curdoc
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 
 from ballsocket.app import running, solving
-from ballsocket.app.page import Page
 from ballsocket.app.pressing import pressed
+from ballsocket.app.session import Page
 from ballsocket.app.solving import heavy
-from ballsocket.app.views.press import Press
+from ballsocket.app.views.contact.view import Press
 from ballsocket.compare import THIN_LINER_RATIO
 from ballsocket.elasticity.exact.model import Exact
 from ballsocket.models.plane_layer import PlaneLayer

@@ -11,9 +11,9 @@ import ballsocket as bs
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
-from ballsocket.app.page import Page
-from ballsocket.app.reading import Reading, handy_step
-from ballsocket.app.screen import VIEWS
+from ballsocket.app.session import Page
+from ballsocket.app.state.screen import VIEWS
+from ballsocket.app.widgets.reading import Reading, handy_step
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.reports.unit_systems import Units
 

@@ -14,14 +14,14 @@ from ballsocket.hip import Archard, HipSimulation, iso_14242_1
 from .asking import does, edits, saved, trouble
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
-from ballsocket.app import hip_tasks
-from ballsocket.app.hip_charts import depth_maps, penetration_chart, wear_numbers
-from ballsocket.app.in_use import DEFAULT_USE
 from ballsocket.app.jobs import Job
-from ballsocket.app.page import Page
-from ballsocket.app.reading import Reading
 from ballsocket.app.running import RunFinished, RunRefused
-from ballsocket.app.views import wear
+from ballsocket.app.session import Page
+from ballsocket.app.state.use import DEFAULT_USE
+from ballsocket.app.views.wear import view as wear_view
+from ballsocket.app.views.wear import worker
+from ballsocket.app.views.wear.charts import depth_maps, penetration_chart, wear_numbers
+from ballsocket.app.widgets.reading import Reading
 from ballsocket.reports.unit_systems import Units
 
 LINK = (
@@ -31,8 +31,8 @@ LINK = (
 
 @pytest.fixture(autouse=True)
 def nothing_is_known(monkeypatch):
-    monkeypatch.setattr(wear, "_RESULTS", wear.CachedRun(max_size=4))
-    monkeypatch.setattr(hip_tasks, "figure_bytes", lambda figure: b"a picture")
+    monkeypatch.setattr(wear_view, "_RESULTS", wear_view.CachedRun(max_size=4))
+    monkeypatch.setattr(worker, "figure_bytes", lambda figure: b"a picture")
 
 
 @pytest.fixture
@@ -100,7 +100,7 @@ def made(scale):
         "contact": {"valid": scale > 0.1, "unworn": [unworn]},
         "cycle": {"peaks": {"max_pressure_MPa": 10.0}},
     }
-    return hip_tasks.WearResult(
+    return worker.WearResult(
         cycles=cycles,
         penetration=grown,
         deepest=grown,
@@ -190,7 +190,7 @@ def test_a_coefficient_may_be_typed_as_others_write_it():
 def test_patients_whose_coefficient_scatters_make_the_band():
     page = opened()
     use = replace(DEFAULT_USE, millions=0.2, spread=1.5)
-    (found,) = hip_tasks.simulate_wear([page.screen.file], use, lambda news: None)
+    (found,) = worker.simulate_wear([page.screen.file], use, lambda news: None)
     assert (found.low[1:] < found.penetration[1:]).all()
     assert (found.penetration[1:] < found.high[1:]).all()
     assert found.high[-1] / found.penetration[-1] == pytest.approx(1.5**1.96, rel=0.25)

@@ -177,11 +177,22 @@ def test_force_vanishes_over_the_rim_and_the_notes_report_it():
 
 
 def test_numbers_and_arrays_of_any_library_agree():
-    element = bs.ForceElement(bs.Tabulated(), HIP, cup=CUPS["leaning cup"], smoothing=0.01, **LOSSY)
+    parts = {"cup": CUPS["leaning cup"], "smoothing": 0.01, "lubricant": bs.Lubricant(), "film_tension": 0.1, **LOSSY}
+    element = bs.ForceElement(bs.Tabulated(), HIP, **parts)
     position, velocity, spin = states(12)
     load = element(position, velocity, spin)
     strict = element(*map(array_api_strict.asarray, (position, velocity, spin)))
-    for name in ("force", "moment", "energy", "tangent", "dissipation", "socket_moment", "half_angle", "status"):
+    for name in (
+        "force",
+        "moment",
+        "energy",
+        "tangent",
+        "dissipation",
+        "socket_moment",
+        "half_angle",
+        "status",
+        "film_thickness",
+    ):
         expected = getattr(load, name)
         np.testing.assert_allclose(np.asarray(getattr(strict, name)), expected, rtol=1e-13, atol=1e-12)
         single = [

@@ -19,10 +19,12 @@ LOSSES = {
     "damping": Damping(hysteresis=0.004, time=0.002),
     "friction": Friction(coefficient=0.05, static_coefficient=0.08, viscous=1e-4),
 }
+FILM = {"lubricant": bs.Lubricant(), "film_tension": 0.1}
 CUP = bs.Cup(inclination=0.7, anteversion=0.2)
 ELEMENTS = {
-    "springs of a cup": lambda: ForceElement(bs.Bartel(), HIP, **LOSSES, cup=CUP, smoothing=0.02),
+    "springs of a cup": lambda: ForceElement(bs.Bartel(), HIP, **LOSSES, **FILM, cup=CUP, smoothing=0.02),
     "springs": lambda: ForceElement(bs.HessForsbach(), HIP, **LOSSES),
+    "wet springs": lambda: ForceElement(bs.HessForsbach(), HIP, **LOSSES, lubricant=bs.Lubricant()),
     "formula": lambda: ForceElement(bs.Hertz(), HIP, **LOSSES),
     "curve": lambda: ForceElement(bs.Tabulated(), HIP, **LOSSES, cup=CUP),
 }

@@ -20,7 +20,8 @@ from ..places import EXAMPLES
 from .host import Host
 from .library import needs_compiler
 
-ELEMENT = ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.004), friction=Friction(coefficient=0.05))
+LOSSES = {"damping": Damping(hysteresis=0.004), "friction": Friction(coefficient=0.05)}
+ELEMENT = ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant(), **LOSSES)
 VERSIONS = [2, 3]
 
 
@@ -43,8 +44,8 @@ def table(path):
 
 
 def test_equal_elements_give_equal_archives(folder):
-    same = {"damping": ELEMENT.damping, "friction": ELEMENT.friction}
-    Fmu(element=ForceElement(bs.HessForsbach(), HIP, **same), name="hip").write(folder / "again.fmu")
+    same = ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant(), **LOSSES)
+    Fmu(element=same, name="hip").write(folder / "again.fmu")
     assert (folder / "again.fmu").read_bytes() == (folder / "hip3.fmu").read_bytes()
     other = Fmu(element=ForceElement(bs.HessForsbach(), HIP), name="hip")
     assert other.guid != Fmu(element=ELEMENT, name="hip").guid
@@ -209,6 +210,9 @@ def test_the_velocity_of_the_trajectory_is_that_of_its_position():
         (("--out", "hip.fmu", "--hysteresis", "-1"), "hysteresis"),
         (("--out", "hip.fmu", "--restitution", "0.5"), "a restitution and the speed of its impact belong together"),
         (("--out", "hip.fmu", "--friction", "-0.1"), "coefficient"),
+        (("--out", "hip.fmu", "--viscosity", "2.5 mm"), "viscosity must be a number of Pa s, or such as '2.5 mPa s'"),
+        (("--out", "hip.fmu", "--viscosity", "0 Pa s"), "viscosity = 0 is not allowed"),
+        (("--out", "hip.fmu", "--roughness", "1 um"), "add --viscosity"),
     ],
 )
 def test_invalid_options_are_refused_in_one_line(words, said, tmp_path):
@@ -305,10 +309,13 @@ def test_a_host_receives_the_load_and_its_slopes(host):
 @needs_compiler
 def test_a_parameter_is_tuned_during_a_simulation(host):
     host.set(**PRESSED)
-    _, (before,) = host.get("moment[3]")
-    host.set(friction_coefficient=0.1, static_coefficient=0.1)
-    _, (after,) = host.get("moment[3]")
-    assert_allclose(after, 2 * before, rtol=1e-12)
+    host.set(friction_coefficient=0.0, static_coefficient=0.0)
+    _, (film,) = host.get("moment[3]")
+    moments = []
+    for coefficient in (0.05, 0.1):
+        host.set(friction_coefficient=coefficient, static_coefficient=coefficient)
+        moments.append(host.get("moment[3]")[1][0] - film)
+    assert_allclose(moments[1], 2 * moments[0], rtol=1e-12)
     assert host.set(friction_coefficient=-0.1) == GOOD
     assert host.get("force[1]")[0] == ERROR
     assert host.messages == [(ERROR, "friction_coefficient must be finite and 0 or more")]

@@ -30,7 +30,8 @@ PLAIN = ForceElement(bs.HessForsbach(), HIP)
 DAMPED = ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.004))
 HERTZ = ForceElement(bs.Hertz(), HIP)
 TABULATED = ForceElement(bs.Tabulated(), HIP, damping=DAMPED.damping)
-LOSSY = ForceElement(bs.HessForsbach(), HIP, damping=DAMPED.damping, friction=Friction(coefficient=0.05))
+LOSSES = {"damping": DAMPED.damping, "friction": Friction(coefficient=0.05)}
+LOSSY = ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant(viscosity=1e-5), **LOSSES)
 STATE = (1e-5, 0.0, 1.2e-4), (0.001, 0.0, 0.02), (0.0, 1.0, 2.0)
 IN_MM = (0.01, 0.0, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0)
 
@@ -208,6 +209,16 @@ def test_every_target_writes_a_joint_without_a_load_and_reports_a_missing_compil
         compile(path.read_text(), path.name, "exec")
     for path in (tmp_path / "hip").glob("*.[ox][sm][il]*"):
         fromstring(path.read_bytes())
+
+
+def test_the_command_exports_a_lubricated_hemisphere(tmp_path):
+    """A lubricated cup has a rim, because the pressure of its film is 0 there."""
+    words = ("hip-28", "--model", "hess-forsbach", "--viscosity", "2.5 mPa s", "--roughness", "2 um")
+    assert run("export", "c", *words, "--out", "hip", folder=tmp_path).returncode == 0
+    lubricant = bs.Lubricant(viscosity=2.5e-3, ball_roughness=0.0, cup_roughness=2e-3)
+    element = ForceElement(bs.HessForsbach(), bs.joints["hip-28"], cup=bs.Cup(), lubricant=lubricant)
+    wanted = CElement(element=element, name="hip").source
+    assert (tmp_path / "hip" / "hip.c").read_text("utf-8") == wanted
 
 
 @pytest.fixture

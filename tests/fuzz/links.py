@@ -5,7 +5,7 @@ from urllib.parse import quote_plus
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.app.screen import ANGLES, AXES, MAPPED, QUICK, SIZES, THEMES, VIEWS
+from ballsocket.app.state.screen import ANGLES, AXES, MAPPED, QUICK, SIZES, THEMES, VIEWS
 
 from . import words
 from .words import mistyped, mostly, number, odd_text, quantity

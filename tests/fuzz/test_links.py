@@ -7,8 +7,8 @@ from hypothesis import given
 
 pytest.importorskip("panel", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
-from ballsocket.app.page import Page
-from ballsocket.app.screen import link_of, read_link
+from ballsocket.app.session import Page
+from ballsocket.app.state.screen import link_of, read_link
 
 from ..app.asking import trouble
 from . import links

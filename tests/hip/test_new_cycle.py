@@ -19,7 +19,7 @@ FILE = re.search(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)[1]
 
 PYTHON = """
 import json, sys
-from ballsocket.app.in_use import CHOICES
+from ballsocket.app.state.use import CHOICES
 from ballsocket.cli import main
 from ballsocket.hip import named_cycle
 cycle = named_cycle("pendulum", 40, force=1000.0)

@@ -51,9 +51,9 @@ assert (hip.use.wear, hip.use.creep) == (law, creep)
 assert hip.uncertain.scatter.patient({"coefficient": 2e-6}).use.wear == ThresholdWear(coefficient=2e-6, threshold=0.5)
 """
 EXPLORER = """
-from ballsocket.app.in_use import hip_of, use_of, use_pairs
-from ballsocket.app.screen import Screen
-from ballsocket.app.views.wear import _fields
+from ballsocket.app.state.use import hip_of, use_of, use_pairs
+from ballsocket.app.state.screen import Screen
+from ballsocket.app.views.wear.view import _fields
 from ballsocket.files.joint_file import JointFile
 settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "exponential", "creep_time": "60"})
 assert use_of({name.partition(".")[2]: text for name, text in use_pairs(settings)}) == settings

@@ -93,7 +93,7 @@ def test_the_papers_figures_draw_a_model_as_the_press_does(contacts, pressed):
 
 @pytest.mark.skipif(find_spec("panel") is None, reason="the explorer's extra is not installed")
 def test_the_explorer_draws_a_model_as_the_press_does(pressed):
-    from ballsocket.app.page import Page
+    from ballsocket.app.session import Page
 
     page = Page(f"preset=hess-forsbach&shown={','.join(pressed)}")
     page.view.show(page.screen)

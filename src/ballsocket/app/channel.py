@@ -9,7 +9,7 @@ from typing import Any
 from bokeh.models import CustomJS
 from bokeh.models.widgets import TextInput
 
-from .fields import Field
+from .widgets.fields import Field
 
 LONGEST = 300_000
 """Characters of one question: an uploaded joint file is shorter."""

@@ -11,7 +11,7 @@ from tornado.ioloop import IOLoop
 
 from .channel import Channel
 from .running import Reached, Run, RunFinished, RunRefused, Work, looked_at
-from .words import alert, progress
+from .widgets.words import alert, progress
 
 LONGEST = 60.0  # s, of work that nobody gave longer
 _EVERY = 150  # ms between two questions for news

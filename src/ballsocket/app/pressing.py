@@ -19,9 +19,9 @@ from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports.press_plots import force_axes
 from ..reports.style import LineStyle
-from .chart import Curve, chart, legend
-from .reading import Reading
+from .pictures.chart import Curve, chart, legend
 from .solving import RecordedContact, heavy, solved
+from .widgets.reading import Reading
 
 _POINTS = numpy.linspace(0.0, 1.0, 17) ** 1.5
 _ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 60))

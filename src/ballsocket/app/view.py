@@ -17,7 +17,7 @@ from ..reports.pages import picture
 from ..reports.press_report import joint_report
 from ..reports.unit_systems import Units
 from .channel import Channel
-from .screen import Screen
+from .state.screen import Screen
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,12 +13,15 @@ from typing import Annotated
 import typer
 
 from ..catalogue import off_axis
-from ..core.checks import known_name
+from ..core.checks import known_name, shown
+from ..core.kinds import Kind
 from ..core.storage.atomic_files import check_parent_folder
 from ..dynamics import Damping, ForceElement, Friction, PreloadedElement, Restitution
 from ..elasticity.off_axis import Sphere
 from ..export.targets import TARGETS, ExportJob
 from ..files.joint_file import JointFile, read_aim, read_cup
+from ..files.units import convert, parse, parse_units, split_quantity
+from ..lubrication import Lubricant
 from ..problem import Joint
 from ..problem.cup import Cup
 from ..reports.accuracy_results import print_rival, print_tilted_rival
@@ -55,13 +58,21 @@ class ForceElementOptions:
         ),
     ] = None
     friction: Annotated[float | None, typer.Option(help="Coefficient of friction. Default: no friction.")] = None
+    viscosity: Annotated[
+        str | None,
+        typer.Option(help="Viscosity of a lubricant in Pa s, or such as '2.5 mPa s'. Default: a dry socket."),
+    ] = None
+    roughness: Annotated[
+        str | None,
+        typer.Option(help="Combined roughness, the least film of --viscosity. Default: 0.001 mm."),
+    ] = None
     arc_of_cover: Annotated[
         str | None,
         typer.Option(help="Angle of the cup from rim to rim in degrees. Default: as in the file, or 180 deg."),
     ] = None
 
     def element(self, file: JointFile) -> ForceElement | PreloadedElement:
-        """Return the force element of a joint file; it has a rim unless the cup is a plain hemisphere.
+        """Return the force element of a joint file; it has a rim unless the cup is a plain dry hemisphere.
 
         A joint with an interference has a tabulated element of the model sphere.
 
@@ -77,9 +88,11 @@ class ForceElementOptions:
         if file.joint.clearance < 0:
             return self._preloaded_element(file.joint, stated_cup, friction)
         model = default_model(file.joint, {}) if self.model is None else requested_model(self.model)
-        cup = None if stated_cup == Cup() else stated_cup
+        lubricant = self._lubricant()
+        cup = None if stated_cup == Cup() and lubricant is None else stated_cup
+        damping = self._damping()
         try:
-            return ForceElement(model, file.joint, damping=self._damping(), friction=friction, cup=cup)
+            return ForceElement(model, file.joint, damping, friction, cup, lubricant=lubricant)
         except TypeError as error:  # the model has no force law
             raise ValueError(str(error)) from error
 
@@ -87,6 +100,8 @@ class ForceElementOptions:
         """Return the force element of a joint with an interference; print the assumed arc of cover."""
         if self.model not in (None, off_axis.name):
             raise ValueError(f"the model {self.model} does not solve a preloaded joint: use {off_axis.name}")
+        if self.viscosity is not None:
+            raise ValueError("a preloaded joint has no clearance for the film of a lubricant: omit --viscosity")
         cup = stated_cup.around_ball(joint.clearance)
         if cup is not stated_cup:
             print_message(
@@ -100,6 +115,18 @@ class ForceElementOptions:
             print_message(f"the tabulated forces differ from the solver's by up to about {100 * error:.2g} %")
         return element
 
+    def _lubricant(self) -> Lubricant | None:
+        """Return the lubricant of the options; None for a dry socket."""
+        if self.viscosity is None:
+            if self.roughness is not None:
+                raise ValueError("--roughness is that of a film: add --viscosity")
+            return None
+        viscosity = _viscosity(self.viscosity)
+        if self.roughness is None:
+            return Lubricant(viscosity=viscosity)
+        roughness = parse("roughness", self.roughness, Kind.LENGTH)
+        return Lubricant(viscosity=viscosity, ball_roughness=0.0, cup_roughness=roughness)
+
     def _damping(self) -> Damping | None:
         """Return the damping of the options; None without damping."""
         impact = (self.restitution, self.impact_speed)
@@ -110,6 +137,15 @@ class ForceElementOptions:
         if None in impact:
             raise ValueError("a restitution and the speed of its impact belong together: --restitution --impact-speed")
         return Restitution(restitution=self.restitution, impact_speed=self.impact_speed)
+
+
+def _viscosity(text: str) -> float:
+    """Convert the text of a viscosity to Pa s."""
+    try:
+        number, unit = split_quantity(text)
+        return convert(number, parse_units(unit or "Pa s"), parse_units("Pa s"))
+    except ValueError as error:
+        raise ValueError(f"viscosity must be a number of Pa s, or such as '2.5 mPa s', got {shown(text)}") from error
 
 
 @app.command()

@@ -34,7 +34,7 @@ def explorer(
 ) -> None:
     """Open the explorer, an interactive page, in a browser."""
     needs("app", "panel", "tomli_w", "skfem", "xarray")
-    from ..app.serve import EVERYWHERE, LOOPBACK, server  # slow to import
+    from ..app.server import EVERYWHERE, LOOPBACK, server  # slow to import
 
     page = server(port, address, origin or (), show=browser)
     name = LOOPBACK if address == EVERYWHERE else address

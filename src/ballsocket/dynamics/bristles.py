@@ -7,6 +7,7 @@ from typing import ClassVar
 
 from ..core.arrays import Array, safe_divisor, sqrt, where
 from ..core.sources import Source
+from .ball_centre import BallCentre
 from .friction import (
     CoulombCoefficients,
     check_and_store_number,
@@ -14,7 +15,7 @@ from .friction import (
     friction_coefficient,
     rolling_slip_ratio,
 )
-from .reaction import BallCentre, Sliding, versine
+from .reaction import Sliding, versine
 
 Deflections = tuple[Array, Array, Array, Array]
 """Deflections of the bristles in mm: x, y and z across the load, and the arc at the lever ρ about the load."""

@@ -22,11 +22,11 @@ from ..core.deprecation import renamed_names
 from ..models import kinematics
 from ..models.kinematics import Kinematics
 from ..problem import Joint
-from . import friction, potential, reaction, stepping
+from . import ball_centre, film, friction, potential, reaction, stepping
+from .ball_centre import Constants
 from .element import ForceElement
 from .load import Load
 from .potential import CurvePotential, SpringPotential, energy_curve
-from .reaction import Constants
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +161,7 @@ def loads_at(potential, constants, position, velocity, spin):  # type: ignore[no
 
     The components of the tangent stiffness are xx, yy, zz, xy, yz, zx.
     """
-    centre = reaction.ball_centre_at(position[0], position[1], position[2], constants.clearance)
+    centre = ball_centre.ball_centre_at(position[0], position[1], position[2], constants.clearance)
     return load_from_contact(centre, reaction.elastic_contact(potential, centre, constants), velocity, spin, constants)
 
 
@@ -186,13 +186,13 @@ def _compiled_batch_loop() -> Any:
         for first in range(0, len(energy), _BLOCK_SIZE):
             last = min(first + _BLOCK_SIZE, len(energy))
             for i in range(first, last):
-                centre = reaction.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
-                U, F, k = potential(reaction.smooth_ramp(centre.indentation, constants.smoothing)[0])
+                centre = ball_centre.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                U, F, k = potential(ball_centre.smooth_ramp(centre.indentation, constants.smoothing)[0])
                 block[i - first, 0], block[i - first, 1], block[i - first, 2] = U, F, k
             for i in range(first, last):
-                centre = reaction.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
+                centre = ball_centre.ball_centre_at(position[i, 0], position[i, 1], position[i, 2], constants.clearance)
                 slopes = block[i - first, 0], block[i - first, 1], block[i - first, 2]
-                rounded = reaction.smooth_ramp(centre.indentation, constants.smoothing)
+                rounded = ball_centre.smooth_ramp(centre.indentation, constants.smoothing)
                 contact = reaction.elastic_from_slopes(centre, rounded, slopes, constants)
                 v = velocity[i, 0], velocity[i, 1], velocity[i, 2]
                 w = spin[i, 0], spin[i, 1], spin[i, 2]
@@ -213,23 +213,32 @@ def _compiled_march() -> Any:
 for _formula in (
     kinematics.linear_energy,
     kinematics.circular_energy,
-    reaction.smooth_ramp,
-    reaction.smooth_ramp_value,
-    reaction._corner_polynomial,
-    reaction.rim_share,
+    ball_centre.smooth_ramp,
+    ball_centre.smooth_ramp_value,
+    ball_centre._corner_polynomial,
+    ball_centre.rim_share,
     friction.widening_factor,
     friction.drill_lever,
     friction.friction_coefficient,
     friction.rolling_slip_ratio,
     friction.effective_slip,
-    reaction.ball_centre_at,
+    ball_centre.ball_centre_at,
     reaction.elastic_contact,
     reaction.elastic_at_rim,
-    reaction.dome_angle,
+    ball_centre.dome_angle,
     reaction.normal_force,
     reaction.sliding_state,
     reaction.versine,
+    film.film_damping,
+    film.film_thickness,
+    film._eccentricity_function,
+    film._covered_share,
+    film.squeeze_damping,
+    film.film_force_and_moment,
+    film.mean_velocity,
+    film.film_dissipation,
     reaction.force_and_moment,
+    reaction.contact_force_and_moment,
     reaction.dissipation,
     reaction.tangent_stiffness,
     stepping.end_state,

@@ -21,25 +21,19 @@ from ..core.checks import check_number, check_vectors, require, shown
 from ..core.deprecation import RenamedAttribute
 from ..core.display import OneLine
 from ..core.validity import Range
+from ..lubrication import Lubricant
 from ..models.adhesion import AdhesiveSocket
 from ..problem import Joint
 from ..problem.cup import Cup
+from .ball_centre import BallCentre, Constants, Vector, ball_centre_at
 from .bristles import Bristles
 from .damping import Damping
+from .film import film_constants
 from .friction import Friction
 from .load import Load, add_bristle_loads
 from .matrices import join_vector
 from .potential import Potential, adhesion_potential, evaluate_curve, fit_quantity_curve, potential_of
-from .reaction import (
-    NO_CONTACT,
-    BallCentre,
-    Constants,
-    Vector,
-    ball_centre_at,
-    elastic_contact,
-    force_and_moment,
-    remove_tension_damping,
-)
+from .reaction import NO_CONTACT, elastic_contact, force_and_moment, remove_tension_damping
 
 _log = logging.getLogger("ballsocket.dynamics")
 
@@ -48,6 +42,15 @@ _DEPTHS = 129
 
 _ZERO_VECTOR = (0.0, 0.0, 0.0)
 _ZERO_DEFLECTION = (0.0, 0.0, 0.0, 0.0)
+_PARTS: dict[str, Any] = {
+    "model": Model,
+    "damping": Damping,
+    "friction": Friction | Bristles,
+    "cup": Cup,
+    "lubricant": Lubricant,
+}
+"""Types of the parts of a force element by their names."""
+
 _SEQUENCES = (tuple, list)
 _NUMPY_FLOAT = numpy.float64
 
@@ -71,13 +74,22 @@ class ForceElement(OneLine):
     smoothing : float
         Indentation in mm on both sides of first touch over which the law is rounded off. The force is then twice
         continuously differentiable, as optimal control needs it. 0, the default, is the law of the model.
+    lubricant : Lubricant, optional
+        Adds squeeze, wedge and spin forces of the film between a rigid ball and a rigid socket. The film is never
+        thinner than the combined roughness of the surfaces, also where they touch. Dry friction is that of `friction`;
+        the coefficient of the lubricant is not used. None, the default, is a dry socket.
+    film_tension : float
+        Largest tension of the lubricant in MPa, above 0, for a ball that leaves the wall: about 0.1 for a fluid at
+        atmospheric pressure, which cavitates. Infinite, the default, is Reynolds' equation without cavitation.
 
     Raises
     ------
     ValueError
-        A joint outside the domain of the model; a smoothing below 0 or above the clearance.
+        A joint outside the domain of the model; a smoothing below 0 or above the clearance; a lubricant in a joint
+        with a clearance below twice its combined roughness, or without roughness; a `film_tension` that is not above
+        0, or without a lubricant.
     TypeError
-        A model without a force law, arrays in the joint, or a wrong type of damping, friction or cup.
+        A model without a force law, arrays in the joint, or a wrong type of damping, friction, cup or lubricant.
 
     Examples
     --------
@@ -97,13 +109,15 @@ class ForceElement(OneLine):
     friction: Friction | Bristles | None = None
     cup: Cup | None = None
     smoothing: float = 0.0
+    lubricant: Lubricant | None = None
+    film_tension: float = inf
     potential: Potential = field(init=False, repr=False)
     constants: Constants = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Check the parts of the element, and set its potential and constants."""
         check_joint(self.joint)
-        for name, kind in (("model", Model), ("damping", Damping), ("friction", Friction | Bristles), ("cup", Cup)):
+        for name, kind in _PARTS.items():
             value = getattr(self, name)
             if not (isinstance(value, kind) or (value is None and name != "model")):
                 raise TypeError(f"{name} must be a {getattr(kind, '__name__', kind)}, got {shown(value)}")
@@ -118,7 +132,7 @@ class ForceElement(OneLine):
         object.__setattr__(self, "constants", self._collect_constants(smoothing))
 
     def __str__(self) -> str:
-        parts = {"damping": self.damping, "friction": self.friction, "cup": self.cup}
+        parts = {name: getattr(self, name) for name in _PARTS if name != "model"}
         named = [f"{name} {type(part).__name__}" for name, part in parts.items() if part is not None]
         smoothing = [f"smoothing {self.smoothing:g} mm"] if self.smoothing else []
         return "; ".join([f"{self.model.name} on {self.joint.name or self.joint.dimensions}", *named, *smoothing])
@@ -127,9 +141,16 @@ class ForceElement(OneLine):
         """Return the elastic energy of model and joint over the indentation."""
         if not isinstance(self.model, AdhesiveSocket):
             return potential_of(self.model, self.joint)
-        if self.friction or self.cup or self.smoothing:
-            raise TypeError("friction, cup and smoothing are not supported with AdhesiveSocket")
+        if self.friction or self.cup or self.smoothing or self.lubricant:
+            raise TypeError("friction, cup, smoothing and lubricant are not supported with AdhesiveSocket")
         return adhesion_potential(self.model, self.joint)
+
+    @property
+    def _checked_tension(self) -> float:
+        """Largest tension of the lubricant in MPa; ValueError if it is not above 0."""
+        tension = check_number("film_tension", self.film_tension)
+        require("film_tension", tension, tension > 0.0, "a tension (MPa) must be above 0")
+        return tension
 
     @cached_property
     def stretch(self) -> float:
@@ -158,6 +179,7 @@ class ForceElement(OneLine):
             **loss_constants(self.damping, friction),
             rim=0.0 if cup is None else cup.rim,
             **dict(zip(("dome_x", "dome_y", "dome_z"), (Cup() if cup is None else cup).dome, strict=True)),
+            **film_constants(self.lubricant, self._checked_tension, joint),
         )
 
     def __call__(
@@ -205,7 +227,7 @@ class ForceElement(OneLine):
         is_adhesive = self.stretch > 0.0
         if is_adhesive:
             centre = self._centre_if_attached(centre, attached)
-        if centre.indentation <= -constants.smoothing and centre.distance > 0.0:
+        if centre.indentation <= -constants.smoothing and centre.distance > 0.0 and constants.film_damping == 0.0:
             return Load(_ZERO_VECTOR, _ZERO_VECTOR, 0.0, self, centre, NO_CONTACT, position, velocity, spin)
         if centre.indentation > self._validity_monitor.limit:
             self._validity_monitor.check(centre.indentation)

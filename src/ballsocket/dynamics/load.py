@@ -15,9 +15,11 @@ from ..core.arrays import Array, Numbers, sqrt, to_list, where
 from ..core.checks import shown
 from ..core.deprecation import RenamedAttribute
 from . import reaction as formulas
+from .ball_centre import BallCentre, Constants, Vector
 from .bristles import Bristles, Deflections, bristle_forces
+from .film import film_thickness, squeeze_pressure
 from .matrices import damping_matrix, join_matrix, join_vector
-from .reaction import BallCentre, Constants, Elastic, Vector, normal_force, sliding_state
+from .reaction import Elastic, normal_force, sliding_state
 
 
 class ContactState(IntEnum):
@@ -153,8 +155,24 @@ class Load(NamedTuple):
         return self.element.max_pressure(self.indentation)
 
     @property
+    @_without_warnings
+    def film_thickness(self) -> Array:
+        """Least gap between ball and socket in mm; with a lubricant at least its combined roughness."""
+        return film_thickness(self.centre, self.element.constants)[0]
+
+    @property
+    @_without_warnings
+    def squeeze_pressure(self) -> Array:
+        """Pressure in MPa of the squeezed film where it is thinnest, relative to a film as thick as the clearance.
+
+        It is negative for a ball that leaves the wall. A fluid at atmospheric pressure cavitates at about -0.1 MPa,
+        which the element does not model.
+        """
+        return squeeze_pressure(self.centre, self.velocity, self.element.constants)
+
+    @property
     def tangent(self) -> Any:
-        """Tangent stiffness ∂²U/∂r² in N/mm, a symmetric matrix (3, 3)."""
+        """Tangent stiffness ∂²U/∂r² of the elastic contact in N/mm, a symmetric matrix (3, 3)."""
         if type(self.force) is tuple:
             return self._tangent_rows
         with numpy.errstate(all="ignore"):
@@ -231,7 +249,7 @@ def describe_load(force: Any, moment: Any, energy: Any) -> str:
     except (TypeError, ValueError):  # arrays, or a tracer without a value
         return f"of states of shape {tuple(getattr(force, 'shape', ()))[:-1]}"
     texts = [", ".join(f"{part + 0.0:.5g}" for part in vector) for vector in vectors]
-    return f"force ({texts[0]}) N, moment ({texts[1]}) N mm, energy {number:.5g} N mm"
+    return f"force ({texts[0]}) N, moment ({texts[1]}) N mm, energy {number + 0.0:.5g} N mm"
 
 
 _OLD_DISSIPATION = RenamedAttribute("bristle_dissipation")
@@ -305,7 +323,11 @@ def add_bristle_loads(load: Load, bristles: Bristles, deflection: Any) -> Load:
     return load._replace(
         force=join_vector(kind, *(a + b for a, b in zip(_vector_components(load.force), friction_force, strict=True))),
         moment=join_vector(
-            kind, *(R1 * a + drilling_moment * component for a, component in zip(lever_force, direction, strict=True))
+            kind,
+            *(
+                moment + R1 * a + drilling_moment * component
+                for moment, a, component in zip(_vector_components(load.moment), lever_force, direction, strict=True)
+            ),
         ),
         deflection_rate=join_vector(kind, *rate),
         bristle_dissipation=N * dissipated,

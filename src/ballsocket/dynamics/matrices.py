@@ -9,18 +9,9 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array, where
 from . import friction
-from .reaction import (
-    SMOOTHING_SHARE,
-    BallCentre,
-    Constants,
-    Elastic,
-    Sliding,
-    Vector,
-    normal_force,
-    sliding_state,
-    smooth_ramp,
-    versine,
-)
+from .ball_centre import BallCentre, Constants, Vector, smooth_ramp
+from .film import film_damping, squeeze_damping
+from .reaction import SMOOTHING_SHARE, Elastic, Sliding, normal_force, sliding_state, versine
 
 
 def join_vector(kind: type, *components: Array) -> Any:
@@ -66,7 +57,27 @@ def damping_matrix(centre: BallCentre, contact: Elastic, velocity: Vector, spin:
     rate_slope = _friction_rate_slope(slip, constants) / slip.speed
     rate = rate + rate_slope[..., None, None] * (projection[..., :, None] * projection[..., None, :])
     rows = xp.concat([normal_block, 0.0 * normal_block], axis=-1)
-    return rate + xp.concat([rows, 0.0 * rows], axis=-2)
+    contact_matrix = rate + xp.concat([rows, 0.0 * rows], axis=-2)
+    if constants.film_damping == 0.0:
+        return contact_matrix
+    # V = v - ½ ω x r across n; rotation_rows are R1 ω x n
+    mean_rows = translation_rows - (0.5 / constants.ball_radius) * centre.distance[..., None, None] * rotation_rows
+    drilling_axis = xp.concat([0.0 * direction, direction], axis=-1)[..., None, :]
+    normal_axis = xp.concat([direction, 0.0 * direction], axis=-1)[..., None, :]
+    turning_rows = xp.concat([zero_block, tangential], axis=-1)
+    directions = normal_axis, mean_rows, drilling_axis, turning_rows
+    return contact_matrix + _film_matrix(centre, _normal_speed(centre, velocity), directions, constants)
+
+
+def _film_matrix(centre: BallCentre, speed: Array, directions: tuple[Array, ...], constants: Constants) -> Array:
+    """Compute the damping matrix (..., 6, 6) of the film, from its rows along, across, drilling and turning."""
+    damping = film_damping(centre, constants)
+    coefficients = squeeze_damping(damping, speed, constants)[1], damping.across, damping.drilling, damping.turning
+    terms = [
+        coefficient[..., None, None] * _sum_outer_products(rows, rows)
+        for coefficient, rows in zip(coefficients, directions, strict=True)
+    ]
+    return terms[0] + terms[1] + terms[2] + terms[3]
 
 
 def _damping_coefficients(

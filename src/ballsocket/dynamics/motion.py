@@ -112,10 +112,11 @@ class Motion:
         It is the largest change of the angular momentum less `pull_moment`, over the largest product m r v.
 
         In a cup it is the component about the dome axis. None where the angular momentum is not conserved: friction,
-        bristles and a retarded liner have a moment about the socket's centre.
+        bristles, a retarded liner and a lubricant have a moment about the socket's centre.
         """
         constants, cup = self.element.constants, self.element.cup
-        if self.pull_moment is None or constants.static + constants.viscous + constants.time > 0.0:
+        moments = constants.static + constants.viscous + constants.time + constants.film_damping
+        if self.pull_moment is None or moments > 0.0:
             return None
         balance = self.angular_momentum - self.pull_moment
         change = numpy.linalg.norm(balance - balance[0], axis=1) if cup is None else (balance - balance[0]) @ cup.dome

@@ -24,6 +24,7 @@ from ..core.checks import shown
 from ..core.display import OneLine
 from ..elasticity.off_axis import Preload, Sphere
 from ..problem import Joint
+from .ball_centre import Constants, Vector
 from .bristles import Bristles
 from .damping import Damping
 from .element import components, loss_constants, split_states
@@ -31,7 +32,6 @@ from .friction import Friction, friction_coefficient
 from .load import OVERFLOW_GUARD, ContactState, describe_load
 from .matrices import join_matrix, join_vector
 from .potential import CurvePotential
-from .reaction import Constants, Vector
 
 NODES = 7
 """Number of tabulated directions, from the dome to the opening."""

@@ -7,53 +7,20 @@ and moment on the socket.
 
 from __future__ import annotations
 
-from math import nan, pi
+from math import nan
 from typing import NamedTuple
 
 from ..core.arrays import Array, atan2, clip, safe_divisor, sqrt, where
-from . import friction
-
-Vector = tuple[Array, Array, Array]
-"""Components of a vector."""
-
-
-class Constants(NamedTuple):
-    """Constants of a force element except its potential: lengths in mm, speeds in mm/s, times in s.
-
-    `rim` is the polar angle of the cup rim in rad, 0 without a rim. `dome` is the unit vector to the pole of the bore.
-    """
-
-    ball_radius: float
-    socket_radius: float
-    clearance: float
-    wall: float
-    smoothing: float
-    hysteresis: float
-    time: float
-    sliding: float
-    static: float
-    transition_speed: float
-    stribeck_speed: float
-    viscous: float
-    rim: float
-    dome_x: float
-    dome_y: float
-    dome_z: float
-
-
-class BallCentre(NamedTuple):
-    """Position of the ball centre: distance, direction, indentation, and inverse distance.
-
-    The distance and the direction are those from the socket centre to the ball centre. The direction is a unit
-    vector, or zero where the centres coincide.
-    """
-
-    distance: Array
-    x: Array
-    y: Array
-    z: Array
-    indentation: Array
-    inverse_distance: Array
+from . import film, friction
+from .ball_centre import (
+    BallCentre,
+    Constants,
+    Vector,
+    dome_angle,
+    rim_share,
+    smooth_ramp,
+    smooth_ramp_value,
+)
 
 
 class Elastic(NamedTuple):
@@ -82,20 +49,6 @@ class Elastic(NamedTuple):
 
 NO_CONTACT = Elastic(0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Elastic contact of a ball that does not touch the socket."""
-
-
-def ball_centre_at(x: Array, y: Array, z: Array, clearance: float) -> BallCentre:
-    """Compute distance, direction and indentation of the ball centre from its coordinates in mm."""
-    distance = sqrt(x * x + y * y + z * z)
-    inverse_distance = 1.0 / safe_divisor(distance)
-    return BallCentre(
-        distance,
-        x * inverse_distance,
-        y * inverse_distance,
-        z * inverse_distance,
-        distance - clearance,
-        inverse_distance,
-    )
 
 
 def elastic_contact(potential, centre: BallCentre, constants: Constants) -> Elastic:  # type: ignore[no-untyped-def]
@@ -162,20 +115,6 @@ def elastic_at_rim(
         py=ay * inverse_sine,
         pz=az * inverse_sine,
     )
-
-
-def dome_angle(centre: BallCentre, constants: Constants) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute cosine and sine of the angle γ from the dome axis to the ball, and sin γ times its direction.
-
-    The last three results are sin γ times the direction of increasing γ.
-    """
-    dome_cosine = constants.dome_x * centre.x + constants.dome_y * centre.y + constants.dome_z * centre.z
-    ax, ay, az = (
-        dome_cosine * centre.x - constants.dome_x,
-        dome_cosine * centre.y - constants.dome_y,
-        dome_cosine * centre.z - constants.dome_z,
-    )
-    return dome_cosine, sqrt(ax * ax + ay * ay + az * az), ax, ay, az
 
 
 def normal_force(elastic: Elastic, speed: Array, constants: Constants) -> Array:
@@ -277,7 +216,18 @@ def versine(centre: BallCentre) -> Array:
 def force_and_moment(
     centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants
 ) -> tuple[Array, ...]:
-    """Compute force (N) and moment (N mm) on the ball about its centre, as six components."""
+    """Compute force (N) and moment (N mm) on the ball about its centre by contact and lubricant, as six components."""
+    fx, fy, fz, mx, my, mz = contact_force_and_moment(centre, contact, velocity, spin, constants)
+    if constants.film_damping == 0.0:
+        return fx, fy, fz, mx, my, mz
+    gx, gy, gz, lx, ly, lz = film.film_force_and_moment(centre, velocity, spin, constants)
+    return fx + gx, fy + gy, fz + gz, mx + lx, my + ly, mz + lz
+
+
+def contact_force_and_moment(
+    centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants
+) -> tuple[Array, ...]:
+    """Compute force (N) and moment (N mm) of the dry contact on the ball about its centre, as six components."""
     (vx, vy, vz), nx, ny, nz = velocity, centre.x, centre.y, centre.z
     speed = vx * nx + vy * ny + vz * nz
     normal = normal_force(contact, speed, constants)
@@ -306,7 +256,7 @@ def force_and_moment(
 
 
 def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Vector, constants: Constants) -> Array:
-    """Compute the power in N mm/s that damping, liner and friction dissipate."""
+    """Compute the power in N mm/s that damping, liner, friction and lubricant dissipate."""
     vx, vy, vz = velocity
     speed = vx * centre.x + vy * centre.y + vz * centre.z
     normal = normal_force(contact, speed, constants)
@@ -317,7 +267,10 @@ def dissipation(centre: BallCentre, contact: Elastic, velocity: Vector, spin: Ve
     squared_rotation = slip.bx * slip.bx + slip.by * slip.by + slip.bz * slip.bz
     friction_power = slip.push * squared_velocity + 2.0 * slip.mixed * mixed_product + slip.rotation * squared_rotation
     friction_power = friction_power + slip.drill * slip.lever_squared * slip.spin * slip.spin
-    return (normal - contact.normal) * speed + drag * squared_velocity + slip.rate * friction_power
+    power = (normal - contact.normal) * speed + drag * squared_velocity + slip.rate * friction_power
+    if constants.film_damping == 0.0:
+        return power
+    return power + film.film_dissipation(centre, velocity, spin, constants)
 
 
 def tangent_stiffness(centre: BallCentre, contact: Elastic, constants: Constants) -> tuple[Array, ...]:
@@ -338,50 +291,3 @@ def tangent_stiffness(centre: BallCentre, contact: Elastic, constants: Constants
         yz = yz + A * (ny * pz + nz * py) - B * ny * nz + C * py * pz
         zx = zx + A * (nz * px + nx * pz) - B * nz * nx + C * pz * px
     return xx, yy, zz, xy, yz, zx
-
-
-def smooth_ramp(y: Array, width: float) -> tuple[Array, Array, Array]:
-    """Compute max(y, 0) with a smooth corner within ± `width`, and its first and second derivative."""
-    if width == 0.0:
-        zero = 0.0 * y
-        return where(y > 0.0, y, zero), where(y >= 0.0, zero + 1.0, zero), zero
-    t = clip((y + width) / (2.0 * width), 0.0, 1.0)
-    bend = 15.0 * t * t * (1.0 - t) * (1.0 - t) / width
-    return where(y >= width, y, 2.0 * width * _corner_polynomial(t)), t * t * t * (10.0 - 15.0 * t + 6.0 * t * t), bend
-
-
-def smooth_ramp_value(y: Array, width: Array) -> Array:
-    """Compute max(y, 0) with a smooth corner within ± `width`; the width may be an array."""
-    span = where(width > 0.0, width, 1.0)
-    t = clip((y + width) / (2.0 * span), 0.0, 1.0)
-    return where(y >= width, y, 2.0 * width * _corner_polynomial(t))
-
-
-def _corner_polynomial(t: Array) -> Array:
-    # ∫ (10 t³ - 15 t⁴ + 6 t⁵) dt
-    """Compute the polynomial ∫ (10 t³ - 15 t⁴ + 6 t⁵) dt of the smooth corner."""
-    return t * t * t * t * (2.5 - 3.0 * t + t * t)
-
-
-def rim_share(rim_distance: Array) -> tuple[Array, Array, Array]:
-    """Compute the fraction W of the contact energy inside a straight rim, with its first and second derivative.
-
-    s is the distance of the rim from the patch centre over the half angle. W is 1 for s >= 1, and 0 for s <= -1. It is
-    the marginal of (1 - x² - y²)² over a disc, the energy density of radial springs under a small patch.
-    """
-    clipped_distance = clip(rim_distance, -1.0, 1.0)
-    one_minus_square = clip(1.0 - clipped_distance * clipped_distance, 0.0, 1.0)
-    root = sqrt(one_minus_square)
-    W = (
-        0.5
-        + (
-            atan2(clipped_distance, root)
-            + clipped_distance
-            * root
-            * (33.0 + clipped_distance * clipped_distance * (8.0 * clipped_distance * clipped_distance - 26.0))
-            / 15.0
-        )
-        / pi
-    )
-    slope = 16.0 / (5.0 * pi) * one_minus_square * one_minus_square * root
-    return clip(W, 0.0, 1.0), slope, -16.0 / pi * clipped_distance * one_minus_square * root

@@ -12,10 +12,10 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_number, require, shown
 from . import stepping
+from .ball_centre import Vector
 from .element import ForceElement, components
 from .load import ContactState, Load
 from .motion import TONNE, Motion
-from .reaction import Vector
 from .stepping import BallState
 
 

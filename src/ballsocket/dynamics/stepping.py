@@ -12,19 +12,9 @@ from math import isfinite
 from typing import NamedTuple
 
 from ..core.arrays import safe_divisor, sqrt
-from .reaction import (
-    BallCentre,
-    Constants,
-    Elastic,
-    Vector,
-    ball_centre_at,
-    dissipation,
-    dome_angle,
-    elastic_contact,
-    force_and_moment,
-    normal_force,
-    sliding_state,
-)
+from . import film
+from .ball_centre import BallCentre, Constants, Vector, ball_centre_at, dome_angle
+from .reaction import Elastic, dissipation, elastic_contact, force_and_moment, normal_force, sliding_state
 
 MAX_ITERATIONS = 60
 """Largest number of iterations of a step."""
@@ -73,7 +63,8 @@ def advance_one_step(  # type: ignore[no-untyped-def]
         ball.wy,
         ball.wz,
     )
-    if initial.indentation + h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z)) < -constants.smoothing:
+    path_bound = h * (abs(midpoint.x) + abs(midpoint.y) + abs(midpoint.z))
+    if constants.film_damping == 0.0 and initial.indentation + path_bound < -constants.smoothing:
         return StepResult(end_state(ball, midpoint, h), 0.0, True)
     start_contact = elastic_contact(potential, initial, constants)
     normal_push = start_contact.normal / mass_rate
@@ -310,18 +301,25 @@ def newton_correction(
 ) -> tuple[Midpoint, float]:
     """Solve the linearised equations of a time step for a new midpoint; return it and its change in mm/s.
 
-    The stiffness and the rate of friction are constant in this solution.
+    The stiffness, the rate of friction and the damping of the film are constant in this solution.
     """
     centre, contact, R1 = residual.centre, residual.contact, constants.ball_radius
     nx, ny, nz = centre.x, centre.y, centre.z
     push, mixed, rotation, drill = 0.0, 0.0, 0.0, 0.0
+    speed = midpoint.x * nx + midpoint.y * ny + midpoint.z * nz
     if constants.static + constants.viscous > 0.0:
-        speed = midpoint.x * nx + midpoint.y * ny + midpoint.z * nz
         velocity, spin = (midpoint.x, midpoint.y, midpoint.z), (midpoint.wx, midpoint.wy, midpoint.wz)
         slip = sliding_state(centre, normal_force(contact, speed, constants), velocity, spin, constants)
         push, mixed, rotation = slip.rate * slip.push, slip.rate * slip.mixed, slip.rate * slip.rotation
         drill = slip.rate * slip.drill * slip.lever_squared
     damping_rate = constants.hysteresis * contact.damped_force + constants.time * contact.damped_stiffness
+    if constants.film_damping > 0.0:
+        film_damping, lever = film.film_damping(centre, constants), 0.5 * centre.distance / R1
+        damping_rate = damping_rate + film.squeeze_damping(film_damping, speed, constants)[1]
+        damping_rate = damping_rate + 0.5 * h * max(speed, 0.0) * film_damping.steepening
+        push, mixed = push + film_damping.across, mixed - lever * film_damping.across
+        rotation = rotation + lever * lever * film_damping.across + film_damping.turning / (R1 * R1)
+        drill = drill + film_damping.drilling
     tangential_stiffness = (0.5 * h * contact.normal + constants.time * contact.damped_force) * centre.inverse_distance
     outward = residual.x * nx + residual.y * ny + residual.z * nz
     turning = residual.wx * nx + residual.wy * ny + residual.wz * nz

@@ -15,10 +15,11 @@ from ..contact.law import CurveLaw
 from ..core.arrays import Numbers, isfinite, where
 from ..core.display import full_repr
 from ..core.storage.atomic_files import write_text
-from ..dynamics import ContactState, ForceElement, PreloadedElement, preloaded, reaction
+from ..dynamics import ContactState, ForceElement, PreloadedElement, ball_centre, preloaded, reaction
+from ..dynamics.ball_centre import BallCentre, Constants, Vector
 from ..dynamics.load import contact_state_of
 from ..dynamics.potential import CurvePotential, energy_curve
-from ..dynamics.reaction import BallCentre, Constants, Elastic, Vector
+from ..dynamics.reaction import Elastic
 from ..version import __version__
 from .c_text import c_number, c_statements
 from .recorder import Part, Recorded, Tape, directional_derivatives
@@ -74,7 +75,7 @@ class Recording:
     @cached_property
     def centre(self) -> BallCentre:
         """Recorded position of the ball centre."""
-        return reaction.ball_centre_at(*self.state[0], self.constants.clearance)
+        return ball_centre.ball_centre_at(*self.state[0], self.constants.clearance)
 
     @cached_property
     def contact(self) -> Elastic:
@@ -271,7 +272,7 @@ class CElement:
             curves="\n".join(_curve_function_code(name, curve) for name, curve in sorted(recording.curves.items())),
             defaults=", ".join(c_number(getattr(constants, parameter.constant)) for parameter in TUNABLES),
             checks="\n".join(_range_check_statement(parameter.name, parameter.above) for parameter in TUNABLES),
-            first_touch=c_number(constants.clearance - constants.smoothing),
+            first_touch=c_number(first_load_distance(constants)),
             load=c_statements({**recording.status, **recording.load}),
             pressed=c_statements({**recording.status, **recording.contact_size}),
             tangent=c_statements({**recording.status, **recording.tangent}),
@@ -297,6 +298,11 @@ class CElement:
         """Version, model and joint as texts for the comments in generated files."""
         joint = re.sub(r"[^\x20-\x7e]|\*/|/\*|--|\\", "?", full_repr(self.element.joint.with_floats()))
         return {"version": __version__, "model": self.element.model.name, "joint": joint}
+
+
+def first_load_distance(constants: Constants) -> float:
+    """Return the distance of the centres in mm up to which the ball has no load; negative for a lubricated ball."""
+    return -1.0 if constants.film_damping > 0.0 else constants.clearance - constants.smoothing
 
 
 def _range_check_statement(name: str, is_positive: bool) -> str:

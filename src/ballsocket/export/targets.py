@@ -13,7 +13,7 @@ import numpy
 from ..core.deprecation import RenamedAttribute
 from ..core.storage.atomic_files import write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement
-from ..dynamics.reaction import Constants
+from ..dynamics.ball_centre import Constants
 from ..version import __version__
 from .c_element import CElement, fill_template
 from .compiler import LIBRARY_ENDING, NoCompiler, shared_library
@@ -136,6 +136,7 @@ FEATURES: Mapping[str, Callable[[Constants], bool]] = {
     "the retardation time of the liner": lambda constants: constants.time > 0.0,
     "the rim of the cup": lambda constants: constants.rim > 0.0,
     "a smoothed first touch": lambda constants: constants.smoothing > 0.0,
+    "a lubricant": lambda constants: constants.film_damping > 0.0,
 }
 """Features of an element that a target may lack, with the test for each of them."""
 

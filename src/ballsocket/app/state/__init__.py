@@ -1,0 +1,1 @@
+"""State of the screen as plain data, to and from a link."""

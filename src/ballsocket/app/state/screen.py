@@ -1,0 +1,279 @@
+"""State of the screen as plain data, to and from a link."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import inf, isfinite
+from typing import Any
+from urllib.parse import urlencode
+
+from ...catalogue import catalogue, reference
+from ...core.checks import check_names, shown
+from ...core.deprecation import renamed_names
+from ...core.kinds import Kind
+from ...core.quantities import QUANTITIES
+from ...files.joint_file import JointFile, joint_of
+from ...files.joint_toml import Tables, tables_of
+from ...problem.presets import joints
+from ...reports.unit_systems import Units
+from ...studies.expressions import parse_limit, parse_range
+from ...studies.limits import Limit
+from ...studies.parameters import PARAMETERS
+from ..widgets.reading import Reading
+from . import evidence_question
+from . import use as in_use
+from .evidence_question import DEFAULT_QUESTION, EvidenceQuestion
+from .use import DEFAULT_USE, Use
+
+VIEWS = ("press", "cup", "gait", "wear", "map", "compare", "judge", "evidence")
+THEMES = ("light", "dark")
+ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
+PAINTED = ("pressure", "stress")
+"""Fields on the drawing of the joint."""
+
+QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
+"""Models that press a map's points at once."""
+
+BASES = ("0", "1", "2")
+"""Indices of the compared joints: that on the screen first."""
+
+STANDINGS = ("edge_distance", "max_pressure")
+"""Quantities of the map over orientations of the cup."""
+
+MAP_MODELS = (*QUICK, *(name for name, model in catalogue.items() if 1e-4 <= model.seconds_a_press < 1e-2))
+"""Models that press a map's points at once, and those that press fewer of them in a second or two."""
+
+PICKED = ("any", "catalogue")
+"""Sizes that a click on a map takes."""
+
+MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")
+"""Quantities of the design map."""
+
+AXES = tuple(name for name in PARAMETERS if PARAMETERS[name].kind is not Kind.ANGLE)
+"""Parameters of the design map."""
+
+LONGEST_LINK = 8000
+MAX_COMPARED = 2
+MOST_LIMITS = 20
+_TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")
+_VIEWS = ("use", "ask")
+_PREFIXES = tuple(f"beside{number}" for number in range(1, MAX_COMPARED + 1))
+
+
+@dataclass(frozen=True, kw_only=True)
+class MapAxis:
+    """Axis of the map: a parameter of a study from `low` to `high`, in mm, N, MPa, rad."""
+
+    name: str
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        check_names([self.name], AXES, "among the axes of a map")
+        if not -inf < self.low < self.high < inf:
+            raise ValueError(
+                f"{self.name} from {self.low:g} to {self.high:g} is not a range: it must increase to a finite end"
+            )
+
+    def __str__(self) -> str:
+        return f"{self.name}={_bare(self.name, self.low)}..{_bare(self.name, self.high)}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Screen:
+    """State that a link carries."""
+
+    view: str = "press"
+    file: JointFile
+    beside: tuple[JointFile, ...] = ()  # at most MAX_COMPARED joints for comparison
+    answered_by: str = reference.name  # model of the numbers on top
+    shown: tuple[str, ...] = (reference.name, "hess-forsbach", "bartel", "hertz")  # drawn models
+    across: MapAxis = MapAxis(name="head_diameter", low=22.0, high=46.0)
+    up: MapAxis = MapAxis(name="liner_thickness", low=3.0, high=15.0)
+    map_model: str = "tabulated"
+    quantity: str = "max_pressure"
+    limits: tuple[Limit, ...] = ()
+    standing: str = "edge_distance"  # quantity of the map over orientations
+    base: str = "1"  # joint with which others are compared
+    sizes: str = "any"  # sizes that a click on the map takes
+    use: Use = DEFAULT_USE
+    painted: str = "pressure"
+    asked: EvidenceQuestion = DEFAULT_QUESTION
+    angle: str = "degrees"
+    size: str = "diameter"
+    units: str = Units.SI.value
+    theme: str = "light"
+
+    def __post_init__(self) -> None:
+        for name, known in _KNOWN.items():
+            chosen = getattr(self, name)
+            check_names(chosen if isinstance(chosen, tuple) else (chosen,), known, f"as {name}")
+        if len(self.beside) > MAX_COMPARED:
+            raise ValueError(f"at most {MAX_COMPARED} joints are put beside this one, got {len(self.beside)}")
+        if len(self.limits) > MOST_LIMITS:
+            raise ValueError(f"a map has at most {MOST_LIMITS} limits, got {len(self.limits)}")
+        if not self.file.load:
+            raise ValueError("a load is needed: force, indentation or half_angle")
+        if self.across.name == self.up.name:
+            raise ValueError(f"a map has two axes, and both are {self.up.name}")
+
+    @property
+    def reading(self) -> Reading:
+        """Units in which numbers are shown."""
+        return Reading(angle=self.angle, units=Units(self.units))
+
+
+_KNOWN: Mapping[str, Sequence[str]] = {
+    "view": VIEWS,
+    "answered_by": tuple(catalogue),
+    "shown": tuple(catalogue),
+    "map_model": MAP_MODELS,
+    "sizes": PICKED,
+    "quantity": MAPPED,
+    "standing": STANDINGS,
+    "base": BASES,
+    "painted": PAINTED,
+    "angle": ANGLES,
+    "size": SIZES,
+    "units": tuple(system.value for system in Units),
+    "theme": THEMES,
+}
+
+START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
+"""Screen of a page without a link."""
+
+
+def link_of(screen: Screen) -> str:
+    """Return the query of a link: the differences from the start, and the joint."""
+    pairs: list[tuple[str, str]] = []
+    for name in (
+        "view",
+        "answered_by",
+        "map_model",
+        "quantity",
+        "standing",
+        "base",
+        "sizes",
+        "painted",
+        "angle",
+        "size",
+        "units",
+    ):
+        if getattr(screen, name) != getattr(START, name):
+            pairs.append((name, getattr(screen, name)))
+    if screen.shown != START.shown:
+        pairs.append(("shown", ",".join(screen.shown)))
+    for name in ("across", "up"):
+        if getattr(screen, name) != getattr(START, name):
+            pairs.append((name, str(getattr(screen, name))))
+    pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
+    pairs += [*in_use.use_pairs(screen.use), *evidence_question.question_pairs(screen.asked)]
+    pairs += _flat(_tables(screen.file), "")
+    for prefix, file in zip(_PREFIXES, screen.beside, strict=False):
+        pairs += _flat(_tables(file), f"{prefix}.")
+    return urlencode([*pairs, ("theme", screen.theme)])
+
+
+def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
+    """Read a link with the same strict reader as joint files and the command line."""
+    if sum(len(name) + len(value) for name, values in pairs.items() for value in values) > LONGEST_LINK:
+        raise ValueError(f"the link is longer than {LONGEST_LINK} characters")
+    plain = {
+        name: values for name, values in pairs.items() if name.split(".")[0] not in (*_TABLES, *_PREFIXES, *_VIEWS)
+    }
+    check_names(plain, (*_KNOWN, "across", "up", "limit"), "in the link")
+    for name, values in pairs.items():
+        if len(values) != 1 and name != "limit":
+            raise ValueError(f"{shown(name)} is given {len(values)} times in the link; one is needed")
+    words: dict[str, Any] = {name: pairs[name][0] for name in _KNOWN if name in pairs}
+    if "shown" in words:
+        words["shown"] = tuple(dict.fromkeys(words["shown"].split(",")))
+    words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
+    words["use"] = in_use.use_of(_part(pairs, "use"))
+    words["asked"] = evidence_question.question_of(_part(pairs, "ask"))
+    words["limits"] = tuple(map(parse_limit, pairs.get("limit", ())))
+    joint = {name: values[0] for name, values in pairs.items() if name.split(".")[0] in _TABLES}
+    further = [_part(pairs, prefix) for prefix in _PREFIXES]
+    words["file"] = _joint(joint) if joint else START.file
+    words["beside"] = tuple(_joint(part) for part in further if part)
+    return Screen(**words)
+
+
+def _part(pairs: Mapping[str, Sequence[str]], prefix: str) -> dict[str, str]:
+    return {name[len(prefix) + 1 :]: values[0] for name, values in pairs.items() if name.startswith(f"{prefix}.")}
+
+
+def _axis(phrase: str) -> MapAxis:
+    name, low, high = parse_range(phrase)
+    return MapAxis(name=name, low=low, high=high)
+
+
+def _joint(flat: Mapping[str, str]) -> JointFile:
+    """Read a joint from dotted names, with the load of the start if it has none."""
+    tables = _nested({name: value for name, value in flat.items() if name != "preset"})
+    if "preset" in flat:
+        check_names([flat["preset"]], joints, "as preset")
+        check_names(tables, ("cup", "load"), "beside a preset")
+        tables |= tables_of(JointFile(joints[flat["preset"]], {}))
+    elif not set(tables) - {"cup", "load"}:
+        tables |= tables_of(JointFile(START.file.joint, {}))
+    file = joint_of(tables)
+    return file if file.load else replace(file, load=START.file.load)
+
+
+def _tables(file: JointFile) -> Tables:
+    """Return the tables of a joint file; short for a preset."""
+    tables = tables_of(file)
+    for name, joint in joints.items():
+        if file.joint == joint:
+            return {"preset": name, **{key: tables[key] for key in ("cup", "load") if key in tables}}
+    return tables
+
+
+def _flat(part: Any, prefix: str) -> list[tuple[str, str]]:
+    """Flatten tables to dotted names, with layers by number."""
+    items: Iterable[tuple[Any, Any]] = enumerate(part) if isinstance(part, list) else part.items()
+    pairs = []
+    for name, value in items:
+        if isinstance(value, dict | list):
+            pairs += _flat(value, f"{prefix}{name}.")
+        else:
+            pairs.append((f"{prefix}{name}", str(value)))
+    return pairs
+
+
+def _nested(flat: Mapping[str, str]) -> Tables:
+    tables: Tables = {}
+    layers: dict[int, dict[str, str]] = {}
+    for name, value in flat.items():
+        table, _, key_path = name.partition(".")
+        number, _, key = key_path.partition(".")
+        if table == "backing":
+            if not (number.isdecimal() and len(number) < 4 and key):
+                raise ValueError(f"{shown(name)} in the link is not known; a layer is 'backing.0.thickness' and so on")
+            layers.setdefault(int(number), {})[key] = value
+        elif key_path:
+            part = tables.setdefault(table, {})
+            if not isinstance(part, dict):
+                raise ValueError(f"{shown(table)} is given as text and as a table in the link")
+            part[key_path] = value
+        else:
+            tables[table] = value
+    if layers:
+        tables["backing"] = [layers[number] for number in sorted(layers)]
+    return tables
+
+
+def _bare(name: str, value: float) -> str:
+    """Write a number to the last digit for `units.parse`; a bare angle would be degrees."""
+    return f"{value!r} {Kind.ANGLE.unit}" if QUANTITIES[name].kind is Kind.ANGLE else repr(value)
+
+
+def phrases_of(limit: Limit, written: Callable[[str, float], str] = _bare) -> list[str]:
+    """Write each end of a limit as text that `parse_limit` reads."""
+    ends = ((">=", limit.low), ("<=", limit.high))
+    return [f"{limit.name}{sign}{written(limit.name, end)}" for sign, end in ends if isfinite(end)]
+
+
+__getattr__ = renamed_names(__name__, {"Axis": "MapAxis"})

@@ -1,0 +1,1 @@
+"""Joints side by side."""

@@ -1,0 +1,1 @@
+"""Contact of one joint under one load."""

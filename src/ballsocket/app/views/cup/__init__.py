@@ -1,0 +1,1 @@
+"""Load in a real cup with its orientation."""

@@ -1,0 +1,104 @@
+"""Contact in a real cup and its map over orientations, computed in separate processes."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from math import radians
+from typing import Any
+
+import numpy
+
+from ....elasticity.finite_elements.progress import progress_to
+from ....elasticity.off_axis import Orientations, Sphere, orient
+from ....elasticity.off_axis.contact import OffAxisContact
+from ....files.joint_file import JointFile
+from ....problem.cup import Cup, Side
+from ....reports.figure_files import figure_bytes
+from ....reports.orientation_results import orientation_figure
+from ...running import CachedRun, Reached, Report
+
+INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))
+ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))
+"""Orientations of the map."""
+
+LEWINNEK = (30.0, 50.0, 5.0, 25.0)
+"""Inclinations and anteversions in degrees between which Lewinnek (1978) saw the fewest dislocations."""
+
+SOLVED: CachedRun = CachedRun(max_size=64)
+"""Bores whose rings have been set up: a press in them takes a moment."""
+
+
+def bore_of(file: JointFile) -> Hashable:
+    """Return a key of the bore's ring matrices: joint and cup without orientation."""
+    return file.joint, replace(file.cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT)
+
+
+@lru_cache(maxsize=32)
+def _pressed(joint: Any, cup: Cup, load: Any, aim: Any) -> OffAxisContact:
+    contact = Sphere(cup=cup).press(joint, **dict(load), **dict(aim))
+    if not isinstance(contact, OffAxisContact) or contact.status.failed:
+        raise ValueError("; ".join(contact.notes) or contact.status.sentence)
+    return contact
+
+
+def pressed_in_cup(file: JointFile) -> OffAxisContact:
+    """Press the load of a joint file in its cup; raise ValueError without a result."""
+    return _pressed(file.joint, file.cup, tuple(file.load.items()), tuple(file.aim.items()))
+
+
+def set_up(file: JointFile, report: Report) -> None:
+    """Compute the ring matrices of a bore in a separate process; they are cached on disk."""
+    report(Reached(share=0.1, words="setting up this bore by finite elements"))
+    Sphere(cup=file.cup).press(file.joint, **file.load, **file.aim)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stood:
+    """Edge distances (mm) and pressures (MPa) over inclinations and anteversions (rad).
+
+    `held` is where the bore holds the ball; `summary` is that of `Orientations`, `figure` its figure as PNG.
+    """
+
+    inclination: numpy.ndarray
+    anteversion: numpy.ndarray
+    edge_distance: numpy.ndarray
+    max_pressure: numpy.ndarray
+    held: numpy.ndarray
+    summary: dict[str, Any]
+    figure: bytes
+
+
+def stand_of(file: JointFile) -> Hashable:
+    """Return a key of a map over orientations."""
+    return bore_of(file), file.cup.side, tuple(file.load.items()), tuple(file.aim.items())
+
+
+def stood(file: JointFile, report: Report) -> Stood:
+    """Press one load of the body in cups of many orientations, in a separate process."""
+    if "tilt" in file.aim:
+        raise ValueError("a load that is given by its tilt turns with the cup: give its direction in the body")
+    model = Sphere(cup=file.cup, **file.aim)
+    count = len(INCLINATIONS)
+
+    def heard(words: str) -> None:
+        number = words.removeprefix("inclination ").partition(" ")[0]
+        if number.isdecimal():  # messages of the finite elements have no number
+            report(Reached(share=int(number) / (count + 1), words=words))
+
+    with progress_to(heard):
+        orientations = orient(file.joint, model=model, inclination=INCLINATIONS, anteversion=ANTEVERSIONS, **file.load)
+    return _stood(orientations)
+
+
+def _stood(orientations: Orientations) -> Stood:
+    return Stood(
+        inclination=orientations.inclination,
+        anteversion=orientations.anteversion,
+        edge_distance=orientations.edge_distance,
+        max_pressure=orientations.max_pressure,
+        held=orientations.held,
+        summary=orientations.summary(),
+        figure=figure_bytes(orientation_figure(orientations)),
+    )

@@ -1,0 +1,1 @@
+"""Map of one quantity over two numbers of a joint."""

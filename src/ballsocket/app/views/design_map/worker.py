@@ -1,0 +1,222 @@
+"""Design maps: a study over two numbers of a joint, its limits, and the lines of the limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+from html import escape
+from math import isfinite, nan
+from typing import Any
+
+import numpy
+
+from ....catalogue import catalogue
+from ....compare import THIN_LINER_RATIO
+from ....contact import Model
+from ....core.kinds import Kind
+from ....core.quantities import PARTS, QUANTITIES, Quantity
+from ....core.validity import OutsideDomainError, check_domain
+from ....files.joint_file import JointFile
+from ....problem import Joint
+from ....problem.dimensions import DIAMETERS
+from ....studies.design import Span, grid
+from ....studies.limits import Limit, allowed, margin_on_plane
+from ....studies.parameters import LOADS, PARAMETERS, press_arguments
+from ....studies.run import default_model, joint_of_arrays, study
+from ...pictures.svg import Contours
+from ...state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
+from ...widgets.numbers import NUMBERS
+from ...widgets.reading import Reading
+
+_POINTS = 61
+_SOLVED_POINTS = 17
+"""Values along an axis where every joint is solved: a second in all."""
+
+
+@lru_cache(maxsize=16)
+def _mapped(joint: Joint, load: tuple[tuple[str, float], ...], across: MapAxis, up: MapAxis, model: str) -> Any:
+    chosen = _map_model(joint, {axis.name: [axis.low, axis.high] for axis in (across, up)}, model)
+    count = _SOLVED_POINTS if chosen.name not in QUICK else _POINTS
+    axes: dict[str, Any] = {axis.name: Span(axis.low, axis.high, count) for axis in (across, up)}
+    varied = any(name in axes for name in LOADS)
+    design = grid(**axes, **({} if varied else dict(load)))
+    return study(chosen, joint, design, quantities=MAPPED)
+
+
+def _map_model(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
+    """Return the model of a name, or a quick model behind the tables if the joints are outside them."""
+    model = default_model(joint, ends) if name == START.map_model else catalogue[name]
+    if model.name in QUICK or not bool(numpy.any(joint_of_arrays(joint, ends).thickness_ratio > THIN_LINER_RATIO)):
+        return model
+    if name not in QUICK:
+        raise ValueError(
+            f"{name} takes minutes where R2/L is above {THIN_LINER_RATIO:g}: choose another model for this map"
+        )
+    return catalogue[name]
+
+
+def models_of(screen: Screen) -> list[str]:
+    """List the models whose domain holds the joint on the screen, and the chosen one."""
+    return [name for name in MAP_MODELS if name == screen.map_model or _in_domain(name, screen.file.joint)]
+
+
+def _in_domain(name: str, joint: Joint) -> bool:
+    try:
+        return bool(check_domain(catalogue[name].domain, joint, name))
+    except OutsideDomainError:
+        return False
+
+
+def mapped(file: JointFile, across: MapAxis, up: MapAxis, model: str) -> Any:
+    """Compute the study behind a map."""
+    return _mapped(file.joint, tuple(file.load.items()), across, up, model)
+
+
+def limits_of(screen: Screen) -> tuple[Limit, ...]:
+    """Return the limits on the screen, with the cup on the screen for edge distances."""
+    return tuple(replace(limit, cup=screen.file.cup) for limit in screen.limits)
+
+
+def allowed_points(results: Any, screen: Screen) -> Any:
+    """Return True at points with a result that no limit forbids."""
+    return allowed(results, limits_of(screen)).broadcast_like(results.max_pressure)
+
+
+def margin(results: Any, screen: Screen) -> numpy.ndarray:
+    """Compute the relative distance of each point inside the nearest limit; 1 without limits."""
+    nearest = numpy.ones((results.sizes[screen.up.name], results.sizes[screen.across.name]))
+    for limit in limits_of(screen):
+        values = margin_on_plane(results, limit, screen.across.name, screen.up.name)
+        nearest = numpy.minimum(nearest, values / max(float(numpy.nanmax(numpy.abs(values))), 1e-300))
+    return nearest
+
+
+def axis_label(name: str, screen: Screen) -> tuple[str, float]:
+    """Return the label of a quantity in its chosen unit, and the factor from the unit of a study."""
+    unit = screen.reading.unit(QUANTITIES[name])
+    return QUANTITIES[name].label(unit), unit.factor
+
+
+def best_point(results: Any, screen: Screen) -> dict[str, float] | None:
+    """Return the parameters of the allowed point with the least value; None without one."""
+    fine = allowed_points(results, screen)
+    if not bool(fine.any()):
+        return None
+    indices = results[screen.quantity].where(fine).argmin(...)
+    return {axis: float(results[axis].isel({axis: indices[axis]})) for axis in (screen.across.name, screen.up.name)}
+
+
+def map_summary(results: Any, screen: Screen) -> str:
+    """Describe the map as HTML: its allowed part, and the least value there."""
+    fine, point, name = allowed_points(results, screen), best_point(results, screen), screen.quantity
+    words = []
+    if results.attrs["model"] != screen.map_model:
+        words.append(f"{results.attrs['model']} answers, since {screen.map_model} knows none of these joints.")
+    if screen.limits:
+        words.append(f"{100 * float(fine.mean()):.3g} % of the map is allowed by the limits.")
+    if point is not None:
+        where = ", ".join(_symbol_value(QUANTITIES[axis], value, screen) for axis, value in point.items())
+        title, factor = axis_label(name, screen)
+        least = float(results[name].sel(point)) * factor
+        steps = ", ".join(
+            f"{(axis.high - axis.low) / (results.sizes[axis.name] - 1) * axis_label(axis.name, screen)[1]:.2g}"
+            for axis in (screen.across, screen.up)
+        )
+        words.append(f"Smallest value of {title} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")
+    if not bool(results.valid.all()):
+        words.append("Crosses: the model is not to be trusted there.")
+    if not bool(fine.all()):
+        words.append("Faded: a limit is broken, or there is no answer.")
+    words.append("Click a point to press the joint that is there; the circle is the joint now.")
+    return f"<p class='quiet'>{' '.join(words)}</p>"
+
+
+def _symbol_value(quantity: Quantity, value: float, screen: Screen) -> str:
+    return f"{quantity.symbol} {screen.reading.with_unit(quantity, value)}".strip()
+
+
+def current_value(file: JointFile, name: str) -> float:
+    """Return a parameter of the joint on the screen; NaN without one."""
+    part, _, number = name.partition("_") if name in PARTS else ("", "", "")
+    value = getattr(getattr(file.joint, part), number, None) if part else getattr(file.joint, name, file.load.get(name))
+    return float("nan") if value is None else float(value)
+
+
+def default_axis(name: str, middle: float) -> MapAxis:
+    """Return a range of half to twice the present value of a parameter."""
+    if PARAMETERS[name].kind is Kind.NUMBER:
+        return MapAxis(name=name, low=0.3, high=0.48)
+    middle = middle if 0 < middle < 1e9 else {"force": 3000.0, "indentation": 0.05, "clearance": 0.1}.get(name, 10.0)
+    return MapAxis(name=name, low=float(f"{middle / 2:.2g}"), high=float(f"{2 * middle:.2g}"))
+
+
+def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
+    """Return the joint at a point of the map, rounded to four digits, with its load."""
+    rounded = {name: float(f"{value:.4g}") for name, value in chosen.items()}
+    made, load, possible = press_arguments(file.joint, rounded)
+    if not bool(possible):
+        raise ValueError("these numbers make no joint: no liner or no clearance is left")
+    plain = replace(
+        made,
+        ball_radius=round(float(made.ball_radius), 9),
+        clearance=round(float(made.clearance), 9),
+        liner_thickness=round(float(made.liner_thickness), 9),
+        name="",
+        source="",
+    )
+    return replace(file, joint=plain, load={name: float(value) for name, value in load.items()} or file.load)
+
+
+MapPoint = tuple[float, float]
+
+
+def longest_line_middle(x: numpy.ndarray, y: numpy.ndarray, values: numpy.ndarray, level: float) -> MapPoint:
+    """Return the middle of the longest contour of a field (y, x); NaN without one."""
+    grid_x, grid_y = numpy.meshgrid(x, y)
+    lines = Contours(grid_x, grid_y, values).lines(level)
+    if not lines:
+        return nan, nan
+    line = max(lines, key=len)
+    across, up = line[len(line) // 2]
+    return float(across), float(up)
+
+
+def limit_handles(results: Any, screen: Screen) -> list[MapPoint]:
+    """Return a point on the line of each limit, in the units of a study; NaN off the map."""
+    across, up = screen.across.name, screen.up.name
+    x, y = results[across].values, results[up].values
+    return [longest_line_middle(x, y, margin_on_plane(results, limit, across, up), 0.0) for limit in limits_of(screen)]
+
+
+def move_limit(results: Any, screen: Screen, number: int, point: MapPoint) -> tuple[Limit, ...]:
+    """Change one limit of the screen so that its line runs through a point of the map."""
+    limit = limits_of(screen)[number]
+    across, up = screen.across, screen.up
+    x, y = (min(max(at, axis.low), axis.high) for at, axis in zip(point, (across, up), strict=True))
+    field = limit.evaluate(results) + 0.0 * results[across.name] + 0.0 * results[up.name]
+    value = float(field.interp({across.name: x, up.name: y}))
+    if not isfinite(value):
+        raise ValueError(f"{limit.name} has no number there: the limit stays where it was")
+    end = float(f"{value:.3g}")
+    old = screen.limits[number]
+    changed = replace(old, high=end) if isfinite(limit.high) else replace(old, low=end)
+    return (*screen.limits[:number], changed, *screen.limits[number + 1 :])
+
+
+def limit_text(limit: Limit, reading: Reading) -> str:
+    """Write a limit with its unit for the map."""
+    sign, end = ("≤", limit.high) if isfinite(limit.high) else ("≥", limit.low)
+    quantity = QUANTITIES[limit.name]
+    return f"{quantity.title} {sign} {reading.with_unit(quantity, end)}"
+
+
+def catalogue_sizes(point: Mapping[str, float]) -> dict[str, float]:
+    """Replace each number of a point by the nearest catalogue size, where there are sizes."""
+    return {name: _nearest_size(name, value) for name, value in point.items()}
+
+
+def _nearest_size(name: str, value: float) -> float:
+    single, times = (DIAMETERS[name], 2) if name in DIAMETERS else (name, 1)
+    sizes = NUMBERS[single].sizes if single in NUMBERS else ()
+    return min((times * size for size in sizes), key=lambda size: abs(size - value), default=value)

@@ -1,0 +1,1 @@
+"""Evidence pack for a question."""

@@ -1,0 +1,1 @@
+"""Gait cycle of a hip."""

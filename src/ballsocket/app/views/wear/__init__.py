@@ -1,0 +1,1 @@
+"""Wear of a design over millions of cycles."""

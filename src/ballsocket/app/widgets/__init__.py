@@ -1,0 +1,1 @@
+"""Inputs of the page, and text and units of its numbers."""

@@ -1,0 +1,281 @@
+"""Inputs of the joint and its load; each edits one entry of the tables of a joint file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from html import escape
+from math import degrees, inf, isinf
+from typing import Any
+
+from ...core.checks import check_names, shown
+from ...core.quantities import LOADS, STRESS_LIMITS
+from ...files.joint_file import JointFile, joint_of, read_aim
+from ...files.joint_toml import Tables, tables_of
+from ...problem import Joint, Layer, Support
+from ...problem.cup import UP
+from ...problem.presets import joints, materials
+from ..state.screen import Screen
+from .cup_fields import TILT_LABEL
+from .fields import Field, choice, segments, tick, unknown
+from .numbers import ALLOWABLE, NUMBERS, THICKNESS, TILT, Number, load_of, number_of
+from .reading import Reading
+
+_CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
+_OWN_NUMBERS = (_CUSTOM, "– own numbers –")
+
+
+def fields_of(screen: Screen) -> dict[str, Field]:
+    """Return every input of the joint on the screen by name, in the order of the page."""
+    file, joint = screen.file, screen.file.joint
+    ((kind, _),) = file.load.items()
+    named = tables_of(file)
+    listed = [
+        choice("preset", "Start from", [(_PRESET, "– choose –"), *((name, name) for name in joints)], _preset(joint)),
+        *_numbers(screen, ("ball_radius", "clearance", "liner_thickness", "outer_radius")),
+        *([] if joint.backing else [tick("massive", "massive socket (L = ∞)", isinf(float(joint.liner_thickness)))]),
+        segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind),
+        load_of(kind).field("load", named["load"][kind], screen.reading),
+        {**TILT.field("tilt", degrees(tilt_of(file)), screen.reading), "label": TILT_LABEL},
+        choice("liner", "Liner", [_OWN_NUMBERS, *_materials()], _chosen(named["liner"])),
+        *_numbers(screen, ("liner_young", "liner_poisson")),
+        _allowable(joint, screen.reading),
+        *_layer_thicknesses(joint, screen.reading),
+        choice("ball", "Ball", [(_RIGID, "rigid"), _OWN_NUMBERS, *_materials()], _ball(joint, named)),
+        *_numbers(screen, ("ball_young", "ball_poisson")),
+    ]
+    return {field["name"]: field for field in listed}
+
+
+def tilt_of(file: JointFile) -> float:
+    """Return the angle in rad between the load and the axis of the cup."""
+    return float(file.aim["tilt"]) if "tilt" in file.aim else float(file.cup.tilt(file.aim.get("direction", UP)))
+
+
+def _allowable(joint: Joint, reading: Reading) -> Field:
+    """Return the input of the liner's allowable pressure, empty if unknown."""
+    value = joint.liner.allowable_pressure
+    if value is None:
+        return unknown("allowable", ALLOWABLE.label, ALLOWABLE.unit(reading).text)
+    return ALLOWABLE.field("allowable", float(value), reading)
+
+
+def _layer_thicknesses(joint: Joint, reading: Reading) -> list[Field]:
+    """Return the inputs for the thickness of each layer behind the liner."""
+    return [
+        {
+            **THICKNESS.field(f"layer{index}", float(layer.thickness), reading),
+            "label": f"{layer.material.name or 'Layer'} behind",
+        }
+        for index, layer in enumerate(joint.backing)
+        if not isinf(float(layer.thickness))
+    ]
+
+
+def behind(joint: Joint) -> str:
+    """List the layers behind the liner as HTML."""
+    layers = "".join(f"<li>{escape(str(layer))}</li>" for layer in joint.backing)
+    return f"<p>Behind the liner:</p><ul>{layers}</ul>" if layers else ""
+
+
+def _numbers(screen: Screen, names: tuple[str, ...]) -> list[Field]:
+    """Return inputs of the finite numbers that the joint has."""
+    joint = screen.file.joint
+    tables: Tables = {"joint": {**tables_of(screen.file)["joint"], "outer_radius": float(joint.outer_radius)}}
+    for part in ("liner", "ball"):
+        material = getattr(joint, part)
+        if material is not None:
+            tables[part] = {"young": float(material.young), "poisson": float(material.poisson)}
+    specs = {name: number_of(name, screen.size) for name in names}
+    values = {name: tables.get(spec.table, {}).get(spec.key) for name, spec in specs.items()}
+    return [
+        specs[name].field(name, value, screen.reading)
+        for name, value in values.items()
+        if value is not None and value < inf
+    ]
+
+
+def _materials() -> list[tuple[str, str]]:
+    return [(name, name) for name in materials]
+
+
+def _preset(joint: Joint) -> str:
+    return joint.name if joints.get(joint.name) == joint else _PRESET
+
+
+def _ball(joint: Joint, named: Tables) -> str:
+    return _RIGID if joint.ball is None else _chosen(named["ball"])
+
+
+def _chosen(table: Tables) -> str:
+    """Return the name of a material, or "own" if a number differs from it."""
+    return str(table["material"]) if set(table) - set(STRESS_LIMITS) == {"material"} else _CUSTOM
+
+
+def edited(screen: Screen, name: str, value: Any, load_alike: Callable[[str], dict[str, float]]) -> JointFile:
+    """Return the joint after a change of one input of `fields_of`; `load_alike` converts the kind of load."""
+    file = screen.file
+    if name in NUMBERS:
+        return _with_number(screen, number_of(name, screen.size), value)
+    if name == "load":
+        ((kind, _),) = file.load.items()
+        return _with_number(screen, load_of(kind), value)
+    if name.startswith("layer") and name[5:].isdecimal() and int(name[5:]) < len(file.joint.backing):
+        return _thicker(screen, int(name[5:]), value)
+    if name == "tilt":
+        return _turned(screen, value)
+    check_names([name], _EDITS, "among the inputs")
+    if name == "kind":
+        check_names([value], LOADS, "as load")
+        return replace(file, load=load_alike(value))
+    return _EDITS[name](screen, value)
+
+
+def _with_number(screen: Screen, spec: Number, value: Any) -> JointFile:
+    def change(tables: Tables) -> None:
+        if spec.key == "outer_radius":  # in place of the thickness that it fixes
+            tables["joint"].pop("liner_thickness")
+        tables.setdefault(spec.table, {})[spec.key] = spec.meant(value, screen.reading)
+
+    return _changed(screen.file, change)
+
+
+def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
+    """Apply a change to the tables of a joint; drop the preset's name if a number differs."""
+    tables = tables_of(file)
+    before = joint_of(tables).joint
+    change(tables)
+    made = joint_of(tables)
+    if made.joint == before:
+        return made
+    tables.pop("name", None)
+    tables.pop("source", None)
+    return joint_of(tables)
+
+
+def _thicker(screen: Screen, index: int, value: Any) -> JointFile:
+    meant = THICKNESS.meant(value, screen.reading)
+    return _changed(screen.file, lambda tables: tables["backing"][index].update(thickness=meant))
+
+
+def _turned(screen: Screen, value: Any) -> JointFile:
+    """Replace the direction of the load by another tilt."""
+    tilt, file = TILT.meant(value, screen.reading), screen.file
+    along = tilt == 0 and float(file.cup.tilt(UP)) == 0
+    return replace(file, aim={} if along else read_aim({"tilt": tilt}))
+
+
+def _bears(screen: Screen, value: Any) -> JointFile:
+    """Change the allowable pressure of the liner; an empty box removes it."""
+
+    def change(tables: Tables) -> None:
+        tables["liner"].pop("allowable_pressure", None)
+        if value != "":
+            tables["liner"]["allowable_pressure"] = ALLOWABLE.meant(value, screen.reading)
+
+    return _changed(screen.file, change)
+
+
+def _choose_preset(screen: Screen, name: Any) -> JointFile:
+    file = screen.file
+    if name == _PRESET:
+        return file
+    check_names([name], joints, "as preset")
+    return replace(file, joint=joints[name])
+
+
+def _massive(screen: Screen, value: Any) -> JointFile:
+    file = screen.file
+    thickness = inf if value is True else round(float(file.joint.socket_radius) / 3, 1)
+    return _changed(file, lambda tables: tables["joint"].update(liner_thickness=thickness))
+
+
+def _made_of(part: str, screen: Screen, chosen: Any) -> JointFile:
+    """Change a material; custom numbers start from those of the previous material."""
+    if not isinstance(chosen, str):
+        raise ValueError(f"{part} = {shown(chosen)} is not a material")
+    file = screen.file
+    if chosen == _RIGID and part == "ball":
+        return _changed(file, lambda tables: tables.pop(part, None))
+    if chosen != _CUSTOM:
+        return _changed(file, lambda tables: tables.update({part: {"material": chosen}}))
+    material = getattr(file.joint, part)
+    numbers = {"young": 2e5, "poisson": 0.3}
+    if material is not None:
+        numbers = {"young": float(material.young), "poisson": float(material.poisson)}
+    return _changed(file, lambda tables: tables.update({part: numbers}))
+
+
+_EDITS: dict[str, Callable[[Screen, Any], JointFile]] = {
+    "preset": _choose_preset,
+    "massive": _massive,
+    "allowable": _bears,
+    "liner": lambda screen, value: _made_of("liner", screen, value),
+    "ball": lambda screen, value: _made_of("ball", screen, value),
+    "kind": lambda screen, value: screen.file,
+}
+"""Functions that apply inputs other than numbers."""
+
+
+_NO_CHOICE, _REMOVE, _CUSTOM = "", "away", "own"
+_NEW_THICKNESS = 3.0
+"""mm of a layer that is added."""
+
+_MAX_LAYERS = 20
+
+
+def layer_fields(joint: Joint) -> dict[str, Field]:
+    """Return a material list for each layer, one to add a layer, and the support of the outermost."""
+    made_of = [(name, name) for name in materials]
+    listed = [
+        choice(
+            f"behind.{index}",
+            f"Layer {index + 1} behind the liner",
+            [*_own_material(layer), *made_of, (_REMOVE, "– take away –")],
+            _material_name(layer),
+        )
+        for index, layer in enumerate(joint.backing)
+    ]
+    listed.append(choice("behind.add", "Add a layer behind", [(_NO_CHOICE, "– choose –"), *made_of], _NO_CHOICE))
+    if joint.backing:
+        held = [(support.value, support.value) for support in Support]
+        listed.append(segments("behind.support", "Outermost surface", held, joint.support.value))
+    return {field["name"]: field for field in listed}
+
+
+def _material_name(layer: Layer) -> str:
+    return next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
+
+
+def _own_material(layer: Layer) -> list[tuple[str, str]]:
+    return [(_CUSTOM, layer.material.name or "– own numbers –")] if _material_name(layer) == _CUSTOM else []
+
+
+def layers_edited(file: JointFile, key: str, value: Any) -> JointFile:
+    """Return the joint, unnamed, after a change of a layer by its index, of "add" or of "support"."""
+    layers = list(file.joint.backing)
+    check_names([key], [*map(str, range(len(layers))), "add", "support"], "among the layers")
+    if key == "support":
+        check_names([value], [support.value for support in Support], "as support")
+        return _with_joint(file, support=Support(value))
+    if value in (_NO_CHOICE, _CUSTOM):
+        return file
+    if key != "add" and value == _REMOVE:
+        del layers[int(key)]
+    else:
+        check_names([value], materials, "as material")
+        if key == "add":
+            layers.append(_added(layers, value))
+        else:
+            layers[int(key)] = replace(layers[int(key)], material=materials[value])
+    return _with_joint(file, backing=tuple(layers), **({} if layers else {"support": Support.FIXED}))
+
+
+def _added(layers: list[Layer], name: str) -> Layer:
+    if len(layers) >= _MAX_LAYERS:
+        raise ValueError(f"{shown(name)} is one layer too many: at most {_MAX_LAYERS}")
+    return Layer(thickness=_NEW_THICKNESS, material=materials[name])
+
+
+def _with_joint(file: JointFile, **changes: Any) -> JointFile:
+    return replace(file, joint=replace(file.joint, name="", source="", **changes))

@@ -1,0 +1,384 @@
+"""Lubricated socket: the forces of Reynolds' equation between rigid surfaces, passive and the same in every path."""
+
+from dataclasses import replace
+from math import atanh, inf, nan, pi, radians
+
+import numpy as np
+import pytest
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import splu
+
+import ballsocket as bs
+from ballsocket.dynamics import Bristles, ContactState, Damping, Friction, simulate
+from ballsocket.lubrication import rigid_fields
+
+from ..joints import HIP
+
+C, RADIUS = HIP.clearance, (HIP.ball_radius * HIP.socket_radius) ** 0.5
+OIL = bs.Lubricant(viscosity=0.1, ball_roughness=0.0, cup_roughness=5e-4)
+ETA = 1e-6 * OIL.viscosity
+WET = bs.ForceElement(bs.HessForsbach(), HIP, lubricant=OIL)
+DRY = replace(WET, lubricant=None)
+LOSSY = {"damping": Damping(hysteresis=0.01, time=1e-4), "friction": Friction(coefficient=0.05, viscous=1e-4)}
+CUPS = {"sphere": None, "cup": bs.Cup(inclination=radians(50.0), arc_of_cover=radians(150.0))}
+EVERY_TENSION = pytest.mark.parametrize("tension", [inf, 0.1], ids=["linear", "cavitating"])
+EVERY_CUP = pytest.mark.parametrize("cup", CUPS.values(), ids=CUPS)
+
+
+def states(count, seed=3):
+    """States from the centre to a deep contact, most of them with a thin film, at speeds of many sizes."""
+    random = np.random.default_rng(seed)
+    direction = random.normal(size=(count, 3))
+    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    distance = C * np.concatenate([[0.0], 1.3 * random.uniform(0.0, 1.0, count - 1) ** 0.3])
+    size = 10.0 ** random.uniform(-2.0, 2.0, (count, 1))
+    return direction * distance[:, None], size * random.normal(size=(count, 3)), random.normal(size=(count, 3)) * 5.0
+
+
+def quadrature(polar_count=200, azimuth_count=16):
+    """Angles θ and φ, outward directions and areas (mm²) of points of the sphere."""
+    cosine, weight = np.polynomial.legendre.leggauss(polar_count)
+    azimuth = 2 * pi * np.arange(azimuth_count) / azimuth_count
+    theta, phi = np.meshgrid(np.arccos(cosine), azimuth, indexing="ij")
+    normal = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], axis=-1)
+    return theta, phi, normal, RADIUS**2 * (2 * pi / azimuth_count) * weight[:, None] * np.ones_like(phi)
+
+
+def squeeze(theta, phi, e, speed, spin):
+    """Pressure of a ball that approaches the wall; any constant may be added in a full cavity."""
+    motion = {"radius": RADIUS, "clearance": C, "eccentricity": e, "speed": speed, "viscosity": ETA}
+    return rigid_fields.squeeze_pressure(theta, rim=pi / 2, **motion) + 0 * phi
+
+
+def wedge(theta, phi, e, speed, spin):
+    """Pressure of a ball that turns about y, across its eccentricity."""
+    motion = {"radius": RADIUS, "clearance": C, "eccentricity": e, "spin": spin, "viscosity": ETA}
+    return rigid_fields.wedge_pressure(theta, phi, **motion)
+
+
+def integrated_load(pressure, e, speed, spin):
+    """Force and moment on a ball at e along z, which approaches at `speed` and turns about y at `spin`.
+
+    The shear stress on the ball is -h/2 ∇p - η V/h.
+    """
+    theta, phi, normal, area = quadrature()
+    step = 1e-5
+    p = pressure(theta, phi, e, speed, spin)
+    slope_theta = (pressure(theta + step, phi, e, speed, spin) - pressure(theta - step, phi, e, speed, spin)) / step / 2
+    slope_phi = (pressure(theta, phi + step, e, speed, spin) - pressure(theta, phi - step, e, speed, spin)) / step / 2
+    along = np.stack([np.cos(theta) * np.cos(phi), np.cos(theta) * np.sin(phi), -np.sin(theta)], axis=-1)
+    around = np.stack([-np.sin(phi), np.cos(phi), 0 * phi], axis=-1)
+    slope = (slope_theta[..., None] * along + (slope_phi / np.sin(theta))[..., None] * around) / RADIUS
+    film = (C - e * np.cos(theta))[..., None]
+    surface_velocity = RADIUS * np.cross([0.0, spin, 0.0], normal)
+    shear = -0.5 * film * slope - ETA * surface_velocity / film
+    force = -np.sum((p * area)[..., None] * normal, axis=(0, 1))
+    return force, RADIUS * np.sum(area[..., None] * np.cross(normal, shear), axis=(0, 1))
+
+
+@pytest.mark.parametrize("share", [0.02, 0.099, 0.101, 0.5, 0.9, 0.98])
+def test_force_and_moment_are_the_resultants_of_the_exact_pressures_and_of_the_shear(share):
+    e = share * C
+    force, moment = integrated_load(squeeze, e, 2.0, 0.0)
+    load = WET((0.0, 0.0, e), (0.0, 0.0, 2.0))
+    np.testing.assert_allclose(load.force, force, rtol=1e-6, atol=1e-9 * abs(force[2]))
+    np.testing.assert_allclose(load.moment, moment, atol=1e-9 * abs(force[2]))
+    force, moment = integrated_load(wedge, e, 0.0, 3.0)
+    load = WET((0.0, 0.0, e), spin=(0.0, 3.0, 0.0))
+    np.testing.assert_allclose(load.force, force, rtol=1e-6, atol=1e-9 * abs(force[0]))
+    np.testing.assert_allclose(load.moment, moment, rtol=1e-6, atol=1e-9 * abs(moment[1]))
+
+
+@pytest.mark.parametrize("share", [0.02, 0.5, 0.98])
+def test_a_ball_that_turns_about_its_eccentricity_has_the_shear_of_the_film_and_no_force(share):
+    theta, _, _, area = quadrature()
+    shear = ETA * 3.0 * (RADIUS * np.sin(theta)) ** 2 / (C - share * C * np.cos(theta))
+    load = WET((0.0, 0.0, share * C), spin=(0.0, 0.0, 3.0))
+    assert load.force == pytest.approx((0.0, 0.0, 0.0), abs=1e-15)
+    assert load.moment == pytest.approx((0.0, 0.0, -np.sum(shear * area)), rel=1e-12)
+
+
+def test_concentric_limits_are_those_of_stokes_flow_between_spheres():
+    """Translation: Williams (1915) and Happel & Brenner; rotation: Lamb. Errors are of the order (c/R)²."""
+    R1, R2, eta = HIP.ball_radius, HIP.socket_radius, ETA
+    x = R1 / R2
+    drag = 6 * pi * eta * R1 * (1 - x**5) / (1 - 9 * x / 4 + 5 * x**3 / 2 - 9 * x**5 / 4 + x**6)
+    torque = 8 * pi * eta * R1**3 * R2**3 / (R2**3 - R1**3)
+    load = WET((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+    assert load.force[0] == pytest.approx(-drag, rel=2 * (C / R1) ** 2)
+    assert load.moment[0] == pytest.approx(-torque, rel=2 * (C / R1) ** 2)
+
+
+def test_the_squeeze_pressure_is_that_of_the_exact_field_and_zero_without_a_lubricant():
+    state = (0.0, 0.0, 0.95 * C), (1.0, 2.0, -3.0)
+    tension = squeeze(0.0, 0.0, 0.95 * C, -3.0, 0.0)
+    assert WET(*state).squeeze_pressure == pytest.approx(tension, rel=1e-9)
+    assert WET(*map(np.array, state)).squeeze_pressure == pytest.approx(tension, rel=1e-9)
+    assert DRY(*state).squeeze_pressure == DRY((0.0, 0.0, C + 0.1), state[1]).squeeze_pressure == 0.0
+
+
+def test_a_thin_film_squeezes_as_between_spheres_of_the_reduced_radius():
+    """Taylor: 6 π η R_eff²/h with R_eff = R1 R2/c."""
+    gap = 3 * WET.constants.least_film
+    load = WET((0.0, 0.0, C - gap), (0.0, 0.0, 1.0))
+    assert load.force[2] == pytest.approx(-6 * pi * ETA * (HIP.ball_radius * HIP.socket_radius / C) ** 2 / gap, rel=0.1)
+    assert load.film_thickness == pytest.approx(gap, rel=1e-9)
+
+
+@EVERY_CUP
+@EVERY_TENSION
+def test_the_film_takes_energy_in_every_state_and_its_loss_balances_the_power(cup, tension):
+    """Check 10^5 random positions, velocities and spins."""
+    element = replace(WET, cup=cup, film_tension=tension)
+    position, velocity, spin = states(10**5)
+    load, elastic = element(position, velocity, spin), replace(DRY, cup=cup)(position).force
+    touched = load.status != ContactState.FREE
+    assert 10**4 < touched.sum() < 9 * 10**4
+    power = np.sum((load.force - elastic) * velocity + load.moment * spin, axis=1)
+    size = np.sum(np.abs(load.force * velocity) + np.abs(elastic * velocity) + np.abs(load.moment * spin), axis=1)
+    assert (load.dissipation >= 0.0).all()
+    assert (power <= 1e-12 * size).all()
+    assert (np.abs(power + load.dissipation) <= 1e-12 * size).all()
+
+
+@EVERY_CUP
+@pytest.mark.parametrize(
+    "losses", [{}, LOSSY, {"film_tension": 0.1}], ids=["film", "film, damping and friction", "cavitating film"]
+)
+def test_the_damping_matrix_is_symmetric_and_positive_semidefinite(cup, losses):
+    position, velocity, spin = states(2000)
+    load = replace(WET, cup=cup, **losses)(position, velocity, spin)
+    D = load.damping_matrix
+    np.testing.assert_array_equal(D, np.swapaxes(D, -1, -2))
+    # lengths scaled, so that forces and moments have one unit
+    scale = np.diag([1.0, 1.0, 1.0, 1 / RADIUS, 1 / RADIUS, 1 / RADIUS])
+    eigenvalues = np.linalg.eigvalsh(scale @ D @ scale)
+    assert (eigenvalues[:, 0] >= -1e-13 * eigenvalues[:, -1]).all()
+    if not losses:
+        rates = np.concatenate([velocity, spin], axis=1)
+        force = load.force - replace(DRY, cup=cup)(position).force
+        lost = -np.concatenate([force, load.moment], axis=1)
+        error = np.abs(np.einsum("nij,nj->ni", D, rates) - lost)
+        assert (error <= 1e-12 * np.abs(lost).max(axis=1, keepdims=True) + 1e-12 * np.abs(load.force).max()).all()
+
+
+@EVERY_CUP
+def test_the_load_is_finite_and_continuous_through_the_touch(cup):
+    least, direction = WET.constants.least_film, np.array([0.6, 0.0, 0.8])
+    distance = C + np.linspace(-3 * least, 3 * least, 601)
+    velocity, spin = np.array([10.0, 5.0, 30.0]), np.array([1.0, 2.0, -3.0])
+    load = replace(WET, cup=cup)(distance[:, None] * direction, velocity + 0 * distance[:, None], spin)
+    assert np.isfinite(load.force).all()
+    assert np.isfinite(load.moment).all()
+    step = np.abs(np.diff(load.force, axis=0)).max(axis=0)
+    assert (step <= 0.02 * np.abs(load.force).max()).all()
+    thickness = load.film_thickness
+    np.testing.assert_allclose(thickness[distance <= C - 2 * least], (C - distance)[distance <= C - 2 * least])
+    np.testing.assert_allclose(thickness[distance >= C], least, rtol=1e-12)
+
+
+def test_the_film_has_its_least_thickness_in_the_contact_and_adds_to_the_dry_load():
+    position, velocity = (0.0, 0.0, C + 0.03), (0.0, 0.0, 4.0)
+    least = WET.constants.least_film
+    kappa = 1 - least / C
+    g = (atanh(kappa) - kappa) / kappa**3
+    squeeze = 12 * pi * ETA * RADIUS**4 / C**3 * (1 / (1 - kappa**2) - g) * 4.0
+    expected = DRY(position, velocity).force[2] - squeeze
+    assert WET(position, velocity).force[2] == pytest.approx(expected, rel=1e-9)
+
+
+def capped_tension(kappa, largest, tension, cells=400):
+    """Tensile force over π R² of a ball that leaves a hemisphere; Reynolds' equation with a least pressure.
+
+    `largest` is the constant s of the uncapped tension s (c²/h² - 1). The active set of capped cells is iterated.
+    """
+    scale = np.sqrt(2 * (1 - kappa)) / 2
+    edges = scale * np.sinh(np.linspace(0.0, np.arcsinh(pi / 2 / scale), cells + 1))
+    middle = (edges[1:] + edges[:-1]) / 2
+    film = 1 - kappa * np.cos(edges)
+    flow = np.sin(edges[1:]) * film[1:] ** 3 / np.diff(np.append(middle, pi / 2))
+    matrix = np.diag(flow) + np.diag(np.append(0.0, flow[:-1]))
+    matrix -= np.diag(flow[:-1], 1) + np.diag(flow[:-1], -1)
+    uncapped = largest * ((1 - kappa * np.cos(middle)) ** -2 - 1)
+    source, capped, solved = matrix @ uncapped, np.zeros(cells, bool), uncapped
+    for _ in range(100):
+        following = capped & (source > matrix @ solved) | (solved > tension)
+        if (following == capped).all():
+            break
+        capped = following
+        solved = np.full(cells, tension)
+        free = ~capped
+        solved[free] = np.linalg.solve(matrix[np.ix_(free, free)], (source - matrix[:, capped].sum(1) * tension)[free])
+    return np.sum(solved * np.diff(np.sin(edges) ** 2))
+
+
+@pytest.mark.parametrize(("share", "speed"), [(0.9, 0.01), (0.9, 0.3), (0.9, 10.0), (0.98, 0.01), (0.98, 1.0)])
+def test_the_tension_of_a_ball_that_leaves_is_limited_as_by_cavitation(share, speed):
+    element = replace(WET, cup=bs.Cup(), film_tension=0.1)
+    load = element((0.0, 0.0, share * C), (0.0, 0.0, -speed))
+    largest = 3 * ETA * RADIUS**2 * speed / (share * C) / C**2
+    expected = pi * RADIUS**2 * capped_tension(share, largest, 0.1)
+    assert -0.2 <= load.force[2] / expected - 1 <= 0.25
+    assert load.force[2] <= 1.02 * pi * RADIUS**2 * 0.1
+    approach = [wet((0.0, 0.0, share * C), (0.0, 0.0, speed)).force for wet in (element, replace(WET, cup=bs.Cup()))]
+    assert approach[0] == approach[1]
+
+
+def test_the_damping_matrix_of_a_cavitating_film_is_the_derivative_over_the_speeds():
+    position, velocity, spin = states(300)
+    element, step = replace(WET, film_tension=0.1), 1e-4 * np.eye(3)
+    D = element(position, velocity, spin).damping_matrix
+    differences = []
+    for change in step:
+        ends = (element(position, velocity + sign * change, spin) for sign in (-1, 1))
+        low, high = (np.concatenate([end.force, end.moment], axis=1) for end in ends)
+        differences.append((low - high) / 2e-4)
+    size = np.abs(D).max(axis=(1, 2), keepdims=True)
+    assert (np.abs(D[:, :, :3] - np.stack(differences, axis=-1)) <= 1e-3 * size).all()
+    assert (np.abs(D[:, 2, 2] - WET(position, velocity, spin).damping_matrix[:, 2, 2]) > 0.1 * size[:, 0, 0]).any()
+
+
+def test_a_ball_that_orbits_at_half_its_spin_meets_no_resistance_of_the_pressure():
+    """The film moves with the mean of both surfaces: half-speed whirl."""
+    position, spin = np.array([0.03, 0.0, 0.06]), np.array([0.0, 8.0, 0.0])
+    load = WET(position, np.cross(spin / 2, position), spin)
+    still = WET(position, spin=spin)
+    assert np.abs(load.force).max() <= 1e-12 * np.abs(still.force).max()
+
+
+def reynolds_damping(kappa, direction, rim, rings=50, columns=60):
+    """Damping tensor (3, 3) of a film on a cap about z with pressure 0 at its rim, by finite volumes; η = R = c = 1."""
+    dt, df = rim / rings, 2 * pi / columns
+    edges, polar, azimuth = np.arange(rings + 1) * dt, (np.arange(rings) + 0.5) * dt, (np.arange(columns) + 0.5) * df
+
+    def conductance(theta, phi):
+        """h³/12."""
+        normal = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0 * phi], axis=-1)
+        return normal, (1 - kappa * normal @ direction) ** 3 / 12
+
+    cells = np.arange(rings * columns).reshape(rings, columns)
+    theta, phi = np.meshgrid(polar, azimuth, indexing="ij")
+    faces = np.meshgrid(edges[1:-1], azimuth, indexing="ij")
+    links = [(cells[:-1], cells[1:], conductance(*faces)[1] * np.sin(faces[0]) * df / dt)]
+    links += [(cells, np.roll(cells, -1, 1), conductance(theta, phi + df / 2)[1] * dt / np.sin(theta) / df)]
+    first, second, flow = (np.concatenate([link[i].ravel() for link in links]) for i in range(3))
+    outlet = conductance(rim + 0 * azimuth, azimuth)[1] * np.sin(rim) * 2 * df / dt
+    rows = np.concatenate([first, second, first, second, cells[-1]])
+    entries = np.concatenate([-flow, -flow, flow, flow, -outlet])
+    matrix = csc_matrix((entries, (rows, np.concatenate([first, second, second, first, cells[-1]]))))
+    normal = conductance(theta, phi)[0].reshape(-1, 3)
+    area = ((np.cos(edges[:-1]) - np.cos(edges[1:])) * df).repeat(columns)
+    return normal.T @ (area[:, None] * splu(matrix).solve(-area[:, None] * normal))
+
+
+@pytest.mark.parametrize(("arc", "share", "polar"), [(150, 0.9, 20), (180, 0.9, 0), (180, 0.95, 50), (240, 0.9, 60)])
+def test_the_film_of_a_cup_is_near_that_of_reynolds_equation(arc, share, polar):
+    """Errors stated for a ball 30° and more inside the rim, at 0.9 of the clearance and more."""
+    direction = np.array([np.sin(radians(polar)), 0.0, np.cos(radians(polar))])
+    across = np.array([direction[2], 0.0, -direction[0]])
+    D = reynolds_damping(share, direction, radians(arc / 2)) * ETA * RADIUS**4 / C**3
+    element = replace(WET, cup=bs.Cup(arc_of_cover=radians(arc)))
+    for way, low, high in ((direction, -0.09, 0.01), (across, -0.1, 0.15), (np.array([0.0, 1.0, 0.0]), -0.1, 0.15)):
+        drag = -way @ np.array(element(tuple(share * C * direction), tuple(way)).force)
+        assert low <= drag / (way @ D @ way) - 1 <= high
+
+
+def test_the_film_of_a_concentric_ball_in_a_cup_has_the_mean_damping_of_reynolds_equation():
+    for arc in (120.0, 180.0, 240.0):
+        D = reynolds_damping(0.0, np.array([0.0, 0.0, 1.0]), radians(arc / 2)) * ETA * RADIUS**4 / C**3
+        load = replace(WET, cup=bs.Cup(arc_of_cover=radians(arc)))((0.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+        assert -load.force[1] == pytest.approx(np.trace(D) / 3, rel=2e-3)
+
+
+def test_a_ball_pressed_into_a_wet_socket_settles_in_the_time_of_the_closed_form():
+    """From the centre, t = 6 π η R⁴/(F c²) [artanh κ + (artanh κ - κ)/κ²] without inertia."""
+    force = 30.0
+    motion = simulate(WET, mass=1e-3, position=(0.0, 0.0, 0.0), pull=(0.0, 0.0, -force), duration=0.3, step=5e-4)
+    assert not motion.end_reason
+    assert np.abs(motion.total_energy).max() <= 1e-8 * motion.work[-1]
+    kappa = -motion.position[:, 2] / C
+    free = (kappa > 0.05) & (kappa < 0.98)
+    assert free.sum() > 20
+    T = np.arctanh(kappa[free])
+    time = 6 * pi * ETA * RADIUS**4 / (force * C**2) * (T + (T - kappa[free]) / kappa[free] ** 2)
+    np.testing.assert_allclose(motion.time[free], time, rtol=0.01)
+
+
+def test_energy_balances_in_an_impact_through_the_film():
+    element = replace(WET, cup=bs.Cup(), lubricant=bs.Lubricant(viscosity=1e-4), film_tension=0.1, **LOSSY)
+    throw = {"position": (0.01, 0.02, 0.0), "velocity": (30.0, 10.0, 500.0), "spin": (0.0, 4.0, 0.0)}
+    motion = simulate(element, mass=1.0, duration=2e-3, step=2e-5, **throw)
+    assert motion.energy.max() > 0.0
+    assert not motion.end_reason
+    assert motion.drift < 1e-12
+    assert (np.diff(motion.dissipated_energy) >= 0.0).all()
+    assert motion.angular_drift is None
+
+
+def test_bristles_act_beside_the_film():
+    state = (0.0, 0.01, C + 0.02), (3.0, 2.0, 1.0), (0.5, 1.0, 2.0)
+    bristles, bent = Bristles(coefficient=0.1), (1e-3, 0.0, 0.0, 1e-3)
+    film = np.array([WET(*state).force, WET(*state).moment]) - [DRY(*state).force, DRY(*state).moment]
+    wet, dry = (replace(element, friction=bristles)(*state, bent) for element in (WET, DRY))
+    np.testing.assert_allclose([wet.force, wet.moment], np.array([dry.force, dry.moment]) + film, rtol=1e-12)
+
+
+def test_derivatives_by_jax_are_finite_and_right_at_the_centre():
+    jax = pytest.importorskip("jax")
+    with jax.enable_x64(True):
+        element, spin = replace(WET, cup=bs.Cup()), (1.0, 2.0, 3.0)
+
+        def force(position):
+            return element(position, jax.numpy.ones(3), jax.numpy.asarray(spin)).force
+
+        slope = np.asarray(jax.jacfwd(force)(jax.numpy.zeros(3)))
+        step = 1e-5 * np.eye(3)
+        ends = [element(sign * step, np.ones((3, 3)), np.tile(spin, (3, 1))).force for sign in (1, -1)]
+        np.testing.assert_allclose(slope, (ends[0] - ends[1]).T / 2e-5, rtol=1e-5)
+
+
+def test_a_free_ball_in_a_film_has_no_contact_but_a_load():
+    load = WET((0.0, 0.0, 0.05), (0.0, 0.0, 10.0))
+    assert (load.status, load.energy) == (ContactState.FREE, 0.0)
+    assert load.force[2] < 0.0
+    assert np.isnan(WET((0.0, 0.0, 0.05), (0.0, nan, 10.0)).force).any()
+    assert "lubricant Lubricant" in str(WET)
+
+
+@pytest.mark.parametrize(
+    ("joint", "lubricant", "message"),
+    [
+        ({"clearance": 0.0}, {}, "clearance = 0 is not allowed: a lubricant needs a film"),
+        ({"clearance": 1e-3}, {}, "at most half of the clearance: 0.0005"),
+        ({}, {"ball_roughness": 0.0, "cup_roughness": 0.0}, "roughness = 0 is not allowed"),
+        ({}, {"viscosity": 0.0}, "viscosity = 0 is not allowed"),
+        ({}, {"viscosity": -1.0}, "viscosity = -1 is not allowed"),
+        ({}, {"viscosity": inf}, "viscosity = inf is not allowed"),
+        ({}, {"viscosity": nan}, "viscosity = nan is not allowed"),
+        ({}, {"viscosity": 1e308}, "the damping of its film must be a finite number"),
+    ],
+)
+def test_a_film_that_cannot_be_is_refused(joint, lubricant, message):
+    with pytest.raises(ValueError, match=message):
+        bs.ForceElement(bs.HessForsbach(), replace(HIP, **joint), lubricant=bs.Lubricant(**lubricant))
+
+
+def test_a_tension_that_cannot_be_is_refused():
+    for tension in (0.0, -0.1, nan):
+        with pytest.raises(ValueError, match="is not allowed: a tension"):
+            replace(WET, film_tension=tension)
+    with pytest.raises(ValueError, match=r"film_tension = 0\.1 needs a lubricant"):
+        replace(DRY, film_tension=0.1)
+
+
+def test_a_preloaded_joint_with_a_lubricant_is_refused():
+    joint = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
+    with pytest.raises(ValueError, match="a preloaded joint needs a PreloadedElement"):
+        bs.ForceElement(bs.HessForsbach(), joint, lubricant=OIL)
+
+
+def test_a_lubricant_of_another_kind_or_with_adhesion_is_refused():
+    with pytest.raises(TypeError, match=r"lubricant must be a Lubricant, got 0\.0025"):
+        bs.ForceElement(bs.HessForsbach(), HIP, lubricant=0.0025)
+    with pytest.raises(TypeError, match="lubricant are not supported with AdhesiveSocket"):
+        bs.ForceElement(bs.AdhesiveSocket(work_of_adhesion=1e-3), HIP, lubricant=OIL)
