@@ -117,6 +117,7 @@ __all__ = [  # noqa: RUF022, grouped by subject
     "catalogue",
     "cite",
     "compare",
+    "film",
     "ForceElement",
     "identify",
     "Orientations",
@@ -195,12 +196,15 @@ _DOORS = ("dynamics", "evidence", "export", "hip")
 
 if TYPE_CHECKING:
     from .files.joint_file import read_joint
+    from .lubrication.film import film
 else:
 
     def __getattr__(name: str) -> Any:
-        """Import the reader of joint files, a subpackage, or a moved module of version 1.0 on first use."""
+        """Import a function that is slow to import, a subpackage, or a moved module of version 1.0 on first use."""
         if name == "read_joint":
             return import_module("ballsocket.files.joint_file").read_joint
+        if name == "film":
+            return import_module("ballsocket.lubrication.film").film
         if name not in _DOORS and present_module_path(f"{__name__}.{name}") is None:
             hint = f"; {_HINTS[name]}" if name in _HINTS else ""
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")

@@ -16,6 +16,7 @@ STUDY = "joint = 'hip-28'\nmodel = 'hess-forsbach'\n[axes]\nforce = [1000, 2000]
 
 ASKED = {
     "press": ("press", "hip-36", "--force", "3 kN"),
+    "film": ("film", "hip-36", "--force", "3 kN"),
     "curve": ("curve", "hip-36", "--force", "3 kN", "--points", "3"),
     "map": ("map", "hip-36", "--force", "3 kN", "--points", "2"),
     "optimise": ("optimise", "hip-36", "--force", "3 kN", "--vary", "clearance=50..200 um"),

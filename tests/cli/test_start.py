@@ -19,7 +19,7 @@ from .command import run
 COMMANDS = load_commands()
 HEAVY = ("dask", "jinja2", "matplotlib", "mcp", "numba", "pandas", "panel", "pint", "scipy", "skfem", "xarray")
 ORDER = (
-    *("press", "curve", "orient", "map", "optimise", "sensitivity", "study", "hip", "planning"),
+    *("press", "curve", "film", "orient", "map", "optimise", "sensitivity", "study", "hip", "planning"),
     *("models", "presets", "cite", "identify", "calibrate", "evidence", "deck", "fmu", "export"),
     *("schema", "app", "serve-mcp", "reproduce"),
 )
@@ -56,7 +56,19 @@ def listed():
 def test_a_command_imports_its_own_modules_and_no_heavy_package(words, modules):
     loaded = modules_after(*words)
     assert [name for name in HEAVY if name in loaded] == []
-    commands = {"deck", "design", "evidence", "export", "hip", "identify", "lists", "orient", "press", "press_files"}
+    commands = {
+        "deck",
+        "design",
+        "evidence",
+        "export",
+        "film",
+        "hip",
+        "identify",
+        "lists",
+        "orient",
+        "press",
+        "press_files",
+    }
     own = {name.removeprefix("ballsocket.cli.") for name in loaded if name.startswith("ballsocket.cli.")}
     assert modules <= own & commands <= {"press_files", *modules}
 

@@ -22,6 +22,7 @@ force = "3 kN"
 TABLES = {
     "press": ("hip-28", *LOAD, "--all"),
     "curve": ("hip-28", *LOAD, "--points", "3"),
+    "film": ("hip-36", *LOAD, "--model", "hess-forsbach", "--model", "exact"),
     "orient": (f"{EXAMPLES / 'tilted_hip.toml'}", "--points", "3", "--ring-width", "6"),
     "map": ("hip-36", *LOAD, "--points", "3", "--model", "hess-forsbach", "--limit", "max_pressure<=20 MPa"),
     "optimise": (

@@ -60,8 +60,38 @@ def test_moment_lies_between_bounds_of_force_and_pressure():
 
 
 def test_smooth_surfaces_have_a_full_film():
-    assert hip().film(Lubricant(ball_roughness=1e-6, cup_roughness=1e-6)).regime == "full"
-    assert hip().film(Lubricant()).regime == "boundary"
+    use = hip()
+    assert use.film(Lubricant(ball_roughness=1e-6, cup_roughness=1e-6)).regime == "full"
+    assert use.film(Lubricant()).regime == "boundary"
+
+
+def test_film_is_carried_over_the_cycle_and_compared_with_the_formula():
+    use = hip()
+    wave, formula = use.film(method="wave"), use.film()
+    assert wave.method == "wave"
+    assert wave.thickness.shape == use.unworn.pressure.shape
+    assert np.isnan(wave.thickness[use.unworn.pressure == 0]).mean() > 0.9
+    assert wave.comparison == pytest.approx(formula.least, rel=1e-12)
+    assert formula.note.startswith("Hamrock and Dowson")
+    assert formula.method == "hamrock-dowson"
+
+
+def test_walking_does_not_refresh_the_middle_of_the_contact():
+    """The film is squeezed to 21 nm in 100 cycles, on any width of the cells, and is not marked as valid."""
+    film = hip().film(method="wave")
+    assert 1e6 * film.least.min() == pytest.approx(21.0, rel=0.03)
+    assert film.unreached > 0.2
+    assert not film.valid
+    assert "fresh lubricant does not reach" in film.note
+
+
+def test_a_still_ball_has_no_film():
+    still = Cycle(
+        name="still",
+        force=lambda phase: np.stack([0 * phase, 0 * phase, 1000.0 + 0 * phase]),
+        angles=lambda phase: np.zeros((3, *phase.shape)),
+    )
+    assert hip(cycle=still).film(method="wave").least == pytest.approx(0.0)
 
 
 @pytest.mark.parametrize("words", [{"viscosity": 0.0}, {"friction": -0.1}, {"cup_roughness": np.inf}])

@@ -6,6 +6,7 @@ add_commands(  # in the order in which `ballsocket --help` lists them
     {
         "press": CommandEntry("ballsocket.cli.press", "Press a ball into its socket under one load."),
         "curve": CommandEntry("ballsocket.cli.press", "Press a joint in equal steps from zero to a load."),
+        "film": CommandEntry("ballsocket.cli.film", "Compute the lubricating film between ball and socket."),
         "orient": CommandEntry("ballsocket.cli.orient", "Map edge distance and peak pressure over cup orientations."),
         "map": CommandEntry("ballsocket.cli.design", "Map the contact over two parameters of a joint."),
         "optimise": CommandEntry("ballsocket.cli.design", "Find the best joint within limits, for one goal or two."),

@@ -220,6 +220,34 @@ class Contact(Outcome):
         quotient = self.joint.clearance / arrays.safe_divisor(self.indentation)
         return self._match_load(arrays.where(self.indentation == 0, numpy.inf, quotient))
 
+    @cached_property
+    def edge_slope(self) -> Array:
+        """Slope of the pressure at the edge of the contact in MPa/mm, G in p = G s with the arc s from the edge.
+
+        Radial springs have a slope. It is NaN where the pressure rises as a square root, and without contact.
+        """
+        return self._edge_constant(1.0)
+
+    @cached_property
+    def edge_coefficient(self) -> Array:
+        """Coefficient of the pressure at the edge of an elastic contact, A in p = A sqrt(s), in MPa/mm^(1/2).
+
+        The arc s along the bore starts at the edge. It is NaN where the pressure rises linearly, and without contact.
+        """
+        return self._edge_constant(0.5)
+
+    def _edge_constant(self, exponent: float) -> Array:
+        """Compute the limit of p/s^exponent at the edge of the contact; NaN where p rises with another exponent."""
+        arc = _EDGE_ARC * self.half_angle
+        near, far = (self.pressure(self.half_angle - factor * arc) for factor in (1.0, 2.0))
+        distance = arc * self.joint.socket_radius
+        with numpy.errstate(all="ignore"):
+            growth = far / arrays.safe_divisor(near)
+            rises = abs(growth - 2**exponent) < _EDGE_TOLERANCE
+            # p/s^n is linear in s near the edge: its limit from two points
+            constant = (2 - 0.5**exponent * growth) * near / arrays.safe_divisor(distance**exponent)
+            return self._match_load(arrays.where(rises, constant, numpy.nan))
+
     def pressure(self, angle: Array) -> Array:
         """Compute the contact pressure in MPa at polar angles from the load axis; 0 outside the contact.
 
@@ -389,6 +417,12 @@ class Contact(Outcome):
 
 
 _ELASTIC = strength.ElasticLimit()
+
+_EDGE_ARC = 1e-5
+"""Distance from the edge at which the rise of the pressure is read, relative to the half angle."""
+
+_EDGE_TOLERANCE = 0.1
+"""Allowed difference of the pressure ratio at double distance from 2 (springs) or from the root of 2 (elastic)."""
 
 _UNIT_TOLERANCE = 1e-10
 """Tolerance of the square of (x² + y² + z² - 1) of a unit vector."""

@@ -47,6 +47,9 @@ class Kind(StrEnum):
     FREQUENCY = "frequency"
     MASS = "mass"
     SURFACE_ENERGY = "surface energy"
+    EDGE_COEFFICIENT = "edge coefficient"
+    VISCOSITY = "viscosity"
+    ROTATION_RATE = "rotation rate"
 
     @property
     def unit(self) -> str:
@@ -88,6 +91,9 @@ _KINDS = {
     Kind.FREQUENCY: ("Hz", "a frequency, such as '120 Hz'"),
     Kind.MASS: ("kg", "a mass, such as '2 kg'"),
     Kind.SURFACE_ENERGY: ("N/mm", "an energy per area, such as '0.05 J/m^2'"),
+    Kind.VISCOSITY: ("Pa s", "a viscosity, such as '2.5 mPa s'"),
+    Kind.ROTATION_RATE: ("rad/s", "a rotation rate, such as '1.5 rad/s'"),
+    Kind.EDGE_COEFFICIENT: ("MPa/mm**0.5", "an edge coefficient, such as '2 MPa/mm**0.5'"),
 }
 _WRITTEN = {Kind.ANGLE: Unit("°", degrees(1.0)), Kind.NUMBER: Unit(""), Kind.AREA: Unit("mm²")}
 _SUFFIXES = {
@@ -98,5 +104,8 @@ _SUFFIXES = {
     Kind.FOUNDATION: "MPa_per_mm",
     Kind.COMPLIANCE: "mm_per_N",
     Kind.SURFACE_ENERGY: "N_per_mm",
+    Kind.EDGE_COEFFICIENT: "MPa_per_sqrt_mm",
+    Kind.VISCOSITY: "Pa_s",
+    Kind.ROTATION_RATE: "rad_per_s",
 }
 _TYPED = {Kind.ANGLE: "deg", Kind.NUMBER: ""}

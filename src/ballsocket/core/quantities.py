@@ -234,6 +234,10 @@ DERIVED = _make_quantity_table(
     Quantity("effective_modulus", "E*", "effective modulus", Kind.MODULUS, "1/E* = (1 - ν²)/E + (1 - ν1²)/E1."),
     Quantity("edge_distance", "", "edge distance", Kind.LENGTH,
              "Shortest arc along the socket's surface from the edge of the contact to the rim."),
+    Quantity("edge_slope", "G", "edge slope of the pressure", Kind.FOUNDATION,
+             "Slope of the pressure at the edge of a contact on springs, p = G s with the arc s from the edge."),
+    Quantity("edge_coefficient", "Ae", "edge coefficient of the pressure", Kind.EDGE_COEFFICIENT,
+             "Coefficient of the pressure at the edge of an elastic contact, p = Ae sqrt(s) with the arc s."),
 )
 """Quantities derived from joint, cup and contact."""
 

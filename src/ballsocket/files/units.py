@@ -19,7 +19,7 @@ from ..core.kinds import Kind
 LONGEST = 100
 """Characters of a quantity."""
 
-Units = Mapping[str, int]
+Units = Mapping[str, float]
 """Product of units: exponents by the names of pint."""
 
 _LARGEST_EXPONENT = 9
@@ -27,7 +27,7 @@ _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _TOKEN = re.compile(
     r"""(?P<blank>\s+)
     | (?P<name>[A-Za-z\u00b5\u03bc\u00b0]+)
-      (?:(?P<digit>[2-9\u00b2\u00b3](?!\d))|\s*(?:\*\*|\^)\s*(?P<power>-?[1-9])(?!\d))?
+      (?:(?P<digit>[2-9\u00b2\u00b3](?!\d))|\s*(?:\*\*|\^)\s*(?P<power>-?(?:[1-9]|0\.5))(?!\d))?
     | (?P<sign>[*/()\u00b7\u00d7])""",
     re.ASCII | re.VERBOSE,
 )
@@ -51,7 +51,7 @@ _COMMON_UNITS = {
 }
 """Names of common units in pint, whose import takes as long as a press."""
 
-_COMMON_FACTORS: dict[tuple[tuple[str, int], ...], float] = {
+_COMMON_FACTORS: dict[tuple[tuple[str, float], ...], float] = {
     (("millimeter", 1), ("millimeter", 1)): 1.0,
     (("micrometer", 1), ("millimeter", 1)): 0.001,
     (("centimeter", 1), ("millimeter", 1)): 10.0,
@@ -154,7 +154,7 @@ def split_quantity(text: str) -> tuple[float, str]:
 def parse_units(text: str) -> Units:
     """Parse a product or quotient of units, such as "mm^3/(N m)", without evaluating any arithmetic.
 
-    Exponents are integers from -9 to 9. A slash divides by the next unit or bracket.
+    Exponents are integers from -9 to 9, or 0.5. A slash divides by the next unit or bracket.
 
     Raises
     ------
@@ -189,9 +189,9 @@ def _tokens(text: str) -> list[re.Match[str]]:
     return [token for token in reversed(tokens) if not token["blank"]]
 
 
-def _product(tokens: list[re.Match[str]]) -> dict[str, int]:
+def _product(tokens: list[re.Match[str]]) -> dict[str, float]:
     """Parse factors from the end of `tokens`, up to a closing bracket."""
-    units: dict[str, int] = {}
+    units: dict[str, float] = {}
     sign = 1
     while True:
         for name, exponent in _factor(tokens).items():
@@ -204,11 +204,11 @@ def _product(tokens: list[re.Match[str]]) -> dict[str, int]:
             tokens.pop()
 
 
-def _factor(tokens: list[re.Match[str]]) -> dict[str, int]:
+def _factor(tokens: list[re.Match[str]]) -> dict[str, float]:
     token = tokens.pop() if tokens else None
     if token is not None and token["name"]:
         power = token["power"] or (token["digit"] or "1").translate(_SUPERSCRIPTS)
-        return {_unit_name(token["name"]): int(power)}
+        return {_unit_name(token["name"]): float(power) if "." in power else int(power)}
     if token is None or token["sign"] != "(":
         raise ValueError("a unit is missing before or behind a sign")
     units = _product(tokens)

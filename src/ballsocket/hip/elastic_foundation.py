@@ -201,6 +201,11 @@ class ElasticFoundation:
         """Distance from the zero of `edge_field` inwards to the contact edge, in ring widths."""
         return self.edges.inset
 
+    @property
+    def edge_exponent(self) -> float:
+        """Exponent of the pressure at the edge of a contact: 1/2 for elastic bodies."""
+        return 0.5
+
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
         """Compute a field (loads, cells) in mm that is 0 near contact edges and positive in contacts."""
         shape = (len(equilibrium.pressure), self.grid.rings, self.grid.meridians)

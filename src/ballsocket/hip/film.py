@@ -1,4 +1,8 @@
-"""Lubricant film between ball and socket over a cycle, and friction: moment, power, heat."""
+"""Lubricant film between ball and socket over a cycle, and friction: moment, power, heat.
+
+Method "hamrock-dowson" has a formula for each instant alone; it is fitted to bodies of low conformity. Method "wave"
+carries the film over the dry contacts from instant to instant.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +13,12 @@ from typing import Any, Protocol
 import numpy
 
 from ..core.arrays import Numbers
+from ..core.checks import known_name
+from ..elasticity.off_axis.grid import Grid
 from ..lubrication import Lubricant
+from ..lubrication.cycle_film import CycleInstant, carry_over_cycle
+from ..lubrication.inlet import Edge, ElasticEdge, SpringEdge
+from ..lubrication.mesh import polar_mesh, thinned_meridians
 from ..problem import Joint, Material
 from .cycle import Cycle
 from .kinematics import SurfaceSliding
@@ -20,6 +29,18 @@ CONFORMITY_NOTE = (
     "Hamrock and Dowson's formulas hold for bodies of low conformity: here they give a regime, not a thickness"
 )
 """Note on the film thickness of a conforming joint."""
+
+WAVE_NOTE = "Film carried over the dry contacts from instant to instant"
+"""Note on the film thickness by the kinematic wave."""
+
+METHODS = ("hamrock-dowson", "wave")
+"""Names of the methods; the first is the default."""
+
+_SMALL_SHARE = 0.01
+"""Share of a contact without fresh lubricant up to which it is not noted."""
+
+_MAX_ERROR = 0.1
+"""Largest estimated error of a valid film."""
 
 _MIXED_RATIO, _FULL_RATIO = 1.0, 3.0
 """Film ratios at which mixed and full-film lubrication begin."""
@@ -84,6 +105,18 @@ class Film:
         Friction heat of a cycle in J.
     duration : float
         Duration of a cycle in s.
+    method : str
+        "wave" or "hamrock-dowson".
+    comparison : array (instants,)
+        Minimum thickness in mm by Hamrock and Dowson's formula.
+    thickness : array (instants, cells), optional
+        Film thickness in mm by the wave on the cells of the bore; NaN outside the contacts.
+    error : array (instants,), optional
+        Estimated relative error of the wave.
+    unreached : float
+        Largest share of a contact that fresh lubricant does not reach; its film falls with the root of time.
+    converged : bool
+        True unless the wave did not repeat.
     """
 
     phases: Numbers
@@ -94,6 +127,35 @@ class Film:
     power: Numbers
     heat: float
     duration: float
+    method: str = "hamrock-dowson"
+    comparison: Numbers
+    thickness: Numbers | None = None
+    error: Numbers | None = None
+    unreached: float = 0.0
+    converged: bool = True
+
+    @property
+    def valid(self) -> bool:
+        """True if the wave repeats, fresh lubricant reaches the contacts, and the estimated error is at most 10 %.
+
+        A formula for other bodies is not valid.
+        """
+        refreshed = self.converged and self.unreached < _SMALL_SHARE
+        return self.error is not None and refreshed and bool((self.error <= _MAX_ERROR).all())
+
+    @property
+    def note(self) -> str:
+        """Sentence on the method of the film thickness."""
+        if self.error is None:
+            return CONFORMITY_NOTE
+        if not self.converged:
+            return f"{WAVE_NOTE}; it did not repeat, and this is the last cycle"
+        error = f"{WAVE_NOTE}; estimated error of a steady film up to {100 * self.error.max(initial=0.0):.0f} %"
+        if self.unreached < _SMALL_SHARE:
+            return error
+        share = f"{100 * self.unreached:.0f} % of the contact"
+        unsettled = "its film falls without limit, here after about 100 cycles"
+        return f"{error}; fresh lubricant does not reach {share}: {unsettled}"
 
     @property
     def regime(self) -> str:
@@ -119,7 +181,15 @@ class Film:
         }
         finite_values = {name: float(value) if numpy.isfinite(value) else None for name, value in values.items()}
         largest_moment = [float(component) for component in self.moment[moment_magnitudes.argmax()]]
-        return {**finite_values, "moment_on_cup_Nmm": largest_moment, "regime": self.regime, "note": CONFORMITY_NOTE}
+        return {
+            **finite_values,
+            "moment_on_cup_Nmm": largest_moment,
+            "regime": self.regime,
+            "note": self.note,
+            "method": self.method,
+            "valid": self.valid,
+            "error": None if self.error is None else float(self.error.max(initial=0.0)),
+        }
 
 
 class LoadedCycle(Protocol):
@@ -141,6 +211,11 @@ class LoadedCycle(Protocol):
         ...
 
     @property
+    def activities(self) -> tuple[tuple[str, Numbers], ...]:
+        """Name of each activity, and indices of its loads among the loaded instants."""
+        ...
+
+    @property
     def rotation_increments(self) -> Numbers:
         """Rotation vectors of the ball in the loaded instants in rad: (loaded, 3)."""
         ...
@@ -156,27 +231,118 @@ def film(
     sliding: SurfaceSliding,
     equilibrium: CycleEquilibrium,
     lubricant: Lubricant,
+    grid: Grid,
+    method: str = METHODS[0],
 ) -> Film:
-    """Compute film thickness, friction moment, power and heat of a cycle from its contacts and sliding."""
+    """Compute film thickness, friction moment, power and heat of a cycle from its contacts and sliding.
+
+    Raises
+    ------
+    ValueError
+        An unknown method.
+    """
+    name = known_name("method", method, METHODS)
     durations = frame.cycle.seconds[frame.loaded]
     forces = frame.socket_forces(equilibrium.displacement)
     force_magnitudes = numpy.linalg.norm(forces, axis=1)
     spin = numpy.linalg.norm(numpy.cross(frame.rotation_increments, forces), axis=1) / numpy.where(
         force_magnitudes > 0, force_magnitudes, 1.0
     )
-    least, central = film_thickness(frame.joint, force_magnitudes, spin / durations, lubricant.viscosity)
+    formula = film_thickness(frame.joint, force_magnitudes, spin / durations, lubricant.viscosity)
+    thickness: dict[str, Any] = {"least": formula[0], "central": formula[1]}
+    if name == "wave" and foundation.clearance > 0 and len(forces):
+        thickness = _carry_film(frame, foundation, equilibrium, lubricant.viscosity_mpa, grid)
     roughness = lubricant.roughness
     work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.distances, foundation.areas)
+    least = thickness["least"]
     return Film(
         phases=frame.cycle.phases[frame.loaded],
-        least=least,
-        central=central,
         ratio=least / roughness if roughness > 0 else numpy.full_like(least, inf),
         moment=lubricant.friction * _moment_at_unit_friction(foundation, sliding, equilibrium.pressure),
         power=1e-3 * work / durations,
         heat=1e-3 * float(work.sum()),
         duration=frame.cycle.duration,
+        method=name,
+        comparison=formula[0],
+        **thickness,
     )
+
+
+def _carry_film(
+    frame: LoadedCycle, foundation: SocketFoundation, equilibrium: CycleEquilibrium, viscosity: float, grid: Grid
+) -> dict[str, Any]:
+    """Carry the film over each activity until it repeats, on cells of the grid merged near the pole."""
+    meridians = thinned_meridians(grid.edges, grid.meridians)
+    mesh = polar_mesh(foundation.socket_radius, grid.edges, meridians)
+    merged = _merged_cells(grid, meridians)
+    instants = _instants(frame, foundation, equilibrium, grid, merged)
+    films = [carry_over_cycle(mesh, viscosity, [instants[index] for index in loads]) for _, loads in frame.activities]
+    return {
+        "least": numpy.concatenate([film.minimum for film in films]),
+        "central": numpy.concatenate([film.central for film in films]),
+        "thickness": numpy.concatenate([film.thickness for film in films])[:, merged],
+        "error": numpy.concatenate([film.error for film in films]),
+        "unreached": max(film.unreached for film in films),
+        "converged": all(film.converged for film in films),
+    }
+
+
+def _merged_cells(grid: Grid, meridians: Numbers) -> Numbers:
+    """Return the number of the merged cell of each cell of a grid: (rings * meridians,)."""
+    starts = numpy.concatenate([[0], numpy.cumsum(meridians)[:-1]])
+    column = numpy.arange(grid.meridians)
+    merged: Numbers = starts[:, None] + column * meridians[:, None] // grid.meridians
+    return merged.ravel()
+
+
+def _instants(
+    frame: LoadedCycle, foundation: SocketFoundation, equilibrium: CycleEquilibrium, grid: Grid, merged: Numbers
+) -> list[CycleInstant]:
+    """Collect pressure, edge and motion of the loaded instants."""
+    pressure = numpy.stack([numpy.bincount(merged, row) for row in equilibrium.pressure]) / numpy.bincount(merged)
+    forces = frame.socket_forces(equilibrium.displacement)
+    axes = forces / numpy.linalg.norm(forces, axis=1)[:, None]
+    durations = frame.cycle.seconds[frame.loaded]
+    spins = frame.rotation_increments / durations[:, None]
+    edges = _edges(frame, foundation, equilibrium, grid, axes)
+    gaps = numpy.diff(frame.loaded, prepend=frame.loaded[-1] - frame.cycle.n_steps)
+    return [
+        CycleInstant(
+            pressure=pressure[index],
+            axis=axes[index],
+            edge=edges[index],
+            spin=spins[index],
+            duration=float(durations[index]),
+            interrupted=bool(gaps[index] != 1),
+        )
+        for index in range(len(axes))
+    ]
+
+
+def _edges(
+    frame: LoadedCycle, foundation: SocketFoundation, equilibrium: CycleEquilibrium, grid: Grid, axes: Numbers
+) -> list[Edge]:
+    """Find the edge of the contact at each instant; contacts of few rings have the median of the others."""
+    from ..elasticity.off_axis.contact_patch import ContactPatch  # slow to import
+
+    exponent, radius = foundation.edge_exponent, foundation.socket_radius
+    levels = foundation.edge_field(equilibrium, numpy.zeros(len(foundation.areas)))
+    shape = (len(axes), grid.rings, grid.meridians)
+    rows = zip(equilibrium.pressure.reshape(shape), levels.reshape(shape), axes, strict=True)
+    inset = foundation.edge_inset
+    constants = numpy.array(
+        [
+            ContactPatch(grid=grid, pressure=pressure, level=level, axis=axis, inset=inset).edge_constant(exponent)
+            for pressure, level, axis in rows
+        ]
+    )
+    known = constants[numpy.isfinite(constants) & (constants > 0)]
+    median = float(numpy.median(known)) if len(known) else float(equilibrium.pressure.max())
+    values = numpy.where(numpy.isfinite(constants) & (constants > 0), constants, median) / radius**exponent
+    if exponent == 1:
+        return [SpringEdge(slope=float(value), modulus=foundation.max_stiffness) for value in values]
+    modulus = float(frame.joint.effective_modulus)
+    return [ElasticEdge(coefficient=float(value), modulus=modulus) for value in values]
 
 
 def _moment_at_unit_friction(foundation: SocketFoundation, sliding: SurfaceSliding, pressure: Numbers) -> Numbers:

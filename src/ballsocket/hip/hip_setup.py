@@ -29,6 +29,7 @@ from .creep_law import CreepLaw, creep_notes
 from .cup_frame import CupFrame, FromFrame
 from .cycle import Cycle
 from .elastic_foundation import elastic_foundation
+from .film import METHODS as FILM_METHODS
 from .film import Film, film
 from .kinematics import SurfaceSliding
 from .mix import Mix
@@ -317,9 +318,43 @@ class HipSetup(OneLine):
         """Contacts at all loaded instants of the first cycle, on an unworn bore."""
         return self.solve_equilibrium()
 
-    def film(self, lubricant: Lubricant, depth: Numbers | float = 0.0) -> Film:
-        """Compute lubricant film and friction of a cycle on a bore with a worn depth (cells,) in mm."""
-        return film(self.frame, self.foundation, self.sliding, self.solve_equilibrium(depth), lubricant)
+    def film(
+        self,
+        lubricant: Lubricant = Lubricant(),  # noqa: B008 (frozen)
+        depth: Numbers | float = 0.0,
+        method: str = FILM_METHODS[0],
+    ) -> Film:
+        """Compute lubricant film and friction of a cycle.
+
+        Parameters
+        ----------
+        lubricant : Lubricant
+        depth : array (cells,)
+            Worn depth of the bore in mm.
+        method : str
+            "hamrock-dowson" (default) is a formula for bodies of low conformity. "wave" carries the film from instant
+            to instant; its `valid` and `note` state whether the film settles.
+
+        Raises
+        ------
+        ValueError
+            An unknown method.
+        """
+        if isinstance(depth, float) and depth == 0.0:
+            key = lubricant, method
+            if key not in self._unworn_films:
+                self._unworn_films[key] = self._film(self.unworn, lubricant, method)
+            return self._unworn_films[key]
+        return self._film(self.solve_equilibrium(depth), lubricant, method)
+
+    def _film(self, equilibrium: CycleEquilibrium, lubricant: Lubricant, method: str) -> Film:
+        """Compute lubricant film and friction of a cycle from its contacts."""
+        return film(self.frame, self.foundation, self.sliding, equilibrium, lubricant, self.grid, method)
+
+    @cached_property
+    def _unworn_films(self) -> dict[tuple[Lubricant, str], Film]:
+        """Cached films of the unworn bore."""
+        return {}
 
     @cached_property
     def first(self) -> FirstCycleResult:

@@ -345,12 +345,17 @@ class History(OneLine):
                 "ball_wear": law_summary(self.use.ball_wear),
                 "creep": law_summary(self.use.creep),
             },
-            "film": self.use.film(self.lubricant).summary(),
+            "film": self._film_summary(),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
             "history": list(map(self._report_summary, self.reports, self.contact_checks)),
             "error": {"volume": self.error.volume, "depth": self.error.depth, "blocks": self.error.blocks},
             "notes": list(self.notes),
         }
+
+    def _film_summary(self) -> dict[str, Any]:
+        """Return the film by Hamrock and Dowson's formula for JSON, and that by the wave under `wave`."""
+        formula = self.use.film(self.lubricant).summary()
+        return {**formula, "wave": self.use.film(self.lubricant, method="wave").summary()} if formula else {}
 
     def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
         """Return a report with its contact checks as a dictionary for JSON, with years if known."""

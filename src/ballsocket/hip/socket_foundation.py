@@ -89,6 +89,11 @@ class SocketFoundation(Protocol):
         """Distance from the zero of `edge_field` inwards to the contact edge, in cell widths."""
         ...
 
+    @property
+    def edge_exponent(self) -> float:
+        """Exponent n of the pressure p ~ s^n at a distance s from the edge of a contact."""
+        ...
+
     def select_cells(self, cells: Numbers) -> SocketFoundation:
         """Return the foundation for a subset of the cells."""
         ...
@@ -191,6 +196,11 @@ class SpringFoundation:
     def edge_inset(self) -> float:
         """Distance from the zero of `edge_field` to the contact edge in cell widths: 0 for springs."""
         return 0.0
+
+    @property
+    def edge_exponent(self) -> float:
+        """Exponent of the pressure at the edge of a contact: 1 for springs."""
+        return 1.0
 
     def edge_field(self, equilibrium: CycleEquilibrium, depth: Numbers) -> Numbers:
         """Compute the overlap (loads, cells) of ball and bore in mm, positive inside contacts."""

@@ -75,6 +75,7 @@ STUDY_PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure"
 def register_plots() -> None:
     """Register the plots of this room; matplotlib is imported when the first of them is loaded."""
     register_plot("contacts", _load_contact_plot)
+    register_plot("film", _load_film_figure)
     register_plot("identification", _load_fit_figure)
     register_plot("wear", _load_wear_figure)
     for name in STUDY_PLOTS:
@@ -86,6 +87,13 @@ def _load_contact_plot() -> Plot:
     from .press_plots import plot
 
     return plot
+
+
+def _load_film_figure() -> Plot:
+    """Import and return the figure of lubricating films."""
+    from .film_results import film_figure
+
+    return film_figure
 
 
 def _load_fit_figure() -> Plot:

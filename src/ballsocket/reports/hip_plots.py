@@ -155,11 +155,14 @@ def _points(reach: float) -> Numbers:
 
 
 def film_figure(history: History) -> Figure:
-    """Draw the film thickness by Hamrock and Dowson and the friction moment over the first cycle."""
+    """Draw the films by Hamrock and Dowson and by the wave, and the friction moment over the first cycle."""
     use, film = history.use, history.use.film(history.lubricant)
+    wave = use.film(history.lubricant, method="wave")
     figure, axes = _figure()
-    axes.plot(*_course(use, 1e6 * film.least), color=_INK, label="least film")
-    axes.plot(*_course(use, 1e6 * film.central), "--", color=_INK, label="central film")
+    axes.plot(*_course(use, 1e6 * film.least), color=_INK, label="least film, Hamrock-Dowson")
+    axes.plot(*_course(use, 1e6 * film.central), "--", color=_INK, label="central film, Hamrock-Dowson")
+    label = "least film, wave" if wave.valid else "least film, wave (not valid)"
+    axes.plot(*_course(use, 1e6 * wave.least), "-.", color="0.5", label=label)
     axes.set_ylabel("film [nm]")
     moment_axes = axes.twinx()
     moment_axes.plot(*_course(use, 1e-3 * numpy.linalg.norm(film.moment, axis=1)), ":", color=_SECOND)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..files.joint_file import NO_DETAILS, ReportDetails
 from ..hip.bands import Bands
-from ..hip.film import CONFORMITY_NOTE
+from ..hip.film import CONFORMITY_NOTE, WAVE_NOTE
 from ..hip.history import History
 from ..hip.rim import ClosestApproach
 from . import hip_plots
@@ -49,7 +49,11 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
             hip_plots.cross_shear_map,
             "Cross-shear of the first cycle; each sliding distance is weighted by its pressure.",
         ),
-        "film": ("Film and friction", hip_plots.film_figure, f"{CONFORMITY_NOTE}."),
+        "film": (
+            "Film and friction",
+            hip_plots.film_figure,
+            f"{CONFORMITY_NOTE}. Wave: {WAVE_NOTE[0].lower()}{WAVE_NOTE[1:]}.",
+        ),
         "edge": (
             "Edge distance",
             hip_plots.edge_figure,

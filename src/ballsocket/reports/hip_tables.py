@@ -276,5 +276,8 @@ def _film_lines(history: History) -> Iterator[str]:
     else:
         thickness = f"{1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm"
         yield f"film (Hamrock-Dowson) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
+        wave = history.use.film(history.lubricant, method="wave")
+        state = "valid" if wave.valid else "not valid"
+        yield f"film (wave) {1e6 * wave.least.min():.3g} to {1e6 * wave.least.max():.3g} nm, {state}: {wave.note}"
     friction = f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"
     yield f"{friction}, with a coefficient of {history.lubricant.friction:g}"

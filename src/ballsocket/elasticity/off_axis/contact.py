@@ -63,6 +63,25 @@ class OffAxisContact(SolvedContact):
         """Moment of the contact on the ball about the ball's centre, without friction, in N mm."""
         return arrays.namespace(self.force_vector).linalg.cross(self.displacement, self.force_vector)
 
+    @cached_property
+    def edge_slope(self) -> Array:
+        """Mean slope of the pressure along the edge of the contact in MPa/mm; NaN unless the bore is of springs."""
+        return self._mean_edge_constant(1.0)
+
+    @cached_property
+    def edge_coefficient(self) -> Array:
+        """Mean of p/sqrt(s) along the edge of the contact in MPa/mm^(1/2), with the arc s; NaN on springs."""
+        return self._mean_edge_constant(0.5)
+
+    def _mean_edge_constant(self, exponent: float) -> Array:
+        """Compute the mean of p/s^exponent along the edge; NaN if the surface has another exponent."""
+        if self.model.surface.edge_exponent != exponent:
+            return self._match_load(self.half_angle * numpy.nan)
+        constants = self.laws.combine(
+            lambda contacts: numpy.array([patch.edge_constant(exponent) for patch in contacts.state.patches])
+        )
+        return self._mask_failed(lambda: constants / self.joint.socket_radius**exponent)
+
     def friction_torque(self, coefficient: Array, axis_angle: float = pi / 2) -> Array:
         """Compute the Coulomb friction torque in N mm of a ball that slides about an axis through its centre.
 

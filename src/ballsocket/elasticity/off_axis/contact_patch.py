@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import pi
+from math import nan, pi
 
 import numpy
 from scipy.interpolate import RegularGridInterpolator
@@ -24,6 +24,12 @@ _FIT_RADIUS = 2.2
 
 _LATTICE_POINTS = 25
 """Number of points in each direction at which the fit is evaluated."""
+
+_EDGE_RINGS = numpy.array([2.0, 3.0, 4.0])
+"""Distances from the edge in ring widths at which the rise of the pressure is fitted."""
+
+_MIN_EDGE_RINGS = 5.0
+"""Smallest distance from the centre to the edge in ring widths for a fit of the edge."""
 
 _MIN_MARGIN = 1e-6
 """Margin in rad of a contact that comes to the end of the bore without reaching it."""
@@ -181,6 +187,21 @@ class ContactPatch:
             solid_angle = float(((self.pressure > 0) * self.grid.areas).sum())
             return float(numpy.arccos(numpy.clip(1 - solid_angle / (2 * pi), -1.0, 1.0)))
         return float(numpy.arccos(numpy.clip(numpy.cos(self._edge_angles).mean(), -1.0, 1.0)))
+
+    def edge_constant(self, exponent: float) -> float:
+        """Compute the mean over the edge of p/s^n for a distance s (rad) to it; NaN in a contact of few rings.
+
+        A power p^(1/n) of the pressure is smooth there. A parabola through three points of each ray has its slope.
+        """
+        rays = self._edge_angles > _MIN_EDGE_RINGS * self.grid.width
+        rays &= self._edge_angles < self._rim_angles(self._ray_azimuths) - self.grid.width
+        if not rays.any():
+            return nan
+        edge, azimuths = self._edge_angles[rays], self._ray_azimuths[rays]
+        distance = self.grid.width * _EDGE_RINGS[:, None] + 0 * edge
+        power = self.pressure_at(_ray_directions(self._contact_centre, edge - distance, azimuths)) ** (1 / exponent)
+        slope = numpy.polynomial.polynomial.polyfit(distance[:, 0], power, 2)[1]
+        return float((numpy.maximum(slope, 0.0) ** exponent).mean())
 
     @cached_property
     def edge_loaded(self) -> bool:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from math import pi
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy
 
@@ -225,6 +225,11 @@ class Surface(Protocol):
         """Return the relation between pressure and gap that locates the edge of a contact between cells."""
         ...
 
+    @property
+    def edge_exponent(self) -> float:
+        """Exponent n of the pressure p ~ s^n at a distance s from the edge of a contact."""
+        ...
+
 
 @dataclass(frozen=True, kw_only=True)
 class RealCup:
@@ -233,6 +238,8 @@ class RealCup:
     Each harmonic about the cup's axis has one stiffness for all directions of the load. Setting it up takes a second.
     It is cached on disk for each R2/L, ν, arc of cover, chamfer and backing, and scales with Young's modulus.
     """
+
+    edge_exponent: ClassVar[float] = 0.5
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
         """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
@@ -246,6 +253,8 @@ class RealCup:
 @dataclass(frozen=True, kw_only=True)
 class ClosedShell:
     """Closed shell without an opening, as in `Exact`: the rim ends the contact but does not soften the liner."""
+
+    edge_exponent: ClassVar[float] = 0.5
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
         """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
@@ -267,6 +276,8 @@ class Springs:
     """
 
     modulus: Modulus = hess_forsbach
+
+    edge_exponent: ClassVar[float] = 1.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "modulus", as_modulus(self.modulus))

@@ -15,7 +15,6 @@ from ....hip import Lubricant
 from ....hip.ball_wear import interpolation_at
 from ....hip.contact_checks import largest_utilisation, list_check_notes
 from ....hip.cycle_registry import CYCLES
-from ....hip.film import film
 from ...running import Reached, Report
 from ...state.use import UploadedCycle, Use, hip_of
 
@@ -64,7 +63,7 @@ def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, repor
     report(Reached(share=0.3, words="pressing through the cycle"))
     unworn, lubricant = hip.unworn, Lubricant()
     report(Reached(share=0.7, words="film and edge"))
-    lubrication, edge = film(hip.frame, hip.foundation, hip.sliding, unworn, lubricant), hip.edge(unworn)
+    lubrication, edge = hip.film(lubricant), hip.edge(unworn)
     worst, first = edge.closest_approach(hip), hip.first
     checks = hip.unworn_checks
     utilisation, valid = largest_utilisation(checks), all(check.valid for check in checks)

@@ -1,0 +1,378 @@
+"""Film of a single contact: the inlet formula, the kinematic wave and Reynolds' equation behind one function."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import ceil, degrees, inf, pi, radians
+from typing import Any
+
+import numpy
+
+from ..contact import Contact
+from ..core.arrays import Array, Numbers
+from ..core.checks import check_vectors, known_name, require
+from ..core.display import load_plot
+from ..core.validity import Status
+from .dry_contact import DryContact, check_single_contact, dry_contact, elastic_softness
+from .inlet import SpringEdge
+from .lubricant import Lubricant
+from .mesh import graded_rings, polar_mesh
+from .reynolds import FilmProblem, FilmState, develop_film
+from .wave import FilmWave
+
+CELL_WIDTH = radians(2.0)
+"""Default width of the cells of the wave in rad."""
+
+MAX_ERROR = 0.1
+"""Largest estimated error of a valid film."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _MeshSettings:
+    """Mesh of Reynolds' equation: rings in the inlet length, angles in rad, cells in a ring, and the error it has.
+
+    The error is the largest relative change of the films when rings and meridians are halved.
+    """
+
+    rings_of_inlet: float
+    coarsest: float
+    growth: float
+    margin: float
+    meridians: int
+    first_turn: float
+    error: float
+
+
+_ON_SPRINGS = _MeshSettings(
+    rings_of_inlet=6.0, coarsest=radians(2.0), growth=1.12, margin=pi, meridians=64, first_turn=1e-3, error=0.005
+)
+_ELASTIC = _MeshSettings(
+    rings_of_inlet=5.0,
+    coarsest=radians(3.0),
+    growth=1.25,
+    margin=radians(12.0),
+    meridians=40,
+    first_turn=5e-3,
+    error=0.03,
+)
+
+_CELLS_OF_SIDES, _MAX_MERIDIANS = 9.0, 72
+"""Number of cells in a ring times the angle of the sides in rad, and the largest number of cells."""
+
+_ELASTIC_MODELS = ("exact", "tabulated")
+"""Models whose elastic operator Reynolds' equation has."""
+
+_NO_ENTRAINMENT = "the ball does not turn across the load: no lubricant enters, and the film is squeezed out"
+_RIM_NOTE = "the rim cuts the contact: no lubricant enters there, and the film behind it is thinner than computed"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilmResult:
+    """Lubricating film of a single contact.
+
+    Attributes
+    ----------
+    contact : Contact
+        Dry contact that the film separates.
+    method : str
+        "inlet", "wave" or "reynolds".
+    lubricant : Lubricant
+    spin : array (3,)
+        Rotation rate of the ball in rad/s, in the frame of the contact.
+    directions : array (cells, 3)
+        Unit vectors from the centre of the bore to the cells.
+    areas : array (cells,)
+        Areas of the cells in mm².
+    thickness : array (cells,)
+        Film thickness in mm; NaN outside the contact, where the wave floods it.
+    pressure : array (cells,)
+        Pressure in MPa: dry for the inlet and the wave.
+    central, minimum : float
+        Film thickness in mm at the pole of the load, and the smallest in the contact.
+    error : float
+        Estimated relative error of central and minimum film.
+    status : Status
+        `NOT_CONVERGED` marks the best film so far.
+    displacement : array (3,)
+        Displacement of the ball in mm; NaN where the method does not solve for it.
+    """
+
+    contact: Contact
+    method: str
+    lubricant: Lubricant
+    spin: Numbers
+    directions: Numbers
+    areas: Numbers
+    thickness: Numbers
+    pressure: Numbers
+    central: float
+    minimum: float
+    error: float
+    status: Status
+    displacement: Numbers
+    dry: DryContact
+
+    @property
+    def ratio(self) -> float:
+        """Film ratio λ: smallest film over the combined roughness; infinite for smooth surfaces."""
+        roughness = self.lubricant.roughness
+        return self.minimum / roughness if roughness > 0 else inf
+
+    @property
+    def speed(self) -> float:
+        """Speed in mm/s of the ball's surface at the pole of the load."""
+        return self.dry.speed(self.spin)
+
+    @property
+    def valid(self) -> bool:
+        """True if the contact is valid, lubricant enters all of it, and the estimated error is at max_steps 10 %."""
+        entrained = self.central > 0 and not self.dry.cut
+        return bool(self.contact.valid and entrained and self.error <= MAX_ERROR and self.status is Status.OK)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences on the contact, on missing entrainment, on the rim, on the error and on the iteration."""
+        reasons = {
+            _NO_ENTRAINMENT: self.central == 0,
+            _RIM_NOTE: self.dry.cut,
+            f"estimated error {100 * self.error:.0f} % is above {100 * MAX_ERROR:.0f} %": self.error > MAX_ERROR,
+            f"{self.status.sentence}: this is the best film so far": self.status is not Status.OK,
+        }
+        return (*self.contact.notes, *(note for note, holds in reasons.items() if holds))
+
+    def summary(self) -> dict[str, Any]:
+        """Return the film as a dictionary for JSON, with thicknesses in nm; missing numbers are None."""
+        return {
+            "model": self.contact.model.name,
+            "method": self.method,
+            "central_nm": _number(1e6 * self.central),
+            "minimum_nm": _number(1e6 * self.minimum),
+            "lambda": _number(self.ratio),
+            "error": _number(self.error),
+            "valid": self.valid,
+            "status": self.status.name,
+            "notes": list(self.notes),
+            "spin_rad_per_s": self.spin.tolist(),
+            "viscosity_Pa_s": self.lubricant.viscosity,
+            "half_angle_deg": degrees(self.dry.half_angle),
+        }
+
+    def plot(self) -> Any:
+        """Plot a map of the film over the bore, and film and pressure along the motion.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        return load_plot("film")(self)
+
+    def __repr__(self) -> str:
+        central, least = 1e6 * self.central, 1e6 * self.minimum
+        return (
+            f"film by {self.method} on {self.contact.model.name}: central {central:.1f} nm, minimum {least:.1f} nm, "
+            f"λ = {self.ratio:.3g}, estimated error {100 * self.error:.1f} %{'' if self.valid else ', not valid'}"
+        )
+
+
+def film(
+    contact: Contact,
+    *,
+    spin: Array = (1.5, 0.0, 0.0),
+    lubricant: Lubricant = Lubricant(),  # noqa: B008 (frozen)
+    method: str = "wave",
+    cell_width: float = CELL_WIDTH,
+) -> FilmResult:
+    """Compute the steady lubricating film of a pressed contact.
+
+    Parameters
+    ----------
+    contact : Contact
+        A single contact of any model that has a pressure: on springs, elastic, or off the axis of a cup.
+    spin : array (3,)
+        Rotation rate of the ball in rad/s. z is the axis of the load; for a contact of `Sphere`, the frame is the cup's
+        reasons.
+    lubricant : Lubricant
+    method : str
+        "inlet" is the closed form at the edge. "wave" (default) carries the film over the dry contact. "reynolds"
+        solves Reynolds' equation with the deformation and the balance of the load, for axial contacts on springs and
+        those of `exact` and `tabulated`.
+    cell_width : float
+        Width of the cells of the wave in rad; 2° by default.
+
+    Returns
+    -------
+    FilmResult
+
+    Raises
+    ------
+    TypeError
+        Another object than a contact or a lubricant.
+    ValueError
+        More than one contact; a contact without a result, load or clearance; a spin that is not finite; an unknown
+        method; Reynolds' equation for a contact of another model.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> contact = bs.HessForsbach().press(bs.joints["hip-36"], force=1500.0)
+    >>> bs.film(contact, spin=(1.5, 0.0, 0.0), lubricant=bs.Lubricant(viscosity=2.5e-3))
+    film by wave on hess-forsbach: central 194.8 nm, minimum 165.2 nm, λ = 0.165, estimated error 3.7 %
+    """
+    solve = METHODS[known_name("method", method, METHODS)]
+    check_single_contact(contact)
+    if not isinstance(lubricant, Lubricant):
+        raise TypeError(f"lubricant must be a Lubricant, got {type(lubricant).__name__}")
+    rate = numpy.asarray(check_vectors("spin", spin, "x, y, z (rad/s)"), dtype=float)
+    require("spin", rate, numpy.isfinite(rate), "a rotation rate (rad/s) is finite")
+    if rate.shape != (3,):
+        raise ValueError(f"spin of shape {rate.shape} is not allowed: give one rotation rate x, y, z (rad/s)")
+    require("cell_width", cell_width, radians(0.2) <= cell_width <= radians(10.0), "cells are 0.2 to 10 degrees wide")
+    dry = dry_contact(contact, cell_width)
+    fields = _without_entrainment(dry)
+    if dry.speed(rate) > 1e-9 * dry.radius * numpy.linalg.norm(rate):
+        fields = solve(contact, dry, rate, lubricant.viscosity_mpa)
+    common = {"status": Status.OK, "displacement": numpy.full(3, numpy.nan), "dry": dry}
+    return FilmResult(contact=contact, method=method, lubricant=lubricant, spin=rate, **{**common, **fields})
+
+
+def _without_entrainment(dry: DryContact) -> dict[str, Any]:
+    """Return the film of a ball that does not turn across the load: none."""
+    thickness = numpy.where(dry.inside, 0.0, numpy.nan)
+    return {**_on_dry(dry), "thickness": thickness, "central": 0.0, "minimum": 0.0, "error": 0.0}
+
+
+def _on_dry(dry: DryContact) -> dict[str, Any]:
+    """Return the cells and the pressure of a dry contact."""
+    return {"directions": dry.mesh.direction, "areas": dry.mesh.area, "pressure": dry.pressure}
+
+
+def _solve_inlet(contact: Contact, dry: DryContact, spin: Numbers, viscosity: float) -> dict[str, Any]:
+    """Compute the film at the inlet edge, and carry it across the contact without change."""
+    speed = dry.speed(spin)
+    central = float(dry.edge.inlet_film(viscosity, numpy.asarray(speed)))
+    entry = dry.inward_speed(spin, _entry_points(dry, spin))
+    film = dry.edge.inlet_film(viscosity, entry)
+    return {
+        **_on_dry(dry),
+        "thickness": numpy.where(dry.inside, film, numpy.nan),
+        "central": central,
+        "minimum": central * dry.edge.outlet_ratio,
+        "error": dry.edge.leakage + dry.edge.wave_error(viscosity, speed, dry.contact_radius),
+    }
+
+
+def _entry_points(dry: DryContact, spin: Numbers) -> Numbers:
+    """Compute the points (cells, 3) at the edge where the circles of motion through the cells enter the contact.
+
+    Circles that stay within the contact have the point where they come nearest to the edge.
+    """
+    axis = spin / numpy.linalg.norm(spin)
+    along = (dry.mesh.direction @ axis)[:, None] * axis
+    first = dry.mesh.direction - along
+    second = numpy.cross(axis, first)
+    # n(t)·load = a + b cos t + c sin t; upstream t < 0
+    level, cosine, sine = along @ dry.axis, first @ dry.axis, second @ dry.axis
+    size, phase = numpy.hypot(cosine, sine), numpy.arctan2(sine, cosine)
+    share = numpy.clip((numpy.cos(dry.half_angle) - level) / numpy.where(size > 0, size, 1.0), -1.0, 1.0)
+    rotation = (phase - numpy.arccos(share) + pi) % (2 * pi) - pi
+    return along + first * numpy.cos(rotation)[:, None] + second * numpy.sin(rotation)[:, None]
+
+
+def _solve_wave(contact: Contact, dry: DryContact, spin: Numbers, viscosity: float) -> dict[str, Any]:
+    """Carry the inlet film over the dry contact by the kinematic wave."""
+    wave = FilmWave(contact=dry, viscosity=viscosity, spin=spin)
+    film, steady = wave.solve_steady()
+    central = _central(dry, film)
+    return {
+        **_on_dry(dry),
+        "thickness": numpy.where(dry.inside, film, numpy.nan),
+        "central": central,
+        "minimum": wave.smallest_film(film, central),
+        "error": dry.edge.wave_error(viscosity, dry.speed(spin), dry.contact_radius),
+        "status": Status.OK if steady else Status.NOT_CONVERGED,
+    }
+
+
+def _central(dry: DryContact, film: Numbers) -> float:
+    """Compute the mean film in mm of the cells next to the load."""
+    height = dry.mesh.direction @ dry.axis
+    return float(film[height > height.max() - 1e-9].mean())
+
+
+def _solve_reynolds(contact: Contact, dry: DryContact, spin: Numbers, viscosity: float) -> dict[str, Any]:
+    """Solve Reynolds' equation with the deformation, the balance of the load and cavitation."""
+    on_springs = isinstance(dry.edge, SpringEdge)
+    if getattr(contact.model, "off_axis", False) or not (on_springs or contact.model.name in _ELASTIC_MODELS):
+        raise ValueError(
+            f"method = 'reynolds' is not possible for {contact.model.name}: it needs an axial contact on springs, such "
+            f"as hess-forsbach, or that of {' or '.join(_ELASTIC_MODELS)}; use method='wave'"
+        )
+    settings = _ON_SPRINGS if on_springs else _ELASTIC
+    speed = numpy.asarray(dry.speed(spin))
+    finest = float(dry.edge.inlet_length(viscosity, speed)) / dry.radius / settings.rings_of_inlet
+    rings = graded_rings(
+        dry.half_angle,
+        finest=min(finest, settings.coarsest),
+        coarsest=settings.coarsest,
+        rim=min(dry.half_angle + settings.margin, pi / 2),
+        growth=settings.growth,
+    )
+    meridians = _meridians(dry, viscosity, float(speed), settings.meridians)
+    mesh = polar_mesh(dry.radius, rings, meridians)
+    problem = FilmProblem(
+        mesh=mesh,
+        viscosity=viscosity,
+        spin=spin,
+        gap=numpy.full(mesh.cells, float(contact.joint.clearance)),
+        compliance=numpy.full(mesh.cells, 1 / dry.edge.modulus if isinstance(dry.edge, SpringEdge) else 0.0),
+        rim_pressure=numpy.zeros(len(mesh.rim_cell)),
+        force=float(contact.force) * dry.axis,
+        softness=None if on_springs else elastic_softness(contact.joint, rings, meridians),
+    )
+    theta = numpy.arccos(mesh.direction[:, 2])
+    start = _dry_start(problem, contact, theta, dry, float(dry.edge.inlet_film(viscosity, speed)))
+    rate = float(numpy.linalg.norm(spin))
+    state = develop_film(problem, start, settings.first_turn / rate, 3 / rate)
+    film = problem.thickness(state)
+    return {
+        "directions": mesh.direction,
+        "areas": mesh.area,
+        "pressure": state.pressure,
+        "thickness": film,
+        "central": float(film[:meridians].mean()),
+        "minimum": float(film[theta < dry.half_angle].min()),
+        "error": settings.error,
+        "status": Status.OK if state.converged else Status.NOT_CONVERGED,
+        "displacement": state.eccentricity,
+    }
+
+
+def _meridians(dry: DryContact, viscosity: float, speed: float, least: int) -> int:
+    """Choose the number of cells in a ring so that several lie in the sides of an elastic contact."""
+    share = dry.edge.side_speed(viscosity, speed, dry.contact_radius) / speed
+    return min(max(least, 8 * ceil(_CELLS_OF_SIDES / share / 8)), _MAX_MERIDIANS)
+
+
+def _dry_start(problem: FilmProblem, contact: Contact, theta: Numbers, dry: DryContact, film: float) -> FilmState:
+    """Make the dry contact with the ball lifted to a mean film in mm; no film is below a third of it."""
+    inside = theta < dry.half_angle
+    pressure = numpy.where(inside, contact.pressure(numpy.minimum(theta, dry.half_angle)), 0.0)
+    depth = (float(contact.joint.clearance) + float(contact.indentation)) * dry.axis
+    state = FilmState(pressure=pressure, void=numpy.zeros(len(theta)), eccentricity=depth)
+    gap = problem.thickness(state)
+    lift = max(film - float(gap[inside].mean()), film / 3 - float(gap.min()))
+    return replace(state, eccentricity=depth - lift * dry.axis)
+
+
+def _number(value: float) -> float | None:
+    """Return a number, or None if it is not finite."""
+    return float(value) if numpy.isfinite(value) else None
+
+
+METHODS: dict[str, Callable[[Contact, DryContact, Numbers, float], dict[str, Any]]] = {
+    "inlet": _solve_inlet,
+    "wave": _solve_wave,
+    "reynolds": _solve_reynolds,
+}
+"""Methods by name, each the judge of the one before."""

@@ -1,0 +1,156 @@
+"""Lubricating films as a figure and as a table in a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import degrees, pi, sin
+from typing import TYPE_CHECKING, Any
+
+import numpy
+from rich.table import Table
+from rich.text import Text
+
+from ..core.arrays import Numbers
+from ..lubrication.film import FilmResult
+from .cup_map import on_page
+from .style import BLUE, INK, LEGEND, VERMILLION
+from .terminal import console, print_columns, print_folded, print_joint
+from .unit_systems import Units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_NANOMETRES = 1e6
+_LEVELS = 14
+_LARGEST_SHOWN = 2.0
+"""Largest film in the colours of the map, relative to the central film."""
+
+_SECTION_POINTS = 301
+_FRAME = 1.15
+"""Half width of the map, relative to the contact on the page."""
+
+
+def film_figure(film: FilmResult) -> Figure:
+    """Draw a film as a map seen from the opening, and film and pressure along the motion through the load.
+
+    Parameters
+    ----------
+    film : FilmResult
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+    """
+    from .notebook_figure import NotebookFigure
+
+    figure = NotebookFigure(figsize=(10.4, 4.6), layout="constrained")
+    map_axes, section_axes = figure.subplots(1, 2)
+    colours = _draw_map(map_axes, film)
+    figure.colorbar(colours, ax=map_axes, label="film thickness h [nm]", shrink=0.85)
+    _draw_section(section_axes, film)
+    figure.suptitle(_title(film), fontsize=10, parse_math=False)
+    return figure
+
+
+def _title(film: FilmResult) -> str:
+    """Describe the film in one line."""
+    central, least = _NANOMETRES * film.central, _NANOMETRES * film.minimum
+    return (
+        f"{film.contact.model.name}, {film.contact.force:g} N, {numpy.linalg.norm(film.spin):g} rad/s, "
+        f"{1e3 * film.lubricant.viscosity:g} mPa s; {film.method}: central {central:.0f} nm, minimum {least:.0f} nm"
+    )
+
+
+def _frame(film: FilmResult) -> Numbers:
+    """Make the axes of the figure: along the motion, across it, and along the load."""
+    load = film.dry.axis
+    motion = numpy.cross(film.spin, load)
+    if not numpy.linalg.norm(motion) > 0:
+        motion = numpy.cross(load, numpy.array([1.0, 0.0, 0.0]))
+    motion = motion / numpy.linalg.norm(motion)
+    return numpy.stack([motion, numpy.cross(load, motion), load])
+
+
+def _page(film: FilmResult) -> tuple[Numbers, Numbers, Numbers]:
+    """Project the cells in and near the contact to the page: right along the motion, up, and the mask of the cells."""
+    local = film.directions @ _frame(film).T
+    shown = local[:, 2] > numpy.cos(min(1.3 * film.dry.half_angle, pi / 2))
+    up, right = on_page(local[shown])
+    return right, up, shown
+
+
+def _draw_map(axes: Axes, film: FilmResult) -> Any:
+    """Draw contours of the film in the contact, with the edge of the dry contact and the direction of motion."""
+    right, up, shown = _page(film)
+    thickness = _NANOMETRES * film.thickness[shown]
+    known = numpy.isfinite(thickness)
+    highest = _LARGEST_SHOWN * max(_NANOMETRES * film.central, float(numpy.nanmin(thickness)), 1e-6)
+    levels = numpy.linspace(0.0, highest, _LEVELS + 1)
+    colours = axes.tricontourf(right[known], up[known], thickness[known], levels=levels, cmap="viridis", extend="max")
+    around = numpy.linspace(0.0, 2 * pi, 181)
+    edge = 2 * sin(film.dry.half_angle / 2)
+    axes.plot(edge * numpy.cos(around), edge * numpy.sin(around), color=INK, linewidth=1.2, label="edge of the contact")
+    arrow = {"arrowstyle": "->", "color": VERMILLION, "linewidth": 1.8}
+    axes.annotate("", (0.35 * edge, 0.0), (-0.35 * edge, 0.0), arrowprops=arrow)
+    axes.text(0.0, 0.05 * edge, "motion of the ball", ha="center", fontsize=8, color=VERMILLION)
+    axes.set(aspect="equal", xlim=(-_FRAME * edge, _FRAME * edge), ylim=(-_FRAME * edge, _FRAME * edge))
+    axes.set_axis_off()
+    return colours
+
+
+def _draw_section(axes: Axes, film: FilmResult) -> None:
+    """Draw film and pressure along the motion through the load; the inlet is on the left."""
+    from matplotlib.tri import LinearTriInterpolator, Triangulation
+
+    right, up, shown = _page(film)
+    angle = numpy.linspace(-1.25, 1.25, _SECTION_POINTS) * film.dry.half_angle
+    mesh = Triangulation(right, up)
+    along, across = 2 * numpy.sin(angle / 2), 0 * angle
+    thickness = numpy.nan_to_num(film.thickness[shown], nan=numpy.nan)
+    curve = LinearTriInterpolator(mesh, _NANOMETRES * thickness)(along, across)
+    axes.plot(numpy.degrees(angle), curve, color=BLUE, label="film h")
+    limit = 2.5 * max(_NANOMETRES * film.central, 1e-6)
+    axes.set(xlabel="angle from the load along the motion [°]", ylabel="film thickness h [nm]", ylim=(0.0, limit))
+    axes.axvline(-degrees(film.dry.half_angle), color=INK, linestyle=":", label="inlet and outlet of the dry contact")
+    axes.axvline(degrees(film.dry.half_angle), color=INK, linestyle=":")
+    other = axes.twinx()
+    pressure = LinearTriInterpolator(mesh, film.pressure[shown])(along, across)
+    other.plot(numpy.degrees(angle), pressure, color=VERMILLION, linestyle="--", label="pressure p")
+    other.set_ylabel("pressure p [MPa]")
+    other.set_ylim(bottom=0.0)
+    handles = [*axes.get_legend_handles_labels()[0], *other.get_legend_handles_labels()[0]]
+    axes.legend(handles=handles, **LEGEND)
+    axes.grid(alpha=0.3)
+
+
+def print_films(films: Sequence[FilmResult], units: Units = Units.SI) -> None:
+    """Print films of several models as a table, with their notes."""
+    terminal = console(units)
+    print_joint(terminal, films[0].contact.joint)
+    first = films[0]
+    rate, viscosity = float(numpy.linalg.norm(first.spin)), 1e3 * first.lubricant.viscosity
+    print_folded(terminal, f"film at {rate:g} rad/s, {first.speed:.3g} mm/s, viscosity {viscosity:g} mPa s", "bold")
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
+    for head in ("model", "method", "central [nm]", "minimum [nm]", "λ", "error [%]", "valid"):
+        table.add_column(Text(head), justify="left" if head in ("model", "method") else "right", no_wrap=True)
+    for film in films:
+        table.add_row(*_cells(film))
+    print_columns(terminal, table)
+    print_folded(terminal, "λ minimum film over the combined roughness of both surfaces", "dim")
+    for film in films:
+        for note in film.notes:
+            print_folded(terminal, f"{film.contact.model.name}: {note}", "dim")
+
+
+def _cells(film: FilmResult) -> list[str]:
+    """Return the cells of a row."""
+    return [
+        film.contact.model.name,
+        film.method,
+        f"{_NANOMETRES * film.central:.4g}",
+        f"{_NANOMETRES * film.minimum:.4g}",
+        f"{film.ratio:.3g}",
+        f"{100 * film.error:.2g}",
+        "yes" if film.valid else "no",
+    ]

@@ -1,0 +1,107 @@
+"""Finite volumes of Reynolds' equation: rigid fields, Fowell's slider, and a ball on springs."""
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import spsolve
+
+from ballsocket.lubrication.mesh import polar_mesh, strip_mesh
+from ballsocket.lubrication.reynolds import FilmProblem, FilmState, advance, balance_cells, solve_steady
+from ballsocket.lubrication.rigid_fields import squeeze_pressure, wedge_pressure
+
+from ..extent import either
+
+RADIUS, CLEARANCE, ECCENTRICITY, VISCOSITY = 18.0, 0.1, 0.08, 2.5e-9
+CAVITY = {"radius": RADIUS, "clearance": CLEARANCE, "eccentricity": ECCENTRICITY, "viscosity": VISCOSITY}
+
+
+def rigid_error(rings, kind):
+    """Largest relative error of the pressure in a full rigid cavity, on rings and twice as many meridians."""
+    mesh = polar_mesh(RADIUS, np.linspace(0.0, np.pi / 2, rings + 1), 4 * rings)
+    theta, phi = np.arccos(mesh.direction[:, 2]), np.arctan2(mesh.direction[:, 1], mesh.direction[:, 0])
+    film, empty = CLEARANCE - ECCENTRICITY * mesh.direction[:, 2], np.zeros(mesh.cells)
+    if kind == "squeeze":
+        exact = squeeze_pressure(theta, speed=2.0, rim=np.pi / 2, **CAVITY)
+        spin, source, rim = np.zeros(3), 2.0 * mesh.direction[:, 2] * mesh.area, np.zeros(4 * rings)
+    else:
+        exact = wedge_pressure(theta, phi, spin=10.0, **CAVITY)
+        at_rim = np.arctan2(mesh.rim_axis[:, 1], mesh.rim_axis[:, 0]) - np.pi / 2
+        spin, source, rim = np.array([0.0, 10.0, 0.0]), 0.0, wedge_pressure(np.pi / 2, at_rim, spin=10.0, **CAVITY)
+    balance = balance_cells(mesh, spin, VISCOSITY, film, empty, empty, rim)
+    pressure = spsolve(balance.by_pressure.tocsc(), source - balance.outflow)
+    return np.abs(pressure - exact).max() / np.abs(exact).max()
+
+
+@pytest.mark.parametrize("kind", ["squeeze", "wedge"])
+def test_pressures_of_rigid_bodies_converge_with_order_two(kind):
+    """1e-3 at 91 rings; the order comes from two coarser meshes."""
+    coarse, fine = (rigid_error(rings, kind) for rings in (23, 46))
+    assert np.log2(coarse / fine) > 1.9
+    assert fine * (46 / 91) ** 2 < 1e-3
+
+
+def test_spin_about_the_eccentricity_makes_no_pressure():
+    mesh = polar_mesh(RADIUS, np.linspace(0.0, np.pi / 2, 13), 24)
+    film, empty = CLEARANCE - ECCENTRICITY * mesh.direction[:, 2], np.zeros(mesh.cells)
+    balance = balance_cells(mesh, np.array([0.0, 0.0, 10.0]), VISCOSITY, film, empty, empty, np.zeros(24))
+    assert np.abs(balance.outflow).max() < 1e-12 * 10.0 * RADIUS * CLEARANCE * mesh.width.max()
+
+
+def pocketed_slider(cells, speed):
+    """Solve Fowell's slider: (J. Tribol. 129 (2007) 336); return problem, state and points in mm."""
+    points = np.linspace(0.0, 10.0, cells + 1)
+    middle = (points[1:] + points[:-1]) / 2
+    gap = 1.05e-3 - 0.05e-3 * middle / 10 + np.where((middle > 2) & (middle < 5), 1e-3, 0.0)
+    problem = FilmProblem(
+        mesh=strip_mesh(points),
+        viscosity=1e-8,
+        spin=np.array([speed, 0.0, 0.0]),
+        gap=gap,
+        compliance=np.zeros(cells),
+        rim_pressure=np.array([0.1, 0.1]),
+    )
+    start = FilmState(pressure=np.full(cells, 0.1), void=np.zeros(cells), eccentricity=np.zeros(3))
+    return problem, solve_steady(problem, start, tolerance=1e-10), points
+
+
+def face_pressure(problem, state, index, speed):
+    """Pressure in MPa at the face behind a cell, where the film may have a step."""
+    first, second = problem.gap[index] ** 3, problem.gap[index + 1] ** 3
+    length = 2 * problem.mesh.first_distance[index]
+    drag = 12 * problem.viscosity * 0.5 * speed * (problem.gap[index] - problem.gap[index + 1]) * length / 2
+    return (first * state.pressure[index] + second * state.pressure[index + 1] + drag) / (first + second)
+
+
+def test_fowells_slider_with_cavitation():
+    cells = either(quick=2000, long=20_000)
+    problem, state, points = pocketed_slider(cells, 1000.0)
+    assert state.converged
+    width = 10.0 / cells
+    assert points[np.flatnonzero(state.void > 1e-9)[-1] + 1] == pytest.approx(3.611263, abs=width)
+    assert face_pressure(problem, state, cells // 2 - 1, 1000.0) == pytest.approx(9.808819, rel=width)
+    load = 1e3 * ((state.pressure - 0.1) * problem.mesh.area).sum()  # N/m over the ambient pressure
+    assert load == pytest.approx(34165.70, rel=width)
+
+
+def test_fowells_slider_without_cavitation_is_exact():
+    problem, state, _ = pocketed_slider(1000, 20.0)
+    assert not state.void.any()
+    assert 1e6 * face_pressure(problem, state, 199, 20.0) == pytest.approx(4.062188e4, rel=1e-6)
+    assert 1e6 * face_pressure(problem, state, 499, 20.0) == pytest.approx(4.519239e5, rel=1e-6)
+    assert 1e3 * ((state.pressure - 0.1) * problem.mesh.area).sum() == pytest.approx(1333.452, rel=1e-5)
+
+
+def test_lubricant_is_conserved_while_a_film_cavitates():
+    """A time step moves the volume that enters less the volume that leaves."""
+    problem, state, _ = pocketed_slider(200, 1000.0)
+    volume = problem.thickness(state) * (1 - 0.5 * state.void)
+    later = advance(problem, replace_void(state, 0.5), volume=volume, step=1e-4, tolerance=1e-10)
+    balance = balance_cells(
+        problem.mesh, problem.spin, problem.viscosity, problem.gap, later.pressure, later.void, problem.rim_pressure
+    )
+    growth = (problem.gap * (1 - later.void) - volume) @ problem.mesh.area / 1e-4
+    assert growth == pytest.approx(-balance.outflow.sum(), rel=1e-6)
+
+
+def replace_void(state, factor):
+    """State with the vapour times a factor."""
+    return FilmState(pressure=state.pressure, void=factor * state.void, eccentricity=state.eccentricity)
