@@ -1,4 +1,7 @@
-"""The runner: `python -m benchmarks` lists the benchmarks, `python -m benchmarks NAME ... [--write]` runs them."""
+"""The runner: `python -m benchmarks` lists the benchmarks, `python -m benchmarks NAME ... [--write]` runs them.
+
+Options of a benchmark are arguments of its function `measure`.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ import sys
 from collections.abc import Sequence
 from difflib import get_close_matches
 from importlib import import_module
+from inspect import signature
 
 from . import report
 
@@ -29,7 +33,12 @@ BENCHMARKS = {
         "tabulated",
         "a million presses by force from the tables, beside the exact solver and the paper's model",
     ),
+    "inverse-of-solved": (
+        "inverse_of_solved",
+        "a million presses by force of tabulated and refined: NumPy, numba and JAX, with the goals",
+    ),
     "off-axis": ("off_axis", "a ball in a cup at a tilt: set up, displacement, force, a cycle; and CalculiX"),
+    "off-axis-many": ("off_axis_many", "tilted loads on one real cup in batches: NumPy and JAX on one core"),
     "rings": ("rings", "a tilted cup by the number of its rings: set up, displacement, force, and error"),
     "force-element": ("force_element", "the joint in motion: force, moment and tangent, beside OpenSim"),
     "hip": ("hip", "a hip in use: a cycle, millions of them, springs and real cup; and a loop by hand in NumPy"),
@@ -45,8 +54,11 @@ BENCHMARKS = {
     ),
     "evidence": ("evidence", "a pack of evidence for 81 cases off the axis, with and without finite elements"),
     "in-motion": ("in_motion", "a ball joint in MuJoCo, Exudyn, OpenSim and FMI, beside what these have themselves"),
-    "gpu": ("gpu", "presses a second on a GPU through PyTorch, against its memory's bandwidth; skipped without one"),
-    "app": ("app", "the explorer in a browser: first view, a slider that moves, fifty sessions at once"),
+    "gpu": (
+        "gpu",
+        "presses on a GPU through PyTorch and JAX, against its memory's bandwidth; skipped without one",
+    ),
+    "app": ("app", "the explorer in a browser: first load, sliders, many sessions, floods; and empty pages"),
     "identical": ("identical", "results of every public entry, recorded twice and compared bit for bit"),
     "import": ("start", "how long a fresh interpreter takes to import the package and to answer a joint file"),
 }
@@ -57,6 +69,8 @@ def main(words: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help="which to run; none lists them")
     parser.add_argument("--write", action="store_true", help="also put the rows into benchmarks/RESULTS.md")
+    parser.add_argument("--other", metavar="PATH", help="checkout of another version, which `app` measures too")
+    parser.add_argument("--python", metavar="PATH", help="interpreter with the rivals of `app`, if not this one")
     given = parser.parse_args(words)
     for name in given.names:
         if name not in BENCHMARKS:
@@ -66,7 +80,13 @@ def main(words: Sequence[str] | None = None) -> int:
             print(f"{name:<14} {title}")
     for name in given.names:
         module, title = BENCHMARKS[name]
-        found = import_module(f".{module}", __package__).measure()
+        measure = import_module(f".{module}", __package__).measure
+        options = {key: value for key in ("other", "python") if (value := getattr(given, key)) is not None}
+        unknown = [key for key in options if key not in signature(measure).parameters]
+        if unknown:
+            print(f"benchmarks: {name} has no option --{unknown[0]}", file=sys.stderr)
+            return 2
+        found = measure(**options)
         if isinstance(found, str):
             print(f"{name}: skipped, {found}")
             continue

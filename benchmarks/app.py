@@ -1,249 +1,233 @@
-"""The explorer in a browser: the first view, a slider that moves, and fifty sessions at once.
+"""The explorer in a browser beside its rivals: first load, sliders, many sessions, floods, frames of the viewer.
 
-Times are taken inside the page: from the key that moves a slider to the picture in which the new number stands. The
-rival is an empty page of the same library, one slider and one number, served and read in the same way in turns: what
-is left between the two is the joint. Fifty sessions come from a script on loopback, each its own websocket, all moving
-at once.
+The rivals are the explorer of another checkout (option `--other`), and an empty page with one slider and one number in
+each known library that is installed (for the interpreter of option `--python`). All take turns. Times are taken inside
+the page: from the key that moves a slider to the frame in which the new text stands.
 """
 
 from __future__ import annotations
 
 import asyncio
-import json
-import re
-import subprocess
+import resource
 import sys
-import time
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
 from importlib.util import find_spec
-from statistics import quantiles
+from pathlib import Path
+from statistics import median, quantiles
 from typing import Any
 
+from . import explorer_browser as browser_measures
+from .explorer_servers import LIBRARIES, Server, is_installed, served_explorer, served_library
+from .explorer_sessions import PanelSession, Session, SocketSession
 from .report import Report, Rows
-from .timing import Spread, short
+from .timing import short
 
-MOVES, VISITS, SESSIONS, TURNS = 60, 6, 50, 6
-AIM_VIEW, AIM_MOVE = 3.0, 0.150  # seconds
-_EMPTY = """
-import panel as pn
-def page():
-    slider = pn.widgets.FloatSlider(start=0, end=5000, step=50, value=3000, css_classes=["load"])
-    number = pn.pane.HTML()
-    def show(*_):
-        number.object = f"<dl><dd data-name='max_pressure' data-value='{slider.value!r}'>{slider.value}</dd></dl>"
-    slider.param.watch(show, "value")
-    show()
-    return pn.Column(slider, number)
-pn.extension()
-server = pn.serve(page, port=0, start=False, show=False)
-print(f"http://127.0.0.1:{server.port}/ (Ctrl-C", flush=True)
-server.start()
-server.io_loop.start()
-"""
-_WITHIN = """
-window.within = (root, selector) => {
-  const found = root.querySelector(selector);
-  if (found) return found;
-  for (const each of root.querySelectorAll("*")) {
-    const inner = each.shadowRoot && window.within(each.shadowRoot, selector);
-    if (inner) return inner;
-  }
-  return null;
-};
-"""
-_MOVE = """
-([slider, key]) => new Promise((done) => {
-  const place = "dd[data-name=max_pressure]";
-  const read = () => { const at = window.within(document, place); return at && at.dataset.value; };
-  const place_of = window.within(document, `.${slider}, [data-name="${slider}"]`);
-  const handle = window.within(place_of.shadowRoot || place_of, ".noUi-handle, input[type=range]");
-  const before = read(), start = performance.now();
-  const look = () => (read() !== before ? done(performance.now() - start) : requestAnimationFrame(look));
-  handle.dispatchEvent(new KeyboardEvent("keydown", { key, code: key, bubbles: true, cancelable: true }));
-  requestAnimationFrame(look);
-})
-"""
+_VISITS, _MOVES, _SESSIONS, _MEMORY_SESSIONS, _FLOOD, _IDLE = 3, 50, 50, 300, 10_000, 1000
+_SLIDERS = ("load", "clearance", "ball_radius", "liner_thickness")
+_HEADLINE, _TABLE = "dd[data-name=max_pressure]", ".models"
+_EXPLORER_READY = "fieldset#inputs:not([disabled]) [data-name=load] input[type=range]"
+_EMPTY_SLIDER, _EMPTY_NUMBER = (
+    "[role=slider][tabindex], [role=slider] [tabindex], .noUi-handle, input[type=range]",
+    ".number",
+)
 
 
-@contextmanager
-def served(*words: str) -> Iterator[str]:
-    """The address that a server prints, and the server until the end."""
-    process = subprocess.Popen([sys.executable, *words], stdout=subprocess.PIPE, encoding="utf-8")
-    assert process.stdout is not None
-    try:
-        yield next(line.split()[0] for line in process.stdout if line.startswith("http"))
-    finally:
-        process.terminate()
-        process.communicate(timeout=20)
+@dataclass(frozen=True)
+class Explorer:
+    """Explorer of a checkout, and the way to open a session of it."""
+
+    server: Server
+    session: Callable[[str], Session]
+
+    def new_session(self) -> Session:
+        return self.session(self.server.address)
 
 
-def opened(browser: Any, address: str) -> tuple[Any, float]:
-    """A page in a new window with empty caches, and the seconds until its first number is seen."""
-    page = browser.new_context(viewport={"width": 1280, "height": 900}).new_page()
-    page.add_init_script(_WITHIN)
-    start = time.perf_counter()
-    page.goto(address)
-    page.locator("dd[data-name=max_pressure]").wait_for()
-    return page, time.perf_counter() - start
-
-
-def moves(page: Any, slider: str, count: int) -> list[float]:
-    """Seconds that single steps take, to and fro."""
-    keys = ["ArrowRight", "ArrowLeft"]
-    page.wait_for_timeout(800)
-    found = []
-    for number in range(count):
-        found.append(page.evaluate(_MOVE, [slider, keys[number // 10 % 2]]) / 1e3)
-        page.wait_for_timeout(40)
-    return found
-
-
-def shares(seconds: list[float]) -> str:
-    """Median and 95th percentile in ms."""
-    percent = quantiles(seconds, n=100, method="inclusive")
-    return f"{short(1e3 * percent[49])}, {short(1e3 * percent[94])}"
-
-
-def in_the_browser(ours: str, empty: str, view: Rows, moved: Rows) -> None:
-    from playwright.sync_api import sync_playwright
-    from tests.app.browser import ARGUMENTS, chromium
-
-    with sync_playwright() as tools:
-        browser = tools.chromium.launch(executable_path=chromium(), args=ARGUMENTS)
-        first: dict[str, list[float]] = {ours: [], empty: []}
-        for _ in range(VISITS):
-            for address in (ours, empty):
-                page, seconds = opened(browser, address)
-                first[address].append(seconds)
-                page.context.close()
-        mine, rival = (Spread(tuple(first[address])) for address in (ours, empty))
-        verdict = "met" if mine.median <= AIM_VIEW else "missed"
-        view.add("first view, empty caches", mine, rival, f"aim {AIM_VIEW:g}: {verdict}")
-        bare, _ = opened(browser, empty)
-        for model in ("hess-forsbach", "tabulated", "exact"):
-            page, _ = opened(browser, f"{ours}?answered_by={model}")
-            for slider, what in (("load", "force"), ("clearance", "clearance")):
-                taken = moves(page, slider, MOVES)
-                floor = moves(bare, "load", MOVES)
-                late = quantiles(taken, n=100, method="inclusive")[94]
-                verdict = "met" if late <= AIM_MOVE else "missed"
-                moved.add(f"{model}: {what}", shares(taken), shares(floor), f"aim {1e3 * AIM_MOVE:g}: {verdict}")
-            page.context.close()
-        browser.close()
-
-
-class Session:
-    """One user of fifty, as the browser's script would be: Bokeh's protocol over a websocket."""
-
-    def __init__(self, address: str) -> None:
-        self._address = address
-        self._socket: Any = None
-        self._ears, self._asked = "", 0
-
-    async def open(self) -> None:
-        """Until the numbers of the page are there."""
-        from tornado.httpclient import AsyncHTTPClient, HTTPRequest
-        from tornado.websocket import websocket_connect
-
-        page = await AsyncHTTPClient(max_clients=SESSIONS).fetch(f"{self._address}?preset=hip-28", request_timeout=120)
-        (token,) = re.findall(r'"token":"([^"]+)"', page.body.decode())
-        place, headers = f"{self._address.replace('http', 'ws')}ws", {"Origin": self._address.rstrip("/")}
-        request = HTTPRequest(place, headers=headers, connect_timeout=120, request_timeout=120)
-        self._socket = await websocket_connect(request, subprotocols=["bokeh", token])
-        await self._receive()
-        await self._send("PULL-DOC-REQ", {})
-        while '"doc":' not in (document := await self._receive())[:20]:
-            pass
-        (self._ears,) = (
-            each["id"] for each in _models(json.loads(document)) if each["attributes"].get("name") == "asked"
-        )
-        ready = {"type": "event", "name": "document_ready", "values": {"type": "map"}}
-        await self._patch({"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": ready})
-        while _NUMBER not in await self._receive():
-            pass
-
-    async def move(self, value: float) -> float:
-        """Seconds until the page has answered a move of the clearance."""
-        start = time.perf_counter()
-        self._asked += 1
-        words = json.dumps({"n": self._asked, "do": "edit", "name": "clearance", "value": value})
-        await self._patch({"kind": "ModelChanged", "model": {"id": self._ears}, "attr": "value", "new": words})
-        while _NUMBER not in await self._receive():
-            pass
-        return time.perf_counter() - start
-
-    async def _patch(self, event: dict[str, Any]) -> None:
-        await self._send("PATCH-DOC", {"events": [event]})
-
-    async def _send(self, kind: str, content: dict[str, Any]) -> None:
-        for part in ({"msgid": str(time.time()), "msgtype": kind}, {}, content):
-            await self._socket.write_message(json.dumps(part))
-
-    async def _receive(self) -> str:
-        """The content of the next message."""
-        header = json.loads(await self._part())
-        await self._part()
-        content = await self._part()
-        for _ in range(2 * header.get("num_buffers", 0)):
-            await self._socket.read_message()
-        return content
-
-    async def _part(self) -> str:
-        part = await asyncio.wait_for(self._socket.read_message(), 60)
-        if part is None:
-            raise ConnectionError("the server closed a session")
-        return str(part)
-
-
-_NUMBER = "data-name='max_pressure'"
-
-
-def _models(part: Any) -> Iterator[dict[str, Any]]:
-    """All in a document."""
-    if isinstance(part, dict) and isinstance(part.get("attributes"), dict):
-        yield part
-    for inner in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
-        yield from _models(inner)
-
-
-async def user(address: str, number: int) -> tuple[float, list[float]]:
-    """Seconds to open a session, and those from a slider to the new number."""
-    start, one = time.perf_counter(), Session(address)
-    await one.open()
-    opening = time.perf_counter() - start
-    return opening, [await one.move(0.0512 + 0.005 * ((turn + number) % 40)) for turn in range(TURNS)]
-
-
-async def crowd_of(address: str) -> list[tuple[float, list[float]]]:
-    return await asyncio.gather(*(user(address, number) for number in range(SESSIONS)))
-
-
-def many(address: str, rows: Rows) -> None:
-    found = asyncio.run(crowd_of(address))
-    openings = [opening for opening, _ in found]
-    taken = [seconds for _, each in found for seconds in each]
-    rows.add("open a session", shares(openings), f"{max(openings):.1f}")
-    rows.add("a slider to its number", shares(taken), f"{max(taken):.1f}")
-
-
-def measure() -> Report | str:
-    for module in ("panel", "playwright"):
-        if find_spec(module) is None:
-            return f"{module} is not installed"
-    view = Rows("Seconds until the first number is seen", ("what", "ours", "an empty page", "verdict"))
-    moved = Rows("From a slider to the new picture, ms: median, 95th percentile", ("what", "ours", "empty", "verdict"))
-    crowd = Rows(
-        f"{SESSIONS} sessions at once, each {TURNS} moves without a pause: median, 95th percentile in ms",
-        ("what", "ms", "longest, s"),
-    )
+def measure(other: str | None = None, python: str = sys.executable) -> Report | str:
+    """Measure the explorer beside that of the checkout `other` and beside empty pages; `python` runs the rivals."""
+    if find_spec("playwright") is None:
+        return "playwright is not installed"
+    _allow_files(3000)
     with ExitStack() as stack:
-        ours = stack.enter_context(served("-m", "ballsocket", "app", "--no-browser", "--port", "0"))
-        empty = stack.enter_context(served("-c", _EMPTY))
-        in_the_browser(ours, empty, view, moved)
-        many(ours, crowd)
-    return Report(
-        [view, moved, crowd],
-        ["Server, browser and script share the machine's two cores. No session of the fifty had an error."],
-        ("panel", "bokeh"),
+        explorers = {"ours": Explorer(stack.enter_context(served_explorer()), SocketSession)}
+        if other is not None:
+            served = stack.enter_context(served_explorer(python, Path(other)))
+            explorers["other"] = Explorer(served, PanelSession)
+        installed = [library for library in LIBRARIES if is_installed(python, library)]
+        empty = {library: stack.enter_context(served_library(python, library)) for library in installed}
+        with browser_measures.opened_browser() as browser:
+            tables = [
+                _first_loads(browser, explorers, empty),
+                _slider_moves(browser, explorers, empty),
+                _frames(browser, explorers),
+            ]
+        tables.append(_crowd(explorers))
+    missing = [
+        f"{library} is not installed: its empty page is missing." for library in LIBRARIES if library not in empty
+    ]
+    return Report(tables, [*_NOTES, *missing], ("tornado", *installed))
+
+
+_NOTES = (
+    "Servers, browser and script share the machine's cores.",
+    "Other: the explorer of the checkout that --other names. Empty pages have one slider and one number.",
+    "Slow line: 50 kB/s with 150 ms latency, by Chromium. Messages count as plain text in both numbers of bytes.",
+    "Median, 95th percentile of 50 moves by key of each slider. The table counts from the key to its last change.",
+    "Processor time is that of the server and its child processes, from /proc.",
+)
+
+
+def _allow_files(count: int) -> None:
+    """Allow this process and its servers to open a number of files."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = count if hard == resource.RLIM_INFINITY else min(count, hard)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(soft, wanted), hard))
+
+
+def _aim(value: float, limit: float) -> str:
+    return f"aim {limit:g}: {'met' if value <= limit else 'missed'}"
+
+
+def _first_loads(browser: Any, explorers: dict[str, Explorer], empty: dict[str, Server]) -> Rows:
+    rows = Rows(
+        "First load with empty caches",
+        ("page", "requests", "kB sent", "kB plain", "s to inputs", "s, slow line", "verdict"),
     )
+    pages = {name: (explorer.server.address, _EXPLORER_READY) for name, explorer in explorers.items()}
+    pages |= {f"empty, {name}": (server.address, _EMPTY_SLIDER) for name, server in empty.items()}
+    quick: dict[str, list[browser_measures.Load]] = {name: [] for name in pages}
+    for _ in range(_VISITS):
+        for name, page in pages.items():
+            quick[name].append(browser_measures.first_load(browser, *page, slow=False))
+    for name, page in pages.items():
+        slow = browser_measures.first_load(browser, *page, slow=True)
+        load = quick[name][-1]
+        verdict = f"kB: {_aim(load.sent / 1e3, 300)}; slow: {_aim(slow.seconds, 3)}" if name == "ours" else ""
+        seconds = median(visit.seconds for visit in quick[name])
+        cells = (load.requests, short(load.sent / 1e3), short(load.plain / 1e3), short(seconds), short(slow.seconds))
+        rows.add(name, *cells, verdict)
+    return rows
+
+
+def _slider_moves(browser: Any, explorers: dict[str, Explorer], empty: dict[str, Server]) -> Rows:
+    rows = Rows(
+        "Moves of a slider", ("page", "to the number, ms", "to the table, ms", "server CPU a move, ms", "verdict")
+    )
+    for slider in _SLIDERS:
+        for name, explorer in explorers.items():
+            numbers, tables, cpu = _moved(
+                browser, explorer.server, f"[data-name={slider}] input[type=range]", (_HEADLINE, _TABLE)
+            )
+            verdicts = (_aim(_late(numbers), 100), _aim(_late(tables), 200), _aim(cpu, 15))
+            rows.add(f"{name}: {slider}", _shares(numbers), _shares(tables), short(cpu), "; ".join(verdicts))
+    for name, server in empty.items():
+        numbers, _, cpu = _moved(browser, server, _EMPTY_SLIDER, (_EMPTY_NUMBER,))
+        rows.add(f"empty, {name}", _shares(numbers), "", short(cpu), "")
+    return rows
+
+
+def _moved(browser: Any, server: Server, slider: str, watched: Sequence[str]) -> tuple[list[float], list[float], float]:
+    """Return the ms to the first text, those to the last change of the last text, and ms of the server for a move."""
+    page = browser_measures.open_page(browser, server.address)
+    page.locator(watched[-1]).first.wait_for()
+    page.wait_for_timeout(1500)
+    before = server.cpu()
+    moments = browser_measures.reactions(page, slider, watched, _MOVES)
+    cpu = 1e3 * (server.cpu() - before) / _MOVES
+    page.context.close()
+    never = float("inf")
+    numbers = [never if first[0] is None else first[0] for first, _ in moments]
+    tables = [never if final[-1] is None else final[-1] for _, final in moments]
+    return numbers, tables, cpu
+
+
+def _late(values: Sequence[float]) -> float:
+    return quantiles(values, n=100, method="inclusive")[94]
+
+
+def _shares(values: Sequence[float]) -> str:
+    """Format the median and the 95th percentile."""
+    return f"{short(median(values))}, {short(_late(values))}"
+
+
+def _frames(browser: Any, explorers: dict[str, Explorer]) -> Rows:
+    rows = Rows("Frames a second of the picture in three dimensions, turned by the pointer", ("page", "frames/s"))
+    for name, explorer in explorers.items():
+        page = browser_measures.open_page(browser, f"{explorer.server.address}?view=cup")
+        rows.add(name, short(browser_measures.frames_per_second(page, "canvas")))
+        page.context.close()
+    return rows
+
+
+def _crowd(explorers: dict[str, Explorer]) -> Rows:
+    rows = Rows("Many sessions, without a browser", ("what", *explorers, "verdict"))
+    aims = {
+        f"server CPU to open {_SESSIONS} sessions at once, s": (_opening, 12),
+        f"memory of {_MEMORY_SESSIONS} sessions over the first, MB": (_memory, 100),
+        f"another user's slowest answer in a flood of {_FLOOD} messages, s": (_flooded, 1),
+        f"another user's slowest answer beside {_IDLE} idle connections, s": (_idle, 1),
+    }
+    for what, (work, limit) in aims.items():
+        values = {name: asyncio.run(work(explorer)) for name, explorer in explorers.items()}
+        rows.add(what, *map(short, values.values()), _aim(values["ours"], limit))
+    return rows
+
+
+async def _opened(explorer: Explorer, count: int) -> list[Session]:
+    sessions = [explorer.new_session() for _ in range(count)]
+    await asyncio.gather(*(session.open() for session in sessions))
+    return sessions
+
+
+async def _opening(explorer: Explorer) -> float:
+    before = explorer.server.cpu()
+    sessions = await _opened(explorer, _SESSIONS)
+    seconds = explorer.server.cpu() - before
+    _close(sessions)
+    return seconds
+
+
+async def _memory(explorer: Explorer) -> float:
+    """Return the memory of many sessions over that of one, in MB; NaN if the server refuses so many."""
+    sessions = await _opened(explorer, 1)
+    await sessions[0].move(0.06)
+    before = explorer.server.memory()
+    try:
+        for _ in range(_MEMORY_SESSIONS // 20):
+            sessions += await _opened(explorer, 20)
+        return explorer.server.memory() - before
+    except ConnectionError:
+        return float("nan")
+    finally:
+        _close(sessions)
+
+
+async def _flooded(explorer: Explorer) -> float:
+    flooding, user = await _opened(explorer, 2)
+    flood = asyncio.create_task(flooding.flood(_FLOOD))
+    slowest = await _slowest_answer(user)
+    flooding.close()
+    flood.cancel()
+    user.close()
+    return slowest
+
+
+async def _idle(explorer: Explorer) -> float:
+    silent = [explorer.new_session() for _ in range(_IDLE)]
+    for part in range(0, _IDLE, 50):
+        await asyncio.gather(*(session.connect() for session in silent[part : part + 50]))
+    (user,) = await _opened(explorer, 1)
+    slowest = await _slowest_answer(user)
+    _close([user, *silent])
+    return slowest
+
+
+async def _slowest_answer(user: Session) -> float:
+    return max([await user.move(0.05 + 0.01 * number) for number in range(10)])
+
+
+def _close(sessions: Sequence[Session]) -> None:
+    for session in sessions:
+        session.close()

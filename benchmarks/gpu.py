@@ -1,4 +1,4 @@
-"""Presses a second on a GPU through PyTorch, against the memory's bandwidth: the paper's model and the tables.
+"""Presses on a GPU: the paper's model and the tables through PyTorch, tilted loads on a real cup through JAX.
 
 The limit is a copy of the same bytes: joint, load and three answers read or written once. Fair, because both run on the
 same device with the same arrays, in turns, each waited for.
@@ -7,25 +7,54 @@ same device with the same arrays, in turns, each waited for.
 from __future__ import annotations
 
 from collections.abc import Callable
+from time import perf_counter
 from typing import Any
 
 import ballsocket as bs
 
+from .off_axis_many import jax_seconds
 from .report import Report, Rows
 from .timing import interleaved
 
 COUNT, REPEATS = 10_000_000, 5
+LOADS = (64, 512, 2048)
 ARRAYS = 7  # R1, c, L, F in; d, ε, p0 out
 
 
 def measure() -> Report | str:
+    reports = [report for report in (_through_torch(), _through_jax()) if report is not None]
+    if not reports:
+        return "there is no GPU that PyTorch or JAX can use"
+    tables, notes, rivals = ([item for report in reports for item in getattr(report, name)] for name in _PARTS)
+    return Report(tables, notes, rivals)
+
+
+_PARTS = ("tables", "notes", "rivals")
+
+
+def _through_torch() -> Report | None:
     try:
         import torch
     except ImportError:
-        return "PyTorch is not installed"
-    if not torch.cuda.is_available():
-        return "there is no GPU here"
-    return rates(torch.device("cuda"), COUNT)
+        return None
+    return rates(torch.device("cuda"), COUNT) if torch.cuda.is_available() else None
+
+
+def _through_jax() -> Report | None:
+    """Tilted loads on a real cup; every product of matrices has full precision there."""
+    try:
+        import jax
+
+        device = jax.devices("gpu")[0]
+    except (ImportError, RuntimeError):
+        return None
+    rows = Rows("Tilted loads on one real cup, µs a load", ("loads at once", "1e-4", "2e-5", "aims at 1e-4"))
+    with jax.default_device(device):
+        for count in LOADS:
+            spreads = [jax_seconds(count, tolerance, perf_counter).per(1e-6 * count) for tolerance in (1e-4, 2e-5)]
+            rows.add(count, *spreads, "25")
+    note = f"Tilted loads on {device.device_kind}: float32, displacements and largest pressures, rings of 2°."
+    return Report([rows], [note], ("jax",))
 
 
 def rates(device: Any, count: int) -> Report:

@@ -1,4 +1,4 @@
-"""Makes the tables and the figure of `explanation/hip_validation.md`: `python docs/make_hip_validation.py`, by hand."""
+"""Makes the tables and figures of `explanation/hip_validation.md`: `python docs/make_hip_validation.py`, by hand."""
 
 from __future__ import annotations
 
@@ -6,14 +6,41 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
+import numpy
 from matplotlib.figure import Figure
 
+import ballsocket as bs
 from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, Predicted, Ratio, patients, ratios, simulators
-from ballsocket.reports.style import BLUE, VERMILLION, finish
+from ballsocket.hip import Archard, HipSimulation, Lubricant, Stribeck, in_vivo
+from ballsocket.reports.style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish
 
 DOCS = Path(__file__).parent
 _UNITS = {"mm3/Mc": "mm³/Mc", "mm3/year": "mm³/year"}
 PAGE = DOCS / "explanation" / "hip_validation.md"
+
+BODY_WEIGHT, HEAD_RADIUS = 800.0, 16.0
+"""Weight of the patient in N, and radius of the head in mm, of the calculated friction."""
+
+MEASURED_COEFFICIENT = {0.12: (0.04, 0.03, 0.06), 0.50: (0.06, 0.04, 0.08), 0.62: (0.14, 0.09, 0.23)}
+"""Mean, least and largest coefficient by the phase of the cycle: Damm et al. 2013, doi 10.1371/journal.pone.0078373."""
+
+MEASURED_PEAK_MOMENT = 0.26
+"""Mean of the peak moments of the same patients, in % of body weight times m."""
+
+LUBRICANTS = {
+    "μ 0.06": (Lubricant(friction=0.06), INK, "-"),
+    "film, μ 0.08 where surfaces touch, Ra 1 µm": (
+        Lubricant(friction=Stribeck(boundary=0.08), ball_roughness=0.0, cup_roughness=1e-3),
+        BLUE,
+        "--",
+    ),
+    "film, μ 0.2 where surfaces touch, Ra 0.1 µm": (
+        Lubricant(friction=Stribeck(boundary=0.2), ball_roughness=0.0, cup_roughness=1e-4),
+        ORANGE,
+        "-.",
+    ),
+}
+"""Lubricants of the calculated friction, with their lines."""
 
 
 def ratio_table(found: Iterable[Ratio]) -> str:
@@ -76,6 +103,35 @@ def figure(panels: dict[str, list[Predicted]]) -> Figure:
     return drawn
 
 
+def friction_figure() -> Figure:
+    """Coefficient of friction and friction moment in walking, calculated and measured in patients."""
+    liner = bs.Material(young=1000.0, poisson=0.4)
+    joint = bs.Joint(ball_radius=HEAD_RADIUS, clearance=0.1, liner_thickness=7.0, liner=liner)
+    cycle = in_vivo("walking", BODY_WEIGHT, 50)
+    use = HipSimulation(joint=joint, cycle=cycle, wear=Archard(coefficient=1e-6))
+    drawn = Figure(figsize=(9.0, 4.6), layout="constrained")
+    coefficient_axes, moment_axes = drawn.subplots(1, 2)
+    for label, (lubricant, color, line) in LUBRICANTS.items():
+        film = use.film(lubricant)
+        moment = numpy.linalg.norm(film.moment, axis=1)
+        force = numpy.linalg.norm(cycle.forces, axis=1)
+        percent, style = 100 * film.phases, {"color": color, "linestyle": line, "label": label}
+        coefficient_axes.plot(percent, moment / (force * HEAD_RADIUS), **style)
+        moment_axes.plot(percent, 0.1 * moment / BODY_WEIGHT, **style)
+    for phase, (mean, least, largest) in MEASURED_COEFFICIENT.items():
+        spread = [[mean - least], [largest - mean]]
+        name = "measured in eight patients, with ranges" if phase == min(MEASURED_COEFFICIENT) else None
+        coefficient_axes.errorbar(100 * phase, mean, yerr=spread, fmt="o", color=VERMILLION, capsize=3, label=name)
+    moment_axes.axhline(MEASURED_PEAK_MOMENT, color=VERMILLION, linestyle=":", label="mean of the measured peaks")
+    for axes, name in ((coefficient_axes, "coefficient of friction"), (moment_axes, "moment [% of body weight · m]")):
+        axes.set(xlim=(0, 100))
+        axes.set_ylim(bottom=0)
+        finish(axes, "part of the walking cycle [%]", name)
+    handles = [*coefficient_axes.get_legend_handles_labels()[0], *moment_axes.get_legend_handles_labels()[0][-1:]]
+    drawn.legend(handles=handles, loc="outside lower center", ncols=2, **LEGEND)
+    return drawn
+
+
 def main() -> None:
     shaken, walked = list(simulators()), list(patients())
     found = {"inputs": inputs(), "ratios": ratio_table(ratios()), "bands": band_table([*shaken, *walked])}
@@ -88,6 +144,7 @@ def main() -> None:
         for unit, units in {"mm³ a million cycles": ("mm3/Mc",), "mm, and mm a year": ("mm", "mm/year")}.items()
     }
     figure(panels).savefig(DOCS / "hip_validation.png", dpi=130)
+    friction_figure().savefig(DOCS / "hip_friction.png", dpi=130)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,8 @@ PACKAGE = Path(bs.__file__).parent
 MODULES = {path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_bytes()) for path in PACKAGE.rglob("*.py")}
 OPENING = {"open", "read_text", "read_bytes", "genfromtxt", "loadtxt", "fromfile", "read_csv", "read_parquet"}
 OWN_FILES = {
-    "app/style.py": "styles and scripts of the package",
+    "app/page.py": "files of the page, in the package",
+    "app/server.py": "the default browser",
     "core/storage/atomic_files.py": "locks a folder that is written; writes arrays",
     "cli/root.py": "opens the null device",
     "contact/closed_sphere.py": "a table of the package",

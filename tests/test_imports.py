@@ -27,7 +27,7 @@ NOT_YET = {
 ABOVE_MECHANICS = ("app", "cli", "evidence", "files", "mcp", "paper", "reports", "studies")
 """Rooms of files, studies, pages and commands."""
 
-LOADED_BY_NAME = ("", "__init__", "core.deprecation", "cli.root")
+LOADED_BY_NAME = ("", "__init__", "app.views.registry", "core.deprecation", "cli.root")
 """Modules that load what a folder or a table holds: `import_module` takes a name that they do not state themselves."""
 
 

@@ -17,6 +17,7 @@ PACKAGE = Path(bs.__file__).parent
 METHODS = {"match", "fullmatch", "search", "sub", "split", "findall", "finditer"}
 SIZES = (500, 1000, 2000, 4000)
 BOUNDED = {
+    "app/server.py": "host names of a request, against the names that its administrator gives",
     "studies/expressions.py": "texts of at most 200 characters",
     "core/sources.py": "the bibliography of the package",
     "elasticity/finite_elements/calculix.py": "results in a folder of decks",

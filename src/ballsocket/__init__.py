@@ -18,7 +18,6 @@ from .contact import Contact, Model
 from .core.deprecation import present_module_path, register_old_paths
 from .core.sources import Source, cite
 from .core.validity import OutsideDomainError, Range, Status
-from .dynamics.element import ForceElement
 from .elasticity.exact.exact_curve import ExactCurve
 from .elasticity.exact.model import Exact
 from .elasticity.exact.tabulated.model import Tabulated
@@ -194,17 +193,23 @@ _HINTS = {
 _DOORS = ("dynamics", "evidence", "export", "hip")
 """Subpackages for users, which are imported on first use."""
 
+_ON_FIRST_USE = {
+    "ForceElement": "dynamics.element",
+    "film": "lubrication.film",
+    "read_joint": "files.joint_file",
+}
+"""Names whose modules are imported on first use, since pressing a joint needs none of them."""
+
 if TYPE_CHECKING:
+    from .dynamics.element import ForceElement
     from .files.joint_file import read_joint
     from .lubrication.film import film
 else:
 
     def __getattr__(name: str) -> Any:
-        """Import a function that is slow to import, a subpackage, or a moved module of version 1.0 on first use."""
-        if name == "read_joint":
-            return import_module("ballsocket.files.joint_file").read_joint
-        if name == "film":
-            return import_module("ballsocket.lubrication.film").film
+        """Import a name that few need, a subpackage, or a moved module of version 1.0 on first use."""
+        if name in _ON_FIRST_USE:
+            return getattr(import_module(f"{__name__}.{_ON_FIRST_USE[name]}"), name)
         if name not in _DOORS and present_module_path(f"{__name__}.{name}") is None:
             hint = f"; {_HINTS[name]}" if name in _HINTS else ""
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")

@@ -271,7 +271,7 @@ _MESH_STEPS = numpy.append(0.0, numpy.linspace(0.15, 1.0, 18) ** 2)
 _SHORT_STEPS = numpy.linspace(0.0, 1.0, 12)
 """Half angles of a short curve, relative to the largest."""
 
-_MAX_HALF_ANGLE = radians(84.9)
+MAX_HALF_ANGLE = radians(84.9)
 """Largest half angle of a short curve in rad."""
 
 
@@ -285,7 +285,7 @@ def press_short_curve(contact: Contact, model: Model) -> Contact:
 
     A given half angle needs no search for the load.
     """
-    max_half_angle = min(1.15 * float(contact.half_angle), _MAX_HALF_ANGLE)
+    max_half_angle = min(1.15 * float(contact.half_angle), MAX_HALF_ANGLE)
     return model.press(contact.joint, half_angle=max_half_angle * _SHORT_STEPS)
 
 

@@ -1,20 +1,16 @@
-"""What a browser says to a page, and what it is answered, without a browser."""
+"""Requests of a browser to a page, and its answers, without a browser."""
 
 import json
 from base64 import b64decode
+from html import escape
 
 
 def does(page, what, **words):
-    """Somebody does something on a page; the messages with which it answers, as one."""
-    last, answer = json.loads(page.channel.inbox.value or '{"n": 0}')["n"], {}
-
-    def hear(attribute, old, new):
-        answer.update(json.loads(new))
-
-    page.channel.outbox.on_change("value", hear)
-    page.channel.inbox.value = json.dumps({"n": last + 1, "do": what, **words})
-    page.channel.outbox.remove_on_change("value", hear)
-    assert answer["n"] == last + 1
+    """Send one request to a page; return its messages as one."""
+    number, answer = page.channel.number + 1, {}
+    page.channel.write = lambda text: answer.update(json.loads(text))
+    page.channel.receive({"n": number, "do": what, **words})
+    assert answer["n"] == number
     return answer
 
 
@@ -27,4 +23,6 @@ def saved(page, kind):
 
 
 def trouble(page):
-    return page.channel.shown_value("#trouble") or ""
+    """Return what a page says is wrong: at the top of the answers, or beside its inputs."""
+    errors = [f"<p>{escape(refusal['error'])}</p>" for _, refusal in page.channel._refused.values()]
+    return "".join([page.channel.shown_value("#trouble") or "", *errors])

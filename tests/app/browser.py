@@ -42,6 +42,13 @@ def opened_browser() -> Iterator[Any]:
 @contextmanager
 def served_explorer(*words: str) -> Iterator[str]:
     """The address of an explorer in a process of its own."""
+    with explorer_process(*words) as (address, _):
+        yield address
+
+
+@contextmanager
+def explorer_process(*words: str) -> Iterator[tuple[str, Any]]:
+    """The address of an explorer, and its process."""
     process = subprocess.Popen(
         [sys.executable, "-m", "ballsocket", "app", "--no-browser", "--port", "0", *words],
         stdout=subprocess.PIPE,
@@ -58,7 +65,7 @@ def served_explorer(*words: str) -> Iterator[str]:
                 break
         else:
             pytest.fail(f"the explorer did not start: {''.join(lines)}")
-        yield found[1]
+        yield found[1], process
     finally:
         process.terminate()
         process.communicate(timeout=90)  # a slow machine may take its time

@@ -1,4 +1,7 @@
-"""One server and one browser for all tests of the explorer; people who use them."""
+"""One server and one browser for all tests of a worker; people who use them.
+
+Tests of pages and tests of connections are two groups of about equal time, one for each of two workers.
+"""
 
 import asyncio
 from urllib.parse import urlsplit
@@ -18,7 +21,7 @@ def browser():
 
 @pytest.fixture(scope="session")
 def address():
-    pytest.importorskip("panel", reason="the explorer's extra is not installed")
+    pytest.importorskip("tornado", reason="the explorer's extra is not installed")
     with served_explorer() as served:
         yield served
 
@@ -56,7 +59,7 @@ def user(profile, address):
 @pytest.fixture
 def served():
     """A server in this process, whose loop turns while it is asked."""
-    pytest.importorskip("panel", reason="the explorer's extra is not installed")
+    pytest.importorskip("tornado", reason="the explorer's extra is not installed")
     from ballsocket.app import server as serve
 
     loop = asyncio.new_event_loop()
@@ -65,5 +68,5 @@ def served():
     one.start()
     yield one
     one.stop()
-    one.io_loop.close()
+    loop.close()
     asyncio.set_event_loop(None)

@@ -16,7 +16,7 @@ from ..places import EXAMPLES
 expect = pytest.importorskip("playwright.sync_api", reason="playwright is not installed").expect
 
 HIP = bs.joints["hip-28"]
-pytestmark = pytest.mark.xdist_group("browser")  # one server and one browser for all of them
+pytestmark = pytest.mark.xdist_group("browser-pages")
 
 
 def test_a_fresh_page_shows_what_press_answers(user):
@@ -24,7 +24,7 @@ def test_a_fresh_page_shows_what_press_answers(user):
     contact = bs.Exact().press(HIP, force=3000.0)
     for name, factor in (("max_pressure", 1.0), ("indentation", 1e3), ("half_angle", 180 / 3.141592653589793)):
         assert user.number(name) == pytest.approx(getattr(contact, name) * factor, rel=1e-9)
-    rows = user.page.locator("tr:has(th[scope=row])")
+    rows = user.page.locator("#press-table tr:has(th[scope=row])")
     rows.first.wait_for()
     assert rows.count() == len(bs.catalogue)
 
@@ -51,9 +51,9 @@ def test_a_number_can_be_typed_beyond_the_slider(user):
 def test_a_number_that_no_joint_has_is_refused_in_words_and_the_page_goes_on(user):
     user.open()
     box = user.types("liner_poisson", "0.7")
-    assert user.says("poisson = 0.7 is not allowed")
+    assert user.says("must be -0.999 to 0.5 (the limits of an isotropic solid), got 0.7; 0.4 stays in use")
     assert user.answered()
-    assert box.input_value() == "0.4"
+    assert box.input_value() == "0.7"
     user.nudge("clearance")
     assert user.shows("max_pressure", bs.Exact().press(replace(HIP, clearance=0.105), force=3000.0).max_pressure)
 
@@ -63,7 +63,7 @@ def test_the_load_keeps_the_contact_when_it_is_given_otherwise(user):
     user.open()
     before = user.number("max_pressure")
     user.page.locator("[data-name=kind] label", has_text="indentation").click()
-    assert user.says("Indentation d")
+    assert user.says("Indentation")
     assert user.shows("max_pressure", before, 1e-4)
 
 
@@ -72,17 +72,17 @@ def test_a_link_brings_back_what_was_seen(user, other):
     user.open()
     user.nudge("ball_radius", times=3)
     user.page.locator("[data-name=size] label", has_text="radius").click()
-    assert user.says("Ball radius R1")
+    assert user.says("Ball radius")
     expected = bs.Exact().press(replace(HIP, ball_radius=14.3), force=3000.0).max_pressure
     assert user.shows("max_pressure", expected)
-    user.page.wait_for_function("window.location.search.includes('size=radius')")
+    user.until("window.location.search.includes('size=radius')")
     user.page.locator("#share").click()
     assert user.says("copied")
     link = user.page.evaluate("navigator.clipboard.readText()")
     assert parse_qs(urlsplit(link).query)["joint.ball_radius"] == ["14.3"]
     other.open(link.removeprefix(user.address))
     assert other.shows("max_pressure", expected)
-    assert other.says("Ball radius R1")
+    assert other.says("Ball radius")
 
 
 def test_a_link_that_cannot_be_read_says_so(user):
@@ -97,7 +97,8 @@ def test_names_in_a_link_are_text(user):
         "?name=<img src=x onerror=alert(1)>&joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5"
         "&liner.material=uhmwpe&view=compare"
     )
-    assert user.says("this joint")
+    user.page.locator(".designs th", has_text="this design").wait_for()
+    assert user.page.locator("[data-name=name] input").input_value() == "<img src=x onerror=alert(1)>"
     assert user.page.locator("img[src=x]").count() == 0
 
 
@@ -115,8 +116,7 @@ def test_what_is_seen_can_be_saved(user):
     report = user.saved("HTML").decode()
     assert "data:image/png;base64" in report
     assert "src='http" not in report
-    assert "?preset=hip-32" in report
-    assert user.address not in report
+    assert f"{user.address}?preset=hip-32" in report
     assert parse_joint(user.saved("TOML"), "saved") == JointFile(joint, {"force": 2500.0})
 
 
@@ -154,20 +154,30 @@ def test_two_users_do_not_see_each_other(user, other):
     assert other.shows("max_pressure", expected)
 
 
-def test_the_arrow_can_be_dragged_and_moved_by_keys(user):
-    """What is dragged is the load and its tilt; whoever has moved a handle by a key moves on with the next."""
-    user.open()
-    knob = user.page.locator("[data-drag=tilt]").bounding_box()
-    x, y = knob["x"] + knob["width"] / 2, knob["y"] + knob["height"] / 2
+def drags(user, handle, across, down):
+    """Drag the middle of a handle; return the load in the link then."""
+    box = user.page.locator(handle).bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     user.page.mouse.move(x, y)
     user.page.mouse.down()
-    user.page.mouse.move(x + 80, y, steps=4)
+    user.page.mouse.move(x + across, y + down, steps=4)
     user.page.mouse.up()
     user.answered()
-    words = parse_qs(urlsplit(user.page.url).query)
-    assert 10 < float(words["load.tilt"][0]) < 45
-    force = float(words["load.force"][0])
+    return {
+        name: float(values[0])
+        for name, values in parse_qs(urlsplit(user.page.url).query).items()
+        if name.startswith("load.")
+    }
+
+
+def test_the_arrow_can_be_dragged_and_moved_by_keys(user):
+    """The shaft changes the force alone, the knob the tilt alone; a handle moved by a key moves on with the next."""
+    user.open()
+    force = drags(user, "[data-drag=load][tabindex]", 0, -20)["load.force"]
     assert force != 3000.0
+    turned = drags(user, "[data-drag=tilt]", 80, 0)
+    assert 10 < turned["load.tilt"] < 45
+    assert turned["load.force"] == force
     user.page.locator("[data-drag=load][tabindex]").focus()
     for _ in range(2):
         user.page.keyboard.press("ArrowDown")
@@ -183,10 +193,10 @@ def test_the_keyboard_is_enough(user):
     assert user.page.evaluate("document.activeElement.textContent") == "Go to the answers"
     bars = user.page.locator(".side").get_by_role("slider")
     assert bars.count() == user.page.locator(".side input[type=range]:visible").count() > 5
-    user.page.get_by_role("slider", name="Diametral clearance 2 c mm").focus()
+    user.page.get_by_role("slider", name="Diametral clearance mm").focus()
     user.page.keyboard.press("ArrowUp")
     assert user.shows("max_pressure", bs.Exact().press(replace(HIP, clearance=0.105), force=3000.0).max_pressure)
-    user.page.get_by_role("textbox", name="Normal force F N").focus()
+    user.page.get_by_role("textbox", name="Normal force N").focus()
     user.page.keyboard.press("ArrowDown")
     assert user.shows("force", 2950.0)
 
@@ -198,4 +208,5 @@ def test_on_a_narrow_screen_the_answers_come_first_and_stay_in_sight(reader):
     someone.page.locator("summary", has_text="The joint").click()
     someone.nudge("clearance")
     assert someone.shows("max_pressure", bs.Exact().press(replace(HIP, clearance=0.105), force=3000.0).max_pressure)
+    someone.answered()
     assert someone.page.locator("dd[data-name=max_pressure]").bounding_box()["y"] < 800

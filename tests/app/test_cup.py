@@ -1,7 +1,10 @@
 """The cup's view without a browser: what it shows is what a press of the sphere says, and it refuses in a sentence."""
 
+import json
 import re
+from base64 import b64decode
 from dataclasses import replace
+from functools import partial
 from math import degrees, radians
 
 import numpy as np
@@ -11,10 +14,12 @@ import ballsocket as bs
 
 from .asking import does, edits, saved, trouble
 
-pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 pytest.importorskip("skfem")
+from ballsocket.app import jobs, long_view
 from ballsocket.app.jobs import Job
 from ballsocket.app.pictures.bore import pressed_bore
+from ballsocket.app.results import ResultStore
 from ballsocket.app.running import RunFinished
 from ballsocket.app.session import Page
 from ballsocket.app.views.cup import worker
@@ -23,6 +28,7 @@ from ballsocket.app.views.cup.view import _hint
 from ballsocket.app.views.cup.worker import Stood
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.problem.cup import Cup, Side
+from ballsocket.reports.check_table import checks_html, checks_of
 from ballsocket.reports.unit_systems import Units
 
 LINK = "view=cup&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
@@ -36,7 +42,7 @@ def at_once(monkeypatch):
 
     def ask(self, key, work):
         asked.append(key[0])
-        if key[0] == "bore":
+        if key[0] == "cup":
             self._heard(key, RunFinished(work(lambda news: self._heard(key, news))))
 
     monkeypatch.setattr(Job, "ask", ask)
@@ -60,13 +66,22 @@ def test_the_view_says_what_the_sphere_says(at_once):
     assert f"{degrees(contact.edge_margin):.3g}° of arc" in told(page, "numbers")
     assert f"{float(contact.max_pressure):.4g} <span class='unit'>MPa" in told(page, "numbers")
     assert f"{float(contact.edge_distance):.4g} mm from the rim" in told(page, "map")
-    assert 'role="img"' in told(page, "bowl")
+    viewed = json.loads(re.search(r"data-viewer='([^']*)'", told(page, "viewer"))[1])
+    assert viewed["loads"][0] == pytest.approx(contact.force_vector / 3000.0, abs=1e-4)
+    assert viewed["axes"]["up"] == pytest.approx([axis[2] for axis in page.screen.file.cup.frame], abs=1e-4)
+    assert viewed["radii"] == pytest.approx([18.0 / 18.1, 1 + 5 / 18.1, 1 + 5 / 18.1], abs=1e-4)
+    cells = np.frombuffer(b64decode(viewed["bytes"]), dtype=np.uint8)
+    assert cells.max() / 255 * 12 == pytest.approx(float(contact.max_pressure), rel=0.01)
     rows = dict(line.split(",") for line in saved(page, "CSV").decode().splitlines())
     assert float(rows["max_pressure_MPa"]) == pytest.approx(float(contact.max_pressure))
     assert float(rows["half_angle_deg"]) == pytest.approx(degrees(contact.half_angle))
     assert {"force_N", "edge_distance_mm", "rim_distance_mm", "edge_margin_deg"} <= set(rows)
-    assert f"<td>{float(contact.max_pressure):.4g}</td>" in saved(page, "HTML").decode()
-    assert at_once[-1] == "map"  # the orientations follow
+    report = saved(page, "HTML").decode()
+    assert f"<td>{float(contact.max_pressure):.4g} MPa</td>" in report
+    assert checks_html(checks_of(contact, page.screen.file.cup), page.screen.reading.with_unit) in report
+    listed = re.sub("<[^>]*>", "", report.split(">In the cup<")[1].split("</table>")[0])
+    assert "_" not in listed
+    assert at_once[-1] == "cup-stood"  # the orientations follow
 
     edits(page, "cup.inwards", "20")
     way = page.screen.file.aim["direction"]
@@ -82,7 +97,9 @@ def test_the_view_says_what_the_sphere_says(at_once):
     edits(page, "cup.inwards", 0)
     edits(page, "cup.pick", [75.0, 12.34])
     assert degrees(page.screen.file.cup.anteversion) == pytest.approx(12.3)
-    assert "Edge loading" in told(page, "numbers")
+    assert "✗ Rim contact (edge loading)" in told(page, "numbers")
+    table = told(page, "numbers")
+    assert table.index("reach of the contact</th>") < table.index("✗ fails") < table.index("? not known")
     edits(page, "cup.inclination", 90)
     assert "dislocated: the load pushes the ball out" in told(page, "trouble")
     assert told(page, "numbers") == ""
@@ -94,17 +111,17 @@ def test_an_orientation_of_zero_is_shown_and_not_replaced():
     upright, default = (bs.Sphere(cup=cup).press(joint, force=2000.0) for cup in (Cup(inclination=0.0), Cup()))
     assert "cup.usual" in _hint(default)
     assert _hint(upright) == ""
-    assert ">front</text>" in pressed_bore(upright)
-    assert ">front</text>" not in pressed_bore(default)
+    assert ">anterior</text>" in pressed_bore(upright)
+    assert ">anterior</text>" not in pressed_bore(default)
 
 
 @pytest.mark.parametrize(
     ("name", "value", "sentence"),
     [
-        ("inclination", "91", "inclination = 91"),
-        ("arc_of_cover", "0", "arc_of_cover = 0"),
-        ("inwards", "85", "load leans to the middle = 85"),
-        ("chamfer", "wide", "chamfer = 'wide' is not a number"),
+        ("inclination", "91", "Inclination must be 0 to 90° (from an upright axis to a level one), got 91°"),
+        ("arc_of_cover", "0", "Arc of cover must be 40 to 340° (the ball must stay in its socket), got 0°"),
+        ("inwards", "85", "Load direction, medial must be -80 to 80° (the load must press into the body), got 85°"),
+        ("chamfer", "wide", "Chamfer must be a number in mm, or a length such as '16 mm', got 'wide'"),
         ("side", "middle", "side = 'middle' is not allowed"),
         ("aim", "up", "'up' as aim is not known"),
         ("pick", [1.0], "is not a point of the map"),
@@ -141,15 +158,59 @@ def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(monkeypatch):
 
 def test_work_can_be_stopped_and_begun_again(monkeypatch):
     asked, ended = [], []
+    monkeypatch.setattr(worker, "_are_rings_cached", lambda joint, cup: False)
     monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key[0]))
     monkeypatch.setattr(Job, "stop", lambda self: ended.append(True))
-    page = opened()
-    edits(page, "cup.stop", True)
+    page = opened(LINK.replace("hip-36", "hip-32"))
+    edits(page, "cup.run", False)
     assert ended
-    assert "Stopped." in told(page, "progress")
+    assert page.channel.shown_value("=cup.run")["words"] == "Cancelled."
     count = len(asked)
-    edits(page, "cup.again", True)
-    assert len(asked) == count + 1
+    edits(page, "cup.run", True)
+    assert asked[count:] == ["cup"]
+
+
+def test_a_bore_whose_rings_are_on_disk_is_pressed_at_once(monkeypatch):
+    bs.Sphere(cup=Cup()).press(JOINT, force=1.0)
+    monkeypatch.setattr(worker, "RESULTS", ResultStore())
+    monkeypatch.setattr(long_view.results, "RESULTS", worker.RESULTS)
+    asked = []
+    monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key[0]))
+    page = opened()
+    assert "MPa" in told(page, "numbers")
+    assert set(asked) == {"cup-stood"}
+
+
+def test_a_bore_is_prepared_by_one_process_for_all_who_wait(monkeypatch):
+    """Contact and Cup share it; it ends with the last of them, and its news go to each by its own key."""
+    heard, runs = [], []
+
+    class Run:
+        def __init__(self, work, longest):
+            runs.append(self)
+            self.stopped = False
+
+        def news(self):
+            return RunFinished(True)
+
+        def stop(self):
+            self.stopped = True
+
+    monkeypatch.setattr(jobs, "Run", Run)
+    first, second = (Job(lambda key, news: heard.append((key, news.value))) for _ in range(2))
+    first.ask("press", partial(worker.set_up, JOINT, Cup()))
+    second.ask("cup", partial(worker.set_up, JOINT, Cup()))
+    assert len(runs) == 1
+    first.stop()
+    assert second.works
+    assert not runs[0].stopped
+    first.ask("press", partial(worker.set_up, JOINT, Cup()))
+    first.hear()
+    assert sorted(heard) == [("cup", True), ("press", True)]
+    assert runs[0].stopped
+    first.ask("press", partial(worker.set_up, JOINT, Cup()))
+    second.ask("cup", partial(worker.set_up, JOINT, Cup(arc_of_cover=radians(160.0))))
+    assert len(runs) == 3
 
 
 def made(**changes):

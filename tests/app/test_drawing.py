@@ -17,11 +17,11 @@ from ..joints import HIP
 def test_the_band_of_pressure_ends_with_the_contact_and_at_the_rim(arc):
     file = JointFile(HIP, {"force": 3000.0}, bs.Cup(arc_of_cover=radians(arc)))
     contact = bs.Exact().press(file.joint, force=3000.0)
-    outlines = [outline for outline, _ in petals(file, contact)]
-    widest = max(degrees(np.arctan2(np.abs(x), -y).max()) for x, y in outlines)
+    _, angles, _ = petals(file, contact)
+    widest = degrees(np.abs(angles).max())
     assert widest == pytest.approx(min(arc / 2, degrees(contact.half_angle)), abs=0.01)
 
 
 def test_a_joint_without_a_load_has_no_band():
     file = JointFile(replace(HIP, name=""), {}, bs.Cup())
-    assert petals(file, bs.Exact().press(file.joint, force=0.0)) == []
+    assert petals(file, bs.Exact().press(file.joint, force=0.0))[2].size == 0

@@ -13,10 +13,11 @@ from ballsocket.evidence.question import read_question
 from ballsocket.files.joint_file import JointFile
 from ballsocket.hip.config import read_hip
 
-from .asking import edits, saved, trouble
+from .asking import does, edits, saved, trouble
 
-pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
+from ballsocket.app import results
 from ballsocket.app.jobs import Job
 from ballsocket.app.running import RunFinished
 from ballsocket.app.session import Page
@@ -66,22 +67,21 @@ def test_what_is_typed_is_a_question_file(tmp_path):
 
 def test_a_question_is_read_as_it_is_typed():
     page = opened()
-    assert "2 cases" in told(page, "said")
+    assert "2 cases" in told(page, "found")
+    assert "2000 N, 3000 N" in told(page, "found")
     edits(page, "evidence.matrix", "force = 2, 3 kN; clearance = 0.05, 0.1, 0.15 mm")
-    assert "6 cases" in told(page, "said")
+    assert "6 cases" in told(page, "found")
     assert "ask.matrix=" in page.channel.shown_value("link")
     assert opened(page.channel.shown_value("link")).screen == page.screen
     edits(page, "evidence.matrix", "clearance = 0.05, 0.1 mm")
-    assert "[matrix] needs a load" in told(page, "said")
+    assert "[matrix] needs a load" in told(page, "found")
     edits(page, "evidence.run", True)
-    assert "[matrix] needs a load" in unescape(trouble(page))
+    assert "[matrix] needs a load" in told(page, "trouble")
 
 
 @pytest.mark.parametrize(
     ("name", "value", "sentence"),
     [
-        ("limits", "max_presure <= 20 MPa", "did you mean 'max_pressure'"),
-        ("limits", "max_pressure", "is not a limit"),
         ("matrix", "force", "needs a name and ="),
         ("matrix", "liner = uhmwpe, pom", "'liner' in the matrix"),
         ("tolerances", "clearance", "needs a name and ="),
@@ -95,7 +95,24 @@ def test_a_question_is_read_as_it_is_typed():
 def test_what_is_wrong_with_a_question_is_said_in_the_view(name, value, sentence):
     page = opened()
     edits(page, f"evidence.{name}", value)
-    assert sentence in told(page, "said")
+    assert sentence in told(page, "found")
+
+
+def test_limits_are_rows():
+    page = opened()
+    edits(page, "evidence.limits", [["max_pressure", "<=", "20"], ["half_angle", "<=", "60"]])
+    assert page.screen.asked.limits.startswith("max_pressure<=20.0; half_angle<=1.047")
+    assert page.channel.shown_value("=evidence.limits")["value"][1] == ["half_angle", "<=", "60"]
+    assert opened(page.channel.shown_value("link")).screen == page.screen
+    edits(page, "evidence.limits", [["max_pressure", "<=", "wide"]])
+    assert "wide" in page.channel.shown_value("=evidence.limits")["error"]
+    assert len(page.screen.asked.limits.split(";")) == 2  # nothing is lost
+    does(page, "choose", name="units", value="imperial")
+    edits(page, "evidence.limits", [["max_pressure", "<=", "3000"]])
+    (limit,) = evidence._limits(page.screen.asked)
+    assert limit.high == pytest.approx(20.68, rel=1e-3)
+    edits(page, "evidence.limits", [["max_presure", "<=", "20"]])
+    assert "did you mean 'max_pressure'" in unescape(trouble(page))
 
 
 @pytest.mark.parametrize(("name", "value"), [("influence", "huge"), ("elements", True), ("colour", "red")])
@@ -107,26 +124,56 @@ def test_what_is_no_input_is_refused(name, value):
     assert page.screen == before
 
 
+def test_a_limit_is_asked_for_before_anything_runs(monkeypatch):
+    asked = []
+    monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key))
+    page = opened()
+    assert "✗ No limit is stated" in told(page, "found")
+    edits(page, "evidence.run", True)
+    assert "Evidence needs a limit to decide on" in told(page, "trouble")
+    edits(page, "evidence.allowable", True)
+    assert "the liner has no allowable pressure" in trouble(page)
+    edits(page, "allowable", 20)
+    edits(page, "evidence.allowable", True)
+    assert page.screen.asked.limits == "max_pressure <= 20 MPa"
+    assert asked == []
+    edits(page, "evidence.run", True)
+    assert len(asked) == 1
+    page.leave()
+
+
 def test_the_pack_that_was_gathered_is_taken(monkeypatch):
     folders = []
+    limits = [
+        {"name": "max_pressure", "low": None, "high": high, "verdict": verdict, "beyond": beyond, "unknown": 0}
+        for high, verdict, beyond in ((20.0, "kept", 0), (10.0, "not kept", 2))
+    ]
 
     def ask(self, key, work):
         folders.append(Path(work.args[-1]))
         assert folders[-1].is_dir()
         worst = {"max_pressure": {"numbers": {"max_pressure": 11.2}, "errors": {}, "case": {"force": 2000.0}}}
-        self._heard(key, RunFinished(EvidencePack(conclusions=("kept",), record={"worst": worst}, content=b"a pack")))
+        record = {"worst": worst, "limits": limits}
+        pack = EvidencePack(conclusions=("one: kept", "two: not kept", "accurate"), record=record, content=b"a pack")
+        self._heard(key, RunFinished(pack))
 
     monkeypatch.setattr(Job, "ask", ask)
-    monkeypatch.setattr(evidence, "_PACKS", evidence.CachedRun(max_size=4))
-    page = opened()
+    monkeypatch.setattr(results, "RESULTS", results.ResultStore())
+    page = opened(f"{LINK}&ask.limits=max_pressure <= 20 MPa")
     edits(page, "evidence.take", True)
-    assert "there is no pack of this yet" in trouble(page)
+    assert "there is no result for this design yet" in trouble(page)
     edits(page, "evidence.run", True)
-    assert "11.2 MPa" in told(page, "found")
+    found = told(page, "found")
+    assert "11.2 MPa" in found
+    assert found.startswith("<p class='verdict no'>✗ largest pressure at most 10 MPa: not kept</p>")
+    assert "✓ largest pressure at most 20 MPa: kept" in found
     assert edits(page, "evidence.take", True)["file"]["name"] == "evidence.zip"
     assert b"largest pressure,11.2 MPa" in saved(page, "CSV")
     edits(page, "liner_young", 900)
-    assert told(page, "found") == ""  # another joint
+    assert told(page, "found") == found
+    assert "belong to an earlier design" in told(page, "earlier")
+    edits(page, "evidence.take", True)
+    assert "there is no result for this design yet" in trouble(page)
     page.leave()
     assert not folders[0].exists()
 

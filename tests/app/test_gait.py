@@ -14,12 +14,12 @@ from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named
 
 from .asking import does, edits, saved, trouble
 
-pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.jobs import Job
 from ballsocket.app.running import RunFinished, RunRefused
 from ballsocket.app.session import Page
 from ballsocket.app.state.use import DEFAULT_USE
-from ballsocket.app.views.gait.worker import MERIDIANS, RINGS, simulate_gait
+from ballsocket.app.views.gait.worker import MERIDIANS, RINGS, simulate_film, simulate_gait
 
 LINK = "view=gait&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
 CUP = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
@@ -49,47 +49,108 @@ def told(page, name):
     return page.channel.shown_value(f"#gait-{name}") or ""
 
 
+def played(page):
+    return json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "courses"))[1]))
+
+
+def viewed(page):
+    return json.loads(re.search(r"data-viewer='([^']*)'", told(page, "viewer"))[1])
+
+
 def test_a_cycle_is_that_of_python():
     page = opened()
     found = simulate_gait(page.screen.file, DEFAULT_USE, None, lambda news: None)
     hip = HipSimulation(joint=page.screen.file.joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6), cup=CUP)
-    film = hip.film(Lubricant())
     assert found.force == pytest.approx(hip.cycle.force_magnitudes)
     assert found.pressure == pytest.approx(hip.unworn.pressure.max(axis=1))
-    assert found.film == pytest.approx(1e6 * film.least)
     assert found.edge == pytest.approx(hip.edge_distance(hip.unworn))
     assert found.load @ np.array([1.0, 0.0, 0.0]) == pytest.approx(hip.forces[:, 0] / hip.cycle.force_magnitudes)
-    cells = np.frombuffer(found.cells, dtype=np.uint8).reshape(100, RINGS, MERIDIANS)
+    cells = found.frames.cells
+    assert cells.shape == (100, RINGS + 1, MERIDIANS)
     assert 240 <= cells.max() <= 255
+    assert found.frames.highest == pytest.approx(found.pressure.max())
     assert cells[found.heaviest].sum() == cells.sum(axis=(1, 2)).max()
     around = 2 * np.pi * (np.arange(MERIDIANS) + 0.5) / MERIDIANS
     lean = (cells[found.heaviest].sum(axis=0) * np.exp(1j * around)).sum()  # towards the load, around the axis
     assert np.angle(lean) == pytest.approx(np.arctan2(*found.load[found.heaviest, 1::-1]), abs=radians(3))
 
 
+def test_the_film_is_the_wave_of_python():
+    page = opened()
+    found = simulate_film(page.screen.file, DEFAULT_USE, None, lambda news: None)
+    hip = HipSimulation(joint=page.screen.file.joint, cycle=iso_14242_1(), wear=Archard(coefficient=1e-6), cup=CUP)
+    film = hip.film(Lubricant(), method="wave")
+    assert found.least == pytest.approx(1e6 * film.least)
+    assert found.central == pytest.approx(1e6 * film.central)
+    assert found.ratio == pytest.approx(film.ratio)
+    assert found.figure.startswith(b"\x89PNG")
+    assert (found.valid, found.note, found.regime) == (film.valid, film.note, film.regime)
+    in_contact = (found.frames.cells > 0).mean(axis=(1, 2))
+    pressed = (simulate_gait(page.screen.file, DEFAULT_USE, None, lambda news: None).frames.cells > 0).mean(axis=(1, 2))
+    assert in_contact == pytest.approx(pressed, abs=0.05)  # a film is shown where there is a contact, and only there
+
+
 def test_the_page_plays_what_the_process_found():
     page = opened()
     found = simulate_gait(page.screen.file, DEFAULT_USE, None, lambda news: None)
-    data = json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "player"))[1]))
-    assert [course["unit"] for course in data["courses"]] == ["N", "MPa", "nm", "mm"]
+    data = played(page)
+    assert [course["unit"] for course in data["courses"]] == ["N", "MPa", "mm", "nm", "nm", ""]
+    assert [course["chart"] for course in data["courses"]] == [0, 1, 2, 3, 3, 4]
     assert data["courses"][1]["values"] == pytest.approx(found.pressure, rel=1e-4)
-    bowl = json.loads(re.search(r"data-bowl='([^']*)'", told(page, "player"))[1])
-    assert base64.b64decode(bowl["bytes"]) == found.cells
+    assert base64.b64decode(viewed(page)["bytes"]) == found.frames.cells.tobytes()
     assert told(page, "at") == str(found.heaviest)
+    assert "at 12.5 % of the cycle" in told(page, "flat")
     edits(page, "gait.instant", 7)
     assert told(page, "at") == "7"
+    assert "at 7.5 % of the cycle" in told(page, "flat")
     assert "use.instant=7" in page.channel.shown_value("link")
     assert opened(page.channel.shown_value("link")).screen == page.screen
     head, first, *_ = saved(page, "CSV").decode().splitlines()
-    assert head == "phase [%],load [N],largest pressure [MPa],least film [nm],edge distance [mm]"
+    press = "phase [%],load [N],largest pressure [MPa],edge distance [mm]"
+    assert head == f"{press},least film [nm],central film [nm],film ratio λ"
     assert float(first.split(",")[2]) == pytest.approx(found.pressure[0])
+
+
+def test_rim_contact_is_named_and_red():
+    page = opened()
+    found = simulate_gait(page.screen.file, DEFAULT_USE, None, lambda news: None)
+    share = f"Rim contact in {100 * (found.edge <= 0).mean():.0f} % of the cycle (9 to 19 %, 44 to 53 %)"
+    assert f"<p class='trust no'>✗ {share}" in told(page, "numbers")
+    assert told(page, "courses").count('class="flagged"') == 2
+    assert told(page, "numbers").index("✗ Fails: reach of the contact") < told(page, "numbers").index("✓ passes")
+    assert played(page)["rim"] == (found.edge <= 0).tolist()
+    free = opened(LINK.replace("inclination=45", "inclination=30"))
+    assert "✓ No rim contact" in told(free, "numbers")
+    assert "flagged" not in told(free, "courses")
+
+
+def test_the_film_is_shown_on_the_bore_with_its_own_scale():
+    page = opened()
+    pressure = viewed(page)
+    edits(page, "gait.field", "film")
+    assert "use.field=film" in page.channel.shown_value("link")
+    film = viewed(page)
+    assert (pressure["film"], film["film"]) == (False, True)
+    assert film["bytes"] != pressure["bytes"]
+    assert "film thickness [nm]" in told(page, "viewer")
+    assert "film thickness [nm] at 12.5 % of the cycle" in told(page, "flat")
+    assert "✗ by the wave, outside its validity" in told(page, "numbers")
+    assert "estimated error 12 %" in told(page, "numbers")
+    assert "fresh lubricant does not reach a core, up to 56 % of the contact" in told(page, "numbers")
+
+
+def test_a_cycle_that_is_prepared_is_sketched(monkeypatch):
+    monkeypatch.setattr(Job, "ask", lambda *words: None)
+    page = opened(LINK.replace("hip-36", "hip-32"))
+    assert told(page, "courses").count("Preparing ...") >= 5
+    assert "Preparing ..." in told(page, "flat")
 
 
 def test_a_cycle_is_read_in_inches_and_pounds():
     page = opened()
     does(page, "choose", name="units", value="imperial")
-    data = json.loads(unescape(re.search(r"data-player='([^']*)'", told(page, "player"))[1]))
-    assert [course["unit"] for course in data["courses"]] == ["lbf", "psi", "nm", "in"]
+    data = played(page)
+    assert [course["unit"] for course in data["courses"]] == ["lbf", "psi", "in", "nm", "nm", ""]
     assert max(data["courses"][0]["values"]) == pytest.approx(
         iso_14242_1().force_magnitudes.max() / 4.4482216, rel=1e-4
     )
@@ -111,23 +172,23 @@ def test_a_cycle_of_ones_own_is_read_and_is_in_no_link():
     page = opened()
     edits(page, "gait.own", {"name": "walk <1>.csv", "size": len(OWN), "text": OWN})
     assert "2500 <span class='unit'>N" in told(page, "numbers")
-    assert "walk &lt;1&gt;.csv: a link does not hold it" in told(page, "said")
+    assert "walk &lt;1&gt;.csv: a link does not hold it" in told(page, "load")
     assert "own" not in page.channel.shown_value("link")
     edits(page, "gait.cycle", "flexion")
-    assert "walk" not in told(page, "said")
+    assert "walk" not in told(page, "load")
 
 
 @pytest.mark.parametrize(
     ("name", "value", "sentence"),
     [
         ("cycle", "dancing", "'dancing' as cycle is not known"),
-        ("body_weight", "0", "body_weight = 0"),
+        ("body_weight", "0", "Body weight 0 N is not allowed"),
         ("contact", "steel", "'steel' as contact is not known"),
         ("instant", "seven", "an instant of a cycle is a whole number"),
         ("instant", -1, "instant = -1"),
         ("own", {"name": "walk.exe", "text": OWN}, "'walk.exe' is not a table of a cycle"),
         ("own", {"name": "walk.csv", "text": "", "size": 10**9}, "longer than 100000 characters"),
-        ("colour", "red", "'colour' among the inputs of a cycle"),
+        ("colour", "red", "'colour' among the inputs of Gait"),
     ],
 )
 def test_what_is_no_cycle_is_told(name, value, sentence):
@@ -144,7 +205,7 @@ def test_a_cycle_that_cannot_be_pressed_says_why():
     assert "cycle.csv" in told(page, "trouble")
     dislocated = opened(LINK.replace("cup.inclination=45", "cup.inclination=90"))
     assert "dislocated" in told(dislocated, "trouble")
-    assert told(dislocated, "player") == ""
+    assert told(dislocated, "viewer") == ""
 
 
 @pytest.mark.parametrize(
@@ -165,4 +226,7 @@ def test_links_about_use_are_strict(pairs, sentence):
 def test_a_cycle_is_saved_as_a_picture_and_a_page():
     page = opened()
     assert b"<svg" in saved(page, "SVG")
-    assert b"A cycle: iso-14242-1" in saved(page, "HTML")
+    report = saved(page, "HTML").decode()
+    assert "A cycle: iso-14242-1" in report
+    assert "✗ Rim contact in 19 % of the cycle" in report
+    assert "alt='film over the cycle'" in report.replace('"', "'")

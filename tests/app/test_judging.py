@@ -6,11 +6,11 @@ from functools import partial
 import pytest
 
 import ballsocket as bs
+from ballsocket.catalogue import judge
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup
 
 pytest.importorskip("skfem")
-pytest.importorskip("bokeh")
 from ballsocket.app import running
 from ballsocket.app.running import Reached, Run, RunFinished, RunRefused
 from ballsocket.app.views.finite_elements.worker import judged
@@ -49,6 +49,9 @@ def test_a_run_answers_what_a_press_answers():
     contact = bs.FiniteElement().press(HIP.joint, force=3000.0)
     assert found.numbers["max_pressure"] == pytest.approx(contact.max_pressure, rel=1e-3)
     assert found.exact["max_pressure"] == pytest.approx(bs.Exact().press(HIP.joint, force=3000.0).max_pressure)
+    angle, pressure = found.pressures[judge.name]
+    assert pressure[0] == pytest.approx(contact.pressure(0.0), rel=1e-3)
+    assert angle[-1] == pytest.approx(contact.half_angle, rel=1e-3)
     assert found.png.startswith(b"\x89PNG")
     assert b"<svg" in found.svg
 

@@ -1,122 +1,234 @@
-"""Many people at once: what takes its time is done beside the server, and nothing is kept of those who left."""
+"""Many people at once: long work leaves the server free, and nothing is kept of those who left."""
 
 import asyncio
-import re
+import json
+import resource
 from threading import Event
 
 import pytest
 
-pytest.importorskip("panel", reason="the explorer's extra is not installed")
-from panel.io.state import set_curdoc
-from tornado.httpclient import AsyncHTTPClient, HTTPRequest
+pytest.importorskip("tornado", reason="the explorer's extra is not installed")
+from tornado.httpclient import HTTPRequest
 from tornado.websocket import websocket_connect
 
 from ballsocket.app import server as serve
-from ballsocket.app.jobs import run_in_thread
-from ballsocket.app.server import OpenPages
+from ballsocket.app.channel import Channel
+from ballsocket.app.jobs import PageThread, run_in_thread
+from ballsocket.app.server import PageSockets
+
+LINES = []
+"""Open connections of a test."""
 
 
-async def session_of(served):
-    """A page that a browser has asked for, and the token that its script would take leave with."""
-    page = await AsyncHTTPClient().fetch(f"http://127.0.0.1:{served.port}/", request_timeout=100)
-    (session,) = served.get_sessions("/")
-    return session, re.findall('"token":"([^"]+)"', page.body.decode())[0]
+class Someone:
+    """One user, as the script of the page would be."""
+
+    def __init__(self, served):
+        self.address, self.number = f"127.0.0.1:{served.port}", 0
+
+    async def connect(self):
+        headers = {"Origin": f"http://{self.address}"}
+        self.line = await websocket_connect(HTTPRequest(f"ws://{self.address}/socket", headers=headers))
+        LINES.append(self.line)
+        return self
+
+    async def open(self, query=""):
+        await self.connect()
+        return await self.asks("open", query=query)
+
+    async def says(self, what, **words):
+        self.number += 1
+        await self.line.write_message(json.dumps({"n": self.number, "do": what, **words}))
+
+    async def asks(self, what, **words):
+        """Ask, and return the answer."""
+        await self.says(what, **words)
+        while True:
+            text = await asyncio.wait_for(self.line.read_message(), 100)
+            assert text is not None, "the server closed the connection"
+            message = json.loads(text)
+            if message.get("n") == self.number:
+                return message
 
 
-def test_what_takes_long_does_not_hold_the_server(served):
+def run(served, work, timeout=100):
+    """Run a test in the loop of the server, and close the connections of its users."""
+    try:
+        return served.io_loop.run_sync(work, timeout=timeout)
+    finally:
+        while LINES:
+            LINES.pop().close()
+
+
+async def until(condition):
+    for _ in range(500):
+        if condition():
+            return
+        await asyncio.sleep(0.01)
+    pytest.fail("it did not happen")
+
+
+def test_work_in_a_thread_does_not_hold_the_server(served):
     """Work that waits for the server to go on comes to its end."""
     went_on, found = Event(), []
 
     async def whole():
-        session, _ = await session_of(served)
-        with set_curdoc(session.document):
-            run_in_thread(lambda: went_on.wait(60), lambda outcome: found.append(outcome.result()))
+        PageThread.current.set(PageThread())
+        run_in_thread(lambda: went_on.wait(60), lambda outcome: found.append(outcome.result()))
         await asyncio.sleep(0)
         went_on.set()
-        while not found:
-            await asyncio.sleep(0.01)
+        await until(lambda: found)
 
-    served.io_loop.run_sync(whole, timeout=100)
+    run(served, whole)
     assert found == [True]
 
 
-def test_work_for_a_page_that_was_closed_meanwhile_is_told_to_nobody(served):
+def test_work_for_a_page_that_was_closed_meanwhile_is_dropped(served):
     closed, found = Event(), []
 
     async def whole():
-        session, _ = await session_of(served)
-        with set_curdoc(session.document):
+        thread = PageThread()
+        PageThread.current.set(thread)
+        for _ in range(3):
             run_in_thread(closed.wait, found.append)
-            session.destroy()
-            closed.set()
+        thread.close()
+        closed.set()
         await asyncio.sleep(0.1)
 
-    served.io_loop.run_sync(whole, timeout=100)
+    run(served, whole)
     assert found == []
 
 
-@pytest.mark.parametrize(("code", "kept"), [(1001, 0), (None, 1)])
-def test_a_closed_page_is_forgotten_at_once_and_a_broken_line_is_waited_for(served, code, kept):
-    async def whole():
-        _, token = await session_of(served)
-        request = HTTPRequest(f"ws://127.0.0.1:{served.port}/ws", headers={"Origin": f"http://127.0.0.1:{served.port}"})
-        line = await websocket_connect(request, subprotocols=["bokeh", token])
-        await line.read_message()
-        if code is None:
-            line.protocol.stream.close()
-        line.close(code)
-        for _ in range(130):
-            await asyncio.sleep(0.01)
-            if not served.get_sessions("/"):
-                break
-
-    served.io_loop.run_sync(whole, timeout=100)
-    assert len(served.get_sessions("/")) == kept
-
-
-def test_a_page_counts_when_its_browser_connects(served, monkeypatch):
-    """A client without a WebSocket does not count as an open page."""
-    before = len(serve._pages)  # of servers of other tests
-    monkeypatch.setattr(serve, "MOST_SESSIONS", before + 1)
-    monkeypatch.setattr(serve._pages, "max_waiting", 2)
-
-    async def got():
-        """Request a page; return it, and True for a refusal."""
-        page = await AsyncHTTPClient().fetch(f"http://127.0.0.1:{served.port}/", request_timeout=100)
-        shown = str(served.get_sessions("/")[-1].document.to_json())
-        return page.body.decode(), f"{before + 1} pages are open here already" in shown
+def test_pages_take_turns_in_the_thread(served):
+    """A page with much to draw lets another page draw after one of its drawings."""
+    order, begin = [], Event()
 
     async def whole():
-        pages = [await got() for _ in range(4)]
-        assert not any(refused for _, refused in pages)
-        request = HTTPRequest(f"ws://127.0.0.1:{served.port}/ws", headers={"Origin": f"http://127.0.0.1:{served.port}"})
-        line = await websocket_connect(
-            request, subprotocols=["bokeh", *re.findall('"token":"([^"]+)"', pages[-1][0])[:1]]
-        )
-        await line.read_message()
-        assert len(serve._pages) == before + 1
-        assert (await got())[1]
-        line.close(1001)
-        for _ in range(300):
-            await asyncio.sleep(0.01)
-            if len(serve._pages) == before and len(served.get_sessions("/")) <= 3:
-                break
-        assert len(serve._pages) == before
-        assert len(served.get_sessions("/")) <= 3  # of five, two wait still, beside the refusal
+        for name, count in (("many", 8), ("one", 1)):
+            PageThread.current.set(PageThread())
+            for _ in range(count):
+                run_in_thread(lambda name=name: begin.wait(60) and order.append(name), lambda outcome: None)
+        for _ in range(8):
+            run_in_thread(lambda: None, lambda outcome: None)
+        with pytest.raises(ValueError, match="8 drawings of this page wait already"):
+            run_in_thread(lambda: None, lambda outcome: None)
+        begin.set()
+        await until(lambda: len(order) >= 9)
 
-    served.io_loop.run_sync(whole, timeout=100)
+    run(served, whole)
+    assert order[:2] == ["many", "one"]
 
 
-def test_the_oldest_page_that_waits_is_forgotten_first():
+@pytest.mark.parametrize("broken", [False, True])
+def test_a_closed_page_is_forgotten_at_once(served, broken):
+    async def whole():
+        user = Someone(served)
+        await user.open()
+        assert len(served.pages) == 1
+        stopped = []
+        served.pages[0].view.leave = lambda: stopped.append(True)
+        if broken:
+            user.line.protocol.stream.close()
+        else:
+            user.line.close()
+        await until(lambda: not served.pages)
+        assert stopped == [True]
+
+    run(served, whole)
+
+
+def test_a_page_counts_when_its_browser_asks_for_it(served, monkeypatch):
+    """Sockets that ask for nothing are not pages, and the oldest of them are closed."""
+    monkeypatch.setattr(serve, "MAX_SESSIONS", 2)
+
+    async def whole():
+        silent = [await Someone(served).connect() for _ in range(4)]
+        users = [Someone(served) for _ in range(3)]
+        answers = [await user.open() for user in users]
+        assert "2 pages are open here already: try again later" in answers[2]["#trouble"]
+        assert len(served.pages) == 2
+        assert await asyncio.wait_for(silent[0].line.read_message(), 10) is None
+        users[0].line.close()
+        await until(lambda: len(served.pages) == 1)
+        assert "#press-numbers" in await Someone(served).open()
+
+    run(served, whole)
+
+
+def test_the_oldest_socket_that_waits_is_closed_first(monkeypatch):
     class Waiting:
-        expired = False
-        session = property(lambda self: self)
+        closed = False
 
-        def request_expiration(self):
-            self.expired = True
+        def close(self):
+            self.closed = True
 
-    pages, contexts = OpenPages(max_waiting=2), [Waiting() for _ in range(3)]
-    for number, context in enumerate(contexts):
-        pages.add(str(number), context)
-    assert [each.expired for each in contexts] == [True, False, False]
-    assert len(pages) == 0
+    monkeypatch.setattr(serve, "MAX_SESSIONS", 2)
+    sockets, waiting = PageSockets(), [Waiting() for _ in range(3)]
+    for one in waiting:
+        sockets.connect(one)
+    assert [one.closed for one in waiting] == [True, False, False]
+    assert len(sockets.pages) == 0
+
+
+@pytest.mark.parametrize(
+    "text", ["", "[]", "{", '{"do": 3, "n": 1}', '{"do": "edit"}', "[" * 100_000, '"' + "x" * 390_000]
+)
+def test_text_that_is_no_request_is_ignored(served, text):
+    async def whole():
+        user = Someone(served)
+        await user.open()
+        await user.line.write_message(text)
+        assert (await user.asks("edit", name="load", value=2900))["=load"]["value"] == 2900
+
+    run(served, whole)
+
+
+def test_a_flood_of_requests_holds_up_its_sender_alone(served, monkeypatch):
+    """While 10 000 requests of one browser and many silent sockets wait, another user's request is among the next."""
+    handled = []
+    receive = Channel.receive
+    monkeypatch.setattr(Channel, "receive", lambda self, words: handled.append(words["n"]) or receive(self, words))
+
+    async def whole():
+        flooder, user = Someone(served), Someone(served)
+        await flooder.open()
+        await user.open()
+        silent = [await Someone(served).connect() for _ in range(100)]
+
+        async def flood():
+            for number in range(10_000):
+                await flooder.says("edit", name="load", value=1000 + number)
+                await asyncio.sleep(0)  # both ends share this loop
+
+        task = asyncio.ensure_future(flood())
+        await until(lambda: len(handled) > 5)
+        before = []
+        for force in range(2000, 2010):
+            before.append(len(handled))
+            await user.asks("edit", name="load", value=force)
+            before[-1] = len(handled) - before[-1]
+        task.cancel()
+        flooder.line.close()
+        assert max(before) <= 4
+        assert len(silent) == 100
+
+    run(served, whole)
+
+
+def test_further_pages_take_little_memory(served):
+    """300 pages may take at most 100 MB more than the first."""
+
+    def megabytes():
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * resource.getpagesize() / 1e6
+
+    async def whole():
+        for _ in range(3):
+            await Someone(served).open()
+        before = megabytes()
+        for _ in range(60):
+            await Someone(served).open()
+        return megabytes() - before
+
+    pytest.importorskip("resource")
+    assert run(served, whole) < 100 * 60 / 300

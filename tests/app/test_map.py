@@ -1,77 +1,223 @@
-"""The design map without a browser: contours say their values, limits are moved by their lines, sizes are sold."""
+"""The design map without a browser: contours and their values, rows of limits, picked points and sizes."""
 
+import json
+import re
+from math import degrees, radians
+
+import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.files.joint_file import JointFile
+from ballsocket.problem.cup import Cup
+from ballsocket.reports.unit_systems import Units
+from ballsocket.studies.limits import Limit
 
-pytest.importorskip("panel", reason="the explorer's extra is not installed")
-from bokeh.events import Tap
-
+pytest.importorskip("tornado", reason="the explorer's extra is not installed")
+from ballsocket.app.pictures import svg
+from ballsocket.app.pictures.contour_map import MapPlane
 from ballsocket.app.session import Page
+from ballsocket.app.state.screen import read_link
+from ballsocket.app.views.design_map import view as map_view
 from ballsocket.app.views.design_map.worker import catalogue_sizes, mapped, models_of
+from ballsocket.app.widgets.limit_rows import LimitRows, present_value
+from ballsocket.app.widgets.reading import Reading
+
+from .asking import edits, trouble
 
 LINK = "view=map&preset=hip-28&load.force=3000&across=ball_radius=11..23"
+FRAME = (58.0, 12.0, 426.0, 308.0)
+"""Left, top, right and foot of the map in its picture."""
 
 
-def opened(link=LINK):
-    page = Page(link)
-    page._refresh()  # the page has loaded
-    return page, page.view._chart
+def part(page, name):
+    return page.channel.shown_value(f"#map-{name}") or ""
 
 
 def found(page):
     return mapped(page.screen.file, page.screen.across, page.screen.up, page.screen.map_model)
 
 
-def drag(chart, number, place):
-    """What a browser sends when a handle is let go."""
-    data = {name: list(values) for name, values in chart._handles.data.items()}
-    data["x"][number], data["y"][number] = place
-    chart._handles.data = data
+def on_axes(x, y):
+    """The numbers of a point of the picture, for the axes of LINK."""
+    left, top, right, foot = FRAME
+    return 11 + 12 * (x - left) / (right - left), 3 + 12 * (foot - y) / (foot - top)
 
 
-def test_contours_say_their_values():
-    page, chart = opened()
-    labels = chart._values.data
-    study = found(page)
-    for x, y, words in zip(labels["x"], labels["y"], labels["words"], strict=True):
-        there = float(study.max_pressure.interp(ball_radius=x, liner_thickness=y))
-        assert there == pytest.approx(float(words), rel=0.01)
-    assert len(labels["words"]) >= 3
+def handles(page):
+    """Text and point of each square of a limit."""
+    pattern = r'aria-valuetext="([^"]+)" data-limit="(\d)"[^>]+translate\(([\d.]+) ([\d.]+)\)'
+    return {
+        int(number): (text, *on_axes(float(x), float(y)))
+        for text, number, x, y in re.findall(pattern, part(page, "picture"))
+    }
+
+
+def test_contours_and_the_value_under_the_pointer_are_those_of_the_study():
+    page, study = Page(LINK), found(Page(LINK)).max_pressure
+    labels = re.findall(
+        r'<text x="([\d.]+)" y="([\d.]+)" text-anchor="middle" class="on">([\d.]+)<', part(page, "picture")
+    )
+    for x, y, words in labels:
+        radius, thickness = on_axes(float(x), float(y) - 4)
+        assert float(study.interp(ball_radius=radius, liner_thickness=thickness)) == pytest.approx(
+            float(words), rel=0.01
+        )
+    assert len(labels) >= 4
+    values = np.array(json.loads(re.search(r'data-values="([^"]+)"', part(page, "picture"))[1]))
+    assert values == pytest.approx(study.transpose("liner_thickness", "ball_radius").values[::2, ::2], rel=1e-3)
 
 
 def test_a_limit_is_moved_by_its_line():
-    page, chart = opened(f"{LINK}&limit=outer_radius<=26&limit=max_pressure<=12&limit=liner_thickness>=1")
-    handles = chart._handles.data
-    assert handles["words"] == ["outer radius ≤ 26 mm", "largest pressure ≤ 12 MPa"]  # the last is beside the map
-    assert handles["x"][0] + 0.1 + handles["y"][0] == pytest.approx(26.0)
-    drag(chart, 1, (20.0, 8.0))
+    page = Page(f"{LINK}&limit=outer_radius<=26&limit=max_pressure<=12&limit=liner_thickness>=1")
+    squares = handles(page)
+    assert list(squares) == [0, 1]  # the line of the last one is beside the map
+    assert squares[0][0] == "outer radius at most 26 mm"
+    assert squares[0][1] + 0.1 + squares[0][2] == pytest.approx(26.0, abs=0.02)
+    edits(page, "map.drag", [1, 20.0, 8.0])
     there = bs.catalogue["tabulated"].press(
         bs.joints["hip-28"].replace(ball_radius=20.0, liner_thickness=8.0), force=3000.0
     )
     assert page.screen.limits[1].high == pytest.approx(float(there.max_pressure), rel=0.01)
     assert [limit.name for limit in page.screen.limits] == ["outer_radius", "max_pressure", "liner_thickness"]
     assert "limit=max_pressure" in page.channel.shown_value("link")
-    kept = page.screen.limits
-    chart._handles.data = {"x": [], "y": [], "words": []}  # somebody presses Backspace on a handle
-    assert page.screen.limits == kept
-    assert len(chart._handles.data["x"]) == 2
 
 
-def test_a_limit_is_not_moved_to_where_there_is_no_answer():
-    page, chart = opened(f"{LINK}&limit=max_pressure<=12&up=outer_radius=15..30")
+@pytest.mark.parametrize("point", [[0, 22.0, 16.0], [0, 1], "elsewhere", [7, 20.0, 8.0]])
+def test_a_limit_is_not_moved_to_where_there_is_no_number(point):
+    page = Page(f"{LINK}&limit=max_pressure<=12&up=outer_radius=15..30")
     before = page.screen.limits
-    drag(chart, 0, (22.0, 16.0))  # no liner is left
-    assert "has no number there" in page.view._refused.object
+    edits(page, "map.drag", point)
+    assert trouble(page)
     assert page.screen.limits == before
 
 
+def test_a_picked_point_is_shown_beside_the_design_and_used_in_one_step():
+    page = Page(LINK)
+    edits(page, "map.pick", [15.3, 6.7])
+    assert "picked=15.3%2C6.7" in page.channel.shown_value("link")
+    assert 'class="picked"' in part(page, "picture")
+    pressure = bs.catalogue["tabulated"].press(
+        bs.joints["hip-28"].replace(ball_radius=15.3, liner_thickness=6.7), force=3000.0
+    )
+    assert f"<td class=''>{pressure.max_pressure:.4g}<small>" in part(page, "point")
+    edits(page, "map.use", True)
+    assert (page.screen.view, page.screen.file.joint.ball_radius) == ("map", 15.3)
+    assert 'class="picked"' not in part(page, "picture")
+    assert "picked" not in page.channel.shown_value("link")
+    edits(page, "map.use", True)
+    assert "no point of the map is chosen" in trouble(page)
+
+
+def test_the_design_with_the_smallest_value_is_the_best_of_the_allowed():
+    page = Page(f"{LINK}&limit=outer_radius<=26")
+    edits(page, "map.best", True)
+    edits(page, "map.compare", True)
+    (best,) = page.screen.beside
+    study = found(page)
+    fine = study.max_pressure.where(study.ball_radius + 0.1 + study.liner_thickness <= 26)
+    pressed = bs.catalogue["tabulated"].press(best.joint, force=3000.0)
+    assert pressed.max_pressure == pytest.approx(float(fine.min()), rel=1e-3)
+
+
 def test_a_click_takes_sizes_of_a_catalogue():
-    page, chart = opened(f"{LINK}&sizes=catalogue")
-    chart.figure._trigger_event(Tap(chart.figure, x=15.3, y=6.7))
+    page = Page(f"{LINK}&sizes=catalogue")
+    edits(page, "map.pick", [15.3, 6.7])
+    edits(page, "map.use", True)
     joint = page.screen.file.joint
     assert (2 * joint.ball_radius, joint.liner_thickness) == (32.0, 7.0)
     assert catalogue_sizes({"head_diameter": 100.0, "clearance": 0.123}) == {"head_diameter": 44.0, "clearance": 0.123}
+
+
+def test_ranges_are_two_fields_in_the_units_of_the_page():
+    page = Page(f"{LINK}&units=imperial")
+    field = page.channel.shown_value("=map.across_low")
+    assert (field["text"], field["unit"]) == ("0.4331", "in")
+    edits(page, "map.across_low", "12 mm")
+    edits(page, "map.across_high", "1")
+    assert (page.screen.across.low, page.screen.across.high) == (12.0, pytest.approx(25.4))
+    edits(page, "map.across_low", "2")
+    assert "ball radius from 2 in to 1 in is not a range" in trouble(page)
+    assert page.screen.across.low == 12.0
+
+
+def test_rows_of_limits_are_edited_and_a_refused_row_stays_as_typed():
+    page = Page(f"{LINK}&limit=outer_diameter<=52")
+    row = ["outer_diameter", "<=", "52"]
+    assert page.channel.shown_value("=map.limits")["value"] == [row]
+    edits(page, "map.limits", [row, ["half_angle", ">=", "40,5"]])
+    assert page.screen.limits[1].low == pytest.approx(radians(40.5))
+    answer = edits(page, "map.limits", [["outer_diameter", "<=", "wide"], ["half_angle", ">=", "40.5"]])
+    field = answer["=map.limits"]
+    assert (field["value"][0][2], field["wrong"]) == ("wide", 0)
+    assert field["error"].startswith("Outer diameter must be a number in mm")
+    assert page.screen.limits[0].high == 52.0
+    edits(page, "map.quantity", "area")  # another change keeps what was typed
+    assert page.channel.shown_value("=map.limits")["value"][0][2] == "wide"
+    edits(page, "map.limits", [["max_pressure", "<=", ""]])  # a new row starts at the present design
+    present = bs.catalogue["tabulated"].press(bs.joints["hip-28"], force=3000.0).max_pressure
+    assert page.screen.limits == (Limit(name="max_pressure", high=float(f"{present:.3g}")),)
+
+
+def test_a_limit_that_the_joint_does_not_have_is_refused_beside_the_rows():
+    page = Page("view=map&joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=UHMWPE")
+    answer = edits(page, "map.limits", [["ball_young", "<=", "200000"]])
+    assert "has no ball_young" in answer["=map.limits"]["error"]
+    assert page.screen.limits == ()
+
+
+@pytest.mark.parametrize(
+    "value", ["outer_radius<=26", [["outer_radius", "<="]], [["frob", "<=", "3"]], [["force", "=", "3"]]]
+)
+def test_rows_that_are_none_are_refused(value):
+    page = Page(LINK)
+    edits(page, "map.limits", value)
+    assert trouble(page)
+
+
+def test_rows_go_to_limits_and_back_in_every_unit():
+    reading = Reading(angle="radians", units=Units.IMPERIAL)
+    limits = (
+        Limit(name="half_angle", low=0.6),
+        Limit(name="max_pressure", high=15.0),
+        Limit(name="force", high=3000.0),
+    )
+    input_rows = LimitRows("map.limits", [])
+    rows = input_rows.field(limits, reading)["value"]
+    read = input_rows.read(rows, limits, reading, lambda name: 0.0)
+    assert read is not None
+    for limit, other in zip(limits, read, strict=True):
+        assert (other.low, other.high) == (pytest.approx(limit.low, rel=1e-5), pytest.approx(limit.high, rel=1e-5))
+
+
+def test_the_present_numbers_of_a_design():
+    file = JointFile(bs.joints["hip-28"], {"force": 3000.0}, Cup(arc_of_cover=radians(170.0)))
+    contact = bs.HessForsbach().press(file.joint, force=3000.0)
+    assert present_value(file, "force") == 3000.0
+    assert present_value(file, "outer_diameter") == pytest.approx(38.2)
+    assert present_value(file, "liner_young") == 1000.0
+    arc = 14.1 * radians(85.0 - degrees(contact.half_angle))
+    assert present_value(file, "edge_distance", contact) == pytest.approx(arc)
+    assert np.isnan(present_value(file, "indentation"))
+
+
+def test_ticks_and_levels_are_round_and_enclose_the_values():
+    assert svg.ticks_between(22.0, 46.0) == [25.0, 30.0, 35.0, 40.0, 45.0]
+    assert svg.ticks_between(-10.0, 40.0) == [-10.0, 0.0, 10.0, 20.0, 30.0, 40.0]
+    assert svg.levels_between(-3.2, 4.1, 8) == [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    assert svg.levels_between(3.0, 3.0) == [3.0, 3.5]
+
+
+def test_crosses_mark_some_of_the_doubtful_points():
+    line = np.linspace(0.0, 1.0, 61)
+    plane = MapPlane(x=line, y=line, x_label="x", y_label="y")
+    marked = np.zeros((61, 61), dtype=bool)
+    assert list(plane.crosses(marked)) == []
+    marked[:, 40:] = True
+    (drawn,) = plane.crosses(marked)
+    places = [float(x) + 3 for x in re.findall(r"M([\d.]+),", drawn)]
+    assert len(places) == 2 * 16 * 6  # a light cross below each dark one
+    assert min(places) == pytest.approx(plane.across(40 / 60), abs=0.06)
 
 
 BACKED = (
@@ -82,7 +228,7 @@ BACKED = (
 
 
 def test_models_that_know_the_joint_are_offered_and_exact_is_one_of_them():
-    offered = models_of(Page(BACKED).screen)
+    offered = models_of(Page(BACKED.replace("view=map&", "")).screen)
     assert "exact" in offered
     assert "tabulated" not in offered  # its tables have one layer at most
     assert set(models_of(Page(LINK).screen)) >= {"exact", "tabulated", "refined", "plane-layer", "hertz"}
@@ -90,12 +236,47 @@ def test_models_that_know_the_joint_are_offered_and_exact_is_one_of_them():
 
 @pytest.mark.long
 def test_a_backed_joint_is_mapped_by_the_exact_solution():
-    page, _ = opened(BACKED)
-    assert "Smallest value of" in page.view._told.object
-    assert "exact" in page.view._model.options
+    page = Page(BACKED)
+    assert "Smallest largest pressure" in part(page, "note")
+    assert "exact" in [name for name, _ in page.channel.shown_value("=map.model")["options"]]
     assert found(page).attrs["model"] == "exact"
 
 
 def test_a_map_that_would_take_minutes_is_refused():
-    page, _ = opened(f"{LINK}&map_model=exact&up=liner_thickness=0.1..1")
-    assert "exact takes minutes where R2/L is above" in page.view._refused.object
+    page = Page(f"{LINK}&map_model=exact&up=liner_thickness=0.1..1")
+    assert "exact takes minutes where R2/L is above" in part(page, "trouble")
+    page = Page(f"{LINK}&up=liner_thickness=0.1..1&map_model=refined")
+    edits(page, "map.model", "exact")
+    assert "exact takes minutes where R2/L is above" in trouble(page)
+    assert page.screen.map_model == "refined"
+
+
+def test_a_picked_point_is_in_the_link_and_leaves_with_its_axes():
+    page = Page("view=map&preset=hip-28&load.force=3000")
+    edits(page, "map.pick", [30.0, 8.0])
+    again = Page(page.channel.shown_value("link"))
+    assert again.screen == page.screen
+    assert again.screen.picked == (30.0, 8.0)
+    assert 'class="picked"' in part(again, "picture")
+    assert part(again, "point") == part(page, "point")
+    edits(again, "map.up", "clearance")
+    assert again.screen.picked is None
+    with pytest.raises(ValueError, match="two numbers with a comma"):
+        read_link({"picked": ["30"]})
+    with pytest.raises(ValueError, match="two finite numbers"):
+        read_link({"picked": ["30,nan"]})
+    assert "the point of the map: " in part(Page("view=map&preset=hip-28&picked=46,-300"), "point")
+
+
+def test_an_unexpected_failure_of_a_drawing_is_a_sentence_and_the_page_is_idle(monkeypatch):
+    page = Page("view=map&preset=hip-28&load.force=3000")
+    assert "<svg" in part(page, "picture")
+    monkeypatch.setattr(map_view, "map_picture", lambda *arguments: 1 / 0)
+    edits(page, "ball_radius", 32)
+    assert "This cannot be shown: division by zero" in page.channel.shown_value("#trouble")
+    assert part(page, "picture") == part(page, "note") == ""
+    assert page.channel.shown_value("expected") is None
+    monkeypatch.undo()
+    edits(page, "ball_radius", 30)
+    assert "<svg" in part(page, "picture")
+    assert page.channel.shown_value("#trouble") == ""

@@ -30,6 +30,12 @@ from ballsocket.app.state.screen import (
     read_link,
 )
 
+
+def screen_with(query="preset=hip-28", **changes):
+    """Return the screen of a link with other fields."""
+    return replace(read_link(parse_qs(query)), **changes)
+
+
 REST = "joint.clearance=1&joint.liner_thickness=2&liner.material=pom"
 lengths = st.floats(1e-3, 1e3)
 names = st.text(st.characters(exclude_categories=("Cc", "Cs")), max_size=8)

@@ -13,8 +13,10 @@ from ballsocket.hip import Archard, HipSimulation, iso_14242_1
 
 from .asking import does, edits, saved, trouble
 
-pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tornado", reason="the explorer's extra is not installed")
+from ballsocket.app import results
 from ballsocket.app.jobs import Job
+from ballsocket.app.results import ResultStore
 from ballsocket.app.running import RunFinished, RunRefused
 from ballsocket.app.session import Page
 from ballsocket.app.state.use import DEFAULT_USE
@@ -22,6 +24,7 @@ from ballsocket.app.views.wear import view as wear_view
 from ballsocket.app.views.wear import worker
 from ballsocket.app.views.wear.charts import depth_maps, penetration_chart, wear_numbers
 from ballsocket.app.widgets.reading import Reading
+from ballsocket.reports.check_table import wear_check
 from ballsocket.reports.unit_systems import Units
 
 LINK = (
@@ -31,7 +34,9 @@ LINK = (
 
 @pytest.fixture(autouse=True)
 def nothing_is_known(monkeypatch):
-    monkeypatch.setattr(wear_view, "_RESULTS", wear_view.CachedRun(max_size=4))
+    store = ResultStore()
+    monkeypatch.setattr(results, "RESULTS", store)
+    monkeypatch.setattr(wear_view, "RESULTS", store)
     monkeypatch.setattr(worker, "figure_bytes", lambda figure: b"a picture")
 
 
@@ -62,9 +67,9 @@ def told(page, name):
 
 def test_a_life_is_that_of_python(at_once):
     page = opened()
-    assert "Nothing has been run of this yet" in told(page, "numbers")
+    assert "not computed yet" in told(page, "curve")  # a picture of what will be shown
     does(page, "save", kind="CSV")
-    assert "has not been run yet" in trouble(page)
+    assert "there is no result for this design yet" in trouble(page)
     edits(page, "wear.run", True)
     cup = bs.Cup(inclination=radians(40.0), anteversion=radians(15.0))
     use = HipSimulation(joint=bs.joints["hip-36"], cycle=iso_14242_1(), wear=Archard(coefficient=1e-7), cup=cup)
@@ -86,8 +91,14 @@ def test_a_life_is_that_of_python(at_once):
     assert len(shares) > 5
     does(page, "choose", name="angle", value="radians")
     assert "mm³" in told(page, "numbers")  # what is known is shown at once
+    shown = told(page, "numbers")
+    assert "<th scope='row'>deepest wear</th>" in shown
+    assert told(page, "earlier") == ""
     edits(page, "wear.millions", 1)
-    assert "Nothing has been run of this yet" in told(page, "numbers")
+    assert told(page, "numbers").replace("earlier design 1", "hip-36") == shown  # nothing that was computed is lost
+    assert "belong to an earlier design" in told(page, "earlier")
+    edits(page, "wear.millions", 0.1)
+    assert (told(page, "numbers"), told(page, "earlier")) == (shown, "")
 
 
 def made(scale):
@@ -115,13 +126,21 @@ def made(scale):
         summary=summary,
         notes=("a note",),
         figure=b"",
+        checks=(wear_check(bs.joints["hip-36"], 30 * scale),),
     )
+
+
+def test_a_bore_worn_to_the_rim_fails_there_only_by_edge_loading():
+    distances = np.array([0.0, 3.0, -1.0])
+    assert worker.rim_distances(distances, np.zeros(3, dtype=bool)).tolist() == [3.0]
+    assert worker.rim_distances(distances, np.array([False, False, True])).min() == -1.0
 
 
 def test_two_designs_are_beside_each_other_in_one_scale():
     found = {"one": made(0.1), "other": made(0.2)}
     assert "<td>40 (+100 %)</td>" in wear_numbers(found)
     assert "<td>utilisation σv/σy, new</td><td>1.4</td>" in wear_numbers(found)
+    assert wear_numbers(found).count("✗ Fails: deepest wear is 1.2 times the liner thickness") == 1
     assert wear_numbers(found).count("outside the range in which this model can be trusted") == 1
     assert "✗ one: outside" in wear_numbers(found)
     inches = Reading(units=Units.IMPERIAL)
@@ -137,7 +156,7 @@ def test_two_designs_are_beside_each_other_in_one_scale():
 
 def test_a_design_is_put_beside_and_taken_away(monkeypatch):
     asked = []
-    monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(len(key)))
+    monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(len(key[1])))
     page = opened()
     edits(page, "wear.beside", "as it is now")
     edits(page, "wear.run", True)
@@ -157,13 +176,13 @@ def test_a_design_is_put_beside_and_taken_away(monkeypatch):
     ("name", "value", "sentence"),
     [
         ("coefficient", "much", "coefficient = 'much'"),
-        ("coefficient", "-1", "coefficient = -1"),
-        ("millions", "0", "millions = 0"),
-        ("spread", "0.5", "spread = 0.5"),
+        ("coefficient", "-1", "Coefficient [mm³/(N m)] -1 is not allowed"),
+        ("millions", "0", "Million cycles 0"),
+        ("spread", "0.5", "Patient-to-patient factor 0.5"),
         ("law", "magic", "'magic' as law is not known"),
         ("creep", True, "creep = True is not a choice"),
         ("beside", "my hip", "'my hip' as design is not known"),
-        ("colour", "red", "'colour' among the inputs of wear"),
+        ("colour", "red", "'colour' among the inputs of Wear"),
     ],
 )
 def test_what_cannot_be_worn_is_told(name, value, sentence):
@@ -190,7 +209,7 @@ def test_a_coefficient_may_be_typed_as_others_write_it():
 def test_patients_whose_coefficient_scatters_make_the_band():
     page = opened()
     use = replace(DEFAULT_USE, millions=0.2, spread=1.5)
-    (found,) = worker.simulate_wear([page.screen.file], use, lambda news: None)
+    (found,) = worker.simulate_designs({"one": page.screen.file}, use, {}, lambda news: None).values()
     assert (found.low[1:] < found.penetration[1:]).all()
     assert (found.penetration[1:] < found.high[1:]).all()
     assert found.high[-1] / found.penetration[-1] == pytest.approx(1.5**1.96, rel=0.25)

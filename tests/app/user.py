@@ -41,7 +41,7 @@ class User:
 
     def answered(self):
         """Wait until the page is complete, and nothing that was asked is on its way."""
-        self.page.locator(".app[data-idle=yes][data-shown]").wait_for()
+        self.page.locator(".app[data-idle=yes][data-shown]:not([data-lost], :has([data-expected]))").wait_for()
         return self
 
     def number(self, name):
@@ -55,6 +55,13 @@ class User:
                 return True
             time.sleep(0.02)
         return False
+
+    def until(self, condition, argument=None):
+        """Wait until an expression in the page is true; the page's own policy forbids to evaluate text inside it."""
+        deadline = time.monotonic() + WAIT / 1000
+        while not self.page.evaluate(condition, argument):
+            assert time.monotonic() < deadline, f"never true: {condition}"
+            time.sleep(0.02)
 
     def nudge(self, slider, key="ArrowRight", times=1):
         handle = self.page.locator(f"[data-name={slider}] input[type=range]")
@@ -77,11 +84,6 @@ class User:
         self.page.locator(f"text={words}").first.wait_for()
         return True
 
-    def map(self):
-        """The chart of the map that is seen, as a box on the screen."""
-        assert self.says("of the map is allowed by the limits")
-        return self.page.locator("#view .bk-Figure:visible").first.bounding_box()
-
     def saved(self, kind):
         with self.page.expect_download() as coming:
             self.page.locator(".files button", has_text=kind).click()
@@ -91,7 +93,7 @@ class User:
 AT_REST = """async () => {
   const frame = () => new Promise(requestAnimationFrame);
   const place = document.documentElement;
-  const size = () => `${place.scrollWidth} ${place.scrollHeight} ${Bokeh.documents.every((one) => one.is_idle)}`;
+  const size = () => `${place.scrollWidth} ${place.scrollHeight} ${document.body.dataset.idle}`;
   for (let same = 0, last = ""; same < 20; await frame()) {
     [same, last] = size() === last ? [same + 1, last] : [0, size()];
   }

@@ -121,7 +121,7 @@ def test_only_the_command_line_runs_a_model_file(folder, monkeypatch):
 
 @pytest.mark.parametrize("key", ["answered_by", "shown", "map_model"])
 def test_no_link_of_the_explorer_runs_a_model_file(key, folder):
-    pytest.importorskip("panel", reason="the explorer's extra is not installed")
+    pytest.importorskip("tornado", reason="the explorer's extra is not installed")
     from ballsocket.app.state.screen import read_link
 
     with pytest.raises(ValueError, match=f"'own.py:winkler' as {key} is not known"):

@@ -17,7 +17,7 @@ from ballsocket.core.quantities import QUANTITIES
 from .command import run
 
 COMMANDS = load_commands()
-HEAVY = ("dask", "jinja2", "matplotlib", "mcp", "numba", "pandas", "panel", "pint", "scipy", "skfem", "xarray")
+HEAVY = ("dask", "jinja2", "matplotlib", "mcp", "numba", "pandas", "pint", "scipy", "skfem", "xarray")
 ORDER = (
     *("press", "curve", "film", "orient", "map", "optimise", "sensitivity", "study", "hip", "planning"),
     *("models", "presets", "cite", "identify", "calibrate", "evidence", "deck", "fmu", "export"),

@@ -13,12 +13,10 @@ from ..joints import HIP, random_joint
 pytest.importorskip("numba")
 import numba
 
-from ballsocket.compiled import Compiled, compiled_law
-from ballsocket.compiled.kernels import _angle_polynomial, _evaluate_table_functions
+from ballsocket.compiled import Compiled, compiled_law, kernels, overloads
+from ballsocket.compiled.kernels import _angle_polynomial
 from ballsocket.contact.roots import increasing_root
 from ballsocket.core.deprecation import RenamedAttribute
-from ballsocket.elasticity.exact.tabulated.chebyshev import angle_root
-from ballsocket.elasticity.exact.tabulated.curves import CurveCoefficients
 from ballsocket.models.kinematics import angle_of
 
 KINEMATICS = (bs.linear_kinematics, bs.exact_kinematics, bs.cosine_kinematics)
@@ -88,19 +86,44 @@ def test_angle_polynomial_is_accurate_to_rounding():
         assert _angle_polynomial(float(versine)) == pytest.approx(angle_of(versine), rel=6e-16, abs=0)
 
 
-@pytest.mark.parametrize("angle", [0.05, 0.6, 1.4])
-def test_functions_of_a_table_are_chebyshev_series_with_their_slopes(angle):
-    functions = np.random.default_rng(6).normal(size=(3, 7))
-    curve = CurveCoefficients(2.5, functions, functions)
+def test_blocks_of_series_are_chebyshev_series_with_their_slopes():
+    functions, x = np.random.default_rng(6).normal(size=(2, 8)), np.array([-0.9, 0.1, 0.8])
+    rows = np.zeros((kernels._ROW_COUNT, 3))
+    rows[kernels._X] = x
+    kernels._sum_two_series(functions, 0, 3, rows)
+    for row, series in enumerate(functions):
+        value, slope = rows[kernels._VALUES + row].copy(), rows[kernels._SLOPES + row]
+        kernels._sum_series(series, 0, 3, rows, kernels._VALUES)
+        chebyshev = np.polynomial.chebyshev.Chebyshev(series)
+        np.testing.assert_allclose(value, chebyshev(x), rtol=1e-12)
+        np.testing.assert_allclose(rows[kernels._VALUES], chebyshev(x), rtol=1e-12)
+        np.testing.assert_allclose(slope, chebyshev.deriv()(x), rtol=1e-12)
 
-    def series(angle):
-        return np.polynomial.chebyshev.chebval(2 * angle_root(angle, 2.5) - 1, functions.T)
 
-    step = 1e-5
-    slopes = (series(angle * np.exp(step)) - series(angle * np.exp(-step))) / (2 * step)
-    values = _evaluate_table_functions(angle, curve)
-    np.testing.assert_allclose([value for value, _ in values], series(angle), rtol=1e-12)
-    np.testing.assert_allclose([slope for _, slope in values], slopes, rtol=1e-7, atol=1e-8)
+SPECIAL = [0.0, -1.0, 1.0, np.inf, -np.inf, np.nan]
+RANGES = {
+    "exp": [*np.linspace(-740.0, 709.0, 20_000), *SPECIAL, -800.0, 800.0],
+    "log": [*np.exp(np.linspace(-740.0, 709.0, 20_000)), *SPECIAL, 5e-324],
+    "log1p": [*np.exp(np.linspace(-80.0, 50.0, 20_000)), *SPECIAL],
+    "sin": [*np.linspace(-7.0, 7.0, 20_000), 0.0, np.nan],
+    "cos": [*np.linspace(-7.0, 7.0, 20_000), 0.0, np.nan],
+}
+
+
+@pytest.mark.parametrize("name", RANGES)
+def test_functions_without_branches_are_accurate_to_two_units_in_the_last_place(name):
+    function, x = overloads.VECTOR_FUNCTIONS[name], np.array(RANGES[name])
+
+    @numba.njit(error_model="numpy")
+    def evaluate(x, values):  # type: ignore[no-untyped-def]
+        for i in range(x.size):
+            values[i] = function(x[i])
+
+    values = np.empty_like(x)
+    evaluate(x, values)
+    with np.errstate(all="ignore"):
+        expected = getattr(np, name)(x)
+    np.testing.assert_allclose(values, expected, rtol=4.5e-16, atol=5e-324)
 
 
 def liners(size: int, ball: bs.Material | None = None) -> bs.Joint:

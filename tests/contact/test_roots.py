@@ -117,3 +117,24 @@ def test_steps_out_of_the_bracket_try_its_end_and_then_its_middle():
     assert x == [4.0]
     x, *_ = bracketed_newton_step(cube, 8.0, (), 1e-8, *far, np.array([False]))
     assert x == pytest.approx([(0.1 + 4.0) / 2])
+
+
+@pytest.mark.parametrize("steps", [2, 60], ids=["unrolled", "loop"])
+def test_traced_roots_have_exact_first_and_second_derivatives(steps):
+    """The cube root of a, whose derivatives by a are known."""
+    jax = pytest.importorskip("jax")
+
+    def root(a):
+        start = a ** (1 / 3) * (1 + 1e-6)
+        return increasing_root(lambda x: (x * x * x, 3 * x * x), a, 0.0 * a, 0.0 * a + 9.0, start, steps=steps)
+
+    def value_and_derivatives(a):
+        slope = jax.grad(root)
+        return root(a), slope(a), jax.jvp(slope, (a,), (1.0,))[1]
+
+    with jax.enable_x64(True):
+        a = np.array([5.0, 90.0])
+        value, slope, bend = (np.asarray(part) for part in jax.jit(jax.vmap(value_and_derivatives))(a))
+    assert value == pytest.approx(np.cbrt(a), rel=1e-14)
+    assert slope == pytest.approx(np.cbrt(a) ** -2 / 3, rel=1e-12)
+    assert bend == pytest.approx(-2 / 9 * np.cbrt(a) ** -5, rel=1e-12)

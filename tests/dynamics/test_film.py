@@ -10,9 +10,9 @@ from scipy.sparse.linalg import splu
 
 import ballsocket as bs
 from ballsocket.dynamics import Bristles, ContactState, Damping, Friction, simulate
-from ballsocket.lubrication import rigid_fields
 
 from ..joints import HIP
+from ..lubrication import rigid_fields
 
 C, RADIUS = HIP.clearance, (HIP.ball_radius * HIP.socket_radius) ** 0.5
 OIL = bs.Lubricant(viscosity=0.1, ball_roughness=0.0, cup_roughness=5e-4)

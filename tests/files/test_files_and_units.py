@@ -56,6 +56,11 @@ material = "UHMWPE"
         ("50 N mm", "energy", 50.0),
         ("50 mJ", "energy", 50.0),
         ("0.28 GPa/mm", "foundation modulus", 280.0),
+        ("3/8 in", "length", 0.375 * 25.4),
+        ("1 1/8in", "length", 1.125 * 25.4),
+        ("1-1/8 in", "length", 1.125 * 25.4),
+        ("-1 1/2", "length", -1.5),
+        ("1/4", "number", 0.25),
     ],
 )
 def test_quantities(text, kind, value):
@@ -83,6 +88,12 @@ def test_quantities(text, kind, value):
         ("1 N*m" + "/m*m" * 400 + "/m", "force"),
         ("1 " + "N*" * 3000 + "N", "force"),
         ("1" * 400, "force"),
+        ("1 9/8 in", "length"),
+        ("1/0 in", "length"),
+        ("1/2/4 in", "length"),
+        ("1 -1/8 in", "length"),
+        ("1 9/8", "number"),
+        ("1/2.5", "number"),
     ],
 )
 def test_what_is_no_quantity_is_named(text, kind):

@@ -5,7 +5,7 @@ from urllib.parse import parse_qs
 import pytest
 from hypothesis import given
 
-pytest.importorskip("panel", reason="the explorer's extra is not installed")
+pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
 from ballsocket.app.session import Page
 from ballsocket.app.state.screen import link_of, read_link

@@ -11,7 +11,7 @@ from ballsocket.elasticity.off_axis.grid import even_grid, graded_grid
 from ballsocket.hip import Lubricant
 from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
-from ballsocket.hip.film import film_thickness
+from ballsocket.hip.hamrock_dowson import film_thickness
 from ballsocket.hip.simulation import _relative_discretization_error, check_cycles
 from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, neighbours_in_subset, spring_foundation
 

@@ -73,5 +73,7 @@ def test_figures_show_the_results_of_the_run(tmp_path):
     mixed = hip_plots.edge_figure(hip(cycle=Mix(activities=(walk, walk)), ring_width=radians(9.0)).after(1e4)).axes[0]
     assert np.isnan(mixed.get_lines()[0].get_ydata()).sum() == 1 + 2 * 20  # where it parts, and lifts off
     assert [label.get_text() for label in mixed.get_xticklabels()] == ["iso-14242-1"] * 2
-    film = hip_plots.film_figure(history).axes[0].get_lines()[0]
-    assert np.asarray(film.get_ydata()) == pytest.approx(1e6 * history.use.film(history.lubricant).least)
+    curves = {line.get_label(): line.get_ydata() for line in hip_plots.film_figure(history).axes[0].get_lines()}
+    film = history.use.film(history.lubricant)
+    assert np.asarray(curves["smallest"]) == pytest.approx(1e6 * film.least)
+    assert np.asarray(curves["Hamrock-Dowson, smallest"]) == pytest.approx(1e6 * film.comparison)

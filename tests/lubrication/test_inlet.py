@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.lubrication.inlet import INLET_COEFFICIENT, ElasticEdge, SpringEdge
+from ballsocket.lubrication.inlet import INLET_COEFFICIENT, OUTLET_RATIO, ElasticEdge, SpringEdge
 
 from ..extent import either
 from .inlet_problem import inlet_coefficient, solve_inlet
+from .line_contact import contact_films
+from .point_contact import point_contact_film
 
 JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.4))
 
@@ -18,6 +20,15 @@ def test_coefficient_is_that_of_the_inlet_problem():
     eigenvalue, change = solve_inlet(spacing)
     assert change < 1e-9
     assert inlet_coefficient(eigenvalue) == pytest.approx(INLET_COEFFICIENT, rel=error)
+
+
+def test_outlet_is_the_limit_of_line_contacts():
+    """Centre and constriction of a whole contact of two edges tend to inlet and outlet of a half-space."""
+    least, error = either(quick=(1e-2, 0.04), long=(1e-5, 3e-3))
+    rows = contact_films(least)
+    assert rows[-1, 1] == pytest.approx(INLET_COEFFICIENT, rel=error)
+    assert rows[-1, 2] == pytest.approx(OUTLET_RATIO, rel=error / 2)
+    assert (np.diff(np.abs(rows[:, 1:] - (INLET_COEFFICIENT, OUTLET_RATIO)), axis=0) < 0).all()
 
 
 def test_elastic_film_of_the_exact_solution():
@@ -43,16 +54,28 @@ def test_films_and_errors_vanish_with_the_speed(edge):
     assert edge.wave_error(2.5e-9, 0.0, 10.0) == 0.0
 
 
+def hertzian_film(speed_number, moes):
+    """Film of the wave over R sqrt(U), and that of the fit for point contacts."""
+    joint = bs.Joint(ball_radius=10.0, clearance=9.0, liner_thickness=np.inf, liner=bs.Material(young=1e3, poisson=0.4))
+    radius, modulus, viscosity = 190 / 9, float(joint.effective_modulus), 1e-8
+    load = moes * speed_number**0.75 * 2 * modulus * radius**2
+    contact = bs.Hertz().press(joint, force=load)
+    speed = speed_number * 2 * modulus * radius / viscosity  # mean of both surfaces
+    film = bs.film(contact, spin=(2 * speed / 19, 0, 0), lubricant=bs.Lubricant(viscosity=1e6 * viscosity))
+    fit = point_contact_film(viscosity, 2 * speed, load, radius, modulus)
+    return film.central / radius / np.sqrt(speed_number), fit / radius / np.sqrt(speed_number)
+
+
 def test_films_of_hertzian_contacts_are_similar():
     """h/(R sqrt(U)) depends on the Moes number alone, as M^(-2/15)."""
-    joint = bs.Joint(ball_radius=10.0, clearance=9.0, liner_thickness=np.inf, liner=bs.Material(young=1e3, poisson=0.4))
-    radius, modulus, viscosity = 190 / 9, 2 * float(joint.effective_modulus), 1e-8
-    films = []
-    for speed_number, moes in ((1e-9, 1e3), (1e-13, 1e3), (1e-17, 1e3), (1e-13, 1e4)):
-        contact = bs.Hertz().press(joint, force=moes * speed_number**0.75 * modulus * radius**2)
-        speed = speed_number * modulus * radius / viscosity
-        film = bs.film(contact, spin=(2 * speed / 19, 0, 0), lubricant=bs.Lubricant(viscosity=1e6 * viscosity))
-        films.append(film.central / radius / np.sqrt(speed_number))
+    films = [hertzian_film(*numbers)[0] for numbers in ((1e-9, 1e3), (1e-13, 1e3), (1e-17, 1e3), (1e-13, 1e4))]
     assert films[1] == pytest.approx(films[0], rel=1e-3)
     assert films[2] == pytest.approx(films[0], rel=1e-3)
     assert films[3] / films[1] == pytest.approx(10 ** (-2 / 15), rel=0.04)
+
+
+@pytest.mark.parametrize("moes", [1e3, 1e4])
+def test_films_of_point_contacts_agree_with_the_published_fit(moes):
+    """An independent numerical study, fitted by its authors; both have the same power of the Moes number."""
+    wave, fit = hertzian_film(1e-13, moes)
+    assert wave == pytest.approx(fit, rel=0.05)

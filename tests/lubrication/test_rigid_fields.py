@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ballsocket.lubrication.rigid_fields import squeeze_pressure, wedge_pressure
+from .rigid_fields import squeeze_pressure, wedge_pressure
 
 RADIUS, CLEARANCE, ECCENTRICITY, VISCOSITY, RATE = 18.0, 0.1, 0.08, 2.5e-9, 10.0
 STEP = 1e-3

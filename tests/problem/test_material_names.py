@@ -71,7 +71,7 @@ def check_suggestions(name):
 
 @pytest.mark.long
 def test_a_suggestion_of_any_name_is_of_its_family():
-    for name in presets._FAMILY:
+    for name in sorted(presets._FAMILY)[::6]:  # all of them take minutes
         check_suggestions(name)
 
 

@@ -72,7 +72,7 @@ def test_the_largest_pressure_stands_in_the_legend_where_it_is(contact):
     assert drawn_as(figure.axes[0], marked)[0] == pytest.approx(np.array(on_page(contact.max_pressure_at)))
     assert f"{contact.edge_distance:.1f} mm from contact to rim" in labels(figure.axes[1])
     assert f"{degrees(contact.tilt):.3g}° from the cup's axis" in figure.get_suptitle()
-    assert {text.get_text() for text in figure.axes[0].texts} >= {"up", "front", "30°", "60°"}
+    assert {text.get_text() for text in figure.axes[0].texts} >= {"up", "anterior", "30°", "60°"}
 
 
 def test_directions_of_the_body_need_an_orientation_of_which_zero_is_one():
@@ -81,8 +81,8 @@ def test_directions_of_the_body_need_an_orientation_of_which_zero_is_one():
         {text.get_text() for text in cup_figure(each.press(HIP, force=2000.0)).axes[0].texts}
         for each in (upright, default)
     ]
-    assert "front" in texts[0]
-    assert "front" not in texts[1]
+    assert "anterior" in texts[0]
+    assert "anterior" not in texts[1]
 
 
 def test_pressure_is_drawn_inside_of_the_outline(contact):

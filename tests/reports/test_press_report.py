@@ -15,7 +15,13 @@ import pytest
 import ballsocket as bs
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
 from ballsocket.reports.pages import table, write_page
-from ballsocket.reports.press_report import PressedDesign, _rim_verdict, designs_report, press_report
+from ballsocket.reports.press_report import (
+    PressedDesign,
+    _rim_words,
+    designs_report,
+    press_lede,
+    press_report,
+)
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
@@ -38,11 +44,22 @@ def pages():
 def test_the_page_has_the_verdict_the_drawing_and_every_input(pages):
     text = unescape(pages[0][Units.SI])
     assert "<strong>11.16 MPa</strong> largest pressure under 3000 N, by the model exact" in text
-    assert "within its strength: 33 % of the yield stress of the liner" in text
+    assert "Passes: reach of the contact is 50 % of the arc from pole to rim, the highest ratio" in text
     for cell in ("36 mm", "36.2 mm", "0.2 mm", "5 mm", "171.9°", "Young's modulus 750 MPa", "2026-01-02"):
         assert cell in text, cell
     assert text.count("data:image/svg+xml;base64,") == 2
     assert bs.materials["crosslinked-pe"].source in text
+
+
+def test_one_verdict_is_about_all_checks():
+    """A contact far below its strengths that ends at the rim fails, and no green sentence stands beside it."""
+    contact = bs.HessForsbach().press(HIP, force=3000.0)
+    wide, narrow = (unescape(press_lede(contact, bs.Cup(arc_of_cover=arc))) for arc in (3.0, 1.0))
+    assert "<span class='holds'>Passes: reach of the contact is 52 % of the arc from pole to rim" in wide
+    assert re.search(
+        r"<span class='fails'>Fails: reach of the contact is [\d.]+ times the arc from pole to rim", narrow
+    )
+    assert "holds" not in narrow
 
 
 def test_heads_that_differ_stand_with_their_design(tmp_path):
@@ -158,8 +175,7 @@ def test_the_report_of_a_tilted_cup_locates_the_contact_and_computes_its_toleran
 def test_contact_at_the_rim_is_no_failure_of_a_preloaded_joint():
     joint = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
     contact = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(240.0)), ring_width=radians(5.0)).press(joint, force=0.0)
-    verdict = ("the contact reaches the rim, as is normal in a preloaded joint", "holds")
-    assert _rim_verdict(contact, Units.SI) == [verdict]
+    assert _rim_words(contact, Units.SI) == ["the contact reaches the rim, as is normal in a preloaded joint"]
 
 
 def test_the_head_of_a_report_is_escaped_and_its_logo_is_inside(tilted):

@@ -91,7 +91,7 @@ def test_the_papers_figures_draw_a_model_as_the_press_does(contacts, pressed):
     assert [as_drawn(curve) for curve in panel.lines] == list(pressed.values())
 
 
-@pytest.mark.skipif(find_spec("panel") is None, reason="the explorer's extra is not installed")
+@pytest.mark.skipif(find_spec("tornado") is None, reason="the explorer's extra is not installed")
 def test_the_explorer_draws_a_model_as_the_press_does(pressed):
     from ballsocket.app.session import Page
 

@@ -1,42 +1,81 @@
-"""Text connection between a page and its browser, in both directions."""
+"""Messages between a page and its browser, in both directions."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
-
-from bokeh.models import CustomJS
-from bokeh.models.widgets import TextInput
 
 from .widgets.fields import Field
 
 LONGEST = 300_000
-"""Characters of one question: an uploaded joint file is shorter."""
+"""Characters of one request: an uploaded joint file is shorter."""
+
+
+def read_request(text: str | bytes) -> dict[str, Any] | None:
+    """Read one request of a browser; return None for text that is not a request."""
+    try:
+        words = json.loads(text) if len(text) <= LONGEST else None
+    except (ValueError, RecursionError):
+        return None
+    valid = isinstance(words, dict) and isinstance(words.get("do"), str) and isinstance(words.get("n"), int)
+    return words if valid else None
 
 
 class Channel:
-    """Connection to one browser, with hidden text inputs for both directions, that sends only changed values."""
+    """Connection to one browser that sends only changed values.
 
-    def __init__(self, handle_request: Callable[[str, Mapping[str, Any]], None]) -> None:
-        self._handle_request = handle_request
+    `question` numbers the screens: each message carries the number of the screen that its values belong to. `number` is
+    that of the last request.
+    """
+
+    def __init__(self, handle_request: Callable[[str, Mapping[str, Any]], None], write: Callable[[str], None]) -> None:
+        self._handle_request, self.write = handle_request, write
         self._current: dict[str, Any] = {}
         self._pending: dict[str, Any] = {}
-        self._number = self._answered = 0
-        self.inbox = TextInput(name="asked", value="", visible=False)
-        self.outbox = TextInput(name="shown", value="", visible=False)
-        self.inbox.on_change("value", lambda attribute, old, new: self._hear(new))
-        self.outbox.js_on_change("value", CustomJS(code="window.ballsocket.hear(cb_obj.value)"))
+        self._expected: set[str] = set()
+        self._refused: dict[str, tuple[Any, Field]] = {}
+        self.number = self._answered = self.question = 0
 
     def put(self, name: str, value: Any) -> None:
         """Set the value of a part of the page in the next message."""
+        self._expected.discard(name)
         if self._current.get(name, "" if name.startswith("#") else None) != value:
             self._current[name] = self._pending[name] = value
 
     def put_fields(self, fields: Mapping[str, Field]) -> None:
         """Set the inputs of the page."""
         for name, field in fields.items():
-            self.put(f"={name}", field)
+            value, refusal = self._refused.get(name, (None, {}))
+            if refusal and value != field["value"]:
+                del self._refused[name]
+            self.put(f"={name}", {**field, **refusal} if name in self._refused else field)
+
+    def refuse_field(self, name: str, text: Any, sentence: str) -> None:
+        """State beside an input why its text was refused, until its value changes or another edit is accepted."""
+        field = self._current[f"={name}"]
+        self._refused[name] = (field["value"], {"error": sentence, "refused": text if isinstance(text, str) else None})
+        self.put_fields({name: field})
+
+    def accept_field(self, name: str) -> None:
+        """Remove the sentence and the text of a refused edit."""
+        if self._refused.pop(name, None):
+            field = self._current[f"={name}"]
+            self.put_fields({name: {key: field[key] for key in field if key not in ("error", "refused")}})
+
+    def accept_fields(self) -> None:
+        """Remove the sentences and the texts of all refused edits."""
+        for name in list(self._refused):
+            self.accept_field(name)
+
+    def expect(self, names: Iterable[str]) -> None:
+        """Mark parts of the page that still show an earlier screen, until they are put."""
+        self._expected.update(name for name in names if self._current.get(name))
+
+    def forget_expected(self) -> None:
+        """Empty the parts that still show an earlier screen, as nothing will follow."""
+        for name in sorted(self._expected):
+            self.put(name, "")
 
     def once(self, name: str, value: Any) -> None:
         """Send a value once, even if it was sent before."""
@@ -46,24 +85,16 @@ class Channel:
         """Return the current value of a part of the page; None without one."""
         return self._current.get(name)
 
-    def take_pending(self) -> dict[str, Any]:
-        """Return and clear the values that wait to be sent."""
-        waiting, self._pending = self._pending, {}
-        return waiting
-
     def send(self) -> None:
         """Send all changed values in one message, with the number of the last request."""
-        self.outbox.value = json.dumps({"n": self._number, **self.take_pending()}, ensure_ascii=False)
-        self._answered = self._number
+        self.put("expected", sorted(self._expected) or None)
+        values, self._pending = self._pending, {}
+        self._answered = self.number
+        self.write(json.dumps({"n": self.number, "question": self.question, **values}, ensure_ascii=False))
 
-    def _hear(self, text: str) -> None:
-        """Handle one request of a browser; ignore text that is not a request."""
-        try:
-            words = json.loads(text) if len(text) <= LONGEST else None
-        except (ValueError, RecursionError):
-            return
-        if isinstance(words, dict) and isinstance(words.get("do"), str) and isinstance(words.get("n"), int):
-            self._number = words["n"]
-            self._handle_request(words["do"], words)
-            if self._pending or self._answered != self._number:
-                self.send()
+    def receive(self, request: Mapping[str, Any]) -> None:
+        """Handle one request of the browser, and answer it."""
+        self.number = request["n"]
+        self._handle_request(request["do"], request)
+        if self._pending or self._answered != self.number:
+            self.send()

@@ -2,29 +2,54 @@
 
 from __future__ import annotations
 
+import asyncio
+from collections import deque
 from collections.abc import Callable, Hashable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextvars import Context, ContextVar, copy_context
 from typing import Any
 
-import panel as pn
-from tornado.ioloop import IOLoop
-
-from .channel import Channel
-from .running import Reached, Run, RunFinished, RunRefused, Work, looked_at
-from .widgets.words import alert, progress
+from .running import Run, RunFinished, RunRefused, Work
 
 LONGEST = 60.0  # s, of work that nobody gave longer
-_EVERY = 150  # ms between two questions for news
+_POLL_INTERVAL = 0.15  # s between two questions for news
+
+
+def call_later(seconds: float, function: Callable[[], None]) -> asyncio.TimerHandle | None:
+    """Call a function later in the running event loop; return None without a loop."""
+    try:
+        return asyncio.get_running_loop().call_later(seconds, function)
+    except RuntimeError:
+        return None
+
+
+_SHARED: dict[Hashable, tuple[Run, list[Job]]] = {}
+"""Runs by their work, with the jobs that wait for them."""
+
+
+def _work_key(work: Work) -> Hashable:
+    """Return function and arguments of a partial function; work without comparable arguments is unique."""
+    key = getattr(work, "func", work), getattr(work, "args", ())
+    try:
+        hash(key)
+    except TypeError:
+        return object()
+    return key
 
 
 class Job:
-    """Long work of one view in at most one process; its news go to `handle_news` with the key of the work."""
+    """Long work of one view in at most one process; its news go to `heard` with the key of the work.
+
+    Jobs that ask for equal work, a partial function with equal arguments, share one process.
+    """
 
     def __init__(self, heard: Callable[[Hashable, Any], None], longest: float = LONGEST) -> None:
         self._heard, self._longest = heard, longest
         self._key: Hashable = None
+        self._work: Hashable = None
         self._run: Run | None = None
-        self._asking: Any = None
+        self._context = Context()
+        self._timer: asyncio.TimerHandle | None = None
 
     @property
     def works(self) -> bool:
@@ -36,81 +61,101 @@ class Job:
         if self._run is not None and key == self._key:
             return
         self.stop()
-        self._key, self._run = key, Run(work, longest=self._longest)
-        self._asking = pn.state.add_periodic_callback(self.hear, period=_EVERY)
+        self._key, self._work, self._context = key, _work_key(work), copy_context()
+        if self._work not in _SHARED:
+            _SHARED[self._work] = Run(work, longest=self._longest), []
+        self._run, jobs = _SHARED[self._work]
+        jobs.append(self)
+        self._timer = call_later(0.0, self._poll)
+
+    def _poll(self) -> None:
+        self.hear()
+        if self._run is not None:
+            self._timer = call_later(_POLL_INTERVAL, self._poll)
 
     def hear(self) -> None:
-        """Poll for news; the first call starts the process."""
+        """Read the news; the first call starts the process."""
         if self._run is None:
             return
-        if not looked_at():
-            self.stop()
-            return
-        news, key = self._run.news(), self._key
+        run, news = self._run, self._run.news()
+        if news is not None:
+            for job in list(_SHARED[self._work][1]):
+                if job._run is run:
+                    job._context.run(job._receive, news)
+
+    def _receive(self, news: Any) -> None:
+        key = self._key
         if isinstance(news, RunFinished | RunRefused):
             self.stop()
-        if news is not None:
-            self._heard(key, news)
+        self._heard(key, news)
 
     def stop(self) -> None:
         """End the process."""
-        if self._asking is not None:
-            self._asking.stop()
+        if self._timer is not None:
+            self._timer.cancel()
         if self._run is not None:
-            self._run.stop()
-        self._key = self._run = self._asking = None
-
-
-class ViewJob(Job):
-    """Long work of a view, reported in the elements `progress` and `trouble` of the view."""
-
-    def __init__(
-        self, channel: Channel, view: str, show_result: Callable[[Any, Any], None], longest: float = LONGEST
-    ) -> None:
-        super().__init__(self._show_news, longest)
-        self._channel, self._view, self._done = channel, view, show_result
-
-    def put(self, element: str, html: str) -> None:
-        """Fill an element of the view."""
-        self._channel.put(f"#{self._view}-{element}", html)
-
-    def _show_news(self, key: Hashable, news: Any) -> None:
-        """Show news of the work on the page."""
-        if isinstance(news, Reached):
-            self.put("progress", progress(news.words, news.share, stop=f"{self._view}.stop"))
-        elif isinstance(news, RunRefused):
-            self.put("progress", "")
-            self.put("trouble", alert(news.why))
-        elif isinstance(news, RunFinished):
-            self.put("progress", "")
-            self._done(key, news.value)
-        self._channel.send()
+            jobs = _SHARED[self._work][1]
+            jobs.remove(self)
+            if not jobs:
+                del _SHARED[self._work]
+                self._run.stop()
+        self._key = self._work = self._run = self._timer = None
 
 
 _DRAWING_THREAD = ThreadPoolExecutor(max_workers=1, thread_name_prefix="drawing")
 """One at a time: they share what a figure is drawn with, and leave the other core to the pages."""
 
+_MAX_WAITING = 8
+
+
+class PageThread:
+    """Drawings and files of one page, of which at most one waits for the shared thread: pages take turns."""
+
+    current: ContextVar[PageThread | None] = ContextVar("current", default=None)
+    """Thread of the page whose request is handled; None without a browser."""
+
+    def __init__(self) -> None:
+        self._waiting: deque[tuple[Callable[[], Any], Callable[[Future[Any]], None]]] = deque()
+        self._works = self._closed = False
+
+    def add(self, work: Callable[[], Any], on_done: Callable[[Future[Any]], None]) -> None:
+        """Run a function after those that wait, and pass its outcome to the page unless it is closed."""
+        if len(self._waiting) >= _MAX_WAITING:
+            raise ValueError(f"{_MAX_WAITING} drawings of this page wait already: try again in a moment")
+        self._waiting.append((work, on_done))
+        if not self._works:
+            self._start_next()
+
+    def _start_next(self) -> None:
+        self._works = bool(self._waiting)
+        if not self._works:
+            return
+        work, on_done = self._waiting.popleft()
+        loop, context = asyncio.get_running_loop(), copy_context()
+
+        def report(future: Future[Any]) -> None:
+            if not self._closed:
+                self._start_next()
+                on_done(future)
+
+        def hand_over(future: Future[Any]) -> None:
+            if not self._closed:
+                loop.call_soon_threadsafe(report, future, context=context)
+
+        _DRAWING_THREAD.submit(work).add_done_callback(hand_over)
+
+    def close(self) -> None:
+        """Forget all that waits."""
+        self._closed = True
+        self._waiting.clear()
+
 
 def run_in_thread(work: Callable[[], Any], on_done: Callable[[Future[Any]], None]) -> None:
-    """Run a function in a thread and pass its outcome to an open page; run it at once without a page."""
-    document = pn.state.curdoc
-    context = None if document is None else document.session_context
-    if context is None:
-        on_done(_completed(work))
-        return
-    loop = IOLoop.current()
-
-    def report(future: Future[Any]) -> None:
-        if not context.destroyed:
-            document.add_next_tick_callback(lambda: on_done(future))
-
-    _DRAWING_THREAD.submit(work).add_done_callback(lambda future: loop.add_callback(report, future))
-
-
-def _completed(work: Callable[[], Any]) -> Future[Any]:
-    future: Future[Any] = Future()
-    try:
-        future.set_result(work())
-    except Exception as error:
-        future.set_exception(error)
-    return future
+    """Run a function in a thread and pass its outcome to an open page; wait for it without a browser."""
+    thread = PageThread.current.get()
+    if thread is None:
+        future = _DRAWING_THREAD.submit(work)
+        wait([future])
+        on_done(future)
+    else:
+        thread.add(work, on_done)

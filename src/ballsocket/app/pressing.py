@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil, log10, pi
+from math import cbrt, ceil, degrees, log10, pi
 
 import numpy
 
 from ..catalogue import catalogue
-from ..compare import Comparison, compare, force_curves
+from ..compare import MAX_HALF_ANGLE, Comparison, compare, force_curves
 from ..contact import Contact, Model
 from ..contact.describe import Column
 from ..core.quantities import FIELD
@@ -20,60 +21,104 @@ from ..problem.cup import Cup
 from ..reports.press_plots import force_axes
 from ..reports.style import LineStyle
 from .pictures.chart import Curve, chart, legend
-from .solving import RecordedContact, heavy, solved
+from .solving import heavy, solved, solved_curve
+from .widgets.joint_fields import tilt_of
 from .widgets.reading import Reading
 
-_POINTS = numpy.linspace(0.0, 1.0, 17) ** 1.5
+_POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
 _ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 60))
 
 
 def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
     """Press a joint by several models; slow models have a result once `solving` has finished."""
-    slow = [name for name in names if heavy(file.joint, name)]
-    quick = tuple(name for name in names if name not in slow)
-    quick_results = _pressed(file.joint, file.cup, tuple(file.load.items()), quick)
-    if not slow:
-        return quick_results
-    known = {name: solved(file, name) or _WAITING.format(name, file.joint.thickness_ratio) for name in slow}
-    contacts = {
-        **quick_results.contacts,
-        **{name: result for name, result in known.items() if not isinstance(result, str)},
-    }
-    missing = {name: result for name, result in known.items() if isinstance(result, str)}
-    ordered = {name: contacts[name] for name in names if name in contacts}
-    return Comparison(file.joint, ordered, {**missing, **quick_results.missing})
+    contacts: dict[str, Contact] = {}
+    missing: dict[str, str] = {}
+    for name in names:
+        if heavy(file.joint, name):
+            result = solved(file, name) or _WAITING.format(name, file.joint.thickness_ratio)
+            if isinstance(result, str):
+                missing[name] = result
+            else:
+                contacts[name] = result
+        else:
+            comparison = _pressed(file.joint, file.cup, tuple(file.load.items()), name)
+            contacts |= comparison.contacts
+            missing |= comparison.missing
+    return Comparison(file.joint, contacts, missing)
 
 
-_WAITING = "{} is being solved: at R2/L = {:.3g} that takes seconds"
+_WAITING = "Preparing {}: at R2/L = {:.3g} that takes seconds"
 
 
-@lru_cache(maxsize=64)
-def _pressed(joint: Joint, cup: Cup, load: tuple[tuple[str, float], ...], names: tuple[str, ...]) -> Comparison:
-    return compare(joint, models={name: catalogue[name] for name in names}, cup=cup, **dict(load))
+def is_waiting(file: JointFile, name: str) -> bool:
+    """Return True while a slow model has no result yet."""
+    return heavy(file.joint, name) and solved(file, name) is None
+
+
+@lru_cache(maxsize=1024)
+def _pressed(joint: Joint, cup: Cup, load: tuple[tuple[str, float], ...], name: str) -> Comparison:
+    return compare(joint, models={name: catalogue[name]}, cup=cup, **dict(load))
+
+
+@dataclass(frozen=True)
+class AxialLimit:
+    """Reason why models of a load along the cup's axis do not apply, and the words of their rows in a table."""
+
+    reason: str
+    excluded: str
+
+
+def axial_limit(file: JointFile, contact: Contact | None) -> AxialLimit | None:
+    """Return the reason why a load needs the real cup; None where models of a load along the axis hold.
+
+    They hold up to one liner thickness from the rim, as their validity states.
+    """
+    tilt = tilt_of(file)
+    if tilt > AXIAL_TILT:
+        reason = f"the load is tilted {degrees(tilt):.3g}° against the axis of the cup"
+        return AxialLimit(reason, "axial load only: not for this tilt")
+    if contact is None or contact.status.failed:
+        return None
+    radius = float(file.joint.socket_radius)
+    if file.cup.edge_distance(radius, float(contact.half_angle)) < min(float(file.joint.liner_thickness), radius):
+        return AxialLimit("the contact ends near the rim of the cup", "bore without a rim: not this near the rim")
+    return None
+
+
+AXIAL_TILT = 1e-9
+"""Tilt in rad up to which a load counts as axial."""
 
 
 def curve(contact: Contact, largest: float) -> Contact | None:
-    """Compute the curve of a contact's model up to the largest force; None without a result."""
-    if isinstance(contact, RecordedContact):
-        return contact.curve
-    return _cached_curve(contact.joint, contact.model.name, largest)
+    """Compute the curve of a contact's model up to the largest force; None without a result.
+
+    A given half angle needs no search for the load. Forces grow at least with its third power.
+    """
+    if heavy(contact.joint, contact.model.name):
+        return solved_curve(contact)
+    force, half = float(contact.force), float(contact.half_angle)
+    if not (force > 0 and half > 0):
+        return None
+    end = half * cbrt(max(largest / force, 1.0))
+    return _cached_curve(contact.joint, contact.model.name, min(ceil(end / _ANGLE_STEP) * _ANGLE_STEP, MAX_HALF_ANGLE))
+
+
+_ANGLE_STEP = 0.02
+"""Step in rad of the largest half angle of a curve, which stays while a slider moves a little."""
 
 
 @lru_cache(maxsize=256)
-def _cached_curve(joint: Joint, name: str, largest: float) -> Contact | None:
+def _cached_curve(joint: Joint, name: str, half_angle: float) -> Contact | None:
     try:
-        return catalogue[name].press(joint, force=largest * _POINTS)
+        return catalogue[name].press(joint, half_angle=half_angle * _POINTS)
     except OutsideDomainError:
         return None
 
 
 def fine_curves(contacts: Mapping[str, Contact], models: Mapping[str, Model]) -> dict[str, Contact]:
     """Compute a curve of each contact for a file, unless it was solved with the contact."""
-    ready = {
-        name: contact.curve
-        for name, contact in contacts.items()
-        if isinstance(contact, RecordedContact) and contact.curve
-    }
+    known = {name: solved_curve(contact) for name, contact in contacts.items()}
+    ready = {name: curve for name, curve in known.items() if curve is not None}
     unsolved = {name: contact for name, contact in contacts.items() if name not in ready}
     return {**ready, **(force_curves(unsolved, models) if unsolved else {})}
 
@@ -97,26 +142,27 @@ def press_charts(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle]
     """Draw pressure over angle and force over indentation of several contacts, with a legend."""
     if not contacts:
         return "<p class='quiet'>No curve to draw.</p>"
-    key = legend({name: lines[name] for name in contacts})
-    charts = _pressure_chart(contacts, lines, reading), _force_chart(contacts, lines, reading)
+    profiles = {name: (*profile(contact), bool(contact.valid)) for name, contact in contacts.items()}
+    charts = pressure_chart(profiles, lines, reading), _force_chart(contacts, lines, reading)
     figures = "".join(f"<figure>{picture}</figure>" for picture in charts)
-    return f"<div class='pair'>{figures}</div><p class='legend'>{key}</p>"
+    return f"<div class='pair'>{figures}</div><p class='legend'>{legend({name: lines[name] for name in contacts})}</p>"
 
 
-def _pressure_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
+Profile = tuple[numpy.ndarray, numpy.ndarray, bool]
+"""Angles (rad), pressures (MPa), and True where they can be trusted."""
+
+
+def pressure_chart(profiles: Mapping[str, Profile], lines: Mapping[str, LineStyle], reading: Reading) -> str:
+    """Draw named pressures over their angles."""
     angle, pressure = reading.unit(FIELD["angle"]), reading.unit(FIELD["pressure"])
-    widest = min(max(float(contact.half_angle) for contact in contacts.values()), pi / 2)
-    highest = max(float(contact.max_pressure) for contact in contacts.values())
-    return chart(
-        "pressure over angle, highest at the pole",
-        FIELD["angle"].label(angle),
-        FIELD["pressure"].label(pressure),
-        {
-            name: _pressure_curve(contact, (angle.factor, pressure.factor), lines[name])
-            for name, contact in contacts.items()
-        },
-        (rounded_up(1.02 * widest * angle.factor), rounded_up(1.05 * highest * pressure.factor)),
-    )
+    curves = {
+        name: Curve(angle.factor * x, pressure.factor * y, lines[name], trusted)
+        for name, (x, y, trusted) in profiles.items()
+    }
+    widest, highest = (max(float(getattr(curve, axis).max()) for curve in curves.values()) for axis in "xy")
+    labels = FIELD["angle"].label(angle), FIELD["pressure"].label(pressure)
+    ends = rounded_up(1.02 * widest), rounded_up(1.05 * highest)
+    return chart("pressure over angle, highest at the pole", *labels, curves, ends)
 
 
 def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle], reading: Reading) -> str:
@@ -133,16 +179,10 @@ def _force_chart(contacts: Mapping[str, Contact], lines: Mapping[str, LineStyle]
     )
 
 
-def _pressure_curve(contact: Contact, factors: tuple[float, float], line: LineStyle) -> Curve:
-    angle, pressure = profile(contact)
-    trusted = numpy.full(angle.shape, bool(contact.valid))
-    return Curve(angle * factors[0], pressure * factors[1], trusted, line)
-
-
 def _force_curve(contact: Contact, largest: float, axes: tuple[Column, Column], line: LineStyle) -> Curve:
     depth, force = axes
     mark = (float(depth.values_of(contact)), float(force.values_of(contact)))
     press = curve(contact, largest)
     if press is None:
-        return Curve(numpy.empty(0), numpy.empty(0), numpy.empty(0, dtype=bool), line, mark)
-    return Curve(depth.values_of(press), force.values_of(press), numpy.asarray(press.valid), line, mark)
+        return Curve(numpy.empty(0), numpy.empty(0), line, mark=mark)
+    return Curve(depth.values_of(press), force.values_of(press), line, press.valid, mark)

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections import OrderedDict
-from collections.abc import Callable, Hashable
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -127,33 +126,6 @@ class Run:
             self._pipe.close()
 
 
-class CachedRun:
-    """Latest results by their inputs, shared by all pages."""
-
-    def __init__(self, max_size: int) -> None:
-        self._max_size = max_size
-        self._results: OrderedDict[Hashable, Any] = OrderedDict()
-
-    def get(self, key: Hashable) -> Any:
-        """Return a stored result; None without one."""
-        return self._results.get(key)
-
-    def put(self, key: Hashable, result: Any) -> None:
-        """Fill an element of the view."""
-        self._results[key] = result
-        while len(self._results) > self._max_size:
-            self._results.popitem(last=False)
-
-
-def looked_at() -> bool:
-    """Return True while a browser shows the page."""
-    from panel import state  # a run's process needs none of it
-
-    document = state.curdoc
-    context = None if document is None else document.session_context
-    return context is None or context.session is None or context.session.connection_count > 0
-
-
 def _run(pipe: Connection, work: Work) -> None:
     """Run the work inside the process."""
     exit_with_parent()
@@ -164,6 +136,9 @@ def _run(pipe: Connection, work: Work) -> None:
         pipe.send(RunRefused(why=str(error)))
     except MemoryError:
         pipe.send(RunRefused(why=f"this takes more than {MEMORY / 1e9:g} GB, the most that a run may have here"))
+    except Exception as error:
+        pipe.send(RunRefused(why=f"this run failed: {type(error).__name__}: {error}"))
+        raise
 
 
 def limit_memory() -> None:

@@ -1,177 +1,266 @@
-"""Server of the explorer, with limits and protection."""
+"""Server of the explorer: the page, its files and its sockets, with limits and protection."""
 
 from __future__ import annotations
 
+import asyncio
+import json
 import re
 import socket
 import sys
-from collections.abc import Callable, Iterable, Sequence
-from html import escape
-from secrets import token_bytes
+import time
+import webbrowser
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from typing import Any
+from urllib.parse import urlsplit
 
-import panel as pn
-from tornado.httputil import HTTPHeaders
-from tornado.web import Application, OutputTransform, RequestHandler
+from threadpoolctl import threadpool_limits
+from tornado.httpserver import HTTPServer
+from tornado.ioloop import IOLoop
+from tornado.netutil import bind_sockets
+from tornado.web import Application, HTTPError, RequestHandler
+from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from ..core.checks import require, shown
+from .channel import read_request
+from .jobs import PageThread
+from .page import page_files
 from .pressing import pressed
-from .session import Page, template
+from .session import Page
 from .state.screen import START
+from .widgets.words import alert
 
 _STRICT = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
-    "Content-Security-Policy": "frame-ancestors 'none'",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-cache",
+}
+_POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; style-src-attr 'unsafe-inline'; img-src 'self' data:; "
+    "connect-src 'self' ws://{host} wss://{host}; form-action 'none'; base-uri 'none'; frame-ancestors 'none'"
+)
+_SENTENCES = {
+    403: "this server does not answer to that name; see --origin\n",
+    404: "this server has no such page\n",
+    405: "this server does not know this method\n",
 }
 
 
-class _Strict(OutputTransform):
-    """Transform that adds the strict headers to every response."""
+class HostNames:
+    """Host names under which browsers may reach a server, such as "hips.example.org:8443"; "*" is any part of one."""
 
-    def transform_first_chunk(
-        self, status_code: int, headers: HTTPHeaders, chunk: bytes, finishing: bool
-    ) -> tuple[int, HTTPHeaders, bytes]:
-        headers.update(_STRICT)
-        return status_code, headers, chunk
+    def __init__(self, names: Iterable[str]) -> None:
+        self._names = [name.lower() for name in names]
+
+    def answer_to(self, host: str) -> bool:
+        """Return True for one of the names with any port."""
+        return any(_fits(re.sub(r":[\d*]+$", "", name), host) for name in self._names)
+
+    def trust(self, origin: str, host: str) -> bool:
+        """Return True if a page of this origin may open a socket: it is from this server, or has one of the names."""
+        address = urlsplit(origin.lower())
+        port = {"http": ":80", "https": ":443"}.get(address.scheme, "")
+        forms = address.netloc, f"{address.netloc}{port}", address.netloc.removesuffix(port)
+        return address.netloc == host.lower() or any(_fits(name, form) for name in self._names for form in forms)
 
 
-class _Refused(RequestHandler):
-    """Response to a host name of another server, such as one that a foreign page points here."""
+def _fits(name: str, host: str) -> bool:
+    """Return True if a star in the name stands for the differing part; a lone star is any host."""
+    return name == "*" or re.fullmatch(re.escape(name).replace(r"\*", "[^.]*"), host) is not None
+
+
+class _Guarded(RequestHandler):
+    """Handler that answers to the server's own names, with strict headers and without tracebacks."""
+
+    def set_default_headers(self) -> None:
+        self.clear_header("Server")
+        for name, value in _STRICT.items():
+            self.set_header(name, value)
+        self.set_header("Content-Security-Policy", _POLICY.format(host=re.sub(r"[^\w.:\-\[\]]", "", self.request.host)))
 
     def prepare(self) -> None:
-        self.set_status(403)
-        self.finish("this server does not answer to that name; see --origin\n")
+        if not self.settings["names"].answer_to(self.request.host_name):
+            raise HTTPError(403)
+
+    def write_error(self, status_code: int, **details: Any) -> None:
+        self.set_header("Content-Type", "text/plain; charset=UTF-8")
+        self.finish(_SENTENCES.get(status_code, "the server could not handle this request\n"))
 
 
-class _NoPage(RequestHandler):
-    """Refusal of a route that the page does not use, such as the routes by which Panel imports modules."""
+class _Missing(_Guarded):
+    """Refusal of every other address."""
 
     def prepare(self) -> None:
-        self.set_status(404)
-        self.finish("this server has no such page\n")
+        super().prepare()
+        raise HTTPError(404)
 
 
-_UNUSED_ROUTES = r"(?!(?:/|/ws|/favicon\.ico|/static/.*)$).*"
+class _File(_Guarded):
+    """Page, or a file of it."""
+
+    def get(self, name: str = "page.html") -> None:
+        files = self.settings["files"]
+        if name not in files:
+            raise HTTPError(404)
+        kind, content = files[name]
+        self.set_header("Content-Type", kind)
+        self.write(content)
 
 
-def guard(application: Application, names: Iterable[str]) -> None:
-    """Refuse requests for unused routes and for hosts other than `names` ("*" is any), and add strict headers."""
-    application.add_transform(_Strict)
-    application.add_handlers(".*", [(_UNUSED_ROUTES, _NoPage)])
-    hosts = {_host(name) for name in names}
-    if "*" not in hosts:
-        ours = "|".join(re.escape(host).replace(r"\*", r"[^.]*") for host in sorted(hosts))
-        application.add_handlers(rf"(?!(?:{ours})$).*", [(".*", _Refused)])
+MAX_SESSIONS = 400
+"""Largest number of open pages. The same number of sockets may be connected without a page."""
+
+_MAX_MESSAGE = 400_000  # bytes; an upload is smaller
+_RATE, _BURST = 60.0, 120.0  # requests a second, and at once, that are read from one browser
+_SWITCH_INTERVAL = 5e-4  # s until a drawing thread yields to pages; 5 ms is the default
+_PING_INTERVAL = 20  # s; a browser that does not answer for as long has gone
+_PONG = '{"pong": true}'
 
 
-def _host(name: str) -> str:
-    """Return a host name without its port, in lower case."""
-    return re.sub(r":[\d*]+$", "", name.lower())
+class PageSockets:
+    """Sockets of a server: those with a page, and those that wait for one, oldest first."""
+
+    def __init__(self) -> None:
+        self.pages: set[PageSocket] = set()
+        self._waiting: dict[PageSocket, None] = {}
+
+    def connect(self, connection: PageSocket) -> None:
+        """Add a socket without a page, and close the oldest beyond the limit."""
+        self._waiting[connection] = None
+        if len(self._waiting) > MAX_SESSIONS:
+            oldest = next(iter(self._waiting))
+            del self._waiting[oldest]
+            oldest.close()
+
+    def admit(self, connection: PageSocket) -> bool:
+        """Count the page of a socket; return False if too many are open."""
+        if len(self.pages) >= MAX_SESSIONS:
+            return False
+        self._waiting.pop(connection, None)
+        self.pages.add(connection)
+        return True
+
+    def leave(self, connection: PageSocket) -> None:
+        """Forget a closed socket."""
+        self._waiting.pop(connection, None)
+        self.pages.discard(connection)
 
 
-_GONE = 1001
-"""Close code of a browser that leaves the page; a broken connection has another, and may return."""
+class PageSocket(_Guarded, WebSocketHandler):
+    """Connection of one browser, and its page from the first request to the end of the connection."""
+
+    page: Page | None = None
+
+    def open(self, *args: str, **kwargs: str) -> None:
+        self._credit, self._last, self._thread = _BURST, time.monotonic(), PageThread()
+        self._sent: asyncio.Future[None] | None = None
+        self.settings["sockets"].connect(self)
+
+    def check_origin(self, origin: str) -> bool:
+        return self.settings["names"].trust(origin, self.request.host)
+
+    def get_compression_options(self) -> dict[str, Any]:
+        return {"compression_level": 5, "mem_level": 5}  # of little memory
+
+    async def on_message(self, message: str | bytes) -> None:
+        """Handle one request; the next is not read before, so that a flood waits in its own browser."""
+        await self._wait_for_turn()
+        request = read_request(message)
+        if request is None or self.close_code is not None:
+            return
+        PageThread.current.set(self._thread)
+        if request["do"] == "ping":
+            self._write(_PONG)
+        elif self.page is not None:
+            self.page.channel.receive(request)
+        elif request["do"] == "open":
+            self._open_page(request)
+
+    def _open_page(self, request: dict[str, Any]) -> None:
+        """Make the page, unless too many are open."""
+        if not self.settings["sockets"].admit(self):
+            words = f"{MAX_SESSIONS} pages are open here already: try again later"
+            self._write(json.dumps({"n": request["n"], "question": 0, "#trouble": alert(words)}))
+            return
+        origin = self.request.headers.get("Origin", "")  # `check_origin` knows this name
+        self.page = Page(str(request.get("query", "")), self._write, request["n"], origin)
+
+    async def _wait_for_turn(self) -> None:
+        """Wait until this browser has read its last answer and its rate is within the limit; let others go first."""
+        now = time.monotonic()
+        self._credit = min(_BURST, self._credit + _RATE * (now - self._last)) - 1.0
+        self._last = now
+        await asyncio.sleep(max(0.0, -self._credit / _RATE))
+        if self._sent is not None:
+            with suppress(WebSocketClosedError):
+                await self._sent
+
+    def _write(self, text: str) -> None:
+        with suppress(WebSocketClosedError):
+            self._sent = self.write_message(text)
+            self._sent.add_done_callback(lambda sent: sent.cancelled() or sent.exception())
+
+    def on_close(self) -> None:
+        self.settings["sockets"].leave(self)
+        self._thread.close()
+        if self.page is not None:
+            self.page.leave()
 
 
-def forget_closed(application: Any) -> None:
-    """Remove the session of a page that a browser has closed at the next check of the server."""
-    client_lost = application.client_lost
-
-    def leave(connection: Any) -> None:
-        session = connection.session
-        client_lost(connection)
-        if connection._socket.close_code == _GONE:
-            session.request_expiration()
-
-    application.client_lost = leave
-
-
-_UNHANDLED = "the server could not handle this message"
-
-
-def hide_tracebacks(application: Any) -> None:
-    """Remove code and folder names of this machine from error messages to browsers."""
-
-    def hide(connection: Any) -> None:
-        def error(message: Any, text: str) -> Any:
-            reply = connection.protocol.create("ERROR", message.header["msgid"], _UNHANDLED)
-            reply.content = {"text": _UNHANDLED, "traceback": None}
-            return reply
-
-        connection.error = error
-
-    _change_connections(application, hide)
+def explorer(names: Iterable[str]) -> Application:
+    """Return the application that answers to the given host names."""
+    return Application(
+        [("/", _File), (r"/assets/([\w.]+)", _File), ("/socket", PageSocket)],
+        default_handler_class=_Missing,
+        names=HostNames(names),
+        files=page_files(),
+        sockets=PageSockets(),
+        compress_response=True,
+        log_function=lambda handler: None,  # an address holds a joint
+        websocket_max_message_size=_MAX_MESSAGE,
+        websocket_ping_interval=_PING_INTERVAL,
+        websocket_ping_timeout=_PING_INTERVAL,
+    )
 
 
-def _change_connections(application: Any, change: Callable[[Any], None]) -> None:
-    """Call a function with each new WebSocket connection of a BokehTornado application."""
-    connect = application.new_connection
+class ExplorerServer:
+    """HTTP server of an application, bound to its port."""
 
-    def connected(*words: Any) -> Any:
-        connection = connect(*words)
-        change(connection)
-        return connection
+    def __init__(self, application: Application, sockets: list[socket.socket], show: bool) -> None:
+        self.io_loop: Any = IOLoop.current()
+        self.port = int(sockets[0].getsockname()[1])
+        self.application = application
+        self._sockets, self._show = sockets, show
+        self._server = HTTPServer(
+            application, max_buffer_size=_MAX_MESSAGE, max_body_size=_MAX_MESSAGE, idle_connection_timeout=60.0
+        )
 
-    application.new_connection = connected
+    @property
+    def pages(self) -> list[Page]:
+        """Pages that are open."""
+        return [connection.page for connection in self.application.settings["sockets"].pages if connection.page]
 
+    def start(self) -> None:
+        """Accept connections while the loop runs."""
+        self._server.add_sockets(self._sockets)
+        if self._show:
+            webbrowser.open(f"http://{LOOPBACK}:{self.port}/")
 
-class OpenPages:
-    """Pages of a server: connected pages, and pages that wait for their browser.
-
-    A client that only requests the address never connects. The oldest waiting pages are removed.
-
-    Parameters
-    ----------
-    max_waiting : int
-        Pages that may wait at once.
-    """
-
-    def __init__(self, max_waiting: int) -> None:
-        self.max_waiting = max_waiting
-        self._connected: set[str] = set()
-        self._waiting: dict[str, Any] = {}
-
-    def __len__(self) -> int:
-        """Count the pages to which a browser has connected."""
-        return len(self._connected)
-
-    def add(self, name: str, context: Any) -> None:
-        """Add a page by the name of its session, and remove the oldest waiting pages beyond the limit."""
-        self._waiting[name] = context
-        while len(self._waiting) > self.max_waiting:
-            oldest = self._waiting.pop(next(iter(self._waiting)))
-            if oldest.session is not None:
-                oldest.session.request_expiration()
-
-    def remove(self, name: str) -> None:
-        """Remove a closed page."""
-        self._connected.discard(name)
-        self._waiting.pop(name, None)
-
-    def count_connections(self, application: Any) -> None:
-        """Count a page when the WebSocket of its browser opens."""
-
-        def count(connection: Any) -> None:
-            self._waiting.pop(connection.session.id, None)
-            self._connected.add(connection.session.id)
-
-        _change_connections(application, count)
+    def stop(self) -> None:
+        """Close the port and the pages."""
+        self._server.stop()
+        for connection in list(self.application.settings["sockets"].pages):
+            connection.on_close()
 
 
 LOOPBACK, EVERYWHERE = "127.0.0.1", "0.0.0.0"
-MOST_SESSIONS = 200
-"""Largest number of connected pages. The same number may wait for their browsers."""
-
-_MESSAGE = 400_000
-"""Bytes of one message from a browser: an upload is smaller."""
-
-_IDLE = 60_000  # ms until a disconnected page is removed
-_SWITCH_INTERVAL = 5e-4  # s until a drawing thread yields to pages; 5 ms is the default
-_CHECK_INTERVAL = 1_000  # ms between two checks for closed pages
 
 
-def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (), show: bool = False) -> Any:
+def server(
+    port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (), show: bool = False
+) -> ExplorerServer:
     """Set up the server without starting it.
 
     Parameters
@@ -193,64 +282,27 @@ def server(port: int = 5006, address: str = LOOPBACK, origins: Sequence[str] = (
         The port is taken.
     """
     require("port", port, 0 <= port <= 65535, "a port is 0 to 65535")
-    _check_address(address)
-    pn.extension(notifications=False)
-    sys.setswitchinterval(_SWITCH_INTERVAL)
-    pressed(START.file, (START.answered_by, *START.shown))  # load at the start what the first press would load
-    port = port or _free_port(address)
-    own_hosts = [f"{name}:{port}" for name in dict.fromkeys((LOOPBACK, "localhost", address))]
-    served = pn.serve(
-        {"/": _session},
-        port=port,
-        address=address,
-        websocket_origin=[*own_hosts, *origins],
-        sign_sessions=True,  # otherwise an invented session name could be shared with another user
-        secret_key=token_bytes(32),
-        show=show,
-        start=False,
-        title="ballsocket",
-        websocket_max_message_size=_MESSAGE,
-        unused_session_lifetime_milliseconds=_IDLE,
-        check_unused_sessions_milliseconds=_CHECK_INTERVAL,
-        http_server_kwargs={"max_buffer_size": _MESSAGE, "max_body_size": _MESSAGE},
-    )
-    guard(served._tornado, (*own_hosts, *origins))
-    forget_closed(served._tornado)
-    hide_tracebacks(served._tornado)
-    _pages.count_connections(served._tornado)
-    return served
-
-
-def _check_address(address: str) -> None:
     try:
         socket.getaddrinfo(address, None)
     except (OSError, UnicodeError) as error:
-        raise ValueError(
-            f"address = {shown(address)} is not allowed: no interface of this machine is called so"
-        ) from error
+        rule = "no interface of this machine is called so"
+        raise ValueError(f"address = {shown(address)} is not allowed: {rule}") from error
+    sys.setswitchinterval(_SWITCH_INTERVAL)
+    threadpool_limits(1)  # a press has small matrices: threads cost more time than they save
+    _allow_many_connections()
+    sockets = bind_sockets(port, address)
+    pressed(START.file, (START.answered_by, *START.shown))  # load at the start what the first press would load
+    port = int(sockets[0].getsockname()[1])
+    own_hosts = [f"{name}:{port}" for name in dict.fromkeys((LOOPBACK, "localhost", address))]
+    return ExplorerServer(explorer((*own_hosts, *origins)), sockets, show)
 
 
-def _free_port(address: str) -> int:
-    with socket.socket() as probe:
-        probe.bind((address, 0))
-        return int(probe.getsockname()[1])
-
-
-_pages = OpenPages(max_waiting=MOST_SESSIONS)
-
-
-def _session() -> Any:
-    """Make a page for a request, unless too many are open."""
-    if len(_pages) >= MOST_SESSIONS:
-        return pn.pane.HTML(f"<p>{escape(f'{MOST_SESSIONS} pages are open here already: try again later')}</p>")
-    location = pn.state.location
-    page = Page((location.search if location is not None else "").lstrip("?"))
-    context = pn.state.curdoc.session_context
-    _pages.add(context.id, context)
-
-    def on_destroyed(context: Any) -> None:
-        _pages.remove(context.id)
-        page.leave()
-
-    pn.state.on_session_destroyed(on_destroyed)
-    return template(page)
+def _allow_many_connections() -> None:
+    """Raise the limit of open files as far as this user may: each connection is one."""
+    try:
+        import resource
+    except ImportError:  # no such limit on this system
+        return
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    with suppress(ValueError, OSError):
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))

@@ -1,38 +1,33 @@
-"""Page of one user: its screen, its inputs and its HTML."""
+"""Page of one user: its screen, its inputs and its views."""
 
 from __future__ import annotations
 
-import json
 import logging
+from asyncio import TimerHandle
 from base64 import b64encode
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from dataclasses import replace
 from functools import partial
-from html import escape
 from typing import Any
 from urllib.parse import parse_qs
 
-import panel as pn
-from markupsafe import Markup
-
 from ..core.checks import check_names
-from ..files.joint_file import parse_joint
 from ..reports.unit_systems import Units
 from .channel import Channel
-from .jobs import run_in_thread
+from .jobs import Job, call_later, run_in_thread
 from .pressing import pressed
+from .running import RunFinished, RunRefused
 from .solving import Errand
-from .state.screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, link_of, read_link
-from .style import asset
-from .view import FILE_KINDS, ScreenContent, View, make_file
-from .views.registry import KINDS
-from .widgets.fields import Field, segments
+from .state.designs import read_upload, session_text
+from .state.screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, read_link
+from .view import ScreenContent, View, make_file, print_page
+from .views.registry import view_class
+from .widgets.fields import Field, in_words_of, segments
 from .widgets.joint_fields import behind, edited, fields_of, layer_fields, layers_edited
 from .widgets.words import alert
 
 _LOG = logging.getLogger(__name__)
-_LARGEST = 100_000  # characters of a joint file
 _CHOSEN = ("view", "answered_by", "shown", "painted", "angle", "size", "units")
 """Fields of the screen that the page's own inputs change."""
 
@@ -40,16 +35,30 @@ _UNITS = ((Units.SI.value, "mm, N, MPa"), (Units.IMPERIAL.value, "in, lbf, psi")
 
 
 class Page:
-    """Page of one user, for the query of its address; errors in the query are shown on the page."""
+    """Page of one user, for the query of its address; errors in the query are shown on the page.
 
-    def __init__(self, query: str) -> None:
-        self.channel = Channel(self._handle_request)
+    `write` sends a message to its browser, and `number` is that of the request that opened it.
+    """
+
+    def __init__(
+        self, query: str, write: Callable[[str], None] = lambda text: None, number: int = 0, origin: str = ""
+    ) -> None:
+        self.channel = Channel(self._handle_request, write)
         self.screen = self._read(query)
+        self._origin = origin
         self._views: dict[str, View] = {}
-        self._handlers: dict[str, Callable[[str, Any], None]] = {"behind": self._layered}
-        self.main = pn.Column(sizing_mode="stretch_width")
+        self._handlers: dict[str, Callable[[str, Any], None]] = {
+            "behind": lambda key, value: self.ask(file=layers_edited(self.screen.file, key, value)),
+            "designs": self._handle_designs,
+        }
+        self._timers: set[TimerHandle] = set()
         self._errand = Errand(self._refresh)
-        pn.state.onload(self._refresh)  # a client that never connects causes no work
+        self._printing = Job(self._printed)
+        self.channel.once("fresh", True)
+        self._put()
+        self.channel.send()  # inputs before the first answer, for slow lines
+        self.channel.number = number
+        self._refresh()
 
     def _read(self, query: str) -> Screen:
         """Read the screen of a link; return the start if it is invalid."""
@@ -72,21 +81,64 @@ class Page:
         screen = replace(self.screen, **changes)
         if screen == self.screen:
             return
-        if len(link_of(screen)) > LONGEST_LINK:
-            self.refuse(f"a link to this would be longer than {LONGEST_LINK} characters: shorten the names in the file")
-            return
-        self.screen = screen
+        _check_link(screen)
         self.refuse("")
+        self._change(screen)
+
+    def _change(self, screen: Screen) -> None:
+        self.screen = screen
+        self.channel.question += 1
         self._refresh()
 
+    def _open(self, words: Mapping[str, Any]) -> None:
+        """Show the screen of another link, requested by the browser's history."""
+        self.refuse("")
+        self.channel.accept_fields()
+        self._change(self._read(str(words.get("query"))))
+
+    def later(self, seconds: float, function: Callable[[], None]) -> Callable[[], None]:
+        """Call a function later unless the page is closed, or at once without a browser; return what cancels it."""
+
+        def due() -> None:
+            cancel()
+            self.attempt(function)
+
+        def cancel() -> None:
+            if timer is not None:
+                self._timers.discard(timer)
+                timer.cancel()
+
+        timer = call_later(seconds, due)
+        if timer is None:
+            self.attempt(function)
+        else:
+            self._timers.add(timer)
+        return cancel
+
     def _handle_request(self, event: str, words: Mapping[str, Any]) -> None:
-        """Handle a request of the browser; show why it failed, and reset the inputs."""
-        doings = {"edit": self._edit, "choose": self._choose, "save": self._save, "upload": self._upload}
+        """Handle a request of the browser; show why it failed, beside its input if it has one."""
+        doings = {
+            "open": self._open,
+            "edit": self._edit,
+            "choose": self._choose,
+            "save": self._save,
+            "upload": self._upload,
+        }
         try:
             check_names([event], doings, "among what a page does")
             doings[event](words)
         except ValueError as error:
-            self.refuse(str(error))
+            name = str(words.get("name"))
+            field = self.channel.shown_value(f"={name}") if event == "edit" else None
+            if field is not None and field["kind"] in ("number", "words"):
+                text = words.get("value")
+                self.channel.refuse_field(name, text, in_words_of(field, str(error), text))
+            else:
+                self.refuse(str(error))
+            self.channel.once("reset", True)
+        except Exception:  # a browser never gets a traceback
+            _LOG.exception("a request failed")
+            self.refuse("the server could not handle this request")
             self.channel.once("reset", True)
 
     def listen(self, view: str, handler: Callable[[str, Any], None]) -> None:
@@ -94,18 +146,19 @@ class Page:
         self._handlers[view] = handler
 
     def _edit(self, words: Mapping[str, Any]) -> None:
-        view, _, key = str(words.get("name")).partition(".")
-        if key:
+        name, value = str(words.get("name")), words.get("value")
+        view, _, key = name.partition(".")
+        if isinstance(value, str) and value == (self.channel.shown_value(f"={name}") or {}).get("text"):
+            self.channel.accept_field(name)  # a rounded number that nobody has changed
+        elif key:
             check_names([view], self._handlers, "among the views that have inputs")
             self.refuse("")
-            self._handlers[view](key, words.get("value"))
-            return
-        file = edited(self.screen, str(words.get("name")), words.get("value"), self._same_load)
-        self.refuse("")
-        self.ask(file=file)
-
-    def _layered(self, key: str, value: Any) -> None:
-        self.ask(file=layers_edited(self.screen.file, key, value))
+            self._handlers[view](key, value)
+        else:
+            file = edited(self.screen, name, value, self._same_load)
+            self.refuse("")
+            self.ask(file=file)
+        self.channel.accept_field(name)
 
     def _choose(self, words: Mapping[str, Any]) -> None:
         name, value = str(words.get("name")), words.get("value")
@@ -131,62 +184,82 @@ class Page:
             _LOG.exception("a file failed")
             self.refuse(f"This cannot be saved: {error}")
         else:
-            self.channel.once("file", {"name": name, "content": b64encode(content).decode("ascii")})
+            if name.endswith(".pdf"):
+                paper = self.screen.reading.units.paper
+                self._printing.ask((name, content), partial(print_page, content.decode("utf-8"), paper))
+                return
+            self._send_file(name, content)
+        self.channel.send()
+
+    def _printed(self, key: Any, news: Any) -> None:
+        """Send a printed report, or show why it cannot be printed."""
+        if isinstance(news, RunRefused):
+            self.refuse(news.why)
+        elif isinstance(news, RunFinished):
+            self._send_file(key[0], news.value)
         self.channel.send()
 
     def _upload(self, words: Mapping[str, Any]) -> None:
-        """Read a joint file from the browser."""
-        text = str(words.get("text"))
-        if len(text) > _LARGEST:
-            raise ValueError(f"the file is longer than {_LARGEST} characters; a joint file is a few lines")
-        file = parse_joint(text.encode("utf-8"), "the file")
-        self.ask(file=file if file.load else replace(file, load=self.screen.file.load))
+        """Read a joint file or a session file from the browser, and show its first design."""
+        screens = read_upload(str(words.get("text")), self.screen)
+        for screen in screens:
+            _check_link(screen)
+        self.channel.once("designs", [screen.link for screen in screens])
+        self.refuse("")
+        self._change(screens[0])
 
-    def start(self) -> dict[str, Any]:
-        """Return the initial content of the page: inputs, and errors of its link."""
-        self._put()
-        return self.channel.take_pending()
+    def _handle_designs(self, key: str, links: Any) -> None:
+        """Save designs as a session file, or compare them with the one on the screen."""
+        check_names([key], ("save", "compare"), "among what is done with designs")
+        if not isinstance(links, list) or not all(isinstance(link, str) for link in links):
+            raise ValueError("designs are a list of links")
+        if key == "save":
+            self._send_file("designs.toml", session_text(links).encode("utf-8"))
+            return
+        compared = (read_link(parse_qs(link, keep_blank_values=True)) for link in links)
+        self.ask(beside=tuple(screen.file for screen in compared), view="compare")
 
-    def fields(self) -> dict[str, Field]:
+    def _send_file(self, name: str, content: bytes) -> None:
+        self.channel.once("file", {"name": name, "content": b64encode(content).decode("ascii")})
+
+    def _fields(self) -> dict[str, Field]:
         """Return every input beside the views by name."""
-        angles = segments("angle", "angles in", [(option, option) for option in ANGLES], self.screen.angle)
-        sizes = segments("size", "balls by", [(option, option) for option in SIZES], self.screen.size)
+        angles = segments("angle", "angles in", ANGLES, self.screen.angle)
+        sizes = segments("size", "balls by", SIZES, self.screen.size)
         units = segments("units", "units", _UNITS, self.screen.units)
         joint = {**fields_of(self.screen), **layer_fields(self.screen.file.joint)}
         return {**joint, "units": units, "size": sizes, "angle": angles}
 
-    def _refresh(self) -> None:
-        with pn.io.hold():
-            seen = self.view
-            for view in self._views.values():
-                if view.panel is not None:
-                    view.panel.visible = view is seen
-            self._put()
-            try:
-                seen.show(self.screen)
-            except Exception as error:  # the page must report every failure
-                _LOG.exception("a view failed")
-                self.refuse(f"This cannot be shown: {error}")
+    def attempt(self, action: Callable[[], None]) -> None:
+        """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
+        try:
+            action()
+        except Exception as error:  # the page must report every failure
+            _LOG.exception("a view failed")
+            self.channel.forget_expected()
+            self.refuse(f"This cannot be shown: {error}")
         self.channel.send()
-        self._errand.ask(*seen.asks(self.screen))
+
+    def _refresh(self) -> None:
+        self._put()
+        self.attempt(lambda: self.view.show(self.screen))
+        self._errand.ask(*self.view.asks(self.screen))
 
     def _put(self) -> None:
         """Set every input to the state of the screen."""
-        fields = self.fields()
-        self.channel.put_fields(fields)
-        self.channel.put("order", list(fields))
+        self.inputs = self._fields()
+        self.channel.put_fields(self.inputs)
+        self.channel.put("order", list(self.inputs))
         self.channel.put("#behind", behind(self.screen.file.joint))
         self.channel.put("view", self.screen.view)
-        self.channel.put("link", link_of(self.screen))
+        self.channel.put("link", self.screen.link)
 
     @property
     def view(self) -> View:
         """View that is open, made when it is first opened."""
         name = self.screen.view
         if name not in self._views:
-            self._views[name] = KINDS[name](self)
-            if self._views[name].panel is not None:
-                self.main.append(self._views[name].panel)
+            self._views[name] = view_class(name)(self)
         return self._views[name]
 
     def seen(self) -> ScreenContent:
@@ -194,7 +267,7 @@ class Page:
         return ScreenContent(
             title=self.view.title,
             file=self.screen.file,
-            link=f"?{link_of(self.screen)}",
+            link=f"{self._origin}/?{self.screen.link}",
             document=self.view.document(self.screen),
             units=self.screen.reading.units,
         )
@@ -210,63 +283,16 @@ class Page:
     def leave(self) -> None:
         """Stop all work of a closed page."""
         self._errand.leave()
+        self._printing.stop()
+        for timer in self._timers:
+            timer.cancel()
         for view in self._views.values():
             view.leave()
 
 
-_SCRIPTS = ("fields.js", "page.js", "charts.js", "drag.js", "bowl.js", "player.js", "views.js")
-
-
-class Template(pn.Template):
-    """Bokeh looks through a document once when all is in it, and not after every part."""
-
-    def server_doc(self, doc: Any = None, title: str | None = None, location: Any = True) -> Any:
-        document = doc or pn.state.curdoc
-        with document.models.freeze():
-            return super().server_doc(document, title, location)
-
-    def __repr__(self) -> str:
-        return "<the explorer's page>"  # short, because Panel formats it often
-
-
-def template(page: Page) -> Any:
-    """Return the HTML of the page before its first result, with disabled inputs."""
-    html_page = Template(asset("page.html"))
-    html_page.add_variable(
-        "style", asset("parts.css").replace(":host {", ".app {") + asset("page.css") + asset("views.css")
-    )
-    html_page.add_variable("script", "\n".join(asset(name) for name in _SCRIPTS))
-    html_page.add_variable("theme", page.screen.theme)
-    html_page.add_variable("views", _buttons({name: kind.title for name, kind in KINDS.items()}, "view"))
-    html_page.add_variable("sections", _sections())
-    html_page.add_variable("files", _buttons({kind: kind for kind in FILE_KINDS}, "file"))
-    html_page.add_variable("start", _script_json(json.dumps(page.start())))
-    html_page.add_panel("inbox", pn.pane.Bokeh(page.channel.inbox))
-    html_page.add_panel("outbox", pn.pane.Bokeh(page.channel.outbox))
-    html_page.add_panel("main", page.main)
-    return html_page
-
-
-def _buttons(words: dict[str, str], kind: str) -> Markup:
-    return Markup(
-        "".join(
-            f'<button type="button" data-{kind}="{escape(name)}">{escape(label)}</button>'
-            for name, label in words.items()
+def _check_link(screen: Screen) -> None:
+    """Raise ValueError for a screen whose link would be too long."""
+    if len(screen.link) > LONGEST_LINK:
+        raise ValueError(
+            f"a link to this would be longer than {LONGEST_LINK} characters: shorten the names in the file"
         )
-    )
-
-
-def _sections() -> Markup:
-    """Return the sections of the views that the page itself shows."""
-    bodies = {name: (kind.title, kind.body) for name, kind in KINDS.items() if kind.body}
-    return Markup(
-        "".join(
-            f'<section class="view" data-view="{name}" aria-label="{title}" hidden>{body}</section>'
-            for name, (title, body) in bodies.items()
-        )
-    )
-
-
-def _script_json(text: str) -> Markup:
-    """JSON inside a script: no end of it can be written in a name."""
-    return Markup(text.replace("<", "\\u003c"))

@@ -4,104 +4,19 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
-from math import pi
 from typing import Any
-
-import numpy
 
 from ..catalogue import catalogue
 from ..compare import is_curve_slow, press_short_curve
 from ..contact import Contact
-from ..core import arrays
-from ..core.arrays import Array
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
 from ..problem import Joint
 from ..problem.cup import Cup
 from .jobs import Job
 from .running import Report, RunRefused
-
-_LAW_FIELDS = (
-    "half_angle",
-    "max_pressure",
-    "max_pressure_angle",
-    "pole_pressure",
-    "stiffness",
-    "energy",
-    "foundation_modulus",
-    "pressure_integral",
-)
-_SAMPLE_ANGLES = numpy.sin(
-    numpy.linspace(0.0, pi / 2, 120)
-)  # of the half angle, dense where the pressure falls steeply
-_NOTHING = (numpy.zeros(1), numpy.zeros(1))
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class RecordedLaws:
-    """Numbers of a solved contact, and its pressure (MPa) at angles (rad) up to its edge."""
-
-    half_angle: Array
-    max_pressure: Array
-    max_pressure_angle: Array
-    pole_pressure: Array
-    stiffness: Array
-    energy: Array
-    foundation_modulus: Array
-    pressure_integral: Array
-    profile: tuple[numpy.ndarray, numpy.ndarray]
-
-    def pressure(self, angle: Array) -> Array:
-        """Interpolate the sampled pressure linearly."""
-        return numpy.interp(arrays.to_numpy(angle), *self.profile, right=0.0)
-
-
-@dataclass(frozen=True, kw_only=True, repr=False, eq=False)
-class RecordedContact(Contact):
-    """Contact solved by another process, with its estimated errors, notes, validity and curve."""
-
-    error: dict[str, Any] = field(default_factory=dict)
-    curve: Contact | None = None
-    solved_notes: tuple[str, ...] = ()
-    solved_valid: Array = True
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """Notes of the process that solved the contact."""
-        return self.solved_notes
-
-    @property
-    def valid(self) -> Array:
-        """Validity by the process that solved the contact."""
-        return self.solved_valid
-
-
-def record_contact(contact: Contact, curve: Contact | None = None) -> RecordedContact:
-    """Copy a contact without its solver, with its curve if there is one."""
-    laws = RecordedLaws(**{name: getattr(contact, name) for name in _LAW_FIELDS}, profile=_sample_pressure(contact))
-    return RecordedContact(
-        model=contact.model,
-        joint=contact.joint,
-        status=contact.status,
-        laws=laws,
-        force=contact.force,
-        indentation=contact.indentation,
-        error=dict(getattr(contact, "error", {})),
-        curve=curve,
-        solved_notes=contact.notes,
-        solved_valid=contact.valid,
-    )
-
-
-def _sample_pressure(contact: Contact) -> tuple[numpy.ndarray, numpy.ndarray]:
-    """Sample angles and pressures of a single contact; nothing for several."""
-    if numpy.ndim(contact.half_angle) or not float(contact.half_angle) > 0:
-        return _NOTHING
-    angles = min(float(contact.half_angle), pi / 2) * _SAMPLE_ANGLES
-    return angles, numpy.asarray(contact.pressure(angles))
-
 
 LONGEST = 20.0
 """Seconds that the presses of one joint may take."""
@@ -111,8 +26,16 @@ _MAX_SOLVED = 256
 Key = tuple[Joint, Cup, tuple[tuple[str, float], ...], str]
 
 
-Solved = RecordedContact | str
-"""Result of a model: a contact with its curve, or the reason for its absence."""
+@dataclass(frozen=True, eq=False)
+class SolvedPress:
+    """Contact or the reason for its absence, its curve, and True once nothing more will come.
+
+    The report of a curve has no `result`, which precedes it.
+    """
+
+    result: Contact | str | None
+    curve: Contact | None = None
+    complete: bool = False
 
 
 def heavy(joint: Joint, name: str) -> bool:
@@ -120,27 +43,32 @@ def heavy(joint: Joint, name: str) -> bool:
     return is_curve_slow(catalogue[name], joint)
 
 
-_solved: OrderedDict[Key, tuple[Solved, bool]] = OrderedDict()
-"""Results of slow presses, and True once they are complete: a contact precedes its curve."""
+_solved: OrderedDict[Key, SolvedPress] = OrderedDict()
+"""Results of slow presses: a contact precedes its curve."""
 
 
-def solved(file: JointFile, name: str) -> Solved | None:
+def solved(file: JointFile, name: str) -> Contact | str | None:
     """Return the result of a slow press so far; None before its request."""
-    return _solved.get(_key(file, name), (None, False))[0]
+    press = _solved.get(_key(file, name))
+    return None if press is None else press.result
+
+
+def solved_curve(contact: Contact) -> Contact | None:
+    """Return the curve of the contact of a slow press; None before it is solved."""
+    return next((press.curve for press in _solved.values() if press.result is contact), None)
 
 
 def _unfinished(file: JointFile, names: Iterable[str]) -> tuple[str, ...]:
-    return tuple(
-        name for name in names if heavy(file.joint, name) and not _solved.get(_key(file, name), ("", False))[1]
-    )
+    presses = {name: _solved.get(_key(file, name)) for name in names if heavy(file.joint, name)}
+    return tuple(name for name, press in presses.items() if press is None or not press.complete)
 
 
 def _key(file: JointFile, name: str) -> Key:
     return file.joint, file.cup, tuple(file.load.items()), name
 
 
-def _store(file: JointFile, name: str, result: Solved, complete: bool) -> None:
-    _solved[_key(file, name)] = result, complete
+def _store(file: JointFile, name: str, press: SolvedPress) -> None:
+    _solved[_key(file, name)] = press
     while len(_solved) > _MAX_SOLVED:
         _solved.popitem(last=False)
 
@@ -149,19 +77,23 @@ def solve(file: JointFile, names: Sequence[str], report: Report) -> None:
     """Press a joint by slow models in a separate process; report each contact, and its curve later."""
     contacts = {}
     for name in names:
-        result = _contact(file, name)
-        if isinstance(result, RecordedContact) and float(result.half_angle) > 0:
+        result = _press(file, name)
+        if isinstance(result, Contact) and float(result.half_angle) > 0:
             contacts[name] = result
-        report((name, result, name not in contacts))
+        report((name, SolvedPress(result, complete=name not in contacts)))
     for name, contact in contacts.items():
-        report((name, replace(contact, curve=record_contact(press_short_curve(contact, catalogue[name]))), True))
+        report((name, SolvedPress(None, press_short_curve(contact, catalogue[name]), complete=True)))
 
 
-def _contact(file: JointFile, name: str) -> Solved:
+def _press(file: JointFile, name: str) -> Contact | str:
+    """Press one model; the contact carries the slow numbers that a page shows."""
     try:
-        return record_contact(catalogue[name].in_cup(file.cup).press(file.joint, **file.load))
+        contact = catalogue[name].in_cup(file.cup).press(file.joint, **file.load)
     except OutsideDomainError as error:
         return str(error)
+    if not contact.status.failed:
+        _ = contact.notes, contact.valid, contact.von_mises, contact.energy, contact.stiffness
+    return contact
 
 
 class Errand:
@@ -185,11 +117,13 @@ class Errand:
     def _store_news(self, key: Any, news: Any) -> None:
         file, names = self._files or key
         if isinstance(news, tuple):
-            _store(file, *news)
+            name, press = news
+            _store(file, name, replace(press, result=press.result or solved(file, name)))
             self._files = file, _unfinished(file, names)
         elif isinstance(news, RunRefused):
             for name in names:
-                _store(file, name, solved(file, name) or f"{name} has no answer here: {news.why}", True)
+                result = solved(file, name) or f"{name} has no answer here: {news.why}"
+                _store(file, name, SolvedPress(result, complete=True))
         self._changed()
 
     def leave(self) -> None:

@@ -4,20 +4,34 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass
+from functools import partial
 from html import escape
 from io import StringIO
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 from ..contact import Contact
 from ..core.checks import check_names
+from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
 from ..files.joint_toml import toml_of
-from ..reports.pages import picture
+from ..reports.pages import pdf_of, picture
 from ..reports.press_report import joint_report
 from ..reports.unit_systems import Units
 from .channel import Channel
+from .jobs import run_in_thread
+from .running import Report
+from .state.designs import file_stem
 from .state.screen import Screen
+from .widgets.fields import Field
+from .widgets.settings import Setting
+from .widgets.words import alert
+
+STRESS_PAUSE = 0.4
+"""Seconds without a change until the stress of the model itself is computed for the checks."""
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,9 +54,18 @@ class Host(Protocol):
 
     channel: Channel
     screen: Screen
+    inputs: Mapping[str, Field]
 
     def ask(self, **changes: Any) -> None:
         """Change fields of the screen by name."""
+        ...
+
+    def later(self, seconds: float, function: Callable[[], None]) -> Callable[[], None]:
+        """Call a function later unless the page is closed, or at once without a browser; return what cancels it."""
+        ...
+
+    def attempt(self, action: Callable[[], None]) -> None:
+        """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
         ...
 
     def listen(self, view: str, handler: Callable[[str, Any], None]) -> None:
@@ -53,19 +76,69 @@ class Host(Protocol):
 class View:
     """View of the screen, made with its page when it is first opened.
 
-    `body` is HTML of the page that `Host.channel` fills; `panel` holds the parts of a view that Panel makes.
+    `name` is its key in the registry; the ids in its HTML `body` and the names of its inputs begin with it. Each of
+    its `settings` is an input that changes one part of the screen.
     """
 
+    name = ""
     title = ""
     body = ""
-    panel: Any = None
+    settings: tuple[Setting, ...] = ()
 
     def __init__(self, page: Host) -> None:
-        raise NotImplementedError
+        self.page, self.channel = page, page.channel
+        page.listen(self.name, self.edit)
 
     def show(self, screen: Screen) -> None:
         """Show the results for a screen."""
         raise NotImplementedError
+
+    def fields(self, screen: Screen) -> dict[str, Field]:
+        """Return the inputs of the settings by name."""
+        named = {f"{self.name}.{setting.key}": setting.field(screen) for setting in self.settings}
+        return {name: {**field, "name": name} for name, field in named.items()}
+
+    def edit(self, key: str, value: Any) -> None:
+        """Handle a changed input of the view, named without the view."""
+        known = {setting.key: setting for setting in self.settings}
+        check_names([key], known, f"among the inputs of {self.title}")
+        self.change(**known[key].read(self.page.screen, value))
+
+    def change(self, **changes: Any) -> None:
+        """Change fields of the screen by name."""
+        self.page.ask(**changes)
+
+    def put(self, **parts: str) -> None:
+        """Fill elements of the view with HTML, by their ids without the view."""
+        for element, html in parts.items():
+            self.channel.put(f"#{self.name}-{element}", html)
+
+    def expect(self, *elements: str) -> None:
+        """Mark elements that show an earlier screen until they are filled."""
+        self.channel.expect(f"#{self.name}-{element}" for element in elements)
+
+    def compute(self, work: Callable[[], T], show: Callable[[T], None]) -> None:
+        """Run some work in a thread and show its result, unless the screen has changed."""
+        screen = self.page.screen
+
+        def show_outcome(outcome: Future[Any]) -> None:
+            try:
+                result = outcome.result()
+            except (ValueError, OutsideDomainError) as error:
+                self.channel.forget_expected()
+                self.fail(str(error))
+            else:
+                show(result)
+
+        def finish(outcome: Future[Any]) -> None:
+            if screen is self.page.screen:
+                self.page.attempt(partial(show_outcome, outcome))
+
+        run_in_thread(lambda: work() if screen is self.page.screen else None, finish)
+
+    def fail(self, sentence: str) -> None:
+        """Show why a computation has no result."""
+        self.put(trouble=alert(sentence))
 
     def document(self, screen: Screen) -> Document:
         """Return the content of the screen for a file."""
@@ -93,8 +166,7 @@ class ScreenContent:
 def make_file(content: ScreenContent, kind: str) -> tuple[str, bytes]:
     """Make a file of a kind in `FILE_KINDS`: its name and content."""
     check_names([kind], FILE_KINDS, "among the files")
-    name, make = _FILE_WRITERS[kind]
-    return name, make(content)
+    return f"{file_stem(content.file.joint.name)}.{kind.lower()}", _FILE_WRITERS[kind](content)
 
 
 def _picture(content: ScreenContent, form: str) -> bytes:
@@ -105,7 +177,9 @@ def _picture(content: ScreenContent, form: str) -> bytes:
 
 def _numbers(content: ScreenContent) -> bytes:
     stream = StringIO()
-    csv.writer(stream, lineterminator="\n").writerows(_without_formulas(row) for row in content.document.rows())
+    csv.writer(stream, lineterminator="\n").writerows(
+        [_plain_text(cell) for cell in row] for row in content.document.rows()
+    )
     return stream.getvalue().encode("utf-8")
 
 
@@ -115,23 +189,28 @@ def _report(content: ScreenContent) -> bytes:
     title = f"{content.title}: {joint.name or 'a joint'}"
     figure = "" if document.picture is None else picture(document.picture("png"), title)
     lede = f"{document.lede()}<p class='quiet'>In the explorer: <code>{escape(content.link)}</code></p>"
-    sections = {"figure": ("Figure", figure), **document.sections()}
-    return joint_report(content.file, sections, lede, content.units, contact=document.contact, title=title).encode(
-        "utf-8"
-    )
+    sections = {**({"figure": ("Figure", figure)} if figure else {}), **document.sections()}
+    page = joint_report(content.file, sections, lede, content.units, contact=document.contact, title=title)
+    return page.encode("utf-8")
 
 
-def _without_formulas(row: Sequence[Any]) -> list[Any]:
-    """Text that a spreadsheet would take for a formula is marked as text."""
-    return [f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@") else cell for cell in row]
+def print_page(page: str, paper: str, report: Report) -> bytes:
+    """Print a report as PDF, in a separate process with limits of time and memory."""
+    return pdf_of(page, paper)
 
 
-_FILE_WRITERS: dict[str, tuple[str, Callable[[ScreenContent], bytes]]] = {
-    "PNG": ("ballsocket.png", lambda content: _picture(content, "png")),
-    "SVG": ("ballsocket.svg", lambda content: _picture(content, "svg")),
-    "CSV": ("ballsocket.csv", _numbers),
-    "HTML": ("ballsocket.html", _report),
-    "TOML": ("joint.toml", lambda content: toml_of(content.file).encode("utf-8")),
+def _plain_text(cell: Any) -> Any:
+    """Mark text that a spreadsheet would take for a formula."""
+    return f"'{cell}" if isinstance(cell, str) and cell[:1] in ("=", "+", "-", "@") else cell
+
+
+_FILE_WRITERS: dict[str, Callable[[ScreenContent], bytes]] = {
+    "PNG": lambda content: _picture(content, "png"),
+    "SVG": lambda content: _picture(content, "svg"),
+    "CSV": _numbers,
+    "HTML": _report,
+    "PDF": _report,  # printed by `print_page`
+    "TOML": lambda content: toml_of(content.file).encode("utf-8"),
 }
 FILE_KINDS = tuple(_FILE_WRITERS)
 """Pictures, numbers, a report, a joint file."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 from typing import Annotated, Any
 
 import numpy
@@ -11,10 +12,10 @@ import typer
 from ..catalogue import off_axis
 from ..contact import Contact
 from ..core.arrays import Numbers
-from ..core.checks import require
+from ..core.checks import require, shown
 from ..core.kinds import Kind
 from ..elasticity.off_axis.contact import OffAxisContact
-from ..files.joint_file import JointFile, read_aim
+from ..files.joint_file import JointFile
 from ..files.units import parse
 from ..lubrication.film import METHODS, FilmResult
 from ..lubrication.film import film as compute_film
@@ -81,8 +82,7 @@ class FilmOptions:
         rate = parse("spin", self.spin, Kind.ROTATION_RATE)
         require("spin", rate, bool(numpy.isfinite(rate)), "a rotation rate (rad/s) is finite")
         if self.spin_axis is not None:
-            axis = numpy.asarray(read_aim({"direction": self.spin_axis})["direction"], dtype=float)
-            return rate * axis / numpy.linalg.norm(axis)
+            return rate * _unit_axis(self.spin_axis)
         if not isinstance(contact, OffAxisContact):
             return rate * numpy.array([1.0, 0.0, 0.0])
         load = numpy.asarray(contact.force_vector) / numpy.linalg.norm(contact.force_vector)
@@ -90,6 +90,26 @@ class FilmOptions:
         chosen = first if abs(load[0]) < _NEARLY_PARALLEL else second
         across = chosen - (chosen @ load) * load
         return rate * across / numpy.linalg.norm(across)
+
+
+def _unit_axis(text: str) -> Numbers:
+    """Return the unit vector (3,) of an axis such as '0,1,0'.
+
+    Raises
+    ------
+    ValueError
+        Other than three numbers, or numbers without a direction.
+    """
+    try:
+        axis = numpy.array([float(number) for number in text.split(",")])
+    except ValueError:
+        axis = numpy.empty(0)
+    if axis.shape != (3,):
+        raise ValueError(f"spin_axis = {shown(text)} must be three numbers 'x,y,z', such as '0,1,0'")
+    largest = float(numpy.abs(axis).max())
+    require("length of spin_axis", largest, 0 < largest < inf, "an axis has a positive and finite length")
+    scaled = axis / largest  # its square neither overflows nor vanishes
+    return scaled / numpy.linalg.norm(scaled)
 
 
 _NEARLY_PARALLEL = 0.99

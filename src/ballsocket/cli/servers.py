@@ -33,7 +33,7 @@ def explorer(
     browser: Annotated[bool, typer.Option(help="Open the page in a browser.")] = True,
 ) -> None:
     """Open the explorer, an interactive page, in a browser."""
-    needs("app", "panel", "tomli_w", "skfem", "xarray")
+    needs("app", "tornado", "tomli_w", "skfem", "xarray")
     from ..app.server import EVERYWHERE, LOOPBACK, server  # slow to import
 
     page = server(port, address, origin or (), show=browser)

@@ -5,23 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy
+from numba import literal_unroll
 from numba.extending import overload
 
 from ..contact.assembly import SolverResult
 from ..core.arrays import Numbers
 from ..core.validity import Status
-from ..elasticity.exact.tabulated import chebyshev, curves
-from ..elasticity.exact.tabulated.curves import (
-    CurveCoefficients,
-    JointCurves,
-    Scale,
-    angle_of_force,
-    angle_of_indentation,
-    contact_quantities,
-)
+from ..elasticity.exact.tabulated import chebyshev, curves, inverse
+from ..elasticity.exact.tabulated.curves import JointCurves, Scale, Widest
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..models import kinematics, liner_compliance, refined_state
 from ..models.foundation import RadialFoundation
@@ -32,7 +26,15 @@ from ..models.refined import RefinedSolution, make_solver_result, scaled_load
 from ..models.refined_state import ScaledContact, half_angle_of_force, half_angle_of_indentation, scaled_contact
 from ..models.table_3 import scaled_modulus
 from ..problem import Joint
-from .overloads import as_row, compile_loop, inline_formula, jit_formula, pick_element
+from .overloads import (
+    VECTOR_FUNCTIONS,
+    as_row,
+    compile_loop,
+    inline_formula,
+    jit_formula,
+    pick_element,
+    vector_formula,
+)
 
 
 def solve_forces(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
@@ -153,75 +155,218 @@ def _overload_log_compliances(half_angle: Any, liner: Any, waves: Any) -> Callab
 
 def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> SolverResult:
     """Solve the model `Tabulated` in one compiled loop, for arrays of forces or indentations."""
+    steps = inverse.RIGID_STEPS if joint.ball is None else inverse.ELASTIC_STEPS
 
     def read_curves(curves: JointCurves, load: Numbers) -> tuple[Numbers, ...]:
         """Compute half angle, indentation, force, pole pressure and stiffness of contacts: five arrays (contacts,)."""
-        inputs = (curves.scaled_load(kind, load), curves.ratio, *curves.scale)
+        inputs = (curves.scaled_load(kind, load), curves.ratio, *curves.widest, *curves.scale)
+        start, functions = inverse.start_series(curves, kind), curves.functions
+        if functions.shape[2] == 1:
+            inputs, start, functions = tuple(map(_as_number, inputs)), start[:, 0].copy(), functions[:, :, 0].copy()
         outputs = numpy.empty((5, len(load)))
-        _tabulated_kernel(kind)(*(as_row(number, load.shape) for number in inputs), curves.functions, outputs)
+        rows = tuple(as_row(number, load.shape) for number in inputs)
+        _tabulated_kernel(kind)(rows, start, functions, steps, outputs)
         return tuple(outputs)
 
-    return model.solve_with_reader(joint, kind, load, read_curves)
+    return model.solve_with_reader(joint, kind, load, read_curves, single_joint_block=max(load.size, 1))
+
+
+def _as_number(values: Numbers) -> Any:
+    """Return the number in an array of one element; another array itself."""
+    return values.item() if values.size == 1 else values
+
+
+class _EvaluatedCurve(NamedTuple):
+    """Tabulated functions and their slopes by ln ε at the half angle of one contact, in compiled code."""
+
+    share: float
+    share_slope: float
+    force: float
+    force_slope: float
+    pole: float
+
+
+_LANES = 128
+"""Number of contacts that each inner loop of the tables handles; their values stay in the cache.
+
+All values are rows of one array: several arrays might overlap, and then LLVM makes no vector instructions.
+"""
+
+_INPUT_COUNT = 7
+_LOAD, _RATIO, _OPENING, _FORCE, _CLEARANCE, _AREA, _COMPLIANCE = range(_INPUT_COUNT)
+"""Rows of the inputs."""
+
+_ANGLE, _INDENTATION, _RESULT_FORCE, _POLE_PRESSURE, _STIFFNESS = range(7, 12)
+"""Rows of the results."""
+
+_X, _ROOT, _WIDENING, _VALUES, _SLOPES = 12, 13, 14, 15, 18
+"""Rows of coordinate, unknown, its derivative, three functions and three slopes."""
+
+_WAVE, _NEXT_WAVE, _RISE, _NEXT_RISE = range(21, 25)
+"""Rows of the Chebyshev polynomials."""
+
+_ROW_COUNT = 25
+
+
+_VECTOR_FORMULAS = dict(VECTOR_FUNCTIONS)
+"""Elementary functions and formulas of the tables, by name, that compile to vector instructions."""
+
+for _tabulated_formula in (
+    chebyshev.angle_root,
+    curves.angle_derivative,
+    curves.opening,
+    curves.contact_quantities,
+    inverse.start_coordinate,
+    inverse.start_root,
+    inverse.half_angle_of_root,
+    inverse.limited_newton_step,
+    *(each for functions in inverse.INVERSES.values() for each in (functions.residual, functions.log_share)),
+):
+    _VECTOR_FORMULAS[_tabulated_formula.__name__] = vector_formula(_tabulated_formula, _VECTOR_FORMULAS)
 
 
 @cache
 def _tabulated_kernel(kind: str) -> Any:
-    """Return the compiled loop over contacts of `Tabulated` for given forces or indentations."""
-    solve = angle_of_force if kind == "force" else angle_of_indentation
+    """Return the compiled loop over contacts of `Tabulated` for given forces or indentations.
 
-    def solve_contacts(load, ratio, clearance, area, compliance, series, outputs):  # type: ignore[no-untyped-def]
+    Each input is a number or an array.
+    """
+    residual = _VECTOR_FORMULAS[inverse.INVERSES[kind].residual.__name__]
+    log_share = _VECTOR_FORMULAS[inverse.INVERSES[kind].log_share.__name__]
+    angle_root, angle_derivative = _VECTOR_FORMULAS["angle_root"], _VECTOR_FORMULAS["angle_derivative"]
+    start_coordinate, start_root = _VECTOR_FORMULAS["start_coordinate"], _VECTOR_FORMULAS["start_root"]
+    newton_step, half_angle_of_root = _VECTOR_FORMULAS["limited_newton_step"], _VECTOR_FORMULAS["half_angle_of_root"]
+    contact_quantities = _VECTOR_FORMULAS["contact_quantities"]
+
+    def solve_contacts(inputs, start, functions, steps, outputs):  # type: ignore[no-untyped-def]
         """Solve each contact for its load; write half angle, indentation, force, pole pressure and stiffness."""
-        step = 0 if series.shape[2] == 1 else 1
-        functions = series[:, :, 0].copy()
-        for i in range(outputs.shape[1]):
-            functions[:] = series[:, :, step * i]
-            curve = CurveCoefficients(pick_element(ratio, i), functions, functions)
-            angle = solve(pick_element(load, i), curve)
-            scale = Scale(pick_element(clearance, i), pick_element(area, i), pick_element(compliance, i))
-            d, F, p0, stiffness, _ = contact_quantities(angle, curve, scale)
-            outputs[0, i], outputs[1, i], outputs[2, i], outputs[3, i], outputs[4, i] = angle, d, F, p0, stiffness
+        rows = numpy.empty((_ROW_COUNT, _LANES))
+        for first in range(0, outputs.shape[1], _LANES):
+            lanes = min(_LANES, outputs.shape[1] - first)
+            copy_inputs(inputs, first, lanes, rows)
+            for j in range(lanes):
+                widest = Widest(rows[_OPENING, j], rows[_FORCE, j])
+                rows[_ROOT, j] = log_share(rows[_LOAD, j], widest)
+                rows[_X, j] = start_coordinate(rows[_ROOT, j], rows[_RATIO, j])
+            _sum_series(start, first, lanes, rows, _VALUES)
+            for j in range(lanes):
+                rows[_ROOT, j] = start_root(rows[_ROOT, j], rows[_VALUES, j])
+            for step in range(steps + 1):
+                for j in range(lanes):
+                    rows[_ANGLE, j] = half_angle_of_root(rows[_ROOT, j])
+                    series_root = angle_root(rows[_ANGLE, j], rows[_RATIO, j])
+                    rows[_X, j] = 2 * series_root - 1
+                    rows[_WIDENING, j] = angle_derivative(rows[_ANGLE, j], series_root, rows[_RATIO, j])
+                _sum_two_series(functions, first, lanes, rows)
+                if step < steps:
+                    for j in range(lanes):
+                        value, slope = residual(rows[_ROOT, j], rows[_LOAD, j], _evaluated_curve(rows, j))
+                        rows[_ROOT, j] = newton_step(rows[_ROOT, j], value, slope)
+            _sum_series(functions[2], first, lanes, rows, _VALUES + 2)
+            for j in range(lanes):
+                scale = Scale(rows[_CLEARANCE, j], rows[_AREA, j], rows[_COMPLIANCE, j])
+                d, F, p0, stiffness, _ = contact_quantities(rows[_ANGLE, j], _evaluated_curve(rows, j), scale)
+                rows[_INDENTATION, j], rows[_RESULT_FORCE, j] = d, F
+                rows[_POLE_PRESSURE, j], rows[_STIFFNESS, j] = p0, stiffness
+            outputs[:, first : first + lanes] = rows[_ANGLE : _STIFFNESS + 1, :lanes]
 
     return compile_loop(solve_contacts)
 
 
-@overload(curves.evaluate_table_functions, strict=False)
-def _overload_evaluate(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
-    """Implement the evaluation of the first one, two or three tabulated functions in compiled code."""
-    if rows.count == 1:
-        return lambda angle, curve, rows: _evaluate_table_functions(angle, curve)[:1]
-    if rows.count == 2:
-        return lambda angle, curve, rows: _evaluate_table_functions(angle, curve)[:2]
-    return lambda angle, curve, rows: _evaluate_table_functions(angle, curve)
+def copy_inputs(inputs: Any, first: int, lanes: int, rows: Numbers) -> None:
+    """Copy the inputs of a block of contacts, numbers or arrays, to the first rows."""
+    for row, values in enumerate(inputs):
+        rows[row, :lanes] = values if numpy.ndim(values) == 0 else values[first : first + lanes]
+
+
+@overload(copy_inputs, strict=False)
+def _overload_copy_inputs(inputs: Any, first: Any, lanes: Any, rows: Any) -> Callable[..., Any]:
+    """Implement `copy_inputs` in compiled code, for a tuple of numbers and arrays."""
+
+    def copy(inputs, first, lanes, rows):  # type: ignore[no-untyped-def]
+        row = 0
+        for values in literal_unroll(inputs):
+            for j in range(lanes):
+                rows[row, j] = pick_element(values, first + j)
+            row = row + 1
+
+    return copy
 
 
 @inline_formula
-def _evaluate_table_functions(angle, curve):  # type: ignore[no-untyped-def]
-    """Evaluate the tabulated opening, force and pole pressure, and their slopes by ln ε, at a half angle.
-
-    They are Chebyshev series. The recurrences are T_k+1 = 2x T_k - T_k-1 and T_k' = k U_k-1.
-    """
-    root = chebyshev.angle_root(angle, curve.ratio)
-    x = 2 * root - 1
-    c, twice = curve.functions, 2 * x
-    T, T_next, U, U_next = 1.0, x, 1.0, twice
-    opening, force, pole = c[0, 0] + c[0, 1] * x, c[1, 0] + c[1, 1] * x, c[2, 0] + c[2, 1] * x
-    opening_slope, force_slope, pole_slope = c[0, 1], c[1, 1], c[2, 1]
-    for k in range(2, c.shape[1]):
-        T, T_next = T_next, twice * T_next - T
-        rise = k * U_next
-        opening += c[0, k] * T_next
-        force += c[1, k] * T_next
-        pole += c[2, k] * T_next
-        opening_slope += c[0, k] * rise
-        force_slope += c[1, k] * rise
-        pole_slope += c[2, k] * rise
-        U, U_next = U_next, twice * U_next - U
-    rate = curves.angle_derivative(angle, root, curve.ratio)
-    return (
-        (opening, rate * opening_slope),
-        (force, rate * force_slope),
-        (pole, rate * pole_slope),
+def _evaluated_curve(rows, j):  # type: ignore[no-untyped-def]
+    """Return the tabulated functions that are evaluated for contact j of a block."""
+    widening = rows[_WIDENING, j]
+    return _EvaluatedCurve(
+        rows[_VALUES, j],
+        widening * rows[_SLOPES, j],
+        rows[_VALUES + 1, j],
+        widening * rows[_SLOPES + 1, j],
+        rows[_VALUES + 2, j],
     )
+
+
+@overload(curves.evaluate_table_functions, strict=False, jit_options={"forceinline": True})
+def _overload_evaluate(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
+    """Return the tabulated functions that the loop has already evaluated at the half angle of the contact."""
+    if rows.count == 1:
+        return lambda angle, curve, rows: ((curve.share, curve.share_slope),)
+    if rows.count == 2:
+        return lambda angle, curve, rows: ((curve.share, curve.share_slope), (curve.force, curve.force_slope))
+    return lambda angle, curve, rows: (
+        (curve.share, curve.share_slope),
+        (curve.force, curve.force_slope),
+        (curve.pole, 0.0),
+    )
+
+
+@inline_formula
+def _sum_series(series, first, lanes, rows, value_row):  # type: ignore[no-untyped-def]
+    """Sum a Chebyshev series of each contact: T_k+1 = 2x T_k - T_k-1."""
+    for j in range(lanes):
+        rows[_WAVE, j], rows[_NEXT_WAVE, j], rows[value_row, j] = 1.0, rows[_X, j], 0.0
+    for k in range(0, series.shape[0], 2):
+        for j in range(lanes):
+            twice, even, odd = 2 * rows[_X, j], rows[_WAVE, j], rows[_NEXT_WAVE, j]
+            c0, c1 = pick_coefficient(series, k, first + j), pick_coefficient(series, k + 1, first + j)
+            rows[value_row, j] += c0 * even + c1 * odd
+            even = twice * odd - even
+            rows[_WAVE, j], rows[_NEXT_WAVE, j] = even, twice * even - odd
+
+
+@inline_formula
+def _sum_two_series(functions, first, lanes, rows):  # type: ignore[no-untyped-def]
+    """Sum the series of opening and force of each contact, and their slopes: T_k' = k U_k-1, U_k+1 = 2x U_k - U_k-1."""
+    opening, force = functions[0], functions[1]
+    for j in range(lanes):
+        rows[_WAVE, j], rows[_NEXT_WAVE, j], rows[_RISE, j], rows[_NEXT_RISE, j] = 1.0, rows[_X, j], 0.0, 1.0
+        rows[_VALUES, j], rows[_VALUES + 1, j], rows[_SLOPES, j], rows[_SLOPES + 1, j] = 0.0, 0.0, 0.0, 0.0
+    for k in range(0, opening.shape[0], 2):
+        order = float(k)
+        for j in range(lanes):
+            twice, even, odd = 2 * rows[_X, j], rows[_WAVE, j], rows[_NEXT_WAVE, j]
+            even_rise, odd_rise = rows[_RISE, j], rows[_NEXT_RISE, j]
+            even_slope, odd_slope, i = order * even_rise, (order + 1.0) * odd_rise, first + j
+            c0, c1 = pick_coefficient(opening, k, i), pick_coefficient(opening, k + 1, i)
+            rows[_VALUES, j] += c0 * even + c1 * odd
+            rows[_SLOPES, j] += c0 * even_slope + c1 * odd_slope
+            c0, c1 = pick_coefficient(force, k, i), pick_coefficient(force, k + 1, i)
+            rows[_VALUES + 1, j] += c0 * even + c1 * odd
+            rows[_SLOPES + 1, j] += c0 * even_slope + c1 * odd_slope
+            even, even_rise = twice * odd - even, twice * odd_rise - even_rise
+            rows[_WAVE, j], rows[_NEXT_WAVE, j] = even, twice * even - odd
+            rows[_RISE, j], rows[_NEXT_RISE, j] = even_rise, twice * even_rise - odd_rise
+
+
+def pick_coefficient(series: Any, k: int, i: int) -> Any:
+    """Return coefficient k of the series of contact i, or of the one series of all contacts."""
+    return series[k, i] if series.ndim > 1 else series[k]
+
+
+@overload(pick_coefficient, strict=False, jit_options={"forceinline": True})
+def _overload_pick_coefficient(series: Any, k: Any, i: Any) -> Callable[..., Any]:
+    """Implement `pick_coefficient` in compiled code."""
+    return (lambda series, k, i: series[k, i]) if series.ndim > 1 else (lambda series, k, i: series[k])
 
 
 for _formula in (
@@ -255,14 +400,5 @@ for _long_formula in (
     refined_state._force_residual,
     refined_state.half_angle_of_indentation,
     refined_state.half_angle_of_force,
-    chebyshev.angle_root,
-    curves.angle_derivative,
-    curves.opening,
-    curves.contact_quantities,
-    curves._solve_angle,
-    curves._indentation_residual,
-    curves._force_residual,
-    curves.angle_of_indentation,
-    curves.angle_of_force,
 ):
     jit_formula(_long_formula)

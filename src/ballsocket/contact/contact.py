@@ -174,6 +174,11 @@ class Contact(Outcome):
         return (*self.model.validity, _ELASTIC) if self.joint.strengths() else self.model.validity
 
     @property
+    def quick_notes(self) -> tuple[str, ...]:
+        """Notes without those that take longer to compute than the contact."""
+        return self.notes
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """Messages on failed points, points outside the model's validity, and exceeded material limits."""
         unchecked = (

@@ -121,7 +121,7 @@ class Model(ModelInfo):
                 pass  # where Python floats raise, NumPy numbers become infinite or NaN
         is_plain, array_joint, load = as_arrays(joint, value, *self.parameters)
         points = check_domain((*self.fits, *self.domain), array_joint, self.name)
-        with numpy.errstate(all="ignore"):  # a failed point gets a status, not a warning
+        with arrays.silent_numpy(load):  # a failed point gets a status, not a warning
             result = self._solve(array_joint, kind, load)
             contact_joint = joint if is_plain else array_joint
             return make_contact(self, self.contact_type, contact_joint, kind, load, points, result, is_plain)

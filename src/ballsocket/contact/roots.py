@@ -11,7 +11,16 @@ from typing import Any
 import array_api_compat
 import numpy
 
-from ..core.arrays import Array, all_true, logical_not, namespace, safe_divisor, stop_gradient, where
+from ..core.arrays import (
+    Array,
+    all_true,
+    logical_not,
+    namespace,
+    safe_divisor,
+    stop_gradient,
+    where,
+    without_gradients,
+)
 
 Increasing = Callable[..., tuple[Array, Array]]
 """Increasing function: x, ... -> (value, slope), both of the shape of x."""
@@ -33,8 +42,9 @@ def increasing_root(
 
     Newton's method with the slope `law(x, *arguments)[1]`, see `bracketed_newton_step`. It stops after `steps`
     evaluations, or once no element moves by more than `tolerance` times its value. The error is then of the order of
-    the squared tolerance. Inside `jax.jit` it always takes all steps. Automatic differentiation gives the derivatives
-    of the root by the implicit function theorem.
+    the squared tolerance. Inside `jax.jit` it is a `lax.while_loop`, or unrolled steps if `steps` is small; inside
+    `torch.compile` and `vmap` of PyTorch it takes all steps. Automatic differentiation gives the derivatives of the
+    root by the implicit function theorem, of all orders in traced JAX, up to the third elsewhere.
 
     Parameters
     ----------
@@ -61,14 +71,33 @@ def increasing_root(
         """Advance all elements by one bracketed Newton step."""
         return bracketed_newton_step(law, target, arguments, tolerance, *state[:-1])
 
-    x = _iterate_until_converged(newton_step, (start, low, high, start < high, start == start), steps)
-    if namespace(x) is numpy:
-        return x
+    def solve(first: Array) -> Array:
+        """Iterate from a first x until the elements have converged."""
+        return _iterate_until_converged(newton_step, (first, low, high, first < high, first == first), steps)
+
+    if namespace(start) is numpy:
+        return solve(start)
+    if array_api_compat.is_jax_array(start) and all_true(start == start) is None:
+        return _implicit_jax_root(lambda x: law(x, *arguments)[0] - target, solve, start)
+    with without_gradients(start):
+        x = solve(start)
     x = stop_gradient(x)
     for _ in range(2):  # a step at the root keeps its value and doubles the order of the correct derivatives
         value, slope = law(x, *arguments)
         x = x - where(slope > 0, (value - target) / safe_divisor(slope), 0.0)
     return x
+
+
+def _implicit_jax_root(residual: Callable[[Array], Array], solve: Callable[[Array], Array], start: Array) -> Array:
+    """Solve residual(x) = 0 in traced JAX; derivatives of all orders follow from the residual at the root."""
+    import jax
+
+    def solve_linearised(product: Callable[[Array], Array], right_side: Array) -> Array:
+        """Divide by the slope of the residual, element by element; 0 where the slope is not positive."""
+        slope = product(jax.numpy.ones_like(right_side))
+        return where(slope > 0, right_side / safe_divisor(slope), 0.0)
+
+    return jax.lax.custom_root(residual, start, lambda _, first: solve(first), solve_linearised)
 
 
 def scalar_increasing_root(
@@ -137,15 +166,37 @@ def _iterate_until_converged(
 
     The last item of the state is the mask of unconverged elements.
     """
-    if all_true(state[-1]) is None and array_api_compat.is_jax_array(state[0]):
-        import jax  # compile one loop instead of unrolling the steps
-
-        return jax.lax.fori_loop(0, max_steps, lambda _, current: iteration_step(current), state)[0]
+    is_traced = all_true(state[-1]) is None
+    if is_traced and max_steps > _MAX_UNROLLED_STEPS and array_api_compat.is_jax_array(state[0]):
+        return _jax_while_loop(iteration_step, state, max_steps)
     for _ in range(max_steps):
         state = iteration_step(state)
-        if all_true(logical_not(state[-1])):
+        if not is_traced and all_true(logical_not(state[-1])):
             break
     return state[0]
+
+
+_MAX_UNROLLED_STEPS = 2
+"""Largest number of steps that traced JAX unrolls into one fused computation, in place of a loop."""
+
+
+def _jax_while_loop(
+    iteration_step: Callable[[tuple[Array, ...]], tuple[Array, ...]], state: tuple[Array, ...], max_steps: int
+) -> Array:
+    """Repeat an iteration step inside `jax.jit` until all elements have converged; return the first item."""
+    import jax
+
+    def is_unconverged(count_and_state: tuple[Any, tuple[Array, ...]]) -> Array:
+        """Check if an element still moves and steps are left."""
+        count, current = count_and_state
+        return (count < max_steps) & jax.numpy.any(current[-1])
+
+    def advance(count_and_state: tuple[Any, tuple[Array, ...]]) -> tuple[Any, tuple[Array, ...]]:
+        """Take one more step."""
+        count, current = count_and_state
+        return count + 1, iteration_step(current)
+
+    return jax.lax.while_loop(is_unconverged, advance, (0, state))[1][0]
 
 
 _PROFILE_POSITIONS = numpy.array([0.0, 0.05, 0.12, 0.25, 0.4, 0.55, 0.7, 0.82, 0.92, 1.0])

@@ -89,6 +89,22 @@ def assess_strength(contact: Contact) -> StrengthVerdict:
     """Decide if the stresses of a single contact are below the strengths of its materials.
 
     There is no verdict (None) on an invalid result, nor if the strength of the liner is unknown.
+
+    Parameters
+    ----------
+    contact : Contact
+        Contact of one joint under one load.
+
+    Returns
+    -------
+    StrengthVerdict
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.contact.verdict import assess_strength
+    >>> assess_strength(bs.HessForsbach().press(bs.joints["hip-36"], force=3000.0)).bears
+    True
     """
     if contact.status.failed:
         return StrengthVerdict(bears=None, words=f"no answer: {contact.status.sentence}")

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from functools import cache
 from typing import Any
 
@@ -134,6 +135,20 @@ def logical_not(condition: Array) -> Array:
     return condition ^ True
 
 
+def repeat_step(step: Callable[[Any], Any], state: Any, count: int) -> Any:
+    """Apply a step to a state `count` times; for a state of JAX arrays as one loop, which compiles faster.
+
+    The state is a tuple, also a named one, whose first item is an array.
+    """
+    if array_api_compat.is_jax_array(state[0]):
+        import jax
+
+        return jax.lax.fori_loop(0, count, lambda _, current: step(current), state)
+    for _ in range(count):
+        state = step(state)
+    return state
+
+
 def safe_divisor(x: Array) -> Array:
     """Replace zero and negative elements by 1, to avoid a division by zero.
 
@@ -163,11 +178,43 @@ def concrete_values(x: Array) -> numpy.ndarray | None:
 
 
 def all_true(condition: Array) -> bool | None:
-    """Check if all elements are true; return None if they are traced (inside `jax.jit`, `vmap`)."""
+    """Check if all elements are true; return None if they are traced (inside `jax.jit`, `torch.compile`, `vmap`)."""
+    if isinstance(condition, bool):
+        return condition
+    if _is_in_torch_compile(condition):
+        return None
     try:
-        return condition if isinstance(condition, bool) else bool(namespace(condition).all(condition))
+        return bool(namespace(condition).all(condition))
     except (TypeError, RuntimeError):  # tracers of JAX and PyTorch have no value
         return None
+
+
+def silent_numpy(x: Array) -> AbstractContextManager[Any]:
+    """Return a context without warnings of NumPy; it has no effect inside `torch.compile`, which does not trace it."""
+    return nullcontext() if _is_in_torch_compile(x) else numpy.errstate(all="ignore")
+
+
+def is_jax_array(x: Array) -> bool:
+    """Check if `x` is an array of JAX."""
+    return bool(array_api_compat.is_jax_array(x))
+
+
+def _is_in_torch_compile(x: Array) -> bool:
+    """Check if `x` is an array of PyTorch inside `torch.compile`, where its values are unknown."""
+    if not array_api_compat.is_torch_array(x):
+        return False
+    import torch
+
+    return bool(torch.compiler.is_compiling())
+
+
+def without_gradients(x: Array) -> AbstractContextManager[Any]:
+    """Return a context in which PyTorch records no operations; it has no effect on other libraries."""
+    if not array_api_compat.is_torch_array(x):
+        return nullcontext()
+    import torch
+
+    return torch.no_grad()
 
 
 def stop_gradient(x: Array) -> Array:

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
 from math import inf
-from operator import attrgetter
-from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
 from .deprecation import RenamedAttribute
@@ -81,6 +79,19 @@ class OutsideDomainError(ValueError):
     """Error raised if no point of a press lies in the domain of the model."""
 
 
+class _AttributePath:
+    """Function that reads an attribute such as "joint.clearance"; `torch.compile` traces no `attrgetter`."""
+
+    def __init__(self, path: str) -> None:
+        self._names = path.split(".")
+
+    def __call__(self, owner: Any) -> Any:
+        """Read the attribute of an owner."""
+        for name in self._names:
+            owner = getattr(owner, name)
+        return owner
+
+
 @dataclass(frozen=True, kw_only=True)
 class Range:
     """Limits of a quantity within which a model is valid or defined, with their reason.
@@ -111,7 +122,7 @@ class Range:
     @cached_property
     def quantity_of(self) -> Callable[[Any], Array]:
         """Function that reads or computes the quantity from a contact."""
-        return self.quantity if callable(self.quantity) else attrgetter(self.quantity)
+        return self.quantity if callable(self.quantity) else _AttributePath(self.quantity)
 
     of = RenamedAttribute("quantity_of")
 
@@ -132,7 +143,7 @@ class Range:
 
     def value_text(self, joint: Any) -> str:
         """Format symbol and value of the quantity of a joint, such as "R2/L = 3"."""
-        value = to_numpy(self.quantity_of(SimpleNamespace(joint=joint))).ravel()
+        value = to_numpy(self.quantity_of(_UnloadedContact(joint))).ravel()
         return f"{self.symbol} = {value[0]:g}" + (f" (and {value.size - 1} more)" if value.size > 1 else "")
 
     def __str__(self) -> str:
@@ -198,6 +209,12 @@ class NeverValid(Range):
         return f"never valid: {self.why}"
 
 
+class _UnloadedContact(NamedTuple):
+    """Joint before it is pressed, in the place of a contact for ranges that read only the joint."""
+
+    joint: Any
+
+
 def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
     """Check which joints lie in the domain of a model or modulus: return a mask, true for these joints.
 
@@ -216,7 +233,7 @@ def check_domain(domain: tuple[Range, ...], joint: Any, name: str) -> Array:
         No point is inside one of the ranges.
     """
     points: Array = joint.ball_radius == joint.ball_radius
-    unloaded = SimpleNamespace(joint=joint)
+    unloaded = _UnloadedContact(joint)
     for limit in domain:
         holds = limit.strictly_holds(unloaded)
         if all_true(logical_not(holds)) and 0 not in getattr(holds, "shape", ()):

@@ -39,6 +39,11 @@ def tables_of(file: JointFile) -> Tables:
     return write_table(_file_table(file))
 
 
+def written_tables(file: JointFile) -> Tables:
+    """Return the tables of a joint file, with units; ValueError for a joint of arrays."""
+    return write_table(_file_table(file), with_units=True)
+
+
 def toml_of(file: JointFile) -> str:
     """Return the text of a joint file, with units.
 
@@ -47,7 +52,7 @@ def toml_of(file: JointFile) -> str:
     ValueError
         A joint of arrays.
     """
-    return toml_text(write_table(_file_table(file), with_units=True))
+    return toml_text(written_tables(file))
 
 
 def cup_table(cup: Cup) -> Tables:

@@ -24,6 +24,7 @@ Units = Mapping[str, float]
 
 _LARGEST_EXPONENT = 9
 _NUMBER = re.compile(r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_FRACTION = re.compile(r"([-+]?)(?:(\d+)(?:\s+|-))?(\d+)/0*([1-9]\d*)(?![\d.])", re.ASCII)
 _TOKEN = re.compile(
     r"""(?P<blank>\s+)
     | (?P<name>[A-Za-z\u00b5\u03bc\u00b0]+)
@@ -76,7 +77,7 @@ def parse(name: str, value: Any, kind: str) -> float:
     name : str
         Name of the value in messages.
     value : float, int or str
-        A bare number, or text such as "16 mm", "3 kN", "1 GPa", "40 deg", "inf".
+        A bare number, or text such as "16 mm", "1 1/8 in", "3 kN", "1 GPa", "40 deg", "inf".
     kind : str
         One of `ballsocket.core.kinds.Kind`: "length", "force", "modulus", "angle", "number", ...
 
@@ -122,33 +123,50 @@ def _number(name: str, value: float | str, kind: str) -> float:
     except OverflowError as error:
         raise ValueError(_too_large(name, value)) from error
     except ValueError:
-        pass
-    if kind == Kind.NUMBER:
-        raise ValueError(_refusal(name, value, kind))
-    return _quantity(name, str(value), kind)
+        return _quantity(name, str(value), kind)
 
 
 def _quantity(name: str, text: str, kind: str) -> float:
     try:
         number, unit = split_quantity(text)
+        if not unit:  # a fraction
+            return number
+        if kind == Kind.NUMBER:
+            raise ValueError(f"{shown(unit)} is the unit of a plain number")
         return convert(number, parse_units(unit), parse_units(Kind(kind).assumed_unit))
     except ValueError as error:
         raise ValueError(_refusal(name, text, kind)) from error
 
 
 def split_quantity(text: str) -> tuple[float, str]:
-    """Split text into a number and the text of its unit, which may be empty.
+    """Split text into a number or a fraction, and the text of its unit, which may be empty.
 
     Raises
     ------
     ValueError
         Text of more than `LONGEST` characters, or without a number at its beginning.
+
+    Examples
+    --------
+    >>> split_quantity("1 1/8 in")
+    (1.125, 'in')
     """
     stripped = text.strip()
-    number = _NUMBER.match(stripped) if len(text) <= LONGEST else None
+    fraction, number = (part.match(stripped) if len(text) <= LONGEST else None for part in (_FRACTION, _NUMBER))
     if number is None:
         raise ValueError(f"{shown(text)} does not begin with a number")
+    if fraction is not None:
+        return _fraction(fraction), stripped[fraction.end() :].strip()
     return float(number[0]), stripped[number.end() :].strip()
+
+
+def _fraction(match: re.Match[str]) -> float:
+    """Return the number of a fraction such as "3/8", "1 1/8" or "1-1/8"; ValueError for "1 9/8"."""
+    sign, whole, top, bottom = match.groups()
+    if whole and int(top) >= int(bottom):
+        raise ValueError(f"{match[0]} has an improper fraction behind its whole number")
+    value = int(whole or 0) + int(top) / int(bottom)
+    return -value if sign == "-" else value
 
 
 def parse_units(text: str) -> Units:

@@ -1,6 +1,6 @@
 """Wear simulation of hip joints: gait, sliding, wear and creep over millions of cycles, film and friction."""
 
-from ..lubrication import Lubricant
+from ..lubrication import Lubricant, Stribeck
 from .bands import Bands
 from .config import read_hip
 from .creep_law import constrained_share
@@ -8,6 +8,7 @@ from .creep_laws import KelvinVoigtChain, LogarithmicCreep, logarithmic
 from .cycle import Cycle, Frame, Spring
 from .cycle_registry import named_cycle
 from .film import Film
+from .film_limit import FilmLimit
 from .history import History
 from .in_vivo import in_vivo
 from .mix import Activity, Mix
@@ -45,6 +46,7 @@ __all__ = [
     "Cycle",
     "EnergyLaw",
     "Film",
+    "FilmLimit",
     "Frame",
     "FrictionEnergyWear",
     "HipSimulation",
@@ -60,6 +62,7 @@ __all__ = [
     "PatientVariability",
     "Scatter",
     "Spring",
+    "Stribeck",
     "WearFit",
     "constant_load",
     "constrained_share",

@@ -20,7 +20,7 @@ from ..files.joint_file import NO_DETAILS, CupTable, JointFile, ReportDetails, c
 from ..files.tables import quantities_of, read_table
 from ..files.toml import read_toml
 from ..files.units import convert, parse, parse_units, split_quantity
-from ..lubrication import Lubricant
+from ..lubrication import Lubricant, Stribeck
 from ..models.foundation import RadialFoundation
 from ..problem.cup import Cup
 from ..studies.distributions import check_nominal
@@ -28,8 +28,9 @@ from ..studies.file import Read, distribution_of
 from .creep_law import CreepLaw
 from .creep_laws import read_creep_law
 from .cycle_file import cycle_of
+from .film_limit import FilmLimit
 from .law_fields import select_law_class
-from .schema import HipCupTable, HipTable, PatientNumber, UncertaintyTable, WearDataTable
+from .schema import FilmTable, HipCupTable, HipTable, PatientNumber, UncertaintyTable, WearDataTable
 from .simulation import HipSimulation, check_cycles
 from .variability import DEFAULT_COUNT, SAMPLED_QUANTITIES, PatientVariability
 from .wear_fit import RATES, MeasuredWear
@@ -123,6 +124,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
     joint_file = _parse_joint(tables, folder)
     cycle, law_numbers = cycle_of(tables, folder), content.get("wear", {})
     seconds = None if tables.creep is None else tables.creep.seconds_per_cycle
+    lubricant, limit = _lubricant(tables.film), tables.wear.film_limit
     use = HipSimulation(
         joint=joint_file.joint,
         cup=joint_file.cup,
@@ -132,6 +134,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         surface=socket_surface(tables.wear.contact, tables.wear.model),
         creep=parse_creep(content, float(joint_file.joint.liner.poisson)),
         seconds_per_cycle=None if seconds is None else float(seconds),
+        film_limit=None if limit is None else FilmLimit(ratio=float(limit), lubricant=lubricant),
         **quantities_of(tables.wear, "ring_width"),
     )
     cycles, report_at = _length(tables, cycle.per_year)
@@ -140,7 +143,7 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
         use=use,
         cycles=cycles,
         report_at=report_at,
-        lubricant=Lubricant(**quantities_of(tables.film)),
+        lubricant=lubricant,
         uncertain=None if tables.uncertainty is None else _read_uncertainty(tables, tables.uncertainty, use),
         data=tuple(_parse_measured_wear(table, cycle.per_year, tables) for table in tables.data or ()),
         name=str(tables.name or ""),
@@ -150,6 +153,17 @@ def _parse_hip(content: Mapping[str, Any], folder: Path) -> HipFile:
 
 _PER_MILLION, _PER_YEAR = ("Mc", "million cycles"), ("year", "a")
 """Ends of the unit of a rate, behind the slash."""
+
+
+def _lubricant(table: FilmTable) -> Lubricant:
+    """Make the lubricant of a table [film]."""
+    values: dict[str, Any] = quantities_of(table)
+    boundary = values.pop("boundary_friction", None)
+    if boundary is None:
+        return Lubricant(**values)
+    if "friction" in values:
+        raise ValueError("[film] has friction and boundary_friction: give a constant coefficient or one by the film")
+    return Lubricant(**values, friction=Stribeck(boundary=boundary))
 
 
 def _parse_measured_wear(table: WearDataTable, per_year: float | None, tables: HipTable) -> MeasuredWear:

@@ -1,39 +1,32 @@
 """Lubricant film between ball and socket over a cycle, and friction: moment, power, heat.
 
-Method "hamrock-dowson" has a formula for each instant alone; it is fitted to bodies of low conformity. Method "wave"
-carries the film over the dry contacts from instant to instant.
+Method "wave" carries the film over the dry contacts from instant to instant. Method "hamrock-dowson" has a formula for
+each instant alone; it is fitted to bodies of low conformity.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
-from typing import Any, Protocol
+from math import degrees, inf
+from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.checks import known_name
+from ..core.checks import known_name, require
+from ..core.display import load_plot
 from ..elasticity.off_axis.grid import Grid
 from ..lubrication import Lubricant
-from ..lubrication.cycle_film import CycleInstant, carry_over_cycle
-from ..lubrication.inlet import Edge, ElasticEdge, SpringEdge
-from ..lubrication.mesh import polar_mesh, thinned_meridians
-from ..problem import Joint, Material
-from .cycle import Cycle
+from ..lubrication.cycle_film import CYCLES
+from .film_cycle import CarriedFilm, LoadedCycle, carry_film
+from .hamrock_dowson import CONFORMITY_NOTE, film_thickness
 from .kinematics import SurfaceSliding
-from .mix import Mix
 from .socket_foundation import CycleEquilibrium, SocketFoundation
 
-CONFORMITY_NOTE = (
-    "Hamrock and Dowson's formulas hold for bodies of low conformity: here they give a regime, not a thickness"
-)
-"""Note on the film thickness of a conforming joint."""
-
-WAVE_NOTE = "Film carried over the dry contacts from instant to instant"
+WAVE_NOTE = "Film carried over the dry contacts from instant to instant, from a flooded bore"
 """Note on the film thickness by the kinematic wave."""
 
-METHODS = ("hamrock-dowson", "wave")
+METHODS = ("wave", "hamrock-dowson")
 """Names of the methods; the first is the default."""
 
 _SMALL_SHARE = 0.01
@@ -46,46 +39,7 @@ _MIXED_RATIO, _FULL_RATIO = 1.0, 3.0
 """Film ratios at which mixed and full-film lubrication begin."""
 
 
-def film_thickness(joint: Joint, force: Numbers, spin: Numbers, viscosity: float) -> tuple[Numbers, Numbers]:
-    """Compute the minimum and central film thickness in mm by the formulas of Hamrock and Dowson.
-
-    Parameters
-    ----------
-    joint : Joint
-    force : array
-        Load in N.
-    spin : array
-        Rotation rate of the ball perpendicular to the load, in rad/s.
-    viscosity : float
-        Viscosity in Pa s.
-
-    Returns
-    -------
-    pair of arrays
-        Thicknesses; NaN without clearance, where no equivalent sphere exists.
-    """
-    if float(joint.clearance) == 0:
-        return numpy.full_like(force, numpy.nan), numpy.full_like(force, numpy.nan)
-    # h_min = 2.80 R* U^.65 W^-.21, h_cen = 3.34 R* U^.64 W^-.22, U = ηu/(E'R*), W = F/(E'R*²), u = ωR1/2
-    effective_radius = float(joint.ball_radius * joint.socket_radius / joint.clearance)
-    ball_compliance = 0.0 if joint.ball is None else _plane_strain_compliance(joint.ball)
-    modulus = 2 / (_plane_strain_compliance(joint.liner) + ball_compliance)
-    speed_parameter = 1e-6 * viscosity * spin * float(joint.ball_radius) / 2 / (modulus * effective_radius)
-    load_parameter = force / (modulus * effective_radius**2)
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        minimum, central = (
-            2.80 * effective_radius * speed_parameter**0.65 * load_parameter**-0.21,
-            3.34 * effective_radius * speed_parameter**0.64 * load_parameter**-0.22,
-        )
-    return minimum, central
-
-
-def _plane_strain_compliance(material: Material) -> float:
-    """Compute the plane-strain compliance (1 - ν²)/E of a material in 1/MPa."""
-    return float((1 - material.poisson**2) / material.young)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Film:
     """Lubricant film and friction in the loaded instants of a cycle.
 
@@ -94,9 +48,9 @@ class Film:
     phases : array (instants,)
         Phases of the cycle, 0 to 1.
     least, central : array (instants,)
-        Minimum and central thickness in mm.
+        Smallest thickness in the contact, and that at the load, in mm.
     ratio : array (instants,)
-        Film ratio λ: minimum thickness over the combined roughness.
+        Film ratio λ: smallest thickness over the combined roughness.
     moment : array (instants, 3)
         Friction moment on the cup about its centre in N mm, in the cup's frame; the moment on the ball is opposite.
     power : array (instants,)
@@ -105,18 +59,13 @@ class Film:
         Friction heat of a cycle in J.
     duration : float
         Duration of a cycle in s.
+    lubricant : Lubricant
     method : str
         "wave" or "hamrock-dowson".
     comparison : array (instants,)
-        Minimum thickness in mm by Hamrock and Dowson's formula.
-    thickness : array (instants, cells), optional
-        Film thickness in mm by the wave on the cells of the bore; NaN outside the contacts.
-    error : array (instants,), optional
-        Estimated relative error of the wave.
-    unreached : float
-        Largest share of a contact that fresh lubricant does not reach; its film falls with the root of time.
-    converged : bool
-        True unless the wave did not repeat.
+        Smallest thickness in mm by Hamrock and Dowson's formula.
+    carried : CarriedFilm, optional
+        Film by the wave on the cells of the bore.
     """
 
     phases: Numbers
@@ -127,35 +76,100 @@ class Film:
     power: Numbers
     heat: float
     duration: float
-    method: str = "hamrock-dowson"
+    lubricant: Lubricant
+    method: str
     comparison: Numbers
-    thickness: Numbers | None = None
-    error: Numbers | None = None
-    unreached: float = 0.0
-    converged: bool = True
+    carried: CarriedFilm | None = None
+
+    @property
+    def thickness(self) -> Numbers | None:
+        """Film thickness in mm on the cells of the bore (instants, cells), NaN outside the contacts; of the wave."""
+        return None if self.carried is None else self.carried.mapped("thickness")
+
+    @property
+    def core(self) -> Numbers | None:
+        """Mask (instants, cells) of the film that fresh lubricant does not reach within a cycle; of the wave."""
+        return None if self.carried is None else self.carried.mapped("core")
+
+    def __repr__(self) -> str:
+        smallest = 1e6 * numpy.min(self.least, initial=numpy.inf)
+        return f"<film by {self.method} in {len(self.phases)} instants: smallest {smallest:.3g} nm>"
+
+    @property
+    def error(self) -> Numbers | None:
+        """Estimated relative error (instants,) of central and smallest film by the wave, with that of its cells."""
+        return None if self.carried is None else self.carried.joined("error")
+
+    @property
+    def refreshed_share(self) -> Numbers | None:
+        """Share (instants,) of the contact that fresh lubricant reaches within a cycle; of the wave."""
+        return None if self.carried is None else self.carried.joined("refreshed_share")
+
+    @property
+    def refreshed_mean(self) -> Numbers | None:
+        """Mean film (instants,) in mm where fresh lubricant comes in every cycle; of the wave."""
+        return None if self.carried is None else self.carried.joined("refreshed_mean")
+
+    @property
+    def refreshed_mean_error(self) -> float | None:
+        """Estimated relative error of the mean of `refreshed_mean` over the cycle; of the wave."""
+        return None if self.carried is None else max(film.refreshed_mean_error for film in self.carried.films)
+
+    @property
+    def core_mean(self) -> Numbers | None:
+        """Mean film (instants,) in mm of the core; NaN without one; of the wave."""
+        return None if self.carried is None else self.carried.joined("core_mean")
+
+    @property
+    def unreached(self) -> float:
+        """Largest share of a contact that fresh lubricant does not reach within a cycle."""
+        return 0.0 if self.refreshed_share is None else 1 - float(self.refreshed_share.min(initial=1.0))
+
+    @property
+    def converged(self) -> bool:
+        """True if the film at the end of a cycle equals that at its start to 1 %."""
+        return self.carried is None or all(film.converged for film in self.carried.films)
+
+    @property
+    def settled(self) -> bool:
+        """True if more cycles would hardly change the mean film of the core."""
+        return self.carried is None or all(film.settled for film in self.carried.films)
+
+    @property
+    def smallest_settled(self) -> bool:
+        """True if more cycles would hardly change the smallest film of the core.
+
+        It falls, h ~ N^(-1/2), where the film turns about a point of the core.
+        """
+        return self.carried is None or all(film.smallest_settled for film in self.carried.films)
 
     @property
     def valid(self) -> bool:
-        """True if the wave repeats, fresh lubricant reaches the contacts, and the estimated error is at most 10 %.
+        """True if the film of the wave repeats, its core is settled, and its estimated error is at most 10 %.
 
         A formula for other bodies is not valid.
         """
-        refreshed = self.converged and self.unreached < _SMALL_SHARE
-        return self.error is not None and refreshed and bool((self.error <= _MAX_ERROR).all())
+        return self.error is not None and self.converged and self.settled and bool((self.error <= _MAX_ERROR).all())
 
     @property
     def note(self) -> str:
         """Sentence on the method of the film thickness."""
-        if self.error is None:
+        if self.carried is None or self.error is None:
             return CONFORMITY_NOTE
-        if not self.converged:
-            return f"{WAVE_NOTE}; it did not repeat, and this is the last cycle"
-        error = f"{WAVE_NOTE}; estimated error of a steady film up to {100 * self.error.max(initial=0.0):.0f} %"
+        films = self.carried.films
+        error = f"{WAVE_NOTE}, {films[0].cycles} cycles ago; estimated error {100 * self.error.max(initial=0.0):.0f} %"
+        repeat = "" if self.converged else "; the film does not repeat to 1 % yet"
         if self.unreached < _SMALL_SHARE:
-            return error
-        share = f"{100 * self.unreached:.0f} % of the contact"
-        unsettled = "its film falls without limit, here after about 100 cycles"
-        return f"{error}; fresh lubricant does not reach {share}: {unsettled}"
+            return error + repeat
+        drift = max(degrees(film.drift) for film in films)
+        state = (
+            f"its film drifts by {drift:.2g}° in a cycle and is settled"
+            + ("" if self.smallest_settled else ", but its smallest film still falls")
+            if self.settled
+            else "its film falls, at last with the root of the number of cycles"
+        )
+        core = f"fresh lubricant does not reach a core, up to {100 * self.unreached:.0f} % of the contact"
+        return f"{error}{repeat}; {core}: {state}"
 
     @property
     def regime(self) -> str:
@@ -179,50 +193,54 @@ class Film:
             "power_W": self.heat / self.duration,
             "heat_J_per_cycle": self.heat,
         }
-        finite_values = {name: float(value) if numpy.isfinite(value) else None for name, value in values.items()}
         largest_moment = [float(component) for component in self.moment[moment_magnitudes.argmax()]]
         return {
-            **finite_values,
+            **{name: _number(value) for name, value in values.items()},
             "moment_on_cup_Nmm": largest_moment,
+            "central_nm": _mean_nm(self.central),
             "regime": self.regime,
             "note": self.note,
             "method": self.method,
             "valid": self.valid,
             "error": None if self.error is None else float(self.error.max(initial=0.0)),
+            **self._regions_summary(),
         }
 
+    def _regions_summary(self) -> dict[str, Any]:
+        """Return the refreshed part and the core of the contact for JSON; empty without the wave."""
+        if self.carried is None:
+            return {}
+        return {
+            "refreshed_share_least": 1 - self.unreached,
+            "refreshed_mean_nm": _mean_nm(self.carried.joined("refreshed_mean")),
+            "core_mean_nm": _mean_nm(self.carried.joined("core_mean")),
+            "drift_deg_per_cycle": max(degrees(film.drift) for film in self.carried.films),
+            "cycles": self.carried.films[0].cycles,
+            "change_per_cycle": max(film.change for film in self.carried.films),
+            "settled": self.settled,
+            "smallest_settled": self.smallest_settled,
+            "refreshed_mean_error": self.refreshed_mean_error,
+        }
 
-class LoadedCycle(Protocol):
-    """Interface of the loads and rotations of a cycle in the cup's frame, such as `CupFrame`."""
+    def plot(self) -> Any:
+        """Plot the film over the cycle, and maps of it over the bore.
 
-    @property
-    def joint(self) -> Joint:
-        """Joint of single numbers."""
-        ...
+        Returns
+        -------
+        matplotlib.figure.Figure
+        """
+        return load_plot("cycle_film")(self)
 
-    @property
-    def cycle(self) -> Cycle | Mix:
-        """Cycle of loads and rotations."""
-        ...
 
-    @property
-    def loaded(self) -> Numbers:
-        """Indices of the loaded instants: (loaded,)."""
-        ...
+def _number(value: float) -> float | None:
+    """Return a number, or None if it is not finite."""
+    return float(value) if numpy.isfinite(value) else None
 
-    @property
-    def activities(self) -> tuple[tuple[str, Numbers], ...]:
-        """Name of each activity, and indices of its loads among the loaded instants."""
-        ...
 
-    @property
-    def rotation_increments(self) -> Numbers:
-        """Rotation vectors of the ball in the loaded instants in rad: (loaded, 3)."""
-        ...
-
-    def socket_forces(self, displacement: Numbers) -> Numbers:
-        """Compute the forces on the socket in N for displacements (loaded, 3) of the ball in mm."""
-        ...
+def _mean_nm(thickness: Numbers) -> float | None:
+    """Compute the mean over the cycle in nm of a thickness (instants,) in mm, where it exists."""
+    known = thickness[numpy.isfinite(thickness)]
+    return 1e6 * float(known.mean()) if len(known) else None
 
 
 def film(
@@ -230,132 +248,66 @@ def film(
     foundation: SocketFoundation,
     sliding: SurfaceSliding,
     equilibrium: CycleEquilibrium,
+    depth: Numbers,
     lubricant: Lubricant,
     grid: Grid,
     method: str = METHODS[0],
+    cycles: int = CYCLES,
 ) -> Film:
     """Compute film thickness, friction moment, power and heat of a cycle from its contacts and sliding.
+
+    `depth` (cells,) is the worn depth in mm.
 
     Raises
     ------
     ValueError
-        An unknown method.
+        An unknown method; a number of cycles below 1.
     """
     name = known_name("method", method, METHODS)
+    require("cycles", cycles, cycles >= 1 and cycles == int(cycles), "a number of cycles is a whole number from 1")
     durations = frame.cycle.seconds[frame.loaded]
     forces = frame.socket_forces(equilibrium.displacement)
-    force_magnitudes = numpy.linalg.norm(forces, axis=1)
+    magnitudes = numpy.linalg.norm(forces, axis=1)
     spin = numpy.linalg.norm(numpy.cross(frame.rotation_increments, forces), axis=1) / numpy.where(
-        force_magnitudes > 0, force_magnitudes, 1.0
+        magnitudes > 0, magnitudes, 1.0
     )
-    formula = film_thickness(frame.joint, force_magnitudes, spin / durations, lubricant.viscosity)
-    thickness: dict[str, Any] = {"least": formula[0], "central": formula[1]}
+    formula = film_thickness(frame.joint, magnitudes, spin / durations, lubricant.viscosity)
+    carried = None
     if name == "wave" and foundation.clearance > 0 and len(forces):
-        thickness = _carry_film(frame, foundation, equilibrium, lubricant.viscosity_mpa, grid)
+        carried = carry_film(frame, foundation, equilibrium, depth, lubricant.viscosity_mpa, grid, int(cycles))
+    least, central = (carried.joined("minimum"), carried.joined("central")) if carried else formula
+    local = carried.mapped("thickness") if carried else numpy.broadcast_to(central[:, None], equilibrium.pressure.shape)
+    speed = sliding.distances / durations[:, None]
+    shear = lubricant.shear_stress(equilibrium.pressure, local, speed)
+    work = numpy.einsum("tp,tp,p->t", shear, sliding.distances, foundation.areas)
     roughness = lubricant.roughness
-    work = lubricant.friction * numpy.einsum("tp,tp,p->t", equilibrium.pressure, sliding.distances, foundation.areas)
-    least = thickness["least"]
     return Film(
         phases=frame.cycle.phases[frame.loaded],
+        least=least,
+        central=central,
         ratio=least / roughness if roughness > 0 else numpy.full_like(least, inf),
-        moment=lubricant.friction * _moment_at_unit_friction(foundation, sliding, equilibrium.pressure),
+        moment=_moment(foundation, sliding, shear),
         power=1e-3 * work / durations,
         heat=1e-3 * float(work.sum()),
         duration=frame.cycle.duration,
+        lubricant=lubricant,
         method=name,
         comparison=formula[0],
-        **thickness,
+        carried=carried,
     )
 
 
-def _carry_film(
-    frame: LoadedCycle, foundation: SocketFoundation, equilibrium: CycleEquilibrium, viscosity: float, grid: Grid
-) -> dict[str, Any]:
-    """Carry the film over each activity until it repeats, on cells of the grid merged near the pole."""
-    meridians = thinned_meridians(grid.edges, grid.meridians)
-    mesh = polar_mesh(foundation.socket_radius, grid.edges, meridians)
-    merged = _merged_cells(grid, meridians)
-    instants = _instants(frame, foundation, equilibrium, grid, merged)
-    films = [carry_over_cycle(mesh, viscosity, [instants[index] for index in loads]) for _, loads in frame.activities]
-    return {
-        "least": numpy.concatenate([film.minimum for film in films]),
-        "central": numpy.concatenate([film.central for film in films]),
-        "thickness": numpy.concatenate([film.thickness for film in films])[:, merged],
-        "error": numpy.concatenate([film.error for film in films]),
-        "unreached": max(film.unreached for film in films),
-        "converged": all(film.converged for film in films),
-    }
+def _moment(foundation: SocketFoundation, sliding: SurfaceSliding, shear: Numbers) -> Numbers:
+    """Compute the friction moment on the cup in N mm of shear stresses in MPa: (instants, 3).
 
-
-def _merged_cells(grid: Grid, meridians: Numbers) -> Numbers:
-    """Return the number of the merged cell of each cell of a grid: (rings * meridians,)."""
-    starts = numpy.concatenate([[0], numpy.cumsum(meridians)[:-1]])
-    column = numpy.arange(grid.meridians)
-    merged: Numbers = starts[:, None] + column * meridians[:, None] // grid.meridians
-    return merged.ravel()
-
-
-def _instants(
-    frame: LoadedCycle, foundation: SocketFoundation, equilibrium: CycleEquilibrium, grid: Grid, merged: Numbers
-) -> list[CycleInstant]:
-    """Collect pressure, edge and motion of the loaded instants."""
-    pressure = numpy.stack([numpy.bincount(merged, row) for row in equilibrium.pressure]) / numpy.bincount(merged)
-    forces = frame.socket_forces(equilibrium.displacement)
-    axes = forces / numpy.linalg.norm(forces, axis=1)[:, None]
-    durations = frame.cycle.seconds[frame.loaded]
-    spins = frame.rotation_increments / durations[:, None]
-    edges = _edges(frame, foundation, equilibrium, grid, axes)
-    gaps = numpy.diff(frame.loaded, prepend=frame.loaded[-1] - frame.cycle.n_steps)
-    return [
-        CycleInstant(
-            pressure=pressure[index],
-            axis=axes[index],
-            edge=edges[index],
-            spin=spins[index],
-            duration=float(durations[index]),
-            interrupted=bool(gaps[index] != 1),
-        )
-        for index in range(len(axes))
-    ]
-
-
-def _edges(
-    frame: LoadedCycle, foundation: SocketFoundation, equilibrium: CycleEquilibrium, grid: Grid, axes: Numbers
-) -> list[Edge]:
-    """Find the edge of the contact at each instant; contacts of few rings have the median of the others."""
-    from ..elasticity.off_axis.contact_patch import ContactPatch  # slow to import
-
-    exponent, radius = foundation.edge_exponent, foundation.socket_radius
-    levels = foundation.edge_field(equilibrium, numpy.zeros(len(foundation.areas)))
-    shape = (len(axes), grid.rings, grid.meridians)
-    rows = zip(equilibrium.pressure.reshape(shape), levels.reshape(shape), axes, strict=True)
-    inset = foundation.edge_inset
-    constants = numpy.array(
-        [
-            ContactPatch(grid=grid, pressure=pressure, level=level, axis=axis, inset=inset).edge_constant(exponent)
-            for pressure, level, axis in rows
-        ]
-    )
-    known = constants[numpy.isfinite(constants) & (constants > 0)]
-    median = float(numpy.median(known)) if len(known) else float(equilibrium.pressure.max())
-    values = numpy.where(numpy.isfinite(constants) & (constants > 0), constants, median) / radius**exponent
-    if exponent == 1:
-        return [SpringEdge(slope=float(value), modulus=foundation.max_stiffness) for value in values]
-    modulus = float(frame.joint.effective_modulus)
-    return [ElasticEdge(coefficient=float(value), modulus=modulus) for value in values]
-
-
-def _moment_at_unit_friction(foundation: SocketFoundation, sliding: SurfaceSliding, pressure: Numbers) -> Numbers:
-    """Compute the friction moment on the cup in N mm for a coefficient of friction of 1: (instants, 3).
-
-    It is ∫ R n × v/abs(v) p dA with v = R ω × n, and n × (ω × n) = ω - (ω·n) n.
+    It is ∫ R n × v/abs(v) τ dA with v = R ω × n, and n × (ω × n) = ω - (ω·n) n.
     """
     directions, rotations, distances = foundation.directions, sliding.rotation_increments, sliding.distances
-    pressure_weight = numpy.divide(
-        pressure * foundation.areas * sliding.radius**2,
+    weight = numpy.divide(
+        shear * foundation.areas * sliding.radius**2,
         distances,
         out=numpy.zeros_like(distances),
         where=distances > 0,
     )
-    normal_part = pressure_weight * (rotations @ directions)
-    return rotations * pressure_weight.sum(axis=1)[:, None] - normal_part @ directions.T
+    normal_part = weight * (rotations @ directions)
+    return rotations * weight.sum(axis=1)[:, None] - normal_part @ directions.T

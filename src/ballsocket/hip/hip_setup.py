@@ -29,8 +29,10 @@ from .creep_law import CreepLaw, creep_notes
 from .cup_frame import CupFrame, FromFrame
 from .cycle import Cycle
 from .elastic_foundation import elastic_foundation
+from .film import CYCLES as FILM_CYCLES
 from .film import METHODS as FILM_METHODS
 from .film import Film, film
+from .film_limit import FilmLimit
 from .kinematics import SurfaceSliding
 from .mix import Mix
 from .rim import Microseparation, RimDistance, rim_distance
@@ -76,6 +78,8 @@ class HipSetup(OneLine):
         Time in s that a cycle stands for in the creep of the liner; None is the duration of the cycle.
     tolerance : float
         Allowed error of a block of cycles, relative to the largest depth so far.
+    film_limit : FilmLimit, optional
+        Film ratio below which the surfaces wear; None for wear at any film.
     """
 
     joint: Joint
@@ -88,6 +92,7 @@ class HipSetup(OneLine):
     creep: CreepLaw | None = None
     seconds_per_cycle: float | None = None
     tolerance: float = 4e-3
+    film_limit: FilmLimit | None = None
 
     forces = FromFrame[Numbers]()
     largest_load_index = FromFrame[Numbers]()
@@ -133,6 +138,11 @@ class HipSetup(OneLine):
             require("liner_thickness", thickness, thickness < inf, "creep needs a liner of finite thickness")
         if self.ball_wear is not None and (self.creep is not None or not self.uses_springs):
             raise ValueError("ball_wear needs surface=Springs() and no creep law")
+        if self.film_limit is not None:
+            if not isinstance(self.film_limit, FilmLimit):
+                raise TypeError(f"film_limit must be a FilmLimit, got {shown(self.film_limit)}")
+            clearance = float(self.joint.clearance)
+            require("clearance", clearance, clearance > 0, "film_limit needs a film, and a film a positive clearance")
         require("seconds_per_cycle", self.seconds, 0 < self.seconds < inf, "a time (s) is positive and finite")
         _ = self.frame  # checks the loads
 
@@ -173,6 +183,7 @@ class HipSetup(OneLine):
             *self.cycle.notes,
             *self.frame.notes,
             *law_notes,
+            *([self.film_limit.note(self.excluded_work_share)] if self.film_limit else ()),
             *creep_notes(self.creep, float(self.joint.liner.poisson)),
         )
 
@@ -313,6 +324,35 @@ class HipSetup(OneLine):
         contact_shares = partial(self.foundation.contact_shares, equilibrium, self._depth_field(depth))
         return CycleExposure(pressure=equilibrium.pressure, sliding=self.sliding, contact_shares=contact_shares)
 
+    def wearing_exposure(self, exposure: CycleExposure, cells: Numbers | None = None) -> CycleExposure:
+        """Restrict an exposure to the instants and cells that wear, by the limit of the film ratio.
+
+        Parameters
+        ----------
+        exposure : CycleExposure
+        cells : array (points,), optional
+            Numbers of the cells of the exposure; all by default.
+        """
+        if self.film_limit is None:
+            return exposure
+        return exposure.select_contact(self._wearing_cells if cells is None else self._wearing_cells[:, cells])
+
+    @cached_property
+    def _wearing_cells(self) -> Numbers:
+        """Mask (loaded, cells) of the cells that wear, by the film on the unworn bore."""
+        limit = self.film_limit
+        thickness = None if limit is None else self.film(limit.lubricant, cycles=limit.cycles).thickness
+        if limit is None or thickness is None:
+            return numpy.ones(self.unworn.pressure.shape, dtype=bool)
+        return limit.wearing_cells(thickness, self.foundation.directions)
+
+    @property
+    def excluded_work_share(self) -> float:
+        """Share of the sliding work of the first cycle without wear, by the limit of the film ratio."""
+        exposure, areas = self.exposure(self.unworn), self.foundation.areas
+        total = float(exposure.work @ areas)
+        return 1.0 - float(self.wearing_exposure(exposure).work @ areas) / total if total > 0 else 0.0
+
     @cached_property
     def unworn(self) -> CycleEquilibrium:
         """Contacts at all loaded instants of the first cycle, on an unworn bore."""
@@ -323,6 +363,7 @@ class HipSetup(OneLine):
         lubricant: Lubricant = Lubricant(),  # noqa: B008 (frozen)
         depth: Numbers | float = 0.0,
         method: str = FILM_METHODS[0],
+        cycles: int = FILM_CYCLES,
     ) -> Film:
         """Compute lubricant film and friction of a cycle.
 
@@ -332,27 +373,32 @@ class HipSetup(OneLine):
         depth : array (cells,)
             Worn depth of the bore in mm.
         method : str
-            "hamrock-dowson" (default) is a formula for bodies of low conformity. "wave" carries the film from instant
-            to instant; its `valid` and `note` state whether the film settles.
+            "wave" (default) carries the film from instant to instant; its `valid` and `note` state whether the film
+            settles. "hamrock-dowson" is a formula for bodies of low conformity.
+        cycles : int
+            Number of uninterrupted cycles since the bore was flooded, for the wave; 300 by default.
 
         Raises
         ------
         ValueError
-            An unknown method.
+            An unknown method; a number of cycles below 1.
         """
         if isinstance(depth, float) and depth == 0.0:
-            key = lubricant, method
+            key = lubricant, method, cycles
             if key not in self._unworn_films:
-                self._unworn_films[key] = self._film(self.unworn, lubricant, method)
+                self._unworn_films[key] = self._film(self.unworn, depth, lubricant, method, cycles)
             return self._unworn_films[key]
-        return self._film(self.solve_equilibrium(depth), lubricant, method)
+        return self._film(self.solve_equilibrium(depth), depth, lubricant, method, cycles)
 
-    def _film(self, equilibrium: CycleEquilibrium, lubricant: Lubricant, method: str) -> Film:
-        """Compute lubricant film and friction of a cycle from its contacts."""
-        return film(self.frame, self.foundation, self.sliding, equilibrium, lubricant, self.grid, method)
+    def _film(
+        self, equilibrium: CycleEquilibrium, depth: Numbers | float, lubricant: Lubricant, method: str, cycles: int
+    ) -> Film:
+        """Compute lubricant film and friction of a cycle from its contacts on a bore of a worn depth in mm."""
+        frame, foundation, worn = self.frame, self.foundation, self._depth_field(depth)
+        return film(frame, foundation, self.sliding, equilibrium, worn, lubricant, self.grid, method, cycles)
 
     @cached_property
-    def _unworn_films(self) -> dict[tuple[Lubricant, str], Film]:
+    def _unworn_films(self) -> dict[tuple[Lubricant, str, int], Film]:
         """Cached films of the unworn bore."""
         return {}
 
@@ -360,7 +406,7 @@ class HipSetup(OneLine):
     def first(self) -> FirstCycleResult:
         """Results of the first cycle on an unworn bore; wear is per million cycles."""
         cycle = self.exposure(self.unworn)
-        depth, work = self.wear.depth(cycle), cycle.work * self.foundation.areas
+        depth, work = self.wear.depth(self.wearing_exposure(cycle)), cycle.work * self.foundation.areas
         total_work = float(work.sum())
         return FirstCycleResult(
             slide=self.frame.slide,

@@ -317,7 +317,7 @@ class History(OneLine):
 
     def summary(self) -> dict[str, Any]:
         """Return the results as a dictionary for JSON."""
-        first, separation = self.use.first, self.use.frame.separation
+        first, separation, limit = self.use.first, self.use.frame.separation, self.use.film_limit
         return {
             "cycle": {
                 "name": self.use.cycle.name,
@@ -344,6 +344,7 @@ class History(OneLine):
                 "wear": law_summary(self.use.wear),
                 "ball_wear": law_summary(self.use.ball_wear),
                 "creep": law_summary(self.use.creep),
+                "film_limit": None if limit is None else limit.summary(self.use.excluded_work_share),
             },
             "film": self._film_summary(),
             "initial": {"wear_mm3_per_Mc": first.volume, "depth_mm_per_Mc": first.depth},
@@ -353,9 +354,10 @@ class History(OneLine):
         }
 
     def _film_summary(self) -> dict[str, Any]:
-        """Return the film by Hamrock and Dowson's formula for JSON, and that by the wave under `wave`."""
-        formula = self.use.film(self.lubricant).summary()
-        return {**formula, "wave": self.use.film(self.lubricant, method="wave").summary()} if formula else {}
+        """Return the film by the wave for JSON, and that by Hamrock and Dowson's formula under `hamrock_dowson`."""
+        wave = self.use.film(self.lubricant).summary()
+        formula = self.use.film(self.lubricant, method="hamrock-dowson").summary()
+        return {**wave, "hamrock_dowson": formula} if wave else {}
 
     def _report_summary(self, report: Report, checks: Sequence[ContactCheck]) -> dict[str, Any]:
         """Return a report with its contact checks as a dictionary for JSON, with years if known."""

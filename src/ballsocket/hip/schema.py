@@ -249,6 +249,9 @@ class WearTable(Table, frozen=True, kw_only=True):
     contact: Annotated[ContactName, meaning("foundation of the socket")] = ContactName("springs")
     model: Annotated[SpringModel | None, meaning("model with the springs; hess-forsbach by default")] = None
     ring_width: Annotated[Angle | None, meaning("width of the rings of the wear map; 3 degrees by default")] = None
+    film_limit: Annotated[
+        PlainNumber | None, meaning("film ratio below which the surfaces wear, by the lubricant of [film]")
+    ] = None
 
 
 @with_keys(_law_keys(CREEP_LAWS))
@@ -267,6 +270,9 @@ class FilmTable(Table, frozen=True, kw_only=True):
     ball_roughness: Annotated[Length | None, meaning("roughness Ra of the ball")] = None
     cup_roughness: Annotated[Length | None, meaning("roughness Ra of the cup")] = None
     friction: Annotated[PlainNumber | None, meaning("coefficient of friction")] = None
+    boundary_friction: Annotated[
+        PlainNumber | None, meaning("coefficient of friction of touching surfaces; friction then depends on the film")
+    ] = None
 
 
 @with_keys(

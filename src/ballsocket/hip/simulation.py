@@ -133,6 +133,7 @@ def make_checkpoint(use: HipSetup, folder: Path) -> Checkpoint:
         use.tolerance,
         use.creep,
         use.seconds,
+        *(() if use.film_limit is None else (use.film_limit,)),
     )
     return Checkpoint(folder=folder, identity=hash_inputs(_VERSION, loads, inputs))
 
@@ -145,7 +146,7 @@ def check_total_wear(setup: HipSetup, cycles: float) -> None:
     ValueError
         The extrapolated wear of the first cycle exceeds ten liner thicknesses.
     """
-    exposure = setup.exposure(setup.unworn)
+    exposure = setup.wearing_exposure(setup.exposure(setup.unworn))
     thickness = float(min(setup.joint.liner_thickness, setup.joint.socket_radius))
     laws = (law for law in (setup.wear, setup.ball_wear) if law is not None)
     estimated_depth = cycles * max(float(law.depth(exposure).max(initial=0.0)) for law in laws)
@@ -256,6 +257,8 @@ class HipSimulation(HipSetup):
         Time in s that a cycle stands for in the creep of the liner; the duration of the cycle by default.
     tolerance : float
         Allowed error of a block of cycles, relative to the largest depth so far. Default 4e-3.
+    film_limit : FilmLimit, optional
+        Film ratio λ below which the surfaces wear, with the lubricant of that film; wear at any film by default.
 
     Raises
     ------

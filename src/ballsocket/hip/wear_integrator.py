@@ -151,7 +151,7 @@ class WearIntegrator:
         self._exposure = CycleExposure(
             pressure=equilibrium.pressure, sliding=active.sliding, contact_shares=contact_shares
         )
-        wear_per_cycle = active.foundation.smooth(self.setup.wear.depth(self._exposure))
+        wear_per_cycle = active.foundation.smooth(self.setup.wear.depth(self._wearing_exposure))
         work_per_cycle = float(self._exposure.work @ active.foundation.areas)
         return numpy.concatenate([wear_per_cycle, self._ball_wear_per_cycle, [work_per_cycle]])
 
@@ -161,15 +161,21 @@ class WearIntegrator:
         counterface, law = self._active.counterface, self.setup.ball_wear
         if counterface is None or law is None:
             return numpy.zeros(0)
-        return law.depth(counterface.ball_exposure(self._exposure))
+        return law.depth(counterface.ball_exposure(self._wearing_exposure))
+
+    @property
+    def _wearing_exposure(self) -> CycleExposure:
+        """Exposure of the active cells where they wear, by the limit of the film ratio."""
+        return self.setup.wearing_exposure(self._exposure, self._active.cells)
 
     @property
     def _max_decay_rate(self) -> float:
         """Largest decay rate per cycle of a wave on the worn bore: wear sensitivity times stiffness."""
-        sensitivity = max_wear_sensitivity(self.setup.wear, self._exposure)
+        exposure = self._wearing_exposure
+        sensitivity = max_wear_sensitivity(self.setup.wear, exposure)
         counterface = self._active.counterface
         if counterface is not None and self.setup.ball_wear is not None:
-            sensitivity += max_wear_sensitivity(self.setup.ball_wear, counterface.ball_exposure(self._exposure))
+            sensitivity += max_wear_sensitivity(self.setup.ball_wear, counterface.ball_exposure(exposure))
         return _RATE_SAFETY * sensitivity * self.setup.foundation.max_stiffness
 
     @property

@@ -74,6 +74,14 @@ class CycleExposure:
         """Cross-shear ratio of sliding at each point, from 0 to 1/2: (points,)."""
         return self.sliding.cross_shear(self.pressure)
 
+    def select_contact(self, mask: Numbers) -> CycleExposure:
+        """Return the exposure without the pressure and contact outside a mask (instants, points)."""
+        return CycleExposure(
+            pressure=numpy.where(mask, self.pressure, 0.0),
+            sliding=self.sliding,
+            contact_shares=lambda: self.contact * mask,
+        )
+
 
 @dataclass(frozen=True, kw_only=True)
 class FirstCycleResult:

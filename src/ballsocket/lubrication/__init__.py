@@ -2,9 +2,10 @@
 
 `bs.film(contact, spin=..., lubricant=...)` is the function for users, `film.film` here. `inlet` has the film at the
 edge of the dry contact, `wave` carries it over the contact, and `reynolds` solves the equation that judges both.
-`rigid_fields` has pressures of rigid bodies in closed form.
+`transient.film_over_steps` solves it over steps of load and motion.
 """
 
+from .friction import Stribeck
 from .lubricant import Lubricant
 
-__all__ = ["Lubricant"]
+__all__ = ["Lubricant", "Stribeck"]

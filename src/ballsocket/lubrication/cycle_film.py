@@ -1,31 +1,45 @@
-"""Film over a cycle of load and motion: by the kinematic wave until it repeats, and by Reynolds' equation."""
+"""Film over a cycle of load and motion by the kinematic wave, after a number of cycles.
+
+Most of the contact is refreshed in every cycle: its film repeats after two or three. A core may stay in contact, and
+its film changes over many cycles: `film_core` has its drift.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 from math import acos, pi
-from typing import TYPE_CHECKING
 
 import numpy
 
 from ..core.arrays import Numbers
 from .dry_contact import DryContact
+from .film_core import FilmMotion
 from .inlet import Edge
 from .mesh import FilmMesh
 from .wave import FilmWave
 
-if TYPE_CHECKING:
-    from .reynolds import FilmProblem, FilmState
-
 REPEAT_TOLERANCE = 0.01
 """Largest mean change of the film from one cycle to the next, relative to the mean film."""
 
-_FIRST_CYCLES, _LEAP, _LAST_CYCLES = 3, 94, 12
-"""Cycles before a leap over others, number of cycles in the leap, and largest number of cycles after it."""
+CYCLES = 300
+"""Default number of uninterrupted cycles from a flooded bore."""
 
-_FALLING = 0.05
-"""Relative fall of the film in the third cycle from which a cell counts as out of reach of fresh lubricant."""
+SETTLED_CHANGE = 0.1
+"""Largest relative change of a settled film of the core while the number of cycles doubles."""
+
+_MARCHED, _MOST_MARCHED = 3, 10
+"""Least and largest number of cycles that are followed instant by instant: one before the core's drift."""
+
+_CORE_CELL_ERROR = 0.5
+"""Relative error of the film of the core times the number of rings of the drift's cells in it; measured."""
+
+_REFRESHED_CELL_ERROR = 0.6
+"""Relative error of the mean film of the refreshed part times the number of rings of cells; measured."""
+
+_SMALL_CORE = 0.01
+"""Share of a contact up to which the error of its core does not count."""
 
 _NO_FILM = 1e-30
 """Film in mm, and area in mm², that count as none."""
@@ -52,6 +66,8 @@ class CycleInstant:
         Duration of the instant in s.
     interrupted : bool
         True if the ball was unloaded before this instant, so that lubricant covers the bore.
+    continuation : array (cells,), optional
+        Pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default.
     """
 
     pressure: Numbers
@@ -60,39 +76,98 @@ class CycleInstant:
     spin: Numbers
     duration: float
     interrupted: bool = False
+    continuation: Numbers | None = None
+
+    @property
+    def signed_pressure(self) -> Numbers:
+        """Pressure (cells,) in MPa, negative outside where its continuation is known."""
+        return self.pressure if self.continuation is None else self.continuation
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CycleFilm:
-    """Film over a cycle that repeats.
+    """Film over a cycle, after a number of cycles.
 
     Attributes
     ----------
+    area : array (cells,)
+        Areas of the cells in mm².
     thickness : array (instants, cells)
         Film thickness in mm; NaN outside the contacts.
+    core : array (instants, cells)
+        Mask of the film that fresh lubricant does not reach within a cycle.
     central, minimum : array (instants,)
         Film in mm at the load, and the smallest in the contact.
     error : array (instants,)
-        Estimated relative error of a steady film at each instant.
-    unreached : float
-        Share of the last contact that fresh lubricant does not reach: there the film falls with the root of time.
+        Estimated relative error of the central and the smallest film: of the wave, and of the cells.
+    refreshed_mean_error : float
+        Estimated relative error of the mean of `refreshed_mean` over the cycle. It contains the cells at the edge.
+    drift : float
+        Angle in rad by which the film turns in a cycle, while the ball returns.
     cycles : int
         Number of cycles from a flooded bore.
-    converged : bool
-        True if the film at the end of a cycle equals that at its start to 1 %.
+    change : float
+        Mean change of the film in the last cycle, relative to the mean film.
+    settled : bool
+        True if the mean film of the core is expected to fall by at most 10 % while the number of cycles doubles.
+    smallest_settled : bool
+        True if the smallest film of the core is. It falls where the film turns about a point of the core.
     """
 
+    area: Numbers
     thickness: Numbers
+    core: Numbers
     central: Numbers
     minimum: Numbers
     error: Numbers
-    unreached: float
+    refreshed_mean_error: float
+    drift: float
     cycles: int
-    converged: bool
+    change: float
+    settled: bool
+    smallest_settled: bool
+
+    @property
+    def converged(self) -> bool:
+        """True if the film at the end of a cycle equals that at its start to 1 %."""
+        return self.change <= REPEAT_TOLERANCE
+
+    @property
+    def inside(self) -> Numbers:
+        """Mask (instants, cells) of the contacts."""
+        return numpy.isfinite(self.thickness)
+
+    @cached_property
+    def refreshed_share(self) -> Numbers:
+        """Share (instants,) of the contact that fresh lubricant reaches within a cycle."""
+        contact = self.inside @ self.area
+        return 1 - (self.core & self.inside) @ self.area / numpy.where(contact > 0, contact, 1.0)
+
+    @cached_property
+    def refreshed_mean(self) -> Numbers:
+        """Mean film (instants,) in mm of the refreshed part; NaN without one."""
+        return self._mean(self.inside & ~self.core)
+
+    @cached_property
+    def core_mean(self) -> Numbers:
+        """Mean film (instants,) in mm of the core; NaN without one."""
+        return self._mean(self.inside & self.core)
+
+    def _mean(self, mask: Numbers) -> Numbers:
+        """Compute the mean film (instants,) in mm over the cells of a mask (instants, cells)."""
+        area = mask @ self.area
+        total = numpy.where(mask, self.thickness, 0.0) @ self.area
+        return numpy.where(area > 0, total / numpy.where(area > 0, area, 1.0), numpy.nan)
 
 
-def carry_over_cycle(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleInstant]) -> CycleFilm:
-    """Carry the film over cycles until its end equals its start to 1 %.
+def carry_over_cycle(
+    mesh: FilmMesh, viscosity: float, instants: Sequence[CycleInstant], cycles: int = CYCLES
+) -> CycleFilm:
+    """Carry the film over cycles from a flooded bore.
+
+    The first cycle is followed instant by instant. The film of the core then drifts over the others, averaged over a
+    cycle. Beside the core of the last cycles, the refreshed part is followed instant by instant until it repeats to
+    1 %.
 
     Parameters
     ----------
@@ -102,33 +177,94 @@ def carry_over_cycle(mesh: FilmMesh, viscosity: float, instants: Sequence[CycleI
         Viscosity in MPa s.
     instants : sequence of CycleInstant
         Loaded instants in their order; the first follows the last.
+    cycles : int
+        Number of uninterrupted cycles.
     """
     waves = _waves(mesh, viscosity, instants)
-    film = start = numpy.full(mesh.cells, waves[0].flood)
+    motion = FilmMotion(mesh=mesh, instants=instants)
     thickness = numpy.full((len(waves), mesh.cells), numpy.nan)
-    inside = waves[-1].contact.inside
-    cycles, change, unreached = 0, numpy.inf, numpy.zeros(mesh.cells, dtype=bool)
-    while change > REPEAT_TOLERANCE and cycles < _FIRST_CYCLES + _LEAP + _LAST_CYCLES:
-        if cycles == _FIRST_CYCLES:
-            unreached = inside & (film < (1 - _FALLING) * start)
-            film, cycles = _leap(start, film), cycles + _LEAP
-        start = film
-        film = _carry_once(waves, instants, film, thickness)
-        cycles += 1
-        change = float(numpy.abs(film - start)[inside].sum() / max(float(film[inside].sum()), _NO_FILM))
-    share = float(mesh.area[unreached].sum() / mesh.area[inside].sum(initial=_NO_FILM))
-    return _summarise(waves, thickness, share, cycles, change <= REPEAT_TOLERANCE)
+    start = numpy.full(mesh.cells, waves[0].flood)
+    film = _carry_once(waves, instants, start, thickness)
+    core_start = numpy.isfinite(motion.at_start(motion.drifting))
+    refreshed = waves[-1].contact.inside & ~core_start
+    marched, change = 1, _mean_change(mesh, start, film, refreshed)
+    drifts = bool(motion.drifting.any()) and cycles > _MARCHED
+    if drifts:
+        drift = _drift(motion, viscosity, motion.to_drift_cells(film), cycles)
+        film = numpy.where(core_start, motion.at_start(drift.before_marching), film)
+    while marched < min(cycles, _MOST_MARCHED) and (marched < _MARCHED or change > REPEAT_TOLERANCE):
+        start, film = film, _carry_once(waves, instants, film, thickness)
+        marched += 1
+        change = _mean_change(mesh, start, film, refreshed)
+    if not drifts:
+        drift = _undrifted(motion, start, film)
+    carried = numpy.array([motion.core_film(drift.film, index) for index in range(len(waves))])
+    core = numpy.isfinite(carried) & numpy.isfinite(thickness)
+    if drifts:
+        thickness = numpy.where(core, carried, thickness)
+    return _summarise(waves, thickness, core, motion, max(change, drift.change), drift, cycles)
 
 
-def _leap(start: Numbers, film: Numbers) -> Numbers:
-    """Estimate the film after many more cycles from the films at both ends of one.
+@dataclass(frozen=True, kw_only=True)
+class _Drift:
+    """Film (drift cells,) in mm of the core before the last marched cycles and at the end, and its state.
 
-    Fresh lubricant repeats. A film out of its reach is squeezed: 1/h² grows by the same amount in each cycle.
+    `change` is the mean change in the last cycle; for the others see `CycleFilm`.
     """
-    with numpy.errstate(divide="ignore"):
-        growth = numpy.maximum(film**-2.0 - start**-2.0, 0.0)
-        later: Numbers = (film**-2.0 + _LEAP * growth) ** -0.5
-    return numpy.where(film > 0, later, film)
+
+    before_marching: Numbers
+    film: Numbers
+    change: float
+    settled: bool
+    smallest_settled: bool
+
+
+def _undrifted(motion: FilmMotion, start: Numbers, film: Numbers) -> _Drift:
+    """Collect the core of films (cells,) at start and end of the last cycle, all of which were marched."""
+    before, last = motion.to_drift_cells(start), motion.to_drift_cells(film)
+    settled = not motion.drifting.any()
+    return _Drift(
+        before_marching=before,
+        film=last,
+        change=_mean_change(motion.drift_mesh, before, last, motion.drifting),
+        settled=settled,
+        smallest_settled=settled,
+    )
+
+
+def _mean_change(mesh: FilmMesh, start: Numbers, film: Numbers, mask: Numbers) -> float:
+    """Compute the mean change between two films over a mask, relative to their mean."""
+    change = (numpy.abs(film - start) * mesh.area)[mask].sum()
+    return float(change / max(float((film * mesh.area)[mask].sum()), _NO_FILM))
+
+
+def _drift(motion: FilmMotion, viscosity: float, film: Numbers, cycles: int) -> _Drift:
+    """Carry a film (drift cells,) of the core from the end of the first cycle over all the others."""
+    wave, core = motion.drift_wave(viscosity, film), motion.drifting
+    films, done = [film], 1
+    for end in (max(cycles // 4, 1), cycles // 2, cycles - _MARCHED + 1, cycles - 1, cycles):
+        films.append(wave.advance(films[-1], (end - done) * motion.duration))
+        done = end
+    _, quarter, halfway, before_marching, before, last = films
+    area = motion.drift_mesh.area * core
+    return _Drift(
+        before_marching=before_marching,
+        film=last,
+        change=_mean_change(motion.drift_mesh, before, last, core),
+        settled=_is_settled(*(float(area @ film) for film in (quarter, halfway, last))),
+        smallest_settled=_is_settled(*(float(film[core].min()) for film in (quarter, halfway, last))),
+    )
+
+
+def _is_settled(quarter: float, halfway: float, last: float) -> bool:
+    """Check if a film is expected to fall by at most 10 % while the number of cycles doubles.
+
+    From one doubling to the next its fall shrinks by the same factor. A film that is squeezed, h ~ N^(-1/2), falls by
+    the same share.
+    """
+    before, fall = quarter / max(halfway, _NO_FILM) - 1, halfway / max(last, _NO_FILM) - 1
+    shrinks = min(fall / before, 1.0) if before > 0 else 1.0
+    return shrinks * fall <= SETTLED_CHANGE
 
 
 def _carry_once(
@@ -169,6 +305,7 @@ def _contact(mesh: FilmMesh, instant: CycleInstant) -> DryContact:
         axis=instant.axis,
         half_angle=half_angle,
         radius=mesh.radius,
+        continuation=instant.continuation,
     )
 
 
@@ -184,90 +321,56 @@ def _smallest(wave: FilmWave, film: Numbers) -> float:
     return wave.contact.edge.outlet_ratio * float(film[cells].min(initial=numpy.inf))
 
 
+def _at_loads(motion: FilmMotion, waves: Sequence[FilmWave], thickness: Numbers) -> Numbers:
+    """Interpolate films (instants, cells) at the loads: (instants,); NaN where a load lies outside its contact."""
+    nodes, weights = motion.triangles.locate(numpy.array([wave.contact.axis for wave in waves]))
+    values = numpy.take_along_axis(thickness, nodes, axis=1)
+    weights = numpy.where(numpy.isfinite(values), weights, 0.0)
+    total = weights.sum(axis=1)
+    weighted = (weights * numpy.nan_to_num(values)).sum(axis=1)
+    return numpy.where(total > 0, weighted / numpy.where(total > 0, total, 1.0), numpy.nan)
+
+
+def _rings(cells: Numbers) -> Numbers:
+    """Estimate the number of rings in round regions of square cells; at least 1."""
+    return numpy.sqrt(numpy.maximum(cells / pi, 1.0))
+
+
 def _summarise(
-    waves: Sequence[FilmWave], thickness: Numbers, unreached: float, cycles: int, converged: bool
+    waves: Sequence[FilmWave],
+    thickness: Numbers,
+    core: Numbers,
+    motion: FilmMotion,
+    change: float,
+    drift: _Drift,
+    cycles: int,
 ) -> CycleFilm:
     """Collect central and smallest films, and the errors, of the last cycle."""
-    nearest = [int((wave.contact.mesh.direction @ wave.contact.axis).argmax()) for wave in waves]
-    central = thickness[numpy.arange(len(waves)), nearest]
     minimum = [_smallest(wave, row) for wave, row in zip(waves, thickness, strict=True)]
-    error = [
-        wave.contact.edge.wave_error(
-            wave.viscosity, wave.contact.speed(wave.spin), max(wave.contact.contact_radius, 1e-9)
-        )
-        for wave in waves
-    ]
-    return CycleFilm(
-        thickness=thickness,
-        central=central,
-        minimum=numpy.array(minimum),
-        error=numpy.array(error),
-        unreached=unreached,
-        cycles=cycles,
-        converged=converged,
+    wave_error = numpy.array(
+        [
+            wave.contact.edge.wave_error(
+                wave.viscosity, wave.contact.speed(wave.spin), max(wave.contact.contact_radius, 1e-9)
+            )
+            for wave in waves
+        ]
     )
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class LoadStep:
-    """Load and motion of one step of a cycle on springs.
-
-    Attributes
-    ----------
-    force : array (3,)
-        Load on the ball in N.
-    spin : array (3,)
-        Rotation rate of the ball in rad/s.
-    duration : float
-        Duration in s.
-    """
-
-    force: Numbers
-    spin: Numbers
-    duration: float
-
-
-def solve_cycle(
-    problem: FilmProblem, start: FilmState, steps: Sequence[LoadStep], cycles: int = 1
-) -> tuple[list[FilmState], bool]:
-    """Solve Reynolds' equation over cycles of load and motion, by implicit Euler.
-
-    Parameters
-    ----------
-    problem : FilmProblem
-        Film, mesh and springs; its force and spin are replaced by those of the steps.
-    start : FilmState
-    steps : sequence of LoadStep
-    cycles : int
-        Number of cycles.
-
-    Returns
-    -------
-    pair
-        States at the end of each step of the last cycle, and True if all steps converged.
-    """
-    state, converged, states = start, True, [start]
-    for _ in range(cycles):
-        states = []
-        for step in steps:
-            state, has_converged = _solve_step(replace(problem, force=step.force, spin=step.spin), state, step.duration)
-            converged &= has_converged
-            states.append(state)
-    return states, converged
-
-
-def _solve_step(problem: FilmProblem, state: FilmState, duration: float) -> tuple[FilmState, bool]:
-    """Solve one step, in parts if Newton's method does not converge."""
-    from .reynolds import advance  # slow to import
-
-    for parts in (1, 4):
-        later, converged = state, True
-        for _ in range(parts):
-            volume = problem.thickness(later) * (1 - later.void)
-            later = advance(problem, later, volume=volume, step=duration / parts, tolerance=1e-4, max_steps=25)
-            converged = later.converged
-            if not converged:
-                break
-        if converged:
-            return later, True
-    return later, False
+    inside = numpy.isfinite(thickness)
+    rings = _rings(inside.sum(axis=1))
+    has_core = (core & inside) @ motion.mesh.area > _SMALL_CORE * (inside @ motion.mesh.area)
+    core_error = numpy.where(has_core, _CORE_CELL_ERROR / _rings(motion.drifting.sum()), 0.0)
+    cell_error = numpy.array([wave.contact.cell_error for wave in waves]) / rings
+    return CycleFilm(
+        area=motion.mesh.area,
+        thickness=thickness,
+        core=core,
+        central=_at_loads(motion, waves, thickness),
+        minimum=numpy.array(minimum),
+        error=wave_error + numpy.maximum(cell_error, core_error),
+        refreshed_mean_error=float((wave_error + _REFRESHED_CELL_ERROR / rings).mean()),
+        drift=float(numpy.linalg.norm(motion.net_rotation)),
+        cycles=cycles,
+        change=change,
+        settled=drift.settled,
+        smallest_settled=drift.smallest_settled,
+    )

@@ -1,10 +1,12 @@
-"""Dry contact under a film: pressure on the cells of a mesh about the load, and its edge."""
+"""Dry contact under a film: pressure on the cells of a mesh about the load, its edge, and the elastic displacements."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 from math import ceil, cos, isfinite, pi, sin
+from typing import TYPE_CHECKING, Any
 
 import numpy
 
@@ -18,11 +20,22 @@ from ..problem.cup import Cup
 from .inlet import Edge, ElasticEdge, SpringEdge
 from .mesh import FilmMesh, polar_mesh, thinned_meridians
 
+if TYPE_CHECKING:
+    from ..elasticity.off_axis.compliance import AxisymmetricOperator, Compliance
+    from ..elasticity.off_axis.model import Sphere
+    from ..elasticity.off_axis.surfaces import Surface
+
+_SAMPLES = (0.25, 0.75)
+"""Positions in a cell of the cup, as fractions of its width, at which the film's pressure is sampled."""
+
 _RINGS_OUTSIDE = 2
 """Rings of lubricant around the contact."""
 
 _MIN_RINGS = 8
 """Smallest number of rings in a contact."""
+
+_CONTINUED_CELL_ERROR = 0.12
+"""Relative error of the wave times the number of rings, where the pressure continues beyond the edge; measured."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -45,6 +58,14 @@ class DryContact:
         Radius of the bore in mm.
     cut : bool
         True if the rim of the bore cuts the contact.
+    rings : int
+        Number of rings of cells in the contact; 1 of a contact whose cells are not about its load.
+    region : array (cells,), optional
+        Mask of the cells that count as contact; those under pressure by default.
+    continuation : array (cells,), optional
+        Pressure in MPa on springs, continued smoothly beyond the edge, where it is negative; 0 there by default.
+    level : array (cells,), optional
+        Field that is 0 at the edge and positive inside; the continued pressure by default.
     """
 
     mesh: FilmMesh
@@ -54,6 +75,10 @@ class DryContact:
     half_angle: float
     radius: float
     cut: bool = False
+    rings: int = 1
+    region: Numbers | None = None
+    continuation: Numbers | None = None
+    level: Numbers | None = None
 
     @property
     def contact_radius(self) -> float:
@@ -63,8 +88,18 @@ class DryContact:
     @property
     def inside(self) -> Numbers:
         """Mask of the cells in contact (cells,)."""
-        mask: Numbers = self.pressure > 0
+        mask: Numbers = self.pressure > 0 if self.region is None else self.region
         return mask
+
+    @property
+    def signed_pressure(self) -> Numbers:
+        """Pressure (cells,) in MPa, whose differences between cells have the right slope at the edge if continued."""
+        return self.pressure if self.continuation is None else self.continuation
+
+    @property
+    def cell_error(self) -> float:
+        """Relative error of the wave times the number of rings of cells in the contact."""
+        return self.edge.cell_error if self.continuation is None else _CONTINUED_CELL_ERROR
 
     @cached_property
     def edge_distance(self) -> Numbers:
@@ -74,6 +109,11 @@ class DryContact:
     def speed(self, spin: Numbers) -> float:
         """Compute the speed in mm/s of the ball's surface at the pole of the load, across the load."""
         return self.radius * float(numpy.linalg.norm(numpy.cross(self.axis, spin)))
+
+    def contains_axis(self, spin: Numbers) -> bool:
+        """Check if the axis of a rotation passes through the contact; lubricant then circles there without an inlet."""
+        along = abs(float(self.axis @ spin))
+        return along > numpy.cos(self.half_angle) * float(numpy.linalg.norm(spin))
 
     def inward_speed(self, spin: Numbers, direction: Numbers) -> Numbers:
         """Compute the speed in mm/s of the ball's surface towards the load at directions (n, 3)."""
@@ -115,10 +155,10 @@ def check_single_contact(contact: Contact) -> Contact:
         raise ValueError("a film needs a single contact: press one joint with one load")
     if contact.status is not Status.OK:
         raise ValueError(f"a film needs a contact with a result, got status {Status(contact.status).name}")
-    if contact.joint.clearance <= 0:
-        raise ValueError(
-            f"clearance = {float(contact.joint.clearance):.6g} mm is not allowed: without clearance no lubricant enters"
-        )
+    clearance = float(contact.joint.clearance)
+    if clearance <= 0:
+        name = "clearance" if clearance == 0 else "interference"
+        raise ValueError(f"{name} = {abs(clearance):.6g} mm is not allowed: without clearance no lubricant enters")
     if not contact.force > 0:
         raise ValueError(f"force = {contact.force:.6g} N is not allowed: a film needs a load")
     return contact
@@ -131,17 +171,31 @@ def dry_contact(contact: Contact, width: float) -> DryContact:
     if isinstance(contact, OffAxisContact):
         return _off_axis(contact, half_angle, radius, rings)
     edges = half_angle / rings * numpy.arange(rings + _RINGS_OUTSIDE + 1)
-    mesh = _mesh(radius, edges, half_angle / rings)
+    mesh = square_mesh(radius, edges, half_angle / rings)
     theta = numpy.arccos(numpy.clip(mesh.direction[:, 2], -1.0, 1.0))
     pressure = numpy.where(theta < half_angle, contact.pressure(numpy.minimum(theta, half_angle)), 0.0)
+    edge = find_edge(contact)
+    mirrored = contact.pressure(numpy.clip(2 * half_angle - theta, 0.0, half_angle))
     return DryContact(
         mesh=mesh,
         pressure=pressure,
-        edge=find_edge(contact),
+        continuation=_continue_pressure(pressure, mirrored, radius * (theta - half_angle), edge),
+        edge=edge,
         axis=numpy.array([0.0, 0.0, 1.0]),
         half_angle=half_angle,
         radius=radius,
+        rings=rings,
     )
+
+
+def _continue_pressure(pressure: Numbers, mirrored: Numbers, outside: Numbers, edge: Edge) -> Numbers | None:
+    """Continue the pressure (cells,) on springs beyond the edge by a parabola; None for another edge.
+
+    The pressure at a distance -s outside is p(-s) = p(s) - 2 G s.
+    """
+    if not isinstance(edge, SpringEdge):
+        return None
+    return numpy.where(pressure > 0, pressure, numpy.minimum(mirrored - 2 * edge.slope * outside, 0.0))
 
 
 def _off_axis(contact: OffAxisContact, half_angle: float, radius: float, rings: int) -> DryContact:
@@ -151,7 +205,7 @@ def _off_axis(contact: OffAxisContact, half_angle: float, radius: float, rings: 
     reach = float(numpy.arccos(numpy.clip((outline @ axis).min(), -1.0, 1.0)))
     width = half_angle / rings
     edges = width * numpy.arange(ceil(reach / width) + _RINGS_OUTSIDE + 1)
-    mesh = _mesh(radius, edges, width).in_frame(_frame(axis))
+    mesh = square_mesh(radius, edges, width).in_frame(frame_about(axis))
     return DryContact(
         mesh=mesh,
         pressure=numpy.asarray(contact.pressure_at(mesh.direction)),
@@ -160,17 +214,18 @@ def _off_axis(contact: OffAxisContact, half_angle: float, radius: float, rings: 
         half_angle=half_angle,
         radius=radius,
         cut=bool(contact.edge_loaded),
+        rings=rings,
     )
 
 
-def _mesh(radius: float, edges: Numbers, width: float) -> FilmMesh:
-    """Make a polar mesh whose cells are about square."""
+def square_mesh(radius: float, edges: Numbers, width: float) -> FilmMesh:
+    """Make a polar mesh whose cells are about square, between rings at angles in rad; the width is in rad."""
     edges = edges[edges < pi]
     meridians = 12 * max(round(2 * pi * sin(min(edges[-1], pi / 2)) / width / 12), 4)
     return polar_mesh(radius, edges, thinned_meridians(edges, meridians))
 
 
-def _frame(axis: Numbers) -> Numbers:
+def frame_about(axis: Numbers) -> Numbers:
     """Make a right-handed frame (3, 3) whose third row is an axis, and whose first row lies near x."""
     helper = numpy.array([1.0, 0.0, 0.0]) if abs(axis[0]) < cos(0.1) else numpy.array([0.0, 1.0, 0.0])
     second = numpy.cross(axis, helper)
@@ -178,18 +233,102 @@ def _frame(axis: Numbers) -> Numbers:
     return numpy.stack([numpy.cross(second, axis), second, axis])
 
 
-def elastic_softness(joint: Joint, ring_edges: Numbers, meridians: int) -> Numbers:
-    """Compute the matrix (cells, cells) of displacements per pressure in mm/MPa of a closed shell and its ball.
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CupCorrection:
+    """Displacements of a real cup less those of a closed shell, between the cells of a film.
 
-    Cells are numbered as in `polar_mesh`, with the same number in every ring.
+    A closed shell and a ball have the same compliance about every axis through the centre of the bore, so also about
+    that of the film's mesh. The rim of a real cup, a chamfer or an interface that slides change the displacements by a
+    field that is smooth in the contact. It is computed on the rings about the axis of the cup.
+
+    Attributes
+    ----------
+    operator : AxisymmetricOperator
+        From pressures in MPa on the grid of the cup to the difference of both displacements in mm.
+    grid : Grid
+        Rings about the axis of the cup.
+    to_cup : sparse matrix (cells of the cup, cells of the film)
+        Mean pressures of the cells of the cup.
+    to_film : sparse matrix (cells of the film, cells of the cup)
+        Interpolation of the displacements.
     """
-    from ..elasticity.off_axis.compliance import make_compliance  # slow to import
-    from ..elasticity.off_axis.surfaces import ClosedShell
 
-    grid = Grid(edges=ring_edges, meridians=meridians)
-    softness = make_compliance(ClosedShell(), joint, Cup(), grid).softness
-    unit = numpy.zeros((grid.rings, grid.rings, meridians))
-    unit[numpy.arange(grid.rings), numpy.arange(grid.rings), 0] = 1.0
-    response = softness(unit)  # of a unit pressure at the first meridian: (loaded ring, ring, meridian)
-    turn = (numpy.arange(meridians)[:, None] - numpy.arange(meridians)) % meridians
-    return response.transpose(1, 2, 0)[:, turn].transpose(0, 1, 3, 2).reshape(2 * (grid.rings * meridians,))
+    operator: AxisymmetricOperator
+    grid: Grid
+    to_cup: Any
+    to_film: Any
+
+    @classmethod
+    def of(cls, model: Sphere, joint: Joint, film_grid: Grid, frame: Numbers) -> CupCorrection:
+        """Compute the correction for a film on a grid about the third row of `frame`, with the rings of a model."""
+        from ..elasticity.off_axis.compliance import AxisymmetricOperator, cached_compliance  # slow to import
+
+        surfaces = (model.surface, model.surface.isotropic)
+        pair: Any = [cached_compliance(kind, joint, model.cup, model.ring_width) for kind in surfaces]
+        real, closed = pair
+        difference = real.softness.matrices - closed.softness.matrices
+        samples = [real.grid.points(*shares) @ frame.T for shares in product(_SAMPLES, _SAMPLES)]
+        return cls(
+            operator=AxisymmetricOperator(matrices=difference),
+            grid=real.grid,
+            to_cup=sum(film_grid.interpolation_matrix(directions) for directions in samples) / len(samples),
+            to_film=real.grid.interpolation_matrix(film_grid.middles.reshape(3, -1).T @ frame),
+        )
+
+    def within(self, mask: Numbers) -> CupCorrection:
+        """Keep the cells of a film in a mask (cells of the film,)."""
+        return replace(self, to_cup=self.to_cup.tocsc()[:, mask].tocsr(), to_film=self.to_film[mask])
+
+    def __call__(self, pressure: Numbers) -> Numbers:
+        """Compute the difference of the displacements in mm (cells,) under pressures in MPa (cells,)."""
+        on_cup = (self.to_cup @ pressure).reshape(1, self.grid.rings, self.grid.meridians)
+        displacement: Numbers = self.to_film @ self.operator(on_cup).ravel()
+        return displacement
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ElasticSoftness:
+    """Displacements of bore and ball per pressure, on cells numbered as in `polar_mesh`.
+
+    Attributes
+    ----------
+    compliance : Compliance
+        Compliance about the axis of the mesh, on a grid with the same number of cells in every ring.
+    mask : array (cells of the grid,)
+        Mask of the cells of the film; the others lie beyond the end of the bore.
+    correction : CupCorrection, optional
+        Further displacements of a cup that is not a closed shell.
+    """
+
+    compliance: Compliance
+    mask: Numbers
+    correction: CupCorrection | None = None
+
+    @classmethod
+    def of(cls, surface: Surface, joint: Joint, grid: Grid) -> ElasticSoftness:
+        """Compute the compliance of one joint on rings about any axis; `surface` is the same about each."""
+        from ..elasticity.off_axis.compliance import make_compliance  # slow to import
+
+        compliance = make_compliance(surface, joint, Cup(), grid)
+        return cls(compliance=compliance, mask=numpy.ones(grid.rings * grid.meridians, dtype=bool))
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        """Numbers of rings and meridians."""
+        return self.compliance.grid.rings, self.compliance.grid.meridians
+
+    @cached_property
+    def diagonal(self) -> Numbers:
+        """Displacement of each cell in mm per pressure on it in MPa (cells,), without the correction."""
+        rings, meridians = self._shape
+        unit = numpy.zeros((rings, rings, meridians))
+        unit[numpy.arange(rings), numpy.arange(rings), 0] = 1.0
+        response = self.compliance.displacement(unit)
+        return numpy.repeat(response[numpy.arange(rings), numpy.arange(rings), 0], meridians)[self.mask]
+
+    def __call__(self, pressure: Numbers) -> Numbers:
+        """Compute the displacements in mm (cells,) under pressures in MPa (cells,)."""
+        everywhere = numpy.zeros(len(self.mask))
+        everywhere[self.mask] = pressure
+        displacement = self.compliance.displacement(everywhere.reshape(1, *self._shape)).ravel()[self.mask]
+        return displacement if self.correction is None else displacement + self.correction(pressure)

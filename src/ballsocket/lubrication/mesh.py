@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import pi
+from math import ceil, pi
 from typing import Any
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
+
+_NO_OFFSET = 1e-9
+"""Angle in rad between two normals of a face that counts as none."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,12 +62,34 @@ class FilmMesh:
         names = ("direction", "axis", "rim_axis")
         return replace(self, **{name: getattr(self, name) @ frame for name in names})
 
-    @cached_property
-    def face_slopes(self) -> tuple[Any, Any]:
-        """Sparse matrices (faces, cells) from a field to its change from one centre of a face to the other one.
+    def within(self, mask: Numbers) -> FilmMesh:
+        """Keep the cells of a mask (cells,); faces to the other cells become faces at the rim."""
+        numbers = numpy.cumsum(mask) - 1
+        first, second = mask[self.first], mask[self.second]
+        inner, leaving, entering, rim = first & second, first & ~second, second & ~first, mask[self.rim_cell]
+        return FilmMesh(
+            area=self.area[mask],
+            direction=self.direction[mask],
+            first=numbers[self.first[inner]],
+            second=numbers[self.second[inner]],
+            width=self.width[inner],
+            first_distance=self.first_distance[inner],
+            second_distance=self.second_distance[inner],
+            axis=self.axis[inner],
+            rim_cell=numbers[numpy.concatenate([self.rim_cell[rim], self.first[leaving], self.second[entering]])],
+            rim_width=numpy.concatenate([self.rim_width[rim], self.width[leaving], self.width[entering]]),
+            rim_distance=numpy.concatenate(
+                [self.rim_distance[rim], self.first_distance[leaving], self.second_distance[entering]]
+            ),
+            rim_axis=numpy.concatenate([self.rim_axis[rim], self.axis[leaving], -self.axis[entering]]),
+            radius=self.radius,
+        )
 
-        The first matrix has the gradient in the first cell, the second that in the second cell, by least squares over
-        the neighbours.
+    @cached_property
+    def _gradients(self) -> tuple[Numbers, tuple[Any, Any]]:
+        """Tangents (cells, 2, 3), and sparse matrices (cells, cells) from a field to its slopes along both.
+
+        The slopes are those of least squares over the neighbours, per rad.
         """
         from scipy.sparse import csr_matrix, diags_array  # slow to import
 
@@ -76,16 +101,53 @@ class FilmMesh:
         moments = numpy.zeros((self.cells, 2, 2))
         numpy.add.at(moments, rows, weight[:, None, None] * local[:, :, None] * local[:, None, :])
         solved = numpy.einsum("ikl,il->ik", numpy.linalg.inv(moments)[rows], weight[:, None] * local)
-        matrices = []
-        for cells, others in ((self.first, self.second), (self.second, self.first)):
-            step = numpy.einsum("ij,ikj->ik", self.direction[others] - self.direction[cells], tangents[cells])
-            slope: Any = 0
-            for axis in range(2):
-                gradient = csr_matrix((solved[:, axis], (rows, columns)), (self.cells, self.cells))
-                gradient = gradient - diags_array(numpy.asarray(gradient.sum(axis=1)).ravel())
-                slope = slope + diags_array(step[:, axis]) @ gradient[cells]
-            matrices.append(slope.tocsr())
-        return matrices[0], matrices[1]
+        matrices = [csr_matrix((solved[:, axis], (rows, columns)), (self.cells, self.cells)) for axis in range(2)]
+        first, second = (matrix - diags_array(numpy.asarray(matrix.sum(axis=1)).ravel()) for matrix in matrices)
+        return tangents, (first.tocsr(), second.tocsr())
+
+    @cached_property
+    def face_slopes(self) -> Any:
+        """Sparse matrix (2 faces, cells) from a field to twice its change from first to second centre of each face.
+
+        The first rows have the gradient in the first cell, the others that in the second cell.
+        """
+        from scipy.sparse import diags_array, vstack  # slow to import
+
+        tangents, gradients = self._gradients
+        blocks = []
+        for cells, others, sign in ((self.first, self.second, 2.0), (self.second, self.first, -2.0)):
+            steps = numpy.einsum("ij,ikj->ik", self.direction[others] - self.direction[cells], tangents[cells])
+            blocks.append(sum(diags_array(sign * steps[:, axis]) @ gradients[axis][cells] for axis in range(2)))
+        return vstack(blocks, format="csr")
+
+    def gradient(self, field: Numbers, cells: Numbers) -> Numbers:
+        """Compute the gradient (n, 3) of a field (cells,) per mm in some of the cells."""
+        tangents, (first, second) = self._gradients
+        slopes: Numbers = (first @ field)[cells, None] * tangents[cells, 0]
+        slopes += (second @ field)[cells, None] * tangents[cells, 1]
+        return slopes / self.radius
+
+    @cached_property
+    def _offsets(self) -> Numbers:
+        """Distances (faces,) in mm along each face between both normals through the centres of its cells.
+
+        They are zero but between rings of different numbers of cells. The axis of a face is a tangent along it.
+        """
+        between = self.radius * (self.direction[self.second] - self.direction[self.first])
+        along: Numbers = (between * self.axis).sum(axis=1)
+        return numpy.where(numpy.abs(along) > _NO_OFFSET * self.radius, along, 0.0)
+
+    def normal_rise(self, field: Numbers, faces: Numbers) -> Numbers:
+        """Compute the rise of a field (cells,) along the normals of some faces, from first to second cell: (n,).
+
+        Where the centres of both cells do not lie on a normal, the gradient along the face corrects the difference.
+        """
+        first, second = self.first[faces], self.second[faces]
+        rise: Numbers = field[second] - field[first]
+        skew = numpy.flatnonzero(self._offsets[faces])
+        gradient = self.gradient(field, first[skew]) + self.gradient(field, second[skew])
+        rise[skew] -= self._offsets[faces[skew]] * (gradient * self.axis[faces[skew]]).sum(axis=1) / 2
+        return rise
 
     def face_velocity(self, spin: Numbers) -> tuple[Numbers, Numbers]:
         """Compute the velocity of the ball's surface across the faces and the rim faces in mm/s; spin in rad/s."""
@@ -182,29 +244,9 @@ def thinned_meridians(ring_edges: Numbers, meridians: int) -> Numbers:
     return divisors[numpy.searchsorted(divisors, wanted - 1e-9).clip(0, len(divisors) - 1)]
 
 
-def strip_mesh(edges: Numbers) -> FilmMesh:
-    """Divide a strip of unit width along x into cells between `edges` (mm); `spin` is then the sliding velocity."""
-    centre = 0.5 * (edges[1:] + edges[:-1])
-    cells = len(centre)
-    inner = numpy.arange(cells - 1)
-    along = numpy.array([1.0, 0.0, 0.0])
-    return FilmMesh(
-        area=numpy.diff(edges),
-        direction=numpy.zeros((cells, 3)),
-        first=inner,
-        second=inner + 1,
-        width=numpy.ones(cells - 1),
-        first_distance=edges[1:-1] - centre[:-1],
-        second_distance=centre[1:] - edges[1:-1],
-        axis=numpy.tile(along, (cells - 1, 1)),
-        rim_cell=numpy.array([0, cells - 1]),
-        rim_width=numpy.ones(2),
-        rim_distance=numpy.array([centre[0] - edges[0], edges[-1] - centre[-1]]),
-        rim_axis=numpy.stack([-along, along]),
-    )
-
-
-def graded_rings(edge: float, *, finest: float, coarsest: float, rim: float = pi / 2, growth: float = 1.12) -> Numbers:
+def graded_rings(
+    edge: float, *, finest: float, coarsest: float, rim: float = pi / 2, growth: float = 1.12, last_edge: float = 0.0
+) -> Numbers:
     """Make the angles between rings that are finest at the edge of the dry contact.
 
     Parameters
@@ -217,11 +259,17 @@ def graded_rings(edge: float, *, finest: float, coarsest: float, rim: float = pi
         Polar angle of the rim in rad.
     growth : float
         Ratio of the widths of neighbouring rings.
+    last_edge : float
+        Largest half angle in rad of a contact whose edge moves; rings are finest as far as there.
     """
     require("edge", edge, 0 < edge < rim, "the contact ends between the pole and the rim")
+    last = max(edge, last_edge)
+    require("last_edge", last, last < rim, "the contact ends between the pole and the rim")
     inward = edge - _graded_line(edge, finest, coarsest, growth)
-    outward = edge + _graded_line(rim - edge, finest, coarsest, growth)
-    return numpy.concatenate([inward[::-1], outward[1:]])
+    outward = last + _graded_line(rim - last, finest, coarsest, growth)
+    between = numpy.linspace(edge, last, max(ceil((last - edge) / finest), 1) + 1)[1:-1]
+    ends = outward if last > edge else outward[1:]
+    return numpy.concatenate([inward[::-1], between, ends])
 
 
 def _graded_line(length: float, finest: float, coarsest: float, growth: float) -> Numbers:

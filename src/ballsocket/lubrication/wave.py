@@ -20,8 +20,11 @@ import numpy
 from ..core.arrays import Numbers
 from .dry_contact import DryContact
 
-_COURANT = 0.5
-"""Largest part of a cell that the film may cross in one step."""
+_COURANT = 0.8
+"""Largest part of the film of a cell that may leave it in one step."""
+
+_TINY = 1e-300
+"""Film in mm that keeps a quotient of zeros at zero."""
 
 _EDGE_LENGTHS = 3.0
 """Distance from an elastic edge, in inlet lengths, within which the pressure of the film is not the dry one."""
@@ -73,12 +76,22 @@ class FilmWave:
         return numpy.flatnonzero(self.contact.inside)
 
     @cached_property
-    def _sides(self) -> tuple[Numbers, Numbers]:
-        """Cells on both sides of each face, numbered within the contact; all cells outside have the last number."""
-        mesh = self.contact.mesh
-        numbers = numpy.full(mesh.cells, len(self._cells))
+    def _numbers(self) -> Numbers:
+        """Numbers of the cells within the contact; all cells outside have the last number."""
+        numbers = numpy.full(self.contact.mesh.cells, len(self._cells))
         numbers[self._cells] = numpy.arange(len(self._cells))
-        return numbers[mesh.first[self._faces]], numbers[mesh.second[self._faces]]
+        return numbers
+
+    @cached_property
+    def _sides(self) -> tuple[Numbers, Numbers]:
+        """Cells on both sides of each face, numbered within the contact."""
+        mesh = self.contact.mesh
+        return self._numbers[mesh.first[self._faces]], self._numbers[mesh.second[self._faces]]
+
+    @cached_property
+    def _inverse_area(self) -> Numbers:
+        """Inverse areas of the cells in contact in 1/mm², and 0 around them."""
+        return numpy.append(1 / self.contact.mesh.area[self._cells], 0.0)
 
     @cached_property
     def _carried(self) -> Numbers:
@@ -89,11 +102,48 @@ class FilmWave:
     @cached_property
     def _pressed(self) -> Numbers:
         """Factor of h³ in the flow against the pressure across each face, in 1/s."""
-        mesh, faces, pressure = self.contact.mesh, self._faces, self.contact.pressure
-        rise = pressure[mesh.second[faces]] - pressure[mesh.first[faces]]
+        mesh, faces, pressure = self.contact.mesh, self._faces, self.contact.signed_pressure
+        rise = mesh.normal_rise(pressure, faces)
         distance = (mesh.first_distance + mesh.second_distance)[faces]
         pressed = mesh.width[faces] * rise / (distance * 12 * self.viscosity)
         return numpy.where(self._near_edge, 0.0, pressed)
+
+    @cached_property
+    def _turning(self) -> Numbers:
+        """Film in mm of the largest or least flow across each face; NaN or infinite without one."""
+        with numpy.errstate(divide="ignore", invalid="ignore"):
+            turning = numpy.asarray(numpy.sqrt(self._carried / (3 * self._pressed)))
+        for edge, _ in self._supply:
+            turning[edge] = numpy.nan
+        return turning
+
+    @cached_property
+    def _supply(self) -> tuple[tuple[Numbers, Numbers], tuple[Numbers, Numbers]]:
+        """Faces at the edge of a contact on springs whose first, and whose second cell is outside, and films there.
+
+        The film in mm is that of the largest flow across the edge, h² = 2 η U·n/G, with the slope G of the pressure and
+        the normal n of the edge. The faces of the cells may have other directions. A thicker film within the contact
+        continues outside: it leaves, or moves along the edge. Without a pressure that continues beyond the edge there
+        are no such faces, and Godunov's flux at each face draws its own film.
+        """
+        contact, mesh, faces = self.contact, self.contact.mesh, self._faces
+        if contact.continuation is None:
+            none = numpy.zeros(0, dtype=int), numpy.zeros(0)
+            return none, none
+        edge = numpy.flatnonzero(contact.inside[mesh.first[faces]] != contact.inside[mesh.second[faces]])
+        first, second = mesh.first[faces[edge]], mesh.second[faces[edge]]
+        level = contact.continuation if contact.level is None else contact.level
+        slope, normal = (
+            (mesh.gradient(field, first) + mesh.gradient(field, second)) / 2 for field in (contact.continuation, level)
+        )
+        normal /= numpy.maximum(numpy.linalg.norm(normal, axis=1), _TINY)[:, None]
+        rise = (slope * normal).sum(axis=1)
+        velocity = mesh.radius * numpy.cross(self.spin, mesh.direction[first] + mesh.direction[second]) / 2
+        inward = numpy.maximum((velocity * normal).sum(axis=1), 0.0)
+        largest = numpy.sqrt(2 * self.viscosity * inward / numpy.maximum(rise, _TINY))
+        film = numpy.minimum(largest, self._flood)
+        enters = contact.inside[second]
+        return (edge[enters], film[enters]), (edge[~enters], film[~enters])
 
     @cached_property
     def _near_edge(self) -> Numbers:
@@ -108,78 +158,100 @@ class FilmWave:
 
     @cached_property
     def _inflow(self) -> tuple[Numbers, Numbers]:
-        """Mask of the faces at an elastic inlet, and the flow through each from first to second cell in mm³/s."""
+        """Numbers of the faces at an elastic inlet, and the flow through each from first to second cell in mm³/s."""
         mesh, faces = self.contact.mesh, self._faces
-        none = numpy.zeros(len(faces), dtype=bool)
         if not self.contact.edge.prescribed:
-            return none, numpy.zeros(len(faces))
+            return numpy.zeros(0, dtype=int), numpy.zeros(0)
         first_inside = self.contact.inside[mesh.first[faces]]
         second_inside = self.contact.inside[mesh.second[faces]]
         enters = numpy.where(second_inside, self._carried > 0, self._carried < 0) & (first_inside != second_inside)
-        inner = numpy.where(second_inside, mesh.second[faces], mesh.first[faces])
+        inlet = numpy.flatnonzero(enters)
+        inner = numpy.where(second_inside, mesh.second[faces], mesh.first[faces])[inlet]
         speed = self.contact.inward_speed(self.spin, mesh.direction[inner])
-        return enters, self._carried * self.contact.edge.inlet_film(self.viscosity, speed)
+        return inlet, self._carried[inlet] * self.contact.edge.inlet_film(self.viscosity, speed)
 
     @cached_property
-    def _reconstruction(self) -> tuple[Any, Any, Numbers, Numbers]:
-        """Slopes at the faces from both sides, and their factors: 0 in cells next to the edge of the contact."""
+    def _reconstruction(self) -> tuple[Any, Numbers]:
+        """Matrix from films to their slopes at the faces from both sides, and factors (2, faces) of the slopes.
+
+        The factors are 0 in cells next to the contact's edge, whose slopes are not defined.
+        """
+        from scipy.sparse import csr_matrix  # slow to import
+
         mesh, faces, inside = self.contact.mesh, self._faces, self.contact.inside
         interior = inside.copy()
         borders = inside[mesh.first] != inside[mesh.second]
         interior[mesh.first[borders]] = interior[mesh.second[borders]] = False
+        rows = mesh.face_slopes[numpy.concatenate([faces, faces + len(mesh.first)])]
+        shape = (rows.shape[0], len(self._cells) + 1)
+        slopes = csr_matrix((rows.data, self._numbers[rows.indices], rows.indptr), shape)
         total = mesh.first_distance[faces] + mesh.second_distance[faces]
-        from_first, from_second = (matrix[faces][:, self._cells] for matrix in mesh.face_slopes)
-        return (
-            from_first,
-            from_second,
-            interior[mesh.first[faces]] * mesh.first_distance[faces] / total,
-            interior[mesh.second[faces]] * mesh.second_distance[faces] / total,
+        factors = numpy.stack(
+            [
+                interior[mesh.first[faces]] * mesh.first_distance[faces] / total,
+                interior[mesh.second[faces]] * mesh.second_distance[faces] / total,
+            ]
         )
+        return slopes, factors
 
     def _at_faces(self, film: Numbers) -> tuple[Numbers, Numbers]:
-        """Compute the film on both sides of each face by linear functions in the cells, without new extremes."""
+        """Compute the film on both sides of each face by linear functions in the cells, without new extremes.
+
+        The last film is that around the contact.
+        """
         first, second = self._sides
-        from_first, from_second, first_share, second_share = self._reconstruction
-        surrounded = numpy.append(film, self._flood)
-        upstream, downstream = surrounded[first], surrounded[second]
+        slopes, factors = self._reconstruction
+        upstream, downstream = film[first], film[second]
+        for (edge, supply), outside, within in zip(
+            self._supply, (upstream, downstream), (downstream, upstream), strict=True
+        ):
+            outside[edge] = numpy.maximum(supply, within[edge])
         step = downstream - upstream
-        return (
-            upstream + first_share * limited_slope(2 * (from_first @ film) - step, step),
-            downstream + second_share * limited_slope(2 * (from_second @ film) + step, -step),
-        )
+        change = factors * limited_slope((slopes @ film).reshape(2, -1), step)
+        return upstream + change[0], downstream - change[1]
 
     def _growth(self, film: Numbers) -> Numbers:
-        """Compute the growth rate of the film in mm/s in the cells in contact."""
-        flow = godunov_flow(self._carried, self._pressed, *self._at_faces(film))
-        at_inlet, inflow = self._inflow
-        flow = numpy.where(at_inlet, inflow, flow)
+        """Compute the growth rate of the film in mm/s in the cells in contact, and 0 around them."""
+        flow = godunov_flow(self._carried, self._pressed, self._turning, *self._at_faces(film))
+        inlet, inflow = self._inflow
+        flow[inlet] = inflow
+        first, second = self._sides
+        balance = numpy.bincount(second, flow, len(film)) - numpy.bincount(first, flow, len(film))
+        return balance * self._inverse_area
+
+    @cached_property
+    def _leaving(self) -> tuple[Numbers, Numbers]:
+        """Rates a and b, with which at most a + b h² of the film h leaves each cell: in 1/s and 1/(mm² s)."""
         first, second = self._sides
         count = len(self._cells) + 1
-        balance = numpy.bincount(second, flow, count) - numpy.bincount(first, flow, count)
-        return balance[:-1] / self.contact.mesh.area[self._cells]
+        out, back = numpy.maximum(self._carried, 0.0), numpy.maximum(-self._carried, 0.0)
+        carried = numpy.bincount(first, out, count) + numpy.bincount(second, back, count)
+        out, back = numpy.maximum(-self._pressed, 0.0), numpy.maximum(self._pressed, 0.0)
+        pressed = numpy.bincount(first, out, count) + numpy.bincount(second, back, count)
+        return carried * self._inverse_area, 3 * pressed * self._inverse_area
 
     def _stable_step(self, film: Numbers) -> float:
-        """Compute the largest time step in s in which no film crosses more than a part of its cell."""
-        first, second = self._sides
-        inner = numpy.append(film, 0.0)
-        highest = numpy.maximum(inner[first], inner[second])
-        speed = numpy.abs(self._carried) + 3 * numpy.abs(self._pressed) * highest**2
-        count = len(self._cells) + 1
-        crossing = (numpy.bincount(first, speed, count) + numpy.bincount(second, speed, count))[:-1]
-        fastest = float((crossing / self.contact.mesh.area[self._cells]).max(initial=0.0))
+        """Compute the largest time step in s in which only a part of the film of any cell leaves it.
+
+        A change of the film leaves a cell at the speed f'(h) across each face.
+        """
+        carried, pressed = self._leaving
+        fastest = float((carried + pressed * film**2).max())
         return _COURANT / fastest if fastest > 0 else numpy.inf
 
     def advance(self, film: Numbers, duration: float) -> Numbers:
         """Carry a film (cells,) in mm over a time in s by Heun's method; return its thickness in mm."""
-        time, inner = 0.0, film[self._cells]
-        while time < duration and len(inner):
+        flood = self._flood
+        time, inner = 0.0, numpy.append(film[self._cells], flood)
+        while time < duration and len(inner) > 1:
             step = min(self._stable_step(inner), duration - time)
             growth = self._growth(inner)
-            predicted = numpy.clip(inner + step * growth, 0.0, self._flood)
-            inner = numpy.clip(inner + step / 2 * (growth + self._growth(predicted)), 0.0, self._flood)
+            predicted = numpy.minimum(numpy.maximum(inner + step * growth, 0.0), flood)
+            growth += self._growth(predicted)
+            inner = numpy.minimum(numpy.maximum(inner + step / 2 * growth, 0.0), flood)
             time += step
         later = film.copy()
-        later[self._cells] = inner
+        later[self._cells] = inner[:-1]
         return later
 
     def solve_steady(self, tolerance: float = 1e-3, max_steps: int = 12) -> tuple[Numbers, bool]:
@@ -216,24 +288,30 @@ class FilmWave:
         return min(edge.outlet_ratio * central, float(edge.inlet_film(self.viscosity, numpy.asarray(side))))
 
 
-def limited_slope(upwind: Numbers, centred: Numbers) -> Numbers:
-    """Compute a slope between two slopes of one sign, and 0 where their signs differ (van Leer's limiter)."""
-    product = upwind * centred
-    total = upwind + centred
-    return numpy.where(product > 0, 2 * product / numpy.where(total != 0, total, 1.0), 0.0)
+def limited_slope(twice_mean: Numbers, centred: Numbers) -> Numbers:
+    """Compute van Leer's slope of a centred and an upwind slope, from twice their mean and the centred slope.
+
+    It is their harmonic mean, and 0 where their signs differ.
+    """
+    product = (twice_mean - centred) * centred
+    slope: Numbers = 2 * numpy.maximum(product, 0.0) / (twice_mean + _TINY)
+    return slope
 
 
-def godunov_flow(carried: Numbers, pressed: Numbers, upstream: Numbers, downstream: Numbers) -> Numbers:
-    """Compute Godunov's flow of f(h) = carried · h - pressed · h³ between two films.
+def godunov_flow(
+    carried: Numbers, pressed: Numbers, turning: Numbers, upstream: Numbers, downstream: Numbers
+) -> Numbers:
+    """Compute Godunov's flow of f(h) = carried · h - pressed · h³ between two films; f' is 0 at the film `turning`.
 
     It is the least value of f between the films where the film grows, and the largest where it falls.
     """
     flow_first = (carried - pressed * upstream**2) * upstream
     flow_second = (carried - pressed * downstream**2) * downstream
-    least, largest = numpy.minimum(flow_first, flow_second), numpy.maximum(flow_first, flow_second)
-    with numpy.errstate(divide="ignore", invalid="ignore"):
-        turning = numpy.sqrt(carried / (3 * pressed))
-    low, high = numpy.minimum(upstream, downstream), numpy.maximum(upstream, downstream)
-    between = (turning > low) & (turning < high)
-    extreme = numpy.where(between, 2 / 3 * carried * turning, flow_first)
-    return numpy.where(upstream <= downstream, numpy.minimum(least, extreme), numpy.maximum(largest, extreme))
+    rises = upstream <= downstream
+    flow = numpy.where(rises == (flow_first <= flow_second), flow_first, flow_second)
+    # the turning film between two films is rare: its flow is computed there alone
+    between = numpy.flatnonzero((turning > upstream) != (turning >= downstream))
+    extreme = 2 / 3 * carried[between] * turning[between]
+    rising = rises[between]
+    flow[between] = numpy.where(rising, numpy.minimum(flow[between], extreme), numpy.maximum(flow[between], extreme))
+    return flow

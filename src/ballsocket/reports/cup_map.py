@@ -137,7 +137,7 @@ def _draw_body(axes: Axes, contact: OffAxisContact, reach: float) -> None:
         return
     x, y, _ = cup.frame
     outside = 2 * sin(reach / 2) * _TEXT_RADIUS
-    for name, axis in (("up", 2), ("front", 1)):
+    for name, axis in (("up", 2), ("anterior", 1)):
         right, up = y[axis], x[axis]
         length = hypot(right, up)
         if length > _SEEN:

@@ -75,6 +75,7 @@ STUDY_PLOTS = ("band_figure", "design_map", "front_figure", "sensitivity_figure"
 def register_plots() -> None:
     """Register the plots of this room; matplotlib is imported when the first of them is loaded."""
     register_plot("contacts", _load_contact_plot)
+    register_plot("cycle_film", _load_cycle_film_figure)
     register_plot("film", _load_film_figure)
     register_plot("identification", _load_fit_figure)
     register_plot("wear", _load_wear_figure)
@@ -87,6 +88,13 @@ def _load_contact_plot() -> Plot:
     from .press_plots import plot
 
     return plot
+
+
+def _load_cycle_film_figure() -> Plot:
+    """Import and return the figure of a film over a cycle."""
+    from .film_results import cycle_film_figure
+
+    return cycle_film_figure
 
 
 def _load_film_figure() -> Plot:

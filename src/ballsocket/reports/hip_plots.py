@@ -155,18 +155,22 @@ def _points(reach: float) -> Numbers:
 
 
 def film_figure(history: History) -> Figure:
-    """Draw the films by Hamrock and Dowson and by the wave, and the friction moment over the first cycle."""
+    """Draw the film by the wave, its comparison and the friction moment over the first cycle."""
     use, film = history.use, history.use.film(history.lubricant)
-    wave = use.film(history.lubricant, method="wave")
     figure, axes = _figure()
-    axes.plot(*_course(use, 1e6 * film.least), color=_INK, label="least film, Hamrock-Dowson")
-    axes.plot(*_course(use, 1e6 * film.central), "--", color=_INK, label="central film, Hamrock-Dowson")
-    label = "least film, wave" if wave.valid else "least film, wave (not valid)"
-    axes.plot(*_course(use, 1e6 * wave.least), "-.", color="0.5", label=label)
+    curves = {
+        "refreshed part, mean": (film.refreshed_mean, "-", _INK),
+        "core, mean": (film.core_mean, "-.", _THIRD),
+        "smallest": (film.least, "--", _INK),
+        "Hamrock-Dowson, smallest": (film.comparison, ":", "0.5"),
+    }
+    for label, (values, line, colour) in curves.items():
+        if values is not None and numpy.isfinite(values).any():
+            axes.plot(*_course(use, 1e6 * values), line, color=colour, label=label)
     axes.set_ylabel("film [nm]")
     moment_axes = axes.twinx()
-    moment_axes.plot(*_course(use, 1e-3 * numpy.linalg.norm(film.moment, axis=1)), ":", color=_SECOND)
-    moment_axes.set_ylabel("moment of friction [N m], dotted", color=_SECOND)
+    moment_axes.plot(*_course(use, 1e-3 * numpy.linalg.norm(film.moment, axis=1)), color=_SECOND, linewidth=1.0)
+    moment_axes.set_ylabel("moment of friction [N m]", color=_SECOND)
     for either in (axes, moment_axes):
         either.set_ylim(0, _HEADROOM * either.dataLim.ymax or 1.0)
     _over_the_cycle(axes, use)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..files.joint_file import NO_DETAILS, ReportDetails
 from ..hip.bands import Bands
-from ..hip.film import CONFORMITY_NOTE, WAVE_NOTE
+from ..hip.film import WAVE_NOTE
+from ..hip.hamrock_dowson import CONFORMITY_NOTE
 from ..hip.history import History
 from ..hip.rim import ClosestApproach
 from . import hip_plots
@@ -52,7 +53,7 @@ _FIGURES: MappingProxyType[str, tuple[str, Callable[[History], Figure], str]] = 
         "film": (
             "Film and friction",
             hip_plots.film_figure,
-            f"{CONFORMITY_NOTE}. Wave: {WAVE_NOTE[0].lower()}{WAVE_NOTE[1:]}.",
+            f"{WAVE_NOTE}. {CONFORMITY_NOTE}.",
         ),
         "edge": (
             "Edge distance",

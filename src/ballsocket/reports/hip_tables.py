@@ -8,10 +8,14 @@ from math import inf, isnan
 
 import numpy
 from rich.table import Table
+from rich.text import Text
 
+from ..core.arrays import Numbers
 from ..hip.bands import INFLUENCED_RESULTS, Bands
 from ..hip.contact_checks import largest_utilisation
+from ..hip.film import Film
 from ..hip.history import History
+from ..lubrication.friction import Stribeck
 from .terminal import console, print_columns, print_folded, print_joint
 from .unit_systems import Units
 
@@ -180,7 +184,10 @@ def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None
     print_folded(terminal, contact_line(history), "")
     if len(history.use.unworn_checks) > 1:
         print_columns(terminal, _contact_table(history))
-    for line in _film_lines(history):
+    film = history.use.film(history.lubricant)
+    if len(film.phases):
+        print_columns(terminal, film_table(film))
+    for line in _film_lines(film):
         print_folded(terminal, line, "")
     if history.use.joint.clearance > 0:
         print_folded(terminal, lubricant_line(history), "dim")
@@ -264,20 +271,42 @@ def _wear_table(history: History) -> Table:
     return table
 
 
-def _film_lines(history: History) -> Iterator[str]:
-    """Yield the film thickness with its regime, and the friction, of the first cycle."""
-    film = history.use.film(history.lubricant)
-    if not len(film.phases):
+def film_table(film: Film) -> Table:
+    """Make the table of the film over the cycle, its thicknesses in nm."""
+    table = Table(box=None, pad_edge=False, header_style="bold", padding=(0, 1, 0, 0))
+    for head in ("film over the cycle", "least", "mean", "largest"):
+        table.add_column(head, justify="left" if head.startswith("film") else "right", no_wrap=True)
+    for name, values in _film_rows(film):
+        known = values[numpy.isfinite(values)]
+        if len(known):
+            table.add_row(Text(name), *(f"{number:.3g}" for number in (known.min(), known.mean(), known.max())))
+    return table
+
+
+def _film_rows(film: Film) -> Iterator[tuple[str, Numbers]]:
+    """Yield the names of the rows of the film table, and their values over the cycle."""
+    yield "smallest [nm]", 1e6 * film.least
+    yield "at the load [nm]", 1e6 * film.central
+    if film.refreshed_mean is not None and film.core_mean is not None and film.refreshed_share is not None:
+        yield "mean of the refreshed part [nm]", 1e6 * film.refreshed_mean
+        yield "mean of the core [nm]", 1e6 * film.core_mean
+        yield "refreshed share of the contact [%]", 100 * film.refreshed_share
+    yield "λ, smallest film over roughness", film.ratio
+    yield "Hamrock-Dowson, smallest [nm]", 1e6 * film.comparison
+
+
+def _film_lines(film: Film) -> Iterator[str]:
+    """Yield the regime and the validity of a film, and its friction."""
+    summary = film.summary()
+    if not summary:
         yield "no film: nothing is pressed"
         return
-    summary = film.summary()
     if summary["largest_nm"] is None:
         yield "no film thickness: without a clearance the surfaces do not converge, and no formula applies"
     else:
-        thickness = f"{1e6 * film.least.min():.3g} to {1e6 * film.least.max():.3g} nm"
-        yield f"film (Hamrock-Dowson) {thickness}, λ up to {film.ratio.max():.2g}, {summary['regime']} lubrication"
-        wave = history.use.film(history.lubricant, method="wave")
-        state = "valid" if wave.valid else "not valid"
-        yield f"film (wave) {1e6 * wave.least.min():.3g} to {1e6 * wave.least.max():.3g} nm, {state}: {wave.note}"
+        state = "valid" if film.valid else "not valid"
+        yield f"film by {film.method}: {summary['regime']} lubrication, {state}. {film.note}"
+    law = film.lubricant.friction
+    coefficient = f"of {law.boundary:g} where surfaces touch, by λ" if isinstance(law, Stribeck) else f"of {law:g}"
     friction = f"friction up to {summary['moment_Nmm'] / 1e3:.3g} N m, {summary['power_W']:.2g} W"
-    yield f"{friction}, with a coefficient of {history.lubricant.friction:g}"
+    yield f"{friction}, with a coefficient {coefficient}"

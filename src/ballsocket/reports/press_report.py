@@ -12,7 +12,6 @@ from pathlib import Path
 from ..compare import Comparison, successful_contacts
 from ..contact import Contact
 from ..contact.describe import number_text
-from ..contact.verdict import assess_strength
 from ..core.quantities import CONTACT, CUP, DERIVED, MATERIAL, QUANTITIES, STRESS_LIMITS
 from ..core.sources import Source
 from ..elasticity.off_axis.contact import OffAxisContact
@@ -25,13 +24,14 @@ from ..studies.derivatives import LocalUncertainty
 from ..studies.parameters import PARAMETERS
 from ..studies.task import EDGE_DISTANCE
 from . import press_plots
+from .check_table import Check, checks_html, checks_of, verdict_of
 from .pages import HEAD_TEXTS, letterhead, logo_address, render_page, render_part, svg_address, trusted_html
 from .section_plots import joint_section
 from .unit_systems import Units
 
 _TEMPLATE = "press.html"
 _VERDICT_STYLES = {True: "holds", False: "fails", None: "nearly"}
-"""Style of a verdict by whether the liner bears the load; None if that is unknown."""
+"""Style of a verdict by whether the checks pass; None if that is unknown."""
 
 _MAX_COLUMNS = 3
 """Designs beside each other in one table, which fits a printed page."""
@@ -165,7 +165,7 @@ def _common_details(designs: Sequence[PressedDesign]) -> ReportDetails:
 
 def _lede(design: PressedDesign, units: Units) -> str:
     """Return the verdicts on a design as HTML."""
-    return press_lede(design.contact, units, design.uncertainty)
+    return press_lede(design.contact, design.file.cup, units, design.uncertainty)
 
 
 def _trusted(parts: Iterable[tuple[str, str]]) -> list[tuple[str, str]]:
@@ -200,7 +200,7 @@ def joint_report(
     units : Units
         Units of the drawing and the inputs.
     contact : Contact, optional
-        Contact that is drawn, if it lies on the axis.
+        Contact of the checks; it is drawn if it lies on the axis.
     day : date, optional
         Date of the page; by default today.
     title : str
@@ -218,12 +218,14 @@ def joint_report(
 def _joint_sections(
     file: JointFile, sections: TitledHtml, units: Units, contact: Contact | None = None, command: str = ""
 ) -> TitledHtml:
-    """Return the sections of a joint: drawing, inputs, the given sections, and the joint file."""
+    """Return the sections of a joint: checks, drawing, inputs, the given sections, and the joint file."""
     drawn_contact = None if contact is None or contact.status.failed or isinstance(contact, OffAxisContact) else contact
     drawing = svg_address(joint_section(file.joint, file.cup, drawn_contact, units))
     text = toml_of(file)
     checksum = sha256(text.encode()).hexdigest()
+    checked = () if contact is None else _checks(contact, file.cup)
     return {
+        **({"checks": ("Checks", checks_html(checked, units.text_of))} if checked else {}),
         "drawing": ("Drawing", render_part(_TEMPLATE, "drawing", drawing, units.joint(file.joint))),
         "inputs": ("Inputs", render_part(_TEMPLATE, "inputs", list(_inputs(file, units)))),
         **sections,
@@ -298,31 +300,39 @@ def _cup(cup: Cup, units: Units) -> Iterator[tuple[str, str, str]]:
     yield "liner on its backing", cup.interface.value, ""
 
 
-def press_lede(contact: Contact, units: Units = Units.SI, uncertainty: LocalUncertainty | None = None) -> str:
-    """Return the largest pressure of a contact with the verdicts on strength and rim in words, as HTML."""
-    verdict = assess_strength(contact)
+def press_lede(contact: Contact, cup: Cup, units: Units = Units.SI, uncertainty: LocalUncertainty | None = None) -> str:
+    """Return the largest pressure of a contact with the verdict on its checks and its place at the rim, as HTML."""
     pressure, load = (_number(contact, name, units) for name in ("max_pressure", "force"))
-    verdicts = [
-        (units.sentence(verdict.words), _VERDICT_STYLES[verdict.bears]),
-        *_rim_verdict(contact, units, uncertainty),
-    ]
-    return render_part(_TEMPLATE, "lede", pressure, load, contact.model.name, verdicts)
+    verdict, kind = _verdict(contact, cup)
+    at_the_rim = _rim_words(contact, units, uncertainty)
+    return render_part(_TEMPLATE, "lede", pressure, load, contact.model.name, (verdict, kind), at_the_rim)
 
 
-def _rim_verdict(contact: Contact, units: Units, uncertainty: LocalUncertainty | None = None) -> list[tuple[str, str]]:
-    """Return the verdict on the rim with its style; empty for a contact along the axis."""
+def _checks(contact: Contact, cup: Cup) -> tuple[Check, ...]:
+    """List the checks of a contact with the von Mises stress of its own model."""
+    return checks_of(contact, cup, float(contact.von_mises))
+
+
+def _verdict(contact: Contact, cup: Cup) -> tuple[str, str]:
+    """Return the verdict on the checks of a contact in one sentence, and its style."""
+    if contact.status.failed:
+        return f"No verdict: {contact.status.sentence}", _VERDICT_STYLES[None]
+    passes, sentence = verdict_of(_checks(contact, cup))
+    return sentence, _VERDICT_STYLES[passes]
+
+
+def _rim_words(contact: Contact, units: Units, uncertainty: LocalUncertainty | None = None) -> list[str]:
+    """Describe the place of a contact at the rim of its cup; empty for a contact along the axis."""
     if not isinstance(contact, OffAxisContact) or contact.status.failed:
         return []
     distance = units.short_length(abs(float(contact.edge_distance)))
     if contact.edge_loaded and contact.joint.clearance < 0:
-        return [("the contact reaches the rim, as is normal in a preloaded joint", "holds")]
+        return ["the contact reaches the rim, as is normal in a preloaded joint"]
     if contact.edge_loaded:
-        return [(f"edge loading: the contact reaches the rim (CPER -{distance})", "fails")]
-    verdict = f"no edge loading: the contact ends {distance} from the rim (CPER)"
+        return [f"edge loading: the contact reaches the rim (CPER -{distance})"]
     least = uncertainty.band.get(EDGE_DISTANCE, (inf,))[0] if uncertainty else inf
-    if least > 0:
-        return [(verdict, "holds")]
-    return [(verdict, "holds"), ("edge loading is possible within the tolerances", "nearly")]
+    possible = [] if least > 0 else ["edge loading is possible within the tolerances"]
+    return [f"no edge loading: the contact ends {distance} from the rim (CPER)", *possible]
 
 
 def _position(contact: OffAxisContact, units: Units) -> Iterator[tuple[str, str, str]]:
@@ -354,7 +364,7 @@ def _comparison(designs: Sequence[PressedDesign], units: Units) -> str:
 def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
     """Yield name and value of the numbers that designs are compared by; the same names for every design."""
     file, contact = design.file, design.contact
-    joint, verdict = file.joint, assess_strength(design.contact)
+    joint = file.joint
     yield "head diameter", units.length(2 * float(joint.ball_radius))
     yield "diametral clearance", units.length(2 * float(joint.clearance))
     layers = [(joint.liner_thickness, joint.liner), *((layer.thickness, layer.material) for layer in joint.backing)]
@@ -372,8 +382,7 @@ def _summary(design: PressedDesign, units: Units) -> Iterator[tuple[str, str]]:
     yield "edge distance (CPER)", units.short_length(float(getattr(contact, EDGE_DISTANCE))) if located else "-"
     ratio = number_text(contact.utilisation, 3, "-") if joint.strengths() else "-"
     yield f"{QUANTITIES['utilisation'].title} {QUANTITIES['utilisation'].symbol}", ratio
-    rim = (text for text, _ in _rim_verdict(contact, units, design.uncertainty))
-    yield "verdict", "; ".join([units.sentence(verdict.words), *rim])
+    yield "verdict", "; ".join([_verdict(contact, file.cup)[0], *_rim_words(contact, units, design.uncertainty)])
 
 
 def press_sections(

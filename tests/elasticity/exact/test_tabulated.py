@@ -8,6 +8,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.elasticity.exact.tabulated import build as build_tables
 from ballsocket.elasticity.exact.tabulated import chebyshev
+from ballsocket.elasticity.exact.tabulated.curves import traced_series
 
 from ...extent import either
 from ...joints import HIP
@@ -185,7 +186,7 @@ def test_an_unwritable_file_of_tables_is_refused_before_any_computation(tmp_path
 
 def test_builder_coordinates_invert_those_of_the_tables():
     coordinate = np.linspace(-1.0, 1.0, 9)
-    poisson, ratio = build_tables._poisson_at(coordinate), build_tables._ratio_at(coordinate)
+    poisson, ratio = build_tables._poisson_at(coordinate), chebyshev.thickness_ratio_at(coordinate)
     np.testing.assert_allclose(chebyshev.poisson_coordinate(poisson), coordinate, atol=1e-10)
     np.testing.assert_allclose(chebyshev.thickness_coordinate(ratio), coordinate, atol=1e-10)
     assert poisson[[0, -1]] == pytest.approx(chebyshev.POISSON[:: 1 if poisson[0] < 0 else -1])
@@ -331,3 +332,31 @@ def test_foundation_modulus_and_pressure_integral_follow_from_their_definitions(
     assert ring.sum() == pytest.approx(contact.pressure_integral[1], rel=1e-4)
     assert (ring * np.cos(angle)).sum() == pytest.approx(2000.0, rel=1e-4)
     assert contact.pressure_integral[0] == 0
+
+
+@pytest.mark.parametrize("elastic", [False, True], ids=["rigid ball", "elastic ball"])
+@pytest.mark.parametrize("kind", ["force", "indentation"])
+def test_few_steps_from_the_start_solve_loads_of_all_sizes(kind, elastic):
+    """The half angle of a load that follows from a half angle, from a millionth of the largest to all of it."""
+    _, *numbers = build_tables.random_contacts(either(2000, 20_000), seed=4, elastic=elastic)
+    angle = chebyshev.LIMIT * np.geomspace(1e-6, 1 - 1e-9, numbers[0].size)
+    joint = build_tables.make_joints(*numbers)
+    known = bs.Tabulated().press(joint, half_angle=angle)
+    reached = known.indentation < 20 * joint.clearance  # beyond, the indentation is ill-conditioned in the half angle
+    assert np.count_nonzero(reached) > 0.8 * reached.size
+    found = bs.Tabulated().press(joint, **{kind: np.where(reached, getattr(known, kind), 0.0)})
+    np.testing.assert_allclose(found.half_angle[reached], angle[reached], rtol=1e-12)
+
+
+def test_traced_series_have_the_derivatives_of_the_polynomial():
+    jax = pytest.importorskip("jax")
+    coefficients, x = np.random.default_rng(2).normal(size=(6, 1)), 0.3
+    polynomial = np.polynomial.chebyshev.Chebyshev(coefficients[:, 0])
+    with jax.enable_x64(True):
+        values = jax.jit(lambda c, x: traced_series(c, x[None]))(coefficients, x)
+        np.testing.assert_allclose(np.ravel(values), [polynomial(x), polynomial.deriv()(x)], rtol=1e-13)
+        bend = jax.jit(jax.grad(jax.grad(lambda x: traced_series(jax.numpy.asarray(coefficients), x[None])[1][0])))(x)
+        assert float(bend) == pytest.approx(polynomial.deriv(3)(x), rel=1e-10)
+        by_coefficient = jax.jit(jax.grad(lambda c: traced_series(c, jax.numpy.asarray([x]))[1][0]))(coefficients)
+        expected = [np.polynomial.chebyshev.Chebyshev.basis(k).deriv()(x) for k in range(6)]
+        np.testing.assert_allclose(by_coefficient[:, 0], expected, rtol=1e-12, atol=1e-12)

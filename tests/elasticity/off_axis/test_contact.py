@@ -192,7 +192,7 @@ def test_depth_of_a_bore_has_one_value_per_cell():
     directions = even_grid(pi / 2, 0.3).centroids
     uniform = bs.BoreDeviation(of=lambda n: 0.02)
     for model, depth in ((COARSE, 0.0), (replace(COARSE, worn=uniform), 0.02)):
-        cells = model._worn_depth(directions, 18.0)
+        cells = model.worn_depth(directions, 18.0)
         assert cells.shape == directions.shape[1:]
         assert (cells == depth).all()
 

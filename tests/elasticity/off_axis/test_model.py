@@ -9,10 +9,12 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.executors import Distributed, Processes
+from ballsocket.elasticity.off_axis import load_cases
 from ballsocket.elasticity.off_axis.pressure_solver import solve_pressure
 from ballsocket.studies import table
 
 from ...extent import either, some
+from ...joints import HIP
 from ...places import DATA
 from .shapes import COARSE, RIGID
 
@@ -320,3 +322,26 @@ def test_displacement_within_the_clearance_has_no_contact():
         COARSE.press(RIGID, displacement=(0.0, 0.0, 0.2), tilt=0.1)
     with pytest.raises(ValueError, match="exactly one"):
         COARSE.press(RIGID, displacement=(0.0, 0.0, 0.2), force=1.0)
+
+
+def test_summaries_have_the_numbers_of_contacts_with_fields(monkeypatch):
+    monkeypatch.setattr(load_cases, "_BLOCK_LOADS", 2)
+    force, tilt = np.array([300.0, 3000.0, 1000.0]), np.array([0.1, 1.2, 0.6])
+    contact, summary = (COARSE.press(HIP, force=force, tilt=tilt, keep=keep) for keep in ("fields", "summary"))
+    for name in ("indentation", "half_angle", "max_pressure", "energy", "edge_margin", "max_error"):
+        of_contact, of_summary = (getattr(each, name, getattr(each.laws, name, None)) for each in (contact, summary))
+        assert of_summary == pytest.approx(of_contact, rel=1e-6)
+    assert summary.stiffness_matrix == pytest.approx(contact.stiffness_matrix, rel=1e-4, abs=1.0)
+    assert summary.notes == contact.notes
+    with pytest.raises(ValueError, match='pressure needs the pressure fields: press with keep="fields"'):
+        summary.pressure(0.1)
+
+
+def test_contacts_that_exceed_the_memory_are_refused_before_the_work():
+    with pytest.raises(ValueError, match='2 000 000 contacts .none with keep="summary". take about .* of memory'):
+        COARSE.press(HIP, force=np.linspace(1.0, 2.0, 2_000_000))
+
+
+def test_keep_is_fields_or_summary():
+    with pytest.raises(ValueError, match="keep must be 'fields' or 'summary', got 'all'"):
+        bs.Sphere(keep="all")

@@ -1,47 +1,36 @@
 // What lies under the pointer in a chart: the nearest point of a curve, with its numbers.
-(function () {
-  const SVG = "http://www.w3.org/2000/svg";
-  function points(curve) {
-    if (!curve.points) curve.points = [...curve.getAttribute("d").matchAll(/([-\d.]+),([-\d.]+)/g)].map((one) => [+one[1], +one[2]]);
-    return curve.points;
-  }
-  function nearest(chart, x, y) {
-    let best = null;
-    for (const curve of chart.querySelectorAll("path[data-name]"))
-      for (const [px, py] of points(curve)) {
-        const far = Math.hypot(px - x, py - y);
-        if (far < 18 && (!best || far < best.far)) best = { far, x: px, y: py, name: curve.dataset.name };
-      }
-    return best;
-  }
-  const digits = (value) => String(Number(value.toPrecision(3)));
-  function told(chart, found) {
-    const [left, top, right, foot] = chart.dataset.box.split(" ").map(Number);
-    const across = ((found.x - left) / (right - left)) * chart.dataset.x;
-    const up = ((foot - found.y) / (foot - top)) * chart.dataset.y;
-    return [found.name, `${chart.dataset.across}: ${digits(across)}`, `${chart.dataset.up}: ${digits(up)}`];
-  }
-  function over(event) {
-    for (const old of document.querySelectorAll(".tip")) old.remove();
-    const path = event.composedPath();
-    const chart = path.find((one) => one.dataset && one.dataset.box);
-    if (!chart) return;
-    const place = new DOMPoint(event.clientX, event.clientY).matrixTransform(chart.getScreenCTM().inverse());
-    const found = nearest(chart, place.x, place.y);
-    if (!found) return;
-    const tip = document.createElementNS(SVG, "g");
-    tip.setAttribute("class", "tip");
-    const end = found.x > 240;
-    tip.innerHTML = `<circle cx="${found.x}" cy="${found.y}" r="3.5"/>`;
-    told(chart, found).forEach((line, row) => {
-      const text = document.createElementNS(SVG, "text");
-      text.setAttribute("x", found.x + (end ? -8 : 8));
-      text.setAttribute("y", Math.max(24, found.y - 34) + 14 * row);
-      text.setAttribute("text-anchor", end ? "end" : "start");
-      text.textContent = line;
-      tip.append(text);
-    });
-    chart.append(tip);
-  }
-  document.addEventListener("pointermove", over, { passive: true });
-})();
+import { digits, lines, part, pointIn } from "./svg.js";
+
+function points(curve) {
+  if (!curve.points) curve.points = [...curve.getAttribute("d").matchAll(/([-\d.]+),([-\d.]+)/g)].map((one) => [+one[1], +one[2]]);
+  return curve.points;
+}
+function nearest(chart, x, y) {
+  let best = null;
+  for (const curve of chart.querySelectorAll("path[data-name]"))
+    for (const [px, py] of points(curve)) {
+      const far = Math.hypot(px - x, py - y);
+      if (far < 18 && (!best || far < best.far)) best = { far, x: px, y: py, name: curve.dataset.name };
+    }
+  return best;
+}
+function told(chart, found) {
+  const [left, top, right, foot] = chart.dataset.box.split(" ").map(Number);
+  const across = ((found.x - left) / (right - left)) * chart.dataset.x;
+  const up = ((foot - found.y) / (foot - top)) * chart.dataset.y;
+  return [found.name, `${chart.dataset.across}: ${digits(across, 3)}`, `${chart.dataset.up}: ${digits(up, 3)}`];
+}
+function over(event) {
+  for (const old of document.querySelectorAll(".tip")) old.remove();
+  const path = event.composedPath();
+  const chart = path.find((one) => one.dataset && one.dataset.box);
+  if (!chart) return;
+  const place = pointIn(chart, event);
+  const found = nearest(chart, place.x, place.y);
+  if (!found) return;
+  const tip = part("g", { class: "tip" }), end = found.x > 240;
+  tip.append(part("circle", { cx: found.x, cy: found.y, r: 3.5 }));
+  tip.append(...lines(told(chart, found), found.x + (end ? -8 : 8), Math.max(24, found.y - 34), end));
+  chart.append(tip);
+}
+document.addEventListener("pointermove", over, { passive: true });

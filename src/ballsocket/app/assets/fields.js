@@ -1,174 +1,244 @@
-// Inputs made of plain data: each tells its name and what was typed, and shows what the server says of it.
-(function () {
-  const app = (window.ballsocket = window.ballsocket || {});
-  const fields = new Map(); // by name: what the server said last, the element, and how to put one into the other
-  const typing = new Set(); // boxes with text that nobody has confirmed yet
+// Inputs made of plain data: each asks for its change, and shows what the server says of it.
+import { ask, listen, pendingValue } from "./connection.js";
+import { limits } from "./limits.js";
 
-  function element(tag, attributes = {}, ...inside) {
-    const made = document.createElement(tag);
-    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-    made.append(...inside);
-    return made;
-  }
-  const edit = (name, value) => app.tell("edit", name, value);
-  const choose = (name, value) => app.tell(["answered_by", "shown", "painted", "angle", "size", "units"].includes(name) ? "choose" : "edit", name, value);
-  const tidy = (value, step) => Number((Math.round(value / step) * step).toPrecision(12));
+const CHOICES = ["answered_by", "shown", "painted", "angle", "size", "units"]; // fields of the screen itself
+const inputs = new Map(); // by name: the element, what the server said last, and how to show it
+const typed = new Set(); // boxes with text that nobody has confirmed yet
+const stale = new Set(); // inputs that show an edit, until the server has answered it
 
-  function number(name) {
-    const label = element("label", { for: `in-${name}`, id: `label-${name}` });
-    const unit = element("span", { class: "unit", id: `unit-${name}` });
-    const named = { "aria-labelledby": `label-${name} unit-${name}` };
-    const box = element("input", { id: `in-${name}`, type: "text", inputmode: "decimal", autocomplete: "off", ...named });
-    const sizes = element("datalist", { id: `sizes-${name}` });
-    const bar = element("input", { type: "range", step: "any", ...named });
-    const made = element("div", { class: "field number" }, label, element("span", { class: "box" }, box, unit), bar, sizes);
-    let field;
-    function moved(value) {
-      const tidied = Math.min(field.high, Math.max(field.low, value));
-      typing.delete(name);
-      bar.value = tidied;
-      box.value = String(tidied);
-      edit(name, tidied);
-    }
-    function keys(event) {
-      if (field.value === null) return;
-      const steps = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10, ...(event.target === bar ? { ArrowRight: 1, ArrowLeft: -1 } : {}) };
-      const step = steps[event.key];
-      if (step) moved(tidy(Number(bar.value) + step * field.step, field.step / 100));
-      else if (event.target === bar && event.key === "Home") moved(field.low);
-      else if (event.target === bar && event.key === "End") moved(field.high);
-      else return;
-      event.preventDefault();
-    }
-    bar.addEventListener("keydown", keys);
-    box.addEventListener("keydown", keys);
-    bar.addEventListener("input", () => moved(tidy(Number(bar.value), field.step)));
-    box.addEventListener("input", () => typing.add(name));
-    box.addEventListener("change", () => {
-      typing.delete(name);
-      if (box.value.trim() || name === "allowable") edit(name, box.value.trim());
-      else put(field); // an emptied box: what was there is still true
-    });
-    function put(said) {
-      field = said;
-      label.textContent = field.label;
-      unit.textContent = field.unit;
-      if (field.sizes) {
-        sizes.replaceChildren(...field.sizes.map((value) => element("option", { value })));
-        box.setAttribute("list", sizes.id);
-      }
-      bar.hidden = field.value === null;
-      if (!typing.has(name)) box.value = field.text;
-      if (bar.hidden) return;
-      for (const [key, value] of [["min", field.low], ["max", field.high]]) bar[key] = value;
-      bar.value = field.value;
-      bar.setAttribute("aria-valuetext", `${field.text} ${field.unit}`.trim());
-    }
-    return { made, put };
-  }
+export function element(tag, attributes = {}, ...content) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) node.setAttribute(name, value);
+  node.append(...content);
+  return node;
+}
+function edit(name, value) {
+  stale.add(name);
+  ask("edit", name, value);
+}
+function choose(name, value) {
+  stale.add(name);
+  ask(CHOICES.includes(name) ? "choose" : "edit", name, value);
+}
+const rounded = (value, step) => Number((Math.round(value / step) * step).toPrecision(12));
+const within = (value, { low, high }) => Math.min(high, Math.max(low, value));
 
-  function choice(name) {
-    const label = element("label", { for: `in-${name}` });
-    const list = element("select", { id: `in-${name}` });
-    const made = element("div", { class: "field choice" }, label, list);
-    list.addEventListener("change", () => choose(name, list.value));
-    function put(field) {
-      label.textContent = field.label;
-      if (list.dataset.options !== JSON.stringify(field.options)) {
-        list.dataset.options = JSON.stringify(field.options);
-        list.replaceChildren(...field.options.map(([value, words]) => element("option", { value }, words)));
-      }
-      list.value = field.value;
-    }
-    return { made, put };
-  }
-
-  function group(kind, name, input, put) {
-    const title = element("span", { class: "label", id: `label-${name}` });
-    const row = element("div", { class: kind, role: kind === "segments" ? "radiogroup" : "group", "aria-labelledby": `label-${name}` });
-    const made = element("div", { class: "field" }, title, row);
-    return {
-      made,
-      put(field) {
-        title.textContent = field.label;
-        if (row.dataset.options !== JSON.stringify(field.options)) {
-          row.dataset.options = JSON.stringify(field.options);
-          row.replaceChildren(...field.options.map(([value, words]) => {
-            const one = element("input", { type: input, name: `in-${name}`, value });
-            const piece = element("span", {});
-            piece.innerHTML = (field.pieces || {})[value] || "";
-            piece.append(words);
-            return element("label", {}, one, piece);
-          }));
-        }
-        for (const one of row.querySelectorAll("input")) one.checked = put(field, one.value);
-      },
-    };
-  }
-
-  function segments(name) {
-    const found = group("segments", name, "radio", (field, value) => field.value === value);
-    found.made.addEventListener("change", (event) => choose(name, event.target.value));
-    return found;
-  }
-
-  function several(name) {
-    const found = group("several", name, "checkbox", (field, value) => field.value.includes(value));
-    found.made.addEventListener("change", () =>
-      choose(name, [...found.made.querySelectorAll("input:checked")].map((one) => one.value)));
-    return found;
-  }
-
-  function tick(name) {
-    const box = element("input", { type: "checkbox" });
-    const words = element("span", {});
-    const made = element("label", { class: "field tick" }, box, words);
-    box.addEventListener("change", () => edit(name, box.checked));
-    return { made, put(field) { words.textContent = field.label; box.checked = field.value; } };
-  }
-
-  function words(name) {
-    const label = element("label", { for: `in-${name}` });
-    const box = element("textarea", { id: `in-${name}`, autocomplete: "off", spellcheck: "false" });
-    const made = element("div", { class: "field words" }, label, box);
-    box.addEventListener("input", () => typing.add(name));
-    box.addEventListener("change", () => { typing.delete(name); edit(name, box.value); });
-    return {
-      made,
-      put(field) {
-        label.textContent = field.label;
-        box.rows = field.rows;
-        if (!typing.has(name)) box.value = field.value;
-      },
-    };
-  }
-
-  const makers = { number, choice, segments, several, tick, words };
-
-  app.field = function (name, said) {
-    let found = fields.get(name);
-    if (!found || found.said.kind !== said.kind) {
-      found = makers[said.kind](name);
-      found.made.dataset.name = name;
-      const place = document.querySelector(`[data-field="${name}"]`);
-      if (place) place.replaceChildren(found.made);
-      fields.set(name, found);
-    }
-    found.said = said;
-    found.made.hidden = Boolean(said.hidden);
-    found.put(said);
+/** Add a place for the refusal of typed text, which stays in its box; return what shows a sentence there. */
+function errorBelow(node, box, name) {
+  const text = element("p", { class: "error", id: `error-${name}`, role: "alert", hidden: "" });
+  node.append(text);
+  return (sentence) => {
+    text.textContent = sentence || "";
+    text.hidden = !sentence;
+    if (sentence) box.setAttribute("aria-describedby", text.id);
+    else box.removeAttribute("aria-describedby");
+    box.setAttribute("aria-invalid", Boolean(sentence));
   };
-  app.order = function (names) {
-    const place = document.getElementById("controls");
-    const wanted = names.map((name) => fields.get(name).made);
-    const there = [...place.children];
-    if (wanted.length !== there.length || wanted.some((one, at) => one !== there[at])) place.replaceChildren(...wanted);
-  };
-  app.known = (name) => (fields.get(name) || {}).said;
-  app.moved = function (name, value) {
-    const said = app.known(name);
-    const tidied = Math.min(said.high, Math.max(said.low, tidy(value, said.step)));
-    if (tidied !== said.value) edit(name, tidied);
-  };
-  app.again = function () { for (const found of fields.values()) found.put(found.said); };
-})();
+}
+
+/** Confirm typed text once; a browser reports no change if the text is the same as before the typing. */
+function confirmTyped(box, name, confirm) {
+  const once = () => { if (typed.delete(name)) confirm(); };
+  box.addEventListener("input", () => typed.add(name));
+  for (const event of ["change", "blur"]) box.addEventListener(event, once);
+  box.addEventListener("keydown", (event) => { if (event.key === "Enter" && box.matches("input")) once(); });
+}
+
+function number(name) {
+  const label = element("label", { for: `in-${name}`, id: `label-${name}` });
+  const unit = element("span", { class: "unit", id: `unit-${name}` });
+  const names = { "aria-labelledby": `label-${name} unit-${name}` };
+  const box = element("input", { id: `in-${name}`, type: "text", inputmode: "decimal", autocomplete: "off", maxlength: 100, ...names });
+  const sizes = element("datalist", { id: `sizes-${name}` });
+  const bar = element("input", { type: "range", step: "any", tabindex: -1, ...names });
+  const node = element("div", { class: "field number" }, label, element("span", { class: "box" }, box, unit), bar, sizes);
+  const showError = errorBelow(node, box, name);
+  let field;
+  function set(value) {
+    typed.delete(name);
+    bar.value = within(value, field);
+    box.value = String(within(value, field));
+    edit(name, within(value, field));
+  }
+  function reset() {
+    typed.delete(name);
+    if (field.error) edit(name, field.text);
+    else show(field);
+  }
+  function keys(event) {
+    if (event.key === "Escape") reset();
+    if (field.value === null) return;
+    const sideways = event.target === bar ? { ArrowRight: 1, ArrowLeft: -1 } : {};
+    const steps = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10, ...sideways }[event.key];
+    if (steps) set(rounded(Number(bar.value) + steps * field.step, field.step / 100));
+    else if (event.target === bar && event.key === "Home") set(field.low);
+    else if (event.target === bar && event.key === "End") set(field.high);
+    else return;
+    event.preventDefault();
+  }
+  bar.addEventListener("keydown", keys);
+  box.addEventListener("keydown", keys);
+  bar.addEventListener("input", () => set(rounded(Number(bar.value), field.step)));
+  confirmTyped(box, name, () => {
+    const text = box.value.trim();
+    if (text === field.text || !(text || field.optional)) reset(); // in an emptied box the last value is still true
+    else edit(name, text);
+  });
+  function show(next) {
+    field = next;
+    label.textContent = field.label;
+    label.title = field.hint || "";
+    unit.textContent = field.unit;
+    showError(field.error);
+    if (field.sizes) {
+      sizes.replaceChildren(...field.sizes.map((value) => element("option", { value })));
+      box.setAttribute("list", sizes.id);
+    }
+    bar.hidden = field.value === null;
+    if (!typed.has(name)) box.value = field.refused ?? field.text;
+    if (bar.hidden) return;
+    bar.min = field.low;
+    bar.max = field.high;
+    bar.value = field.value;
+    bar.setAttribute("aria-valuetext", `${field.text} ${field.unit}`.trim());
+  }
+  return { node, show };
+}
+
+function choice(name) {
+  const label = element("label", { for: `in-${name}` });
+  const list = element("select", { id: `in-${name}` });
+  list.addEventListener("change", () => choose(name, list.value));
+  function show(field) {
+    label.textContent = field.label;
+    if (list.dataset.options !== JSON.stringify(field.options)) {
+      list.dataset.options = JSON.stringify(field.options);
+      list.replaceChildren(...field.options.map(([value, words]) => element("option", { value }, words)));
+    }
+    list.value = field.value;
+  }
+  return { node: element("div", { class: "field choice" }, label, list), show };
+}
+
+function group(kind, name, type, isChecked) {
+  const title = element("span", { class: "label", id: `label-${name}` });
+  const role = kind === "segments" ? "radiogroup" : "group";
+  const row = element("div", { class: kind, role, "aria-labelledby": `label-${name}` });
+  function show(field) {
+    title.textContent = field.label;
+    if (row.dataset.options !== JSON.stringify(field.options)) {
+      row.dataset.options = JSON.stringify(field.options);
+      row.replaceChildren(...field.options.map(([value, words]) => {
+        const piece = element("span");
+        piece.innerHTML = (field.pieces || {})[value] || "";
+        piece.append(words);
+        return element("label", {}, element("input", { type, name: `in-${name}`, value }), piece);
+      }));
+    }
+    for (const box of row.querySelectorAll("input")) box.checked = isChecked(field, box.value);
+  }
+  return { node: element("div", { class: "field" }, title, row), show };
+}
+function segments(name) {
+  const input = group("segments", name, "radio", (field, value) => field.value === value);
+  input.node.addEventListener("change", (event) => choose(name, event.target.value));
+  return input;
+}
+function several(name) {
+  const input = group("several", name, "checkbox", (field, value) => field.value.includes(value));
+  input.node.addEventListener("change", () =>
+    choose(name, [...input.node.querySelectorAll("input:checked")].map((box) => box.value)));
+  return input;
+}
+
+function tick(name) {
+  const box = element("input", { type: "checkbox" }), label = element("span");
+  box.addEventListener("change", () => edit(name, box.checked));
+  function show(field) {
+    label.textContent = field.label;
+    box.checked = field.value;
+  }
+  return { node: element("label", { class: "field tick" }, box, label), show };
+}
+
+function words(name, { rows }) {
+  const label = element("label", { for: `in-${name}` });
+  const settings = { id: `in-${name}`, autocomplete: "off", spellcheck: "false" };
+  const box = rows > 1 ? element("textarea", { rows, ...settings }) : element("input", { type: "text", ...settings });
+  const node = element("div", { class: "field words" }, label, box);
+  const showError = errorBelow(node, box, name);
+  confirmTyped(box, name, () => edit(name, box.value));
+  function show(field) {
+    label.textContent = field.label;
+    showError(field.error);
+    if (!typed.has(name)) box.value = field.refused ?? field.value;
+  }
+  return { node, show };
+}
+
+// long work: the button turns to Cancel on the click itself, before the server has heard of it
+function run(name) {
+  const button = element("button", { type: "button", class: "plain" });
+  const bar = element("progress", { max: 1, "aria-label": "progress" }), text = element("span", { role: "status" });
+  let field;
+  function show(next) {
+    field = next;
+    const works = field.share !== null;
+    button.textContent = works ? "Cancel" : field.label;
+    bar.hidden = !works;
+    if (field.share) bar.value = field.share;
+    else bar.removeAttribute("value");
+    text.textContent = field.words;
+  }
+  button.addEventListener("click", () => {
+    const starts = field.share === null;
+    show({ ...field, share: starts ? 0 : null, words: starts ? "starting" : "Cancelled." });
+    edit(name, starts);
+  });
+  // work ends with its connection: whoever waited for it goes on waiting
+  listen((message) => { if (message.fresh && field.share !== null) edit(name, true); });
+  return { node: element("div", { class: "field run" }, button, bar, text), show };
+}
+
+const makers = { number, choice, segments, several, tick, words, run, limits: (name) => limits(name, edit) };
+
+/** Show an input as the server says, unless an edit of it is still on the page. */
+export function showField(name, field) {
+  let input = inputs.get(name);
+  if (!input || input.field.kind !== field.kind) {
+    input = makers[field.kind](name, field);
+    input.node.dataset.name = name;
+    const home = document.querySelector(`[data-field="${name}"]`);
+    if (home) home.replaceChildren(input.node);
+    inputs.set(name, input);
+  }
+  input.field = field;
+  input.node.hidden = Boolean(field.hidden);
+  stale.add(name);
+  refresh();
+}
+function refresh() {
+  for (const name of [...stale]) {
+    if (pendingValue(name) !== undefined) continue;
+    stale.delete(name);
+    inputs.get(name).show(inputs.get(name).field);
+  }
+}
+document.addEventListener("shown", refresh);
+export function arrange(names) {
+  const home = document.getElementById("controls");
+  const nodes = names.map((name) => inputs.get(name).node);
+  for (const child of [...home.children]) { // those that stay are not moved: one of them may have the focus
+    if (nodes.includes(child)) continue;
+    typed.delete(child.dataset.name);
+    child.remove();
+  }
+  nodes.forEach((node, index) => { if (node !== home.children[index]) home.insertBefore(node, home.children[index] ?? null); });
+}
+export const known = (name) => (inputs.get(name) || {}).field;
+/** Ask for another value of a number, within its range and in its steps. */
+export function move(name, value) {
+  const field = known(name), next = rounded(within(value, field), field.step);
+  if (next !== (pendingValue(name) ?? field.value)) edit(name, within(next, field));
+}

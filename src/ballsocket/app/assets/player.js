@@ -1,60 +1,69 @@
 // A cycle that is played: one instant of it in all charts, in the numbers and on the bore.
-(function () {
-  const app = (window.ballsocket = window.ballsocket || {});
-  const SVG = "http://www.w3.org/2000/svg";
-  const WHOLE = 5000; // ms that a cycle takes here
-  const digits = (value) => (value === null ? "–" : String(Number(value.toPrecision(4))));
+import { ask } from "./connection.js";
+import { digits, part } from "./svg.js";
+import { showFrame } from "./viewer.js";
 
-  function marker(chart) {
-    const line = document.createElementNS(SVG, "line"), spot = document.createElementNS(SVG, "circle");
-    line.setAttribute("class", "cursor");
-    spot.setAttribute("class", "spot");
-    spot.setAttribute("r", 4.5);
-    chart.append(line, spot);
-    return { chart, line, spot, box: chart.dataset.box.split(" ").map(Number) };
+const DURATION = 5000; // ms that a cycle takes here
+
+function marker(chart) {
+  const line = part("line", { class: "cursor" }), spot = part("circle", { class: "spot", r: 4.5 });
+  chart.append(line, spot);
+  return { chart, line, spot, box: chart.dataset.box.split(" ").map(Number) };
+}
+function move({ chart, line, spot, box: [left, top, right, foot] }, phase, value) {
+  const x = left + ((right - left) * phase) / chart.dataset.x;
+  for (const [name, place] of [["x1", x], ["x2", x], ["y1", top], ["y2", foot]]) line.setAttribute(name, place);
+  spot.setAttribute("cx", x);
+  spot.setAttribute("cy", value === null ? -99 : foot - ((foot - top) * value) / chart.dataset.y);
+}
+function begin(player) {
+  const find = (selector) => player.querySelector(selector);
+  const bar = find("input[type=range]"), play = find("button.plain"), output = find("output");
+  let data, markers, shown, asked, timer = null, instant = 0;
+  function show() {
+    bar.value = instant;
+    data.courses.forEach((course, number) => move(markers[number], data.phase[instant], course.values[instant]));
+    const value = (course) => (course.values[instant] === null ? "–" : digits(course.values[instant]));
+    const words = data.courses.map((course) => `${course.name} ${value(course)} ${course.unit}`.trim());
+    output.textContent = `${data.phase[instant].toFixed(1)} % of the cycle: ${words.join(", ")}${data.rim[instant] ? "; ✗ rim contact" : ""}`;
+    output.classList.toggle("no", data.rim[instant]);
+    bar.setAttribute("aria-valuetext", output.textContent);
+    showFrame(find(".viewer"), instant);
   }
-  function move({ chart, line, spot, box: [left, top, right, foot] }, phase, value) {
-    const x = left + ((right - left) * phase) / chart.dataset.x;
-    for (const [name, place] of [["x1", x], ["x2", x], ["y1", top], ["y2", foot]]) line.setAttribute(name, place);
-    spot.setAttribute("cx", x);
-    spot.setAttribute("cy", value === null ? -99 : foot - ((foot - top) * value) / chart.dataset.y);
+  function halt() {
+    cancelAnimationFrame(timer);
+    timer = null;
+    play.textContent = "▶ Play";
+    ask("edit", "gait.instant", instant);
   }
-  function begin(player) {
-    const data = JSON.parse(player.dataset.player), count = data.phase.length;
-    const find = (selector) => player.querySelector(selector);
-    const bar = find("input[type=range]"), play = find("button"), canvas = find("canvas.bowl"), output = find("output");
-    const markers = [...player.querySelectorAll("svg[data-box]")].map(marker);
-    let timer = null, instant = Math.min(count - 1, Number(document.getElementById(player.dataset.at).textContent) || 0);
-    player.begun = true;
-    function show() {
-      bar.value = instant;
-      markers.forEach((one, number) => move(one, data.phase[instant], data.courses[number].values[instant]));
-      const words = data.courses.map((one) => `${one.name} ${digits(one.values[instant])} ${one.unit}`);
-      output.textContent = `${data.phase[instant].toFixed(1)} % of the cycle: ${words.join(", ")}`;
-      bar.setAttribute("aria-valuetext", output.textContent);
-      app.frame(canvas, instant);
-    }
-    function halt() {
-      window.clearInterval(timer);
-      timer = null;
-      play.textContent = "▶ Play";
-      app.tell("edit", player.dataset.event, instant);
-    }
-    play.addEventListener("click", () => {
-      if (timer) { halt(); return; }
-      play.textContent = "❚❚ Pause";
-      const start = performance.now(), first = instant;
-      timer = window.setInterval(() => {
-        if (!player.isConnected) { window.clearInterval(timer); return; }
-        instant = (first + Math.floor(((performance.now() - start) / WHOLE) * count)) % count;
-        show();
-      }, 40);
+  play.addEventListener("click", () => {
+    if (timer) { halt(); return; }
+    play.textContent = "❚❚ Pause";
+    const start = performance.now(), first = instant;
+    timer = requestAnimationFrame(function step(now) {
+      const count = data.phase.length, next = (first + Math.max(0, Math.floor(((now - start) / DURATION) * count))) % count;
+      timer = requestAnimationFrame(step);
+      if (next === instant) return;
+      instant = next;
+      show();
     });
-    bar.addEventListener("input", () => { if (timer) halt(); instant = Number(bar.value); show(); });
-    bar.addEventListener("change", () => app.tell("edit", player.dataset.event, instant));
-    show();
-  }
-  document.addEventListener("shown", () => {
-    for (const player of document.querySelectorAll(".player")) if (!player.begun) begin(player);
   });
-})();
+  bar.addEventListener("input", () => { if (timer) halt(); instant = Number(bar.value); show(); });
+  bar.addEventListener("change", () => ask("edit", "gait.instant", instant));
+  return () => {
+    const source = find("[data-player]"), wanted = find("[data-at]").textContent;
+    find(".transport").hidden = !source;
+    if (!source || !find(".viewer")) return;
+    if (source !== shown) {
+      [shown, data] = [source, JSON.parse(source.dataset.player)];
+      const charts = player.querySelectorAll(".courses svg[data-box]");
+      markers = data.courses.map((course) => marker(charts[course.chart]));
+      bar.max = data.phase.length - 1;
+    }
+    if (!timer && wanted !== asked) [asked, instant] = [wanted, Number(wanted)];
+    instant = Math.min(instant, bar.max);
+    show();
+  };
+}
+const updates = new Map([...document.querySelectorAll(".player")].map((player) => [player, begin(player)]));
+document.addEventListener("shown", () => { for (const update of updates.values()) update(); });

@@ -3,29 +3,33 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from base64 import b64encode
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
 from math import cos, degrees, hypot, pi, radians, sin
 from typing import Any
 
 import numpy
+from scipy.interpolate import RegularGridInterpolator
 
 from ...core.quantities import DERIVED, FIELD
 from ...elasticity.off_axis.contact import OffAxisContact
 from ...elasticity.off_axis.directions import unit_vectors
 from ...elasticity.off_axis.grid import Grid
 from ...hip.ball_wear import interpolation_at
-from ...problem.cup import Cup
+from ...problem import Joint
+from ...problem.cup import Cup, Side
 from ...reports.cup_map import from_page, on_page, shown_maximum, shown_pressure
 from ..widgets.reading import Reading
 from . import svg
-from .svg import Contours, levels_of, scale
+from .svg import Contours, heat, levels_between, scale
 
 METRIC = Reading()
 """mm, N, MPa and degrees."""
 
-_MAP_WIDTH, _MIDDLE, _RADIUS, _MAP_HEIGHT = 360.0, 180.0, 140.0, 400.0
+_MAP_WIDTH, _MIDDLE, _RADIUS, _MAP_HEIGHT = 400.0, 200.0, 140.0, 420.0
+_RIM = f'cx="{_MIDDLE}" cy="{_MIDDLE}" r="{_RADIUS}"'
 _POINTS = 181
 _MOSTLY_VERTICAL = 0.7
 _MIN_IN_PLANE = 0.3  # of a unit vector: one that points more steeply out of the picture is not drawn
@@ -69,9 +73,10 @@ def pressed_bore(contact: OffAxisContact, reading: Reading = METRIC) -> str:
     return bore_map(label, field, marks)
 
 
-def worn_bore(field: BoreField, label: str, load: Any) -> str:
-    """Draw the worn depth of a bore, with a cross at the direction of the load (3,)."""
-    return bore_map(label, field, list(_load_cross(*map(float, _projection(field.reach)(load)))))
+def load_bore(field: BoreField, label: str, load: Any) -> str:
+    """Draw a field on a bore, with a cross at the direction of the load (3,), if it is not zero."""
+    marks = _load_cross(*map(float, _projection(field.reach)(load))) if numpy.any(load) else ()
+    return bore_map(label, field, list(marks))
 
 
 def grid_field(grid: Grid, values: numpy.ndarray) -> Callable[[numpy.ndarray], numpy.ndarray]:
@@ -84,25 +89,43 @@ def grid_field(grid: Grid, values: numpy.ndarray) -> Callable[[numpy.ndarray], n
     return at
 
 
+def node_field(nodes: numpy.ndarray, reach: float) -> Callable[[numpy.ndarray], numpy.ndarray]:
+    """Make a function of directions (..., 3) from values (rings + 1, meridians) at `node_directions`."""
+    meridians = nodes.shape[1]
+    azimuth = 2 * pi * (numpy.arange(-1, meridians + 1) + 0.5) / meridians
+    around = numpy.concatenate([nodes[:, -1:], nodes, nodes[:, :1]], axis=1)
+    values = RegularGridInterpolator((numpy.linspace(0.0, reach, len(nodes)), azimuth), around)
+
+    def at(directions: numpy.ndarray) -> numpy.ndarray:
+        x, y, z = numpy.moveaxis(directions, -1, 0)
+        polar = numpy.minimum(numpy.arccos(numpy.clip(z, -1.0, 1.0)), reach)
+        return numpy.asarray(values(numpy.stack([polar, numpy.arctan2(y, x) % (2 * pi)], axis=-1)))
+
+    return at
+
+
 def bore_map(label: str, field: BoreField, marks: list[str]) -> str:
     """Draw a field on a bore with rings every 30°, the rim, body directions and marks on top."""
     line = numpy.linspace(-1.0, 1.0, _POINTS)
     right, up = numpy.meshgrid(line, line)
     values = field.at(from_page(2 * sin(field.reach / 2) * right, 2 * sin(field.reach / 2) * up, field.reach))
-    levels = levels_of(field.highest)
+    levels = levels_between(0.0, field.highest)
     contours = Contours(_MIDDLE + _RADIUS * right, _MIDDLE - _RADIUS * up, values)
-    shown = contours.bands([1e-3 * field.highest, *levels[1:]])
-    rim = f'cx="{_MIDDLE}" cy="{_MIDDLE}" r="{_RADIUS}"'
-    name = f"bore-{field.name}"
-    parts = [
-        f'<clipPath id="{name}"><circle {rim}/></clipPath><circle class="bore" {rim}/>',
-        f'<g clip-path="url(#{name})">{"".join(shown)}</g>',
-        *_angle_rings(field.reach),
-        f'<circle class="rim" {rim}/>',
-        *marks,
-        *_body_directions(field.cup),
-        *scale(levels, field.label, 40, _MAP_WIDTH + 6, _MAP_WIDTH - 80),
-    ]
+    name, bands = f"bore-{field.name}", contours.bands([1e-3 * field.highest, *levels[1:]])
+    clip = f'<clipPath id="{name}"><circle {_RIM}/></clipPath><g clip-path="url(#{name})">{"".join(bands)}</g>'
+    scale_bar = scale(levels, field.label, 60, _MAP_HEIGHT - 34, _MAP_WIDTH - 120)
+    return _bore_picture(label, field.cup, field.reach, clip, [*marks, *scale_bar])
+
+
+def bare_bore(cup: Cup, reach: float) -> str:
+    """Draw a bore without a field, for a result that is being prepared."""
+    words = svg.text(_MIDDLE, _MIDDLE + 70, "Preparing ...", "label")
+    return _bore_picture("the pressure on the cup is being prepared", cup, reach, "", [words])
+
+
+def _bore_picture(label: str, cup: Cup, reach: float, field: str, marks: Iterable[str]) -> str:
+    rim, bore = f'<circle class="rim" {_RIM}/>', f'<circle class="bore" {_RIM}/>'
+    parts = [bore, field, *_angle_rings(reach), rim, *marks, *_body_directions(cup)]
     return svg.picture((_MAP_WIDTH, _MAP_HEIGHT), label, parts)
 
 
@@ -136,7 +159,7 @@ def _body_directions(cup: Cup) -> Iterator[str]:
     if not cup.oriented:
         return
     x, y, _ = cup.frame
-    for name, axis in (("up", 2), ("front", 1)):
+    for name, axis in (("up", 2), ("anterior", 1)):
         right, up = y[axis], x[axis]
         if (length := hypot(right, up)) > _MIN_IN_PLANE:
             across, above = right / length, up / length
@@ -145,40 +168,78 @@ def _body_directions(cup: Cup) -> Iterator[str]:
             yield svg.text(*position, name, "tick", anchor)
 
 
-_BOWL_RINGS, _BOWL_MERIDIANS = 40, 96
-_MAX_DRAWN_THICKNESS = 0.8  # of the bore's radius: what is thicker is drawn so thick
+_RINGS, _MERIDIANS = 96, 256
+_FULL = 255
+_MAX_LINER, _MAX_BACKING = 0.8, 0.4  # of the bore's radius: thicker layers are drawn so thick
 
 
-def pressed_bowl(contact: OffAxisContact) -> str:
-    """Draw the pressure of a contact on its cup in three dimensions, with the load as an arrow."""
-    joint, reach = contact.joint, float(contact.model.reach_of(contact.joint))
-    polar = numpy.linspace(0.0, reach, _BOWL_RINGS + 1)
-    azimuth = 2 * pi * numpy.arange(_BOWL_MERIDIANS) / _BOWL_MERIDIANS
-    middles = unit_vectors(((polar[1:] + polar[:-1]) / 2)[:, None], azimuth + pi / _BOWL_MERIDIANS)
-    values = shown_pressure(contact, numpy.moveaxis(middles, 0, -1))
-    radius = float(joint.socket_radius)
-    label = (
-        f"the cup in three dimensions with its pressure, up to {shown_maximum(contact):.3g} {FIELD['pressure'].unit}"
-    )
-    return bowl(
+def pressed_viewer(contact: OffAxisContact, reading: Reading = METRIC) -> str:
+    """Show the pressure of a contact on its cup in three dimensions, with the load as an arrow."""
+    joint, cup, reach = contact.joint, contact.model.cup, float(contact.model.reach_of(contact.joint))
+    unit = reading.unit(FIELD["pressure"])
+    levels = levels_between(0.0, unit.factor * shown_maximum(contact))
+    directions = numpy.moveaxis(node_directions(reach, _RINGS, _MERIDIANS), 0, -1)
+    cells = relative_bytes(unit.factor * shown_pressure(contact, directions), levels[-1])
+    return viewer(
         "cup",
-        f"{label}; arrow keys turn it, Home looks into its opening",
-        polar=polar.round(5).tolist(),
-        meridians=_BOWL_MERIDIANS,
-        values=(values / shown_maximum(contact)).round(3).ravel().tolist(),
-        outer=1 + min(float(joint.liner_thickness) / radius, _MAX_DRAWN_THICKNESS),
-        load=(contact.force_vector / contact.force).tolist(),
-        turned=[0.5, -0.35],
+        f"pressure on the cup, up to {reading.with_unit(FIELD['pressure'], shown_maximum(contact))}",
+        colour_scale(levels, reading.label(FIELD["pressure"])),
+        **shape_of(joint, cup, reach, _RINGS, _MERIDIANS),
+        bytes=b64encode(cells.tobytes()).decode("ascii"),
+        loads=[(contact.force_vector / contact.force).round(4).tolist()],
+        sizes=[1.0],
+        gain=1.0,
+        outline=contact.outline.round(4).tolist(),
+        film=False,
     )
 
 
-def bowl(name: str, label: str, **data: Any) -> str:
-    """Return the canvas of a bore that a script draws and rotates.
+def node_directions(reach: float, rings: int, meridians: int) -> numpy.ndarray:
+    """Return unit vectors (3, rings + 1, meridians) of the nodes of a viewer's field, from the dome to the rim."""
+    azimuth = 2 * pi * (numpy.arange(meridians) + 0.5) / meridians
+    return numpy.asarray(unit_vectors(numpy.linspace(0.0, reach, rings + 1)[:, None], azimuth))
 
-    Its data are the `polar` edges of its rings in rad, `meridians`, `values` of its cells from 0 to 1, the `outer`
-    radius over that of the bore, where the `load` points, and how it is `turned` at first, in rad.
+
+def relative_bytes(values: numpy.ndarray, highest: float) -> numpy.ndarray:
+    """Return values from 0 to `highest` as bytes."""
+    return numpy.rint(_FULL * numpy.clip(values / (highest or 1.0), 0.0, 1.0)).astype(numpy.uint8)
+
+
+def shape_of(joint: Joint, cup: Cup, reach: float, rings: int, meridians: int) -> dict[str, Any]:
+    """Return radii over that of the bore, body directions in the cup's frame and size of the field of a viewer."""
+    radius = float(joint.socket_radius)
+    liner = 1 + min(float(joint.liner_thickness) / radius, _MAX_LINER)
+    backing = min(sum(float(layer.thickness) for layer in joint.backing) / radius, _MAX_BACKING)
+    medial = -1.0 if cup.side is Side.RIGHT else 1.0
+    x, y, z = (numpy.array(axis) for axis in cup.frame)
+    body = {"medial": medial * numpy.eye(3)[0], "anterior": numpy.eye(3)[1], "up": numpy.eye(3)[2]}
+    axes = {name: [round(float(axis @ part), 4) for part in (x, y, z)] for name, axis in body.items()}
+    return {
+        "reach": round(reach, 5),
+        "radii": [round(float(joint.ball_radius) / radius, 5), round(liner, 5), round(liner + backing, 5)],
+        "rings": rings,
+        "columns": meridians,
+        "axes": axes if cup.oriented else {"opening": [0, 0, -1]},
+    }
+
+
+def colour_scale(levels: Sequence[float], label: str) -> str:
+    """Return the colours of a viewer with their numbers, from the lowest at the foot."""
+    numbers = "".join(f"<span>{level:.4g}</span>" for level in reversed(levels))
+    stops = ", ".join(heat(share / 4) for share in range(5))
+    bar = f"<i style='background: linear-gradient(to top, {stops})'></i>"
+    return f"<div class='scale-bar'><b>{escape(label)}</b><div>{bar}<p>{numbers}</p></div></div>"
+
+
+def viewer(name: str, label: str, scale: str, **data: Any) -> str:
+    """Return the element in which a script shows a bore in three dimensions, beside its colour scale.
+
+    Its data are those of `shape_of`, and for each frame the `bytes` of the field at `node_directions`, the direction of
+    the load in `loads` and its relative size in `sizes`. `gain` leads from bytes to shares of the colours, `outline` is
+    the edge of the contact, and `film` is True for a field that is 0 outside the contact.
     """
+    keys = "drag or arrow keys turn it, wheel or + and - zoom, Home looks into its opening"
     return (
-        f'<canvas class="bowl" data-name="{name}" tabindex="0" role="img" aria-label="{escape(label)}" '
-        f"data-bowl='{json.dumps(data, separators=(',', ':'))}'></canvas>"
+        f'<div class="viewer" data-name="{name}" data-label="{escape(label)}; {keys}" '
+        f"data-viewer='{json.dumps(data, separators=(',', ':'))}'>{scale}</div>"
     )

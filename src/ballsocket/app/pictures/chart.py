@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from typing import Any
@@ -12,23 +12,44 @@ import numpy
 from ...reports.style import INK, THICK, THIN, LineStyle
 from . import svg
 
-_WIDE, _HIGH = 440.0, 300.0
+_SIZE = (440.0, 300.0)
 _X_LEFT, _RIGHT, _TOP, _FOOT = 58.0, 12.0, 10.0, 44.0
-_INSIDE = (
-    f'x="{_X_LEFT:g}" y="{_TOP:g}" width="{_WIDE - _X_LEFT - _RIGHT:g}" height="{_HIGH - _TOP - _FOOT:g}" '
-    f'viewBox="{_X_LEFT:g} {_TOP:g} {_WIDE - _X_LEFT - _RIGHT:g} {_HIGH - _TOP - _FOOT:g}"'
-)
-"""Area of the curves, which are cut off at its edges."""
+
+
+@dataclass(frozen=True)
+class _ChartArea:
+    """Size of a chart in pixels and ends of its axes, which begin at zero."""
+
+    size: tuple[float, float]
+    ends: tuple[float, float]
+
+    @property
+    def right(self) -> float:
+        """Right end of the area of the curves."""
+        return self.size[0] - _RIGHT
+
+    @property
+    def foot(self) -> float:
+        """Lower end of the area of the curves."""
+        return self.size[1] - _FOOT
+
+    def across(self, value: Any) -> Any:
+        """Return the horizontal positions of values."""
+        return _X_LEFT + (self.right - _X_LEFT) * value / self.ends[0]
+
+    def up(self, value: Any) -> Any:
+        """Return the vertical positions of values."""
+        return self.foot - (self.foot - _TOP) * value / self.ends[1]
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Points of one curve, where they can be trusted, how it is drawn, a point to mark on it and a band, if any."""
+    """Points of one curve, how it is drawn, where it can be trusted, a point to mark on it and a band, if any."""
 
     x: numpy.ndarray
     y: numpy.ndarray
-    trusted: numpy.ndarray
     line: LineStyle
+    trusted: Any = True
     mark: tuple[float, float] | None = None
     band: tuple[numpy.ndarray, numpy.ndarray] | None = None
 
@@ -44,58 +65,66 @@ def dash_of(line: LineStyle, width: float = THICK) -> str:
     return f'stroke-width="{width:g}"' + (f' stroke-dasharray="{lengths}"' if lengths else "")
 
 
-def chart(label: str, x: str, y: str, curves: Mapping[str, Curve], ends: tuple[float, float]) -> str:
+def chart(
+    label: str,
+    x: str,
+    y: str,
+    curves: Mapping[str, Curve],
+    ends: tuple[float, float],
+    size: tuple[float, float] = _SIZE,
+    flagged: Sequence[tuple[float, float]] = (),
+) -> str:
     """Draw curves over axes from zero to `ends`, as SVG; `x` and `y` label them.
 
     Curves are thick where they can be trusted, and thin all the way where not; one without gaps lies below the others.
+    Flagged ranges of x are red.
     """
-    across, up = ends
+    frame = _ChartArea(size, ends)
     ordered = sorted(curves.items(), key=lambda named: bool(named[1].line.dash))
-    lines = "".join(part for name, curve in ordered for part in _drawn(name, curve, across, up))
-    parts = [*_axes(x, y, across, up), f"<svg {_INSIDE}>{lines}</svg>"]
-    scale = f' data-x="{across!r}" data-y="{up!r}" data-box="{_X_LEFT:g} {_TOP:g} {_WIDE - _RIGHT:g} {_HIGH - _FOOT:g}"'
-    labels = f' data-across="{escape(x)}" data-up="{escape(y)}"'
-    return svg.picture((_WIDE, _HIGH), label, parts, f"{scale}{labels}")
+    lines = "".join(part for name, curve in ordered for part in _drawn(name, curve, frame))
+    wide, high = frame.right - _X_LEFT, frame.foot - _TOP
+    inside = f'x="{_X_LEFT:g}" y="{_TOP:g}" width="{wide:g}" height="{high:g}"'
+    red = (
+        f'<rect class="flagged" x="{frame.across(low):.1f}" y="{_TOP:g}" '
+        f'width="{max(frame.across(top) - frame.across(low), 1):.1f}" height="{high:g}"/>'
+        for low, top in flagged
+    )
+    area = f'<svg {inside} viewBox="{_X_LEFT:g} {_TOP:g} {wide:g} {high:g}">{lines}</svg>'
+    box = f' data-box="{_X_LEFT:g} {_TOP:g} {frame.right:g} {frame.foot:g}"'
+    scale = f' data-x="{ends[0]!r}" data-y="{ends[1]!r}" data-across="{escape(x)}" data-up="{escape(y)}"'
+    return svg.picture(size, label, [*red, *_axes(x, y, frame), area], f"{scale}{box}")
 
 
-def _across(value: Any, end: float) -> Any:
-    return _X_LEFT + (_WIDE - _X_LEFT - _RIGHT) * value / end
-
-
-def _up(value: Any, end: float) -> Any:
-    return _HIGH - _FOOT - (_HIGH - _FOOT - _TOP) * value / end
-
-
-def _axes(x: str, y: str, across: float, up: float) -> Iterator[str]:
-    foot, right = _HIGH - _FOOT, _WIDE - _RIGHT
-    for value in svg.ticks(across):
-        position = _across(value, across)
+def _axes(x: str, y: str, frame: _ChartArea) -> Iterator[str]:
+    foot, right = frame.foot, frame.right
+    for value in svg.ticks_between(0.0, frame.ends[0]):
+        position = frame.across(value)
         yield svg.line(position, _TOP, position, foot, "grid")
         yield svg.text(position, foot + 16, f"{value:g}", "tick")
-    for value in svg.ticks(up):
-        position = _up(value, up)
+    for value in svg.ticks_between(0.0, frame.ends[1], max(2, round((foot - _TOP) / 40))):
+        position = frame.up(value)
         yield svg.line(_X_LEFT, position, right, position, "grid")
         yield svg.text(_X_LEFT - 6, position + 4, f"{value:g}", "tick", "end")
     yield svg.line(_X_LEFT, foot, right, foot, "axis")
     yield svg.line(_X_LEFT, _TOP, _X_LEFT, foot, "axis")
-    yield svg.text((_X_LEFT + right) / 2, _HIGH - 8, x, "label")
+    yield svg.text((_X_LEFT + right) / 2, foot + _FOOT - 8, x, "label")
     middle = (_TOP + foot) / 2
     yield svg.text(14, middle, y, "label", more=f' transform="rotate(-90 14 {middle:g})"')
 
 
-def _drawn(name: str, curve: Curve, across: float, up: float) -> Iterator[str]:
-    x, y = _across(curve.x, across), _up(curve.y, up)
+def _drawn(name: str, curve: Curve, frame: _ChartArea) -> Iterator[str]:
+    x, y = frame.across(curve.x), frame.up(curve.y)
     if curve.band is not None:
-        low, high = (_up(ends, up) for ends in curve.band)
+        low, high = (frame.up(ends) for ends in curve.band)
         outline = svg.closed(numpy.concatenate([x, x[::-1]]), numpy.concatenate([low, high[::-1]]))
         yield f'<path d="{outline}" fill="{colour_of(curve.line)}" opacity="0.2"/>'
     stroke = f'fill="none" stroke="{colour_of(curve.line)}" data-name="{escape(name)}"'
-    if curve.trusted.any():
+    if numpy.any(curve.trusted):
         yield f'<path d="{svg.path(x, numpy.where(curve.trusted, y, numpy.nan))}" {stroke} {dash_of(curve.line)}/>'
-    if not curve.trusted.all():
+    if not numpy.all(curve.trusted):
         yield f'<path d="{svg.path(x, y)}" {stroke} {dash_of(curve.line, THIN)}/>'
     if curve.mark is not None:
-        centre = f'cx="{_across(curve.mark[0], across):.1f}" cy="{_up(curve.mark[1], up):.1f}"'
+        centre = f'cx="{frame.across(curve.mark[0]):.1f}" cy="{frame.up(curve.mark[1]):.1f}"'
         yield f'<circle {centre} r="4" fill="{colour_of(curve.line)}"/>'
 
 

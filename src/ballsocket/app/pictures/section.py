@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -11,6 +10,7 @@ from math import isinf, pi
 import numpy
 
 from ...contact import Contact
+from ...elasticity.off_axis.contact import OffAxisContact
 from ...files.joint_file import JointFile
 from ...reports.section_plots import gap_factor, radii_of
 from ..pressing import profile
@@ -20,7 +20,9 @@ _PETALS = 48
 _HIGHEST = 0.45  # of the liner, or of the radius
 _SIZE = 340.0
 
-Outline = tuple[numpy.ndarray, numpy.ndarray]
+Numbers = numpy.ndarray
+Cells = tuple[Numbers, Numbers, Numbers]
+"""Radii (mm) and angles (rad) of the corners of quadrilaterals, (cells, 4), and their pressures or stresses in MPa."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,15 +39,27 @@ class DrawingFrame:
             numpy.cos(angle)
         )
 
-    def path(self, outline: Outline) -> str:
-        """Return the path of an outline in mm, upwards from the socket's centre."""
-        return svg.closed(self.x + self.scale * outline[0], self.y - self.scale * outline[1])
+    def arc(self, radius: float, half: float) -> str:
+        """Return the part of a path along a circle (mm), from -half to half about the pole (rad)."""
+        (x1, y1), (x2, y2), away = self.at(radius, -half), self.at(radius, half), self.scale * radius
+        return f"{x1:.1f},{y1:.1f}A{away:.1f},{away:.1f} 0 {int(abs(half) > pi / 2)} {int(half < 0)} {x2:.1f},{y2:.1f}"
+
+    def cells(self, cells: Cells, top: float) -> list[str]:
+        """Draw quadrilaterals in the colours of their values from 0 to `top`."""
+        radii, angles, values = cells
+        corners = self.x + self.scale * radii * numpy.sin(angles), self.y + self.scale * radii * numpy.cos(angles)
+        rows = numpy.stack(corners, axis=-1).reshape(-1, 8).tolist()
+        shares = (values / top).tolist()
+        return [f'<path fill="{svg.heat(share)}" d="{_QUAD(*row)}"/>' for share, row in zip(shares, rows, strict=True)]
+
+
+_QUAD = "M{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}L{:.1f},{:.1f}Z".format
 
 
 def section(file: JointFile, contact: Contact | None, extent: float, highest: float) -> str:
     """Draw a joint under a load from above to `extent` (mm), with pressure colours up to `highest` (MPa)."""
     frame = DrawingFrame(x=_SIZE / 2, y=_SIZE / 2, scale=_SIZE / 2 / extent / 1.04)
-    parts = [*layers(file, frame), ball(file, contact, frame, 0.0), *painted(file, contact, frame, highest, 0.0)]
+    parts = [*layers(file, frame), ball(file, contact, frame, 0.0), *painted(file, contact, frame, highest)]
     return svg.picture((_SIZE, _SIZE), "the joint in section, to scale", parts)
 
 
@@ -53,27 +67,18 @@ def layers(file: JointFile, frame: DrawingFrame) -> list[str]:
     """Draw liner and backing layers inside the cup's arc."""
     ends = list(pairwise(radii_of(file.joint)))
     kinds = ["liner", *(f"backing layer{number % 3}" for number in range(len(ends) - 1))]
-    return [_part(_sector(*radii, file.cup.rim), frame, kind) for radii, kind in zip(ends, kinds, strict=True)]
+    return [_sector(frame, *radii, file.cup.rim, kind) for radii, kind in zip(ends, kinds, strict=True)]
 
 
 def ball(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> str:
     """Draw the loaded ball; its clearance is enlarged by `gap_factor`."""
-    return _part(_ball(file, contact, tilt), frame, "ball")
+    x, y = _ball(file, contact, tilt)
+    return f'<path class="part ball" d="{svg.closed(frame.x + frame.scale * x, frame.y - frame.scale * y)}"/>'
 
 
-def painted(file: JointFile, contact: Contact | None, frame: DrawingFrame, highest: float, tilt: float) -> list[str]:
+def painted(file: JointFile, contact: Contact | None, frame: DrawingFrame, highest: float) -> list[str]:
     """Draw the pressure inside the cup's arc."""
-    if contact is None:
-        return []
-    top = highest or 1.0
-    return [
-        f'<path fill="{svg.heat(pressure / top)}" d="{frame.path(outline)}"/>'
-        for outline, pressure in petals(file, contact, tilt)
-    ]
-
-
-def _part(outline: Outline, frame: DrawingFrame, kind: str) -> str:
-    return f'<path class="part {kind}" d="{frame.path(outline)}"/>'
+    return [] if contact is None else frame.cells(petals(file, contact), highest or 1.0)
 
 
 def extent_of(file: JointFile) -> float:
@@ -81,14 +86,11 @@ def extent_of(file: JointFile) -> float:
     return radii_of(file.joint)[-1]
 
 
-def _sector(inner: float, outer: float, rim: float) -> Outline:
-    angle = numpy.linspace(-rim, rim, 121)
-    x = numpy.concatenate([inner * numpy.sin(angle), outer * numpy.sin(angle[::-1])])
-    y = numpy.concatenate([-inner * numpy.cos(angle), -outer * numpy.cos(angle[::-1])])
-    return x, y
+def _sector(frame: DrawingFrame, inner: float, outer: float, rim: float, kind: str) -> str:
+    return f'<path class="part {kind}" d="M{frame.arc(inner, rim)}L{frame.arc(outer, -rim)}Z"/>'
 
 
-def _ball(file: JointFile, contact: Contact | None, tilt: float) -> Outline:
+def _ball(file: JointFile, contact: Contact | None, tilt: float) -> tuple[Numbers, Numbers]:
     """Compute the socket's circle less the gap c - (c + d) cos φ from the load's axis; no gap in the contact."""
     clearance, depth = float(file.joint.clearance), 0.0 if contact is None else float(contact.indentation)
     angle = numpy.linspace(0.0, 2 * pi, 145)
@@ -97,32 +99,41 @@ def _ball(file: JointFile, contact: Contact | None, tilt: float) -> Outline:
     return radius * numpy.sin(angle), -radius * numpy.cos(angle)
 
 
-def petals(file: JointFile, contact: Contact, tilt: float = 0.0) -> list[tuple[Outline, float]]:
-    """Return quadrilaterals (mm) in the liner whose height shows the pressure, each with its pressure (MPa)."""
-    half = float(contact.half_angle)
-    if not half > 0:
-        return []
-    low, high = max(-half - tilt, -file.cup.rim), min(half - tilt, file.cup.rim)
-    angle = numpy.sort(numpy.clip(half * numpy.sin(numpy.linspace(-pi / 2, pi / 2, _PETALS + 1)) - tilt, low, high))
-    pressure = numpy.interp(numpy.abs(angle + tilt), *profile(contact), right=0.0)
+def petals(file: JointFile, contact: Contact) -> Cells:
+    """Return quadrilaterals in the liner whose height shows the pressure."""
+    if not float(contact.half_angle) > 0:
+        return numpy.empty((0, 4)), numpy.empty((0, 4)), numpy.empty(0)
+    if isinstance(contact, OffAxisContact):
+        angle, pressure = _pressure_in_plane(contact)
+    else:
+        angle, pressure = _pressure_about_axis(contact, file.cup.rim)
     radius = float(file.joint.socket_radius)
     highest = _HIGHEST * min(float(file.joint.liner_thickness), 0.6 * radius)
     reach = radius + highest * pressure / float(contact.max_pressure)
-    return [
-        (_quadrilateral((radius, radius, reach[b], reach[a]), (angle[a], angle[b], angle[b], angle[a])), mean)
-        for a, b, mean in _pieces(angle, pressure)
-    ]
+    bore, a, b = numpy.full_like(angle[1:], radius), angle[:-1], angle[1:]
+    radii, angles = numpy.stack([bore, bore, reach[1:], reach[:-1]], axis=-1), numpy.stack([a, b, b, a], axis=-1)
+    wide = b > a
+    return radii[wide], angles[wide], (pressure[:-1] + pressure[1:])[wide] / 2
 
 
-def _pieces(angle: numpy.ndarray, pressure: numpy.ndarray) -> Iterator[tuple[int, int, float]]:
-    for a, b in pairwise(range(len(angle))):
-        if angle[b] > angle[a]:
-            yield a, b, float(pressure[a] + pressure[b]) / 2
+def _pressure_about_axis(contact: Contact, rim: float) -> tuple[Numbers, Numbers]:
+    """Sample angles (rad) within the rim and the pressure of a contact about the cup's axis."""
+    half = float(contact.half_angle)
+    ends = numpy.linspace(-pi / 2, pi / 2, _PETALS + 1)
+    angle = numpy.clip(half * numpy.sin(ends), max(-half, -rim), min(half, rim))
+    return angle, numpy.interp(numpy.abs(angle), *profile(contact), right=0.0)
 
 
-def _quadrilateral(radii: Sequence[float], angles: Sequence[float]) -> Outline:
-    away, turned = numpy.array(radii), numpy.array(angles)
-    return away * numpy.sin(turned), -away * numpy.cos(turned)
+def _pressure_in_plane(contact: OffAxisContact) -> tuple[Numbers, Numbers]:
+    """Sample angles (rad) and the pressure in the plane of load and cup axis; the load lies at a negative angle."""
+    load, reach = contact.single_state.axes[0], float(contact.model.reach_of(contact.joint))
+    angle = numpy.linspace(-reach, reach, 2 * _PETALS + 1)
+    across = load[:2] / (numpy.linalg.norm(load[:2]) or 1.0)
+    directions = numpy.stack([*(-numpy.sin(angle) * part for part in across), numpy.cos(angle)], axis=-1)
+    pressure = numpy.asarray(contact.pressure_at(directions))
+    in_contact = numpy.flatnonzero(pressure > 0)
+    shown = slice(max(in_contact[0] - 1, 0), in_contact[-1] + 2) if in_contact.size else slice(0, 0)
+    return angle[shown], pressure[shown]
 
 
 _STRESS_COLUMNS, _STRESS_ROWS = 40, 10
@@ -134,9 +145,9 @@ _STRESS_WIDTH = 1.25  # half angles to each side
 class LinerStresses:
     """Stresses in MPa at angles (rad, from the load's axis) and depths (mm): a row a depth."""
 
-    angles: numpy.ndarray
-    depths: numpy.ndarray
-    values: numpy.ndarray
+    angles: Numbers
+    depths: Numbers
+    values: Numbers
 
     @property
     def largest(self) -> float:
@@ -159,21 +170,18 @@ def liner_stresses(contact: Contact) -> LinerStresses | None:
     return LinerStresses(angles, depths, values)
 
 
-def painted_stresses(file: JointFile, stresses: LinerStresses, frame: DrawingFrame, tilt: float) -> str:
+def painted_stresses(file: JointFile, stresses: LinerStresses, frame: DrawingFrame) -> str:
     """Draw each cell of the liner in the colour of its stress, inside the cup's arc."""
     wide, deep = stresses.angles[1] - stresses.angles[0], stresses.depths[1] - stresses.depths[0]
-    bore, rim, top = float(file.joint.socket_radius), file.cup.rim, stresses.largest
+    rim, depth = file.cup.rim, float(file.joint.socket_radius) + numpy.repeat(stresses.depths, len(stresses.angles))
+    middle = numpy.tile(stresses.angles, len(stresses.depths))
+    inner, outer = depth - 0.52 * deep, depth + 0.52 * deep
     pieces = []
-    for row, depth in enumerate(stresses.depths):
-        inner, outer = bore + depth - 0.52 * deep, bore + depth + 0.52 * deep
-        for side in (1, -1):
-            for column, angle in enumerate(stresses.angles):
-                ends = [side * (angle - 0.52 * wide) - tilt, side * (angle + 0.52 * wide) - tilt]
-                low, high = max(min(ends), -rim), min(max(ends), rim)
-                if low < high:
-                    corners = [frame.at(r, a) for r, a in ((inner, low), (inner, high), (outer, high), (outer, low))]
-                    x, y = map(numpy.array, zip(*corners, strict=True))
-                    pieces.append(
-                        f'<path fill="{svg.heat(stresses.values[row, column] / top)}" d="{svg.closed(x, y)}"/>'
-                    )
+    for side in (1, -1):
+        low, high = (numpy.clip(side * middle + end * wide, -rim, rim) for end in (-0.52, 0.52))
+        radii, angles = (
+            numpy.stack(corners, axis=-1) for corners in ((inner, inner, outer, outer), (low, high, high, low))
+        )
+        inside = low < high
+        pieces += frame.cells((radii[inside], angles[inside], stresses.values.ravel()[inside]), stresses.largest)
     return "".join(pieces)

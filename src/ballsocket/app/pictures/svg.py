@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from html import escape
 from itertools import pairwise
-from math import floor, log10
+from math import ceil, floor, log10
 from typing import Any
 
 import numpy
@@ -40,39 +40,64 @@ def line(x1: float, y1: float, x2: float, y2: float, kind: str, more: str = "") 
     return f'<line class="{kind}" x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}"{more}/>'
 
 
-def ticks(high: float, max_steps: int = 6) -> list[float]:
-    """Return round numbers from 0 to `high`, with a limited number of steps."""
-    scale = 10.0 ** floor(log10(high / max_steps))
-    step = next(factor * scale for factor in (1, 2, 2.5, 5, 10) if factor * scale * max_steps >= high * (1 - 1e-9))
-    return [number * step for number in range(int(high / step * (1 + 1e-9)) + 1)]
+def round_step(span: float, max_steps: int) -> float:
+    """Return a round number of which at most `max_steps` make up a span."""
+    scale = 10.0 ** floor(log10(span / max_steps))
+    return next(factor * scale for factor in (1, 2, 2.5, 5, 10) if factor * scale * max_steps >= span * (1 - 1e-9))
 
 
-def picture(size: tuple[float, float], label: str, parts: Iterable[str], more: str = "") -> str:
-    """Return a picture of full width with a label for screen readers."""
-    return _svg_element(size, f'role="img" aria-label="{escape(label)}"{more}', parts)
+def ticks_between(low: float, high: float, max_steps: int = 6) -> list[float]:
+    """Return the multiples of a round step from `low` to `high`."""
+    step = round_step(high - low, max_steps)
+    first, last = ceil(low / step - 1e-9), floor(high / step * (1 + 1e-9))
+    return [number * step for number in range(first, last + 1)]
 
 
-def group_picture(size: tuple[float, float], label: str, parts: Iterable[str], more: str = "") -> str:
-    """Return a picture with interactive parts, which screen readers can enter."""
-    return _svg_element(size, f'role="group" aria-label="{escape(label)}"{more}', parts)
+def levels_between(low: float, high: float, max_steps: int = 8) -> list[float]:
+    """Return at least two round levels that enclose the values from `low` to `high`."""
+    step = round_step(high - low or abs(high) or 1.0, max_steps)
+    first, last = floor(low / step + 1e-9), ceil(high / step - 1e-9)
+    return [number * step for number in range(first, max(last, first + 1) + 1)]
 
 
-def _svg_element(size: tuple[float, float], marks: str, parts: Iterable[str]) -> str:
+def picture(size: tuple[float, float], label: str, parts: Iterable[str], more: str = "", role: str = "img") -> str:
+    """Return a picture of full width with a label for screen readers, which can enter one of the role "group"."""
+    marks = f'role="{role}" aria-label="{escape(label)}"{more}'
     return f'<svg class="picture" viewBox="0 0 {size[0]:g} {size[1]:g}" {marks}>{"".join(parts)}</svg>'
 
 
 Numbers = numpy.ndarray
 
 
-_HEAT = numpy.array([[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]])
-"""Five colours of viridis, from low to high."""
+_STEPS = 240
 
 
-def heat(share: float) -> str:
+def _colours(*stops: tuple[int, int, int]) -> list[str]:
+    """List colours in even steps from the first of five stops (red, green, blue) to the last."""
+    place = numpy.linspace(0.0, len(stops) - 1, _STEPS + 1)
+    parts = (numpy.interp(place, range(len(stops)), part).round().astype(int) for part in zip(*stops, strict=True))
+    return ["#{:02x}{:02x}{:02x}".format(*colour) for colour in zip(*parts, strict=True)]
+
+
+_HEAT = _colours((68, 1, 84), (59, 82, 139), (33, 145, 140), (94, 201, 98), (253, 231, 37))
+"""Colours of viridis, from low to high."""
+
+_SIGNED = _colours((178, 24, 43), (244, 165, 130), (247, 247, 247), (146, 197, 222), (33, 102, 172))
+"""Colours from red for negative values over white to blue for positive ones."""
+
+
+def heat(share: float, colours: Sequence[str] = _HEAT) -> str:
     """Return a colour for a value from 0 to 1."""
-    stops = numpy.linspace(0.0, 1.0, len(_HEAT))
-    red, green, blue = (round(float(numpy.interp(share, stops, column))) for column in _HEAT.T)
-    return f"#{red:02x}{green:02x}{blue:02x}"
+    return colours[round(_STEPS * min(max(share, 0.0), 1.0))]
+
+
+def band_colours(levels: Sequence[float]) -> list[str]:
+    """Return the colour of each band between levels: white at zero where the levels have both signs."""
+    if levels[0] < 0 < levels[-1]:
+        end = max(-levels[0], levels[-1])
+        return [heat(0.5 + 0.25 * (low + high) / end, _SIGNED) for low, high in pairwise(levels)]
+    last = len(levels) - 2
+    return [heat(number / max(last, 1)) for number in range(len(levels) - 1)]
 
 
 class Contours:
@@ -99,10 +124,9 @@ class Contours:
 
     def bands(self, levels: Sequence[float]) -> Iterator[str]:
         """Draw a path for each pair of neighbouring levels, coloured from low to high."""
-        last = len(levels) - 2
-        for number, (low, high) in enumerate(pairwise(levels)):
+        for colour, (low, high) in zip(band_colours(levels), pairwise(levels), strict=True):
             if outline := self.area(low, high):
-                yield f'<path fill="{heat(number / max(last, 1))}" fill-rule="evenodd" d="{outline}"/>'
+                yield f'<path fill="{colour}" fill-rule="evenodd" d="{outline}"/>'
 
     def named(self, level: float, words: str) -> Iterator[str]:
         """Draw the lines of a level, with its value on each long one."""
@@ -118,15 +142,8 @@ def scale(levels: Sequence[float], label: str, x: float, y: float, wide: float) 
     """Draw a row of colours with numbers between them and a label above."""
     count = len(levels) - 1
     yield text(x, y - 6, label, "tick", "start")
-    for number in range(count):
-        fill = heat(number / max(count - 1, 1))
+    for number, fill in enumerate(band_colours(levels)):
         size = f'width="{wide / count + 0.4:.1f}" height="9"'
         yield f'<rect x="{x + wide * number / count:.1f}" y="{y:.1f}" {size} fill="{fill}"/>'
     for number, level in enumerate(levels):
         yield text(x + wide * number / count, y + 22, f"{level:.4g}", "tick")
-
-
-def levels_of(high: float, max_steps: int = 8) -> list[float]:
-    """Round levels from 0 to at least `high`."""
-    levels = ticks(high, max_steps)
-    return levels if levels[-1] >= high * (1 - 1e-9) else [*levels, levels[-1] + levels[1]]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf, isfinite
 from typing import Any
 from urllib.parse import urlencode
@@ -20,13 +21,14 @@ from ...reports.unit_systems import Units
 from ...studies.expressions import parse_limit, parse_range
 from ...studies.limits import Limit
 from ...studies.parameters import PARAMETERS
+from ..views.registry import VIEW_CLASSES
 from ..widgets.reading import Reading
 from . import evidence_question
 from . import use as in_use
 from .evidence_question import DEFAULT_QUESTION, EvidenceQuestion
 from .use import DEFAULT_USE, Use
 
-VIEWS = ("press", "cup", "gait", "wear", "map", "compare", "judge", "evidence")
+VIEWS = tuple(VIEW_CLASSES)
 THEMES = ("light", "dark")
 ANGLES, SIZES = ("degrees", "radians"), ("radius", "diameter")
 PAINTED = ("pressure", "stress")
@@ -35,7 +37,8 @@ PAINTED = ("pressure", "stress")
 QUICK = tuple(name for name, model in catalogue.items() if model.seconds_a_press < 1e-4)
 """Models that press a map's points at once."""
 
-BASES = ("0", "1", "2")
+MAX_COMPARED = 6
+BASES = tuple(map(str, range(MAX_COMPARED + 1)))
 """Indices of the compared joints: that on the screen first."""
 
 STANDINGS = ("edge_distance", "max_pressure")
@@ -54,7 +57,6 @@ AXES = tuple(name for name in PARAMETERS if PARAMETERS[name].kind is not Kind.AN
 """Parameters of the design map."""
 
 LONGEST_LINK = 8000
-MAX_COMPARED = 2
 MOST_LIMITS = 20
 _TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")
 _VIEWS = ("use", "ask")
@@ -97,6 +99,7 @@ class Screen:
     standing: str = "edge_distance"  # quantity of the map over orientations
     base: str = "1"  # joint with which others are compared
     sizes: str = "any"  # sizes that a click on the map takes
+    picked: tuple[float, float] | None = None  # values of `across` and `up` at the chosen point of the map
     use: Use = DEFAULT_USE
     painted: str = "pressure"
     asked: EvidenceQuestion = DEFAULT_QUESTION
@@ -115,30 +118,38 @@ class Screen:
             raise ValueError(f"a map has at most {MOST_LIMITS} limits, got {len(self.limits)}")
         if not self.file.load:
             raise ValueError("a load is needed: force, indentation or half_angle")
+        if self.picked is not None and not all(map(isfinite, self.picked)):
+            raise ValueError(f"picked = {self.picked} is not a point of a map, which has two finite numbers")
         if self.across.name == self.up.name:
             raise ValueError(f"a map has two axes, and both are {self.up.name}")
 
-    @property
+    @cached_property
     def reading(self) -> Reading:
         """Units in which numbers are shown."""
         return Reading(angle=self.angle, units=Units(self.units))
+
+    @cached_property
+    def link(self) -> str:
+        """Query of the link of this screen."""
+        return link_of(self)
 
 
 _KNOWN: Mapping[str, Sequence[str]] = {
     "view": VIEWS,
     "answered_by": tuple(catalogue),
-    "shown": tuple(catalogue),
     "map_model": MAP_MODELS,
-    "sizes": PICKED,
     "quantity": MAPPED,
     "standing": STANDINGS,
     "base": BASES,
+    "sizes": PICKED,
     "painted": PAINTED,
     "angle": ANGLES,
     "size": SIZES,
     "units": tuple(system.value for system in Units),
+    "shown": tuple(catalogue),
     "theme": THEMES,
 }
+"""Names of each choice, in the order of a link."""
 
 START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
 """Screen of a page without a link."""
@@ -146,27 +157,11 @@ START = Screen(file=JointFile(joints["hip-28"], {"force": 3000.0}))
 
 def link_of(screen: Screen) -> str:
     """Return the query of a link: the differences from the start, and the joint."""
-    pairs: list[tuple[str, str]] = []
-    for name in (
-        "view",
-        "answered_by",
-        "map_model",
-        "quantity",
-        "standing",
-        "base",
-        "sizes",
-        "painted",
-        "angle",
-        "size",
-        "units",
-    ):
-        if getattr(screen, name) != getattr(START, name):
-            pairs.append((name, getattr(screen, name)))
-    if screen.shown != START.shown:
-        pairs.append(("shown", ",".join(screen.shown)))
-    for name in ("across", "up"):
-        if getattr(screen, name) != getattr(START, name):
-            pairs.append((name, str(getattr(screen, name))))
+    changed = [name for name in (*_KNOWN, "across", "up") if getattr(screen, name) != getattr(START, name)]
+    values = {name: getattr(screen, name) for name in changed if name != "theme"}
+    pairs = [(name, ",".join(value) if name == "shown" else str(value)) for name, value in values.items()]
+    if screen.picked is not None:
+        pairs.append(("picked", ",".join(map(repr, screen.picked))))
     pairs += [("limit", phrase) for limit in screen.limits for phrase in phrases_of(limit)]
     pairs += [*in_use.use_pairs(screen.use), *evidence_question.question_pairs(screen.asked)]
     pairs += _flat(_tables(screen.file), "")
@@ -182,7 +177,7 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     plain = {
         name: values for name, values in pairs.items() if name.split(".")[0] not in (*_TABLES, *_PREFIXES, *_VIEWS)
     }
-    check_names(plain, (*_KNOWN, "across", "up", "limit"), "in the link")
+    check_names(plain, (*_KNOWN, "across", "up", "picked", "limit"), "in the link")
     for name, values in pairs.items():
         if len(values) != 1 and name != "limit":
             raise ValueError(f"{shown(name)} is given {len(values)} times in the link; one is needed")
@@ -190,6 +185,8 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     if "shown" in words:
         words["shown"] = tuple(dict.fromkeys(words["shown"].split(",")))
     words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
+    if "picked" in pairs:
+        words["picked"] = _point(pairs["picked"][0])
     words["use"] = in_use.use_of(_part(pairs, "use"))
     words["asked"] = evidence_question.question_of(_part(pairs, "ask"))
     words["limits"] = tuple(map(parse_limit, pairs.get("limit", ())))
@@ -207,6 +204,14 @@ def _part(pairs: Mapping[str, Sequence[str]], prefix: str) -> dict[str, str]:
 def _axis(phrase: str) -> MapAxis:
     name, low, high = parse_range(phrase)
     return MapAxis(name=name, low=low, high=high)
+
+
+def _point(text: str) -> tuple[float, float]:
+    try:
+        x, y = map(float, text.split(","))
+    except ValueError as error:
+        raise ValueError(f"picked = {shown(text)} is not a point of a map: two numbers with a comma between") from error
+    return x, y
 
 
 def _joint(flat: Mapping[str, str]) -> JointFile:

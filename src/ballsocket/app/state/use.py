@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...core.checks import check_names, require, shown
-from ...core.kinds import Kind, Unit
+from ...core.kinds import Kind
 from ...files.joint_file import JointFile
 from ...files.units import parse
 from ...hip import Cycle, HipSimulation, named_cycle
@@ -21,9 +21,9 @@ from ...hip.in_vivo import check_body_weight
 from ...hip.law_fields import Law, LawField
 from ...hip.wear_law import COEFFICIENT
 from ...hip.wear_laws import WEAR_LAWS, read_wear_law
-from ..widgets.fields import Field, choice, number, segments
 
 CONTACTS = ("springs", "shell", "cup")
+FIELDS = ("pressure", "film")
 LAWS = tuple(WEAR_LAWS)
 _TABLES = (".csv", ".txt", ".dat", ".mot", ".sto")
 _MAX_MILLIONS = 50.0
@@ -64,6 +64,7 @@ class Use:
     body_weight: float = 800.0  # N, for loads measured in patients
     instant: int | None = None  # shown instant of the cycle; None is that of the largest force
     contact: str = "springs"
+    field: str = "pressure"  # shown on the bore
     law: str = LAWS[0]
     coefficient: float = 1e-6  # in the unit of the law
     millions: float = 5.0  # cycles
@@ -137,6 +138,7 @@ class Use:
 CHOICES: Mapping[str, tuple[str, ...]] = {
     "cycle": tuple(CYCLES),
     "contact": CONTACTS,
+    "field": FIELDS,
     "law": LAWS,
     "creep": _creep_choices(),
 }
@@ -208,16 +210,3 @@ def hip_of(file: JointFile, use: Use, upload: UploadedCycle | None = None) -> Hi
         surface=socket_surface(use.contact),
         creep=parse_creep(use.creep_tables, float(file.joint.liner.poisson)),
     )
-
-
-_FOUNDATIONS = (("springs", "springs"), ("shell", "closed shell"), ("cup", "real cup"))
-
-
-def cycle_fields(view: str, use: Use) -> list[Field]:
-    """Cycle, body weight where the cycle was measured in patients, and what the bore is taken for."""
-    weight = number(f"{view}.body_weight", "Body weight", Unit("N"), (300.0, 1500.0), 10.0, use.body_weight)
-    return [
-        choice(f"{view}.cycle", "Cycle", [(name, name) for name in CHOICES["cycle"]], use.cycle),
-        {**weight, "hidden": not CYCLES[use.cycle].per_body_weight},
-        segments(f"{view}.contact", "Compliance of the bore", _FOUNDATIONS, use.contact),
-    ]

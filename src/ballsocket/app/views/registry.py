@@ -1,23 +1,24 @@
 """Registry of the views of the page."""
 
-from ..view import View
-from .compare.view import Compare
-from .contact.view import Press
-from .cup.view import CupView
-from .design_map.view import DesignMap
-from .evidence.view import Evidence
-from .finite_elements.view import Judge
-from .gait.view import Gait
-from .wear.view import Wear
+from functools import cache
+from importlib import import_module
+from typing import Any
 
-KINDS: dict[str, type[View]] = {
-    "press": Press,
-    "cup": CupView,
-    "gait": Gait,
-    "wear": Wear,
-    "map": DesignMap,
-    "compare": Compare,
-    "judge": Judge,
-    "evidence": Evidence,
+VIEW_CLASSES = {
+    "press": "contact.Press",
+    "cup": "cup.CupView",
+    "gait": "gait.Gait",
+    "wear": "wear.Wear",
+    "map": "design_map.DesignMap",
+    "compare": "compare.Compare",
+    "judge": "finite_elements.Judge",
+    "evidence": "evidence.Evidence",
 }
-"""All, by the names that links give them, in the order of the page."""
+"""Folder and class of each view by its name in links, in the order of the page."""
+
+
+@cache
+def view_class(name: str) -> Any:
+    """Import the class of a view."""
+    folder, _, kind = VIEW_CLASSES[name].partition(".")
+    return getattr(import_module(f".{folder}.view", __package__), kind)

@@ -3,40 +3,41 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
-from math import degrees, isfinite
+from collections.abc import Iterable, Mapping, Sequence
+from math import degrees
 from typing import Any
 
 from ...core.checks import shown
 from ...core.kinds import Kind, Unit
-from ...files.units import parse
+from ...files.units import parse, split_quantity
+from .reading import behind, box_text
 
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
 _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
+
+_MAX_SHOWN = 60
+"""Characters of typed text in a message."""
 
 Field = dict[str, Any]
 """One input: its name, kind, label, value, and what its kind needs."""
 
 
-def choice(name: str, label: str, options: Iterable[tuple[str, str]], value: str) -> Field:
-    """Return a list for one choice, from pairs of a value and its label."""
-    return {
-        "name": name,
-        "kind": "choice",
-        "label": label,
-        "options": [list(option) for option in options],
-        "value": value,
-    }
+Options = Iterable[Sequence[str]]
+"""Values of a choice, each with its label unless that is the value."""
 
 
-def segments(name: str, label: str, options: Iterable[tuple[str, str]], value: str) -> Field:
+def choice(name: str, label: str, options: Options, value: str) -> Field:
+    """Return a list for one choice."""
+    pairs = [[option, option] if isinstance(option, str) else list(option) for option in options]
+    return {"name": name, "kind": "choice", "label": label, "options": pairs, "value": value}
+
+
+def segments(name: str, label: str, options: Options, value: str) -> Field:
     """Return a row of buttons for one choice."""
     return {**choice(name, label, options, value), "kind": "segments"}
 
 
-def several(
-    name: str, label: str, options: Iterable[tuple[str, str]], value: Iterable[str], pieces: Mapping[str, str]
-) -> Field:
+def several(name: str, label: str, options: Options, value: Iterable[str], pieces: Mapping[str, str]) -> Field:
     """Return a row of boxes for any number of choices, each with HTML before its label."""
     return {**choice(name, label, options, ""), "kind": "several", "value": list(value), "pieces": dict(pieces)}
 
@@ -46,28 +47,19 @@ def tick(name: str, label: str, value: bool) -> Field:
     return {"name": name, "kind": "tick", "label": label, "value": value}
 
 
-def unknown(name: str, label: str, unit: str) -> Field:
-    """Return an empty input for an optional number."""
-    return {"name": name, "kind": "number", "label": label, "unit": unit, "value": None, "text": ""}
-
-
 def number(name: str, label: str, unit: Unit, ends: tuple[float, float], step: float, value: float) -> Field:
     """Return an input for a number, with a slider over its typical range and the present value.
 
     `value` and `ends` are in the unit beside the box, to which `unit.factor` leads from that of a joint file.
     """
-    return {
-        "name": name,
-        "kind": "number",
-        "label": label,
-        "unit": unit.text,
-        "factor": unit.factor,
-        "low": min(ends[0], value),
-        "high": max(ends[1], value),
-        "step": step,
-        "value": value,
-        "text": plain(value),
-    }
+    low, high = min(ends[0], value), max(ends[1], value)
+    slider = {"factor": unit.factor, "low": low, "high": high, "step": step, "value": value}
+    return {**empty_number(name, label, unit, box_text(value, unit.text)), **slider}
+
+
+def empty_number(name: str, label: str, unit: Unit, text: str = "") -> Field:
+    """Return an input for a number without a slider."""
+    return {"name": name, "kind": "number", "label": label, "unit": unit.text, "value": None, "text": text}
 
 
 def words(name: str, label: str, value: str, rows: int = 1) -> Field:
@@ -75,27 +67,21 @@ def words(name: str, label: str, value: str, rows: int = 1) -> Field:
     return {"name": name, "kind": "words", "label": label, "value": value, "rows": rows}
 
 
-def plain(value: float) -> str:
-    """Format a number for a box: up to six digits, without exponent where possible."""
-    text = f"{value:.6g}"
-    return f"{value:.0f}" if "e+" in text and isfinite(value) and abs(value) < 1e12 else text
-
-
-def typed(name: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float:
+def typed(label: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float:
     """Convert typed text to the number of a table; a bare number has the unit beside the box.
 
     Parameters
     ----------
-    name : str
-        What it is, for a refusal.
+    label : str
+        Words beside the box, for a refusal.
     text : str or float
-        "0.2", "0,2", "0.2 mm".
+        "0.2", "0,2", "0.2 mm", "1 1/8 in".
     unit : Unit
         Of a bare number; its factor leads to it from the number in the table.
     kind : str
-        What it measures, for text with a unit.
+        Physical kind of the number, for text with a unit.
     times : int
-        How often the table's number is taken: a diameter is twice a radius.
+        Factor from the table's number to the typed one: 2 for a diameter of a radius.
 
     Raises
     ------
@@ -104,30 +90,43 @@ def typed(name: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float:
 
     Examples
     --------
-    >>> typed("diametral_clearance", "0,2", Unit("mm", 2.0), "length", 2)
+    >>> typed("Diametral clearance", "0,2", Unit("mm", 2.0), "length", 2)
     0.1
-    >>> typed("diametral_clearance", "0.2 mm", Unit("in", 2 / 25.4), "length", 2)
+    >>> typed("Diametral clearance", "0.2 mm", Unit("in", 2 / 25.4), "length", 2)
     0.1
     """
     if isinstance(text, int | float) and not isinstance(text, bool):
         return round(float(text) / unit.factor, 12)
-    if not isinstance(text, str):
-        raise ValueError(f"{name} = {shown(text)} is not a number")
-    stripped = text.strip()
+    inside = f" in {'inches' if unit.text == 'in' else unit.text}" if unit.text else ""
+    rule = f"{label} must be a number{inside}" + (f", or {Kind(kind).example.replace(', ', ' ')}" if unit.text else "")
+    stripped = text.strip() if isinstance(text, str) else ""
+    if not stripped:
+        raise ValueError(f"{rule}, got {'nothing' if isinstance(text, str) else shown(text)}")
     if _THOUSANDS.match(stripped):
         plain_text = stripped.replace(",", "")
         raise ValueError(
-            f"{name} = {shown(stripped)} could be two numbers: write {plain_text} or {stripped.replace(',', '.', 1)}"
+            f"{label} {shown(stripped)} could be two numbers: write {plain_text} or {stripped.replace(',', '.', 1)}"
         )
-    bare = _COMMA.sub(".", stripped, count=1)
+    pointed = _COMMA.sub(".", stripped, count=1)
     try:
-        return round(float(bare) / unit.factor, 12)
-    except ValueError:
-        pass
-    try:
-        value = parse(name, bare, kind)
+        number, written_unit = split_quantity(pointed)
+        if not written_unit:
+            return round(number / unit.factor, 12)
+        value = parse(label, pointed, kind)
     except ValueError as error:
-        inside = f" in {unit.text}" if unit.text else ""
-        meant = str(error).partition(" is ")[2]
-        raise ValueError(f"{name} = {shown(stripped)} is not a number{inside}, and {meant}") from error
+        raise ValueError(f"{rule}, got {shown(stripped)}") from error
     return round((degrees(value) if kind == Kind.ANGLE else value) / times, 12)
+
+
+_KEY_REFUSED = re.compile(r"[\w.]+ (?:= (?:'[^']*'|\S+) (?P<rule>is not allowed: .*)|(?P<need>must .*))", re.DOTALL)
+
+
+def in_words_of(field: Field, sentence: str, text: Any) -> str:
+    """Word the refusal of an edit by the label of its field instead of a key, and state the number in use."""
+    unit, label, kept = behind(field.get("unit", "")), field["label"], field.get("text")
+    refused = _KEY_REFUSED.fullmatch(sentence)
+    if refused is not None:
+        value = str(text).strip()[:_MAX_SHOWN]
+        value += unit if value[-1:].isdigit() else ""
+        sentence = f"{label} {refused['need']}" if refused["need"] else f"{label} {value} {refused['rule']}"
+    return f"{sentence}; {kept}{unit} stays in use" if kept else sentence

@@ -4,25 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 from html import escape
 from math import degrees, inf, isinf
 from typing import Any
 
-from ...core.checks import check_names, shown
+from ...core.checks import check_names, check_text, shown
 from ...core.quantities import LOADS, STRESS_LIMITS
 from ...files.joint_file import JointFile, joint_of, read_aim
 from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Support
-from ...problem.cup import UP
+from ...problem.cup import UP, Cup
 from ...problem.presets import joints, materials
 from ..state.screen import Screen
-from .cup_fields import TILT_LABEL
-from .fields import Field, choice, segments, tick, unknown
+from .fields import Field, choice, segments, tick, words
 from .numbers import ALLOWABLE, NUMBERS, THICKNESS, TILT, Number, load_of, number_of
-from .reading import Reading
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
 _OWN_NUMBERS = (_CUSTOM, "– own numbers –")
+_CHANGED = " (changed)"
+_MAX_NAME = 80
+"""Characters of a design's name."""
 
 
 def fields_of(screen: Screen) -> dict[str, Field]:
@@ -30,46 +32,42 @@ def fields_of(screen: Screen) -> dict[str, Field]:
     file, joint = screen.file, screen.file.joint
     ((kind, _),) = file.load.items()
     named = tables_of(file)
+    preset = joint.name if joints.get(joint.name) == joint else _PRESET
+    ball = _RIGID if joint.ball is None else _chosen(named["ball"])
     listed = [
-        choice("preset", "Start from", [(_PRESET, "– choose –"), *((name, name) for name in joints)], _preset(joint)),
-        *_numbers(screen, ("ball_radius", "clearance", "liner_thickness", "outer_radius")),
-        *([] if joint.backing else [tick("massive", "massive socket (L = ∞)", isinf(float(joint.liner_thickness)))]),
+        words("name", "Design", joint.name),
+        choice("preset", "Start from", [(_PRESET, "– choose –"), *joints], preset),
+        *_numbers(screen, named, ("ball_radius", "clearance", "liner_thickness", "outer_radius")),
+        *([] if joint.backing else [tick("massive", "solid socket (no backing)", isinf(float(joint.liner_thickness)))]),
         segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind),
         load_of(kind).field("load", named["load"][kind], screen.reading),
-        {**TILT.field("tilt", degrees(tilt_of(file)), screen.reading), "label": TILT_LABEL},
-        choice("liner", "Liner", [_OWN_NUMBERS, *_materials()], _chosen(named["liner"])),
-        *_numbers(screen, ("liner_young", "liner_poisson")),
-        _allowable(joint, screen.reading),
-        *_layer_thicknesses(joint, screen.reading),
-        choice("ball", "Ball", [(_RIGID, "rigid"), _OWN_NUMBERS, *_materials()], _ball(joint, named)),
-        *_numbers(screen, ("ball_young", "ball_poisson")),
+        TILT.field("tilt", degrees(tilt_of(file)), screen.reading),
+        choice("liner", "Liner", [_OWN_NUMBERS, *materials], _chosen(named["liner"])),
+        *_numbers(screen, named, ("liner_young", "liner_poisson")),
+        {**ALLOWABLE.field("allowable", joint.liner.allowable_pressure, screen.reading), "optional": True},
+        *(
+            _thickness_of(layer).field(f"layer{index}", float(layer.thickness), screen.reading)
+            for index, layer in enumerate(joint.backing)
+            if not isinf(float(layer.thickness))
+        ),
+        choice("ball", "Ball", [(_RIGID, "rigid"), _OWN_NUMBERS, *materials], ball),
+        *_numbers(screen, named, ("ball_young", "ball_poisson")),
     ]
     return {field["name"]: field for field in listed}
 
 
 def tilt_of(file: JointFile) -> float:
     """Return the angle in rad between the load and the axis of the cup."""
-    return float(file.aim["tilt"]) if "tilt" in file.aim else float(file.cup.tilt(file.aim.get("direction", UP)))
+    return float(file.aim["tilt"]) if "tilt" in file.aim else _tilt_to(file.cup, tuple(file.aim.get("direction", UP)))
 
 
-def _allowable(joint: Joint, reading: Reading) -> Field:
-    """Return the input of the liner's allowable pressure, empty if unknown."""
-    value = joint.liner.allowable_pressure
-    if value is None:
-        return unknown("allowable", ALLOWABLE.label, ALLOWABLE.unit(reading).text)
-    return ALLOWABLE.field("allowable", float(value), reading)
+@lru_cache(maxsize=256)
+def _tilt_to(cup: Cup, direction: tuple[float, ...]) -> float:
+    return float(cup.tilt(direction))
 
 
-def _layer_thicknesses(joint: Joint, reading: Reading) -> list[Field]:
-    """Return the inputs for the thickness of each layer behind the liner."""
-    return [
-        {
-            **THICKNESS.field(f"layer{index}", float(layer.thickness), reading),
-            "label": f"{layer.material.name or 'Layer'} behind",
-        }
-        for index, layer in enumerate(joint.backing)
-        if not isinf(float(layer.thickness))
-    ]
+def _thickness_of(layer: Layer) -> Number:
+    return replace(THICKNESS, label=f"{layer.material.name or 'Layer'} thickness")
 
 
 def behind(joint: Joint) -> str:
@@ -78,10 +76,10 @@ def behind(joint: Joint) -> str:
     return f"<p>Behind the liner:</p><ul>{layers}</ul>" if layers else ""
 
 
-def _numbers(screen: Screen, names: tuple[str, ...]) -> list[Field]:
+def _numbers(screen: Screen, named: Tables, names: tuple[str, ...]) -> list[Field]:
     """Return inputs of the finite numbers that the joint has."""
     joint = screen.file.joint
-    tables: Tables = {"joint": {**tables_of(screen.file)["joint"], "outer_radius": float(joint.outer_radius)}}
+    tables: Tables = {"joint": {**named["joint"], "outer_radius": float(joint.outer_radius)}}
     for part in ("liner", "ball"):
         material = getattr(joint, part)
         if material is not None:
@@ -93,18 +91,6 @@ def _numbers(screen: Screen, names: tuple[str, ...]) -> list[Field]:
         for name, value in values.items()
         if value is not None and value < inf
     ]
-
-
-def _materials() -> list[tuple[str, str]]:
-    return [(name, name) for name in materials]
-
-
-def _preset(joint: Joint) -> str:
-    return joint.name if joints.get(joint.name) == joint else _PRESET
-
-
-def _ball(joint: Joint, named: Tables) -> str:
-    return _RIGID if joint.ball is None else _chosen(named["ball"])
 
 
 def _chosen(table: Tables) -> str:
@@ -141,20 +127,34 @@ def _with_number(screen: Screen, spec: Number, value: Any) -> JointFile:
 
 
 def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
-    """Apply a change to the tables of a joint; drop the preset's name if a number differs."""
+    """Apply a change to the tables of a joint; drop its source if a number differs."""
     tables = tables_of(file)
     before = joint_of(tables).joint
     change(tables)
     made = joint_of(tables)
-    if made.joint == before:
-        return made
-    tables.pop("name", None)
-    tables.pop("source", None)
-    return joint_of(tables)
+    return made if made.joint == before else replace(made, joint=_as_changed(made.joint))
+
+
+def _as_changed(joint: Joint) -> Joint:
+    """Return a joint that differs from its source, with a preset marked as changed in its name."""
+    base = joint.name.removesuffix(_CHANGED)
+    if base not in joints:
+        return replace(joint, source="")
+    preset = joints[base]
+    same = replace(joint, name=preset.name, source=preset.source) == preset
+    return preset if same else replace(joint, name=base + _CHANGED, source="")
+
+
+def _rename(screen: Screen, value: Any) -> JointFile:
+    """Change the name of the design."""
+    name = " ".join(check_text("the name", value).split())
+    if len(name) > _MAX_NAME:
+        raise ValueError(f"the name must have at most {_MAX_NAME} characters, got {len(name)}")
+    return replace(screen.file, joint=replace(screen.file.joint, name=name))
 
 
 def _thicker(screen: Screen, index: int, value: Any) -> JointFile:
-    meant = THICKNESS.meant(value, screen.reading)
+    meant = _thickness_of(screen.file.joint.backing[index]).meant(value, screen.reading)
     return _changed(screen.file, lambda tables: tables["backing"][index].update(thickness=meant))
 
 
@@ -207,6 +207,7 @@ def _made_of(part: str, screen: Screen, chosen: Any) -> JointFile:
 
 
 _EDITS: dict[str, Callable[[Screen, Any], JointFile]] = {
+    "name": _rename,
     "preset": _choose_preset,
     "massive": _massive,
     "allowable": _bears,
@@ -217,42 +218,27 @@ _EDITS: dict[str, Callable[[Screen, Any], JointFile]] = {
 """Functions that apply inputs other than numbers."""
 
 
-_NO_CHOICE, _REMOVE, _CUSTOM = "", "away", "own"
-_NEW_THICKNESS = 3.0
-"""mm of a layer that is added."""
-
-_MAX_LAYERS = 20
+_NO_CHOICE, _REMOVE = "", "away"
+_NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
 
 
 def layer_fields(joint: Joint) -> dict[str, Field]:
     """Return a material list for each layer, one to add a layer, and the support of the outermost."""
-    made_of = [(name, name) for name in materials]
-    listed = [
-        choice(
-            f"behind.{index}",
-            f"Layer {index + 1} behind the liner",
-            [*_own_material(layer), *made_of, (_REMOVE, "– take away –")],
-            _material_name(layer),
-        )
-        for index, layer in enumerate(joint.backing)
-    ]
-    listed.append(choice("behind.add", "Add a layer behind", [(_NO_CHOICE, "– choose –"), *made_of], _NO_CHOICE))
+    listed = []
+    for index, layer in enumerate(joint.backing):
+        named = next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
+        own = [(_CUSTOM, layer.material.name or "– own numbers –")] if named == _CUSTOM else []
+        options = [*own, *materials, (_REMOVE, "– take away –")]
+        listed.append(choice(f"behind.{index}", f"Layer {index + 1} behind the liner", options, named))
+    listed.append(choice("behind.add", "Add a layer behind", [(_NO_CHOICE, "– choose –"), *materials], _NO_CHOICE))
     if joint.backing:
-        held = [(support.value, support.value) for support in Support]
+        held = [support.value for support in Support]
         listed.append(segments("behind.support", "Outermost surface", held, joint.support.value))
     return {field["name"]: field for field in listed}
 
 
-def _material_name(layer: Layer) -> str:
-    return next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
-
-
-def _own_material(layer: Layer) -> list[tuple[str, str]]:
-    return [(_CUSTOM, layer.material.name or "– own numbers –")] if _material_name(layer) == _CUSTOM else []
-
-
 def layers_edited(file: JointFile, key: str, value: Any) -> JointFile:
-    """Return the joint, unnamed, after a change of a layer by its index, of "add" or of "support"."""
+    """Return the joint after a change of a layer by its index, of "add" or of "support"."""
     layers = list(file.joint.backing)
     check_names([key], [*map(str, range(len(layers))), "add", "support"], "among the layers")
     if key == "support":
@@ -265,17 +251,13 @@ def layers_edited(file: JointFile, key: str, value: Any) -> JointFile:
     else:
         check_names([value], materials, "as material")
         if key == "add":
-            layers.append(_added(layers, value))
+            if len(layers) >= _MAX_LAYERS:
+                raise ValueError(f"{shown(value)} is one layer too many: at most {_MAX_LAYERS}")
+            layers.append(Layer(thickness=_NEW_THICKNESS, material=materials[value]))
         else:
             layers[int(key)] = replace(layers[int(key)], material=materials[value])
     return _with_joint(file, backing=tuple(layers), **({} if layers else {"support": Support.FIXED}))
 
 
-def _added(layers: list[Layer], name: str) -> Layer:
-    if len(layers) >= _MAX_LAYERS:
-        raise ValueError(f"{shown(name)} is one layer too many: at most {_MAX_LAYERS}")
-    return Layer(thickness=_NEW_THICKNESS, material=materials[name])
-
-
 def _with_joint(file: JointFile, **changes: Any) -> JointFile:
-    return replace(file, joint=replace(file.joint, name="", source="", **changes))
+    return replace(file, joint=_as_changed(replace(file.joint, **changes)))

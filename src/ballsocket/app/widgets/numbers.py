@@ -1,16 +1,60 @@
-"""Numbers of a joint that have inputs: their tables, typical ranges and units."""
+"""Numbers of a joint that have inputs: their tables, typical ranges, bounds and units."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ...core.kinds import Unit
 from ...core.quantities import JOINT, MATERIAL, QUANTITIES, Quantity
 from ...problem.dimensions import DIAMETERS
 from ...reports.unit_systems import Units
-from .fields import Field, number, typed
-from .reading import Reading, handy_step
+from .fields import Field, empty_number, number, typed
+from .reading import Reading, behind, box_text, handy_step
+
+_SMALL = 0.01
+"""Share of the largest number below which the smallest is hardly more than zero."""
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Smallest and largest number that a box accepts, in the unit of a joint file, and the reason."""
+
+    low: float
+    high: float
+    reason: str
+
+    def check(self, label: str, value: float, unit: Unit) -> float:
+        """Return a number of a table; raise ValueError, in the unit beside the box, for one out of bounds."""
+        if self.low <= value <= self.high:
+            return value
+        low, high, written = (box_text(number * unit.factor, unit.text) for number in (self.low, self.high, value))
+        rule = f"{low} to {high}{behind(unit.text)} ({self.reason})"
+        if value <= 0 <= self.low < _SMALL * self.high:
+            rule = "positive" if self.low else "zero or positive"
+        raise ValueError(f"{label} must be {rule}, got {written}{behind(unit.text)}")
+
+
+_BOUNDS = {
+    "ball_radius": Bounds(1e-3, 1e4, "from a grain to the sphere of a bridge bearing"),
+    "clearance": Bounds(0.0, 1e3, "a ball with more does not conform"),
+    "liner_thickness": Bounds(1e-4, 1e4, "from a coating to a block; tick the solid socket for more"),
+    "outer_radius": Bounds(1e-3, 3e4, "a ball, its liner and what is behind"),
+    "thickness": Bounds(1e-4, 1e4, "from a coating to a block"),
+    "young": Bounds(1e-3, 1.3e6, "from a gel to diamond"),
+    "poisson": Bounds(-0.999, 0.5, "the limits of an isotropic solid"),
+    "allowable_pressure": Bounds(1e-3, 1e5, "from a gel to diamond"),
+    "force": Bounds(0.0, 1e9, "a bridge bearing carries 1e8 N"),
+    "indentation": Bounds(0.0, 1e3, "no liner is thicker"),
+    "half_angle": Bounds(0.0, 180.0, "from the pole to its opposite"),
+    "tilt": Bounds(0.0, 180.0, "an angle to the cup's axis"),
+    "chamfer": Bounds(0.0, 1e3, "no rim is wider"),
+    "arc_of_cover": Bounds(40.0, 340.0, "the ball must stay in its socket"),
+    "inclination": Bounds(0.0, 90.0, "from an upright axis to a level one"),
+    "anteversion": Bounds(-90.0, 90.0, "from the back to the front"),
+    **dict.fromkeys(("inwards", "forwards"), Bounds(-80.0, 80.0, "the load must press into the body")),
+}
+"""Bounds of typed numbers in mm, N, MPa and degrees by key; files and links have the limits of the mechanics alone."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,45 +68,44 @@ class Number:
     step: float
     times: int = 1
     sizes: Sequence[float] = ()
+    label: str
 
     def unit(self, reading: Reading) -> Unit:
         """Return the unit beside the box, and the factor to it from the table's unit."""
         unit = reading.unit(self.quantity)
         return Unit(unit.text, self.times * unit.factor / self.quantity.written.factor)
 
-    def field(self, name: str, value: float, reading: Reading) -> Field:
-        """Return the input for a number of a table."""
-        unit, ratio = self.unit(reading), _ratio(self.quantity, reading)
+    def field(self, name: str, value: float | None, reading: Reading) -> Field:
+        """Return the input for a number of a table; an empty box that may stay empty for None."""
+        unit = self.unit(reading)
+        ratio = reading.unit(self.quantity).factor / self.quantity.shown.factor  # from the unit of metric pages
+        hint = f"{self.quantity.symbol}: {self.quantity.meaning}".removeprefix(": ").replace("`", "")
+        if value is None:
+            return {**empty_number(name, self.label, unit), "hint": hint}
         low, high = (float(f"{self.times * end * ratio:.3g}") for end in self.ends)
         step = self.times * self.step * ratio
-        made = number(
-            name, self.label, unit, (low, high), step if ratio == 1 else handy_step(step), value * unit.factor
-        )
-        return {**made, "sizes": self._sizes(reading)} if self.sizes else made
-
-    @property
-    def label(self) -> str:
-        """Title and symbol."""
-        title = self.quantity.title if self.key not in MATERIAL else MATERIAL[self.key].title
-        return f"{title[:1].upper()}{title[1:]} {self.quantity.symbol}".strip()
-
-    def _sizes(self, reading: Reading) -> list[str]:
-        """List the catalogue sizes, with their unit where the page has another."""
-        behind = "" if reading.units is Units.SI else " mm"
-        return [f"{self.times * size:g}{behind}" for size in self.sizes]
+        step = step if ratio == 1 else handy_step(step)
+        stated = (
+            "" if reading.units is Units.SI else " mm"
+        )  # catalogue sizes have their unit where the page has another
+        sizes = {"sizes": [f"{self.times * size:g}{stated}" for size in self.sizes]} if self.sizes else {}
+        return {**number(name, self.label, unit, (low, high), step, value * unit.factor), "hint": hint, **sizes}
 
     def meant(self, value: object, reading: Reading) -> float:
-        """Convert typed text to the number of the table; raise ValueError for other text."""
-        return typed(self.quantity.name, value, self.unit(reading), self.quantity.kind, self.times)
-
-
-def _ratio(quantity: Quantity, reading: Reading) -> float:
-    """Return the factor from the unit of metric pages to the chosen one."""
-    return reading.unit(quantity).factor / quantity.shown.factor
+        """Convert typed text to the number of the table; raise ValueError for other text and numbers out of bounds."""
+        unit = self.unit(reading)
+        number = typed(self.label, value, unit, self.quantity.kind, self.times)
+        return _BOUNDS[self.key].check(self.label, number, unit)
 
 
 def _number(name: str, table: str, key: str, ends: tuple[float, float], step: float, *sizes: float) -> Number:
-    return Number(table=table, key=key, quantity=QUANTITIES[name], ends=ends, step=step, sizes=sizes)
+    quantity = QUANTITIES[name]
+    label = f"{table.capitalize()} {MATERIAL[key].title}" if key in MATERIAL else _capital(quantity.title)
+    return Number(table=table, key=key, quantity=quantity, ends=ends, step=step, sizes=sizes, label=label)
+
+
+def _capital(title: str) -> str:
+    return f"{title[:1].upper()}{title[1:]}"
 
 
 NUMBERS: Mapping[str, Number] = {
@@ -84,7 +127,17 @@ _LOADS = {
 }
 THICKNESS = _number("thickness", "backing", "thickness", (0.5, 10.0), 0.1)
 ALLOWABLE = _number("allowable_pressure", "liner", "allowable_pressure", (1.0, 100.0), 0.5)
-TILT = _number("tilt", "load", "tilt", (0.0, 90.0), 1.0)
+TILT = replace(_number("tilt", "load", "tilt", (0.0, 90.0), 1.0), label="Load from the cup's axis")
+CUP_NUMBERS: Mapping[str, Number] = {
+    "inclination": _number("inclination", "cup", "inclination", (0.0, 90.0), 1.0),
+    "anteversion": _number("anteversion", "cup", "anteversion", (-30.0, 60.0), 1.0),
+    "arc_of_cover": _number("arc_of_cover", "cup", "arc_of_cover", (120.0, 220.0), 1.0),
+    "chamfer": _number("chamfer", "cup", "chamfer", (0.0, 3.0), 0.1),
+    "tilt": TILT,
+    "inwards": replace(TILT, key="inwards", ends=(-45.0, 45.0), label="Load direction, medial"),
+    "forwards": replace(TILT, key="forwards", ends=(-45.0, 45.0), label="Load direction, anterior"),
+}
+"""Numbers of a cup and of the direction of its load by input."""
 
 _SINGLE = {single: double for double, single in DIAMETERS.items()}
 
@@ -94,7 +147,8 @@ def number_of(name: str, size: str) -> Number:
     spec = NUMBERS[name]
     if size != "diameter" or name not in _SINGLE:
         return spec
-    return Number(**{**vars(spec), "quantity": JOINT[_SINGLE[name]], "times": 2})
+    quantity = JOINT[_SINGLE[name]]
+    return replace(spec, quantity=quantity, times=2, label=_capital(quantity.title))
 
 
 def load_of(kind: str) -> Number:

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import floor, isfinite, isnan, log10
+from functools import cached_property
+from math import floor, inf, isclose, isnan, log10
 
 from ...contact.describe import Column
 from ...core.kinds import Kind, Unit
 from ...core.quantities import CONTACT, JOINT, Quantity
 from ...reports.unit_systems import Units
 
-_DIGITS = 4
+_DIGITS, _BOX_DIGITS = 4, 5
+_INCH_DECIMALS = 4
+_LARGEST_PLAIN = 1e12
+"""Value from which numbers are written with an exponent."""
+
 _INCH = Unit("in", 1 / 25.4)
-_THOUSANDTH = 1e-3
+_CONVERTED_DIGITS = {"in": 4, "mil": 3, "lbf": 3, "psi": 3, "ksi": 3, "Mpsi": 3}
+"""Digits in a box of a number that was converted from metric units, by its unit."""
+
+_PSI_MULTIPLES = {"liner_young": ("ksi", 1e-3), "ball_young": ("Mpsi", 1e-6)}
+"""Units of Young's moduli on imperial pages, and their factors from psi."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +37,16 @@ class Reading:
             return Unit(quantity.unit) if self.angle == "radians" else quantity.shown
         if self.units is Units.IMPERIAL and quantity.kind is Kind.LENGTH and quantity.display_unit is None:
             return _INCH
-        return self.units.unit_of(quantity)
+        unit = self.units.unit_of(quantity)
+        if self.units is Units.IMPERIAL and quantity.name in _PSI_MULTIPLES:
+            text, factor = _PSI_MULTIPLES[quantity.name]
+            return Unit(text, factor * unit.factor)
+        return unit
+
+    def box_unit(self, quantity: Quantity) -> Unit:
+        """Return the unit beside an input, and the factor to it from the unit of files."""
+        unit = self.unit(quantity)
+        return Unit(unit.text, unit.factor / quantity.written.factor)
 
     @property
     def length(self) -> Unit:
@@ -42,22 +60,53 @@ class Reading:
     def with_unit(self, quantity: Quantity, value: float) -> str:
         """Write a number in internal units with its chosen unit."""
         unit = self.unit(quantity)
-        gap = "" if unit.text in ("", "°") else " "
-        return f"{number_text(value * unit.factor)}{gap}{unit.text}"
+        return f"{number_text(value * unit.factor, unit.text)}{behind(unit.text)}"
 
-    @property
+    @cached_property
     def columns(self) -> tuple[Column, ...]:
         """Every quantity of a contact."""
         return tuple(Column(quantity, self.unit(quantity)) for quantity in CONTACT.values())
 
 
-def number_text(value: float) -> str:
-    """Format a number with four digits; NaN and infinity in words."""
+def behind(unit: str) -> str:
+    """Return the text of a unit as it stands behind a number."""
+    return unit if unit in ("", "°") else f" {unit}"
+
+
+def number_text(value: float, unit: str = "") -> str:
+    """Format a number with four digits, inches with at most four decimals; NaN and infinity in words."""
     if isnan(value):
         return "no answer"
-    if 10**_DIGITS <= abs(value) < 1e12:
+    if 10**_DIGITS <= abs(value) < _LARGEST_PLAIN:
         return f"{value:.0f}"
-    return f"{value:.{_DIGITS}g}" if isfinite(value) else "∞"
+    return f"{_in_tenths(value, unit):.{_DIGITS}g}" if abs(value) < inf else "∞"
+
+
+def box_text(value: float, unit: str = "") -> str:
+    """Format a number for a box with at most five digits; fewer for one that was converted from metric units.
+
+    Examples
+    --------
+    >>> box_text(32 / 25.4, "in"), box_text(1.0625, "in"), box_text(674.427, "lbf")
+    ('1.26', '1.0625', '674')
+    """
+    text = _digits(value, _BOX_DIGITS)
+    if unit not in _CONVERTED_DIGITS or isclose(float(text), value, rel_tol=1e-9):
+        return text
+    return _digits(_in_tenths(value, unit), _CONVERTED_DIGITS[unit])
+
+
+def _digits(value: float, digits: int) -> str:
+    """Format a number with a number of digits, without an exponent if it is not too large."""
+    text = f"{value:.{digits}g}"
+    return f"{float(text):.0f}" if "e+" in text and abs(value) < _LARGEST_PLAIN else text
+
+
+def _in_tenths(value: float, unit: str) -> float:
+    """Round inches to four decimals, or to two digits where these are smaller."""
+    if unit != _INCH.text or not 0 < abs(value) < inf:
+        return value
+    return round(value, max(_INCH_DECIMALS, 1 - floor(log10(abs(value)))))
 
 
 def handy_step(step: float) -> float:

@@ -11,10 +11,11 @@ from ...catalogue import reference
 from ...compare import Comparison, relative_deviation
 from ...contact import Contact
 from ...contact.describe import COLUMNS, Column
-from ...contact.strength import unchecked_strength_reason, von_mises_ratio
-from ...contact.verdict import StrengthUse, strength_uses_at
 from ...core.kinds import Unit
-from ...core.quantities import HEADLINE, STRENGTH, Quantity
+from ...core.quantities import HEADLINE, Quantity
+from ...elasticity.off_axis.contact import OffAxisContact
+from ...problem.cup import Cup
+from ...reports.check_table import Check, checks_html, checks_of, verdict_of
 from ...reports.style import line_of
 from ...reports.unit_systems import Units
 from ..pictures.chart import swatch
@@ -41,17 +42,6 @@ def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
     return f"<div><dt>{escape(title)}</dt><dd>{number_text(value)}{behind}{small}</dd></div>"
 
 
-def progress(words: str, share: float | None, stop: str = "", again: str = "") -> str:
-    """Return a progress bar with buttons to stop or continue, named by the events they send."""
-    bar = "" if share is None else f"<progress max='1' value='{share:.3f}' aria-label='progress'></progress> "
-    buttons = "".join(
-        f" <button type='button' class='plain' data-tell='{value_text}'>{label}</button>"
-        for value_text, label in ((stop, "Stop"), (again, "Go on"))
-        if value_text
-    )
-    return f"<p class='quiet'>{bar}{escape(words)}{buttons}</p>"
-
-
 def trust(contact: Contact, notes: Sequence[str]) -> str:
     """Return validity and notes of a contact as HTML; words repeat what the colour shows."""
     return f"{doubt(bool(contact.valid))}{notes_list(notes) if notes else ''}"
@@ -65,38 +55,53 @@ def doubt(valid: bool, name: str = "") -> str:
 
 def models_table(comparison: Comparison, reading: Reading) -> str:
     """Tabulate the models with deviation from the exact result, validity and line style."""
-    shown = [column for column in reading.columns if column.attribute in HEADLINE]
-    heads = "".join(f"<th scope='col'>{escape(column.head)}</th>" for column in shown)
-    rows = "".join(_row(comparison, name, shown) for name in comparison)
+    exact = comparison.contacts.get(reference.name)
+    rows = [_row(name, contact, exact, reading) for name, contact in comparison.items()]
+    return f"{_table_of_models(rows, comparison, reading)}<p class='quiet'>Small: difference from the exact answer.</p>"
+
+
+def axial_models_table(comparison: Comparison, reading: Reading, real: Contact | None, excluded: str) -> str:
+    """Tabulate the contact in the real cup, and models of a load along its axis, which are `excluded` for a reason."""
+    first = [] if real is None else [_row(real.model.name, real, None, reading)]
+    rows = [_row(name, comparison[name], None, reading, f"no: {excluded}") for name in comparison]
+    return _table_of_models([*first, *rows], comparison, reading)
+
+
+def _shown_columns(reading: Reading) -> list[Column]:
+    return [column for column in reading.columns if column.attribute in HEADLINE]
+
+
+def _table_of_models(rows: Iterable[str], comparison: Comparison, reading: Reading) -> str:
+    """Return rows of models, and the reasons of the missing ones, as a table."""
+    shown = _shown_columns(reading)
+    heads = "".join(f"<th scope='col' title='{escape(column.title)}'>{escape(column.head)}</th>" for column in shown)
     missing = "".join(
         f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(shown) + 1}' class='text'>{escape(why)}</td></tr>"
         for name, why in comparison.missing.items()
     )
     return (
         "<div class='wide models' tabindex='0' role='region' aria-label='every model'><table>"
-        f"<tr><th scope='col'>model</th>{heads}<th scope='col' class='text'>trust it here?</th></tr>"
-        f"{rows}{missing}</table></div>"
-        "<p class='quiet'>Small: difference from the exact answer.</p>"
+        f"<tr><th scope='col'>model</th>{heads}<th scope='col' class='text'>valid here?</th></tr>"
+        f"{''.join(rows)}{missing}</table></div>"
     )
 
 
-def _row(comparison: Comparison, name: str, shown: list[Column]) -> str:
-    contact, apart = comparison[name], comparison.deviation(name)
-    cells = "".join(_number(column, contact, apart) for column in shown)
-    why = "yes" if bool(contact.valid) else f"no: {'; '.join(contact.notes)}"
-    kind = "reference" if name == reference.name else "valid" if bool(contact.valid) else "doubtful"
+def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading, excluded: str = "") -> str:
+    cells = "".join(_number(column, contact, exact) for column in _shown_columns(reading))
+    valid = bool(contact.valid) and not excluded
+    why = excluded or ("yes" if valid else f"no: {'; '.join(contact.notes)}")
+    kind = "doubtful" if not valid else "reference" if name == reference.name else "valid"
     head = f"<th scope='row'>{swatch(line_of(name))}{escape(name)}</th>"
     return f"<tr class='{kind}'>{head}{cells}<td class='text'>{escape(why)}</td></tr>"
 
 
-def _number(column: Column, contact: Contact, apart: Mapping[str, Any] | None) -> str:
-    """Return a table cell that carries its own heading for narrow pages."""
-    text = number_text(float(column.values_of(contact)))
-    return f"<td data-head='{escape(column.head)}'>{text}{_deviation_cell(apart, column.name)}</td>"
-
-
-def _deviation_cell(deviation: Mapping[str, Any] | None, name: str) -> str:
-    return "" if deviation is None else f"<small>{percent(float(deviation[name]), '+').replace('below', '<')}</small>"
+def _number(column: Column, contact: Contact, exact: Contact | None) -> str:
+    """Return a table cell with its deviation from the exact result, and its own heading for narrow pages."""
+    value, small = float(column.values_of(contact)), ""
+    if exact is not None and exact is not contact:
+        share = float(relative_deviation(value, float(column.values_of(exact))))
+        small = f"<small>{percent(share, '+').replace('below', '<')}</small>"
+    return f"<td data-head='{escape(column.head)}'>{number_text(value)}{small}</td>"
 
 
 def percent(share: float, sign: str = "") -> str:
@@ -140,117 +145,61 @@ def column_of(quantity: Quantity, unit: Unit) -> str:
     return f"{quantity.name}_{_SPELT.get(unit.text, unit.text).replace('/', '_per_').replace(' ', '_')}"
 
 
-_LITTLE_MARGIN = 0.8
-"""Utilisation above which the margin is small."""
-
-
-def estimate_von_mises(contact: Contact) -> float:
-    """Estimate the largest von Mises stress (MPa) in the liner by a fit, about 6 % off."""
-    joint = contact.joint
-    return float(von_mises_ratio(contact.half_angle, joint.liner.poisson, joint.thickness_ratio) * contact.max_pressure)
-
-
-def most_used(contact: Contact, von_mises: float) -> StrengthUse | None:
-    """Return the strength of liner or ball with the largest utilisation; None if unknown."""
-    return next(iter(strength_uses_at(contact, von_mises)), None)
-
-
-def verdict_sentence(contact: Contact, strength_use: StrengthUse | None) -> tuple[bool | None, str]:
-    """Return a verdict and its sentence; None without a strength or outside the validity."""
-    if strength_use is None or (strength_use.ratio <= 1 and not contact.joint.liner.strengths):
-        return None, f"No verdict: {unchecked_strength_reason(contact.joint)}. Enter the liner's allowable pressure."
-    if strength_use.ratio > 1:
-        return False, f"The {strength_use.part} is overloaded: {strength_use}"
-    if not bool(contact.valid):
-        return None, "No verdict: this contact is outside the range of its model"
-    margin = ", by a small margin" if strength_use.ratio > _LITTLE_MARGIN else ""
-    return True, f"The {strength_use.part} is within its strength{margin}"
-
-
 _MAIN_QUANTITY = "max_pressure"
 _AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
 """Quantities that repeat others if the pressure is largest at the pole."""
 
 
 def headline(
-    contact: Contact, exact: Contact | None, von_mises: float, reading: Reading, surely: str = "about "
+    contact: Contact, exact: Contact | None, cup: Cup, reading: Reading, von_mises: float | None = None
 ) -> str:
-    """Return the numbers of a contact as HTML; `surely` precedes a utilisation from `von_mises` (MPa)."""
-    strength_use = most_used(contact, von_mises)
+    """Return the numbers and checks of a contact as HTML; `von_mises` (MPa) and slow notes may follow."""
     listed = [
         column
         for column in reading.columns
-        if column.attribute != _MAIN_QUANTITY and not _repeats_pole(column, contact)
+        if column.attribute not in (_MAIN_QUANTITY, *(_AT_THE_POLE if float(contact.max_pressure_angle) == 0 else ()))
     ]
     first = next(column for column in reading.columns if column.attribute == _MAIN_QUANTITY)
     cells = "".join(_quantity_cell(column, contact) for column in listed)
+    notes = contact.quick_notes if von_mises is None else contact.notes
     return (
         f"<dl class='first'>{_quantity_cell(first, contact)}</dl>"
-        f"{_utilisation_bar(strength_use, surely, contact, reading)}"
-        f"{_verdict_line(contact, strength_use)}{trust(contact, _notes(contact))}"
+        f"{checked(checks_of(contact, cup, von_mises), reading)}{trust(contact, _unstated(contact, notes))}"
         f"<dl class='numbers'>{cells}</dl><p class='quiet'>{escape(accuracy_sentence(contact, exact))}</p>"
     )
 
 
-def _notes(contact: Contact) -> list[str]:
-    """List the notes; omit the utilisation note where the verdict already states it."""
-    return [note for note in contact.notes if contact.joint.liner.strengths or note != contact.utilisation_note]
+def checked(rows: Sequence[Check], reading: Reading) -> str:
+    """Return the verdict on checks in one sentence, and their table, as HTML."""
+    passes, sentence = verdict_of(rows)
+    kind, sign = {True: ("yes", "✓ "), False: ("no", "✗ "), None: ("quiet", "")}[passes]
+    verdict = f"<p class='verdict {kind}' role='status'>{sign}{escape(sentence)}</p>"
+    return f"{verdict}{checks_html(rows, reading.with_unit) if rows else ''}"
 
 
-def _repeats_pole(column: Column, contact: Contact) -> bool:
-    return column.attribute in _AT_THE_POLE and float(contact.max_pressure_angle) == 0
+def _unstated(contact: Contact, notes: Iterable[str]) -> list[str]:
+    """List notes without that on utilisation where the verdict already states it."""
+    return [note for note in notes if contact.joint.liner.strengths or note != contact.utilisation_note]
 
 
 def _quantity_cell(column: Column, contact: Contact) -> str:
     value = float(column.values_of(contact))
     unit = "" if value != value else f" <span class='unit'>{escape(column.unit)}</span>"
     return (
-        f"<div><dt>{escape(column.title)} <i>{escape(column.symbol)}</i></dt>"
+        f"<div><dt title='{escape(column.symbol)}'>{escape(column.title)}</dt>"
         f"<dd data-name='{column.attribute}' data-value='{value!r}'>{number_text(value)}{unit}</dd></div>"
     )
 
 
-def _utilisation_bar(strength_use: StrengthUse | None, surely: str, contact: Contact, reading: Reading) -> str:
-    """Return the utilisation as a bar and in words."""
-    if strength_use is None or strength_use.ratio != strength_use.ratio:
-        return ""
-    about = "" if strength_use.strength == "allowable_pressure" else surely
-    name = getattr(contact.joint, strength_use.part).name or strength_use.part
-    text = f"{about}{strength_use} ({name}, {reading.with_unit(STRENGTH[strength_use.strength], strength_use.allowed)})"
-    kind = "yes" if strength_use.ratio <= 1 else "no"
-    return (
-        f"<div class='bar' aria-hidden='true'>"
-        f"<i class='{kind}' style='width:{min(100.0, 100 * strength_use.ratio):.1f}%'></i>"
-        f"</div><p class='share'>{escape(text)}</p>"
-    )
-
-
-def _verdict_line(contact: Contact, strength_use: StrengthUse | None) -> str:
-    holds, words = verdict_sentence(contact, strength_use)
-    kind, sign = {True: ("yes", "✓ "), False: ("no", "✗ "), None: ("quiet", "")}[holds]
-    return f"<p class='verdict {kind}' role='status'>{sign}{escape(words)}</p>"
-
-
 def accuracy_sentence(contact: Contact, exact: Contact | None) -> str:
-    """State the largest deviation from the exact result; empty if unknown."""
-    apart = (
-        _estimated_error(contact)
-        if exact is None or exact.model.name == contact.model.name
-        else _largest_deviation(contact, exact)
-    )
-    if apart != apart or apart == 0:
+    """State the estimated error in a real cup, else the largest deviation from the exact result; empty if unknown."""
+    if isinstance(contact, OffAxisContact):
+        return f"Estimated error of the largest pressure in the real cup: {percent(contact.error['max_pressure'])}"
+    if exact is None or exact.model.name == contact.model.name:
+        known = [float(error) for error in getattr(contact, "error", {}).values()]
+    else:
+        known = [float(relative_deviation(column.values_of(contact), column.values_of(exact))) for column in COLUMNS]
+    apart = max((abs(share) for share in known if share == share), default=0.0)
+    if apart == 0:
         return ""
     return f"All within {100 * max(apart, 1e-5):.2g} % of the exact answer"
-
-
-def _estimated_error(contact: Contact) -> float:
-    """Return the largest estimated error of an exact result."""
-    known: dict[str, Any] = getattr(contact, "error", {})
-    return max((float(error) for error in known.values()), default=float("nan"))
-
-
-def _largest_deviation(contact: Contact, exact: Contact) -> float:
-    deviations = [
-        abs(float(relative_deviation(column.values_of(contact), column.values_of(exact)))) for column in COLUMNS
-    ]
-    return max((share for share in deviations if share == share), default=float("nan"))

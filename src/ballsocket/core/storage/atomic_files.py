@@ -226,7 +226,7 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
     compute : function
         Computes the array.
     """
-    path = cache_folder() / f"cup-{sha256(f'{_CACHE_VERSION} {key!r}'.encode()).hexdigest()[:32]}.npz"
+    path = _cached_path(key)
     array = _read_cached_array(path)
     if array is None:
         array = compute()
@@ -235,6 +235,15 @@ def cached_array(key: object, compute: Callable[[], Numbers]) -> Numbers:
             write_arrays(path, rings=array)
             _remove_oldest_files(path.parent)
     return array
+
+
+def is_array_cached(key: object) -> bool:
+    """Return True if the cache folder has the array of these inputs."""
+    return _cached_path(key).is_file()
+
+
+def _cached_path(key: object) -> Path:
+    return cache_folder() / f"cup-{sha256(f'{_CACHE_VERSION} {key!r}'.encode()).hexdigest()[:32]}.npz"
 
 
 def cache_folder() -> Path:

@@ -133,6 +133,14 @@ class ElasticContact(SolvedContact):
         """Notes of the contact, with one on a hemisphere that differs by more than 1 %."""
         return (*super().notes, *self._hemisphere_note())
 
+    @property
+    def quick_notes(self) -> tuple[str, ...]:
+        """Notes without the numbers of a hemisphere."""
+        follows = self.hemisphere_change_bound("largest") > NOTED_CHANGE and not bool(
+            numpy.all(arrays.to_numpy(self._failed))
+        )
+        return (*super().notes, *((_PREPARING,) if follows else ()))
+
     def _hemisphere_note(self) -> list[str]:
         """Return a note on the changes on a hemisphere, or no note if none exceeds 1 %."""
         if self.hemisphere_change_bound("largest") <= NOTED_CHANGE:
@@ -150,7 +158,7 @@ class ElasticContact(SolvedContact):
         """True for a single contact whose half angle is large enough for a sum of modes."""
         return prod(self.laws.shape) == 1 and bool(self.single_state.half_angle[0] >= MIN_HALF_ANGLE)
 
-    @property
+    @cached_property
     def _hemisphere_von_mises_change(self) -> float:
         """Relative change of the largest von Mises stress in the liner, from the closed sphere to a hemisphere."""
         state: AbelState = self.single_state.single_contact(0)
@@ -234,6 +242,9 @@ def _hemisphere_changes(contacts: JointContacts) -> numpy.ndarray:
     """Compute the relative change of each quantity if the socket is a hemisphere: (quantities, contacts)."""
     changes = hemisphere_of(contacts.state.kernel).changes(contacts.state.half_angle)
     return numpy.stack([changes[name] for name in CHANGES])
+
+
+_PREPARING = "closed sphere: preparing its differences from a hemisphere with a free rim"
 
 
 def _describe_changes(changes: dict[str, numpy.ndarray]) -> str:

@@ -107,6 +107,17 @@ _BATCH_CELLS = 150_000
 """Number of cells that are solved together: more exceed the processor's cache."""
 
 
+class Equilibria(Protocol):
+    """Solved balls: displacement (batch, 3), pressure (batch, rings, meridians) and converged (batch,)."""
+
+    @property
+    def displacement(self) -> Numbers: ...
+    @property
+    def pressure(self) -> Numbers: ...
+    @property
+    def converged(self) -> Numbers: ...
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EquilibriumBatch:
     """Positions of the ball with their contacts.
@@ -124,6 +135,11 @@ class EquilibriumBatch:
     displacement: Numbers
     pressure: Numbers
     converged: Numbers
+
+    def store(self, indices: Numbers, part: Equilibria) -> None:
+        """Copy the solved balls of a part to these indices."""
+        for name in ("displacement", "pressure", "converged"):
+            getattr(self, name)[indices] = getattr(part, name)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -81,10 +81,10 @@ class Compliance:
 
     def displacement_in_single_precision(self, pressure: Numbers) -> Numbers:
         """Compute the sum of both surface displacements in mm from pressures in MPa, in single precision."""
-        return self._single_precision_softness(pressure)
+        return self.single_precision_softness(pressure)
 
     @cached_property
-    def _single_precision_softness(self) -> AxisymmetricOperator | UniformOperator:
+    def single_precision_softness(self) -> AxisymmetricOperator | UniformOperator:
         """Operator from pressures to displacements in single precision."""
         return self.softness.in_single_precision()
 

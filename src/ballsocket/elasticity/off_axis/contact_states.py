@@ -2,16 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy
 
 from ...contact.per_joint import QUANTITIES
 from ...core.arrays import Numbers
 from .bore_contact import BoreContact, EquilibriumBatch
-from .contact_patch import ContactPatch, tangents_at
+from .contact_patch import ContactPatch
+from .lane_solver import can_solve_lanes, solve_tangents
+from .patch_measures import (
+    CellArrays,
+    Patches,
+    axis_pressures,
+    edge_loaded,
+    edge_margins,
+    half_angles,
+    largest_pressures,
+    make_cell_arrays,
+    measure_edges,
+    tangents_at,
+)
 from .surfaces import EdgeRelation
 
 _PRESSURE_ERRORS = {
@@ -29,6 +43,9 @@ _EDGE_ERRORS = {"half_angle": 0.1, "stiffness": 0.6}
 
 Both were measured against the exact solution. A test repeats this for random contacts.
 """
+
+_MEASURED_CONTACTS = 8
+"""Number of contacts that are measured together."""
 
 _FRICTION_AXES = 4
 """Number of axes around the load over which a friction torque is averaged."""
@@ -71,6 +88,28 @@ class ContactStates:
     too_wide: Numbers | bool = False
 
     @property
+    def converged(self) -> Numbers:
+        """True where the iteration converged: (contacts,)."""
+        return self.equilibrium.converged
+
+    @property
+    def components(self) -> Numbers:
+        """Components of the axes of the loads: (3, contacts)."""
+        return self.axes.T
+
+    @property
+    def loaded_area(self) -> Numbers:
+        """Area of the loaded cells on a unit sphere: (contacts,)."""
+        area: Numbers = ((self.equilibrium.pressure > 0) * self.bore.compliance.grid.areas).sum(axis=(1, 2))
+        return area
+
+    @property
+    def rim_level(self) -> Numbers:
+        """Largest level in mm over the cells of the ring at the rim: (contacts,)."""
+        largest: Numbers = self.levels[:, -1].max(axis=1)
+        return largest
+
+    @property
     def unconverged(self) -> Numbers:
         """Flag of each contact: 1 if its iteration did not converge, else 0."""
         return (~self.equilibrium.converged & ~self.dislocated).astype(float)
@@ -90,11 +129,32 @@ class ContactStates:
         )
 
     @cached_property
+    def _cells(self) -> CellArrays:
+        """Arrays of the grid."""
+        return make_cell_arrays(self.bore.compliance.grid, self.edges.inset)
+
+    def _measure(self, measure: Callable[..., Numbers], *values: Numbers) -> Numbers:
+        """Measure all contacts by a function of cells and values, in blocks that fit into the processor's cache."""
+        starts = range(0, max(len(self.axes), 1), _MEASURED_CONTACTS)
+        blocks = [[array[i : i + _MEASURED_CONTACTS] for array in values] for i in starts]
+        with numpy.errstate(all="ignore"):  # rays that miss the rim
+            return numpy.concatenate([measure(self._cells, *block) for block in blocks])
+
+    def _measure_patches(self, measure: Callable[[CellArrays, Patches], Numbers]) -> Numbers:
+        """Measure all contacts by a function of cells and patches."""
+        return self._measure(
+            lambda cells, *block: measure(cells, Patches(*block)), self.equilibrium.pressure, self.levels, self.axes
+        )
+
+    @cached_property
     def levels(self) -> Numbers:
         """Level in mm of every cell: positive in the contact, minus the gap outside: (contacts, rings, meridians)."""
-        p = self.equilibrium.pressure
-        gap = self.bore.compliance.displacement(p) - self.bore.gap.overlap(self.equilibrium.displacement)
-        return self.edges.levels(p, gap)
+        return self._measure(self._block_levels, self.equilibrium.pressure, self.equilibrium.displacement)
+
+    def _block_levels(self, _cells: CellArrays, pressure: Numbers, displacement: Numbers) -> Numbers:
+        """Compute the levels of a block of contacts; single precision suffices for gaps."""
+        deformed = self.bore.compliance.displacement_in_single_precision(pressure)
+        return self.edges.levels(pressure, deformed - self.bore.gap.overlap(displacement))
 
     @cached_property
     def force_vector(self) -> Numbers:
@@ -153,8 +213,15 @@ class ContactStates:
     def tangent(self) -> Numbers:
         """Tangent stiffness matrices in N/mm: (3, 3, contacts)."""
         displacement, pressure = self.equilibrium.displacement, self.equilibrium.pressure
-        sensitivity = self.bore.pressure_sensitivity(displacement, pressure, tolerance=1e-6)
-        return numpy.moveaxis(self.bore.tangent(sensitivity), 0, -1)
+        if can_solve_lanes(self.bore):
+            return numpy.moveaxis(solve_tangents(self.bore, pressure), 0, -1)
+        blocks = self.bore.split_into_blocks(numpy.arange(len(pressure)))
+        tangents = [self._solve_tangent(displacement[block], pressure[block]) for block in blocks]
+        return numpy.moveaxis(numpy.concatenate([numpy.zeros((0, 3, 3)), *tangents]), 0, -1)
+
+    def _solve_tangent(self, displacement: Numbers, pressure: Numbers) -> Numbers:
+        """Compute the tangent stiffness matrices of some contacts in N/mm: (contacts, 3, 3)."""
+        return self.bore.tangent(self.bore.pressure_sensitivity(displacement, pressure, tolerance=1e-6))
 
     @property
     def stiffness(self) -> Numbers:
@@ -179,31 +246,46 @@ class ContactStates:
         p = self.equilibrium.pressure
         return self.bore.area * self.bore.compliance.grid.integrate_product(p, numpy.ones_like(p))
 
-    @property
+    @cached_property
     def half_angle(self) -> Numbers:
         """Half angles in rad of round contacts of the same area."""
-        return numpy.array([patch.half_angle for patch in self.patches])
+        return self._measure_patches(
+            lambda cells, patches: half_angles(cells, patches, measure_edges(cells, patches)[1])
+        )
 
     @property
     def edge_loaded(self) -> Numbers:
         """Flag of each contact: 1 if there is pressure at the end of the bore, else 0."""
-        return numpy.array([patch.edge_loaded for patch in self.patches]).astype(float)
+        return numpy.asarray(edge_loaded(self.equilibrium.pressure)).astype(float)
+
+    @cached_property
+    def edge_margin(self) -> Numbers:
+        """Angle in rad from the edge of each contact to the end of the bore; 0 if it reaches the end."""
+        return self._measure_patches(edge_margins)
 
     @property
     def unbounded(self) -> Numbers:
         """Flag of each contact: 1 if the end of the bore indents the ball with an unbounded pressure, else 0."""
         return self.edge_loaded * (not self.edges.bounded)
 
+    @cached_property
+    def _largest(self) -> Numbers:
+        """Largest pressure of each contact in MPa, and the unit vector to it: (contacts, 4)."""
+        return self._measure(
+            lambda cells, pressure, axis: numpy.column_stack(largest_pressures(cells, pressure, axis)),
+            self.equilibrium.pressure,
+            self.axes,
+        )
+
     @property
     def max_pressure(self) -> Numbers:
         """Largest pressure in MPa, infinite where the end of the bore indents the ball."""
-        largest = numpy.array([patch.largest[0] for patch in self.patches])
-        return numpy.where(self.unbounded == 1, numpy.inf, largest)
+        return numpy.where(self.unbounded == 1, numpy.inf, self._largest[:, 0])
 
     @property
     def max_pressure_at(self) -> Numbers:
         """Unit vectors to the largest pressures: (3, contacts)."""
-        return numpy.array([patch.largest[1] for patch in self.patches]).reshape(-1, 3).T
+        return self._largest[:, 1:].T
 
     @property
     def max_pressure_angle(self) -> Numbers:
@@ -214,7 +296,7 @@ class ContactStates:
     @property
     def pole_pressure(self) -> Numbers:
         """Pressure in MPa at the axis of the load."""
-        return numpy.array([float(patch.pressure_at(patch.axis)) for patch in self.patches])
+        return self._measure(axis_pressures, self.equilibrium.pressure, self.axes)
 
     def pressure(self, angle: Numbers) -> Numbers:
         """Interpolate the pressure in MPa at angles (..., contacts) in rad from the load towards the rim.
@@ -224,34 +306,100 @@ class ContactStates:
         columns = [patch.pressure_along(angle[:, i]) for i, patch in enumerate(self.patches)]
         return numpy.stack(columns, axis=-1) if columns else numpy.zeros_like(angle)
 
-    def errors(self, load_kind: str) -> dict[str, Numbers]:
-        """Estimate the relative error of each quantity from the width of the contact in rings.
 
-        The prescribed quantity, `load_kind`, is exact. A prescribed half angle propagates its own error.
-        """
-        grid = self.bore.compliance.grid
-        area = ((self.equilibrium.pressure > 0) * grid.areas).sum(axis=(1, 2))
-        square = grid.width**2 * numpy.pi / numpy.maximum(area, grid.areas.min())  # (width / half angle)²
-        errors = {name: _MIN_ERROR + factor * square for name, factor in _PRESSURE_ERRORS.items()}
-        errors |= {name: _MIN_ERROR + factor * numpy.sqrt(square) for name, factor in _EDGE_ERRORS.items()}
-        if load_kind == "half_angle":
-            return {
-                name: errors[name] + exponent * errors[load_kind] for name, exponent in self._angle_exponents().items()
-            }
-        errors[load_kind] = 0.0 * square
-        return {name: errors[name] for name in QUANTITIES}
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactSummaries:
+    """Numbers of the contacts of one joint without their fields; the names are those of `ContactStates`.
 
-    def _angle_exponents(self) -> dict[str, Numbers]:
-        """Compute the logarithmic derivative of each quantity by the half angle, for a contact on springs.
+    Arrays have a last axis of contacts.
+    """
 
-        On springs the indentation grows as 1/cos ε - 1.
-        """
-        angle = numpy.minimum(self.half_angle, 1.5)
-        x = numpy.cos(angle)
-        growth = angle / numpy.tan(angle / 2) / x
-        exponents = dict.fromkeys(QUANTITIES, growth)
-        exponents |= {"force": (2 - 2 * (1 - x) * (1 + x) / (2 + x)) * growth, "energy": (2 + x) * growth}
-        return exponents | {"pressure_integral": (1 + x) * growth, "half_angle": 0.0 * x}
+    bore: BoreContact
+    edges: EdgeRelation
+    solve: LoadSolver
+    load: Numbers
+    components: Numbers
+    dislocated: Numbers
+    converged: Numbers
+    reachable: Numbers
+    force_vector: Numbers
+    displacement: Numbers
+    force: Numbers
+    indentation: Numbers
+    half_angle: Numbers
+    loaded_area: Numbers
+    max_pressure: Numbers
+    max_pressure_at: Numbers
+    max_pressure_angle: Numbers
+    pole_pressure: Numbers
+    tangent: Numbers
+    stiffness: Numbers
+    energy: Numbers
+    pressure_integral: Numbers
+    edge_loaded: Numbers
+    unbounded: Numbers
+    edge_margin: Numbers
+    rim_level: Numbers
+
+    @property
+    def axes(self) -> Numbers:
+        """Unit vectors of the loads in the cup's frame: (contacts, 3)."""
+        return self.components.T
+
+    @property
+    def unconverged(self) -> Numbers:
+        """Flag of each contact: 1 if its iteration did not converge, else 0."""
+        return (~self.converged & ~self.dislocated).astype(float)
+
+    def __getattr__(self, name: str) -> Any:
+        """Raise ValueError for what needs the pressure fields."""
+        if hasattr(ContactStates, name) or name == "equilibrium":
+            raise ValueError(f'{name} needs the pressure fields: press with keep="fields" for it')
+        raise AttributeError(name)
+
+
+def summarise(blocks: Iterable[ContactStates]) -> ContactSummaries:
+    """Compute the summaries of blocks of contacts, one block after the other."""
+    shared: dict[str, Any] = {}
+    collected: dict[str, list[Numbers]] = {}
+    for states in blocks:
+        for field in fields(ContactSummaries):
+            value = getattr(states, field.name)
+            if isinstance(value, numpy.ndarray):
+                collected.setdefault(field.name, []).append(value)
+            else:
+                shared[field.name] = value
+    joined: dict[str, Any] = {name: numpy.concatenate(values, axis=-1) for name, values in collected.items()}
+    return ContactSummaries(**shared, **joined)
+
+
+def estimate_errors(states: ContactStates | ContactSummaries, load_kind: str) -> dict[str, Numbers]:
+    """Estimate the relative error of each quantity from the width of the contact in rings.
+
+    The prescribed quantity, `load_kind`, is exact. A prescribed half angle propagates its own error.
+    """
+    grid = states.bore.compliance.grid
+    square = grid.width**2 * numpy.pi / numpy.maximum(states.loaded_area, grid.areas.min())  # (width / half angle)²
+    errors = {name: _MIN_ERROR + factor * square for name, factor in _PRESSURE_ERRORS.items()}
+    errors |= {name: _MIN_ERROR + factor * numpy.sqrt(square) for name, factor in _EDGE_ERRORS.items()}
+    if load_kind == "half_angle":
+        exponents = _angle_exponents(states.half_angle)
+        return {name: errors[name] + exponent * errors[load_kind] for name, exponent in exponents.items()}
+    errors[load_kind] = 0.0 * square
+    return {name: errors[name] for name in QUANTITIES}
+
+
+def _angle_exponents(half_angle: Numbers) -> dict[str, Numbers]:
+    """Compute the logarithmic derivative of each quantity by the half angle, for a contact on springs.
+
+    On springs the indentation grows as 1/cos ε - 1.
+    """
+    angle = numpy.minimum(half_angle, 1.5)
+    x = numpy.cos(angle)
+    growth = angle / numpy.tan(angle / 2) / x
+    exponents = dict.fromkeys(QUANTITIES, growth)
+    exponents |= {"force": (2 - 2 * (1 - x) * (1 + x) / (2 + x)) * growth, "energy": (2 + x) * growth}
+    return exponents | {"pressure_integral": (1 + x) * growth, "half_angle": 0.0 * x}
 
 
 def _unit_vectors_of(vectors: Numbers) -> Numbers:

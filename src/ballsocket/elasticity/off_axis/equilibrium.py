@@ -1,5 +1,8 @@
 """Equilibrium of the ball under prescribed loads, by Newton's method for a batch of balls.
 
+The coupled search of `lane_solver` comes first where it applies. The guarded search here solves what remains: warm
+starts, springs, circular gaps, small grids, and loads at first touch or at the limit of the bore.
+
 The total potential, stored energy minus the work of the load, is least at equilibrium. A step that increases both this
 potential and the residual force is rejected and shortened. The tangent is solved at the start and after steps that gain
 little. Between these, secants of the computed forces update it (Broyden, Fletcher, Goldfarb, Shanno).
@@ -13,6 +16,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from .bore_contact import BoreContact, EquilibriumBatch
+from .lane_solver import coarser_lanes, solve_lanes
 from .pressure_solver import TOLERANCE, solve_pressure
 
 _MAX_ITERATIONS = 80
@@ -76,11 +80,14 @@ def solve_force(
     )
     preload = bore.area * bore.compliance.uniform_stiffness * max(-bore.gap.clearance, 0.0)
     force_scale = numpy.maximum(numpy.linalg.norm(load, axis=1), preload)
+    coarser = coarser_lanes(bore)
+    if pressure is None and coarser is not None:
+        lanes = solve_lanes(bore, coarser, load[held], force_scale[held], start[held], _FORCE_TOLERANCE)
+        solution.store(numpy.flatnonzero(held), lanes)
+        held = held & ~solution.converged
     for block in bore.split_into_blocks(numpy.flatnonzero(held)):
         initial = None if pressure is None else pressure[block]
-        result = _solve_block(bore, load[block], force_scale[block], start[block], initial)
-        solution.displacement[block], solution.pressure[block] = result.displacement, result.pressure
-        solution.converged[block] = result.converged
+        solution.store(block, _solve_block(bore, load[block], force_scale[block], start[block], initial))
     return solution
 
 

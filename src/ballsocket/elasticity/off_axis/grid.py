@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, pi
+from typing import Any
 
 import numpy
 
@@ -152,6 +153,42 @@ class Grid:
         sums = numpy.add.reduceat(rows, starts, axis=2) / numpy.add.reduceat(self.ring_areas, starts)[:, None]
         attenuation = numpy.sinc(2 * m / self.meridians) / numpy.sinc(m / self.meridians)
         return sums * (attenuation**2)[:, None, None]
+
+    def points(self, ring_share: float, column_share: float) -> Numbers:
+        """Compute unit vectors (cells, 3) to the points at these fractions of the widths of all cells."""
+        polar = (self.edges[:-1] + ring_share * numpy.diff(self.edges))[:, None]
+        azimuth = (numpy.arange(self.meridians) + column_share) * (2 * pi / self.meridians)
+        return unit_vectors(polar, azimuth).reshape(3, -1).T
+
+    def interpolation_matrix(self, directions: Numbers) -> Any:
+        """Make the sparse matrix (directions, cells) that interpolates between the middles of the cells.
+
+        It is bilinear in polar angle and azimuth, and passes the pole in a straight line. The field is constant between
+        the last middle and the end of the grid, and 0 beyond.
+
+        Parameters
+        ----------
+        directions : array (directions, 3)
+            Unit vectors in the frame of the grid.
+        """
+        from scipy.sparse import csr_matrix  # slow to import
+
+        polar = numpy.arccos(numpy.clip(directions[:, 2], -1.0, 1.0))
+        column = numpy.arctan2(directions[:, 1], directions[:, 0]) * (self.meridians / (2 * pi)) - 0.5
+        nodes = numpy.concatenate([[-self.polar[0]], self.polar])  # the first ring on the other side of the pole
+        lower = numpy.clip(numpy.searchsorted(nodes, polar) - 1, 0, len(nodes) - 2)
+        ring_share = numpy.clip((polar - nodes[lower]) / (nodes[lower + 1] - nodes[lower]), 0.0, 1.0)
+        left = numpy.floor(column).astype(int)
+        column_share = column - left
+        cells, weights = [], []
+        for ring, by_ring in ((lower - 1, 1 - ring_share), (lower, ring_share)):
+            beyond = numpy.where(ring < 0, self.meridians // 2, 0)
+            for step, by_column in ((0, 1 - column_share), (1, column_share)):
+                cells.append(numpy.maximum(ring, 0) * self.meridians + (left + step + beyond) % self.meridians)
+                weights.append(numpy.where(polar <= self.reach, by_ring * by_column, 0.0))
+        rows = numpy.tile(numpy.arange(len(directions)), len(cells))
+        entries = (numpy.concatenate(weights), (rows, numpy.concatenate(cells)))
+        return csr_matrix(entries, (len(directions), self.rings * self.meridians))
 
     def integrate_product(self, first: Numbers, second: Numbers) -> Numbers:
         """Integrate the product of two fields (..., rings, meridians) over a unit sphere."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from math import pi, radians
 from types import MappingProxyType
@@ -9,9 +10,10 @@ from types import MappingProxyType
 import numpy
 
 from ...core.arrays import Numbers
+from ...core.executors.processes import check_memory, count_text
 from ...models.kinematics import versine_of
 from .bore_contact import BoreContact, initial_displacement
-from .contact_states import ContactStates, LoadSolver
+from .contact_states import ContactStates, ContactSummaries, LoadSolver, summarise
 from .directions import polar_angle, unit_vectors
 from .equilibrium import solve_force
 from .surfaces import EdgeRelation
@@ -148,14 +150,14 @@ _TILT_TOLERANCE = radians(0.02)
 _POLE_TILT = 1e-6  # rad: tilt of an axial load that still defines a meridian
 
 
-def edge_margins(states: ContactStates) -> Numbers:
+def edge_margins(states: ContactStates | ContactSummaries) -> Numbers:
     """Compute the smallest angles in rad from the edges of contacts to the end of the bore: (contacts,).
 
     A contact that reaches the end has a negative margin. Its size is the rotation of the load, or of a prescribed
     displacement, back towards the dome until the contact just touches the end.
     """
-    margins = _patch_margins(states)
-    cut_indices = numpy.flatnonzero((states.edge_loaded == 1) & states.equilibrium.converged)
+    margins = states.edge_margin.copy()
+    cut_indices = numpy.flatnonzero((states.edge_loaded == 1) & states.converged)
     if len(cut_indices):
         margins[cut_indices] = numpy.minimum(
             _rim_contact_tilts(states, cut_indices) - polar_angle(states.axes[cut_indices].T), 0.0
@@ -163,26 +165,26 @@ def edge_margins(states: ContactStates) -> Numbers:
     return margins
 
 
-def _rim_contact_tilts(states: ContactStates, cut_indices: Numbers) -> Numbers:
+def _rim_contact_tilts(states: ContactStates | ContactSummaries, cut_indices: Numbers) -> Numbers:
     """Compute the tilts of the loads in rad at which the contacts `cut_indices` just touch the end of the bore."""
     x, y, _ = states.axes[cut_indices].T
     worn = bool(states.bore.gap.depth.any())  # otherwise all meridians are the same
     azimuth = numpy.arctan2(y, x) if worn else 0.0 * x
     rows, group = numpy.unique(numpy.stack([states.load[cut_indices], azimuth]), axis=1, return_inverse=True)
-    group, tilt, level = group.ravel(), polar_angle(states.axes[cut_indices].T), _max_rim_levels(states)[cut_indices]
+    group, tilt, level = group.ravel(), polar_angle(states.axes[cut_indices].T), states.rim_level[cut_indices]
     smallest = numpy.array([numpy.flatnonzero(group == i)[tilt[group == i].argmin()] for i in range(rows.shape[1])])
     load, azimuth = rows
     return _solve_rim_contact(states, load, azimuth, tilt[smallest], level[smallest])[group]
 
 
 def _solve_rim_contact(
-    states: ContactStates, load: Numbers, azimuth: Numbers, high: Numbers, high_level: Numbers
+    states: ContactStates | ContactSummaries, load: Numbers, azimuth: Numbers, high: Numbers, high_level: Numbers
 ) -> Numbers:
     """Find the tilts in rad at which the level at the rim is 0, by the Illinois method.
 
     Parameters
     ----------
-    states : ContactStates
+    states : ContactStates or ContactSummaries
     load, azimuth : array (n,)
     high, high_level : array (n,)
         Tilts in rad at which the rim is loaded, and the levels there in mm.
@@ -196,8 +198,8 @@ def _solve_rim_contact(
     indices, low = numpy.arange(len(load)), numpy.full(len(load), _POLE_TILT)
     axial = solve_tilted(indices, low)
     filled = ~axial.equilibrium.converged | (axial.edge_loaded == 1)
-    low_level, high_level, root = _max_rim_levels(axial), high_level.copy(), low.copy()
-    margin = _patch_margins(axial)
+    low_level, high_level, root = axial.rim_level, high_level.copy(), low.copy()
+    margin = axial.edge_margin
     guess = low + margin  # first touch of a rigid rim
     active, previous_free = indices[~filled & (high > low)], numpy.full(len(load), -1)
     for _ in range(_MAX_TILT_STEPS):
@@ -207,7 +209,7 @@ def _solve_rim_contact(
         tilt = (low[active] * above - high[active] * below) / (above - below)
         tilt = numpy.where(guess[active] < high[active], guess[active], tilt)  # excludes NaN and infinity
         trial = solve_tilted(active, tilt)
-        level, trial_margin = _max_rim_levels(trial), _patch_margins(trial)
+        level, trial_margin = trial.rim_level, trial.edge_margin
         with numpy.errstate(divide="ignore", invalid="ignore"):
             secant = tilt + trial_margin * (tilt - low[active]) / (margin[active] - trial_margin)
         free = level <= 0
@@ -227,20 +229,53 @@ def _solve_rim_contact(
     return numpy.where(filled, _overhang_angles(axial), root)
 
 
-def _patch_margins(states: ContactStates) -> Numbers:
-    """Return the angle in rad from each contact's edge to the end of the bore: (contacts,)."""
-    return numpy.array([patch.edge_margin for patch in states.patches])
-
-
-def _max_rim_levels(states: ContactStates) -> Numbers:
-    """Return the largest level in mm of each contact over the cells of the ring at the rim: (contacts,)."""
-    largest: Numbers = states.levels[:, -1].max(axis=1)
-    return largest
-
-
 def _overhang_angles(states: ContactStates) -> Numbers:
     """Compute the angle in rad by which the undeformed overlap extends beyond the bore, as a negative number."""
     distance = numpy.linalg.norm(states.equilibrium.displacement, axis=1)
     cosine = states.bore.gap.clearance / numpy.where(distance > 0, distance, 1e-300)
     angle = states.bore.compliance.grid.reach - numpy.arccos(numpy.clip(cosine, -1.0, 1.0))
     return numpy.minimum(angle, -_POLE_TILT)
+
+
+_BLOCK_LOADS = 512
+"""Number of loads whose fields are in memory at once where they are not kept."""
+
+_FIELD_COPIES = 4
+"""Number of fields per load at the peak: pressures, their copies in the solver, and levels."""
+
+_SUMMARY_NUMBERS = 100
+"""Number of values per load at the peak of a summary."""
+
+KeepFunction = Callable[[LoadSolver, BoreContact, Numbers, Numbers, EdgeRelation], "ContactStates | ContactSummaries"]
+"""Function from a load solver and its arguments to what is kept of the contacts."""
+
+
+def _keep_fields(
+    solve: LoadSolver, bore: BoreContact, load: Numbers, axes: Numbers, edges: EdgeRelation
+) -> ContactStates:
+    """Solve all loads, and keep their pressure fields."""
+    subject = f'pressure fields of {count_text(len(load))} contacts (none with keep="summary")'
+    check_memory(subject, _field_bytes(bore, len(load)))
+    return solve(bore, load, axes, edges)
+
+
+def _keep_summary(
+    solve: LoadSolver, bore: BoreContact, load: Numbers, axes: Numbers, edges: EdgeRelation
+) -> ContactSummaries:
+    """Solve the loads block by block, and keep the numbers of each contact alone."""
+    size = 8 * _SUMMARY_NUMBERS * len(load) + _field_bytes(bore, min(len(load), _BLOCK_LOADS))
+    check_memory(f"summaries of {count_text(len(load))} contacts", size)
+    starts = range(0, max(len(load), 1), _BLOCK_LOADS)
+    return summarise(solve(bore, load[i : i + _BLOCK_LOADS], axes[i : i + _BLOCK_LOADS], edges) for i in starts)
+
+
+def _field_bytes(bore: BoreContact, count: int) -> int:
+    """Compute the bytes of the fields of a number of contacts at the peak."""
+    grid = bore.compliance.grid
+    return 8 * _FIELD_COPIES * grid.rings * grid.meridians * count
+
+
+KEEP_FUNCTIONS: MappingProxyType[str, KeepFunction] = MappingProxyType(
+    {"fields": _keep_fields, "summary": _keep_summary}
+)
+"""What is kept of the contacts, by its name."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import inf, pi, radians
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy
 
@@ -36,6 +36,12 @@ from .contact import OffAxisContact
 from .directions import check_direction, cup_frames, tilted_directions
 from .surfaces import ClosedShell, RealCup, Springs, Surface
 
+if TYPE_CHECKING:
+    from .bore_contact import BoreContact
+
+KEPT = ("fields", "summary")
+"""What `Sphere` may keep of each contact."""
+
 _MIN_RING_WIDTH, _MAX_RING_WIDTH = radians(0.5), radians(6.0)
 
 
@@ -62,6 +68,9 @@ class Sphere(Model):
         Depth in mm of the bore below its sphere, by direction: see `BoreDeviation`.
     direction : array (..., 3), optional
         Direction of the load in the body's frame, of any length; upwards by default. `press` accepts it, too.
+    keep : str
+        "fields" (default) keeps the pressure field of each contact, 70 kB a load in rings of 2°. "summary" keeps
+        numbers alone: those of `summary()`, and no profile, map or outline. `press` accepts it, too.
 
     Raises
     ------
@@ -88,6 +97,7 @@ class Sphere(Model):
     gap: type[LinearGap] | type[CircularGap] = LinearGap
     worn: BoreShape | None = None
     direction: Any = UP
+    keep: str = "fields"
 
     name: ClassVar[str] = "sphere"
     title: ClassVar[str] = "full elasticity in rings about the cup's axis, any direction of load"
@@ -113,6 +123,8 @@ class Sphere(Model):
         if self.worn is not None and (isinstance(self.worn, type) or not hasattr(self.worn, "depth")):
             raise TypeError(f"worn must have a method depth(directions), got {shown(self.worn)}")
         object.__setattr__(self, "direction", check_direction(self.direction))
+        if self.keep not in KEPT:
+            raise ValueError(f"keep must be {' or '.join(map(repr, KEPT))}, got {shown(self.keep)}")
 
     @property
     def domain(self) -> tuple[Range, ...]:
@@ -173,6 +185,7 @@ class Sphere(Model):
         azimuth: Array | None = None,
         inclination: Array | None = None,
         anteversion: Array | None = None,
+        keep: str | None = None,
     ) -> Contact:
         """Press the ball into the cup by one of three loads, along a direction.
 
@@ -197,6 +210,8 @@ class Sphere(Model):
             Angle of a tilted load about the cup's axis in rad. It starts at the cup's x, the azimuth of a tilt alone.
         inclination, anteversion : float or array, optional
             Other orientations of the cup in rad. They broadcast against the load.
+        keep : str, optional
+            "fields" or "summary", in place of the model's.
 
         Returns
         -------
@@ -205,11 +220,25 @@ class Sphere(Model):
         Raises
         ------
         ValueError
-            Not exactly one load; both a direction and a tilt; a number outside its allowed range.
+            Not exactly one load; both a direction and a tilt; a number outside its allowed range; more contacts than
+            fit into the available memory.
         TypeError
             Another type in place of a joint; a load without its keyword.
         """
         reject_unnamed_loads(unnamed)
+        if keep is not None and keep != self.keep:
+            return replace(self, keep=keep).press(
+                joint,
+                force=force,
+                indentation=indentation,
+                half_angle=half_angle,
+                displacement=displacement,
+                direction=direction,
+                tilt=tilt,
+                azimuth=azimuth,
+                inclination=inclination,
+                anteversion=anteversion,
+            )
         load = {"force": force, "indentation": indentation, "half_angle": half_angle}
         if inclination is not None or anteversion is not None:
             return (
@@ -291,35 +320,44 @@ class Sphere(Model):
 
     def _solve_joint(self, joint: Joint, kind: str, loads: Numbers, axes: Numbers) -> JointContacts:
         """Solve the contacts of one joint under loads (n,) along unit vectors (n, 3) in the cup's frame."""
-        from .bore_contact import (
-            BoreContact,  # slow to import
-            GapField,
-        )
-        from .compliance import cached_compliance
-        from .load_cases import LOAD_SOLVERS
+        from .contact_states import estimate_errors  # slow to import
+        from .load_cases import KEEP_FUNCTIONS, LOAD_SOLVERS
 
         touching = loads > (0 if joint.clearance >= 0 else -1)  # a preloaded joint touches without a load
-        compliance = cached_compliance(self.surface, joint, self.cup, self.ring_width)
-        gap = GapField(
-            grid=compliance.grid,
-            clearance=float(joint.clearance),
-            socket_radius=float(joint.socket_radius),
-            depth=self._worn_depth(compliance.grid.centroids, float(joint.socket_radius)),
-            kind=self.gap,
-        )
-        edges = self.surface.edges(joint, self.cup, compliance.grid)
-        bore = BoreContact(compliance=compliance, gap=gap)
-        state = LOAD_SOLVERS[kind](bore, loads[touching], axes[touching], edges)
+        bore = self.bore_contact(joint)
+        edges = self.surface.edges(joint, self.cup, bore.compliance.grid)
+        state = KEEP_FUNCTIONS[self.keep](LOAD_SOLVERS[kind], bore, loads[touching], axes[touching], edges)
         return JointContacts(
             load=loads,
             touching=touching,
             state=state,
             reached=state.reachable,
-            error=state.errors(kind),
+            error=estimate_errors(state, kind),
         )
 
-    def _worn_depth(self, directions: Numbers, socket_radius: float) -> Numbers:
-        """Evaluate and validate the depth of the worn bore in mm at unit vectors (3, rings, meridians)."""
+    def bore_contact(self, joint: Joint) -> BoreContact:
+        """Return ball and bore of one joint: compliance and gap of every cell."""
+        from .bore_contact import BoreContact, GapField  # slow to import
+        from .compliance import cached_compliance
+
+        compliance = cached_compliance(self.surface, joint, self.cup, self.ring_width)
+        gap = GapField(
+            grid=compliance.grid,
+            clearance=float(joint.clearance),
+            socket_radius=float(joint.socket_radius),
+            depth=self.worn_depth(compliance.grid.centroids, float(joint.socket_radius)),
+            kind=self.gap,
+        )
+        return BoreContact(compliance=compliance, gap=gap)
+
+    def worn_depth(self, directions: Numbers, socket_radius: float) -> Numbers:
+        """Evaluate the depth of the worn bore in mm at unit vectors (3, rings, meridians); 0 of an unworn bore.
+
+        Raises
+        ------
+        ValueError
+            A worn bore of another radius than the socket's; depths of another shape, or that are not finite.
+        """
         if self.worn is None:
             return numpy.zeros(directions.shape[1:])
         radius = float(getattr(self.worn, "radius", socket_radius))

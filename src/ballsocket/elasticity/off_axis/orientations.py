@@ -193,9 +193,12 @@ def orient(
         _check_angles(name, values) for name, values in (("inclination", inclination), ("anteversion", anteversion))
     ]
     start, contacts = perf_counter(), []
+    named_load: dict[str, Any] = {**load}
     for number, angle in enumerate(axes[0]):
         report_progress(f"inclination {number + 1} of {len(axes[0])}")
-        contacts.append(_compute_quantities(model.press(joint, inclination=float(angle), anteversion=axes[1], **load)))
+        contacts.append(
+            _compute_quantities(model.press(joint, inclination=float(angle), anteversion=axes[1], **named_load))
+        )
     return Orientations(
         model=model,
         joint=joint,

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, ClassVar, Protocol
 import numpy
 
 from ...core.arrays import Numbers, gauss_legendre
-from ...core.storage.atomic_files import cached_array
+from ...core.storage.atomic_files import cached_array, is_array_cached
 from ...models.modulus import Modulus, as_modulus, hess_forsbach
 from ...problem import Joint
 from ...problem.cup import Cup
@@ -142,8 +142,18 @@ def cup_rings(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
     from ..finite_elements.solver import check_cup  # slow to import
 
     check_cup(cup, joint)
-    unit = _unit_cup_rings(socket_shape(joint, cup), tuple(grid.edges.tolist()), grid.max_harmonic)
+    unit = _unit_cup_rings(*_unit_inputs(joint, cup, grid))
     return unit * (float(joint.socket_radius) / float(joint.liner.young))
+
+
+def are_cup_rings_cached(joint: Joint, cup: Cup, grid: Grid) -> bool:
+    """Return True if the compliance matrices of `cup_rings` are cached on disk."""
+    return is_array_cached(_unit_inputs(joint, cup, grid))
+
+
+def _unit_inputs(joint: Joint, cup: Cup, grid: Grid) -> tuple[SocketShape, tuple[float, ...], int]:
+    """Return the inputs of the matrices for a bore of radius 1 and a liner of modulus 1."""
+    return socket_shape(joint, cup), tuple(grid.edges.tolist()), grid.max_harmonic
 
 
 @lru_cache(maxsize=16)
@@ -230,6 +240,11 @@ class Surface(Protocol):
         """Exponent n of the pressure p ~ s^n at a distance s from the edge of a contact."""
         ...
 
+    @property
+    def isotropic(self) -> Surface:
+        """Surface with the same compliance about every axis, which differs from this one by smooth displacements."""
+        ...
+
 
 @dataclass(frozen=True, kw_only=True)
 class RealCup:
@@ -240,6 +255,11 @@ class RealCup:
     """
 
     edge_exponent: ClassVar[float] = 0.5
+
+    @property
+    def isotropic(self) -> ClosedShell:
+        """Closed shell of the same layers."""
+        return ClosedShell()
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
         """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
@@ -255,6 +275,11 @@ class ClosedShell:
     """Closed shell without an opening, as in `Exact`: the rim ends the contact but does not soften the liner."""
 
     edge_exponent: ClassVar[float] = 0.5
+
+    @property
+    def isotropic(self) -> ClosedShell:
+        """This surface."""
+        return self
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
         """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""
@@ -281,6 +306,11 @@ class Springs:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "modulus", as_modulus(self.modulus))
+
+    @property
+    def isotropic(self) -> Springs:
+        """This surface."""
+        return self
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
         """Compute the compliance matrices between cells for each harmonic m in mm/MPa: (m, rings, rings)."""

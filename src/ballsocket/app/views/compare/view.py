@@ -1,17 +1,16 @@
-"""Compare: two or three joints side by side, answered by one model."""
+"""Compare: the design on the screen beside others, by one model."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from html import escape
 from typing import Any
 
-import panel as pn
-
 from ....catalogue import catalogue
-from ....compare import relative_deviation, successful_contacts
 from ....contact import Contact
+from ....core.checks import check_names
 from ....core.quantities import JOINT
 from ....files.joint_file import JointFile
 from ....problem.presets import joints
@@ -19,119 +18,103 @@ from ....reports.figure_files import figure_bytes
 from ....reports.pages import table
 from ....reports.press_plots import press_figure
 from ....reports.style import LineStyle, numbered
-from ...pictures.section import extent_of, section
-from ...pressing import fine_curves, press_charts, pressed
+from ...pressing import fine_curves, press_charts
 from ...state.screen import MAX_COMPARED, Screen
-from ...style import html, inputs
-from ...view import Document, Host, View
-from ...widgets.reading import number_text
-from ...widgets.words import alert, number_rows, percent
+from ...view import STRESS_PAUSE, Document, Host, View
+from ...widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
+from ...widgets.fields import Field, choice
+from ...widgets.words import number_rows
 
-_CHOOSE = "– choose –"
+_CHOOSE = ""
+_PRESENT = "this design"
+_EXAMPLES = ("hip-36", "hip-28")
+"""Presets of which the first that differs from the design is shown beside it on an empty page."""
 
 
 class Compare(View):
-    """View that compares the joint on the screen with up to two others."""
+    """View that compares the design on the screen with others."""
 
-    title = "Compare"
+    name, title = "compare", "Compare"
+    body = """
+<div class="inputs-row"><div data-field="compare.preset"></div><div data-field="compare.base"></div></div>
+<p><button type="button" class="plain" data-tell="compare.keep">Add this design to the comparison</button></p>
+<div id="compare-trouble" role="alert"></div><div id="compare-note"></div>
+<div id="compare-table"></div>
+<div id="compare-charts"></div>
+"""
 
     def __init__(self, page: Host) -> None:
-        self._ask, self._screen, self._putting = page.ask, page.screen, False
+        super().__init__(page)
+        self._cancel_stress: Callable[[], None] = lambda: None
 
-        self._keep = pn.widgets.Button(label="Put this joint beside", width=180)
-        self._preset = pn.widgets.Select(
-            label="Put beside", options=[_CHOOSE, *joints], width=220, stylesheets=inputs()
-        )
-        self._base = pn.widgets.Select(label="Percent against", options={}, width=220, stylesheets=inputs())
-        self._base.param.watch(self._based, "value")
-        self._drop = [pn.widgets.Button(label="", width=200, visible=False) for _ in range(MAX_COMPARED)]
-        self._keep.on_click(lambda event: self._add(self._screen.file))
-        self._preset.param.watch(self._chosen, "value")
-        for number, button in enumerate(self._drop):
-            button.on_click(lambda event, number=number: self._remove(number))
-        self._told, self._table, self._drawn = html(), html(), html()
-        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
-        self.panel = pn.Column(
-            pn.FlexBox(self._preset, self._keep, self._base, *self._drop, align_items="end", gap="12px", **wide),
-            self._told,
-            self._table,
-            self._drawn,
-            **wide,
-        )
-
-    def _add(self, file: JointFile) -> None:
-        if len(self._screen.beside) >= MAX_COMPARED:
-            self._told.object = alert(f"There is room for {MAX_COMPARED}: take one away first.")
-            return
-        self._ask(beside=(*self._screen.beside, file))
-
-    def _chosen(self, event: Any) -> None:
-        if event.new != _CHOOSE:
-            self._add(JointFile(joints[event.new], self._screen.file.load))
-            self._preset.value = _CHOOSE
-
-    def _based(self, event: Any) -> None:
-        if not self._putting:  # ignore changes by the page itself
-            self._ask(base=event.new)
-
-    def _put_base(self, files: Mapping[str, JointFile], screen: Screen) -> None:
-        self._putting = True
-        options = {name: str(index) for index, name in enumerate(files)}
-        self._base.param.update(options=options, value=str(base_of(files, screen)))
-        self._putting = False
-
-    def _remove(self, number: int) -> None:
-        compared = self._screen.beside
-        self._ask(beside=(*compared[:number], *compared[number + 1 :]))
+    def edit(self, key: str, value: Any) -> None:
+        screen = self.page.screen
+        if key == "keep":
+            self.page.ask(beside=with_compared(screen, screen.file))
+        elif key == "preset" and value != _CHOOSE:
+            check_names([value], joints, "as preset")
+            self.page.ask(beside=with_compared(screen, JointFile(joints[value], screen.file.load)))
+        elif key == "base":
+            self.page.ask(base=str(value))
+        elif key == "remove":
+            check_names([value], list(compared_files(screen))[1:], "among the compared designs")
+            index = list(compared_files(screen)).index(value) - 1
+            self.page.ask(beside=(*screen.beside[:index], *screen.beside[index + 1 :]))
 
     def show(self, screen: Screen) -> None:
-        self._screen = screen
-        files = labelled(screen)
-        self._put_base(files, screen)
-        for number, button in enumerate(self._drop):
-            button.visible = number < len(screen.beside)
-            button.label = f"Take {list(files)[number + 1]} away" if button.visible else "–"
-        self._told.object = (
-            _percent(files, screen)
-            if screen.beside
-            else "<p class='quiet'>Put this joint or a preset beside, then change this one.</p>"
+        files = compared_files(screen)
+        base = base_of(files, screen)
+        designs = _pressed(files, screen)
+        contacts = _contacts(designs)
+        self.channel.put_fields(_fields(files, base))
+        self.put(
+            note=_explanation(base, screen),
+            table=_table(designs, base, screen),
+            charts=press_charts(contacts, _lines(files), screen.reading),
         )
-        contacts = answers(files, screen.answered_by)
-        self._table.object = table(*_text_table(files, contacts, screen))
-        self._drawn.object = _drawings(files, contacts) + press_charts(contacts, _lines(files), screen.reading)
+
+        self._cancel_stress()
+        stressed = partial(
+            self.compute, lambda: _table(with_stresses(designs), base, screen), lambda table: self.put(table=table)
+        )
+        self._cancel_stress = self.page.later(STRESS_PAUSE, stressed)
 
     def document(self, screen: Screen) -> Document:
-        files = labelled(screen)
-        contacts = answers(files, screen.answered_by)
+        files = compared_files(screen)
+        designs, base = _pressed(files, screen), base_of(files, screen)
+        contacts = _contacts(designs)
         models = dict.fromkeys(contacts, catalogue[screen.answered_by])
-        title = f"answered by {screen.answered_by}"
+
+        def rows() -> list[list[str]]:
+            listed = design_rows(with_stresses(designs), base, screen)
+            return [[label, *(cell.plain for cell in cells)] for label, cells in listed]
 
         def picture(form: str) -> bytes:
-            return figure_bytes(
-                press_figure(contacts, fine_curves(contacts, models), title, _lines(files), units=screen.reading.units),
-                form,
-            )
+            curves, title = fine_curves(contacts, models), f"model {screen.answered_by}"
+            return figure_bytes(press_figure(contacts, curves, title, _lines(files), units=screen.reading.units), form)
 
         return Document(
             picture=picture if contacts else None,
             rows=lambda: number_rows("joint", contacts, screen.reading),
-            sections=lambda: {"joints": ("Joints", table(*_text_table(files, contacts, screen)))},
+            sections=lambda: {"joints": ("Designs", table(["", *files], rows()))},
         )
 
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
-        return list(labelled(screen).values()), (screen.answered_by,)
+        return list(compared_files(screen).values()), (screen.answered_by,)
 
 
-def _percent(files: Mapping[str, JointFile], screen: Screen) -> str:
-    base = escape(list(files)[base_of(files, screen)])
-    return f"<p class='quiet'>In brackets: how much more or less than {base}, in percent of that.</p>"
+def with_compared(screen: Screen, file: JointFile) -> tuple[JointFile, ...]:
+    """Return the compared designs with one more; raise ValueError if there is no room for it."""
+    if len(screen.beside) >= MAX_COMPARED:
+        raise ValueError(f"{MAX_COMPARED} designs are compared with this one already: remove one of them first")
+    return (*screen.beside, file)
 
 
-def labelled(screen: Screen) -> dict[str, JointFile]:
-    """Name the joints uniquely, all under the load on the screen."""
-    files = {"this joint": screen.file}
-    for file in screen.beside:
-        base = name = file.joint.name or "kept joint"
+def compared_files(screen: Screen) -> dict[str, JointFile]:
+    """Name the designs uniquely, all under the load on the screen; a preset is the example of an empty comparison."""
+    files = {_PRESENT: screen.file}
+    for file in screen.beside or _example(screen):
+        base = name = file.joint.name or "added design"
         number = 2
         while name in files:
             name, number = f"{base} ({number})", number + 1
@@ -139,83 +122,62 @@ def labelled(screen: Screen) -> dict[str, JointFile]:
     return files
 
 
-def _drawings(files: Mapping[str, JointFile], contacts: Mapping[str, Contact]) -> str:
-    """Draw the sections of the joints to one scale and in one colour scale."""
-    extent = max(map(extent_of, files.values()))
-    highest = max((float(contact.max_pressure) for contact in contacts.values()), default=1.0)
-    figures = "".join(
-        f"<figure><figcaption>{escape(name)}</figcaption>{section(file, contacts.get(name), extent, highest)}</figure>"
-        for name, file in files.items()
+def base_of(files: Mapping[str, JointFile], screen: Screen) -> str:
+    """Return the name of the base, from which differences are taken."""
+    return list(files)[min(int(screen.base), len(files) - 1)]
+
+
+def _example(screen: Screen) -> tuple[JointFile, ...]:
+    preset = next(joints[name] for name in _EXAMPLES if joints[name] != screen.file.joint)
+    return (JointFile(preset, screen.file.load, screen.file.cup),)
+
+
+def _table(designs: Designs, base: str, screen: Screen) -> str:
+    return design_table(with_drawings(designs), base, screen)
+
+
+def _pressed(files: Mapping[str, JointFile], screen: Screen) -> Designs:
+    return press_designs(
+        files, screen.answered_by, {name: _heading(name, file, screen) for name, file in files.items()}
     )
-    return f"<div class='pair'>{figures}</div>"
+
+
+def _heading(name: str, file: JointFile, screen: Screen) -> str:
+    """Write the sizes of a design, with a button that removes an added one."""
+    head, liner = (
+        screen.reading.with_unit(JOINT[key], float(getattr(file.joint, key)))
+        for key in ("head_diameter", "liner_thickness")
+    )
+    sizes = f"<small>head ⌀ {head}, liner {liner}</small>"
+    if name == _PRESENT or not screen.beside:
+        return sizes
+    attributes = f"data-tell='compare.remove' data-value='{escape(name)}' aria-label='Remove {escape(name)}'"
+    return f"{sizes}<button type='button' class='plain' {attributes}>Remove</button>"
+
+
+def _fields(files: Mapping[str, JointFile], base: str) -> dict[str, Field]:
+    presets = [(_CHOOSE, "– choose –"), *joints]
+    options = [(str(index), name) for index, name in enumerate(files)]
+    return {
+        "compare.preset": choice("compare.preset", "Add a preset", presets, _CHOOSE),
+        "compare.base": choice("compare.base", "Differences from", options, str(list(files).index(base))),
+    }
+
+
+def _explanation(base: str, screen: Screen) -> str:
+    differences = f"Behind the numbers: the difference from {escape(base)}. The drawings have one scale."
+    if screen.beside:
+        return f"<p class='quiet'>{differences}</p>"
+    return (
+        "<p class='quiet'>Nothing has been added yet, so a preset is shown beside this design as an example. Add this "
+        f"design, then change its numbers: the table shows every difference. {differences}</p>"
+    )
+
+
+def _contacts(designs: Designs) -> dict[str, Contact]:
+    return {name: design.contact for name, design in designs.items() if design.contact is not None}
 
 
 def _lines(files: Mapping[str, JointFile]) -> dict[str, LineStyle]:
-    """Return the line style of each joint by its position."""
+    """Return the line style of each design by its position."""
     return {name: numbered(index) for index, name in enumerate(files)}
-
-
-def answers(files: Mapping[str, JointFile], model: str) -> dict[str, Contact]:
-    """Press the joints by a model; return the successful contacts by name."""
-    comparisons = {name: successful_contacts(pressed(file, (model,))) for name, file in files.items()}
-    return {name: contacts[model] for name, contacts in comparisons.items() if model in contacts}
-
-
-_DIMENSIONS = {
-    "radius": ("ball_radius", "clearance", "liner_thickness", "outer_radius"),
-    "diameter": ("head_diameter", "diametral_clearance", "liner_thickness", "outer_diameter"),
-}
-
-
-def _text_table(
-    files: Mapping[str, JointFile], contacts: Mapping[str, Contact], screen: Screen
-) -> tuple[list[str], list[list[str]]]:
-    """Tabulate the joints in columns, with differences from the base joint."""
-    rows = [
-        [_head(name, screen), *(_length(file, name, screen) for file in files.values())]
-        for name in _DIMENSIONS[screen.size]
-    ]
-    rows.append(["liner", *(str(file.joint.liner) for file in files.values())])
-    rows.append(["ball", *("rigid" if file.joint.ball is None else str(file.joint.ball) for file in files.values())])
-    base = list(files)[base_of(files, screen)]
-    first = contacts.get(base)
-    for column in screen.reading.columns:
-        row = [column.label]
-        for name in files:
-            contact = contacts.get(name)
-            if contact is None:
-                row.append("no answer")
-                continue
-            number = float(column.values_of(contact))
-            share = (
-                ""
-                if first is None or contact is first
-                else percent(relative_deviation(number, float(column.values_of(first))), "+")
-            )
-            apart = f" ({share})" if share else ""
-            row.append(f"{number_text(number)}{apart}")
-        rows.append(row)
-    rows.append(["trust it here?", *(_trusted(contacts.get(name), file, screen) for name, file in files.items())])
-    heads = (f"{name}: the base" if name == base and len(files) > 1 else name for name in files)
-    return [screen.answered_by, *heads], rows
-
-
-def base_of(files: Mapping[str, JointFile], screen: Screen) -> int:
-    """Return the index of the base joint, at most that of the last joint."""
-    return min(int(screen.base), len(files) - 1)
-
-
-def _head(name: str, screen: Screen) -> str:
-    return JOINT[name].head(screen.reading.unit(JOINT[name]))
-
-
-def _length(file: JointFile, name: str, screen: Screen) -> str:
-    return f"{float(getattr(file.joint, name)) * screen.reading.unit(JOINT[name]).factor:.5g}"
-
-
-def _trusted(contact: Contact | None, file: JointFile, screen: Screen) -> str:
-    if contact is None:
-        return pressed(file, (screen.answered_by,)).missing.get(screen.answered_by, "–")
-    if not bool(contact.valid):
-        return f"no: {'; '.join(contact.notes)}"
-    return "; ".join(["yes", *contact.notes])

@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from html import escape
-from math import atan2, cos, degrees, isinf, pi, radians, sin
+from math import atan2, cos, isinf, pi, radians, sin
 
 from ....contact import Contact
 from ....core.kinds import Unit
 from ....core.quantities import Quantity
+from ....elasticity.off_axis.contact import OffAxisContact
 from ....files.joint_file import JointFile
 from ....reports.section_plots import gap_factor, radii_of
 from ...pictures import svg
 from ...pictures.section import DrawingFrame, ball, layers, painted
 from ...widgets.fields import Field
+from ...widgets.reading import number_text
 
 Formatter = Callable[[float], str]
 Aim = tuple[float, Unit]
 _WIDE, _HIGH = 624.0, 486.0
 _MIDDLE = (300.0, 238.0)
 _REACH = 168.0  # pixels from the centre to the outermost layer
+_STEEP_TILT = radians(40.0)
+"""Tilt from which the label of the load is to the left of its arrow."""
 _OFF, _SHORT, _LONG = 8.0, 26.0, 54.0  # of the load's arrow: from the ball, without load, and what is added at most
 
 
-def first_view(file: JointFile, contact: Contact | None, fields: dict[str, Field], aim: Aim, inside: str = "") -> str:
+def first_view(
+    file: JointFile, contact: Contact | None, fields: Mapping[str, Field], aim: Aim, inside: str = ""
+) -> str:
     """Draw a joint as SVG; `inside` is SVG of its stresses, which replaces the pressure.
 
     `fields` are the inputs that its handles move; `aim` the load's tilt in rad, and the unit of lengths.
@@ -35,7 +41,7 @@ def first_view(file: JointFile, contact: Contact | None, fields: dict[str, Field
         *layers(file, frame),
         inside,
         f'<g class="grab" data-drag="load" data-how="ball">{ball(file, contact, frame, tilt)}</g>',
-        *([] if inside else painted(file, contact, frame, top, tilt)),
+        *([] if inside else painted(file, contact, frame, top)),
         *_names(file, frame),
         *_dimensions(file, frame, unit),
         *_borders(file, frame, fields),
@@ -44,7 +50,7 @@ def first_view(file: JointFile, contact: Contact | None, fields: dict[str, Field
     ]
     size = f' data-centre="{frame.x:g} {frame.y:g}" data-scale="{frame.scale:.5g}"'
     arrow = f' data-start="{_start(file, contact, frame) + _SHORT:.1f}" data-long="{_LONG:g}"'
-    return svg.group_picture((_WIDE, _HIGH), "the joint in section, to scale", parts, size + arrow)
+    return svg.picture((_WIDE, _HIGH), "the joint in section, to scale", parts, size + arrow, "group")
 
 
 def frame_of(file: JointFile) -> DrawingFrame:
@@ -72,7 +78,7 @@ def _labelled_value(lines: tuple[str, str], x: float, y: float, anchor: str) -> 
 
 def _dimensions(file: JointFile, frame: DrawingFrame, unit: Unit) -> Iterator[str]:
     def format_length(value: float) -> str:
-        return f"{value * unit.factor:.4g} {unit.text}"
+        return f"{number_text(value * unit.factor, unit.text)} {unit.text}"
 
     yield from _head(file, frame, format_length)
     yield from _bore_and_gap(file, frame, format_length)
@@ -142,10 +148,10 @@ def _names(file: JointFile, frame: DrawingFrame) -> Iterator[str]:
 
 
 def _contact_edge(file: JointFile, contact: Contact | None, frame: DrawingFrame, tilt: float) -> Iterator[str]:
-    """Draw the half angle of the contact."""
+    """Draw the direction of the load, and the half angle of a contact about the cup's axis."""
     if contact is None or not float(contact.half_angle) > 0:
         return
-    for angle in (0.0, float(contact.half_angle)):
+    for angle in (0.0,) if isinstance(contact, OffAxisContact) else (0.0, float(contact.half_angle)):
         x, y = frame.at(float(file.joint.socket_radius), angle - tilt)
         yield svg.line(frame.x, frame.y, x, y, "edge")
 
@@ -156,7 +162,7 @@ def _start(file: JointFile, contact: Contact | None, frame: DrawingFrame) -> flo
     return frame.scale * (float(file.joint.socket_radius) - gap_factor(file.joint) * gap) + _OFF
 
 
-def _load(start: float, frame: DrawingFrame, fields: dict[str, Field], tilt: float) -> Iterator[str]:
+def _load(start: float, frame: DrawingFrame, fields: Mapping[str, Field], tilt: float) -> Iterator[str]:
     """Draw the load's arrow to the ball; its tail is the handle of the tilt."""
     load, tilt_field = fields["load"], fields["tilt"]
     share = min(1.0, max(0.0, load["value"] / load["high"]))
@@ -169,25 +175,25 @@ def _load(start: float, frame: DrawingFrame, fields: dict[str, Field], tilt: flo
         + f'<circle class="knob" cx="{tail[0]:.1f}" cy="{tail[1]:.1f}" r="8"/></g>'
     )
     text = f"{load['text']} {load['unit']}" + (f", {tilt_field['value']:.3g}{tilt_field['unit']}" if tilt else "")
-    yield svg.text(x + (4 if tilt else 14), y + 5, text, "value", "start")
+    aside = tilt > _STEEP_TILT  # the names of bore and gap are to the right
+    yield svg.text(
+        x - 20 if aside else x + (4 if tilt else 14),
+        y - 16 if aside else y + 5,
+        text,
+        "value",
+        "end" if aside else "start",
+    )
 
 
-def _borders(file: JointFile, frame: DrawingFrame, fields: dict[str, Field]) -> Iterator[str]:
+def _borders(file: JointFile, frame: DrawingFrame, fields: Mapping[str, Field]) -> Iterator[str]:
     """Draw the outer border of each layer as a handle."""
     radii = radii_of(file.joint)
     names = ["liner_thickness", *(f"layer{number}" for number in range(len(file.joint.backing)))]
     for name, inner, outer in zip(names, radii, radii[1:], strict=False):
         if name in fields:
             numbers = f"data-inner='{inner!r}' data-factor='{fields[name]['factor']!r}'"
-            arc = _arc(frame, outer, 0.98 * file.cup.rim)
-            yield f'<path {_handle(name, "border", fields[name])} {numbers} class="border" d="{arc}"/>'
-
-
-def _arc(frame: DrawingFrame, radius: float, half: float) -> str:
-    """Part of a circle (mm) to both sides of the pole."""
-    (x1, y1), (x2, y2) = frame.at(radius, -half), frame.at(radius, half)
-    away = frame.scale * radius
-    return f"M{x1:.1f},{y1:.1f}A{away:.1f},{away:.1f} 0 {int(half > pi / 2)} 0 {x2:.1f},{y2:.1f}"
+            arc = frame.arc(outer, 0.98 * file.cup.rim)
+            yield f'<path {_handle(name, "border", fields[name])} {numbers} class="border" d="M{arc}"/>'
 
 
 def _handle(name: str, how: str, field: Field) -> str:
@@ -208,17 +214,4 @@ def key(top: str, quantity: Quantity, instead: bool) -> str:
         f"<p class='scale'><span>{escape(quantity.title)}: 0</span>"
         f"<i style='background: linear-gradient(to right, {stops})'></i>"
         f"<span>{escape(top)}</span>{note}</p>"
-    )
-
-
-def about_the_rim(file: JointFile, contact: Contact | None, tilt: float) -> str:
-    """Describe in HTML the margin between a tilted contact and the rim, for a model without rim."""
-    if contact is None or not tilt:
-        return ""
-    margin = degrees(file.cup.rim - tilt - float(contact.half_angle))
-    if margin > 0:
-        return f"<p class='quiet'>The contact ends {margin:.3g}° before the rim.</p>"
-    return (
-        f"<p class='trust no'>✗ the contact reaches {-margin:.3g}° over the rim, which no answer here knows: "
-        "ask <code>sphere</code></p>"
     )

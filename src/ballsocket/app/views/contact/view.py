@@ -1,153 +1,215 @@
-"""Press: one joint under one load; every model beside the exact answer."""
+"""Contact: one joint under one load, along the axis of the cup by any model, otherwise in the real cup."""
 
 from __future__ import annotations
 
-import time
-from concurrent.futures import Future
+from collections.abc import Callable, Hashable
 from functools import partial
 from html import escape
 from typing import Any
-
-import panel as pn
 
 from ....catalogue import catalogue, reference
 from ....compare import Comparison, successful_contacts
 from ....contact import Contact
 from ....core.quantities import BEARING, FIELD
+from ....elasticity.off_axis.contact import OffAxisContact
 from ....files.joint_file import JointFile
+from ....reports.cup_plots import cup_figure
 from ....reports.figure_files import figure_bytes
 from ....reports.press_plots import press_figure
 from ....reports.press_report import press_lede, press_sections
 from ....reports.style import line_of
 from ....studies.derivatives import LocalUncertainty, local_uncertainty
-from ...jobs import run_in_thread
+from ...long_view import LongView
 from ...pictures.chart import swatch
 from ...pictures.section import LinerStresses, liner_stresses, painted_stresses
-from ...pressing import fine_curves, press_charts, pressed
+from ...pressing import AXIAL_TILT, AxialLimit, axial_limit, fine_curves, is_waiting, press_charts, pressed
+from ...running import Work
 from ...state.screen import PAINTED, Screen
-from ...view import Document, Host, View
+from ...view import STRESS_PAUSE, Document, Host
 from ...widgets.fields import choice, segments, several
-from ...widgets.joint_fields import fields_of, tilt_of
-from ...widgets.words import estimate_von_mises, headline, models_table, number_rows
-from .drawing import about_the_rim, first_view, frame_of, key
+from ...widgets.joint_fields import tilt_of
+from ...widgets.words import alert, axial_models_table, headline, models_table, number_rows
+from ..cup.worker import bore_of, is_prepared, pressed_in_cup, set_up
+from .drawing import first_view, frame_of, key
 
 _EVERY = tuple(catalogue)
 _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
-_PATIENCE = 300  # ms until the table of all models follows
-_LATE, _WAITS = 0.05, 10  # s: a server that comes so late has others to answer first; how often it may
+_PAUSE = 0.1  # s without a change until curves and table follow
 
 
-class Press(View):
-    """View of a press: numbers, drawing and curves at once, then the table of all models."""
+class Press(LongView):
+    """View of a press: numbers and drawing at once, then the curves and the table of all models."""
 
-    title = "Press"
+    name, title, run_label = "press", "Contact", "Compute the real cup"
+    automatic, result_kind = True, "cup"
+    body = """
+<div class="first-view">
+  <div class="drawing">
+    <div id="press-section"></div>
+    <div data-field="painted"></div>
+    <p class="quiet">Drag the arrow, the ball or the liner's border; or move to one with Tab, and use the arrow
+    keys.</p>
+    <div data-field="shown"></div>
+    <div id="press-charts"></div>
+  </div>
+  <div>
+    <div data-field="answered_by"></div>
+    <div id="press-trouble" role="alert"></div>
+    <div id="press-offer"></div><div data-field="press.run"></div>
+    <div id="press-numbers"></div>
+  </div>
+</div>
+<div id="press-table"></div>
+"""
 
     def __init__(self, page: Host) -> None:
-        self._channel = page.channel
-        self._screen = page.screen
-        self._later: Any = None
+        super().__init__(page)
+        self._cancel_further: Callable[[], None] = lambda: None
+        self._real: OffAxisContact | None = None
+
+    def question_of(self, screen: Screen) -> Hashable:
+        return bore_of(screen.file)
+
+    def work(self, screen: Screen) -> Work:
+        return partial(set_up, *bore_of(screen.file))
 
     def show(self, screen: Screen) -> None:
-        names = tuple(dict.fromkeys((screen.answered_by, *screen.shown)))
-        comparison = pressed(screen.file, names)
-        by = comparison.contacts.get(screen.answered_by)
-        drawn = {name: comparison[name] for name in screen.shown if name in successful_contacts(comparison)}
-        lines = {name: line_of(name) for name in drawn}
-        if by is None:
-            self._channel.put(
-                "#press-numbers", f"<p class='trust no'>✗ {escape(comparison.missing[screen.answered_by])}</p>"
-            )
+        self._real = None
+        self._cancel_further()
+        self.expect("charts", "table")
+        comparison = pressed(screen.file, tuple(dict.fromkeys((screen.answered_by, reference.name))))
+        limit = self._needs_cup(screen, comparison)
+        if limit is not None:
+            self.long.show(screen)
         else:
-            exact = comparison.contacts.get(reference.name)
-            self._channel.put("#press-numbers", headline(by, exact, estimate_von_mises(by), screen.reading))
+            self._show_axial(screen, comparison)
+        self._cancel_further = self.page.later(_PAUSE, partial(self._fill, screen))
+
+    def _needs_cup(self, screen: Screen, comparison: Comparison) -> AxialLimit | None:
+        """Return the reason for the real cup; an axial load near the rim has one that is set up or requested."""
+        limit = _limit(comparison, screen)
+        required = tilt_of(screen.file) > AXIAL_TILT or is_prepared(screen.file) or self.long.works_on(screen)
+        return limit if required else None
+
+    def _show_axial(self, screen: Screen, comparison: Comparison) -> None:
+        """Show the numbers of a model of a load along the axis of the cup."""
+        self.long.leave()
+        near_rim = _limit(comparison, screen) is not None
+        self.long.put_button(hidden=not near_rim)
+        self.channel.put_fields(_fields(screen, real=False))
+        by = comparison.contacts.get(screen.answered_by)
+        if by is not None:
+            numbers = headline(by, comparison.contacts.get(reference.name), screen.file.cup, screen.reading)
+        elif is_waiting(screen.file, screen.answered_by):
+            numbers = f"<p class='quiet'>{escape(comparison.missing[screen.answered_by])}</p>"
+        else:
+            numbers = alert(comparison.missing[screen.answered_by])
+        self.put(trouble="", offer=_OFFER if near_rim else "", numbers=numbers)
         self._draw(screen, None if by is None or by.status.failed else by)
-        self._channel.put("#press-charts", press_charts(drawn, lines, screen.reading))
-        self._channel.put_fields(_fields(screen))
-        self._fill_later(screen)
+
+    def show_result(self, screen: Screen, result: bool | None) -> None:
+        """Show the numbers of the real cup; its bore is set up first if it is new."""
+        self.channel.put_fields(_fields(screen, real=True))
+        self.put(offer="")
+        if self.long.result(screen) is None:
+            self.put(numbers=self._reason(screen))
+            self._draw(screen, None)
+        else:
+            self.expect("numbers", "section")
+            self.compute(lambda: pressed_in_cup(screen.file), partial(self._show_real, screen))
+
+    def _show_real(self, screen: Screen, contact: OffAxisContact) -> None:
+        self._real = contact
+        self.put(numbers=headline(contact, None, screen.file.cup, screen.reading) + self._reason(screen))
+        self._draw(screen, contact)
+        self._fill(screen)
+
+    def fail(self, sentence: str) -> None:
+        screen = self.page.screen
+        self.put(numbers=f"{alert(sentence)}{self._reason(screen)}")
+        self._draw(screen, None)
+
+    def _reason(self, screen: Screen) -> str:
+        """State why the real cup is needed; empty where it is not."""
+        limit = self._needs_cup(screen, pressed(screen.file, (screen.answered_by,)))
+        if limit is None:
+            return ""
+        words = "By full elasticity of the ball in the real cup (<code>sphere</code>)"
+        return f"<p class='quiet'>{words}: {limit.reason}.</p>"
 
     def _draw(self, screen: Screen, contact: Contact | None) -> None:
         """Draw the joint with its pressure; stresses follow from a thread."""
-        self._screen = screen
         if screen.painted == "pressure" or contact is None:
             self._put_drawing(screen, contact, None)
         else:
-            run_in_thread(
-                lambda: liner_stresses(contact) if screen is self._screen else None,
-                partial(self._stressed, screen, contact),
-            )
-
-    def _stressed(self, screen: Screen, contact: Contact, outcome: Future[LinerStresses | None]) -> None:
-        if screen is self._screen:
-            try:
-                stresses = outcome.result()
-            except ValueError:  # a contact too narrow for it
-                stresses = None
-            self._put_drawing(screen, contact, stresses)
-            self._channel.send()
+            self.compute(lambda: _stresses(contact), partial(self._put_drawing, screen, contact))
 
     def _put_drawing(self, screen: Screen, contact: Contact | None, inside: LinerStresses | None) -> None:
         file, tilt = screen.file, tilt_of(screen.file)
-        painted = "" if inside is None else painted_stresses(file, inside, frame_of(file), tilt)
-        drawing = first_view(file, contact, fields_of(screen), (tilt, screen.reading.length), painted)
-        top = 0.0 if contact is None else float(contact.max_pressure)
+        painted = "" if inside is None else painted_stresses(file, inside, frame_of(file))
+        drawing = first_view(file, contact, self.page.inputs, (tilt, screen.reading.length), painted)
         if contact is None:
             legend = ""
         elif inside is None:
-            legend = key(
-                screen.reading.with_unit(FIELD["pressure"], top), FIELD["pressure"], screen.painted == "stress"
-            )
+            top = screen.reading.with_unit(FIELD["pressure"], float(contact.max_pressure))
+            legend = key(top, FIELD["pressure"], screen.painted == "stress")
         else:
             legend = key(screen.reading.with_unit(BEARING["von_mises"], inside.largest), BEARING["von_mises"], False)
-        self._channel.put("#press-section", drawing + legend + about_the_rim(file, contact, tilt))
-
-    def _fill_later(self, screen: Screen, waits: int = _WAITS) -> None:
-        """Schedule the table of all models for a moment without changes."""
-        document = pn.state.curdoc
-        if document is None:
-            self._fill(screen)
-            return
-        if self._later is not None:
-            document.remove_timeout_callback(self._later)
-        due = time.monotonic() + _PATIENCE / 1e3
-        self._later = document.add_timeout_callback(lambda: self._due(screen, due, waits), _PATIENCE)
-
-    def _due(self, screen: Screen, due: float, waits: int) -> None:
-        self._later = None
-        if waits and time.monotonic() - due > _LATE:
-            self._fill_later(screen, waits - 1)
-            return
-        self._fill(screen)
-        self._channel.send()
+        self.put(section=drawing + legend)
 
     def _fill(self, screen: Screen) -> None:
-        comparison = pressed(screen.file, _EVERY)
-        self._channel.put("#press-table", models_table(comparison, screen.reading))
-        by = successful_contacts(comparison).get(screen.answered_by)
-        if by is not None:
-            run_in_thread(
-                lambda: float(by.von_mises) if screen is self._screen else 0.0,
-                partial(self._show_model_stress, screen, comparison),
-            )
+        """Show the curves and the table of all models, then the numbers with the stress of the model itself."""
+        comparison, reading = pressed(screen.file, _EVERY), screen.reading
+        limit = self._needs_cup(screen, comparison)
+        drawn = _drawn(comparison, screen)
+        charts = press_charts(drawn, {name: line_of(name) for name in drawn}, reading)
+        if limit is not None:
+            excluded = f"<p class='quiet'>Curves: {limit.excluded}</p>"
+            self.put(charts=excluded + charts)
+            self.put(table=axial_models_table(comparison, reading, self._real, limit.excluded))
+        else:
+            self.put(charts=charts, table=models_table(comparison, reading))
+            self._cancel_further = self.page.later(STRESS_PAUSE, partial(self._compute_stress, screen, comparison))
 
-    def _show_model_stress(self, screen: Screen, comparison: Comparison, outcome: Future[float]) -> None:
-        """Show the numbers again, with the von Mises stress of the model itself."""
-        if screen is self._screen:
-            by, exact = comparison[screen.answered_by], comparison.contacts.get(reference.name)
-            self._channel.put("#press-numbers", headline(by, exact, outcome.result(), screen.reading, ""))
-            self._channel.send()
+    def _compute_stress(self, screen: Screen, comparison: Comparison) -> None:
+        by, exact = (comparison.contacts.get(name) for name in (screen.answered_by, reference.name))
+        if by is not None and not by.status.failed:
+            self.compute(
+                lambda: headline(by, exact, screen.file.cup, screen.reading, float(by.von_mises)),
+                lambda numbers: self.put(numbers=numbers),
+            )
 
     def document(self, screen: Screen) -> Document:
         comparison, units = pressed(screen.file, _EVERY), screen.reading.units
+        limit = self._needs_cup(screen, comparison)
+        if limit is not None:
+            return self._real_document(screen, comparison, limit)
         by = comparison.contacts.get(screen.answered_by)
-        drawn = {name: comparison[name] for name in screen.shown if name in successful_contacts(comparison)}
+        drawn = _drawn(comparison, screen)
         return Document(
             picture=(lambda form: figure_bytes(press_figure(drawn, fine_curves(drawn, catalogue), units=units), form))
             if drawn
             else None,
             rows=lambda: _rows(comparison, screen),
             sections=lambda: press_sections(comparison, units, surroundings=_local_effects(screen.file)),
-            lede=lambda: "" if by is None else press_lede(by, units),
+            lede=lambda: "" if by is None else press_lede(by, screen.file.cup, units),
             contact=by,
+        )
+
+    def _real_document(self, screen: Screen, comparison: Comparison, limit: AxialLimit) -> Document:
+        """Return the content for a load that needs the real cup."""
+        if not is_prepared(screen.file):
+            raise ValueError("the real cup is still being prepared: wait until its pressure is there")
+        contact, units = pressed_in_cup(screen.file), screen.reading.units
+        real = Comparison(screen.file.joint, {contact.model.name: contact}, {})
+        heads, row = _rows(real, screen)
+        axial = ([*row[:-2], False, limit.excluded] for row in _rows(comparison, screen)[1:])
+        return Document(
+            picture=lambda form: figure_bytes(cup_figure(contact), form),
+            rows=lambda: [heads, row, *axial],
+            sections=lambda: press_sections(real, units),
+            lede=lambda: press_lede(contact, screen.file.cup, units),
+            contact=contact,
         )
 
     def asks(self, screen: Screen) -> tuple[list[JointFile], tuple[str, ...]]:
@@ -155,13 +217,36 @@ class Press(View):
         return [screen.file], tuple(dict.fromkeys((*first, *_EVERY)))
 
 
-def _fields(screen: Screen) -> dict[str, Any]:
-    names = [(name, name) for name in _EVERY]
+_OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
+
+
+def _drawn(comparison: Comparison, screen: Screen) -> dict[str, Contact]:
+    """Return the contacts of the models whose curves are shown."""
+    contacts = successful_contacts(comparison)
+    return {name: contacts[name] for name in screen.shown if name in contacts}
+
+
+def _stresses(contact: Contact) -> LinerStresses | None:
+    """Compute the stresses in the liner; None without them, and for a contact that is too narrow for them."""
+    try:
+        return liner_stresses(contact)
+    except ValueError:
+        return None
+
+
+def _limit(comparison: Comparison, screen: Screen) -> AxialLimit | None:
+    """Return the reason why the screen needs the real cup, judged by the chosen model or the first with a result."""
+    contacts = successful_contacts(comparison)
+    return axial_limit(screen.file, contacts.get(screen.answered_by) or next(iter(contacts.values()), None))
+
+
+def _fields(screen: Screen, real: bool) -> dict[str, Any]:
+    """Return the inputs of the view; a load in the real cup has one model alone."""
     pieces = {name: swatch(line_of(name)) for name in _EVERY}
     return {
-        "answered_by": choice("answered_by", "Answered by", names, screen.answered_by),
+        "answered_by": {**choice("answered_by", "Model", _EVERY, screen.answered_by), "hidden": real},
         "painted": segments("painted", "Painted", [(name, _PAINTED[name]) for name in PAINTED], screen.painted),
-        "shown": several("shown", "Curves of", names, screen.shown, pieces),
+        "shown": several("shown", "Curves of", _EVERY, screen.shown, pieces),
     }
 
 

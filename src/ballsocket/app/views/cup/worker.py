@@ -10,14 +10,19 @@ from typing import Any
 
 import numpy
 
+from ....elasticity.finite_elements.mesh import socket_shape
 from ....elasticity.finite_elements.progress import progress_to
 from ....elasticity.off_axis import Orientations, Sphere, orient
 from ....elasticity.off_axis.contact import OffAxisContact
+from ....elasticity.off_axis.grid import rim_grid
+from ....elasticity.off_axis.surfaces import are_cup_rings_cached
 from ....files.joint_file import JointFile
+from ....problem import Joint
 from ....problem.cup import Cup, Side
 from ....reports.figure_files import figure_bytes
 from ....reports.orientation_results import orientation_figure
-from ...running import CachedRun, Reached, Report
+from ...results import RESULTS
+from ...running import Reached, Report
 
 INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))
 ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))
@@ -26,13 +31,32 @@ ANTEVERSIONS = tuple(radians(angle) for angle in numpy.arange(-10.0, 40.1, 5.0))
 LEWINNEK = (30.0, 50.0, 5.0, 25.0)
 """Inclinations and anteversions in degrees between which Lewinnek (1978) saw the fewest dislocations."""
 
-SOLVED: CachedRun = CachedRun(max_size=64)
-"""Bores whose rings have been set up: a press in them takes a moment."""
+PREPARING = "Preparing the real cup ..."
 
 
-def bore_of(file: JointFile) -> Hashable:
-    """Return a key of the bore's ring matrices: joint and cup without orientation."""
+def bore_of(file: JointFile) -> tuple[Joint, Cup]:
+    """Return the inputs of the bore's ring matrices: joint and cup without orientation."""
     return file.joint, replace(file.cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT)
+
+
+def is_prepared(file: JointFile) -> bool:
+    """Return True if the ring matrices of a bore are known, in memory or on disk: a press then takes a moment."""
+    bore = bore_of(file)
+    if RESULTS.get(("cup", bore)) is None and _are_rings_cached(*bore):
+        store_prepared(bore)
+    return RESULTS.get(("cup", bore)) is not None
+
+
+def store_prepared(bore: tuple[Joint, Cup]) -> None:
+    """Store that the ring matrices of a bore are known."""
+    RESULTS.put(("cup", bore), True)
+
+
+def _are_rings_cached(joint: Joint, cup: Cup) -> bool:
+    try:
+        return are_cup_rings_cached(joint, cup, rim_grid(socket_shape(joint, cup).reach, Sphere.ring_width))
+    except ValueError:  # a cup that does not fit the joint: the press states why
+        return False
 
 
 @lru_cache(maxsize=32)
@@ -48,10 +72,11 @@ def pressed_in_cup(file: JointFile) -> OffAxisContact:
     return _pressed(file.joint, file.cup, tuple(file.load.items()), tuple(file.aim.items()))
 
 
-def set_up(file: JointFile, report: Report) -> None:
+def set_up(joint: Joint, cup: Cup, report: Report) -> bool:
     """Compute the ring matrices of a bore in a separate process; they are cached on disk."""
-    report(Reached(share=0.1, words="setting up this bore by finite elements"))
-    Sphere(cup=file.cup).press(file.joint, **file.load, **file.aim)
+    report(Reached(share=0.1, words=PREPARING))
+    Sphere(cup=cup).press(joint, force=1.0)
+    return True
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

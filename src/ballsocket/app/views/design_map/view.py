@@ -1,37 +1,34 @@
-"""Design map: one answer over two numbers of the joint, with limits; a click presses the joint that is there."""
+"""Design map: one quantity over two numbers of the joint, with limits; a click shows the design that is there."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
-from concurrent.futures import Future
 from dataclasses import replace
-from functools import partial
 from typing import Any
 
-import panel as pn
-
-from ....core.kinds import Unit
-from ....core.quantities import QUANTITIES
+from ....core.checks import check_names, shown
+from ....core.quantities import JOINT, QUANTITIES
+from ....files.joint_file import JointFile
 from ....reports.figure_files import figure_bytes
 from ....reports.pages import table
 from ....reports.study_plots import design_map
 from ....reports.study_tables import map_rows
-from ....reports.unit_systems import Units
-from ....studies.expressions import parse_limit, parse_range
-from ....studies.parameters import PARAMETERS
-from ...jobs import run_in_thread
-from ...state.screen import AXES, MAP_MODELS, MAPPED, MapAxis, Screen, phrases_of
-from ...style import PALETTES, html, inputs
+from ....studies.task import EDGE_DISTANCE
+from ...state.screen import AXES, MAPPED, MapAxis, Screen
 from ...view import Document, Host, View
-from ...widgets.reading import Reading
+from ...widgets.design_table import design_table, press_designs, with_drawings, with_stresses
+from ...widgets.fields import Field, choice, empty_number, segments, typed
+from ...widgets.limit_rows import LimitRows, present_value
+from ...widgets.reading import Reading, box_text
+from ...widgets.settings import Setting, chosen
 from ...widgets.words import alert, column_of, unit_of_files
-from .charts import MapChart
+from ..compare.view import with_compared
+from .charts import map_picture
 from .worker import (
-    MapPoint,
+    allowed_points,
     best_point,
     catalogue_sizes,
-    current_value,
+    check_map,
     default_axis,
     joint_at,
     limits_of,
@@ -39,202 +36,219 @@ from .worker import (
     mapped,
     models_of,
     move_limit,
+    picked_point,
 )
+
+_LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))
+"""Quantities that the rows of limits offer."""
+
+_FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
+_ENDS = {f"{which}_{end}": (which, end) for which in ("across", "up") for end in ("low", "high")}
+_AXIS_WORDS, _END_WORDS = {"across": "Across", "up": "Upwards"}, {"low": "from", "high": "to"}
+_SIZES = {"any": "any size", "catalogue": "catalogue sizes"}
+_PRESENT, _PICKED = "this design", "at the point"
+_HINT = (
+    "<p class='quiet'>Click the map, or move its cross with the arrow keys and press Enter: the design at that point "
+    "is shown here beside the present one, which is the white ring.</p>"
+)
+_BUTTONS = "".join(
+    f"<button type='button' class='plain' data-tell='map.{event}'>{words}</button> "
+    for event, words in (("use", "Use this design"), ("compare", "Add to the comparison"), ("drop", "Close"))
+)
+
+
+def _axis_setting(which: str) -> Setting:
+    """Return the parameter of an axis; another one runs over half to twice its present value."""
+
+    def field(screen: Screen) -> Field:
+        axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in AXES]
+        return choice(which, _AXIS_WORDS[which], axes, getattr(screen, which).name)
+
+    def read(screen: Screen, value: Any) -> dict[str, Any]:
+        check_names([value], AXES, "among the axes of a map")
+        return {"picked": None, which: default_axis(value, present_value(screen.file, value))}
+
+    return Setting(which, field, read)
+
+
+def _end_setting(key: str) -> Setting:
+    """Return the box of one end of an axis."""
+    which, end = _ENDS[key]
+    label = f"{_AXIS_WORDS[which]} {_END_WORDS[end]}"
+
+    def field(screen: Screen) -> Field:
+        axis: MapAxis = getattr(screen, which)
+        unit = screen.reading.unit(QUANTITIES[axis.name])
+        text = box_text(getattr(axis, end) * unit.factor, unit.text)
+        return empty_number(key, label, unit, text)
+
+    def read(screen: Screen, value: Any) -> dict[str, Any]:
+        axis: MapAxis = getattr(screen, which)
+        quantity = QUANTITIES[axis.name]
+        number = typed(label, value, screen.reading.box_unit(quantity), quantity.kind) / quantity.written.factor
+        ends = {**vars(axis), end: number}
+        low, high = (screen.reading.with_unit(quantity, ends[name]) for name in ("low", "high"))
+        if not ends["low"] < ends["high"]:
+            raise ValueError(f"{quantity.title} from {low} to {high} is not a range: it must end above its start")
+        return {which: MapAxis(**ends)}
+
+    return Setting(key, field, read)
 
 
 class DesignMap(View):
     """View of one quantity over two parameters, computed as one study by a quick model."""
 
-    title = "Design map"
+    name, title = "map", "Design map"
+    settings = (
+        *map(_axis_setting, ("across", "up")),
+        *map(_end_setting, _ENDS),
+        chosen("quantity", "Map of", MAPPED, titles=lambda name: QUANTITIES[name].title),
+        chosen("map_model", "Model", models_of, key="model"),
+        chosen("sizes", "A picked point has", _SIZES, segments, _SIZES.__getitem__),
+    )
+    body = f"""
+<div class="inputs-row map-inputs">{"".join(f'<div data-field="map.{name}"></div>' for name in _FIELDS)}</div>
+<div data-field="map.limits"></div>
+<div id="map-trouble" role="alert"></div>
+<div class="map-layout">
+  <div><div id="map-picture"></div><div id="map-note"></div></div>
+  <div>
+    <div data-field="map.sizes"></div>
+    <p><button type="button" class="plain" data-tell="map.best">Show the design with the smallest value</button></p>
+    <div id="map-point" role="status"></div>
+  </div>
+</div>
+"""
 
     def __init__(self, page: Host) -> None:
-        self._ask, self._screen, self._putting = page.ask, page.screen, False
-        titles = {PARAMETERS[name].title: name for name in AXES}
-        self._across = pn.widgets.Select(label="Across", options=titles, width=200, stylesheets=inputs())
-        self._up = pn.widgets.Select(label="Upwards", options=titles, width=200, stylesheets=inputs())
-        self._ranges = {
-            "across": pn.widgets.TextInput(label="from..to", width=150, stylesheets=inputs()),
-            "up": pn.widgets.TextInput(label="from..to", width=150, stylesheets=inputs()),
-        }
-        self._quantity = pn.widgets.Select(
-            label="Shown", options={QUANTITIES[name].label(): name for name in MAPPED}, width=220, stylesheets=inputs()
-        )
-        self._model = pn.widgets.Select(label="Answered by", options=list(MAP_MODELS), width=170, stylesheets=inputs())
-        self._limits = pn.widgets.TextInput(
-            label="Limits, with commas",
-            placeholder="outer_diameter<=52 mm, liner_thickness>=4 mm",
-            width=330,
-            stylesheets=inputs(),
-        )
-        self._sizes = pn.widgets.Select(
-            label="A click takes",
-            options={"any size": "any", "sizes of a catalogue": "catalogue"},
-            width=170,
-            stylesheets=inputs(),
-        )
-        self._best = pn.widgets.Button(label="Press the best joint", width=180)
-        self._watch()
-        self._refused, self._told = html(), html()
-        self._chart = MapChart(PALETTES[page.screen.theme], self._tapped, self._dragged)
-        wide: dict[str, Any] = {"sizing_mode": "stretch_width"}
-        self.panel = pn.Column(
-            pn.FlexBox(
-                self._across,
-                self._ranges["across"],
-                self._up,
-                self._ranges["up"],
-                self._quantity,
-                self._model,
-                self._limits,
-                self._sizes,
-                flex_wrap="wrap",
-                gap="4px 12px",
-                **wide,
-            ),
-            self._refused,
-            pn.pane.Bokeh(self._chart.figure, **wide),
-            self._told,
-            self._best,
-            **wide,
-        )
-
-    def _watch(self) -> None:
-        for name, choice in (("across", self._across), ("up", self._up)):
-            self._told_by(choice, partial(self._axis, name))
-            self._told_by(self._ranges[name], partial(self._range, name))
-        self._told_by(self._quantity, lambda event: self._change(quantity=event.new))
-        self._told_by(self._model, lambda event: self._change(map_model=event.new))
-        self._told_by(self._limits, self._limited)
-        self._told_by(self._sizes, lambda event: self._ask(sizes=event.new))
-        self._best.on_click(lambda event: self._press_best())
-
-    def _told_by(self, widget: Any, changed: Callable[[Any], None]) -> None:
-        """Call a function when a user changes a widget."""
-        widget.param.watch(lambda event: None if self._putting else changed(event), "value")
-
-    def _change(self, **fields: Any) -> None:
-        """Request another map; show why it is impossible, and keep the present one."""
-        try:
-            wanted = replace(self._screen, **fields)
-        except ValueError as error:
-            self._refuse(error)
-            return
-        run_in_thread(lambda: _map_of(wanted), partial(self._changed, fields))
-
-    def _changed(self, fields: Mapping[str, Any], outcome: Future[Any]) -> None:
-        try:
-            outcome.result()
-        except ValueError as error:
-            self._refuse(error)
-        else:
-            self._ask(**fields)
-
-    def _refuse(self, error: ValueError) -> None:
-        self._put(self._screen)
-        self._refused.object = alert(str(error))
-
-    def _axis(self, which: str, event: Any) -> None:
-        """Choose another parameter over half to twice its present value."""
-        self._change(**{which: default_axis(event.new, current_value(self._screen.file, event.new))})
-
-    def _range(self, which: str, event: Any) -> None:
-        name = getattr(self._screen, which).name
-        try:
-            _, low, high = parse_range(_with_unit(f"{name}={event.new}", name, self._screen.reading))
-            axis = MapAxis(name=name, low=low, high=high)
-        except ValueError as error:
-            self._refuse(error)
-            return
-        self._change(**{which: axis})
-
-    def _limited(self, event: Any) -> None:
-        try:
-            phrases = [phrase.strip() for phrase in event.new.split(",") if phrase.strip()]
-            limits = tuple(parse_limit(_limit_with_unit(phrase, self._screen.reading)) for phrase in phrases)
-        except ValueError as error:
-            self._refuse(error)
-            return
-        self._change(limits=limits)
-
-    def _tapped(self, x: float, y: float) -> None:
-        """Press the joint at a clicked point of the map."""
-        across, up = self._screen.across, self._screen.up
-        if across.low <= x <= across.high and up.low <= y <= up.high:
-            self._press({across.name: x, up.name: y})
-
-    def _dragged(self, number: int, point: MapPoint) -> None:
-        """Move a limit to the new position of its line."""
-        try:
-            limits = move_limit(_map_of(self._screen), self._screen, number, point)
-        except ValueError as error:
-            self.show(self._screen)  # the handle goes back
-            self._refuse(error)
-        else:
-            self._ask(limits=limits)
-
-    def _press_best(self) -> None:
-        point = best_point(_map_of(self._screen), self._screen)
-        if point is None:
-            self._refuse(ValueError("no point of the map is allowed by the limits"))
-        else:
-            self._press(point)
-
-    def _press(self, point: Mapping[str, float]) -> None:
-        try:
-            file = joint_at(self._screen.file, catalogue_sizes(point) if self._screen.sizes == "catalogue" else point)
-        except ValueError as error:
-            self._refuse(error)
-            return
-        self._ask(file=file, view="press")
+        super().__init__(page)
+        self._rows = LimitRows("map.limits", _LIMITED)
 
     def show(self, screen: Screen) -> None:
-        self._screen = screen
-        self._refused.object = ""
-        self._put(screen)
-        run_in_thread(lambda: _map_of(screen) if screen is self._screen else None, partial(self._shown, screen))
+        self._put_fields()
+        if not self.channel.shown_value("#map-picture"):
+            self.put(picture="<p class='quiet'>Preparing the map …</p>", point=_HINT)
+        self.expect("picture", "note", "point")
+        self.compute(lambda: _drawn(screen), lambda parts: self.put(trouble="", **parts))
 
-    def _shown(self, screen: Screen, outcome: Future[Any]) -> None:
-        """Draw a finished map, unless a newer one was requested."""
-        if screen is not self._screen:
-            return
-        try:
-            results = outcome.result()
-            self._chart.show(results, screen)
-        except ValueError as error:
-            self._chart.clear()
-            self._told.object = ""
-            self._refuse(error)
-            return
-        self._told.object = map_summary(results, screen)
+    def _put_fields(self) -> None:
+        limits = self._rows.field(self.page.screen.limits, self.page.screen.reading)
+        self.channel.put_fields({**self.fields(self.page.screen), "map.limits": limits})
 
-    def _put(self, screen: Screen) -> None:
-        self._putting = True
-        try:
-            for which, choice in (("across", self._across), ("up", self._up)):
-                axis = getattr(screen, which)
-                choice.value = axis.name
-                unit = _unit(axis.name, screen.reading)
-                low, high = (value * unit.factor for value in (axis.low, axis.high))
-                self._ranges[which].value = f"{low:.6g}..{high:.6g} {unit.text}".strip()
-            labels = {screen.reading.label(QUANTITIES[name]): name for name in MAPPED}
-            self._quantity.param.update(options=labels, value=screen.quantity)
-            known = models_of(screen)
-            self._model.param.update(options=known, value=screen.map_model)
-            self._sizes.value = screen.sizes
-            typed = partial(_typed, screen.reading)
-            self._limits.value = ", ".join(phrase for limit in screen.limits for phrase in phrases_of(limit, typed))
-        finally:
-            self._putting = False
+    def edit(self, key: str, value: Any) -> None:
+        if key in _ACTIONS:
+            _ACTIONS[key](self, value)
+        else:
+            super().edit(key, value)
+
+    def change(self, **changes: Any) -> None:
+        """Request another map, unless it is impossible."""
+        check_map(replace(self.page.screen, **changes))
+        self.page.ask(**changes)
+
+    def _edit_limits(self, value: Any) -> None:
+        """Change the limits; rows that cannot be read, or that the joint does not have, stay as typed."""
+        screen = self.page.screen
+        limits = self._rows.read(
+            value,
+            screen.limits,
+            screen.reading,
+            self._present_value,
+            lambda limits: allowed_points(_map_of(screen), replace(screen, limits=limits)),
+        )
+        self._put_fields()
+        if limits is not None:
+            self.page.ask(limits=limits)
+
+    def _present_value(self, name: str) -> float:
+        """Return a number of the design on the screen by the model of the map."""
+        design = press_designs({_PRESENT: self.page.screen.file}, _map_of(self.page.screen).attrs["model"], {})[
+            _PRESENT
+        ]
+        return present_value(self.page.screen.file, name, design.contact)
+
+    def _edit_drag(self, value: Any) -> None:
+        """Move a limit to the new position of its line."""
+        number, x, y = _numbers(value, 3)
+        point = self._in_study(x, y)
+        self.page.ask(limits=move_limit(_map_of(self.page.screen), self.page.screen, int(number), point))
+
+    def _in_study(self, x: float, y: float) -> tuple[float, float]:
+        """Convert a point in the units of the axes to those of a study."""
+        reading = self.page.screen.reading
+        across, up = (
+            reading.unit(QUANTITIES[axis.name]).factor for axis in (self.page.screen.across, self.page.screen.up)
+        )
+        return x / across, y / up
+
+    def _pick(self, value: Any) -> None:
+        x, y = self._in_study(*_numbers(value, 2))
+        self._show_point({self.page.screen.across.name: x, self.page.screen.up.name: y})
+
+    def _pick_best(self, value: Any) -> None:
+        point = best_point(_map_of(self.page.screen), self.page.screen)
+        if point is None:
+            raise ValueError("the limits allow no point of the map: widen the axes or a limit")
+        self._show_point(point)
+
+    def _show_point(self, point: dict[str, float]) -> None:
+        picked = catalogue_sizes(point) if self.page.screen.sizes == "catalogue" else point
+        joint_at(self.page.screen.file, picked)  # or it is refused here
+        self.page.ask(picked=tuple(picked.values()))
+
+    def _picked_file(self) -> JointFile:
+        picked = picked_point(self.page.screen)
+        if picked is None:
+            raise ValueError("no point of the map is chosen: click the map first")
+        return joint_at(self.page.screen.file, picked)
 
     def document(self, screen: Screen) -> Document:
         results = _map_of(screen)
         limits = list(limits_of(screen))
-
         return Document(
             picture=lambda form: figure_bytes(design_map(results, limits), form),
             rows=lambda: _rows(results, screen.reading),
             sections=lambda: {"map": ("Design map", table(*map_rows(results, limits)))},
         )
+
+
+_ACTIONS: Mapping[str, Callable[[DesignMap, Any], None]] = {
+    "limits": DesignMap._edit_limits,
+    "drag": DesignMap._edit_drag,
+    "pick": DesignMap._pick,
+    "best": DesignMap._pick_best,
+    "use": lambda view, value: view.page.ask(file=view._picked_file(), picked=None),
+    "compare": lambda view, value: view.page.ask(beside=with_compared(view.page.screen, view._picked_file())),
+    "drop": lambda view, value: view.page.ask(picked=None),
+}
+
+
+def _numbers(value: Any, count: int) -> list[float]:
+    """Read the numbers of a point of the map."""
+    numbers = value if isinstance(value, list) else []
+    if len(numbers) != count or not all(isinstance(number, int | float) for number in numbers):
+        raise ValueError(f"{shown(value)} is not a point of the map")
+    return [float(number) for number in numbers]
+
+
+def _drawn(screen: Screen) -> dict[str, str]:
+    """Compute the HTML of the map, its summary and the picked design."""
+    results = _map_of(screen)
+    return {"picture": map_picture(results, screen), "note": map_summary(results, screen), "point": _point_html(screen)}
+
+
+def _point_html(screen: Screen) -> str:
+    """Return the design at the picked point beside the present one."""
+    picked = picked_point(screen)
+    if picked is None:
+        return _HINT
+    try:
+        file = joint_at(screen.file, picked)
+    except ValueError as error:
+        return alert(f"the point of the map: {error}")
+    files = {_PRESENT: screen.file, _PICKED: file}
+    designs = with_drawings(with_stresses(press_designs(files, _map_of(screen).attrs["model"], {})))
+    return f"<p>{_BUTTONS}</p>{design_table(designs, _PRESENT, screen, MAPPED)}"
 
 
 def _rows(results: Any, reading: Reading) -> list[list[Any]]:
@@ -251,32 +265,3 @@ def _rows(results: Any, reading: Reading) -> list[list[Any]]:
 
 def _map_of(screen: Screen) -> Any:
     return mapped(screen.file, screen.across, screen.up, screen.map_model)
-
-
-_TYPED = {"mil": "thou", "°": "deg"}
-"""Units as the door for text knows them."""
-
-
-def _unit(name: str, reading: Reading) -> Unit:
-    """Return the unit of typed numbers: that of files, or that of an imperial page."""
-    quantity = QUANTITIES[name]
-    unit = quantity.written if reading.units is Units.SI else reading.unit(quantity)
-    return Unit(
-        _TYPED.get(unit.text, unit.text if reading.units is not Units.SI else quantity.kind.assumed_unit), unit.factor
-    )
-
-
-def _typed(reading: Reading, name: str, value: float) -> str:
-    """Write a number as it would be typed."""
-    unit = _unit(name, reading)
-    return f"{value * unit.factor:.6g} {unit.text}".strip()
-
-
-def _with_unit(phrase: str, name: str, reading: Reading) -> str:
-    """Append the page's unit to a phrase that ends in a bare number."""
-    bare = name in QUANTITIES and phrase.rstrip()[-1:].isdigit()
-    return f"{phrase} {_unit(name, reading).text}".strip() if bare else phrase
-
-
-def _limit_with_unit(phrase: str, reading: Reading) -> str:
-    return _with_unit(phrase, re.split("[<>=≤≥]", phrase)[0].strip(), reading)

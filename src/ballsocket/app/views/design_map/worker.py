@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 from html import escape
-from math import isfinite, nan
+from math import isfinite
 from typing import Any
 
 import numpy
@@ -15,7 +15,7 @@ from ....catalogue import catalogue
 from ....compare import THIN_LINER_RATIO
 from ....contact import Model
 from ....core.kinds import Kind
-from ....core.quantities import PARTS, QUANTITIES, Quantity
+from ....core.quantities import QUANTITIES
 from ....core.validity import OutsideDomainError, check_domain
 from ....files.joint_file import JointFile
 from ....problem import Joint
@@ -24,7 +24,6 @@ from ....studies.design import Span, grid
 from ....studies.limits import Limit, allowed, margin_on_plane
 from ....studies.parameters import LOADS, PARAMETERS, press_arguments
 from ....studies.run import default_model, joint_of_arrays, study
-from ...pictures.svg import Contours
 from ...state.screen import MAP_MODELS, MAPPED, QUICK, START, MapAxis, Screen
 from ...widgets.numbers import NUMBERS
 from ...widgets.reading import Reading
@@ -54,6 +53,13 @@ def _map_model(joint: Joint, ends: Mapping[str, Any], name: str) -> Model:
             f"{name} takes minutes where R2/L is above {THIN_LINER_RATIO:g}: choose another model for this map"
         )
     return catalogue[name]
+
+
+def check_map(screen: Screen) -> None:
+    """Check that a map can be computed; raise ValueError otherwise."""
+    ends = {axis.name: numpy.array([axis.low, axis.high]) for axis in (screen.across, screen.up)}
+    _map_model(screen.file.joint, ends, screen.map_model)
+    press_arguments(screen.file.joint, ends)
 
 
 def models_of(screen: Screen) -> list[str]:
@@ -108,39 +114,26 @@ def best_point(results: Any, screen: Screen) -> dict[str, float] | None:
 
 
 def map_summary(results: Any, screen: Screen) -> str:
-    """Describe the map as HTML: its allowed part, and the least value there."""
-    fine, point, name = allowed_points(results, screen), best_point(results, screen), screen.quantity
+    """Describe the map as HTML: its allowed part, its smallest value there, and its marks."""
+    fine, point, reading = allowed_points(results, screen), best_point(results, screen), screen.reading
     words = []
     if results.attrs["model"] != screen.map_model:
-        words.append(f"{results.attrs['model']} answers, since {screen.map_model} knows none of these joints.")
+        words.append(f"Model {results.attrs['model']}, since {screen.map_model} covers none of these joints.")
     if screen.limits:
-        words.append(f"{100 * float(fine.mean()):.3g} % of the map is allowed by the limits.")
+        words.append(f"The limits allow {100 * float(fine.mean()):.3g} % of the map.")
     if point is not None:
-        where = ", ".join(_symbol_value(QUANTITIES[axis], value, screen) for axis, value in point.items())
-        title, factor = axis_label(name, screen)
-        least = float(results[name].sel(point)) * factor
-        steps = ", ".join(
-            f"{(axis.high - axis.low) / (results.sizes[axis.name] - 1) * axis_label(axis.name, screen)[1]:.2g}"
-            for axis in (screen.across, screen.up)
-        )
-        words.append(f"Smallest value of {title} there: <b>{least:.4g}</b> at {escape(where)} (in steps of {steps}).")
+        position = " and ".join(_with_title(name, value, reading) for name, value in point.items())
+        smallest = reading.with_unit(QUANTITIES[screen.quantity], float(results[screen.quantity].sel(point)))
+        words.append(f"Smallest {QUANTITIES[screen.quantity].title} there: <b>{smallest}</b> at {escape(position)}.")
     if not bool(results.valid.all()):
-        words.append("Crosses: the model is not to be trusted there.")
+        words.append("Crosses: the model is not valid there.")
     if not bool(fine.all()):
-        words.append("Faded: a limit is broken, or there is no answer.")
-    words.append("Click a point to press the joint that is there; the circle is the joint now.")
+        words.append("Faded: a limit is broken. Grey: no result.")
     return f"<p class='quiet'>{' '.join(words)}</p>"
 
 
-def _symbol_value(quantity: Quantity, value: float, screen: Screen) -> str:
-    return f"{quantity.symbol} {screen.reading.with_unit(quantity, value)}".strip()
-
-
-def current_value(file: JointFile, name: str) -> float:
-    """Return a parameter of the joint on the screen; NaN without one."""
-    part, _, number = name.partition("_") if name in PARTS else ("", "", "")
-    value = getattr(getattr(file.joint, part), number, None) if part else getattr(file.joint, name, file.load.get(name))
-    return float("nan") if value is None else float(value)
+def _with_title(name: str, value: float, reading: Reading) -> str:
+    return f"{QUANTITIES[name].title} {reading.with_unit(QUANTITIES[name], value)}"
 
 
 def default_axis(name: str, middle: float) -> MapAxis:
@@ -171,24 +164,6 @@ def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
 MapPoint = tuple[float, float]
 
 
-def longest_line_middle(x: numpy.ndarray, y: numpy.ndarray, values: numpy.ndarray, level: float) -> MapPoint:
-    """Return the middle of the longest contour of a field (y, x); NaN without one."""
-    grid_x, grid_y = numpy.meshgrid(x, y)
-    lines = Contours(grid_x, grid_y, values).lines(level)
-    if not lines:
-        return nan, nan
-    line = max(lines, key=len)
-    across, up = line[len(line) // 2]
-    return float(across), float(up)
-
-
-def limit_handles(results: Any, screen: Screen) -> list[MapPoint]:
-    """Return a point on the line of each limit, in the units of a study; NaN off the map."""
-    across, up = screen.across.name, screen.up.name
-    x, y = results[across].values, results[up].values
-    return [longest_line_middle(x, y, margin_on_plane(results, limit, across, up), 0.0) for limit in limits_of(screen)]
-
-
 def move_limit(results: Any, screen: Screen, number: int, point: MapPoint) -> tuple[Limit, ...]:
     """Change one limit of the screen so that its line runs through a point of the map."""
     limit = limits_of(screen)[number]
@@ -204,11 +179,9 @@ def move_limit(results: Any, screen: Screen, number: int, point: MapPoint) -> tu
     return (*screen.limits[:number], changed, *screen.limits[number + 1 :])
 
 
-def limit_text(limit: Limit, reading: Reading) -> str:
-    """Write a limit with its unit for the map."""
-    sign, end = ("≤", limit.high) if isfinite(limit.high) else ("≥", limit.low)
-    quantity = QUANTITIES[limit.name]
-    return f"{quantity.title} {sign} {reading.with_unit(quantity, end)}"
+def picked_point(screen: Screen) -> dict[str, float] | None:
+    """Return the parameters of the chosen point of the map; None without one."""
+    return None if screen.picked is None else {screen.across.name: screen.picked[0], screen.up.name: screen.picked[1]}
 
 
 def catalogue_sizes(point: Mapping[str, float]) -> dict[str, float]:

@@ -4,97 +4,103 @@ from __future__ import annotations
 
 import tempfile
 from base64 import b64encode
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from dataclasses import fields, replace
 from functools import partial
+from html import escape
+from math import prod
 from typing import Any
 
-from ....core.checks import check_names, shown
-from ....evidence.matrix import title_of
+from ....catalogue import reference
+from ....evidence.matrix import limit_text, title_of
+from ....evidence.question import LEVELS
 from ....reports.evidence_parts import case_text, value_text
 from ....reports.pages import items, table
-from ...jobs import ViewJob
-from ...running import CachedRun
+from ....studies.expressions import parse_limit
+from ....studies.limits import Limit
+from ....studies.parameters import PARAMETERS
+from ...long_view import LongView, long_body
+from ...pressing import pressed
+from ...running import Work
 from ...state.evidence_question import EvidenceQuestion
-from ...state.screen import Screen
-from ...view import Document, Host, View
-from ...widgets.fields import Field, segments, words
-from ...widgets.words import alert, progress
-from .worker import EVIDENCE_SECONDS, EvidencePack, count_cases, gather_pack
+from ...state.screen import Screen, phrases_of
+from ...view import Document, Host
+from ...widgets.fields import segments
+from ...widgets.limit_rows import LimitRows, present_value
+from ...widgets.settings import chosen, text
+from ...widgets.words import alert
+from .worker import EVIDENCE_SECONDS, EvidencePack, axes_of, gather_pack, phrases_in
 
-_PACKS: CachedRun = CachedRun(max_size=8)
-_LEVELS, _YES = (("low", "low"), ("medium", "medium"), ("high", "high")), (("no", "no"), ("yes", "yes"))
-_NAMES = tuple(entry.name for entry in fields(EvidenceQuestion))
+_NO_YES = ("no", "yes")
+_INPUTS = "".join(f'<div data-field="evidence.{entry.name}"></div>' for entry in fields(EvidenceQuestion))
+_LIMITED = ("max_pressure", "half_angle", "edge_distance", "indentation", "area", "utilisation")
 
 
-class Evidence(View):
+class Evidence(LongView):
     """View that gathers evidence for a question and resumes after a stop."""
 
-    title = "Evidence"
-    body = f"""
-<div class="asking">{"".join(f'<div data-field="evidence.{name}"></div>' for name in _NAMES)}</div>
-<div id="evidence-said" role="status"></div>
-<p><button type="button" class="plain" data-tell="evidence.run">Gather the evidence</button></p>
-<div id="evidence-trouble" role="alert"></div>
-<div id="evidence-progress" role="status"></div>
-<div id="evidence-found"></div>
-"""
+    settings = (
+        text("asked.question", "What is to be decided", 2),
+        text("asked.context", "What the answer is used for, and for what not", 2),
+        chosen("asked.influence", "Influence of the model on the decision", LEVELS, segments),
+        chosen("asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
+        text("asked.accuracy", "How far off the numbers may be"),
+        text("asked.matrix", "Cases: force = 2, 3 kN; clearance = 0.05, 0.1 mm"),
+        text("asked.tolerances", "Tolerances: clearance = 0.1 +- 0.02 mm"),
+        text("asked.friction", "Coefficient of friction, if any"),
+        chosen("asked.elements", "Finite elements judge the worst cases", _NO_YES, segments),
+        chosen("asked.wear", "With the wear of the view Wear", _NO_YES, segments),
+    )
+    title, name, run_label, longest = "Evidence", "evidence", "Gather the evidence", EVIDENCE_SECONDS
+    body = long_body("evidence", _INPUTS, '<div id="evidence-found"></div>').replace("inputs-row", "asking")
 
     def __init__(self, page: Host) -> None:
-        self._page, self._screen = page, page.screen
-        self._job = ViewJob(page.channel, "evidence", self._store_result, longest=EVIDENCE_SECONDS)
+        super().__init__(page)
         self._folder: tempfile.TemporaryDirectory[str] | None = None
-        page.listen("evidence", self._edited)
+        self._rows = LimitRows("evidence.limits", _LIMITED)
 
-    def show(self, screen: Screen) -> None:
-        self._screen = screen
-        self._job.put("trouble", "")
-        self._page.channel.put_fields(_fields(screen.asked))
-        self._job.put("said", _case_count(screen))
-        self._put_found()
+    def question_of(self, screen: Screen) -> Hashable:
+        use = replace(screen.use, instant=None) if screen.asked.wear == "yes" else None
+        return screen.asked, screen.file.joint, screen.file.cup, screen.file.cup.oriented, use
 
-    @property
-    def _key(self) -> Hashable:
-        return _key(self._screen)
-
-    def _put_found(self) -> None:
-        pack: EvidencePack | None = _PACKS.get(self._key)
-        self._job.put("found", "" if pack is None else _pack_html(pack))
-
-    def _edited(self, key: str, value: Any) -> None:
-        if key == "run":
-            self._run()
-        elif key == "stop":
-            self._job.stop()
-            self._job.put("progress", progress("Stopped. What is done is kept.", None, again="evidence.run"))
-        elif key == "take":
-            self._take()
-        else:
-            self._page.ask(asked=_changed(self._screen.asked, key, value))
-
-    def _run(self) -> None:
-        screen = self._screen
-        count_cases(screen.asked, screen.file, screen.use)  # or it is refused here and now
+    def work(self, screen: Screen) -> Work:
+        axes_of(screen.asked, screen.file, screen.use)  # an invalid question is refused at once
+        if not screen.asked.limits.strip():
+            raise ValueError(_NO_LIMIT)
         if self._folder is None:
             self._folder = tempfile.TemporaryDirectory(prefix="ballsocket-")
-        self._job.put("trouble", "")
-        self._job.ask(self._key, partial(gather_pack, screen.asked, screen.file, screen.use, self._folder.name))
+        return partial(gather_pack, screen.asked, screen.file, screen.use, self._folder.name)
 
-    def _take(self) -> None:
-        pack: EvidencePack | None = _PACKS.get(self._key)
-        if pack is None:
-            raise ValueError("there is no pack of this yet: gather the evidence first")
-        content = b64encode(pack.content).decode("ascii")
-        self._page.channel.once("file", {"name": "evidence.zip", "content": content})
+    def show_inputs(self, screen: Screen) -> None:
+        limits = self._rows.field(_limits(screen.asked), screen.reading)
+        self.channel.put_fields({**self.fields(screen), "evidence.limits": limits})
 
-    def _store_result(self, key: Hashable, pack: EvidencePack) -> None:
-        _PACKS.put(key, pack)
-        self._put_found()
+    def show_result(self, screen: Screen, result: EvidencePack | None) -> None:
+        self.put(found=_case_table(screen) if result is None else _pack_html(result))
+
+    def edit(self, key: str, value: Any) -> None:
+        screen = self.page.screen
+        if key == "take":
+            content = b64encode(self.result(screen).content).decode("ascii")
+            self.channel.once("file", {"name": "evidence.zip", "content": content})
+        elif key == "allowable":
+            self.page.ask(asked=replace(screen.asked, limits=_allowable_limit(screen)))
+        elif key == "limits":
+            self._edit_limits(value)
+        else:
+            super().edit(key, value)
+
+    def _edit_limits(self, value: Any) -> None:
+        """Take the rows of limits, or show which row is wrong."""
+        screen = self.page.screen
+        limits = self._rows.read(value, _limits(screen.asked), screen.reading, lambda name: _present(screen, name))
+        self.show_inputs(screen)
+        if limits is not None:
+            phrases = "; ".join(phrase for limit in limits for phrase in phrases_of(limit))
+            self.page.ask(asked=replace(screen.asked, limits=phrases))
 
     def document(self, screen: Screen) -> Document:
-        pack: EvidencePack | None = _PACKS.get(_key(screen))
-        if pack is None:
-            raise ValueError("there is no evidence of this yet: gather it first")
+        pack: EvidencePack = self.result(screen)
         heads, rows = _worst(pack)
         return Document(
             rows=lambda: [heads, *rows],
@@ -102,56 +108,78 @@ class Evidence(View):
         )
 
     def leave(self) -> None:
-        self._job.stop()
+        super().leave()
         if self._folder is not None:
             self._folder.cleanup()
 
 
-def _key(screen: Screen) -> Hashable:
-    """Return a key of the inputs of a pack."""
-    use = replace(screen.use, instant=None) if screen.asked.wear == "yes" else None
-    return screen.asked, screen.file.joint, screen.file.cup, screen.file.cup.oriented, use
+_NO_LIMIT = "Evidence needs a limit to decide on: add one, such as the largest pressure at most 20 MPa"
 
 
-def _fields(question: EvidenceQuestion) -> dict[str, Field]:
-    inputs = [
-        words("evidence.question", "What is to be decided", question.question, 2),
-        words("evidence.context", "What the answer is used for, and for what not", question.context, 2),
-        segments("evidence.influence", "Influence of the model on the decision", _LEVELS, question.influence),
-        segments("evidence.consequence", "Consequence of a wrong decision", _LEVELS, question.consequence),
-        words("evidence.accuracy", "How far off the numbers may be", question.accuracy),
-        words("evidence.limits", "Limits, with ; between", question.limits),
-        words("evidence.matrix", "Cases: force = 2, 3 kN; clearance = 0.05, 0.1 mm", question.matrix),
-        words("evidence.tolerances", "Tolerances: clearance = 0.1 +- 0.02 mm", question.tolerances),
-        words("evidence.friction", "Coefficient of friction, if any", question.friction),
-        segments("evidence.elements", "Finite elements judge the worst cases", _YES, question.elements),
-        segments("evidence.wear", "With the wear of the view Wear", _YES, question.wear),
-    ]
-    return {field["name"]: field for field in inputs}
+def _allowable_limit(screen: Screen) -> str:
+    """Return the limit of the largest pressure by the allowable pressure of the liner."""
+    pressure = screen.file.joint.liner.allowable_pressure
+    if pressure is None:
+        raise ValueError("the liner has no allowable pressure: enter it beside the liner")
+    return f"max_pressure <= {float(pressure):g} MPa"
 
 
-def _changed(question: EvidenceQuestion, key: str, value: Any) -> EvidenceQuestion:
-    check_names([key], _NAMES, "among the inputs of a question")
-    if not isinstance(value, str):
-        raise ValueError(f"{key} = {shown(value)} must be text")
-    changes: dict[str, Any] = {key: value.strip()}
-    return replace(question, **changes)
-
-
-def _case_count(screen: Screen) -> str:
-    """State the number of cases, or the error in the question."""
+def _limits(question: EvidenceQuestion) -> tuple[Limit, ...]:
+    """Read the limits of a question; none if a link has others than limits."""
     try:
-        number = count_cases(screen.asked, screen.file, screen.use)
+        return tuple(map(parse_limit, phrases_in(question.limits)))
+    except ValueError:
+        return ()
+
+
+def _present(screen: Screen, name: str) -> float:
+    contacts = pressed(screen.file, (reference.name,)).contacts
+    return present_value(screen.file, name, contacts.get(reference.name))
+
+
+def _case_table(screen: Screen) -> str:
+    """List the cases of the question, or the error in it, before there is a result."""
+    try:
+        axes = axes_of(screen.asked, screen.file, screen.use)
     except ValueError as error:
         return alert(str(error).removeprefix("question.toml: "))
-    return (
-        f"<p class='quiet'>{number} case{'s' if number > 1 else ''}. A pack takes some seconds, with wear minutes.</p>"
-    )
+    number = prod(map(len, axes.values()))
+    rows = [
+        [PARAMETERS[name].title, ", ".join(screen.reading.with_unit(PARAMETERS[name], value) for value in values)]
+        for name, values in axes.items()
+    ]
+    offer = "" if screen.asked.limits.strip() else _OFFER
+    heads = ["1 case" if number == 1 else f"{number} cases", "values"]
+    return f"{offer}{table(heads, rows, 'text')}{_CONTENTS}"
+
+
+_OFFER = (
+    "<p class='trust no'>✗ No limit is stated. "
+    "<button type='button' class='plain' data-tell='evidence.allowable'>Take the liner's allowable pressure</button>"
+    "</p>"
+)
+_CONTENTS = (
+    "<p class='quiet'>The pack has a page with the decision on each limit, the worst cases and their figures, all "
+    "numbers as JSON, the question and checksums. It takes some seconds, with wear minutes.</p>"
+)
 
 
 def _pack_html(pack: EvidencePack) -> str:
+    """Return the decisions on the limits, failures first, then the other conclusions and the worst cases."""
     take = "<p><button type='button' class='plain' data-tell='evidence.take'>Take the pack (ZIP)</button></p>"
-    return f"{items(pack.conclusions)}{table(*_worst(pack), kind='words')}{take}"
+    limits = pack.record["limits"]
+    decided = "".join(_decision(limit) for limit in sorted(limits, key=_is_kept))
+    return f"{decided}{items(pack.conclusions[len(limits) :])}{table(*_worst(pack), kind='words')}{take}"
+
+
+def _is_kept(limit: Mapping[str, Any]) -> bool:
+    return not limit["beyond"]
+
+
+def _decision(limit: Mapping[str, Any]) -> str:
+    """Return the decision on one limit with its sign, word and colour."""
+    kind, sign = ("no", "✗") if not _is_kept(limit) else ("quiet", "?") if limit["unknown"] else ("yes", "✓")
+    return f"<p class='verdict {kind}'>{sign} {escape(limit_text(limit))}: {escape(limit['verdict'])}</p>"
 
 
 def _worst(pack: EvidencePack) -> tuple[list[str], list[list[str]]]:

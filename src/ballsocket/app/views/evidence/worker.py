@@ -7,7 +7,6 @@ import tempfile
 import zipfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import prod
 from pathlib import Path
 from typing import Any
 
@@ -52,9 +51,9 @@ def _tables(inputs: EvidenceQuestion, file: JointFile) -> Tables:
         "context_of_use": inputs.context,
         "finite_elements": inputs.elements == "yes",
         "risk": {"influence": inputs.influence, "consequence": inputs.consequence},
-        "required": {"accuracy": inputs.accuracy, "limits": list(_phrases(inputs.limits))},
-        "matrix": dict(map(_axis, _phrases(inputs.matrix))),
-        "tolerances": dict(_halves("tolerances", phrase) for phrase in _phrases(inputs.tolerances)),
+        "required": {"accuracy": inputs.accuracy, "limits": list(phrases_in(inputs.limits))},
+        "matrix": dict(map(_axis, phrases_in(inputs.matrix))),
+        "tolerances": dict(_halves("tolerances", phrase) for phrase in phrases_in(inputs.tolerances)),
         **_joint(file),
     }
     if inputs.friction.strip():
@@ -83,7 +82,8 @@ def _joint(file: JointFile) -> Tables:
     return {name: table for name, table in tables_of(file).items() if name in JointTables.__struct_fields__}
 
 
-def _phrases(text: str) -> Iterator[str]:
+def phrases_in(text: str) -> Iterator[str]:
+    """Yield the phrases of a text, which semicolons or line ends separate."""
     return (phrase.strip() for phrase in text.replace("\n", ";").split(";") if phrase.strip())
 
 
@@ -137,11 +137,10 @@ class EvidencePack:
     content: bytes
 
 
-def count_cases(inputs: EvidenceQuestion, file: JointFile, use: Use) -> int:
-    """Count the cases of a question; raise ValueError if it is invalid."""
+def axes_of(inputs: EvidenceQuestion, file: JointFile, use: Use) -> dict[str, tuple[float, ...]]:
+    """Return the values of each axis of a question's matrix; raise ValueError if the question is invalid."""
     with tempfile.TemporaryDirectory() as folder:
-        question = write_question(inputs, file, use, Path(folder))
-    return prod(map(len, question.axes.values()))
+        return dict(write_question(inputs, file, use, Path(folder)).axes)
 
 
 def gather_pack(inputs: EvidenceQuestion, file: JointFile, use: Use, folder: str, report: Report) -> EvidencePack:

@@ -6,130 +6,143 @@ from collections.abc import Hashable
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import nan
+from math import radians
 from typing import Any
 
 import numpy
 
-from ....core.checks import check_names
-from ....core.kinds import Kind, Unit
+from ....core.quantities import CONTACT, DERIVED
 from ....reports.figure_files import figure_bytes
 from ....reports.hip_plots import course_figure
-from ....reports.pages import table
-from ...jobs import ViewJob
-from ...running import CachedRun
+from ....reports.pages import picture, table
+from ...long_view import LongView, LongWork, long_body
+from ...pictures.bore import bare_bore
+from ...running import Work
 from ...state.screen import Screen
-from ...state.use import UploadedCycle, Use, cycle_fields
-from ...view import Document, Host, View
-from ...widgets.fields import typed
+from ...state.use import FIELDS, UploadedCycle
+from ...view import Document, Host
+from ...widgets.cycle_settings import CYCLE_SETTINGS
+from ...widgets.fields import segments
 from ...widgets.reading import Reading
-from ...widgets.words import doubt, notes_list, number_cell, progress, value_text
-from .charts import COURSES, player
-from .worker import GaitResult, gait_key, simulate_gait
+from ...widgets.settings import chosen
+from ...widgets.words import checked, doubt, notes_list, number_cell, value_text
+from .charts import courses_of, empty_charts, flat_bore, gait_charts, gait_viewer, rim_sentence
+from .worker import GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
 
-_RESULTS: CachedRun = CachedRun(max_size=24)
 _LARGEST = 100_000  # characters of a table
+_FILM_SECONDS = 300.0
+_INPUTS = """<div data-field="gait.cycle"></div><div data-field="gait.body_weight"></div>
+<div data-field="gait.contact"></div>
+<div class="field"><label class="label" for="gait-own">Your own cycle (table: phase or time, force, angles)</label>
+<input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own"></div>"""
+_SHOWN = """<p class="quiet" id="gait-load"></p><div id="gait-numbers"></div>
+<div class="player"><span id="gait-at" data-at hidden></span>
+<div class="transport" hidden><button type="button" class="plain">▶ Play</button>
+<input type="range" min="0" step="1" aria-label="instant of the cycle"></div><output></output>
+<div class="panes"><div><div data-field="gait.field"></div><div id="gait-viewer"></div><div id="gait-flat"></div>
+<div data-field="gait-film.run"></div><div id="gait-film-trouble" role="alert"></div></div>
+<div id="gait-courses" class="courses"></div></div></div>"""
 
 
-class Gait(View):
-    """View of a cycle that is computed in a process and played by the page."""
+class Gait(LongView):
+    """View of a cycle that is computed in a process and played by the page; its film follows by itself."""
 
     title = "Gait"
-    body = """
-<div class="inputs-row"><div data-field="gait.cycle"></div><div data-field="gait.body_weight"></div>
-<div data-field="gait.contact"></div>
-<div class="field"><label class="label" for="gait-own">A cycle of your own (table: phase or time, force, angles)</label>
-<input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own"></div></div>
-<p class="quiet" id="gait-said"></p>
-<div id="gait-trouble" role="alert"></div>
-<div id="gait-progress" role="status"></div>
-<div id="gait-numbers"></div>
-<span id="gait-at" hidden></span>
-<div id="gait-player"></div>
-"""
+    name = "gait"
+    settings = (*CYCLE_SETTINGS, chosen("use.field", "Shown on the cup", FIELDS, segments))
+    run_label = "Compute the cycle"
+    automatic = True
+    body = long_body("gait", _INPUTS, _SHOWN)
 
     def __init__(self, page: Host) -> None:
-        self._page, self._screen = page, page.screen
-        self._job = ViewJob(page.channel, "gait", self._store_result)
+        super().__init__(page)
         self._upload: UploadedCycle | None = None
-        page.listen("gait", self._edited)
+        self._cycle = page.screen.use.cycle
+        self.film = LongWork(
+            page,
+            "gait-film",
+            "Compute the film",
+            self.question_of,
+            lambda screen: partial(simulate_film, screen.file, screen.use, self._upload),
+            self._show_film,
+            automatic=True,
+            longest=_FILM_SECONDS,
+        )
+        self.further = [self.film]
 
-    def show(self, screen: Screen) -> None:
-        if screen.use.cycle != self._screen.use.cycle:
-            self._upload = None
-        self._screen = screen
-        self._job.put("trouble", "")
-        self._page.channel.put_fields({field["name"]: field for field in cycle_fields("gait", screen.use)})
-        self._job.put("said", self._words())
-        result = _RESULTS.get(self._key)
-        if result is None:
-            self._job.put("numbers", "")
-            self._job.put("player", "")
-            self._job.ask(self._key, partial(simulate_gait, screen.file, screen.use, self._upload))
-        else:
-            self._job.stop()
-            self._job.put("progress", "")
-            self._put_found(result)
+    def question_of(self, screen: Screen) -> Hashable:
+        return gait_key(screen.file, screen.use, self._upload)
 
-    @property
-    def _key(self) -> Hashable:
-        return gait_key(self._screen.file, self._screen.use, self._upload)
+    def work(self, screen: Screen) -> Work:
+        return partial(simulate_gait, screen.file, screen.use, self._upload)
 
-    def _words(self) -> str:
-        aside = "The load is that of the cycle; the force beside the joint is not used."
+    def show_inputs(self, screen: Screen) -> None:
+        if screen.use.cycle != self._cycle:
+            self._upload, self._cycle = None, screen.use.cycle
+        super().show_inputs(screen)
         upload_note = "" if self._upload is None else f" {escape(self._upload.name)}: a link does not hold it."
-        return f"{aside}{upload_note}"
+        self.put(load=f"The load is that of the cycle; the force beside the joint is not used.{upload_note}")
 
-    def _put_found(self, result: GaitResult) -> None:
-        instant = self._screen.use.instant
-        self._job.put("at", str(result.heaviest if instant is None else min(instant, len(result.phase) - 1)))
-        self._job.put("numbers", _numbers(result, self._screen.reading))
-        self._job.put("player", player(result, self._screen.reading))
-
-    def _edited(self, key: str, value: Any) -> None:
-        if key == "stop":
-            self._job.stop()
-            self._job.put("progress", progress("Stopped.", None, again="gait.again"))
-        elif key == "again":
-            self.show(self._screen)
-        elif key == "own":
-            self._upload = _read_upload(value)
-            self.show(self._screen)
+    def show_result(self, screen: Screen, result: GaitResult | None) -> None:
+        if result is None:
+            bore = bare_bore(screen.file.cup, radians(90.0))
+            self.put(numbers="", viewer="", flat=bore, courses=empty_charts(screen.reading))
+        elif result is self.long.result(screen):
+            self.film.show(screen)
         else:
-            self._page.ask(use=_changed(self._screen, key, value))
+            self._show_cycle(screen, result, None)
 
-    def _store_result(self, key: Hashable, result: GaitResult) -> None:
-        _RESULTS.put(key, result)
-        self._put_found(result)
+    def _show_film(self, screen: Screen, film: GaitFilm | None) -> None:
+        result = self.long.result(screen)
+        if result is not None:
+            self._show_cycle(screen, result, self.film.result(screen))
+
+    def _show_cycle(self, screen: Screen, result: GaitResult, film: GaitFilm | None) -> None:
+        reading, instant = screen.reading, screen.use.instant
+        instant = result.heaviest if instant is None else min(instant, len(result.phase) - 1)
+        field = film if screen.use.field == "film" else None
+        self.put(
+            at=str(instant),
+            numbers=_numbers(result, film, reading),
+            viewer=gait_viewer(result, field, screen.file, reading),
+            flat=flat_bore(result, field, screen.file, reading, instant),
+            courses=gait_charts(result, film, reading),
+        )
+
+    def edit(self, key: str, value: Any) -> None:
+        if key == "own":
+            self._upload = _read_upload(value)
+            self.show(self.page.screen)
+        elif key == "instant":
+            if not isinstance(value, int) or isinstance(value, bool):
+                raise ValueError("an instant of a cycle is a whole number")
+            self.page.ask(use=replace(self.page.screen.use, instant=value))
+        else:
+            super().edit(key, value)
 
     def document(self, screen: Screen) -> Document:
-        result: GaitResult | None = _RESULTS.get(self._key)
-        if result is None:
-            raise ValueError("this cycle has not been pressed yet: wait until it is there")
-        reading = screen.reading
-        courses = {course.label(reading): course.of(result, reading) for course in COURSES}
+        result, film, reading = self.result(screen), self.film.result(screen), screen.reading
+        courses = {
+            course.label(reading): values for charted in courses_of(result, film, reading) for course, values in charted
+        }
         heads = ["phase [%]", *courses]
         rows = numpy.stack([result.phase, *courses.values()], axis=1).tolist()
-        listed = table(["quantity", "value"], [[name, value_text(value)] for name, value in result.numbers.items()])
+        numbers = {
+            **result.numbers,
+            **({} if film is None else {f"film_{name}": value for name, value in film.numbers.items()}),
+        }
+        listed = table(["quantity", "value"], [[name, value_text(value)] for name, value in numbers.items()])
+        sections = {
+            "checks": ("Checks", f"{rim_sentence(result, reading)}{checked(result.checks, reading)}"),
+            "gait": (f"A cycle: {result.name}", listed + notes_list(result.notes)),
+        }
+        if film is not None:
+            sections["film"] = ("Film", picture(film.figure, "film over the cycle") + notes_list([film.note]))
         return Document(
             picture=lambda form: figure_bytes(course_figure(result.phase, courses, result.name), form),
             rows=lambda: [heads, *rows],
-            sections=lambda: {"gait": (f"A cycle: {result.name}", listed + notes_list(result.notes))},
+            sections=lambda: sections,
         )
-
-    def leave(self) -> None:
-        self._job.stop()
-
-
-def _changed(screen: Screen, key: str, value: Any) -> Use:
-    """Return the settings after one input has changed."""
-    check_names([key], ("instant", "body_weight", "cycle", "contact"), "among the inputs of a cycle")
-    if key == "instant" and not (isinstance(value, int) and not isinstance(value, bool)):
-        raise ValueError("an instant of a cycle is a whole number")
-    if key == "body_weight":
-        value = typed(key, value, Unit("N"), Kind.FORCE)
-    changes: dict[str, Any] = {key: value if key in ("instant", "body_weight") else str(value)}
-    return replace(screen.use, **changes)
 
 
 def _read_upload(value: Any) -> UploadedCycle:
@@ -141,19 +154,27 @@ def _read_upload(value: Any) -> UploadedCycle:
     return UploadedCycle(name, text)
 
 
-def _numbers(result: GaitResult, reading: Reading) -> str:
-    film = result.film[numpy.isfinite(result.film)]
-    force, pressure, _, edge = (course.unit(reading) for course in COURSES)
+def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str:
+    force, pressure, edge = (reading.unit(quantity) for quantity in _TILES)
     least = float(numpy.nanmin(result.edge, initial=numpy.inf))
+    highest = float(numpy.nanmax(result.pressure, initial=0.0)) * pressure.factor
     cells = [
         number_cell("largest load", float(result.force.max(initial=0.0)) * force.factor, force.text),
-        number_cell(
-            "largest pressure", float(numpy.nanmax(result.pressure, initial=0.0)) * pressure.factor, pressure.text
-        ),
-        number_cell("least film", float(film.min()) if len(film) else float("nan"), "nm", result.regime),
+        number_cell("largest pressure", highest, pressure.text),
         number_cell("nearest to the rim", least * edge.factor, edge.text, result.worst),
-        number_cell("utilisation σv/σy", nan if result.utilisation is None else result.utilisation, ""),
         number_cell("sliding in a cycle", result.numbers["slide_mm"] * edge.factor, edge.text),
+        *([] if film is None else _film_cells(film)),
     ]
-    listed = notes_list(result.notes) if result.notes else ""
-    return f"{doubt(result.valid)}<dl class='tiles'>{''.join(cells)}</dl>{listed}"
+    notes = [*result.notes, *([] if film is None else [film.note])]
+    checks = checked(result.checks, reading)
+    rim = rim_sentence(result, reading)
+    return f"{rim}{doubt(result.valid)}<dl class='tiles'>{''.join(cells)}</dl>{checks}{notes_list(notes)}"
+
+
+_TILES = CONTACT["force"], CONTACT["max_pressure"], DERIVED["edge_distance"]
+
+
+def _film_cells(film: GaitFilm) -> list[str]:
+    state = "by the wave, valid" if film.valid else "✗ by the wave, outside its validity"
+    least, ratio = (float(numpy.nanmin(values, initial=numpy.inf)) for values in (film.least, film.ratio))
+    return [number_cell("least film", least, "nm", state), number_cell("least film ratio λ", ratio, "", film.regime)]

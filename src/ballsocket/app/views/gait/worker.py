@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
-from math import pi
 from typing import Any
 
 import numpy
 
-from ....elasticity.off_axis.directions import unit_vectors
 from ....files.joint_file import JointFile
-from ....hip import Lubricant
+from ....hip import HipSimulation, Lubricant
 from ....hip.ball_wear import interpolation_at
-from ....hip.contact_checks import largest_utilisation, list_check_notes
+from ....hip.contact_checks import ContactCheck, largest_utilisation, list_check_notes
 from ....hip.cycle_registry import CYCLES
+from ....reports.check_table import Check, checks_at
+from ....reports.figure_files import figure_bytes
+from ...pictures.bore import node_directions, relative_bytes
 from ...running import Reached, Report
 from ...state.use import UploadedCycle, Use, hip_of
 
-RINGS, MERIDIANS = 24, 60
-"""Cells of the bore that moves on the page."""
+RINGS, MERIDIANS = 30, 90
+"""Rings and meridians of the field that moves on the page."""
 
-_LEVELS = 255
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frames:
+    """Field on the bore in each instant: relative values 0 to 255 at the nodes of the moving bore."""
+
+    cells: numpy.ndarray  # (instants, RINGS + 1, MERIDIANS)
+    highest: float  # value of 255
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -32,15 +39,13 @@ class GaitResult:
     phase: numpy.ndarray  # % of the cycle
     force: numpy.ndarray  # N
     pressure: numpy.ndarray  # MPa
-    film: numpy.ndarray  # nm
     edge: numpy.ndarray  # mm from the edge of the contact to the rim
     load: numpy.ndarray  # (instants, 3), unit vectors in the cup's frame; 0 without load
-    cells: bytes  # relative pressures of the moving bore's cells in each instant, 0 to 255
-    polar: numpy.ndarray  # edges of its rings in rad
+    frames: Frames  # pressure
+    reach: float  # angle of the bore's rim in rad
     worst: str  # instant and direction of the smallest edge distance
-    regime: str  # lubrication regime
-    utilisation: float | None  # von Mises stress over yield stress; None without a yield stress
     valid: bool
+    checks: tuple[Check, ...]
     numbers: dict[str, Any]  # for JSON
     notes: tuple[str, ...]
 
@@ -48,6 +53,26 @@ class GaitResult:
     def heaviest(self) -> int:
         """Instant of the largest force."""
         return int(self.force.argmax())
+
+    @property
+    def rim(self) -> numpy.ndarray:
+        """Instants in which the contact reaches the rim."""
+        return numpy.asarray(self.edge <= 0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class GaitFilm:
+    """Film over the instants of a cycle by the wave, NaN in unloaded instants."""
+
+    least: numpy.ndarray  # nm
+    central: numpy.ndarray  # nm
+    ratio: numpy.ndarray  # film ratio λ
+    frames: Frames  # thickness in nm; 0 outside the contact
+    regime: str
+    valid: bool
+    note: str
+    figure: bytes  # film over the cycle and maps of it as PNG
+    numbers: dict[str, Any]  # for JSON
 
 
 def gait_key(file: JointFile, use: Use, upload: UploadedCycle | None) -> Hashable:
@@ -61,53 +86,93 @@ def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, repor
     report(Reached(share=0.1, words="setting up the bore"))
     hip = hip_of(file, use, upload)
     report(Reached(share=0.3, words="pressing through the cycle"))
-    unworn, lubricant = hip.unworn, Lubricant()
-    report(Reached(share=0.7, words="film and edge"))
-    lubrication, edge = hip.film(lubricant), hip.edge(unworn)
-    worst, first = edge.closest_approach(hip), hip.first
-    checks = hip.unworn_checks
-    utilisation, valid = largest_utilisation(checks), all(check.valid for check in checks)
-    polar = numpy.linspace(0.0, hip.reach, RINGS + 1)
+    unworn = hip.unworn
+    report(Reached(share=0.7, words="distance to the rim"))
+    edge = hip.edge(unworn)
+    worst, first, checks = edge.closest_approach(hip), hip.first, hip.unworn_checks
+    valid = all(check.valid for check in checks)
     sizes = hip.cycle.force_magnitudes
-
-    def course(values: numpy.ndarray) -> numpy.ndarray:
-        series = numpy.full(hip.cycle.n_steps, numpy.nan)
-        series[hip.loaded] = values
-        return series
-
     return GaitResult(
         name=hip.cycle.name,
         phase=100 * hip.cycle.phases,
         force=sizes,
-        pressure=course(unworn.pressure.max(axis=1, initial=0.0)),
-        film=course(1e6 * lubrication.least),
-        edge=course(edge.distance),
+        pressure=_course(hip, unworn.pressure.max(axis=1, initial=0.0)),
+        edge=_course(hip, edge.distance),
         load=numpy.divide(hip.forces, sizes[:, None], out=numpy.zeros_like(hip.forces), where=sizes[:, None] > 0),
-        cells=_cells(hip, polar),
-        polar=polar,
+        frames=_frames(hip, unworn.pressure, float(unworn.pressure.max(initial=0.0))),
+        reach=hip.reach,
         worst="nothing is pressed" if worst is None else worst.location,
-        regime=lubrication.regime,
-        utilisation=utilisation,
         valid=valid,
+        checks=checks_in_use(hip, checks, edge.distance),
         numbers={
             "valid": valid,
-            "utilisation": utilisation,
+            "utilisation": largest_utilisation(checks),
             "slide_mm": first.slide,
-            **lubrication.summary(),
             "edge": None if worst is None else worst.summary(),
         },
         notes=(*hip.notes, *list_check_notes([("in the first cycle", checks)])),
     )
 
 
-def _cells(hip: Any, polar: numpy.ndarray) -> bytes:
-    """Compute relative cell pressures (0 to 255) of the moving bore in each instant."""
-    azimuth = 2 * pi * (numpy.arange(MERIDIANS) + 0.5) / MERIDIANS
-    middles = unit_vectors(((polar[1:] + polar[:-1]) / 2)[:, None], azimuth)
-    interpolation = interpolation_at(hip.grid, numpy.asarray(middles).reshape(3, 1, -1))
-    pressure = hip.unworn.pressure
-    largest = float(pressure.max(initial=0.0)) or 1.0
-    frames = numpy.zeros((hip.cycle.n_steps, RINGS * MERIDIANS), dtype=numpy.uint8)
-    for instant, field in zip(hip.loaded, pressure, strict=True):
-        frames[instant] = numpy.rint(_LEVELS * interpolation.interpolate(field[None])[0] / largest)
-    return frames.tobytes()
+def checks_in_use(hip: HipSimulation, contacts: Sequence[ContactCheck], distances: numpy.ndarray) -> tuple[Check, ...]:
+    """List the checks of the worst contact of a cycle, and of the smallest of its edge distances (mm)."""
+    if not contacts:
+        return ()
+    worst = max(contacts, key=lambda check: check.max_pressure)
+    return checks_at(
+        hip.joint,
+        pressure=worst.max_pressure,
+        half_angle=worst.half_angle,
+        edge=(hip.reach, float(distances.min())) if len(distances) else None,
+        trusted=all(check.valid for check in contacts),
+    )
+
+
+def simulate_film(file: JointFile, use: Use, upload: UploadedCycle | None, report: Report) -> GaitFilm:
+    """Carry the film over a cycle by the wave, in a separate process."""
+    report(Reached(share=0.1, words="pressing through the cycle"))
+    hip = hip_of(file, use, upload)
+    report(Reached(share=0.2, words="carrying the film over the cycle until it repeats"))
+    film = hip.film(Lubricant(), method="wave")
+    thickness = numpy.full(hip.unworn.pressure.shape, numpy.nan) if film.thickness is None else 1e6 * film.thickness
+    known = thickness[numpy.isfinite(thickness)]
+    return GaitFilm(
+        least=_course(hip, 1e6 * film.least),
+        central=_course(hip, 1e6 * film.central),
+        ratio=_course(hip, film.ratio),
+        frames=_frames(hip, thickness, float(numpy.percentile(known, _SHOWN_SHARE)) if len(known) else 0.0),
+        regime=film.regime,
+        valid=film.valid,
+        note=film.note,
+        figure=figure_bytes(film.plot()),
+        numbers=film.summary(),
+    )
+
+
+_SHOWN_SHARE = 95.0
+"""Percentage of the film below the end of its colour scale: at the edges of the contact it is far thicker."""
+
+
+def _course(hip: HipSimulation, values: numpy.ndarray) -> numpy.ndarray:
+    """Return values of the loaded instants over all instants, NaN in the others."""
+    series = numpy.full(hip.cycle.n_steps, numpy.nan)
+    series[hip.loaded] = values
+    return series
+
+
+def _frames(hip: HipSimulation, fields: numpy.ndarray, highest: float) -> Frames:
+    """Interpolate fields (loaded, cells) to the moving bore; NaN cells are outside, and 0."""
+    nodes = node_directions(hip.reach, RINGS, MERIDIANS).reshape(3, 1, -1)
+    interpolation = interpolation_at(hip.grid, nodes)
+    cells = numpy.zeros((hip.cycle.n_steps, RINGS + 1, MERIDIANS), dtype=numpy.uint8)
+    inside = numpy.isfinite(fields)
+    for instant, field, known in zip(hip.loaded, numpy.where(inside, fields, 0.0), inside.astype(float), strict=True):
+        share = interpolation.interpolate(known[None])[0]
+        values = interpolation.interpolate(field[None])[0] / numpy.where(share > 0, share, 1.0)
+        scaled = numpy.where(share >= _INSIDE, relative_bytes(values, highest), 0)
+        cells[instant] = scaled.reshape(RINGS + 1, MERIDIANS)
+    return Frames(cells=cells, highest=highest)
+
+
+_INSIDE = 0.5
+"""Share of the neighbouring cells with a value, from which a node has one."""

@@ -12,11 +12,11 @@ from ....compare import relative_deviation
 from ....core.quantities import CONTACT, DERIVED
 from ....reports.pages import table
 from ....reports.style import BLUE, VERMILLION, LineStyle
-from ...pictures.bore import METRIC, BoreField, grid_field, worn_bore
+from ...pictures.bore import METRIC, BoreField, grid_field, load_bore
 from ...pictures.chart import Curve, chart, legend
 from ...pressing import rounded_up
 from ...widgets.reading import Reading
-from ...widgets.words import doubt, notes_list, number_text, percent
+from ...widgets.words import checked, doubt, notes_list, number_text, percent
 from .worker import WearResult
 
 _DEPTH, _PRESSURE = CONTACT["indentation"], CONTACT["max_pressure"]
@@ -27,27 +27,23 @@ _DESIGN_LINES = (LineStyle(BLUE), LineStyle(VERMILLION, (6.0, 2.0)))
 
 def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> str:
     """Tabulate the final wear of each design, with the difference from the first."""
-    first, *further = designs.values()
+    columns = [_final_values(design, reading) for design in designs.values()]
     rows = []
-    for name, values in _final_values(first, reading).items():
-        values_of_others = [_final_values(design, reading)[name] for design in further]
-        rows.append(
-            [
-                name,
-                number_text(values),
-                *(f"{number_text(entry)} ({_deviation(entry, values)})" for entry in values_of_others),
-            ]
-        )
+    for name, base in columns[0].items():
+        others = [column[name] for column in columns[1:]]
+        apart = [percent(float(relative_deviation(value, base)), "+") if base else "–" for value in others]
+        cells = [f"{number_text(value)} ({share})" for value, share in zip(others, apart, strict=True)]
+        rows.append([name, number_text(base), *cells])
+    used = "".join(
+        f"<h3>{escape(name)} after the last cycle</h3>{checked(entry.checks, reading)}"
+        for name, entry in designs.items()
+    )
     notes = "".join(
         f"{doubt(entry.summary['contact']['valid'], name)}"
         f"<p class='quiet'>{escape(name)}: {escape(entry.band)}</p>{notes_list(entry.notes)}"
         for name, entry in designs.items()
     )
-    return f"{table(['after the last cycle', *designs], rows)}{notes}"
-
-
-def _deviation(value: float, base: float) -> str:
-    return percent(float(relative_deviation(value, base)), "+") if base else "–"
+    return f"{used}{table(['after the last cycle', *designs], rows)}{notes}"
 
 
 def _final_values(worn: WearResult, reading: Reading) -> dict[str, float]:
@@ -82,7 +78,6 @@ def penetration_chart(designs: Mapping[str, WearResult], reading: Reading = METR
         name: Curve(
             design.cycles,
             unit.factor * design.penetration,
-            numpy.full(design.cycles.shape, True),
             lines[name],
             band=(unit.factor * design.low, unit.factor * design.high),
         )
@@ -102,6 +97,15 @@ def penetration_chart(designs: Mapping[str, WearResult], reading: Reading = METR
     up = f"penetration{unit.text_in_brackets}"
     drawn = chart(f"penetration: {label}", "million cycles", up, curves, (end, highest))
     return f"{drawn}<p class='legend'>{legend(lines)}</p>"
+
+
+def empty_chart(millions: float, reading: Reading) -> str:
+    """Draw the axes of the penetration over the cycles, for a design without a result."""
+    unit = reading.unit(_DEPTH)
+    up = f"penetration{unit.text_in_brackets}"
+    return chart(
+        "penetration over the cycles, not computed yet", "million cycles", up, {}, (millions, 0.1 * unit.factor)
+    )
 
 
 def depth_maps(designs: Mapping[str, WearResult], reading: Reading = METRIC) -> str:
@@ -125,4 +129,4 @@ def _depth_map(element: str, name: str, worn: WearResult, highest: float, readin
         reach=worn.grid.reach,
         cup=worn.cup,
     )
-    return worn_bore(field, label, worn.load)
+    return load_bore(field, label, worn.load)

@@ -2,178 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Hashable
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from ....core.checks import check_names, shown
-from ....core.kinds import Kind, Unit
+from ....core.checks import check_names
+from ....core.kinds import Unit
 from ....core.quantities import CONTACT
 from ....files.joint_file import JointFile
 from ....hip.law_fields import LawField
 from ....problem.presets import joints
 from ....reports.pages import picture
-from ...jobs import ViewJob
-from ...running import CachedRun
+from ...long_view import LongView, long_body
+from ...results import RESULTS
+from ...running import Work
 from ...state.screen import Screen
-from ...state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS, Use, cycle_fields
-from ...view import Document, Host, View
-from ...widgets.fields import Field, choice, number, segments, typed
-from ...widgets.words import progress, unit_of_files
-from .charts import depth_maps, penetration_chart, wear_numbers
-from .worker import WEAR_SECONDS, WearResult, simulate_wear, wear_key
+from ...state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS
+from ...view import Document
+from ...widgets.cycle_settings import CYCLE_SETTINGS
+from ...widgets.fields import Field, choice, number, segments
+from ...widgets.settings import Setting, amount, changed, chosen
+from ...widgets.words import unit_of_files
+from .charts import depth_maps, empty_chart, penetration_chart, wear_numbers
+from .worker import WEAR_SECONDS, WearResult, simulate_designs, wear_key
 
-_RESULTS: CachedRun = CachedRun(max_size=24)
 _ALONE, _NOW, _AS_COMPARED = "", "as it is now", "as it was put beside"
-_SHOWN = (
-    *("cycle", "body_weight", "contact", "law", "coefficient", *WEAR_INPUTS, "spread", "millions", "creep"),
-    *(*CREEP_INPUTS, "beside"),
-)
 
 
-class Wear(View):
-    """View of wear that runs on request and shows stored results at once."""
-
-    title = "Wear"
-    body = f"""
-<div class="inputs-row">{"".join(f'<div data-field="wear.{name}"></div>' for name in _SHOWN)}</div>
-<p><button type="button" class="plain" data-tell="wear.run">Run the wear</button></p>
-<div id="wear-trouble" role="alert"></div>
-<div id="wear-progress" role="status"></div>
-<div id="wear-numbers"></div>
-<div id="wear-curve"></div>
-<div class="beside" id="wear-maps"></div>
-"""
-
-    def __init__(self, page: Host) -> None:
-        self._page, self._screen = page, page.screen
-        self._job = ViewJob(page.channel, "wear", self._store_results, longest=WEAR_SECONDS)
-        page.listen("wear", self._edited)
-
-    def show(self, screen: Screen) -> None:
-        self._screen = screen
-        self._job.put("trouble", "")
-        self._page.channel.put_fields(_fields(screen))
-        if not self._job.works:
-            self._job.put("progress", "")
-        self._put_found()
-
-    def _put_found(self) -> None:
-        """Show the stored results for the designs on the screen, or instructions."""
-        results = self._stored_results()
-        self._job.put("numbers", wear_numbers(results, self._screen.reading) if results else _NOTHING)
-        self._job.put("curve", penetration_chart(results, self._screen.reading) if results else "")
-        self._job.put("maps", depth_maps(results, self._screen.reading) if results else "")
-
-    def _stored_results(self) -> dict[str, WearResult]:
-        results = {name: _RESULTS.get(wear_key(file, self._screen.use)) for name, file in designs(self._screen).items()}
-        return results if all(result is not None for result in results.values()) else {}
-
-    def _edited(self, key: str, value: Any) -> None:
-        if key == "run":
-            self._run()
-        elif key == "stop":
-            self._job.stop()
-            self._job.put("progress", progress("Stopped.", None))
-        elif key == "beside":
-            self._page.ask(beside=_compared(self._screen, value))
-        else:
-            self._page.ask(use=_changed(self._screen, key, value))
-
-    def _run(self) -> None:
-        use = self._screen.use
-        files_by_key = {wear_key(file, use): file for file in designs(self._screen).values()}
-        missing = {key: file for key, file in files_by_key.items() if _RESULTS.get(key) is None}
-        self._job.put("trouble", "")
-        if missing:
-            self._job.ask(tuple(missing), partial(simulate_wear, list(missing.values()), use))
-
-    def _store_results(self, keys: tuple[Hashable, ...], results: list[WearResult]) -> None:
-        for key, result in zip(keys, results, strict=True):
-            _RESULTS.put(key, result)
-        self._put_found()
-
-    def document(self, screen: Screen) -> Document:
-        results = self._stored_results()
-        if not results:
-            raise ValueError("the wear of this has not been run yet: run it first")
-        unit = unit_of_files(CONTACT["indentation"], screen.reading)
-        depths = [f"{name}{unit.text_in_brackets}" for name in ("penetration", "low", "high", "deepest")]
-        rows = [
-            [name, float(cycles), *(unit.factor * float(depth) for depth in row), float(volume)]
-            for name, design in results.items()
-            for cycles, *row, volume in zip(
-                design.cycles, design.penetration, design.low, design.high, design.deepest, design.volume, strict=True
-            )
-        ]
-        pictures = "".join(picture(design.figure, f"penetration of {name}") for name, design in results.items())
-        return Document(
-            rows=lambda: [["design", "million cycles", *depths, "volume [mm3]"], *rows],
-            sections=lambda: {"wear": ("Wear", wear_numbers(results, screen.reading) + pictures)},
-        )
-
-    def leave(self) -> None:
-        self._job.stop()
-
-
-_NOTHING = (
-    "<p class='quiet'>Nothing has been run of this yet. A run of springs takes some seconds, of a real cup a minute. "
-    "A second design can be put beside: then change the one on the screen. Who has a new hip walks one to two million "
-    "cycles a year.</p>"
-)
-
-
-def designs(screen: Screen) -> dict[str, JointFile]:
-    """Return the design on the screen and the first compared one, by name."""
-    named = {screen.file.joint.name or "this design": screen.file}
-    for file in screen.beside[:1]:
-        name = file.joint.name or "the other"
-        named[f"{name}, beside" if name in named else name] = file
-    return named
-
-
-def _fields(screen: Screen) -> dict[str, Field]:
-    use = screen.use
-    listed = [
-        *cycle_fields("wear", use),
-        choice("wear.law", "Law of wear", [(name, name) for name in CHOICES["law"]], use.law),
-        _coefficient_input(use),
-        *(_law_input(name, use) for name in WEAR_INPUTS),
-        number("wear.spread", "It scatters by a factor", Unit(""), (1.0, 3.0), 0.1, use.spread),
-        number("wear.millions", "Million cycles", Unit(""), (0.5, 20.0), 0.5, use.millions),
-        segments("wear.creep", "The liner creeps", [(name, name) for name in CHOICES["creep"]], use.creep),
-        *(_law_input(name, use) for name in CREEP_INPUTS),
-        choice("wear.beside", "Compare with", _choices(screen), _AS_COMPARED if screen.beside else _ALONE),
-    ]
-    return {field["name"]: field for field in listed}
-
-
-def _law_field(name: str, part: LawField, value: float, title: str) -> Field:
-    """Describe the input of a number of a law, over three decades around its example."""
-    unit = f" [{part.unit.text}]" if part.unit.text else ""
-    step = part.example / 100 or 0.01
-    return number(f"wear.{name}", f"{title}{unit}", Unit(""), (step, 1000 * step), step, value)
-
-
-def _coefficient_input(use: Use) -> Field:
-    """Describe the input of the wear coefficient, hidden for a law without one."""
-    part = use.coefficient_field
-    if part is None:
-        return {**number("wear.coefficient", "Coefficient", Unit(""), (0.0, 1.0), 0.01, 0.0), "hidden": True}
-    return _law_field("coefficient", part, use.coefficient, "Coefficient")
-
-
-def _law_input(name: str, use: Use) -> Field:
-    """Describe the input of a number of `LAW_INPUTS`, hidden unless a chosen law has it."""
-    part = LAW_INPUTS[name]
-    title = part.meaning[0].upper() + part.meaning[1:]
-    return {**_law_field(name, part, use.law_number(name), title), "hidden": name not in use.used_inputs}
-
-
-def _choices(screen: Screen) -> list[tuple[str, str]]:
+def _beside_field(screen: Screen) -> Field:
     compared = [(_AS_COMPARED, f"{screen.beside[0].joint.name or 'a joint'}, {_AS_COMPARED}")] if screen.beside else []
-    return [(_ALONE, "– nothing –"), *compared, (_NOW, f"this design {_NOW}"), *((name, name) for name in joints)]
+    options = [(_ALONE, "– nothing –"), *compared, (_NOW, f"this design {_NOW}"), *joints]
+    return choice("beside", "Compare with", options, _AS_COMPARED if screen.beside else _ALONE)
 
 
 def _compared(screen: Screen, value: Any) -> tuple[JointFile, ...]:
@@ -186,36 +46,133 @@ def _compared(screen: Screen, value: Any) -> tuple[JointFile, ...]:
     return (replace(screen.file, joint=joints[value]),)
 
 
-def _changed(screen: Screen, key: str, value: Any) -> Use:
-    """Return the settings after one input has changed."""
-    check_names([key], _SHOWN, "among the inputs of wear")
-    if key in LAW_INPUTS:
-        return screen.use.with_law_number(key, float(LAW_INPUTS[key].unit.read(key, _decimal_point(value))))
-    changes: dict[str, Any] = {key: _READ[key](value, screen.use) if key in _READ else _word(key, value)}
-    return replace(screen.use, **changes)
+def _law_field(key: str, part: LawField, value: float, title: str) -> Field:
+    """Describe the input of a number of a law, over three decades around its example."""
+    unit = f" [{part.unit.text}]" if part.unit.text else ""
+    step = part.example / 100 or 0.01
+    return number(key, f"{title}{unit}", Unit(""), (step, 1000 * step), step, value)
 
 
-def _word(key: str, value: Any) -> str:
-    if not isinstance(value, str):
-        raise ValueError(f"{key} = {shown(value)} is not a choice")
-    return value
+def _read_law_number(key: str, part: LawField, value: Any) -> float:
+    """Read a typed number with a decimal point or comma, with or without its unit."""
+    return float(part.unit.read(key, value.strip().replace(",", ".") if isinstance(value, str) else value))
 
 
-def _decimal_point(value: Any) -> Any:
-    """Replace the decimal comma of a typed number."""
-    return value.strip().replace(",", ".") if isinstance(value, str) else value
+def _coefficient_field(screen: Screen) -> Field:
+    """Describe the input of the wear coefficient, hidden for a law without one."""
+    part = screen.use.coefficient_field
+    if part is None:
+        return {**number("coefficient", "Coefficient", Unit(""), (0.0, 1.0), 0.01, 0.0), "hidden": True}
+    return _law_field("coefficient", part, screen.use.coefficient, "Coefficient")
 
 
-def _coefficient(value: Any, use: Use) -> float:
-    """Read a typed coefficient: a number with a decimal point or comma, with or without its unit."""
-    if use.coefficient_field is None:
-        raise ValueError(f"the law {use.law!r} has no coefficient")
-    return float(use.coefficient_field.unit.read("coefficient", _decimal_point(value)))
+def _read_coefficient(screen: Screen, value: Any) -> dict[str, Any]:
+    part = screen.use.coefficient_field
+    if part is None:
+        raise ValueError(f"the law {screen.use.law!r} has no coefficient")
+    return changed(screen, "use.coefficient", _read_law_number("coefficient", part, value))
 
 
-_READ: Mapping[str, Callable[[Any, Use], float]] = {
-    "body_weight": lambda value, use: typed("body_weight", value, Unit("N"), Kind.FORCE),
-    "coefficient": _coefficient,
-    "spread": lambda value, use: typed("spread", value, Unit(""), Kind.NUMBER),
-    "millions": lambda value, use: typed("millions", value, Unit(""), Kind.NUMBER),
-}
+def _law_setting(key: str) -> Setting:
+    """Return a number of `LAW_INPUTS`, hidden unless a chosen law has it."""
+    part = LAW_INPUTS[key]
+    title = part.meaning[0].upper() + part.meaning[1:]
+    return Setting(
+        key,
+        lambda screen: {
+            **_law_field(key, part, screen.use.law_number(key), title),
+            "hidden": key not in screen.use.used_inputs,
+        },
+        lambda screen, value: {"use": screen.use.with_law_number(key, _read_law_number(key, part, value))},
+    )
+
+
+class Wear(LongView):
+    """View of wear that runs on request and shows stored results at once."""
+
+    title, name, run_label, longest = "Wear", "wear", "Run the wear", WEAR_SECONDS
+    settings = (
+        *CYCLE_SETTINGS,
+        chosen("use.law", "Law of wear", CHOICES["law"]),
+        Setting("coefficient", _coefficient_field, _read_coefficient),
+        *map(_law_setting, WEAR_INPUTS),
+        amount("use.spread", "Patient-to-patient factor", (1.0, 3.0), 0.1),
+        amount("use.millions", "Million cycles", (0.5, 20.0), 0.5),
+        chosen("use.creep", "Include creep", CHOICES["creep"], segments),
+        *map(_law_setting, CREEP_INPUTS),
+        Setting("beside", _beside_field, lambda screen, value: {"beside": _compared(screen, value)}),
+    )
+    body = long_body(
+        "wear",
+        "".join(f'<div data-field="wear.{setting.key}"></div>' for setting in settings),
+        '<div id="wear-numbers"></div><div id="wear-curve"></div><div class="beside" id="wear-maps"></div>',
+    )
+
+    def question_of(self, screen: Screen) -> Hashable:
+        return tuple(_files_by_key(screen))
+
+    def work(self, screen: Screen) -> Work:
+        return partial(simulate_designs, _files_by_key(screen), screen.use, self._known(screen))
+
+    def _known(self, screen: Screen) -> dict[Hashable, WearResult]:
+        """Return the results of single designs that are stored."""
+        singles = {key: RESULTS.get((self.name, (key,))) for key in _files_by_key(screen)}
+        return {key: result[key] for key, result in singles.items() if result is not None}
+
+    def show_result(self, screen: Screen, result: dict[Hashable, WearResult] | None) -> None:
+        parts = {"numbers": _NOTHING, "curve": empty_chart(screen.use.millions, screen.reading), "maps": ""}
+        if result is not None:
+            named = _named(screen, result)
+            parts = {
+                "numbers": wear_numbers(named, screen.reading),
+                "curve": penetration_chart(named, screen.reading),
+                "maps": depth_maps(named, screen.reading),
+            }
+            for key, single in result.items():
+                RESULTS.put((self.name, (key,)), {key: single})
+        self.put(**parts)
+
+    def document(self, screen: Screen) -> Document:
+        named = _named(screen, self.result(screen))
+        unit = unit_of_files(CONTACT["indentation"], screen.reading)
+        depths = [f"{name}{unit.text_in_brackets}" for name in ("penetration", "low", "high", "deepest")]
+        rows = [
+            [name, float(cycles), *(unit.factor * float(depth) for depth in row), float(volume)]
+            for name, design in named.items()
+            for cycles, *row, volume in zip(
+                design.cycles, design.penetration, design.low, design.high, design.deepest, design.volume, strict=True
+            )
+        ]
+        pictures = "".join(picture(design.figure, f"penetration of {name}") for name, design in named.items())
+        return Document(
+            rows=lambda: [["design", "million cycles", *depths, "volume [mm3]"], *rows],
+            sections=lambda: {"wear": ("Wear", wear_numbers(named, screen.reading) + pictures)},
+        )
+
+
+_NOTHING = (
+    "<p class='quiet'>The chart will show how deep the head moves into the liner. A run of springs takes some seconds, "
+    "of a real cup a minute. Patients with a new hip walk one to two million cycles a year.</p>"
+)
+
+
+def _files_by_key(screen: Screen) -> dict[Hashable, JointFile]:
+    """Return the designs on the screen by the inputs of their wear; equal designs are one."""
+    return {wear_key(file, screen.use): file for file in designs(screen).values()}
+
+
+def _named(screen: Screen, result: dict[Hashable, WearResult]) -> dict[str, WearResult]:
+    """Name the results by the designs on the screen, or by numbers if they belong to earlier designs."""
+    keys = {name: wear_key(file, screen.use) for name, file in designs(screen).items()}
+    if all(key in result for key in keys.values()):
+        return {name: result[key] for name, key in keys.items()}
+    return {f"earlier design {number}": design for number, design in enumerate(result.values(), 1)}
+
+
+def designs(screen: Screen) -> dict[str, JointFile]:
+    """Return the design on the screen and the first compared one, by name."""
+    named = {screen.file.joint.name or "this design": screen.file}
+    for file in screen.beside[:1]:
+        name = file.joint.name or "the other"
+        named[f"{name}, beside" if name in named else name] = file
+    return named

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,11 +13,13 @@ from ....files.joint_file import JointFile
 from ....hip import HipSimulation, History, PatientVariability, population
 from ....hip.cycle_registry import CYCLES
 from ....problem.cup import Cup
+from ....reports.check_table import Check, sorted_checks, wear_check
 from ....reports.figure_files import figure_bytes
 from ....reports.hip_plots import penetration_curve
 from ....studies.distributions import LogNormal
 from ...running import Reached, Report
 from ...state.use import Use, hip_of
+from ..gait.worker import checks_in_use
 
 WEAR_SECONDS = 300.0
 """Seconds that a run of wear may take."""
@@ -44,6 +46,7 @@ class WearResult:
     summary: dict[str, Any]  # of `History`, for JSON
     notes: tuple[str, ...]
     figure: bytes  # penetration as PNG
+    checks: tuple[Check, ...]  # of the worn bore
 
 
 def wear_key(file: JointFile, use: Use) -> Hashable:
@@ -54,19 +57,22 @@ def wear_key(file: JointFile, use: Use) -> Hashable:
     return file.joint, file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0)
 
 
-def simulate_wear(files: Sequence[JointFile], use: Use, report: Report) -> list[WearResult]:
-    """Simulate the wear of each design in turn, in a separate process."""
-    results = []
-    for number, file in enumerate(files):
-        start, fraction = number / len(files), 1.0 / len(files)
-        of = f" of design {number + 1}" if len(files) > 1 else ""
+def simulate_designs(
+    files: Mapping[Hashable, JointFile], use: Use, known: Mapping[Hashable, WearResult], report: Report
+) -> dict[Hashable, WearResult]:
+    """Simulate the wear of each design that is not known, by the key of its inputs, in a separate process."""
+    results = dict(known)
+    missing = {key: file for key, file in files.items() if key not in known}
+    for number, (key, file) in enumerate(missing.items()):
+        start, fraction = number / len(missing), 1.0 / len(missing)
+        of = f" of design {number + 1}" if len(missing) > 1 else ""
 
         def reached(share: float, words: str, start: float = start, fraction: float = fraction, of: str = of) -> None:
             report(Reached(share=start + fraction * share, words=f"{words}{of}"))
 
-        reached(0.02, "setting up the bore")
-        results.append(_simulate_design(hip_of(file, use), use, reached))
-    return results
+        reached(0.02, "Preparing the bore")
+        results[key] = _simulate_design(hip_of(file, use), use, reached)
+    return {key: results[key] for key in files}
 
 
 def _simulate_design(hip: HipSimulation, use: Use, reached: Any) -> WearResult:
@@ -115,4 +121,17 @@ def _wear_result(hip: HipSimulation, history: History, bands: Any) -> WearResult
         summary=history.summary(),
         notes=history.notes,
         figure=figure_bytes(penetration_curve(history, bands)),
+        checks=_checks(hip, history),
     )
+
+
+def _checks(hip: HipSimulation, history: History) -> tuple[Check, ...]:
+    """List the checks of the bore after the last cycle, and that of the deepest wear."""
+    last = history.last
+    rows = checks_in_use(hip, history.contact_checks[-1], rim_distances(last.edge_distance, last.edge_loaded))
+    return sorted_checks([*rows, wear_check(hip.joint, float(last.depth))])
+
+
+def rim_distances(distances: numpy.ndarray, edge_loaded: numpy.ndarray) -> numpy.ndarray:
+    """Return the edge distances to check: without edge loading a bore that is worn to the rim does not fail there."""
+    return distances if edge_loaded.any() else distances[distances > 0]

@@ -129,12 +129,6 @@ def _poisson_at(coordinate: Numbers) -> Numbers:
     return (1 - numpy.exp((high + low - coordinate * (high - low)) / 2)) / 2
 
 
-def _ratio_at(coordinate: Numbers) -> Numbers:
-    """Compute the ratio R2/L from its table coordinate."""
-    low, high = (float(numpy.log(end + chebyshev.RATIO_SHIFT)) for end in chebyshev.THICKNESS_RATIO)
-    return numpy.exp((low + high + coordinate * (high - low)) / 2) - chebyshev.RATIO_SHIFT
-
-
 def _ball_share_at(coordinate: float, poisson: float, ratio: float) -> float:
     """Compute the ball's share of the compliance from its table coordinate."""
     scale = chebyshev.ball_scale(poisson, ratio)
@@ -216,7 +210,7 @@ class _TableSpec:
         """
         poisson, ratio = (
             _poisson_at(chebyshev.chebyshev_points(self.counts[0])),
-            _ratio_at(chebyshev.chebyshev_points(self.counts[1])),
+            chebyshev.thickness_ratio_at(chebyshev.chebyshev_points(self.counts[1])),
         )
         liners = [(float(nu), float(z)) for nu in poisson for z in ratio]
         sampled = numpy.array(list(map_function(self.sample, liners, chunksize=4)))

@@ -13,9 +13,12 @@ from zipfile import BadZipFile
 import numpy
 
 from ....core import arrays
-from ....core.arrays import Array, Numbers, cos, exp, log1p, sqrt
+from ....core.arrays import Array, Numbers, exp, log1p, sqrt
 from ....core.arrays import log as ln
 from ....core.input_files import open_input
+
+Pair = tuple[Array, Array]
+"""Two arrays, such as a value and its slope."""
 
 LIMIT = radians(85.0)
 """Largest half angle of the tables in rad."""
@@ -77,6 +80,12 @@ def half_angle_at(coordinate: Array, ratio: Array) -> Array:
     return (exp(share * share * ln(1 + scale * LIMIT)) - 1) / scale
 
 
+def thickness_ratio_at(coordinate: Array) -> Array:
+    """Compute the ratio R2/L from its table coordinate."""
+    low, high = (log(end + RATIO_SHIFT) for end in THICKNESS_RATIO)
+    return exp((low + high + coordinate * (high - low)) / 2) - RATIO_SHIFT
+
+
 def ball_scale(poisson: Array, ratio: Array) -> Array:
     """Compute the share of the compliance above which the ball affects a thin liner."""
     return 1.1 * sqrt(1 - 2 * poisson) / ratio
@@ -114,11 +123,22 @@ class ChebyshevTable:
 
         Coordinates have the shape (joints,), or (1,) if all joints have the same.
         """
-        first, second, *ball = (chebyshev_polynomials(*pair) for pair in zip(coordinates, self.counts, strict=False))
-        combinations = _apply_factors(convert_like(self.liner, first), first, second)
+        polynomials = [chebyshev_polynomials(*pair) for pair in zip(coordinates, self.counts, strict=False)]
+        return self.coefficients_of_polynomials(polynomials)
+
+    def coefficients_of_polynomials(self, polynomials: list[Array]) -> Array:
+        """Compute the coefficients from the Chebyshev polynomials (orders, joints or 1) of the coordinates.
+
+        There may be more orders than this table has.
+        """
+        first, second, *ball = (values[:count, ...] for values, count in zip(polynomials, self.counts, strict=False))
+        matrix, products = _contract_factors(convert_like(self.liner, first), first, second)
         if ball:
-            combinations = _apply_factors(convert_like(self.ball, first), *ball, combinations)
-        return arrays.namespace(first).reshape(convert_like(self.curves, first) @ combinations, (*self.shape, -1))
+            matrix, products = _contract_factors(convert_like(self.ball, first), *ball, matrix @ products)
+        curves = convert_like(self.curves, first)
+        few_products = matrix.shape[1] < matrix.shape[0]  # such as those of R2/L alone: the smaller matrices first
+        values = (curves @ matrix) @ products if few_products else curves @ (matrix @ products)
+        return arrays.namespace(first).reshape(values, (*self.shape, -1))
 
     def coefficients_of_one(self, coordinates: list[float]) -> numpy.ndarray:
         """Compute the coefficients (functions, angles) of one joint."""
@@ -129,11 +149,19 @@ class ChebyshevTable:
         return (self.curves @ combinations).reshape(self.shape)
 
 
-def _apply_factors(matrix: Array, *factors: Array) -> Array:
+def multiply_factors(matrix: Array, *factors: Array) -> Array:
     """Multiply a matrix by the outer product of the columns of several factors, for each joint.
 
     The matrix has the shape (rows, products), each factor (rows, joints or 1).
-    Factors that all joints share are multiplied first, which makes a sweep of one material three times as fast.
+    """
+    contracted, products = _contract_factors(matrix, *factors)
+    return contracted @ products
+
+
+def _contract_factors(matrix: Array, *factors: Array) -> Pair:
+    """Multiply a matrix (rows, products) by the factors that all joints share; return it and the other products.
+
+    A sweep of one material is three times as fast as with the products of all factors.
     """
     xp = arrays.namespace(matrix)
     cube = xp.reshape(matrix, (-1, *(factor.shape[0] for factor in factors)))
@@ -142,18 +170,21 @@ def _apply_factors(matrix: Array, *factors: Array) -> Array:
             cube = xp.tensordot(cube, factors[axis][:, 0], axes=((axis + 1,), (0,)))
     varying = [factor for factor in factors if factor.shape[1] > 1]
     if not varying:
-        return cube[:, None]
-    rows = varying[0]
+        return cube[:, None], xp.ones((1, 1), dtype=matrix.dtype, device=arrays.device(matrix))
+    products = varying[0]
     for factor in varying[1:]:
-        rows = xp.reshape(rows[:, None, :] * factor[None, :, :], (-1, rows.shape[1]))
-    return xp.reshape(cube, (matrix.shape[0], -1)) @ rows
+        products = xp.reshape(products[:, None, :] * factor[None, :, :], (-1, products.shape[1]))
+    return xp.reshape(cube, (matrix.shape[0], -1)), products
 
 
 def chebyshev_polynomials(coordinate: Array, count: int) -> Array:
     """Compute the Chebyshev polynomials T_0 ... T_count-1 at coordinates (n,), as rows."""
     xp = arrays.namespace(coordinate)
     if xp is not numpy:
-        return cos(convert_like(numpy.arange(count, dtype=float), coordinate)[:, None] * xp.acos(coordinate))
+        waves = xp.stack([0.0 * coordinate + 1.0, coordinate])
+        while waves.shape[0] < count:  # T_m+j = 2 T_m T_j - T_m-j doubles their number
+            waves = xp.concat([waves, 2 * waves[-1, ...] * waves[1:, ...] - xp.flip(waves[:-1, ...], axis=0)])
+        return waves[:count, ...]
     twice, rows = 2 * coordinate, numpy.empty((count, *coordinate.shape), dtype=coordinate.dtype)
     rows[0], rows[1:2] = 1.0, coordinate
     for k in range(2, count):

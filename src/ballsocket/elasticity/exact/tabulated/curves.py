@@ -1,4 +1,4 @@
-"""Tabulated functions of joints, the contact quantities from them at a half angle, and the inverse.
+"""Tabulated functions of joints, and the contact quantities from them at a half angle.
 
 Under the linear gap everything is proportional to c + d. With the compliance C = 2 (1 - ν²) R2/E (1 + β) of liner
 and ball, the contact follows from three functions of the half angle, ν, R2/L and the ball:
@@ -11,21 +11,21 @@ Slopes are those by ln ε.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy
 
-from ....contact.roots import Increasing, increasing_root
 from ....core import arrays
-from ....core.arrays import Array, cos, exp, log, log1p, sin, where
+from ....core.arrays import Array, cos, exp, log1p, sin
 from ....problem import Joint
 from .chebyshev import (
     ANGLE_SCALE,
     LIMIT,
     WITH_BALL,
-    ChebyshevTable,
+    Pair,
     angle_root,
     ball_coordinate,
     ball_shrinkage,
@@ -36,12 +36,6 @@ from .chebyshev import (
     poisson_coordinate,
     thickness_coordinate,
 )
-
-Pair = tuple[Array, Array]
-"""A value and its slope."""
-
-_LOG_OFFSET = -1.0
-"""Value of the unknown, a shifted ln ε, at the widest contact; the shift keeps it away from zero."""
 
 ONE, TWO, ALL = (0,), (0, 1), (0, 1, 2)
 """Indices of the functions to evaluate."""
@@ -71,6 +65,21 @@ class Scale(NamedTuple):
     """C in mm/MPa."""
 
 
+class Widest(NamedTuple):
+    """Contact at the largest half angle of the tables."""
+
+    opening: Array
+    """Relative indentation d/(c + d)."""
+    force: Array
+    """Dimensionless force F C/(R2² (c + d))."""
+
+    @classmethod
+    def of(cls, functions: Array) -> Widest:
+        """Sum the series (functions, angles, joints) of the tables, whose polynomials are all 1 at this half angle."""
+        share, force = (arrays.namespace(functions).sum(functions[row, ...], axis=0) for row in TWO)
+        return cls(2 * math.sin(LIMIT / 2) ** 2 * exp(share), LIMIT**3 * exp(force))
+
+
 def evaluate_table_functions(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> tuple[Pair, ...]:
     """Evaluate the tabulated functions in `rows`, with their slopes by ln ε, at half angles above 0."""
     root = angle_root(angle, curve.ratio)
@@ -78,10 +87,58 @@ def evaluate_table_functions(angle: Array, curve: CurveCoefficients, rows: tuple
     if type(angle) is float:
         values = (curve.functions @ chebyshev_values(coordinate, curve.functions.shape[1])).tolist()
         return tuple((values[k], widening * values[k + 3]) for k in rows)
+    if arrays.all_true(coordinate == coordinate) is None:
+        series = (traced_series(curve.functions[k, ...], coordinate) for k in rows)
+        return tuple((value, widening * slope) for value, slope in series)
     waves = chebyshev_polynomials(coordinate, curve.functions.shape[1])
     return tuple(
         (sum_series(curve.functions[k, ...], waves), widening * sum_series(curve.slopes[k, ...], waves)) for k in rows
     )
+
+
+def traced_series(coefficients: Array, x: Array) -> Pair:
+    """Evaluate a Chebyshev series and its slope at x inside `jax.jit` or `torch.compile`.
+
+    `coefficients` has the shape (angles, joints or 1), x (..., contacts).
+    """
+    return (_jax_clenshaw_sum() if arrays.is_jax_array(x) else clenshaw_sum)(coefficients, x)
+
+
+@cache
+def _jax_clenshaw_sum() -> Callable[[Array, Array], Pair]:
+    """Return `clenshaw_sum` for JAX, with the derivatives of `stored_series`, which compile faster."""
+    import jax
+
+    series = jax.custom_jvp(clenshaw_sum)
+
+    @series.defjvp
+    def _series_tangent(values: tuple[Array, Array], tangents: tuple[Array, Array]) -> tuple[Pair, Pair]:
+        """Compute the series and its directional derivative."""
+        return series(*values), jax.jvp(stored_series, values, tangents)[1]
+
+    return series
+
+
+def stored_series(coefficients: Array, x: Array) -> Pair:
+    """Evaluate a Chebyshev series and its slope at x from all polynomials; shapes as in `traced_series`."""
+    waves, xp = chebyshev_polynomials(x, coefficients.shape[0]), arrays.namespace(x)
+    shape = (coefficients.shape[0], *(1 for _ in x.shape[1:]), coefficients.shape[1])
+    slopes = convert_like(_derivative_matrix(shape[0]), x) @ coefficients
+    value, slope = (xp.sum(xp.reshape(series, shape) * waves, axis=0) for series in (coefficients, slopes))
+    return value, slope
+
+
+def clenshaw_sum(coefficients: Array, x: Array) -> Pair:
+    """Evaluate a Chebyshev series and its slope at x by one recurrence of Clenshaw, which stores nothing.
+
+    Compilers fuse it with the formulas around it. `coefficients` has the shape (angles, joints or 1).
+    """
+    twice = 2 * x
+    value = previous = slope = previous_slope = 0.0 * x
+    for k in range(coefficients.shape[0] - 1, 0, -1):
+        slope, previous_slope = 2 * value + twice * slope - previous_slope, slope
+        value, previous = coefficients[k, ...] + twice * value - previous, value
+    return coefficients[0, ...] + x * value - previous, value + x * slope - previous_slope
 
 
 def sum_series(coefficients: Array, waves: Array) -> Array:
@@ -123,46 +180,6 @@ def contact_quantities(
     return reach * sigma, F, p0, F * (load[1] + 3 + outer) / (reach * outer), reach * outer
 
 
-def angle_of_indentation(load: Array, curve: CurveCoefficients) -> Array:
-    """Solve for the half angle in rad at a relative indentation d/c; NaN beyond the tables."""
-    return _solve_angle(_indentation_residual, load, log(1.5 * load / (1 + load)) / 2, curve)
-
-
-def angle_of_force(load: Array, curve: CurveCoefficients) -> Array:
-    """Solve for the half angle in rad under a dimensionless force F C/(R2² c); NaN beyond the tables."""
-    return _solve_angle(_force_residual, load, log(load / (3 + load)) / 3, curve)
-
-
-def _solve_angle(residual: Increasing, load: Array, log_estimate: Array, curve: CurveCoefficients) -> Array:
-    """Solve for the half angle in rad by Newton's method, from an estimate of ln ε."""
-    start = log_estimate + (_LOG_OFFSET - math.log(LIMIT))
-    end = 0.0 * start + (_LOG_OFFSET + 1e-12)  # includes the widest contact itself
-    root = increasing_root(residual, 0.0 * start, start - 6.0, end, start, arguments=(load, curve), steps=16)
-    return where(root < end, exp(root - _LOG_OFFSET) * LIMIT, math.nan)
-
-
-def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of the relative indentation d/c at a trial half angle, and its slope by ln ε.
-
-    The residual is ln d/(c + d) minus that of the load.
-    """
-    angle = exp(log_angle - _LOG_OFFSET) * LIMIT
-    sigma, rate = opening(angle, evaluate_table_functions(angle, curve, ONE)[0])
-    return log(sigma * (1 + 1 / load)), rate
-
-
-def _force_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of the dimensionless force at a trial half angle, and its slope by ln ε.
-
-    The residual is ln d/(c + d) minus that of the indentation F/secant, where secant is the ratio F/d.
-    """
-    angle = exp(log_angle - _LOG_OFFSET) * LIMIT
-    share, force = evaluate_table_functions(angle, curve, TWO)
-    sigma, rate = opening(angle, share)
-    secant = exp(force[0]) * angle * angle * angle / sigma
-    return log(sigma * (1 + secant / load)), rate + (force[1] + 3 - rate) * secant / (secant + load)
-
-
 @dataclass(frozen=True, eq=False)
 class JointCurves:
     """Tabulated functions of joints (joints,): one joint, or one for each contact (contacts,).
@@ -176,7 +193,7 @@ class JointCurves:
     shared: JointCurves | None = None
     indices: Array | None = None
 
-    def _take_shared(self, values: Array) -> Array:
+    def take_shared(self, values: Array) -> Array:
         """Select the column of each contact's joint from shared values."""
         return arrays.namespace(values).take(values, self.indices, axis=-1)
 
@@ -201,52 +218,81 @@ class JointCurves:
         return 2 * (1 - liner.poisson**2) * self.joint.socket_radius / liner.young * (1 + self._softness)
 
     @property
-    def _has_plain_joint(self) -> bool:
+    def has_plain_joint(self) -> bool:
         """True for one joint of Python numbers, whose coefficients have no axis of joints."""
         return type(self.joint.clearance) is float
 
     def table_series(self, name: str) -> Array:
         """Compute coefficients (functions, angles, joints) of the table `name`, with the change by an elastic ball."""
         if self.shared is not None:
-            return self._take_shared(self.shared.table_series(name))
-        nu, stored = self.joint.liner.poisson, load_tables(self.file)
-        coordinates = [poisson_coordinate(nu), thickness_coordinate(self.ratio)]
-        evaluate_coefficients = (
-            ChebyshevTable.coefficients_of_one if self._has_plain_joint else ChebyshevTable.coefficients_at
+            return self.take_shared(self.shared.table_series(name))
+        table = load_tables(self.file)[name]
+        coefficients = (
+            table.coefficients_of_one(self.coordinates)
+            if self.has_plain_joint
+            else table.coefficients_of_polynomials(self.liner_polynomials)
         )
-        coefficients = evaluate_coefficients(stored[name], coordinates)
-        if self.joint.ball is not None:
-            share = self._softness / (1 + self._softness)
-            soft = ball_coordinate(share, nu, self.ratio)
-            added = evaluate_coefficients(
-                stored[WITH_BALL[name]], [*coordinates, soft, ball_shrinkage(self.joint.ball.poisson)]
-            )
-            coefficients = coefficients + (1 + soft) / 2 * added
+        ball = self._ball_coordinates
+        if ball is not None:
+            coefficients = coefficients + (1 + ball[0]) / 2 * self._ball_series(WITH_BALL[name], ball)
         return coefficients
+
+    def _ball_series(self, name: str, coordinates: list[Array]) -> Array:
+        """Compute coefficients (functions, angles, joints) of the table `name` of elastic balls."""
+        table = load_tables(self.file)[name]
+        if self.has_plain_joint:
+            return table.coefficients_of_one([*self.coordinates, *coordinates])
+        ball = [chebyshev_polynomials(*pair) for pair in zip(coordinates, table.counts[2:], strict=True)]
+        return table.coefficients_of_polynomials([*self.liner_polynomials, *ball])
+
+    @cached_property
+    def _ball_coordinates(self) -> list[Array] | None:
+        """Table coordinates of the elastic ball: its share of the compliance and its ν; None for a rigid ball."""
+        if self.joint.ball is None:
+            return None
+        share = self._softness / (1 + self._softness)
+        return [
+            ball_coordinate(share, self.joint.liner.poisson, self.ratio),
+            ball_shrinkage(self.joint.ball.poisson),
+        ]
 
     @cached_property
     def functions(self) -> Array:
         """Chebyshev coefficients of the three tabulated functions: opening, force and pole pressure."""
-        return self.table_series("rigid") if self.shared is None else self._take_shared(self.shared.functions)
+        return self.table_series("rigid") if self.shared is None else self.take_shared(self.shared.functions)
 
     @cached_property
     def slopes(self) -> Array:
         """Chebyshev coefficients of the derivatives of the three tabulated functions."""
         if self.shared is not None:
-            return self._take_shared(self.shared.slopes)
-        xp = arrays.namespace(self.functions)
-        derivative = convert_like(_derivative_matrix(self.functions.shape[1]), self.functions)
-        return xp.stack([derivative @ self.functions[row, ...] for row in range(3)])
+            return self.take_shared(self.shared.slopes)
+        return derivative_series(self.functions)
 
     @cached_property
     def curve(self) -> CurveCoefficients:
         """Chebyshev coefficients of the tabulated functions and of their derivatives."""
-        if self._has_plain_joint:
+        if self.has_plain_joint:
             stacked = numpy.concatenate(
                 [self.functions, self.functions @ _derivative_matrix(self.functions.shape[1]).T]
             )
             return CurveCoefficients(self.ratio, stacked, stacked)
         return CurveCoefficients(self.ratio, self.functions, self.slopes)
+
+    @cached_property
+    def widest(self) -> Widest:
+        """Opening and force at the largest half angle of the tables."""
+        return Widest.of(self.functions)
+
+    @cached_property
+    def coordinates(self) -> list[Array]:
+        """Table coordinates of Poisson's ratio and of R2/L."""
+        return [poisson_coordinate(self.joint.liner.poisson), thickness_coordinate(self.ratio)]
+
+    @cached_property
+    def liner_polynomials(self) -> list[Array]:
+        """Chebyshev polynomials (orders, joints) of the coordinates of ν and R2/L, in the largest number."""
+        counts = load_tables(self.file)["rigid"].counts
+        return [chebyshev_polynomials(*pair) for pair in zip(self.coordinates, counts, strict=False)]
 
     @cached_property
     def scale(self) -> Scale:
@@ -263,15 +309,17 @@ class JointCurves:
         c, area, compliance = self.scale
         return load * compliance / (area * c) if kind == "force" else load / c
 
-    def angle(self, kind: str, load: Array) -> Array:
-        """Solve for the half angle in rad under a positive load; NaN beyond the tables."""
-        return (angle_of_force if kind == "force" else angle_of_indentation)(self.scaled_load(kind, load), self.curve)
-
 
 @lru_cache(maxsize=256)
 def plain_joint_curves(file: str, joint: Joint) -> JointCurves:
     """Return the tabulated functions of a joint of Python numbers, from a cache."""
     return JointCurves(file, joint)
+
+
+def derivative_series(functions: Array) -> Array:
+    """Compute the Chebyshev coefficients (functions, angles, joints) of the derivatives of series of that shape."""
+    derivative = convert_like(_derivative_matrix(functions.shape[1]), functions)
+    return arrays.namespace(functions).stack([derivative @ functions[row, ...] for row in range(functions.shape[0])])
 
 
 @cache

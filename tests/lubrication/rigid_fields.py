@@ -4,16 +4,10 @@ The film is h = c - e cos θ, where θ is measured from the direction of the ecc
 sphere then has the solutions below [derived; `docs/explanation/film.md`].
 """
 
-from __future__ import annotations
-
 import numpy
 
-from ..core.arrays import Array, Numbers
 
-
-def squeeze_pressure(
-    theta: Array, *, radius: float, clearance: float, eccentricity: float, speed: float, viscosity: float, rim: float
-) -> Numbers:
+def squeeze_pressure(theta, *, radius, clearance, eccentricity, speed, viscosity, rim):
     """Compute the pressure in MPa of a ball that approaches the pole at `speed` (mm/s); zero at the rim.
 
     p = 3 η R² (ė/e) (1/h² - 1/h_rim²); angles in rad, lengths in mm, viscosity in MPa s. It also holds for e = 0.
@@ -25,9 +19,7 @@ def squeeze_pressure(
     return 3 * viscosity * radius**2 * speed * fall
 
 
-def wedge_pressure(
-    theta: Array, phi: Array, *, radius: float, clearance: float, eccentricity: float, spin: float, viscosity: float
-) -> Numbers:
+def wedge_pressure(theta, phi, *, radius, clearance, eccentricity, spin, viscosity):
     """Compute the pressure in MPa of a ball that turns about y at `spin` (rad/s), across its eccentricity along z.
 
     p = -6 η ω R² e sin θ cos φ (2c - e cos θ) / [(4c² + e²)(c - e cos θ)²]; no cavitation.

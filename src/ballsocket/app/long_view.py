@@ -1,0 +1,198 @@
+"""Views whose results take long: a button, its progress, and results that outlive a change of the inputs."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from . import results
+from .jobs import LONGEST, Job
+from .running import Reached, RunFinished, RunRefused, Work
+from .state.screen import Screen
+from .view import Host, View
+from .widgets.words import alert
+
+_EARLIER = "<p class='earlier'>These results belong to an earlier design.</p>"
+
+
+def long_body(view: str, inputs: str, shown: str) -> str:
+    """Return the HTML of a view with its inputs, the button of its work, and the HTML of its results."""
+    return (
+        f'<div class="inputs-row">{inputs}</div><div data-field="{view}.run"></div>'
+        f'<div id="{view}-trouble" role="alert"></div><div id="{view}-earlier" role="status"></div>'
+        f'<div class="results">{shown}</div>'
+    )
+
+
+@dataclass(eq=False)
+class LongWork:
+    """Long work of a view with its button, a field of kind `run` that is named "<name>.run"."""
+
+    page: Host
+    name: str  # also of the elements "<name>-trouble" and "<name>-earlier"
+    label: str  # words on the button
+    question_of: Callable[[Screen], Hashable]  # equal keys of one `kind` have one result on all pages
+    work: Callable[[Screen], Work]  # raises ValueError if the inputs of a screen allow none
+    show_result: Callable[[Screen, Any], None]  # shows the result for a screen; None clears it
+    automatic: bool = False  # starts without a click
+    longest: float = LONGEST  # s
+    kind: str = ""  # of the result, by default the name
+    _shown: Any = field(default=None, init=False)
+    _asked: Hashable = field(default=None, init=False)
+    _cancelled: Hashable = field(default=None, init=False)
+    _refusal: str = field(default="", init=False)
+    _start: float = field(default=0.0, init=False)
+
+    def __post_init__(self) -> None:
+        self._job = Job(lambda key, news: self.page.attempt(partial(self._hear, key, news)), self.longest)
+        self.page.listen(self.name, lambda key, value: self.click(value))
+
+    def works_on(self, screen: Screen) -> bool:
+        """Return True while the work for a screen runs."""
+        return self._job.works and self._asked == self._key(screen)
+
+    def show(self, screen: Screen) -> None:
+        """Show the stored result for a screen, or that of an earlier screen with a mark."""
+        question, result = self._key(screen), self.result(screen)
+        self._put("trouble", self._refusal if question == self._cancelled else "")
+        if result is not None:
+            self._shown = result
+        self._put("earlier", _EARLIER if result is None and self._shown is not None else "")
+        self.show_result(screen, self._shown)
+        if self.automatic and result is not None:
+            self._job.stop()
+        elif self.automatic and question != self._cancelled:
+            self.run()
+        if not self._job.works:
+            self.put_button(hidden=self.automatic and result is not None)
+
+    def result(self, screen: Screen) -> Any:
+        """Return the result for a screen; None without one."""
+        return results.RESULTS.get(self._key(screen))
+
+    def click(self, starts: Any) -> None:
+        """Start the work, or cancel it; nothing that was shown is lost."""
+        if starts:
+            self.run()
+        else:
+            self._job.stop()
+            self._cancelled, self._refusal = self._key(self.page.screen), ""
+            self.put_button(words="Cancelled.")
+
+    def run(self) -> None:
+        """Start the work for the screen, unless its result is stored."""
+        screen = self.page.screen
+        self._put("trouble", "")
+        self._cancelled, self._refusal = None, ""
+        if self.result(screen) is not None:
+            return
+        try:
+            work = self.work(screen)
+        except ValueError as error:
+            self._put("trouble", alert(str(error)))
+            self.put_button()
+            return
+        self._start = time.monotonic()
+        self.put_button(share=0.0, words="starting")
+        self._asked = self._key(screen)
+        self._job.ask(self._asked, work)
+
+    def _key(self, screen: Screen) -> Hashable:
+        return self.kind or self.name, self.question_of(screen)
+
+    def _put(self, element: str, html: str) -> None:
+        self.page.channel.put(f"#{self.name}-{element}", html)
+
+    def put_button(self, share: float | None = None, words: str = "", hidden: bool = False) -> None:
+        """Show the button with the progress from 0 to 1; None while nothing runs."""
+        name = f"{self.name}.run"
+        state = {"share": share, "words": words, "hidden": hidden}
+        self.page.channel.put_fields({name: {"name": name, "kind": "run", "label": self.label, **state}})
+
+    def _hear(self, question: Hashable, news: Any) -> None:
+        """Show news of the work on the page."""
+        if isinstance(news, Reached):
+            self.put_button(news.share, _with_time_left(news, time.monotonic() - self._start))
+        elif isinstance(news, RunRefused):
+            self._cancelled, self._refusal = question, alert(news.why)
+            self._put("trouble", self._refusal)
+            self.put_button()
+        elif isinstance(news, RunFinished):
+            results.RESULTS.put(question, news.value)
+            self._shown = news.value
+            self.show(self.page.screen)
+
+    def leave(self) -> None:
+        """Stop the work."""
+        self._job.stop()
+
+
+def _with_time_left(news: Reached, elapsed: float) -> str:
+    """Append the estimated time left to the words of the progress."""
+    if elapsed < 1.0 or not 0.05 < news.share < 1.0:
+        return news.words
+    left = elapsed * (1.0 - news.share) / news.share
+    return f"{news.words}, about {left:.0f} s left" if left >= 1.0 else news.words
+
+
+class LongView(View):
+    """View whose result takes long; it runs on a click, or by itself if it is `automatic`.
+
+    A subclass has the words of its button `run_label`, and a `body` of `long_body`. `further` is more work of the view.
+    """
+
+    run_label = "Run"
+    automatic = False
+    longest = LONGEST
+    result_kind = ""
+
+    def __init__(self, page: Host) -> None:
+        self.long = LongWork(
+            *(page, self.name, self.run_label, self.question_of, self.work, self.show_result),
+            automatic=self.automatic,
+            longest=self.longest,
+            kind=self.result_kind,
+        )
+        self.further: list[LongWork] = []
+        super().__init__(page)
+        page.listen(self.name, self._edited)
+
+    def _edited(self, key: str, value: Any) -> None:
+        if key == "run":
+            self.long.click(value)
+        else:
+            self.edit(key, value)
+
+    def question_of(self, screen: Screen) -> Hashable:
+        """Return what the result depends on: numbers and choices, no names and no units."""
+        raise NotImplementedError
+
+    def work(self, screen: Screen) -> Work:
+        """Return the work for a screen; raise ValueError if the inputs allow none."""
+        raise NotImplementedError
+
+    def show_inputs(self, screen: Screen) -> None:
+        """Show the inputs of the view for a screen."""
+        self.channel.put_fields(self.fields(screen))
+
+    def show_result(self, screen: Screen, result: Any) -> None:
+        """Show a result, which may belong to an earlier screen; None clears it."""
+        raise NotImplementedError
+
+    def show(self, screen: Screen) -> None:
+        self.show_inputs(screen)
+        self.long.show(screen)
+
+    def result(self, screen: Screen) -> Any:
+        """Return the result for a file; raise ValueError without one."""
+        result = self.long.result(screen)
+        if result is None:
+            raise ValueError(f"there is no result for this design yet: press {self.run_label!r} first")
+        return result
+
+    def leave(self) -> None:
+        for work in (self.long, *self.further):
+            work.leave()

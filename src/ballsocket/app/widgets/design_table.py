@@ -1,0 +1,178 @@
+"""Table of several designs in columns: dimensions, results of one model, differences and verdicts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from html import escape
+
+from ...compare import relative_deviation, successful_contacts
+from ...contact import Contact
+from ...core.kinds import Unit
+from ...core.quantities import CONTACT, JOINT
+from ...files.joint_file import JointFile
+from ...reports.check_table import Check, checks_of, verdict_of
+from ..pictures.section import extent_of, section
+from ..pressing import axial_limit, pressed
+from ..state.screen import Screen
+from .reading import number_text
+from .words import percent
+
+_DIMENSIONS = {
+    "radius": ("ball_radius", "clearance", "liner_thickness", "outer_radius"),
+    "diameter": ("head_diameter", "diametral_clearance", "liner_thickness", "outer_diameter"),
+}
+_VERDICTS = {True: ("yes", "✓ passes"), False: ("no", "✗ fails"), None: ("quiet", "? not known")}
+
+
+@dataclass(frozen=True, kw_only=True)
+class PressedDesign:
+    """Design with its contact by one model, or the reason for a missing one; `heading` is HTML below its name.
+
+    `von_mises` is the stress (MPa) of its checks; None is the estimate.
+    """
+
+    file: JointFile
+    contact: Contact | None
+    reason: str = ""
+    heading: str = ""
+    von_mises: float | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cell:
+    """Text of a cell with the difference from the base, and its class: "yes", "no" or "quiet"."""
+
+    text: str
+    difference: str = ""
+    kind: str = ""
+
+    @property
+    def plain(self) -> str:
+        """Text with the difference in brackets, for reports."""
+        return f"{self.text} ({self.difference})" if self.difference else self.text
+
+    @property
+    def html(self) -> str:
+        """Cell of a table in HTML."""
+        small = f"<small>{escape(self.difference)}</small>" if self.difference else ""
+        return f"<td class='{self.kind}'>{escape(self.text)}{small}</td>"
+
+
+Designs = Mapping[str, PressedDesign]
+"""Designs by their names, the one on the screen first."""
+
+
+def press_designs(files: Mapping[str, JointFile], model: str, headings: Mapping[str, str]) -> Designs:
+    """Press designs by a model, with HTML below some names."""
+    designs = {}
+    for name, file in files.items():
+        comparison = pressed(file, (model,))
+        contact = successful_contacts(comparison).get(model)
+        reason = comparison.missing.get(model, "no result")
+        designs[name] = PressedDesign(file=file, contact=contact, reason=reason, heading=headings.get(name, ""))
+    return designs
+
+
+def with_stresses(designs: Designs) -> Designs:
+    """Take the von Mises stress of the model itself for the checks, as Contact does."""
+    return {
+        name: replace(design, von_mises=None if design.contact is None else float(design.contact.von_mises))
+        for name, design in designs.items()
+    }
+
+
+def with_drawings(designs: Designs) -> Designs:
+    """Add sections of the designs to their headings, at one scale and in one colour scale."""
+    extent = max(extent_of(design.file) for design in designs.values())
+    pressures = [float(design.contact.max_pressure) for design in designs.values() if design.contact is not None]
+    highest = max(pressures, default=1.0)
+    return {
+        name: replace(design, heading=section(design.file, design.contact, extent, highest) + design.heading)
+        for name, design in designs.items()
+    }
+
+
+def design_table(designs: Designs, base: str, screen: Screen, names: Sequence[str] = tuple(CONTACT)) -> str:
+    """Return a table in HTML with differences from the base, which stand below the numbers."""
+    heads = "".join(f"<th scope='col'>{escape(name)}{design.heading}</th>" for name, design in designs.items())
+    rows = "".join(
+        f"<tr><th scope='row'>{escape(label)}</th>{''.join(cell.html for cell in cells)}</tr>"
+        for label, cells in design_rows(designs, base, screen, names)
+    )
+    return (
+        "<div class='wide' tabindex='0' role='region' aria-label='the designs'><table class='designs'>"
+        f"<tr><td></td>{heads}</tr>{rows}</table></div>"
+    )
+
+
+def design_rows(
+    designs: Designs, base: str, screen: Screen, names: Sequence[str] = tuple(CONTACT)
+) -> list[tuple[str, list[Cell]]]:
+    """Tabulate designs in columns: verdict, checks, validity, dimensions, materials and the results of some `names`."""
+    listed, reading = list(designs.values()), screen.reading
+    checks = [_checks(design) for design in listed]
+    rows = [("verdict", [_verdict(design, part) for design, part in zip(listed, checks, strict=True)])]
+    for check in dict.fromkeys((row.title, row.limit) for part in checks for row in part if row.capacity):
+        ratios = [{(row.title, row.limit): row for row in part}.get(check) for part in checks]
+        rows.append((" / ".join(check), [_ratio(row) for row in ratios]))
+    rows.append(("valid here", [_validity(design) for design in listed]))
+    for name in _DIMENSIONS[screen.size]:
+        unit = reading.unit(JOINT[name])
+        lengths = [float(getattr(design.file.joint, name)) * unit.factor for design in listed]
+        rows.append((f"{JOINT[name].title}{unit.text_in_brackets}", [Cell(text=f"{length:.5g}") for length in lengths]))
+    rows.append(("liner", [Cell(text=design.file.joint.liner.name or "own numbers") for design in listed]))
+    rows.append(("ball", [Cell(text=_ball(design.file)) for design in listed]))
+    for column in reading.columns:
+        if column.attribute in names:
+            values = {name: _value(design, column.attribute, column.factor) for name, design in designs.items()}
+            label = f"{column.title}{Unit(column.unit).text_in_brackets}"
+            rows.append((label, [_number(name, values, base) for name in designs]))
+    return rows
+
+
+def _ball(file: JointFile) -> str:
+    return "rigid" if file.joint.ball is None else file.joint.ball.name or "own numbers"
+
+
+def _value(design: PressedDesign, attribute: str, factor: float) -> float:
+    return float("nan") if design.contact is None else float(getattr(design.contact, attribute)) * factor
+
+
+def _number(name: str, values: Mapping[str, float], base: str) -> Cell:
+    """Return a number with its difference from the base in percent of it."""
+    value = values[name]
+    if value == values[base] or value != value:
+        return Cell(text=number_text(value))
+    return Cell(text=number_text(value), difference=percent(float(relative_deviation(value, values[base])), "+"))
+
+
+def _checks(design: PressedDesign) -> Sequence[Check]:
+    """List the checks of a design; none for a load that needs the real cup."""
+    needs_cup = axial_limit(design.file, design.contact) is not None
+    if design.contact is None or needs_cup:
+        return ()
+    return checks_of(design.contact, design.file.cup, design.von_mises)
+
+
+def _verdict(design: PressedDesign, checks: Sequence[Check]) -> Cell:
+    limit = axial_limit(design.file, design.contact)
+    passes, sentence = verdict_of(checks) if limit is None else (None, f"{limit.reason}: see Cup")
+    kind, text = _VERDICTS[passes]
+    return Cell(text=text, difference="" if passes else sentence, kind=kind)
+
+
+def _ratio(check: Check | None) -> Cell:
+    if check is None or check.ratio is None:
+        return Cell(text="–", kind="quiet")
+    kind, text = _VERDICTS[check.passes]
+    return Cell(text=f"{text[0]} {100 * check.ratio:.0f} %", kind=kind)
+
+
+def _validity(design: PressedDesign) -> Cell:
+    if design.contact is None:
+        return Cell(text=design.reason, kind="no")
+    limit = axial_limit(design.file, design.contact)
+    notes = [*([] if limit is None else [limit.excluded]), *design.contact.notes]
+    kind, text = ("yes", "✓ yes") if bool(design.contact.valid) and limit is None else ("no", "✗ no")
+    return Cell(text=text, difference="; ".join(notes), kind=kind)

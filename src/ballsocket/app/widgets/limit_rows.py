@@ -1,0 +1,129 @@
+"""Limits as rows of a quantity, at most or at least, and a value, for every view that has limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from math import isfinite, nan
+from typing import Any
+
+from ...contact import Contact
+from ...core.checks import check_names, require, shown
+from ...core.quantities import CONTACT, JOINT, PARTS, QUANTITIES, Quantity
+from ...files.joint_file import JointFile
+from ...studies.limits import Limit
+from ...studies.parameters import nominal_value
+from ...studies.task import EDGE_DISTANCE
+from .fields import Field, typed
+from .reading import Reading, box_text
+
+_SIGNS = {"<=": "at most", ">=": "at least"}
+_DIGITS = 3
+"""Digits of a limit that starts at the present design."""
+
+Row = tuple[str, str, str]
+"""Name of a quantity, sign, and the text of the value in the unit of the page."""
+
+
+class LimitRows:
+    """Input for limits on the quantities of `names`; refused rows stay as typed until the limits change."""
+
+    def __init__(self, name: str, names: Iterable[str]) -> None:
+        self._name, self._names = name, tuple(names)
+        self._refused: tuple[tuple[Limit, ...], tuple[Row, ...], str, int | None] | None = None
+
+    def field(self, limits: tuple[Limit, ...], reading: Reading) -> Field:
+        """Return the rows of some limits, or the refused ones with the index of the wrong row."""
+        rows, sentence, wrong = tuple(row for limit in limits for row in _rows_of(limit, reading)), "", None
+        if self._refused is not None and self._refused[0] == limits:
+            _, rows, sentence, wrong = self._refused
+        listed = dict.fromkeys([*self._names, *(row[0] for row in rows)])
+        return {
+            "name": self._name,
+            "kind": "limits",
+            "label": "Limits",
+            "options": [[key, _title(QUANTITIES[key]), reading.unit(QUANTITIES[key]).text] for key in listed],
+            "signs": [list(pair) for pair in _SIGNS.items()],
+            "value": [list(row) for row in rows],
+            "error": sentence,
+            "wrong": wrong,
+        }
+
+    def read(
+        self,
+        value: Any,
+        limits: tuple[Limit, ...],
+        reading: Reading,
+        present: Callable[[str], float],
+        check: Callable[[tuple[Limit, ...]], Any] = lambda limits: None,
+    ) -> tuple[Limit, ...] | None:
+        """Read rows as the page sends them; None if one of them, or `check`, refuses.
+
+        `present` gives the number of the design for a row without a value. Raises ValueError if there are no rows.
+        """
+        rows, read, wrong = _checked(value), [], None
+        known = {row: limit for limit in limits for row in _rows_of(limit, reading)}  # an untouched row is not rounded
+        try:
+            for wrong, row in enumerate(rows):  # noqa: B007 - the refused row
+                read.append(known.get(row) or _limit(row, reading, present))
+            wrong = None
+            check(tuple(read))
+        except ValueError as error:
+            self._refused = limits, rows, str(error), wrong
+            return None
+        self._refused = None
+        return tuple(read)
+
+
+def present_value(file: JointFile, name: str, contact: Contact | None = None) -> float:
+    """Return a number of a design, in internal units; NaN for one that it does not have."""
+    if name in file.load:
+        return float(file.load[name])
+    if contact is not None and name == EDGE_DISTANCE:
+        return float(file.cup.edge_distance(contact.joint.socket_radius, contact.half_angle))
+    if contact is not None and name in CONTACT:
+        return float(getattr(contact, name))
+    value = nominal_value(file.joint, name) if name in (*JOINT, *PARTS) else None
+    return nan if value is None else value
+
+
+def limit_text(limit: Limit, reading: Reading) -> str:
+    """Write a limit with its unit, such as "outer diameter at most 52 mm"."""
+    quantity = QUANTITIES[limit.name]
+    ends = (f"{_SIGNS[sign]} {reading.with_unit(quantity, end)}" for sign, end in _ends(limit))
+    return f"{quantity.title} {' and '.join(ends)}"
+
+
+def _checked(value: Any) -> tuple[Row, ...]:
+    if not isinstance(value, list) or not all(
+        isinstance(row, list) and len(row) == 3 and all(isinstance(cell, str) for cell in row) for row in value
+    ):
+        raise ValueError(f"{shown(value)} is not a list of limits: each has a quantity, a sign and a value")
+    check_names([row[0] for row in value], QUANTITIES, "among what can be limited")
+    check_names([row[1] for row in value], _SIGNS, "as the sign of a limit")
+    return tuple((row[0], row[1], row[2].strip()) for row in value)
+
+
+def _limit(row: Sequence[str], reading: Reading, present: Callable[[str], float]) -> Limit:
+    name, sign, text = row
+    quantity = QUANTITIES[name]
+    if text:
+        end = typed(_title(quantity), text, reading.box_unit(quantity), quantity.kind) / quantity.written.factor
+        require(_title(quantity), end, isfinite(end), "a limit is a finite number")
+    else:
+        factor = reading.unit(quantity).factor
+        end = float(f"{present(name) * factor:.{_DIGITS}g}") / factor
+        require(_title(quantity), end, isfinite(end), "the design has no such number: type a value")
+    return Limit(name=name, high=end) if sign == "<=" else Limit(name=name, low=end)
+
+
+def _rows_of(limit: Limit, reading: Reading) -> list[Row]:
+    unit = reading.unit(QUANTITIES[limit.name])
+    return [(limit.name, sign, box_text(end * unit.factor, unit.text)) for sign, end in _ends(limit)]
+
+
+def _ends(limit: Limit) -> list[tuple[str, float]]:
+    return [(sign, end) for sign, end in (("<=", limit.high), (">=", limit.low)) if isfinite(end)]
+
+
+def _title(quantity: Quantity) -> str:
+    return f"{quantity.title[:1].upper()}{quantity.title[1:]}"

@@ -1,0 +1,82 @@
+"""Inputs that change one part of the screen: an entry builds the field and reads its edit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from operator import attrgetter
+from typing import Any
+
+from ...core.checks import shown
+from ...core.kinds import Kind, Unit
+from ..state.screen import Screen
+from .fields import Field, choice, number, typed, words
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Input of a view: `field` builds it for a screen, `read` returns the changes of the screen after an edit."""
+
+    key: str
+    field: Callable[[Screen], Field]
+    read: Callable[[Screen, Any], dict[str, Any]]
+
+
+def changed(screen: Screen, path: str, value: Any) -> dict[str, Any]:
+    """Return the change of the screen that sets a path such as "quantity" or "use.law"."""
+    part, _, key = path.rpartition(".")
+    return {part: replace(getattr(screen, part), **{key: value})} if part else {key: value}
+
+
+def chosen(
+    path: str,
+    label: str,
+    names: Iterable[str] | Callable[[Screen], Iterable[str]],
+    build: Callable[..., Field] = choice,
+    titles: Callable[[str], str] = str,
+    key: str = "",
+) -> Setting:
+    """Return the choice of a name, with its title; `names` may depend on the screen."""
+    key = key or path.rpartition(".")[2]
+
+    def field(screen: Screen) -> Field:
+        listed = names(screen) if callable(names) else names
+        return build(key, label, [(name, titles(name)) for name in listed], attrgetter(path)(screen))
+
+    def read(screen: Screen, value: Any) -> dict[str, Any]:
+        if not isinstance(value, str):
+            raise ValueError(f"{key} = {shown(value)} is not a choice")
+        return changed(screen, path, value)
+
+    return Setting(key, field, read)
+
+
+def amount(
+    path: str,
+    label: str,
+    ends: tuple[float, float],
+    step: float,
+    unit: Unit | None = None,
+    kind: str = Kind.NUMBER,
+    needed: Callable[[Screen], bool] = lambda screen: True,
+) -> Setting:
+    """Return a number with its typical range, hidden where it is not needed."""
+    key, unit = path.rpartition(".")[2], unit or Unit("")
+
+    def field(screen: Screen) -> Field:
+        made = number(key, label, unit, ends, step, attrgetter(path)(screen))
+        return {**made, "hidden": not needed(screen)}
+
+    return Setting(key, field, lambda screen, value: changed(screen, path, typed(label, value, unit, kind)))
+
+
+def text(path: str, label: str, rows: int = 1) -> Setting:
+    """Return text of several rows."""
+    key = path.rpartition(".")[2]
+
+    def read(screen: Screen, value: Any) -> dict[str, Any]:
+        if not isinstance(value, str):
+            raise ValueError(f"{key} = {shown(value)} must be text")
+        return changed(screen, path, value.strip())
+
+    return Setting(key, lambda screen: words(key, label, attrgetter(path)(screen), rows), read)

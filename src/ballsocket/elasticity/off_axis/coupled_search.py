@@ -1,0 +1,410 @@
+"""Equilibrium of balls under prescribed loads: pressures and displacements together, by conjugate gradients.
+
+One iteration moves every ball by a Newton step, and its pressures by a step of conjugate gradients under p >= 0
+(Polonsky & Keer 1999, doi 10.1016/S0043-1648(99)00113-1). The Newton step needs the force that the pressures will have
+once they have converged. To first order it is F(p) + R2² ∫ q r, with the remaining overlap r and the derivative q of
+the pressures by the displacement: the compliance is symmetric, so q also maps an overlap to its force. The step thus
+does not wait for the pressures, and the pressures do not start again after each step.
+
+The functions here are written for NumPy and JAX. Balls are lanes: fields are arrays (meridians, rings, lanes), vectors
+(3, lanes). A lane does not depend on the others. Fields are divided into parts even and odd about φ = 0. Two small
+matrices transform these parts to harmonics, which is faster than an FFT at this size, and needs no transposition.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from math import inf
+from typing import NamedTuple
+
+import numpy
+
+from ...core import arrays
+from ...core.arrays import Array
+
+COARSE_TOLERANCE = 1e-3
+"""Residuals of forces and overlaps at the end of the search in wide cells."""
+
+COARSE_ROUNDS = 4
+"""Number of rounds of the search in wide cells; each starts with a new sensitivity."""
+
+COARSE_ITERATIONS = 7
+"""Number of iterations in a round."""
+
+_WARM_UP_ITERATIONS = 2
+"""Number of iterations at a fixed displacement before the first Newton step."""
+
+SENSITIVITY_ITERATIONS = 3
+"""Number of iterations for the sensitivity of the pressures in wide cells, for Newton steps."""
+
+TANGENT_ITERATIONS = 4
+"""Number of iterations for the tangent stiffness, whose error is the square of that of the sensitivity."""
+
+_REGULARISATION = 1e-6
+"""Fraction of the trace of a stiffness, added to each direction so that one without stiffness stays solvable."""
+
+_MAX_STEP = 0.5
+"""Largest Newton step, as a fraction of the largest overlap."""
+
+
+class BoreArrays(NamedTuple):
+    """Ball and bore as arrays of one library and data type.
+
+    Attributes
+    ----------
+    cosines, sines : array (half, half)
+        From the even and odd parts of a field (half its meridians) to its cosine and sine coefficients, orthonormal.
+    softness, stiffness : array (half + 1, rings, rings)
+        Matrices of `Compliance` for each harmonic.
+    normals : array (cells, 3)
+        Mean outward normals of the cells.
+    gap : array (meridians, rings, 1)
+        Clearance plus worn depth in mm.
+    areas : array (rings,)
+        Area of a cell of each ring on a unit sphere.
+    force_weights : array (3, cells)
+        Force in N by 1 MPa in a cell.
+    scale : array ()
+        Area of the bore per area of a unit sphere, R2² in mm².
+    tether : array (3, 3)
+        Stiffness in N/mm of a spring parallel to the contact.
+    """
+
+    cosines: Array
+    sines: Array
+    softness: Array
+    stiffness: Array
+    normals: Array
+    gap: Array
+    areas: Array
+    force_weights: Array
+    scale: Array
+    tether: Array
+
+
+class Lanes(NamedTuple):
+    """State of a search, one lane per ball.
+
+    Attributes
+    ----------
+    load : array (3, lanes)
+        Prescribed force in N.
+    force_scale, overlap_scale : array (lanes,)
+        Force in N and overlap in mm to which residuals are relative.
+    displacement : array (3, lanes)
+        Displacement of the ball's centre in mm.
+    pressure : array (meridians, rings, lanes)
+        Pressure in MPa, at least 0.
+    remaining : array (meridians, rings, lanes)
+        Overlap in mm under these pressures, negative in a gap. It is updated by increments, which keeps its accuracy.
+    imbalance : array (3, lanes)
+        Load minus force in N.
+    residual, previous_residual, direction : array (meridians, rings, lanes)
+        Remaining overlap of cells that touch or overlap, that of the last iteration, and its search direction.
+    descent : array (lanes,)
+        Descent of the last iteration along its gradient.
+    error : array (lanes,)
+        Larger one of the relative residuals of overlap and force.
+    """
+
+    load: Array
+    force_scale: Array
+    overlap_scale: Array
+    displacement: Array
+    pressure: Array
+    remaining: Array
+    imbalance: Array
+    residual: Array
+    previous_residual: Array
+    direction: Array
+    descent: Array
+    error: Array
+
+
+class Predictor(NamedTuple):
+    """Linear model of the contacts, for the Newton steps.
+
+    Attributes
+    ----------
+    sensitivity : array (meridians, rings, 3 * lanes)
+        Derivative of the pressures by each component of the displacement, in MPa/mm.
+    inverse_tangent : array (lanes, 3, 3)
+        Displacement in mm by force in N.
+    """
+
+    sensitivity: Array
+    inverse_tangent: Array
+
+    def select(self, mask: Array) -> Predictor:
+        """Return the predictor of the lanes in a mask."""
+        xp = arrays.namespace(self.sensitivity)
+        return Predictor(self.sensitivity[..., xp.tile(mask, 3)], self.inverse_tangent[mask])
+
+    def store(self, indices: Array, part: Predictor) -> None:
+        """Copy the predictor of some lanes to these indices, in NumPy arrays."""
+        count = len(self.inverse_tangent)
+        for axis, sensitivity in enumerate(numpy.split(part.sensitivity, 3, axis=-1)):
+            self.sensitivity[..., axis * count + indices] = sensitivity
+        self.inverse_tangent[indices] = part.inverse_tangent
+
+
+def apply_operator(bore: BoreArrays, matrices: Array, fields: Array) -> Array:
+    """Apply the axisymmetric operator of these matrices to fields (meridians, rings, lanes)."""
+    xp = arrays.namespace(fields)
+    meridians, rings, lanes = fields.shape
+    half = meridians // 2
+    low, high = fields[:half], xp.flip(fields[half:], axis=0)
+    parts = []
+    for transform, part, harmonics in (
+        (bore.cosines, low + high, matrices[:-1]),
+        (bore.sines, low - high, matrices[1:]),
+    ):
+        waves = (transform @ part.reshape(half, rings * lanes)).reshape(half, rings, lanes)
+        parts.append(transform.T @ (harmonics @ waves).reshape(half, rings * lanes))
+    even, odd = parts
+    return xp.concat([even + odd, xp.flip(even - odd, axis=0)]).reshape(meridians, rings, lanes)
+
+
+def integrate(bore: BoreArrays, first: Array, second: Array) -> Array:
+    """Integrate the product of two fields over a unit sphere: (lanes,)."""
+    return bore.areas @ arrays.namespace(first).einsum("mrl,mrl->rl", first, second)
+
+
+def largest(fields: Array) -> Array:
+    """Compute the largest value of fields in each lane: (lanes,)."""
+    xp = arrays.namespace(fields)
+    return xp.max(xp.max(fields, axis=0), axis=0)
+
+
+def project_on_normals(bore: BoreArrays, displacement: Array) -> Array:
+    """Compute the component of displacements (3, lanes) along the normal of each cell: (meridians, rings, lanes)."""
+    return (bore.normals @ displacement).reshape(*bore.gap.shape[:2], -1)
+
+
+def compute_force(bore: BoreArrays, pressure: Array) -> Array:
+    """Compute the force on the bore in N, (3, lanes)."""
+    return bore.force_weights @ pressure.reshape(-1, pressure.shape[-1])
+
+
+def estimate_pressure(bore: BoreArrays, displacement: Array) -> Array:
+    """Estimate the pressures from the stiffness of a bore under pressure everywhere; 0 outside the overlap."""
+    xp = arrays.namespace(displacement)
+    overlap = project_on_normals(bore, displacement) - bore.gap
+    pressure = apply_operator(bore, bore.stiffness, xp.maximum(overlap, 0.0 * overlap))
+    return pressure * ((overlap > 0) & (pressure > 0))
+
+
+class Measured(NamedTuple):
+    """Overlaps and forces of balls at given displacements and pressures.
+
+    Attributes
+    ----------
+    overlap_scale : array (lanes,)
+        Largest undeformed overlap in mm.
+    remaining : array (meridians, rings, lanes)
+        Overlap in mm under the pressures.
+    imbalance : array (3, lanes)
+        Load minus force in N.
+    """
+
+    overlap_scale: Array
+    remaining: Array
+    imbalance: Array
+
+
+def measure(bore: BoreArrays, load: Array, displacement: Array, pressure: Array) -> Measured:
+    """Compute overlaps and forces at displacements (3, lanes) and pressures (meridians, rings, lanes)."""
+    overlap = project_on_normals(bore, displacement) - bore.gap
+    return Measured(
+        overlap_scale=largest(overlap),
+        remaining=overlap - apply_operator(bore, bore.softness, pressure),
+        imbalance=load - compute_force(bore, pressure) - bore.tether @ displacement,
+    )
+
+
+def start_lanes(load: Array, force_scale: Array, displacement: Array, pressure: Array, measured: Measured) -> Lanes:
+    """Start a search at displacements (3, lanes) and pressures (meridians, rings, lanes), which were measured."""
+    zero = 0.0 * pressure
+    lanes = Lanes(
+        load=load,
+        force_scale=force_scale,
+        displacement=displacement,
+        pressure=pressure,
+        **measured._asdict(),
+        residual=zero,
+        previous_residual=zero,
+        direction=zero,
+        descent=arrays.namespace(pressure).full_like(force_scale, inf),
+        error=0.0 * force_scale,
+    )
+    return update_residuals(lanes)
+
+
+def update_residuals(lanes: Lanes) -> Lanes:
+    """Compute the residual overlaps, and the errors of overlap and force."""
+    xp = arrays.namespace(lanes.pressure)
+    residual = lanes.remaining * ((lanes.pressure > 0) | (lanes.remaining > 0))
+    gap_error = xp.maximum(largest(residual), largest(-residual)) / lanes.overlap_scale
+    force_error = xp.sqrt(xp.sum(lanes.imbalance * lanes.imbalance, axis=0)) / lanes.force_scale
+    return lanes._replace(residual=residual, error=xp.maximum(gap_error, force_error))
+
+
+def start_coarse(bore: BoreArrays, load: Array, force_scale: Array, start: Array) -> Lanes:
+    """Start a search in wide cells at displacements (3, lanes), with pressures from a few iterations."""
+    pressure = estimate_pressure(bore, start)
+    lanes = start_lanes(load, force_scale, start, pressure, measure(bore, load, start, pressure))
+    warmed: Lanes = arrays.repeat_step(partial(advance_lanes, bore, 0.0 * start), lanes, _WARM_UP_ITERATIONS)
+    return warmed
+
+
+class Sensitivity(NamedTuple):
+    """Derivative of pressures and forces by the displacement, in fixed touching cells.
+
+    Attributes
+    ----------
+    pressure : array (meridians, rings, 3 * lanes)
+        In MPa/mm, for each component of the displacement.
+    tangent : array (lanes, 3, 3)
+        Tangent stiffness in N/mm, with that of the tether.
+    """
+
+    pressure: Array
+    tangent: Array
+
+
+def refine_sensitivity(bore: BoreArrays, touching: Array, sensitivity: Array) -> Sensitivity:
+    """Transfer a sensitivity (meridians, rings, 3 * lanes) from cells twice as wide to those that touch."""
+    change = refine_fields(bore, sensitivity) * arrays.namespace(touching).tile(touching, (1, 1, 3))
+    return Sensitivity(pressure=change, tangent=_symmetric(_forces_by_axis(bore, change)) + bore.tether)
+
+
+def solve_sensitivity(bore: BoreArrays, touching: Array, iterations: int) -> Sensitivity:
+    """Compute the sensitivity of pressures in touching cells (meridians, rings, lanes) by conjugate gradients.
+
+    With the residual r = n - S q of the derivative q, the tangent n·q + q·r is accurate to the square of the residual.
+    """
+    xp = arrays.namespace(touching)
+    mask = xp.tile(touching, (1, 1, 3))
+    normals = xp.repeat(bore.normals.reshape(*touching.shape[:2], 3), touching.shape[-1], axis=-1)
+    change, residual = solve_change(bore, mask, normals, iterations)
+    changes, residuals = (xp.split(fields, 3, axis=-1) for fields in (change, residual))
+    missing = xp.stack([xp.stack([integrate(bore, q, r) for r in residuals]) for q in changes])
+    tangent = _forces_by_axis(bore, change) + bore.scale * missing.transpose(2, 0, 1)
+    return Sensitivity(pressure=change, tangent=_symmetric(tangent) + bore.tether)
+
+
+def solve_change(bore: BoreArrays, touching: Array, overlap: Array, iterations: int) -> tuple[Array, Array]:
+    """Compute changes of pressure in touching cells under overlaps (mm), and the overlaps that remain.
+
+    Both are fields (meridians, rings, lanes), from preconditioned conjugate gradients.
+    """
+    xp = arrays.namespace(touching)
+    target = overlap * touching
+    change = apply_operator(bore, bore.stiffness, target) * touching
+    residual = (target - apply_operator(bore, bore.softness, change)) * touching
+
+    def advance(state: tuple[Array, ...]) -> tuple[Array, ...]:
+        """Make one iteration."""
+        change, residual, direction, descent = state
+        gradient = apply_operator(bore, bore.stiffness, residual) * touching
+        next_descent = integrate(bore, residual, gradient)
+        direction = gradient + next_descent / descent * direction
+        response = apply_operator(bore, bore.softness, direction) * touching
+        length = next_descent / positive_or_one(integrate(bore, direction, response))
+        return change + length * direction, residual - length * response, direction, positive_or_one(next_descent)
+
+    start = change, residual, 0.0 * change, xp.full_like(change[0, 0], inf)
+    change, residual, *_ = arrays.repeat_step(advance, start, iterations)
+    return change, residual
+
+
+def _forces_by_axis(bore: BoreArrays, change: Array) -> Array:
+    """Compute the forces of changes of pressure (meridians, rings, 3 * lanes): (lanes, 3, 3)."""
+    return compute_force(bore, change).reshape(3, 3, -1).transpose(2, 0, 1)
+
+
+def _symmetric(matrices: Array) -> Array:
+    """Return the symmetric parts of matrices (lanes, 3, 3)."""
+    return (matrices + matrices.swapaxes(1, 2)) / 2
+
+
+def make_predictor(sensitivity: Sensitivity) -> Predictor:
+    """Make the predictor of a sensitivity."""
+    xp = arrays.namespace(sensitivity.tangent)
+    tangent = sensitivity.tangent
+    trace = positive_or_one(xp.trace(tangent, axis1=1, axis2=2))
+    regularised = tangent + (_REGULARISATION * trace)[:, None, None] * xp.eye(3, dtype=tangent.dtype)
+    return Predictor(sensitivity=sensitivity.pressure, inverse_tangent=xp.linalg.inv(regularised))
+
+
+def positive_or_one(values: Array) -> Array:
+    """Replace values that are not positive by 1."""
+    return arrays.where(values > 0, values, 1.0)
+
+
+def newton_step(bore: BoreArrays, lanes: Lanes, predictor: Predictor) -> Array:
+    """Compute the Newton steps in mm, (3, lanes), towards the loads that the converged pressures will balance."""
+    xp = arrays.namespace(lanes.pressure)
+    count = lanes.pressure.shape[-1]
+    missing = xp.stack(
+        [
+            integrate(bore, predictor.sensitivity[..., axis * count : (axis + 1) * count], lanes.residual)
+            for axis in range(3)
+        ]
+    )
+    imbalance = lanes.imbalance - bore.scale * missing
+    step = xp.sum(predictor.inverse_tangent.transpose(1, 2, 0) * imbalance, axis=1)
+    length = xp.sqrt(xp.sum(step * step, axis=0))
+    return step * xp.minimum(_MAX_STEP * lanes.overlap_scale / positive_or_one(length), xp.ones_like(length))
+
+
+def advance_lanes(bore: BoreArrays, step: Array, lanes: Lanes) -> Lanes:
+    """Move the balls by steps (3, lanes) in mm, and make one step of conjugate gradients for the pressures."""
+    xp = arrays.namespace(lanes.pressure)
+    moved = project_on_normals(bore, step)
+    touching, active = lanes.pressure > 0, lanes.residual != 0
+    residual = moved * active
+    residual += lanes.residual
+    gradient = apply_operator(bore, bore.stiffness, residual)
+    gradient *= active & (touching | (gradient > 0))
+    factor = integrate(bore, residual - lanes.previous_residual, gradient) / lanes.descent
+    descent = integrate(bore, residual, gradient)
+    direction = lanes.direction * active
+    direction *= xp.maximum(factor, 0.0 * factor)
+    direction += gradient
+    response = apply_operator(bore, bore.softness, direction)
+    length = integrate(bore, residual, direction) / positive_or_one(integrate(bore, direction, response))
+    unlimited = lanes.pressure + length * direction
+    pressure = xp.maximum(unlimited, 0.0 * length)
+    response *= length
+    moved -= response
+    moved += lanes.remaining
+    remaining = subtract_response(bore, moved, pressure - unlimited)
+    change = compute_force(bore, pressure - lanes.pressure) + bore.tether @ step
+    return update_residuals(
+        lanes._replace(
+            displacement=lanes.displacement + step,
+            pressure=pressure,
+            remaining=remaining,
+            imbalance=lanes.imbalance - change,
+            previous_residual=residual,
+            direction=direction,
+            descent=positive_or_one(descent),
+        )
+    )
+
+
+def subtract_response(bore: BoreArrays, remaining: Array, correction: Array) -> Array:
+    """Subtract the displacements by pressure corrections from overlaps; few lanes have corrections in NumPy."""
+    if arrays.namespace(correction) is not numpy:
+        return remaining - apply_operator(bore, bore.softness, correction)
+    corrected = correction.any(axis=0).any(axis=0)
+    if corrected.any():
+        remaining[..., corrected] -= apply_operator(bore, bore.softness, correction[..., corrected])
+    return remaining
+
+
+def refine_fields(bore: BoreArrays, fields: Array) -> Array:
+    """Transfer fields (meridians, rings, lanes) from cells twice as wide to the bore's."""
+    xp = arrays.namespace(fields)
+    return xp.repeat(xp.repeat(fields, 2, axis=1)[:, : bore.gap.shape[1]], 2, axis=0)

@@ -1,0 +1,204 @@
+"""Equilibrium of many balls in NumPy by the coupled search: blocks of lanes in single precision, checked in double."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy
+
+from ...core.arrays import Numbers
+from ...problem.gaps import LinearGap
+from .bore_contact import BoreContact, EquilibriumBatch
+from .compliance import AxisymmetricOperator, UniformOperator
+from .coupled_search import (
+    COARSE_ITERATIONS,
+    COARSE_ROUNDS,
+    COARSE_TOLERANCE,
+    SENSITIVITY_ITERATIONS,
+    TANGENT_ITERATIONS,
+    BoreArrays,
+    Lanes,
+    Measured,
+    Predictor,
+    advance_lanes,
+    make_predictor,
+    measure,
+    newton_step,
+    refine_fields,
+    refine_sensitivity,
+    solve_sensitivity,
+    start_coarse,
+    start_lanes,
+)
+
+_BLOCK_CELLS = 142_000
+"""Number of cells that are solved together: more exceed the processor's cache."""
+
+_MAX_ITERATIONS = 30
+
+_SINGLE_FACTOR = 0.8
+"""Fraction of the tolerance to which lanes are solved in single precision, before their check in double."""
+
+_MAX_CHECKS = 3
+"""Number of checks in double precision; the search continues after a failed one."""
+
+_DROPPED_FRACTION = 0.25
+"""Fraction of converged lanes from which the others continue without them."""
+
+
+def can_solve_lanes(bore: BoreContact) -> bool:
+    """Return True for an elastic bore with a linear gap."""
+    return isinstance(bore.compliance.softness, AxisymmetricOperator) and bore.gap.kind is LinearGap
+
+
+def coarser_lanes(bore: BoreContact) -> BoreContact | None:
+    """Return the bore in wide cells if the coupled search solves it: elastic, with a linear gap and a coarser grid."""
+    return bore.coarser_bore if can_solve_lanes(bore) else None
+
+
+def solve_tangents(bore: BoreContact, pressure: Numbers) -> Numbers:
+    """Compute the tangent stiffness in N/mm, (batch, 3, 3), of contacts with pressures (batch, rings, meridians)."""
+    bore_arrays = make_bore_arrays(bore)
+    size = max(_BLOCK_CELLS // (3 * pressure[0].size), 1) if len(pressure) else 1
+    blocks = [pressure[i : i + size].T > 0 for i in range(0, len(pressure), size)]
+    tangents = [solve_sensitivity(bore_arrays, touching, TANGENT_ITERATIONS).tangent for touching in blocks]
+    return numpy.concatenate([numpy.zeros((0, 3, 3)), *tangents])
+
+
+def make_bore_arrays(bore: BoreContact, dtype: type = numpy.float32) -> BoreArrays:
+    """Make the NumPy arrays of a ball in an elastic bore with a linear gap."""
+    grid, half = bore.compliance.grid, bore.compliance.grid.meridians // 2
+    phase = grid.azimuth[:half]
+    cosines, sines = (numpy.sqrt(1 / half) * numpy.ones((half, half)) for _ in range(2))
+    cosines *= numpy.cos(numpy.arange(half)[:, None] * phase)
+    sines *= numpy.sin(numpy.arange(1, half + 1)[:, None] * phase)
+    cosines[0] *= numpy.sqrt(0.5)
+    sines[-1] *= numpy.sqrt(0.5)
+    normals = grid.normals.transpose(2, 1, 0)
+    softness, stiffness = bore.compliance.softness, bore.compliance.stiffness
+    if dtype is numpy.float32:
+        softness = bore.compliance.single_precision_softness
+    if isinstance(softness, UniformOperator) or isinstance(stiffness, UniformOperator):
+        raise TypeError("a bore of springs has no matrices")
+    bore_arrays = BoreArrays(
+        cosines=cosines,
+        sines=sines,
+        softness=softness.matrices,
+        stiffness=stiffness.matrices,
+        normals=normals.reshape(-1, 3),
+        gap=(bore.gap.clearance + bore.gap.depth.T)[..., None],
+        areas=grid.areas[:, 0],
+        force_weights=(bore.area * grid.areas * normals).reshape(-1, 3).T,
+        scale=numpy.asarray(bore.area),
+        tether=bore.tether,
+    )
+    return BoreArrays(*(numpy.ascontiguousarray(array, dtype=dtype) for array in bore_arrays))
+
+
+def solve_lanes(
+    bore: BoreContact, coarser: BoreContact, load: Numbers, force_scale: Numbers, start: Numbers, tolerance: float
+) -> EquilibriumBatch:
+    """Solve the displacements and pressures of balls in equilibrium with their loads.
+
+    Parameters
+    ----------
+    bore, coarser : BoreContact
+        Bore, and the same in wide cells: see `coarser_lanes`.
+    load : array (batch, 3)
+        Loads in N, in the cup's frame.
+    force_scale : array (batch,)
+        Forces in N to which residual forces are relative.
+    start : array (batch, 3)
+        Initial displacements in mm at which the ball touches.
+    tolerance : float
+        Largest residual of force and overlap, relative to the force scale and the largest overlap.
+    """
+    fine = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore)
+    coarse = make_bore_arrays(coarser)
+    meridians, rings = fine[0].gap.shape[:2]
+    size = max(_BLOCK_CELLS // (meridians * rings), 1)
+    solution = EquilibriumBatch(
+        displacement=start.copy(), pressure=bore.zero_pressure(len(load)), converged=numpy.zeros(len(load), dtype=bool)
+    )
+    for first in range(0, len(load), size):
+        block = slice(first, first + size)
+        with numpy.errstate(all="ignore"):  # a lane that diverges is reported as unconverged
+            lanes = _solve_block(fine, coarse, load[block].T, force_scale[block], start[block].T, tolerance)
+        solution.displacement[block] = lanes.displacement.T
+        solution.pressure[block] = lanes.pressure.T
+        solution.converged[block] = lanes.error <= tolerance
+    return solution
+
+
+class _Solution(NamedTuple):
+    """Displacements (3, lanes), pressures (meridians, rings, lanes) and residuals (lanes,) of a search."""
+
+    displacement: Numbers
+    pressure: Numbers
+    error: Numbers
+
+
+def _solve_block(
+    fine: tuple[BoreArrays, BoreArrays],
+    coarse: BoreArrays,
+    load: Numbers,
+    force_scale: Numbers,
+    start: Numbers,
+    tolerance: float,
+) -> _Solution:
+    """Solve one block of lanes: in wide cells, in the cells of the bore, and again after failed checks."""
+    double, single = fine
+    single_load, single_scale = load.astype(numpy.float32), force_scale.astype(numpy.float32)
+    solved, predictor = _solve_coarse(coarse, single_load, single_scale, start.astype(numpy.float32))
+    pressure = refine_fields(single, solved.pressure)
+    predictor = make_predictor(refine_sensitivity(single, pressure > 0, predictor.sensitivity))
+    displacement = solved.displacement.astype(float)
+    for number in range(_MAX_CHECKS + 1):
+        measured = measure(double, load, displacement, pressure)
+        single_measured = Measured(*(array.astype(numpy.float32) for array in measured))
+        lanes = start_lanes(single_load, single_scale, displacement, pressure, single_measured)
+        if (lanes.error <= tolerance).all() or number == _MAX_CHECKS:
+            break
+        displacement, pressure, _ = _iterate(single, lanes, predictor, _SINGLE_FACTOR * tolerance, _MAX_ITERATIONS)
+    return _Solution(displacement, pressure, lanes.error)
+
+
+def _solve_coarse(bore: BoreArrays, load: Numbers, force_scale: Numbers, start: Numbers) -> tuple[_Solution, Predictor]:
+    """Search in wide cells, in rounds; later rounds have only the lanes that did not converge."""
+    lanes = start_coarse(bore, load, force_scale, start)
+    predictor = make_predictor(solve_sensitivity(bore, lanes.pressure > 0, SENSITIVITY_ITERATIONS))
+    solved = _iterate(bore, lanes, predictor, COARSE_TOLERANCE, COARSE_ITERATIONS)
+    for _ in range(COARSE_ROUNDS - 1):
+        unsolved = numpy.flatnonzero(~(solved.error <= COARSE_TOLERANCE))
+        if not len(unsolved):
+            break
+        displacement, pressure = solved.displacement[:, unsolved], solved.pressure[..., unsolved]
+        measured = measure(bore, load[:, unsolved], displacement, pressure)
+        lanes = start_lanes(load[:, unsolved], force_scale[unsolved], displacement, pressure, measured)
+        renewed = make_predictor(solve_sensitivity(bore, pressure > 0, SENSITIVITY_ITERATIONS))
+        predictor.store(unsolved, renewed)
+        again = _iterate(bore, lanes, renewed, COARSE_TOLERANCE, COARSE_ITERATIONS)
+        for total, part in zip(solved, again, strict=True):
+            total[..., unsolved] = part
+    return solved, predictor
+
+
+def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: float, max_iterations: int) -> _Solution:
+    """Iterate until all lanes are within a tolerance, or up to a number of iterations."""
+    result = _Solution(lanes.displacement.copy(), lanes.pressure.copy(), lanes.error.copy())
+    indices = numpy.arange(len(lanes.error))
+    for number in range(max_iterations + 1):
+        active = ~(lanes.error <= tolerance) & (number < max_iterations)
+        if active.mean() <= 1 - _DROPPED_FRACTION:
+            for name, total in result._asdict().items():
+                total[..., indices] = getattr(lanes, name)
+            indices, lanes, predictor = indices[active], _select_lanes(lanes, active), predictor.select(active)
+        if not len(indices):
+            break
+        lanes = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)
+    return result
+
+
+def _select_lanes(lanes: Lanes, mask: Numbers) -> Lanes:
+    """Return the lanes in a mask."""
+    return Lanes(*(numpy.ascontiguousarray(array[..., mask]) for array in lanes))

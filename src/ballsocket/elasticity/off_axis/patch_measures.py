@@ -1,0 +1,337 @@
+"""Measures of many contact patches at once: largest pressure, outline, half angle and margin to the rim.
+
+The functions are written for NumPy and JAX. Fields are arrays (contacts, rings, meridians), directions
+(contacts, ..., 3).
+"""
+
+from __future__ import annotations
+
+from math import pi, prod
+from typing import NamedTuple
+
+import numpy
+
+from ...core import arrays
+from ...core.arrays import Array, Numbers
+from .grid import Grid
+
+RAYS = 90
+"""Number of rays from the centre of a contact to its outline."""
+
+_BISECTIONS = 8
+"""Number of bisections of a step of half a ring's width."""
+
+_FIT_RADIUS = 2.2
+"""Radius of the quadratic fit around the largest pressure, in widths of a ring."""
+
+_FIT_RINGS = 8
+"""Number of rings on each side of the largest pressure that the radius can reach: those at the rim are narrow."""
+
+_LATTICE_POINTS = 25
+"""Number of points in each direction at which the fit is evaluated."""
+
+_MIN_MARGIN = 1e-6
+"""Margin in rad of a contact that comes to the end of the bore without reaching it."""
+
+
+class CellArrays(NamedTuple):
+    """Cells of a grid as arrays of one library and data type.
+
+    Attributes
+    ----------
+    polar : array (rings,)
+        Polar angles of the ring middles in rad.
+    nodes : array (rings + 3,)
+        Polar angles in rad between which fields are interpolated, from two beyond the pole to the end of the bore.
+    edge_nodes : array (rings,)
+        Polar angles in rad at which the edge lies when the level of a ring is 0.
+    middles : array (3, rings, meridians)
+        Unit vectors to the middles of the cells.
+    areas : array (rings, 1)
+        Areas of the cells on a unit sphere.
+    reach, width, inset : array ()
+        Polar angle of the end of the bore, width of a ring, and `EdgeRelation.inset` times that width, in rad.
+    """
+
+    polar: Array
+    nodes: Array
+    edge_nodes: Array
+    middles: Array
+    areas: Array
+    reach: Array
+    width: Array
+    inset: Array
+
+
+class Patches(NamedTuple):
+    """Pressures in MPa and levels in mm of contacts (contacts, rings, meridians), axes of their loads (contacts, 3).
+
+    Levels are positive in the contact and minus the gap outside: see `EdgeRelation.levels`.
+    """
+
+    pressure: Array
+    level: Array
+    axis: Array
+
+
+def make_cell_arrays(grid: Grid, inset: float) -> CellArrays:
+    """Make the NumPy arrays of a grid; `inset` is a fraction of a ring's width."""
+    edge_nodes = grid.polar - inset * numpy.diff(grid.edges)
+    edge_nodes[-1] = grid.reach  # the contact reaches the rim when the last ring is loaded
+    return CellArrays(
+        polar=grid.polar,
+        nodes=numpy.concatenate([-grid.polar[:2][::-1], grid.polar, [grid.reach]]),
+        edge_nodes=edge_nodes,
+        middles=grid.middles,
+        areas=grid.areas,
+        reach=numpy.asarray(grid.reach),
+        width=numpy.asarray(grid.width),
+        inset=numpy.asarray(inset * grid.width),
+    )
+
+
+def pressure_table(cells: CellArrays, pressure: Array) -> Array:
+    """Extend pressures across the pole and to the end of the bore, linearly to a loaded rim."""
+    ratio = (cells.reach - cells.polar[-1]) / (cells.polar[-1] - cells.polar[-2])
+    last, before = pressure[:, -1], pressure[:, -2]
+    at_rim = last + ratio * (last - before)
+    return _extend(pressure, at_rim * ((last > 0) & (at_rim > 0)))
+
+
+def level_table(level: Array) -> Array:
+    """Extend levels across the pole, and to the end of the bore with a constant."""
+    return _extend(level, level[:, -1])
+
+
+def _flattened(values: Array) -> Array:
+    """Return fields with one row for each contact, also without any contact."""
+    return values.reshape(values.shape[0], prod(values.shape[1:]))
+
+
+def _extend(values: Array, at_rim: Array) -> Array:
+    """Extend fields by two rings beyond the pole, one at the rim, and one meridian on either side."""
+    xp = arrays.namespace(values)
+    beyond = xp.roll(xp.flip(values[:, :2], axis=1), values.shape[2] // 2, axis=2)
+    rows = xp.concat([beyond, values, at_rim[:, None]], axis=1)
+    return xp.concat([rows[..., -1:], rows, rows[..., :1]], axis=2)
+
+
+def interpolate(cells: CellArrays, table: Array, directions: Array) -> Array:
+    """Interpolate tables (contacts, rings + 3, meridians + 2) at unit vectors (contacts, ..., 3); 0 outside."""
+    xp = arrays.namespace(table)
+    count, rows, columns = table.shape
+    x, y, z = (directions[..., axis] for axis in range(3))
+    polar, turn = xp.atan2(xp.hypot(x, y), z), xp.atan2(y, x) / (2 * pi)
+    column = (turn - xp.floor(turn)) * (columns - 2) + 0.5
+    left = xp.clip(xp.floor(column), 0, columns - 2)
+    row = xp.clip(xp.searchsorted(cells.nodes, polar, side="right") - 1, 0, rows - 2)
+    low = cells.nodes[row]
+    down, along = (polar - low) / (cells.nodes[row + 1] - low), column - left
+    index = _flattened(row * columns + left.astype(row.dtype))
+    flat = table.reshape(count, rows * columns)
+    corners = [
+        xp.take_along_axis(flat, index + offset, axis=1).reshape(polar.shape) for offset in (0, 1, columns, columns + 1)
+    ]
+    upper = corners[0] + along * (corners[1] - corners[0])
+    lower = corners[2] + along * (corners[3] - corners[2])
+    return (upper + down * (lower - upper)) * (polar <= cells.reach)
+
+
+def tangents_at(axis: Array) -> tuple[Array, Array]:
+    """Compute two unit vectors (..., 3) across axes (..., 3): away from the pole, and along the ring of the axis."""
+    xp = arrays.namespace(axis)
+    x, y, z = (axis[..., component] for component in range(3))
+    radius, azimuth = xp.hypot(x, y), xp.atan2(y, x)
+    length = xp.hypot(radius, z)
+    cosine, sine = xp.cos(azimuth), xp.sin(azimuth)
+    away = xp.stack([z / length * cosine, z / length * sine, -radius / length], axis=-1)
+    return away, xp.stack([-sine, cosine, 0.0 * x], axis=-1)
+
+
+def ray_directions(centre: Array, angle: Array, azimuth: Array) -> Array:
+    """Compute unit vectors (..., 3) at angles (rad) from centres, on rays at azimuths (rad) about them.
+
+    The ray of azimuth 0 lies in the plane of the centre and the cup's axis, away from the pole.
+    """
+    xp = arrays.namespace(centre)
+    first, second = tangents_at(centre)
+    side = xp.cos(azimuth)[..., None] * first + xp.sin(azimuth)[..., None] * second
+    return xp.cos(angle)[..., None] * centre + xp.sin(angle)[..., None] * side
+
+
+def ray_azimuths(like: Array) -> Array:
+    """Compute the azimuths in rad of the rays about the centre of a contact: (rays,)."""
+    return arrays.namespace(like).arange(RAYS, dtype=like.dtype) * (2 * pi / RAYS)
+
+
+def largest_pressures(cells: CellArrays, pressure: Array, axis: Array) -> tuple[Array, Array]:
+    """Compute the largest pressures in MPa (contacts,) and the unit vectors to them (contacts, 3).
+
+    A quadratic polynomial is fitted to the cells around the cell with the largest pressure, by least squares. Contacts
+    without pressure have 0, in the direction of their axes.
+    """
+    xp = arrays.namespace(pressure)
+    count, rings, meridians = pressure.shape
+    cell = xp.argmax(_flattened(pressure), axis=1)
+    top = xp.max(_flattened(pressure), axis=1)
+    middle = cells.middles.reshape(3, -1)[:, cell].T
+    span = min(2 * _FIT_RINGS + 1, rings)
+    ring = xp.clip(cell // meridians - _FIT_RINGS, 0, rings - span)[:, None] + xp.arange(span)
+    near = xp.moveaxis(cells.middles[:, ring], 0, -1).reshape(count, span * meridians, 3)
+    values = _flattened(xp.take_along_axis(pressure, ring[..., None], axis=1))
+    radius = _FIT_RADIUS * cells.width
+    fitted = (near @ middle[..., None])[..., 0] > xp.cos(radius)
+    fitted = (fitted & (values > 0)).astype(pressure.dtype)
+    first, second = tangents_at(middle)
+    fit = _fit_quadratic(*_project(near, first, second, radius), (values - top[:, None]) * fitted, fitted)
+    lattice = xp.linspace(-0.6, 0.6, _LATTICE_POINTS, dtype=pressure.dtype) * radius
+    s, t = (coordinate.reshape(-1)[None, :, None] for coordinate in xp.meshgrid(lattice, lattice))
+    candidates = middle[:, None] + first[:, None] * s + second[:, None] * t
+    candidates = candidates / xp.sqrt(xp.sum(candidates * candidates, axis=-1, keepdims=True))
+    rise = (_quadratic_terms(*_project(candidates, first, second, radius)) @ fit)[..., 0]
+    rise = xp.where(candidates[..., 2] < xp.cos(cells.reach), -top[:, None], rise)
+    best = xp.argmax(rise, axis=1)[:, None]
+    highest = xp.take_along_axis(rise, best, axis=1)[:, 0]
+    at = xp.take_along_axis(candidates, best[..., None], axis=1)[:, 0]
+    direction = xp.where((highest < 0)[:, None], middle, at)
+    loaded = top > 0
+    return top + loaded * xp.maximum(highest, 0.0 * highest), xp.where(loaded[:, None], direction, axis)
+
+
+def _project(points: Array, first: Array, second: Array, radius: Array) -> tuple[Array, Array]:
+    """Compute coordinates of points (contacts, points, 3) along two tangents, in units of a radius."""
+    return (points @ first[..., None])[..., 0] / radius, (points @ second[..., None])[..., 0] / radius
+
+
+def _quadratic_terms(s: Array, t: Array) -> Array:
+    """Compute the terms 1, s, t, s², s t, t² of a quadratic polynomial: (..., 6)."""
+    return arrays.namespace(s).stack([1.0 + 0.0 * s, s, t, s * s, s * t, t * t], axis=-1)
+
+
+def _fit_quadratic(s: Array, t: Array, values: Array, weights: Array) -> Array:
+    """Fit the coefficients (contacts, 6, 1) of a quadratic polynomial to points of weight 1, by least squares."""
+    xp = arrays.namespace(s)
+    terms = _quadratic_terms(s, t) * weights[..., None]
+    normal = terms.swapaxes(1, 2) @ terms
+    return xp.linalg.pinv(normal, hermitian=True) @ (terms.swapaxes(1, 2) @ values[..., None])
+
+
+def contact_centres(cells: CellArrays, patches: Patches) -> Array:
+    """Compute the centres of contacts (contacts, 3): the load, or the largest pressure if the load points outside."""
+    xp = arrays.namespace(patches.pressure)
+    inside = axis_pressures(cells, patches.pressure, patches.axis) > 0
+    cell = xp.argmax(_flattened(patches.pressure), axis=1)
+    return xp.where(inside[:, None], patches.axis, cells.middles.reshape(3, -1)[:, cell].T)
+
+
+def axis_pressures(cells: CellArrays, pressure: Array, axis: Array) -> Array:
+    """Compute the pressure in MPa at the axis of each load: (contacts,)."""
+    return interpolate(cells, pressure_table(cells, pressure), axis[:, None])[:, 0]
+
+
+def ray_steps(cells: CellArrays, patches: Patches, centres: Array) -> int:
+    """Compute the number of steps of half a ring's width after which every ray has left its contact, in NumPy."""
+    distance = numpy.einsum("nk,krm->nrm", centres, cells.middles)
+    farthest = numpy.where(patches.level > 0, distance, 1.0).min(initial=1.0)
+    angle = numpy.arccos(numpy.clip(farthest, -1.0, 1.0)) + 3 * cells.width
+    return int(min(angle, pi) / (cells.width / 2))
+
+
+def edge_angles(cells: CellArrays, level: Array, centres: Array, steps: int) -> Array:
+    """Compute the angles in rad from the centre of each contact to its edge along the rays: (contacts, rays).
+
+    The edge is the first zero of the level, or the end of the bore. A ray that never leaves a contact all around the
+    bore has the angle 0.
+    """
+    xp = arrays.namespace(level)
+    table, azimuths, centre = level_table(level), ray_azimuths(level), centres[:, None]
+    step = cells.width / 2
+    angles = xp.arange(1, steps + 1, dtype=level.dtype) * step
+    points = ray_directions(centre[:, None], angles[:, None] + 0.0 * azimuths, azimuths)
+    in_bore = points[..., 2] >= xp.cos(cells.reach)
+    outside = ~((interpolate(cells, table, points) > 0) & in_bore)
+    end = xp.argmax(outside, axis=1)  # the first step outside
+    rim = rim_angles(cells, centres)
+    end_in_bore = xp.take_along_axis(in_bore, end[:, None], axis=1)[:, 0]
+    end_angle = angles[end]
+    high = xp.where(end_in_bore, end_angle, xp.minimum(end_angle, rim))
+    loaded = interpolate(cells, table, ray_directions(centre, high, azimuths)) > 0
+
+    def bisect(bounds: tuple[Array, Array]) -> tuple[Array, Array]:
+        """Halve the interval with the edge on each ray."""
+        low, bound = bounds
+        middle = (low + bound) / 2
+        inside = interpolate(cells, table, ray_directions(centre, middle, azimuths)) > 0
+        return xp.where(inside, middle, low), xp.where(inside, bound, middle)
+
+    low, bound = arrays.repeat_step(bisect, (end_angle - step, high), _BISECTIONS)
+    edge = (low + bound) / 2 - cells.inset
+    ends = xp.minimum(xp.where(loaded, rim, xp.maximum(edge, 0.0 * edge)), rim)
+    return xp.where(xp.any(outside, axis=1), ends, 0.0)
+
+
+def rim_angles(cells: CellArrays, centres: Array) -> Array:
+    """Compute the angles in rad from centres to the end of the bore along rays; infinite if a ray misses it."""
+    xp = arrays.namespace(centres)
+    azimuths = ray_azimuths(centres)
+    # z = cos out z(0) + sin out z(90°) = A cos(out - a)
+    start = centres[:, 2:] + 0.0 * azimuths
+    side = ray_directions(centres[:, None], 0.0 * azimuths + pi / 2, azimuths)[..., 2]
+    cosine = xp.cos(cells.reach) / xp.hypot(start, side)
+    ends = xp.atan2(side, start) + xp.acos(xp.clip(cosine, -1.0, 1.0))
+    return xp.where(xp.abs(cosine) < 1, ends, xp.inf)
+
+
+def half_angles(cells: CellArrays, patches: Patches, edges: Array) -> Array:
+    """Compute the half angles in rad of round contacts of the same area, from the edges along rays: (contacts,).
+
+    The solid angle in the outline is 2π (1 - cos ε). A contact that the load does not point into, a ring around a
+    preloaded ball, has the area of its cells.
+    """
+    xp = arrays.namespace(edges)
+    solid_angle = xp.sum((patches.pressure > 0) * cells.areas, axis=(1, 2))
+    outlined = axis_pressures(cells, patches.pressure, patches.axis) > 0
+    cosine = xp.where(outlined, xp.mean(xp.cos(edges), axis=1), 1 - solid_angle / (2 * pi))
+    return xp.acos(xp.clip(cosine, -1.0, 1.0))
+
+
+def edge_loaded(pressure: Array) -> Array:
+    """Return True where there is pressure at the end of the bore: (contacts,)."""
+    return arrays.namespace(pressure).any(pressure[:, -1] > 0, axis=1)
+
+
+def edge_margins(cells: CellArrays, patches: Patches) -> Array:
+    """Compute the smallest angles in rad from the edge to the end of the bore (contacts,); 0 if a contact reaches it.
+
+    On every meridian the edge lies between the last loaded cell and the first open one. A parabola through the
+    furthest meridian and its neighbours gives the furthest point.
+    """
+    xp = arrays.namespace(patches.level)
+    edges = _polar_edges(cells, patches.level)
+    furthest = xp.argmax(edges, axis=1)[:, None]
+    before, middle, after = (
+        xp.take_along_axis(edges, (furthest + shift) % edges.shape[1], axis=1)[:, 0] for shift in (-1, 0, 1)
+    )
+    bend = 2 * middle - before - after
+    rise = xp.where(bend > 0, (after - before) ** 2 / (8 * xp.where(bend > 0, bend, 1.0)), 0.0)
+    margin = cells.reach - middle - rise
+    return xp.where(edge_loaded(patches.pressure), 0.0, xp.where(margin < _MIN_MARGIN, _MIN_MARGIN, margin))
+
+
+def _polar_edges(cells: CellArrays, level: Array) -> Array:
+    """Compute the polar angles in rad of the edge towards the rim (contacts, meridians); 0 without contact."""
+    xp = arrays.namespace(level)
+    loaded, last = level > 0, level.shape[1] - 1
+    ring = last - xp.argmax(xp.flip(loaded, axis=1), axis=1)
+    after = xp.minimum(ring + 1, 0 * ring + last)
+    inner, outer = (xp.take_along_axis(level, index[:, None], axis=1)[:, 0] for index in (ring, after))
+    falls = inner > outer
+    fraction = xp.where(falls, inner / xp.where(falls, inner - outer, 1.0), 0.0)
+    low = cells.edge_nodes[ring]
+    return xp.where(xp.any(loaded, axis=1), low + fraction * (cells.edge_nodes[after] - low), 0.0)
+
+
+def measure_edges(cells: CellArrays, patches: Patches) -> tuple[Numbers, Numbers]:
+    """Compute the centres (contacts, 3) and edge angles (contacts, rays) of contacts in NumPy."""
+    centres = contact_centres(cells, patches)
+    return centres, edge_angles(cells, patches.level, centres, ray_steps(cells, patches, centres))

@@ -1,0 +1,286 @@
+"""Film over steps of load and motion by Reynolds' equation: implicit Euler, in parts of a step where it is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy
+
+from ..contact import Contact, Model
+from ..core.arrays import Array, Numbers
+from ..core.checks import check_numeric, check_vectors, require
+from ..core.validity import Status
+from ..problem import Joint
+from .carried_film import CentralShare, all_upwind, smooth_share
+from .dry_contact import check_single_contact, dry_contact
+from .film_problem import ContactFilm, check_reynolds, make_contact_film
+from .lubricant import Lubricant
+from .reynolds import FilmProblem, FilmState, advance
+
+_TOLERANCE, _MAX_ITERATIONS = 1e-4, 25
+"""Largest change of the last Newton step of a time step, and largest number of Newton steps."""
+
+_ATTEMPTS: tuple[tuple[CentralShare, int], ...] = (
+    (smooth_share, 1),
+    (all_upwind, 1),
+    (all_upwind, 4),
+    (all_upwind, 16),
+)
+"""Carried film and number of parts of a time step, in the order of the attempts."""
+
+
+_DRY_CELL = numpy.radians(4.0)
+"""Width in rad of the cells of the dry contacts, of which only axis and edge are used."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LoadStep:
+    """Load and motion of one step of time.
+
+    Attributes
+    ----------
+    force : array (3,)
+        Load on the ball in N.
+    spin : array (3,)
+        Rotation rate of the ball in rad/s.
+    duration : float
+        Duration in s.
+    """
+
+    force: Numbers
+    spin: Numbers
+    duration: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TransientFilm:
+    """Films at the end of each step of load and motion.
+
+    Attributes
+    ----------
+    states : tuple of FilmState
+        Pressure, vapour and position of the ball; a state that is not converged is the last one that was.
+    thickness : array (steps, cells)
+        Film thickness in mm.
+    status : array of Status (steps,)
+        `NOT_CONVERGED` marks steps without a solution: they have the film before them, which is the best so far.
+    """
+
+    states: tuple[FilmState, ...]
+    thickness: Numbers
+    status: Numbers
+
+    @property
+    def converged(self) -> bool:
+        """True if all steps converged."""
+        return bool((self.status == Status.OK).all())
+
+    @property
+    def iterations(self) -> int:
+        """Number of Newton steps."""
+        return sum(state.iterations for state in self.states)
+
+
+def solve_cycle(
+    problem: FilmProblem, start: FilmState, steps: Sequence[LoadStep], cycles: int = 1, parts: int = 1
+) -> TransientFilm:
+    """Solve Reynolds' equation over cycles of load and motion, by implicit Euler.
+
+    The error in time is of first order. Where Newton's method fails, the step is repeated with the film upstream, and
+    then in parts in which load and motion change bit by bit.
+
+    Parameters
+    ----------
+    problem : FilmProblem
+        Film, mesh and springs; its force and spin are replaced by those of the steps.
+    start : FilmState
+    steps : sequence of LoadStep
+    cycles : int
+        Number of cycles.
+    parts : int
+        Number of time steps in each step of load and motion.
+
+    Returns
+    -------
+    TransientFilm
+        Films of the last cycle.
+    """
+    state, before = start, steps[-1]
+    states: list[FilmState] = []
+    for _ in range(cycles):
+        states = []
+        for step in steps:
+            piece = replace(step, duration=step.duration / parts)
+            for _ in range(parts):
+                state = _solve_step(problem, state, before, piece)
+                before = piece
+            states.append(state)
+    status = numpy.array([Status.OK if state.converged else Status.NOT_CONVERGED for state in states])
+    thickness = numpy.stack([problem.thickness(state) for state in states])
+    return TransientFilm(states=tuple(states), thickness=thickness, status=status)
+
+
+def _solve_step(problem: FilmProblem, start: FilmState, before: LoadStep, step: LoadStep) -> FilmState:
+    """Solve one time step; return the film at its start, not converged, if all attempts fail."""
+    iterations = 0
+    for central_share, parts in _ATTEMPTS:
+        state = start
+        for piece in _divide(before, step, parts):
+            current = replace(problem, force=piece.force, spin=piece.spin, central_share=central_share)
+            volume = problem.thickness(state) * (1 - state.void)
+            state = advance(
+                current,
+                state,
+                volume=volume,
+                step=piece.duration,
+                tolerance=_TOLERANCE,
+                max_steps=_MAX_ITERATIONS,
+            )
+            iterations += state.iterations
+            if not state.converged:
+                break
+        if state.converged:
+            return replace(state, iterations=iterations)
+    return replace(start, converged=False, iterations=iterations)
+
+
+def _divide(before: LoadStep, step: LoadStep, parts: int) -> Iterator[LoadStep]:
+    """Divide a step into parts, in which load and motion change linearly from those before."""
+    for part in range(1, parts + 1):
+        share = part / parts
+        yield LoadStep(
+            force=(1 - share) * before.force + share * step.force,
+            spin=(1 - share) * before.spin + share * step.spin,
+            duration=step.duration / parts,
+        )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilmSteps:
+    """Films at the end of each step of load and motion.
+
+    Attributes
+    ----------
+    case : ContactFilm
+        Reynolds' equation with its mesh.
+    film : TransientFilm
+        States, thickness (steps, cells) in mm, and status of each step.
+    """
+
+    case: ContactFilm
+    film: TransientFilm
+
+    @property
+    def central(self) -> Numbers:
+        """Film thickness in mm at the load (steps,)."""
+        return self.case.central(self.film.thickness)
+
+    @property
+    def minimum(self) -> Numbers:
+        """Smallest film in mm within the edge of the largest contact (steps,)."""
+        return self.case.minimum(self.film.thickness)
+
+    @property
+    def pressure(self) -> Numbers:
+        """Pressure in MPa (steps, cells)."""
+        return numpy.stack([state.pressure for state in self.film.states])
+
+    @property
+    def status(self) -> Numbers:
+        """Status of each step (steps,); a step that is not solved has the film before it."""
+        return self.film.status
+
+
+def film_over_steps(
+    model: Model,
+    joint: Joint,
+    *,
+    forces: Array,
+    spins: Array,
+    durations: Array,
+    lubricant: Lubricant = Lubricant(),  # noqa: B008 (frozen)
+    cycles: int = 1,
+    parts: int = 1,
+) -> FilmSteps:
+    """Solve Reynolds' equation over steps of load and motion, by implicit Euler.
+
+    The first film is that of the smallest load, with the ball lifted by the inlet film of the fastest motion. A cycle
+    is repeated until it forgets that film.
+
+    Parameters
+    ----------
+    model : Model
+        Springs, `Exact`, `Tabulated`, or `Sphere` with one direction of the load.
+    joint : Joint
+        One joint.
+    forces : array (steps,)
+        Loads in N at the end of each step.
+    spins : array (steps, 3)
+        Rotation rates of the ball in rad/s, in the frame of the contact.
+    durations : float or array (steps,)
+        Durations of the steps in s.
+    lubricant : Lubricant
+    cycles : int
+        Number of times that the steps are repeated; the result has the last one.
+    parts : int
+        Number of time steps in each step of load and motion.
+
+    Returns
+    -------
+    FilmSteps
+
+    Raises
+    ------
+    ValueError
+        A load or duration that is not positive; arrays of different lengths; a motion without any speed across the
+        load; a contact that `bs.film` refuses for Reynolds' equation; an edge that moves too far for its short inlet.
+    TypeError
+        Texts in place of numbers.
+
+    Examples
+    --------
+    >>> import ballsocket as bs
+    >>> from ballsocket.lubrication.transient import film_over_steps
+    >>> motion = [(5.0, 0.0, 0.0), (0.0, 0.0, 0.0)]
+    >>> hip = bs.joints["hip-36"]
+    >>> film = film_over_steps(bs.Exact(), hip, forces=[1500.0, 1500.0], spins=motion, durations=0.05)
+    >>> film.status.tolist()
+    [0, 0]
+    """
+    loads = numpy.atleast_1d(_finite("forces", forces))
+    require("forces", loads, loads > 0, "a film needs a load (N)")
+    rates = numpy.atleast_2d(numpy.asarray(check_vectors("spins", spins, "x, y, z (rad/s)"), dtype=float))
+    times = _finite("durations", durations)
+    require("durations", times, times > 0, "a step (s) takes time")
+    if rates.shape != (len(loads), 3) or times.shape not in ((), (1,), (len(loads),)):
+        raise ValueError(
+            f"spins of shape {rates.shape} and durations of shape {times.shape} are not allowed for {len(loads)} "
+            "forces: give one rotation rate and one duration per force"
+        )
+    contacts = [_press(model, joint, force) for force in sorted({loads.min(), loads.max()})]
+    dry_contacts = [dry_contact(contact, _DRY_CELL) for contact in contacts]
+    for contact, dry in zip(contacts, dry_contacts, strict=True):
+        check_reynolds(contact, dry)
+    axis = dry_contacts[0].axis
+    fastest = rates[numpy.linalg.norm(numpy.cross(rates, axis), axis=1).argmax()]
+    if not dry_contacts[0].speed(fastest) > 0:
+        raise ValueError("the ball does not move across the load in any step: no lubricant enters")
+    case = make_contact_film(contacts, dry_contacts, fastest, lubricant.viscosity_mpa)
+    steps = [
+        LoadStep(force=force * axis, spin=spin, duration=float(duration))
+        for force, spin, duration in zip(loads, rates, numpy.broadcast_to(times, loads.shape), strict=True)
+    ]
+    return FilmSteps(case=case, film=solve_cycle(case.problem, case.start, steps, cycles, parts))
+
+
+def _finite(name: str, values: Array) -> Numbers:
+    """Return finite numbers as an array."""
+    array = numpy.asarray(check_numeric(name, values), dtype=float)
+    require(name, array, numpy.isfinite(array), "a number is finite")
+    return array
+
+
+def _press(model: Model, joint: Joint, force: float) -> Contact:
+    """Press one joint with one load in N."""
+    return check_single_contact(model.press(joint, force=float(force)))

@@ -1,0 +1,88 @@
+"""Accessibility of every view: axe-core in light, dark and narrow pages; a key for everything that a pointer can do."""
+
+import gzip
+
+import pytest
+
+from ..extent import either, some
+from ..places import ROOT
+from .user import NARROW, WIDE, User, opened_profile
+
+pytest.importorskip("tornado", reason="the explorer's extra is not installed")
+from ballsocket.app.state.screen import VIEWS
+
+pytestmark = pytest.mark.xdist_group("browser-pages")
+
+AXE = ROOT / "tests" / "data" / "axe" / "axe.min.js.gz"
+_VIOLATIONS = """async () => (await axe.run(document, { resultTypes: ["violations"] })).violations
+  .map((rule) => `${rule.id} (${rule.impact}): ${rule.nodes.map((node) => node.html.slice(0, 200)).join(" | ")}`)"""
+
+_PAGES = [(view, *page) for view in VIEWS for page in ((WIDE, False), (WIDE, True), (NARROW, False), (NARROW, True))]
+
+
+@pytest.mark.parametrize(("view", "width", "dark"), some(_PAGES, 4))
+def test_axe_finds_no_violation(browser, address, view, width, dark):
+    with opened_profile(browser, address, width, dark, bypass_csp=True) as profile:
+        user = User(profile, address).open(f"?view={view}&beside1.preset=hip-36&use.cycle=iso-14242-1")
+        user.page.locator(".side").evaluate("(side) => { side.open = true; }")
+        user.page.evaluate(gzip.decompress(AXE.read_bytes()).decode())
+        assert user.page.evaluate(_VIOLATIONS) == []
+
+
+_REACH = """() => {
+  const element = document.activeElement;
+  if (!element || element === document.body || element.dataset.reached) return false;
+  element.dataset.reached = "yes";
+  return true;
+}"""
+_UNREACHED = """() => {
+  const reached = (element) => Boolean(element.closest("[data-reached]") || element.querySelector("[data-reached]"));
+  const twins = (element) => {
+    const label = element.closest("label"), drag = element.closest("[data-drag]");
+    if (label && label.control) return [label.control, ...radios(label.control)];
+    if (element.matches("input[type=radio]")) return radios(element);
+    if (drag) return [...document.querySelectorAll(`[data-drag="${drag.dataset.drag}"]`)];
+    const map = element.closest("svg[data-pick]");
+    return map ? [map.querySelector(".cursor")] : [];
+  };
+  const radios = (input) => [...document.getElementsByName(input.name || " ")];
+  const seen = (element) => element.checkVisibility({ visibilityProperty: true }) && element.getClientRects().length;
+  const moved = /pointer|grab|move|resize|crosshair/;
+  return [...document.querySelectorAll("body *")]
+    .filter((element) => seen(element) && !element.closest(":disabled"))
+    .filter((element) => element.dataset.drag || moved.test(getComputedStyle(element).cursor))
+    .filter((element) => !reached(element) && !twins(element).some(reached))
+    .map((element) => element.outerHTML.slice(0, 160));
+}"""
+
+
+def reach_all(user):
+    """Press Tab until the focus returns to an element that it has been on."""
+    user.page.locator("body").evaluate("() => document.activeElement.blur()")
+    while True:
+        user.page.keyboard.press("Tab")
+        if not user.page.evaluate(_REACH):
+            return
+
+
+@pytest.mark.parametrize("view", some(VIEWS, 2))
+def test_everything_that_a_pointer_can_do_has_a_key(user, view):
+    """Each element that can be clicked or dragged is a stop of Tab, or has a twin that is."""
+    user.open(f"?view={view}&beside1.preset=hip-36&limit=outer_diameter<=52")
+    reach_all(user)
+    assert user.page.locator("[data-reached]").count() > 10
+    assert user.page.evaluate(_UNREACHED) == []
+
+
+@pytest.mark.parametrize("view", either(["press"], list(VIEWS)))
+def test_each_handle_moves_by_keys(user, view):
+    """An arrow key on a handle changes the recipe of the page."""
+    user.open(f"?view={view}&limit=outer_diameter<=52")
+    handles = user.page.locator("[data-drag][tabindex]:visible")
+    names = [handle.get_attribute("data-drag") for handle in handles.all()]
+    for name in dict.fromkeys(names):
+        before = user.page.url
+        user.page.locator(f"[data-drag='{name}'][tabindex]:visible").first.focus()
+        user.page.keyboard.press("ArrowUp")
+        user.answered()
+        assert user.page.url != before, name

@@ -1,0 +1,69 @@
+"""Undo and redo in a real browser: one step for each settled change."""
+
+from dataclasses import replace
+
+import pytest
+
+import ballsocket as bs
+
+pytestmark = pytest.mark.xdist_group("browser-pages")
+HIP = bs.joints["hip-28"]
+
+
+def pressure(joint=HIP, force=3000.0):
+    return bs.Exact().press(joint, force=force).max_pressure
+
+
+def press(user, keys):
+    user.page.evaluate("document.activeElement.blur()")
+    user.page.keyboard.press(keys)
+
+
+def test_changes_are_undone_and_done_again(user):
+    """A preset, keys of a slider, and a view are a step each; text in a box has its own undo."""
+    user.open()
+    user.page.get_by_label("Start from").select_option("hip-36")
+    assert user.answered().shows("max_pressure", pressure(bs.joints["hip-36"]))
+    user.nudge("load", "ArrowLeft", 4)
+    assert user.answered().shows("max_pressure", pressure(bs.joints["hip-36"], 2800.0))
+    user.view("Cup")
+    press(user, "Control+z")
+    assert user.page.locator("[data-view=press]:is(section)").wait_for() is None
+    press(user, "Control+z")
+    assert user.answered().shows("max_pressure", pressure(bs.joints["hip-36"]))
+    press(user, "Control+z")
+    assert user.answered().shows("max_pressure", pressure())
+    assert user.page.get_by_label("Start from").input_value() == "hip-28"
+    press(user, "Control+z")  # there is nothing before: the page stays
+    press(user, "Control+y")
+    assert user.answered().shows("max_pressure", pressure(bs.joints["hip-36"]))
+    user.page.go_forward()
+    assert user.answered().shows("max_pressure", pressure(bs.joints["hip-36"], 2800.0))
+    user.nudge("clearance")
+    changed = replace(bs.joints["hip-36"], clearance=bs.joints["hip-36"].clearance + 0.005)
+    assert user.answered().shows("max_pressure", pressure(changed, 2800.0))
+    press(user, "Control+Shift+z")
+    assert user.answered().shows("max_pressure", pressure(changed, 2800.0))
+
+
+def test_a_drag_is_one_step_and_the_theme_is_none(user):
+    user.open()
+    steps = user.page.evaluate("history.length")
+    knob = user.page.locator("[data-drag=tilt]").bounding_box()
+    user.page.mouse.move(knob["x"] + knob["width"] / 2, knob["y"] + knob["height"] / 2)
+    user.page.mouse.down()
+    for sideways in (20, 50, 90):
+        user.page.mouse.move(knob["x"] + sideways, knob["y"] + 10)
+        user.answered()
+        user.page.wait_for_timeout(700)
+    user.page.mouse.up()
+    assert user.page.evaluate("history.length") == steps + 1
+    user.page.get_by_role("button", name="Light or dark").click()
+    user.page.locator(".app.dark").wait_for()
+    assert user.page.evaluate("history.length") == steps + 1
+    assert user.page.url.endswith("theme=dark")
+    user.page.reload()
+    user.answered()
+    user.page.locator(".app.dark").wait_for()
+    assert user.page.locator("[data-name=tilt] input[type=text]").input_value() != "0"
+    assert user.page.locator("[data-name=load] input[type=text]").input_value() == "3000"

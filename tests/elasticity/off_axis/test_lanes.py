@@ -1,0 +1,99 @@
+"""Coupled search for displacements and pressures: operator, Newton step, equilibrium of each lane."""
+
+from math import radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.elasticity.off_axis.bore_contact import BoreContact, GapField, initial_displacement
+from ballsocket.elasticity.off_axis.compliance import cached_compliance
+from ballsocket.elasticity.off_axis.coupled_search import (
+    apply_operator,
+    make_predictor,
+    measure,
+    newton_step,
+    solve_sensitivity,
+    start_coarse,
+)
+from ballsocket.elasticity.off_axis.lane_solver import coarser_lanes, make_bore_arrays, solve_lanes
+from ballsocket.elasticity.off_axis.surfaces import ClosedShell
+
+from ...joints import HIP
+
+COMPLIANCE = cached_compliance(ClosedShell(), HIP, bs.Cup(), radians(3.0))
+GRID = COMPLIANCE.grid
+FORCES = np.array([400.0, 3000.0, 1200.0, 2000.0])
+AXES = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, -0.8, 0.6], [0.36, 0.48, 0.8]])
+
+
+def bore_of(depth=0.0, kind=bs.LinearGap):
+    worn = depth * np.maximum(GRID.centroids[0] + GRID.centroids[2], 0.0) ** 2
+    gap = GapField(grid=GRID, clearance=0.1, socket_radius=18.0, depth=worn, kind=kind)
+    return BoreContact(compliance=COMPLIANCE, gap=gap)
+
+
+def solve(bore, rows, tolerance=1e-6):
+    start = initial_displacement(bore.gap, COMPLIANCE.uniform_stiffness, bore.gap.depth, FORCES[rows], AXES[rows])
+    load = AXES[rows] * FORCES[rows, None]
+    return solve_lanes(bore, coarser_lanes(bore), load, FORCES[rows], start, tolerance)
+
+
+def test_operator_of_lanes_equals_that_of_the_compliance():
+    fields = np.random.default_rng(0).standard_normal((3, GRID.rings, GRID.meridians))
+    arrays = make_bore_arrays(bore_of(), np.float64)
+    displacement = apply_operator(arrays, arrays.softness, np.ascontiguousarray(fields.T))
+    assert pytest.approx(COMPLIANCE.displacement(fields), abs=1e-12 * abs(displacement).max()) == displacement.T
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.03])
+def test_each_lane_balances_its_load_with_closed_gaps(depth):
+    bore = bore_of(depth)
+    solution = solve(bore, np.arange(4))
+    overlap = bore.gap.overlap(solution.displacement)
+    gap = COMPLIANCE.displacement(solution.pressure) - overlap
+    scale = overlap.max(axis=(1, 2), keepdims=True)
+    assert solution.converged.all()
+    assert (solution.pressure >= 0).all()
+    assert (np.where(solution.pressure > 0, abs(gap), 0.0) <= 1.1e-6 * scale).all()
+    assert (gap >= -1.1e-6 * scale).all()
+    assert bore.force(solution.pressure) == pytest.approx(AXES * FORCES[:, None], abs=1.1e-6 * FORCES.max())
+
+
+def test_lanes_do_not_depend_on_each_other():
+    bore = bore_of()
+    together, alone = solve(bore, np.arange(4)), solve(bore, np.array([2]))
+    assert together.displacement[2] == pytest.approx(alone.displacement[0], abs=1e-8)
+    assert together.pressure[2] == pytest.approx(alone.pressure[0], abs=2e-5 * alone.pressure.max())
+
+
+def test_newton_step_anticipates_pressures_that_have_not_converged():
+    """The step from rough pressures is close to the way to equilibrium; the force alone would mislead it."""
+    bore = coarser_lanes(bore_of())
+    arrays = make_bore_arrays(bore, np.float64)
+    start = initial_displacement(bore.gap, COMPLIANCE.uniform_stiffness, bore.gap.depth, FORCES, AXES)
+    lanes = start_coarse(arrays, (AXES * FORCES[:, None]).T, FORCES, start.T)
+    predictor = make_predictor(solve_sensitivity(arrays, lanes.pressure > 0, 3))
+    step = newton_step(arrays, lanes, predictor)
+    solved = bore.solve_displaced((lanes.displacement + step).T)
+    error = np.linalg.norm(bore.force(solved.pressure) - AXES * FORCES[:, None], axis=1)
+    before = bore.solve_displaced(lanes.displacement.T)
+    assert (error < 0.35 * np.linalg.norm(bore.force(before.pressure) - AXES * FORCES[:, None], axis=1)).all()
+
+
+def test_measured_overlaps_are_those_of_the_gap():
+    bore = bore_of(0.02)
+    arrays = make_bore_arrays(bore, np.float64)
+    displacement = 0.15 * AXES
+    measured = measure(arrays, 0.0 * AXES.T, displacement.T, np.zeros((GRID.meridians, GRID.rings, 4)))
+    overlap = bore.gap.overlap(displacement)
+    assert pytest.approx(overlap, abs=1e-12) == measured.remaining.T
+    assert measured.overlap_scale == pytest.approx(overlap.max(axis=(1, 2)))
+
+
+def test_bores_without_lanes():
+    """Springs and circular gaps have no coupled search."""
+    springs = cached_compliance(bs.Springs(), HIP.replace(ball=None), bs.Cup(), radians(3.0))
+    gap = bore_of().gap
+    assert coarser_lanes(BoreContact(compliance=springs, gap=gap)) is None
+    assert coarser_lanes(bore_of(kind=bs.CircularGap)) is None

@@ -1,0 +1,180 @@
+"""Reynolds' equation off the axis: contacts of `Sphere` anywhere in a cup with a rim."""
+
+from dataclasses import replace
+from math import cos, pi, radians, sin
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import spsolve
+
+import ballsocket as bs
+from ballsocket.core.validity import Status
+from ballsocket.elasticity.off_axis.compliance import cached_compliance
+from ballsocket.elasticity.off_axis.grid import Grid
+from ballsocket.lubrication import film_problem
+from ballsocket.lubrication.balance import balance_cells
+from ballsocket.lubrication.dry_contact import CupCorrection, ElasticSoftness, dry_contact, frame_about
+from ballsocket.lubrication.mesh import polar_mesh
+from ballsocket.problem.cup import Interface
+
+from ..extent import either
+from .rigid_fields import squeeze_pressure
+
+JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.4))
+
+
+def press(tilt, **words):
+    """Contact of 1500 N, tilted by an angle in degrees from the axis of the cup."""
+    return bs.Sphere(**words).press(JOINT, force=1500.0, tilt=radians(tilt))
+
+
+def spin_towards_rim(tilt, rate):
+    """Rotation in rad/s across a tilted load; the ball moves along the ring of the load."""
+    return rate * cos(radians(tilt)), 0.0, -rate * sin(radians(tilt))
+
+
+def test_an_axial_load_in_a_hemisphere_has_the_film_of_exact():
+    """The closed shell of `exact` and the cup with a rim, on one mesh of the film: 468.0 and 467.8 nm."""
+    axial, cup = (
+        bs.film(contact, spin=(10.0, 0.0, 0.0), method="reynolds")
+        for contact in (bs.Exact().press(JOINT, force=1500.0), press(0.0))
+    )
+    assert cup.status is Status.OK
+    assert cup.central == pytest.approx(axial.central, rel=0.002)
+    assert cup.minimum == pytest.approx(axial.minimum, rel=0.005)
+    assert cup.displacement == pytest.approx(axial.displacement, abs=1e-5)
+
+
+def test_a_tilted_load_in_a_real_cup_confirms_the_wave():
+    """The rim lies 10° from the contact. In the limit of small viscosity the pressure is that of `Sphere`."""
+    viscosity, error = either(quick=(2.5e-3, 0.005), long=(2.5e-4, 0.001))
+    contact, lubricant = press(45.0), bs.Lubricant(viscosity=viscosity)
+    judge, wave = (
+        bs.film(contact, spin=spin_towards_rim(45.0, 1.5), lubricant=lubricant, method=method)
+        for method in ("reynolds", "wave")
+    )
+    assert judge.status is Status.OK
+    assert judge.valid
+    assert wave.central == pytest.approx(judge.central, rel=wave.error)
+    assert (judge.pressure * judge.areas) @ judge.directions == pytest.approx(contact.force_vector, abs=0.01)
+    assert judge.pressure.max() == pytest.approx(contact.max_pressure, rel=error)
+    inner = judge.directions @ judge.dry.axis > cos(0.8 * judge.dry.half_angle)
+    dry = contact.pressure_at(judge.directions)[inner]
+    assert judge.pressure[inner] == pytest.approx(dry, abs=0.008 * contact.max_pressure)
+    assert np.sqrt(np.mean((judge.pressure[inner] - dry) ** 2)) < 0.003 * contact.max_pressure
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("rate", [10.0, -10.0])
+def test_a_near_rim_starves_the_inlet_but_not_the_outlet(rate):
+    """At 56° the rim is 0.2 mm from the contact. A ball that moves towards it has 464 nm, one that leaves it 424 nm."""
+    film = bs.film(press(56.0), spin=(0.0, rate, 0.0), method="reynolds")
+    assert film.status is Status.OK
+    assert 1e6 * film.central == pytest.approx(464.0 if rate > 0 else 422.0, rel=0.01)
+
+
+@pytest.mark.long
+def test_central_films_of_a_tilted_load_converge_with_the_mesh(monkeypatch):
+    """Cells of a half and a third: 467.4, 465.5 and 465.2 nm, of order two; least films 274.3, 271.7 and 270.6 nm."""
+    contact, films, settings = press(45.0), [], film_problem._ELASTIC
+    spin = np.array(spin_towards_rim(45.0, 10.0))
+    for scale in (1, 1.5, 2, 3):
+        finer = replace(
+            settings,
+            rings_of_inlet=settings.rings_of_inlet * scale,
+            coarsest=settings.coarsest / scale,
+            growth=settings.growth ** (1 / scale),
+        )
+        monkeypatch.setattr(film_problem, "_ELASTIC", finer)
+        monkeypatch.setattr(film_problem, "_meridians", lambda *words, count=int(40 * scale): count)
+        case = film_problem.make_contact_film([contact], [dry_contact(contact, radians(2.0))], spin, 2.5e-9)
+        films.append(float(case.central(case.problem.thickness(case.solve_steady()))))
+    changes = np.abs(np.diff(films))
+    assert (np.diff(changes) < 0).all()
+    assert films[0] == pytest.approx(films[-1], rel=0.01)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("ball", [None, bs.STEEL], ids=["rigid", "steel"])
+def test_springs_have_the_film_of_an_axial_load_anywhere(ball):
+    """An elastic ball on springs adds its own displacements, here 0.3 % of the film."""
+    springs = bs.constant(276.67)
+    contact = bs.Sphere(surface=bs.Springs(modulus=springs)).press(replace(JOINT, ball=ball), force=1500.0, tilt=0.5)
+    tilted = bs.film(contact, spin=(0.0, 10.0, 0.0), method="reynolds")
+    axial = bs.film(
+        bs.RadialFoundation(modulus=springs).press(JOINT, force=1500.0), spin=(10.0, 0, 0), method="reynolds"
+    )
+    assert tilted.status is Status.OK
+    assert tilted.central == pytest.approx(axial.central, rel=0.002 if ball is None else 0.005)
+    assert tilted.minimum == pytest.approx(axial.minimum, rel=0.002 if ball is None else 0.005)
+
+
+def test_displacements_on_the_mesh_of_the_film_are_those_of_the_cup():
+    """A liner that slides in its shell: a fifth of the displacement is not that of a closed shell."""
+    cup = bs.Cup(interface=Interface.SLIDING)
+    model, tilt = bs.Sphere(cup=cup), radians(40.0)
+    frame = frame_about(np.array([sin(tilt), 0.0, cos(tilt)]))
+    grid = Grid(edges=np.radians(np.arange(0.0, 51.0, 1.0)), meridians=72)
+    shell = ElasticSoftness.of(model.surface.isotropic, JOINT, grid)
+    softness = replace(shell, correction=CupCorrection.of(model, JOINT, grid, frame))
+
+    def pressure(height):
+        return np.maximum(1.2 * height - 1.0, 0.0) ** 2 * 250.0
+
+    compliance = cached_compliance(model.surface, JOINT, cup, model.ring_width)
+    on_cup = pressure(np.tensordot(frame[2], compliance.grid.middles, 1))
+    expected = compliance.displacement(on_cup[None]).ravel()
+    directions = grid.middles.reshape(3, -1).T
+    inside = directions @ frame[:, 2] > cos(radians(80.0))  # away from the strip at the rim
+    at_film = compliance.grid.interpolation_matrix(directions @ frame) @ expected
+    found = softness(pressure(directions[:, 2]))
+    assert found[inside] == pytest.approx(at_film[inside], abs=0.01 * expected.max())
+    assert np.abs(found - shell(pressure(directions[:, 2]))).max() > 0.15 * expected.max()
+
+
+def test_interpolation_between_meshes_is_of_second_order_and_passes_the_pole():
+    def error(rings):
+        grid = Grid(edges=np.linspace(0.0, 1.2, rings + 1), meridians=4 * rings)
+        points = np.random.default_rng(2).normal(size=(500, 3)) * (0.3, 0.3, 0.2) + (0.0, 0.0, 1.0)
+        points /= np.linalg.norm(points, axis=1)[:, None]
+        points = points[points[:, 2] > cos(1.1)]
+        field = np.exp(grid.middles[0] + 0.5 * grid.middles[1]).ravel()
+        return np.abs(grid.interpolation_matrix(points) @ field - np.exp(points[:, 0] + 0.5 * points[:, 1])).max()
+
+    assert np.log2(error(12) / error(24)) > 1.7
+    grid = Grid(edges=np.linspace(0.0, 1.2, 9), meridians=16)
+    outside = np.array([[sin(1.3), 0.0, cos(1.3)], [0.0, 0.0, 1.0]])
+    assert grid.interpolation_matrix(outside) @ np.ones(128) == pytest.approx([0.0, 1.0])
+
+
+def test_a_mesh_that_the_rim_cuts_has_the_squeeze_pressure_of_a_hemisphere():
+    """A rigid cavity on cells about an axis at 25° from that of the cup: the cells at the rim make steps."""
+
+    def error(rings):
+        frame = frame_about(np.array([sin(0.44), 0.0, cos(0.44)]))
+        mesh = polar_mesh(18.0, np.linspace(0.0, 0.7 * pi, rings + 1), 4 * rings).in_frame(frame)
+        mesh = mesh.within(mesh.direction[:, 2] > 0)
+        height, empty = mesh.direction[:, 2], np.zeros(mesh.cells)
+        film = 0.1 - 0.08 * height
+        balance = balance_cells(mesh, np.zeros(3), 2.5e-9, film, empty, empty, np.zeros(len(mesh.rim_cell)))
+        pressure = spsolve(balance.by_pressure.tocsc(), 2.0 * height * mesh.area)
+        exact = squeeze_pressure(
+            np.arccos(height), radius=18.0, clearance=0.1, eccentricity=0.08, speed=2.0, viscosity=2.5e-9, rim=pi / 2
+        )
+        return np.abs(pressure - exact).max() / exact.max()
+
+    assert error(24) < 0.02
+    assert error(48) < 0.6 * error(24)
+
+
+def test_a_contact_that_the_rim_cuts_is_refused():
+    contact = press(65.0)
+    with pytest.raises(ValueError, match=r"not possible for an edge margin of -7.92 deg: the rim cuts the contact"):
+        bs.film(contact, method="reynolds")
+    assert not bs.film(contact).valid
+
+
+def test_a_contact_far_from_round_is_refused():
+    contact = bs.Sphere(worn=bs.OvalBore(squeeze=0.05)).press(JOINT, force=1500.0)
+    with pytest.raises(ValueError, match=r"whose edge lies 29\.6 to 44\.1 deg from its load: it needs a rounder one"):
+        bs.film(contact, method="reynolds")
