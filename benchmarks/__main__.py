@@ -44,6 +44,7 @@ BENCHMARKS = {
     "hip": ("hip", "a hip in use: a cycle, millions of them, springs and real cup; and a loop by hand in NumPy"),
     "film": ("film", "the lubricating film: three methods, cost against cells, a cycle; and a loop in NumPy"),
     "element-in-c": ("element_in_c", "one evaluation of the force element: exported to C, in Python, in NumPy"),
+    "scaling": ("scaling", "cost against size: presses, tilted loads, cells, instants, patients and workers"),
     "patients": ("patients", "hips of patients who differ, a million cycles each, and ten thousand of them on paper"),
     "bounce": ("bounce", "a ball that bounces in its socket, in every program that a joint is exported to"),
     "four-bar": ("four_bar", "a second of a spatial four-bar with clearance: compiled, in Python, in Exudyn"),
