@@ -43,7 +43,7 @@ def test_finite_elements_confirm_the_finite_volumes():
     """Another discretisation, without upwinding, at another speed than those above."""
     rate = 30.0
     volumes = bs.film(CONTACT, spin=(rate, 0.0, 0.0), method="reynolds")
-    central, least = GalerkinFilm(rate, 0.03 * np.sqrt(rate), 1.0, 24, 1.15).solve()
+    central, least = GalerkinFilm(rate, 0.05 * np.sqrt(rate), 1.5, 16, 1.25).solve()
     assert volumes.central == pytest.approx(central, rel=0.003)
     assert volumes.minimum == pytest.approx(least, rel=0.003)
 
