@@ -113,9 +113,9 @@ def test_the_coarse_simulation_differs_little_from_the_full_one():
 
 def test_a_cohort_has_the_errors_of_the_coarse_simulation():
     one = variability(clearance=TIGHT)
-    bands = population(one, [2e6, 1e6], patients=1)[1]
-    assert bands.counts == (1e6, 2e6)
-    full = one.use.after(2e6, [1e6])
+    bands = population(one, [2e5, 1e5], patients=1)[1]
+    assert bands.counts == (1e5, 2e5)
+    full = one.use.after(2e5, [1e5])
     assert bands.quick_run_errors == pytest.approx(uncertainty(one, full, count=2).quick_run_errors, rel=1e-6)
 
 
