@@ -19,7 +19,6 @@ TESTS = (
     "models/test_limits.py",
     "models/test_published.py",
     "files",
-    "test_words.py",
 )
 ASIDE = ("-k", "not array_libraries", "-W", "ignore::DeprecationWarning")  # what newer tools say of older ones
 

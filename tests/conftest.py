@@ -13,6 +13,7 @@ import pytest
 from hypothesis import settings
 
 from . import extent
+from .schedule import FileScheduling, start_rank
 
 settings.register_profile("quick", max_examples=15, deadline=None, derandomize=True, database=None)
 settings.register_profile("long", max_examples=100, deadline=None, database=None)
@@ -28,7 +29,13 @@ def pytest_configure(config):
     settings.load_profile("long" if extent.whole else "quick")
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    return FileScheduling(config, log)
+
+
 def pytest_collection_modifyitems(items):
+    items.sort(key=lambda item: start_rank(item.nodeid))
     if extent.whole:
         return
     for item in items:

@@ -1,6 +1,7 @@
 """Single entry points of the package: one module parses units, one opens input files."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -8,7 +9,6 @@ import pytest
 import ballsocket as bs
 
 PACKAGE = Path(bs.__file__).parent
-MODULES = {path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_bytes()) for path in PACKAGE.rglob("*.py")}
 OPENING = {"open", "read_text", "read_bytes", "genfromtxt", "loadtxt", "fromfile", "read_csv", "read_parquet"}
 OWN_FILES = {
     "app/page.py": "files of the page, in the package",
@@ -43,6 +43,12 @@ OWN_FILES = {
 """Modules that open files without `input_files`, with these files; readers of input files are excluded."""
 
 
+@cache
+def modules():
+    """Parse all modules of the package once for all tests of a process."""
+    return {path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_bytes()) for path in PACKAGE.rglob("*.py")}
+
+
 def called(tree):
     """Return the names of all functions and methods that a module calls."""
     calls = (node.func for node in ast.walk(tree) if isinstance(node, ast.Call))
@@ -61,18 +67,18 @@ def imported(tree):
 
 
 def test_only_the_module_of_units_calls_pint():
-    assert [name for name, tree in MODULES.items() if "pint" in imported(tree)] == ["files/units.py"]
+    assert [name for name, tree in modules().items() if "pint" in imported(tree)] == ["files/units.py"]
 
 
 def test_pint_evaluates_no_text():
     """No parser of expressions is called; `Unit` and `Quantity` of text would call one."""
-    calls = called(MODULES["files/units.py"])
+    calls = called(modules()["files/units.py"])
     assert not calls & {"parse_expression", "parse_units_as_container"}
     assert {"UnitsContainer", "get_name"} <= calls
 
 
 def test_files_that_users_name_are_opened_by_one_module():
-    opening = {name for name, tree in MODULES.items() if called(tree) & OPENING}
+    opening = {name for name, tree in modules().items() if called(tree) & OPENING}
     assert opening - {"core/input_files.py"} == set(OWN_FILES)
 
 
@@ -88,12 +94,12 @@ def test_files_that_users_name_are_opened_by_one_module():
     ],
 )
 def test_every_reader_uses_the_module_of_input_files(reader):
-    assert "open_input" in called(MODULES[reader])
+    assert "open_input" in called(modules()[reader])
 
 
 def test_other_modules_do_not_read_files_by_names_of_users():
     """Readers of other packages that take a path get one that was checked."""
-    readers = {name for name, tree in MODULES.items() if called(tree) & {"ZipFile", "ParquetFile"}}
+    readers = {name for name, tree in modules().items() if called(tree) & {"ZipFile", "ParquetFile"}}
     assert readers == {
         "app/views/evidence/worker.py",
         "export/fmu/fmu.py",

@@ -30,7 +30,10 @@ def uses():
     """List all patterns with their calling methods, and the modules that make patterns at run time."""
     patterns, made = [], set()
     for path in sorted(PACKAGE.rglob("*.py")):
-        tree, name = ast.parse(path.read_bytes()), path.relative_to(PACKAGE).as_posix()
+        text, name = path.read_text(encoding="utf-8"), path.relative_to(PACKAGE).as_posix()
+        if "re." not in text:
+            continue
+        tree = ast.parse(text)
         calls = [
             (node.func.value.id, node.func.attr, node.args)
             for node in ast.walk(tree)
@@ -39,7 +42,7 @@ def uses():
             and isinstance(node.func.value, ast.Name)
             and node.func.attr in METHODS
         ]
-        if not any(owner == "re" for owner, _, _ in calls) and "re.compile" not in path.read_text(encoding="utf-8"):
+        if not any(owner == "re" for owner, _, _ in calls) and "re.compile" not in text:
             continue
         for owner, method, arguments in calls:
             if owner == "re":

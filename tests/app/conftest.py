@@ -1,7 +1,4 @@
-"""One server and one browser for all tests of a worker; people who use them.
-
-Tests of pages and tests of connections are two groups of about equal time, one for each of two workers.
-"""
+"""One server and one browser for all tests of a worker; people who use them."""
 
 import asyncio
 from urllib.parse import urlsplit

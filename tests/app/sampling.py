@@ -4,9 +4,12 @@ from dataclasses import dataclass
 
 _START = """() => {
   window.samples = [];
-  let last = "";
+  window.longestPause = 0;
+  let last = "", before = performance.now();
   const box = (name) => document.querySelector(`[data-name="${name}"] input[type=text]`);
   const look = (moment) => {
+    window.longestPause = Math.max(window.longestPause, moment - before);
+    before = moment;
     const number = document.querySelector("dd[data-name=max_pressure]"), app = document.querySelector(".app");
     const sample = [box("load"), box("clearance")].map((element) => element && element.value);
     sample.push(number && number.dataset.value, app.dataset.lost || "", app.dataset.updating || "");
@@ -46,6 +49,11 @@ def samples_of(page):
     end = page.evaluate("performance.now()")
     moments = [*(sample.moment for sample in samples[1:]), end]
     return [(sample, moment - sample.moment) for sample, moment in zip(samples, moments, strict=True)]
+
+
+def longest_pause(page):
+    """Longest time in ms without a frame, in which a busy machine cannot mark anything."""
+    return page.evaluate("window.longestPause")
 
 
 def longest_contradiction(samples, pressure_of):

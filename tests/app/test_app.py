@@ -16,7 +16,6 @@ from ..places import EXAMPLES
 expect = pytest.importorskip("playwright.sync_api", reason="playwright is not installed").expect
 
 HIP = bs.joints["hip-28"]
-pytestmark = pytest.mark.xdist_group("browser-pages")
 
 
 def test_a_fresh_page_shows_what_press_answers(user):

@@ -1,9 +1,7 @@
 """The other views in a real browser: maps, joints side by side, finite elements; and that every page fits."""
 
-import os
 import re
 from dataclasses import replace
-from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
@@ -11,15 +9,11 @@ import pytest
 import ballsocket as bs
 
 from ..extent import some
-from .user import AT_REST, NARROW, PICTURES, WIDE, User, opened_profile
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-from ballsocket.app.state.screen import VIEWS
+from .user import AT_REST, NARROW, PICTURES, WIDE
 
 expect = pytest.importorskip("playwright.sync_api", reason="playwright is not installed").expect
 
 HIP = bs.joints["hip-28"]
-pytestmark = pytest.mark.xdist_group("browser-pages")
 
 
 def spot(user, across, up):
@@ -199,25 +193,6 @@ def test_pages_fit_and_are_kept_as_pictures(request, someone, view):
     PICTURES.mkdir(parents=True, exist_ok=True)
     who.page.screenshot(path=PICTURES / f"{view}_{width}_{'dark' if dark else 'light'}.png", full_page=True)
     assert not who.errors
-
-
-AXE = Path(os.environ.get("BALLSOCKET_AXE", "node_modules/axe-core/axe.min.js"))
-FAULTS = """async () => (await axe.run(document, { resultTypes: ["violations"] })).violations
-  .filter((one) => ["serious", "critical"].includes(one.impact))
-  .map((one) => `${one.id}: ${one.nodes[0].html}`)"""
-
-
-@pytest.mark.long
-@pytest.mark.skipif(not AXE.exists(), reason="axe-core is not installed: npm install axe-core")
-@pytest.mark.parametrize("view", VIEWS)
-@pytest.mark.parametrize("dark", [False, True])
-def test_no_page_has_a_serious_fault_of_accessibility(browser, address, view, dark):
-    with opened_profile(browser, address, NARROW if dark else WIDE, dark, bypass_csp=True) as one:
-        who = User(one, address).open(f"?view={view}&beside1.preset=hip-36")
-        who.page.locator(".side").evaluate("(side) => { side.open = true; }")
-        assert who.page.evaluate(AT_REST) == (NARROW if dark else WIDE)
-        who.page.evaluate(AXE.read_text())
-        assert who.page.evaluate(FAULTS) == []
 
 
 @pytest.mark.long

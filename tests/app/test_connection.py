@@ -12,7 +12,6 @@ import ballsocket as bs
 from .browser import explorer_process
 from .user import User, opened_profile
 
-pytestmark = pytest.mark.xdist_group("browser-lines")
 HIP = bs.joints["hip-28"]
 LOST = "Connection lost. These numbers may not belong to the inputs"
 
@@ -61,8 +60,9 @@ def test_a_server_that_pauses_is_seen_and_heals(alone):
 
 
 @pytest.mark.long
-def test_a_pause_of_a_minute_heals(alone):
-    pause(*alone, 60.0)
+def test_a_pause_longer_than_a_ping_of_the_server_heals(alone):
+    """After 20 s without a browser's answer the server closes the connection; the page has opened others before."""
+    pause(*alone, 25.0)
 
 
 def test_a_server_that_is_killed_and_started_again_heals(alone):
@@ -107,21 +107,25 @@ def test_an_uploaded_cycle_is_sent_again(alone):
 def test_a_loss_is_seen_after_two_seconds_and_a_busy_server_is_none(alone):
     """Measured on the page: from the last answer of a stopped server to the mark."""
     user, process = alone
-    for _ in range(5):
+    for _ in range(3):
         user.page.evaluate("""() => {
           window.lostAt = 0;
           new MutationObserver(() => { window.lostAt = window.lostAt || performance.now(); })
             .observe(document.body, { attributeFilter: ["data-lost"] });
         }""")
-        start = user.page.evaluate("performance.now()")
+        before = user.page.evaluate("performance.now()")
         process.send_signal(signal.SIGSTOP)
+        after = user.page.evaluate("performance.now()")  # a busy machine may take its time for the signal
         user.until("window.lostAt > 0")
-        assert 1500 < user.page.evaluate("window.lostAt") - start < 2300
+        lost = user.page.evaluate("window.lostAt")
+        assert lost - before > 1500
+        assert lost - after < 2300
         process.send_signal(signal.SIGCONT)
-        user.answered()
+        user.until("!document.body.dataset.lost")
         user.page.evaluate("window.lostAt = 0")
         process.send_signal(signal.SIGSTOP)
-        user.page.wait_for_timeout(1300)
+        time.sleep(1.0)
         process.send_signal(signal.SIGCONT)
-        user.page.wait_for_timeout(1000)
+        user.nudge("clearance")
+        user.answered()
         assert user.page.evaluate("window.lostAt") == 0

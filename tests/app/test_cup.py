@@ -235,10 +235,11 @@ def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
 
 
 @pytest.mark.long
-def test_the_map_is_that_of_python():
-    page = opened()
+def test_the_map_is_that_of_python(monkeypatch):
+    page, angles = opened(), {"inclination": worker.INCLINATIONS[::5], "anteversion": worker.ANTEVERSIONS[::5]}
+    for name, values in angles.items():
+        monkeypatch.setattr(worker, f"{name.upper()}S", values)
     found = worker.stood(page.screen.file, lambda news: None)
-    angles = {"inclination": worker.INCLINATIONS[::5], "anteversion": worker.ANTEVERSIONS[::5]}
     asked = bs.orient(JOINT, model=bs.Sphere(cup=Cup(side=Side.RIGHT)), force=3000.0, **angles)
-    assert found.edge_distance[::5, ::5] == pytest.approx(asked.edge_distance, rel=1e-5)  # as far as a press is solved
+    assert found.edge_distance == pytest.approx(asked.edge_distance, rel=1e-5)  # as far as a press is solved
     assert found.figure.startswith(b"\x89PNG")

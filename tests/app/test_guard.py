@@ -17,7 +17,6 @@ from ballsocket.app.server import HostNames
 
 from .browser import served_explorer
 
-pytestmark = pytest.mark.xdist_group("browser-pages")
 STRICT = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",

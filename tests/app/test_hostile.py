@@ -18,8 +18,6 @@ from .wire import BINARY, Wire, opened_wire
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.state.screen import VIEWS
 
-pytestmark = pytest.mark.xdist_group("browser-lines")
-
 
 def still_answers(address):
     with opened_wire(address) as wire:
@@ -115,7 +113,7 @@ def test_a_client_that_never_reads_does_not_grow_the_server():
         before = memory_of(process)
         sender = Thread(target=edit_often, args=(deaf, 3000))
         sender.start()
-        time.sleep(either(3, 30))
+        time.sleep(either(3, 10))
         user.ask(102, "edit", name="load", value=2800)
         assert user.answer(102)["=load"]["value"] == 2800
         assert memory_of(process) - before < 15

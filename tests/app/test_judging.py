@@ -76,10 +76,9 @@ def test_a_run_that_is_stopped_gives_its_place_back():
     assert not run._process.is_alive()
 
 
-@pytest.mark.long
 def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
     monkeypatch.setattr(running, "LINE", running.RunQueue(1))
-    first, second, third = (judging(HIP) for _ in range(3))
+    first, second, third = (Run(callable) for _ in range(3))  # work of an instant: it returns True
     first.news()
     for run in (second, third):
         assert run.news().words == "waiting for a free place: others are running"

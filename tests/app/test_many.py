@@ -61,7 +61,7 @@ def run(served, work, timeout=100):
 
 
 async def until(condition):
-    for _ in range(500):
+    for _ in range(6000):  # a minute: a machine may be slow
         if condition():
             return
         await asyncio.sleep(0.01)

@@ -1,12 +1,15 @@
 """Views of cup, gait and more in a browser: what moves is moved, by mouse and by keyboard."""
 
+import time
 from io import BytesIO
 
 import numpy as np
 import pytest
 from PIL import Image
 
-pytestmark = [pytest.mark.long, pytest.mark.xdist_group("browser-pages")]  # one server and one browser for all
+from .user import WAIT
+
+pytestmark = pytest.mark.long
 
 HIP = "preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=3000"
 
@@ -21,48 +24,53 @@ def share_of_colours(pixels):
     return float((pixels.max(axis=2) - pixels.min(axis=2) > 90).mean())
 
 
+def difference(one, other):
+    """Mean difference of two pictures."""
+    return float(np.abs(one - other).mean())
+
+
+def seen(canvas, condition):
+    """Take pictures until one meets a condition and the next is equal, as a moving canvas is drawn sharp at its end."""
+    deadline, before = time.monotonic() + WAIT / 1000, picture(canvas)
+    while True:
+        pixels = picture(canvas)
+        if condition(pixels) and difference(pixels, before) == 0.0:
+            return pixels
+        assert time.monotonic() < deadline, "the canvas never looks so"
+        before = pixels
+
+
 def test_the_cup_turns_and_a_place_on_the_map_is_taken(user):
     user.open(f"?view=cup&{HIP}")
     viewer = user.page.locator("#cup-viewer .viewer")
     canvas = viewer.locator("canvas")
     canvas.wait_for()
-    user.page.wait_for_timeout(600)
-    before = picture(canvas)
-    assert share_of_colours(before) > 0.04  # the contact is seen at first
+    before = seen(canvas, lambda pixels: share_of_colours(pixels) > 0.04)  # the contact is seen at first
     assert {"medial", "anterior", "up"} == set(viewer.locator(".triad text").all_text_contents())
     assert viewer.locator(".scale-bar p").inner_text().split() == ["12", "10", "8", "6", "4", "2", "0"]
     assert "[MPa]" in viewer.locator(".scale-bar").inner_text()
     canvas.focus()
     for _ in range(20):  # half a turn: the wall hides the pressure
         canvas.press("ArrowLeft")
-    user.page.wait_for_timeout(600)
-    assert share_of_colours(picture(canvas)) < 0.01
+    seen(canvas, lambda pixels: share_of_colours(pixels) < 0.01)
     viewer.get_by_text("Show the contact").click()
-    user.page.wait_for_timeout(600)
-    straight = picture(canvas)
-    assert share_of_colours(straight) > 0.04
+    straight = seen(canvas, lambda pixels: share_of_colours(pixels) > 0.04)
     box = canvas.bounding_box()
     user.page.mouse.move(box["x"] + 100, box["y"] + 100)
     user.page.mouse.down()
     user.page.mouse.move(box["x"] + 180, box["y"] + 120)
     user.page.mouse.up()
-    user.page.wait_for_timeout(600)
-    turned = picture(canvas)
-    assert np.abs(turned - straight).mean() > 3
+    turned = seen(canvas, lambda pixels: difference(pixels, straight) > 3)
     canvas.press("+")
-    user.page.wait_for_timeout(600)
-    assert np.abs(picture(canvas) - turned).mean() > 3
+    seen(canvas, lambda pixels: difference(pixels, turned) > 3)
     viewer.get_by_text("Reset").click()
-    user.page.wait_for_timeout(600)
-    assert np.abs(picture(canvas) - before).mean() < 0.5
+    seen(canvas, lambda pixels: difference(pixels, before) < 0.5)
     section = viewer.get_by_label("Section plane")
     section.fill("0")  # the plane through the load and the cup's axis
-    user.page.wait_for_timeout(600)
-    cut = picture(canvas)
-    assert share_of_colours(cut) < 0.7 * share_of_colours(before)  # half of the contact is cut away
+    few = 0.7 * share_of_colours(before)  # half of the contact is cut away
+    cut = seen(canvas, lambda pixels: share_of_colours(pixels) < few)
     viewer.get_by_label("Ball").check()
-    user.page.wait_for_timeout(600)
-    assert np.abs(picture(canvas) - cut).mean() > 3
+    seen(canvas, lambda pixels: difference(pixels, cut) > 3)
     stood = user.page.locator("#cup-stood svg")
     stood.scroll_into_view_if_needed()
     place = stood.bounding_box()
@@ -78,13 +86,12 @@ def test_a_cycle_is_played_and_stops_where_it_is(user):
     button = user.page.locator(".transport button")
     button.wait_for()
     output, canvas = user.page.locator(".player output"), user.page.locator(".player canvas")
-    first = picture(canvas)
+    few = 0.7 * share_of_colours(seen(canvas, lambda pixels: share_of_colours(pixels) > 0))
     button.click()
     user.until("(bar => bar.value > 0.7 * bar.max)(document.querySelector('.transport input'))")  # the leg swings
     button.click()
     user.until("location.search.includes('use.instant=')")
-    user.page.wait_for_timeout(600)
-    assert share_of_colours(picture(canvas)) < 0.7 * share_of_colours(first)  # the swinging leg presses less
+    seen(canvas, lambda pixels: share_of_colours(pixels) < few)  # the swinging leg presses less
     bar = user.page.locator(".transport input")
     bar.focus()
     bar.press("Home")
@@ -112,14 +119,11 @@ def test_a_lost_context_is_restored(user):
     user.open(f"?view=cup&{HIP}")
     canvas = user.page.locator("#cup-viewer canvas")
     canvas.wait_for()
-    user.page.wait_for_timeout(600)
-    before = picture(canvas)
+    before = seen(canvas, lambda pixels: share_of_colours(pixels) > 0.04)
     lose = "canvas => (window.lost = canvas.getContext('webgl2').getExtension('WEBGL_lose_context')).loseContext()"
     canvas.evaluate(lose)
-    user.page.wait_for_timeout(600)
+    seen(canvas, lambda pixels: share_of_colours(pixels) < 0.01)
     canvas.press("ArrowLeft")  # nothing breaks
     canvas.press("ArrowRight")
-    assert share_of_colours(picture(canvas)) < 0.01
     user.page.evaluate("window.lost.restoreContext()")
-    user.page.wait_for_timeout(600)
-    assert np.abs(picture(canvas) - before).mean() < 0.5
+    seen(canvas, lambda pixels: difference(pixels, before) < 0.5)

@@ -15,8 +15,6 @@ from ballsocket.evidence.folder import PAGE, RECORD, SIGNATURE, SUMS
 
 from .small_pack import page
 
-pytestmark = pytest.mark.xdist_group("evidence")
-
 
 @pytest.fixture
 def run(pack, monkeypatch):

@@ -158,7 +158,6 @@ def test_ranges_are_written_with_three_digits():
     assert range_text((1.0, 2.5)) == "1 to 2.5"
 
 
-@pytest.mark.xdist_group("evidence")
 def test_ranges_of_a_question_include_its_tolerances(pack):
     question, record, _ = pack
     from ballsocket.evidence.matrix import Row

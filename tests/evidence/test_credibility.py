@@ -8,8 +8,6 @@ pytest.importorskip("xarray", reason="the extra for studies is not installed")
 from ballsocket.evidence.credibility import assess, model_risk
 from ballsocket.evidence.credibility_levels import error_margins
 
-pytestmark = pytest.mark.xdist_group("evidence")
-
 CONDITIONS, EQUIVALENCY, OUTPUTS = "test conditions", "equivalency of input parameters", "output comparison"
 QUANTITIES = "relevance of the quantities of interest"
 RELEVANCE = "relevance of the validation activities to the context of use"

@@ -34,8 +34,6 @@ from ballsocket.evidence.folder import (
 
 from .small_pack import page
 
-pytestmark = pytest.mark.xdist_group("evidence")
-
 FIGURE = re.compile(rb"(?<=data:image/svg\+xml;base64,)[A-Za-z0-9+/=]+")
 
 

@@ -15,8 +15,6 @@ from ballsocket.studies.expressions import parse_limit
 
 from .small_pack import QUESTION_TEXT
 
-pytestmark = pytest.mark.xdist_group("evidence")  # the pack is computed once
-
 
 def row(**numbers):
     return Row({"force": 1.0}, numbers, {}, "OK", True)

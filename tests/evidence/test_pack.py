@@ -30,8 +30,6 @@ from ballsocket.reports.evidence_page import evidence_page
 
 from .small_pack import QUESTION_TEXT, page
 
-pytestmark = pytest.mark.xdist_group("evidence")  # the pack is computed once
-
 
 @pytest.fixture
 def asked(tmp_path):

@@ -16,8 +16,6 @@ from ballsocket.studies.sensitivity import sensitivity
 from ..places import EXAMPLES
 from .small_pack import QUESTION_TEXT
 
-pytestmark = pytest.mark.xdist_group("evidence")  # the pack is computed once
-
 CASE = {"clearance": 0.15, "force": 4000.0}
 
 

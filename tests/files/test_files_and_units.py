@@ -115,10 +115,10 @@ def test_a_number_is_infinite_only_where_that_is_said(value):
 
 def within(seconds, do):
     """What is refused is refused at once, however long it is."""
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ValueError) as refused:  # noqa: PT011 (which sentence is not the point)
         do()
-    assert time.perf_counter() - start < seconds
+    assert time.process_time() - start < seconds
     assert len(str(refused.value)) < 400
 
 

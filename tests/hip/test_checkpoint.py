@@ -10,7 +10,7 @@ from ballsocket.hip import Archard, CustomWearLaw, logarithmic
 from ballsocket.hip.simulation import make_checkpoint, make_report
 from ballsocket.hip.wear_integrator import WearIntegrator
 
-from .test_wear import K, hip
+from .test_wear import QUICK, K, hip
 
 
 class KilledError(Exception):
@@ -31,7 +31,7 @@ def killed_after(blocks):
 
 @pytest.mark.parametrize("creep", [None, logarithmic()], ids=["wear", "creep"])
 def test_a_killed_run_resumes_and_ends_the_same(tmp_path, creep):
-    use, report_at = hip(creep=creep), [1e5, 3e5]
+    use, report_at = hip(creep=creep, **QUICK), [1e5, 3e5]
     uninterrupted = use.after(4e5, report_at)
     with pytest.raises(KilledError):
         use.after(4e5, report_at, progress=killed_after(6), store=tmp_path)

@@ -78,9 +78,8 @@ def test_creep_without_wear_balances_its_loads():
     assert rest.pressure.max() < 0.8 * use.first.max_pressure
 
 
-@pytest.mark.long
 def test_penetration_has_bedding_in_and_then_a_steady_rate():
-    history = hip(creep=logarithmic()).after(4e6, [1e5, 1e6, 2e6, 3e6])
+    history = hip(creep=logarithmic(), **QUICK).after(4e6, [1e5, 1e6, 2e6, 3e6])
     early, *later = history.reports
     assert np.linalg.norm(early.creep_displacement) > 5 * np.linalg.norm(early.wear_displacement)
     rates = np.diff([report.penetration for report in later])

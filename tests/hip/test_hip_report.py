@@ -15,7 +15,7 @@ from ballsocket.reports.hip_report import write_hip_report
 
 from ..cli.command import run
 from .test_file import write_edited_file
-from .test_wear import hip, walked
+from .test_wear import QUICK, hip, walked
 
 
 def test_a_report_has_figures_and_results(tmp_path):
@@ -66,7 +66,7 @@ def test_figures_show_the_results_of_the_run(tmp_path):
     from ballsocket.reports import hip_plots
 
     walk = Activity(cycle=replace(walked(2000.0, -1.0), n_steps=40), per_year=1e6)
-    history = hip(creep=logarithmic()).after(1e5, [5e4])
+    history = hip(creep=logarithmic(), **QUICK).after(1e5, [5e4])
     lines = hip_plots.penetration_curve(history).axes[0].get_lines()
     assert [line.get_label() for line in lines] == ["penetration", "wear alone", "creep alone", "deepest wear"]
     assert np.asarray(lines[0].get_ydata())[1:] == pytest.approx([report.penetration for report in history.reports])

@@ -75,10 +75,10 @@ def test_a_near_rim_starves_the_inlet_but_not_the_outlet(rate):
 
 @pytest.mark.long
 def test_central_films_of_a_tilted_load_converge_with_the_mesh(monkeypatch):
-    """Cells of a half and a third: 467.4, 465.5 and 465.2 nm, of order two; least films 274.3, 271.7 and 270.6 nm."""
+    """Cells of a half: 467.4 and 465.5 nm, of order two; 465.2 nm with a third. Least films 274.3, 271.7, 270.6 nm."""
     contact, films, settings = press(45.0), [], film_problem._ELASTIC
     spin = np.array(spin_towards_rim(45.0, 10.0))
-    for scale in (1, 1.5, 2, 3):
+    for scale in (1, 1.5, 2):
         finer = replace(
             settings,
             rings_of_inlet=settings.rings_of_inlet * scale,

@@ -316,10 +316,10 @@ def test_rows_of_a_table(tmp_path):
 )
 def test_a_csv_that_is_none_is_one_sentence_at_once(content, message, tmp_path):
     (tmp_path / "rows.csv").write_bytes(content)
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ValueError, match=message) as refused:
         table(tmp_path / "rows.csv")
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0
     assert len(str(refused.value)) < 300
 
 
