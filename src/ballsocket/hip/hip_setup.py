@@ -132,7 +132,7 @@ class HipSetup(OneLine):
         )
         require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
         if not self.uses_springs:
-            check_domain(Sphere(cup=self._unoriented_cup).domain, self.joint, "full elasticity")
+            check_domain(self.contact_model.domain, self.joint, "full elasticity")
         if self.creep is not None:
             thickness = float(self.joint.liner_thickness)
             require("liner_thickness", thickness, thickness < inf, "creep needs a liner of finite thickness")
