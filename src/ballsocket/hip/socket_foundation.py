@@ -207,6 +207,18 @@ class SpringFoundation:
         """Foundation modulus in MPa/mm, the ratio of pressure change to worn depth."""
         return self.modulus
 
+    def contact(self, loads: Numbers, depth: Numbers, lateral_stiffness: Numbers = NO_LATERAL_SPRING) -> SpringContact:
+        """Collect loads in N, springs and bore of a worn depth in mm for a solver; see `solve_equilibrium`."""
+        return SpringContact(
+            loads=numpy.ascontiguousarray(loads),
+            closing=numpy.atleast_2d(self.clearance + depth),
+            normals=numpy.ascontiguousarray(self.normals),
+            areas=self.areas,
+            modulus=float(self.modulus),
+            lateral_stiffness=lateral_stiffness,
+            approach=float(self.clearance + _CONTACT_STEP * self.socket_radius),
+        )
+
     def solve_equilibrium(
         self,
         loads: Numbers,
@@ -232,17 +244,8 @@ class SpringFoundation:
             if start is None
             else start.displacement.copy()
         )
-        contact = SpringContact(
-            loads=numpy.ascontiguousarray(loads),
-            closing=numpy.atleast_2d(self.clearance + depth),
-            normals=numpy.ascontiguousarray(self.normals),
-            areas=self.areas,
-            modulus=float(self.modulus),
-            lateral_stiffness=lateral_stiffness,
-            approach=float(self.clearance + _CONTACT_STEP * self.socket_radius),
-        )
         pressure = numpy.empty((len(loads), len(self.areas)))
-        converged = spring_solver()(contact, displacement, pressure)
+        converged = spring_solver()(self.contact(loads, depth, lateral_stiffness), displacement, pressure)
         return CycleEquilibrium(displacement=displacement, pressure=pressure, converged=converged)
 
 

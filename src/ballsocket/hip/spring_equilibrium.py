@@ -15,13 +15,13 @@ import numpy
 
 from ..core.arrays import Numbers
 
-_MAX_ITERATIONS = 60
+MAX_ITERATIONS = 60
 """Number of Newton steps after which an equilibrium counts as not converged."""
 
 FORCE_TOLERANCE = 1e-8
 """Allowed error of the force balance, relative to the load."""
 
-_REGULARISATION = 1e-12
+REGULARISATION = 1e-12
 """Stiffness added to the tangent stiffness, relative to its trace."""
 
 _BLOCK_SIZE = 131_072
@@ -140,7 +140,7 @@ def _solve_block(
     """
     loads = contact.loads
     magnitude = numpy.linalg.norm(loads, axis=1)
-    for _ in range(_MAX_ITERATIONS):
+    for _ in range(MAX_ITERATIONS):
         numpy.matmul(displacement, contact.normals, out=pressure)
         numpy.subtract(pressure, contact.closing, out=pressure)
         in_contact = (pressure > 0).astype(float)
@@ -162,7 +162,7 @@ def _displacement_step(contact: SpringContact, tangent: Numbers, residual: Numbe
     """
     trace = tangent[:, 0] + tangent[:, 3] + tangent[:, 5]
     separated = trace <= 0
-    regularisation = numpy.where(separated, 1.0, _REGULARISATION * trace)
+    regularisation = numpy.where(separated, 1.0, REGULARISATION * trace)
     tangent = tangent + contact.lateral_stiffness[numpy.triu_indices(3)]
     tangent[:, [0, 3, 5]] += regularisation[:, None]
     step = numpy.stack(newton_step(tuple(tangent.T), tuple(residual.T)), axis=1)
@@ -197,7 +197,7 @@ def _solve_one_by_one(contact, displacement, pressure):  # type: ignore[no-untyp
         x, y, z = displacement[i]
         magnitude = math.sqrt(load[0] ** 2 + load[1] ** 2 + load[2] ** 2)
         converged = False
-        for _ in range(_MAX_ITERATIONS):
+        for _ in range(MAX_ITERATIONS):
             fx = fy = fz = xx = xy = xz = yy = yz = zz = 0.0
             for cell in range(areas.size):
                 nx, ny, nz = contact.normals[0, cell], contact.normals[1, cell], contact.normals[2, cell]
@@ -219,7 +219,7 @@ def _solve_one_by_one(contact, displacement, pressure):  # type: ignore[no-untyp
             else:
                 xx, xy, xz = K * xx + lateral[0, 0], K * xy + lateral[0, 1], K * xz + lateral[0, 2]
                 yy, yz, zz = K * yy + lateral[1, 1], K * yz + lateral[1, 2], K * zz + lateral[2, 2]
-                softest = _REGULARISATION * trace
+                softest = REGULARISATION * trace
                 step = newton_step((xx + softest, xy, xz, yy + softest, yz, zz + softest), (fx, fy, fz))
             x, y, z = x + step[0], y + step[1], z + step[2]
         all_converged = all_converged and converged
