@@ -240,8 +240,9 @@ def test_patients_with_full_elasticity_have_rings_that_its_model_allows():
     assert shell.coarse_simulation.ring_width == pytest.approx(radians(6.0))
     assert shell.patient({"clearance": 0.07}).use.contact_model.ring_width == pytest.approx(radians(6.0))
     assert wide.coarse_simulation.ring_width == pytest.approx(radians(10.0))
-    with pytest.raises(ValueError, match=r"ring_width = 0.139626 is not allowed: a ring is 0.5 to 6 degrees wide"):
-        hip(surface=bs.ClosedShell(), ring_width=radians(8.0))
+    checked = hip(surface=bs.ClosedShell(), ring_width=radians(8.0))
+    assert checked.unworn_checks[0].valid
+    assert checked.contact_model.ring_width == pytest.approx(radians(6.0))
 
 
 def test_patients_have_springs_by_default_next_to_an_elastic_nominal_hip():

@@ -18,7 +18,7 @@ from ..core.display import OneLine, html_list
 from ..core.validity import check_domain
 from ..elasticity.finite_elements.mesh import socket_shape
 from ..elasticity.off_axis.grid import Grid, even_grid, graded_grid
-from ..elasticity.off_axis.model import Sphere
+from ..elasticity.off_axis.model import MAX_RING_WIDTH, Sphere
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..lubrication import Lubricant
 from ..models.foundation import RadialFoundation
@@ -132,7 +132,7 @@ class HipSetup(OneLine):
         )
         require("tolerance", self.tolerance, 1e-9 <= self.tolerance <= 0.1, "1e-9 to 0.1")
         if not self.uses_springs:
-            check_domain(self.contact_model.domain, self.joint, "full elasticity")
+            check_domain(Sphere(cup=self._unoriented_cup).domain, self.joint, "full elasticity")
         if self.creep is not None:
             thickness = float(self.joint.liner_thickness)
             require("liner_thickness", thickness, thickness < inf, "creep needs a liner of finite thickness")
@@ -273,7 +273,8 @@ class HipSetup(OneLine):
         """Contact model with the same foundation as the simulation: radial springs, or full elasticity."""
         if isinstance(self.surface, Springs):
             return RadialFoundation(modulus=self.surface.modulus)
-        return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=self.ring_width)
+        ring_width = min(self.ring_width, MAX_RING_WIDTH)
+        return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=ring_width)
 
     @renamed_arguments(rest="equilibrium")
     def worst_contacts(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:
