@@ -42,6 +42,10 @@ BENCHMARKS = {
     "rings": ("rings", "a tilted cup by the number of its rings: set up, displacement, force, and error"),
     "force-element": ("force_element", "the joint in motion: force, moment and tangent, beside OpenSim"),
     "hip": ("hip", "a hip in use: a cycle, millions of them, springs and real cup; and a loop by hand in NumPy"),
+    "wear-on-springs": (
+        "wear_on_springs",
+        "a million cycles on springs against rings and instants: numba, NumPy in blocks, NumPy in one block",
+    ),
     "film": ("film", "the lubricating film: three methods, cost against cells, a cycle; and a loop in NumPy"),
     "element-in-c": ("element_in_c", "one evaluation of the force element: exported to C, in Python, in NumPy"),
     "scaling": ("scaling", "cost against size: presses, tilted loads, cells, instants, patients and workers"),

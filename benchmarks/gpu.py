@@ -1,4 +1,4 @@
-"""Presses on a GPU: the paper's model and the tables through PyTorch, tilted loads on a real cup through JAX.
+"""Presses on a GPU: the paper's model and the tables through PyTorch, a real cup and patients through JAX.
 
 The limit is a copy of the same bytes: joint, load and three answers read or written once. Fair, because both run on the
 same device with the same arrays, in turns, each waited for.
@@ -15,9 +15,11 @@ import ballsocket as bs
 from .off_axis_many import jax_seconds
 from .report import Report, Rows
 from .timing import interleaved
+from .wear_on_springs import patients_in_jax
 
 COUNT, REPEATS = 10_000_000, 5
 LOADS = (64, 512, 2048)
+PATIENTS = (128, 1024, 8192)
 ARRAYS = 7  # R1, c, L, F in; d, ε, p0 out
 
 
@@ -41,7 +43,7 @@ def _through_torch() -> Report | None:
 
 
 def _through_jax() -> Report | None:
-    """Tilted loads on a real cup; every product of matrices has full precision there."""
+    """Tilted loads on a real cup and patients on springs; every product of matrices has full precision there."""
     try:
         import jax
 
@@ -53,8 +55,15 @@ def _through_jax() -> Report | None:
         for count in LOADS:
             spreads = [jax_seconds(count, tolerance, perf_counter).per(1e-6 * count) for tolerance in (1e-4, 2e-5)]
             rows.add(count, *spreads, "25")
+        springs = Rows(
+            "Patients on springs, a cycle of 32 instants, µs a patient", ("patients", "GPU", "one core", "over")
+        )
+        for count in PATIENTS:
+            ours, one = (spread.per(1e-6 * count) for spread in patients_in_jax(count, perf_counter))
+            springs.add(count, ours, one, f"{one.over(ours)} times faster")
     note = f"Tilted loads on {device.device_kind}: float32, displacements and largest pressures, rings of 2°."
-    return Report([rows], [note], ("jax",))
+    core = "Patients on springs: float64, rings of 8°; one core solves them one by one, compiled by numba."
+    return Report([rows, springs], [note, core], ("jax",))
 
 
 def rates(device: Any, count: int) -> Report:

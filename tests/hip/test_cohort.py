@@ -12,8 +12,9 @@ from math import radians
 import numpy as np
 import pytest
 
+import ballsocket as bs
 from ballsocket.core.executors import Distributed, Processes, Serial
-from ballsocket.hip import population
+from ballsocket.hip import population, read_hip
 from ballsocket.hip.cohort import (
     CohortRun,
     cohort_store,
@@ -231,6 +232,19 @@ def test_the_table_has_a_row_for_each_patient(tmp_path):
     assert names.split(",") == list(columns)
     assert first.split(",")[:5] == ["0.1", "0", "1000000", "0", "1"]
     assert second.split(",")[:7] == ["0.2", "30", "2000000", "12", "13", "14", ""]
+
+
+def test_a_cohort_with_the_real_cup_states_its_foundation(tmp_path):
+    path = short_file(tmp_path, ("[uncertainty]", '[uncertainty]\ncontact = "cup"'))
+    settings = read_hip(path).uncertain
+    assert settings.variability.surface == bs.RealCup()
+    on_cup = replace(settings.variability, use=hip(**COARSE), distributions={"clearance": TIGHT})
+    _, bands = population(on_cup, [FEW_CYCLES], patients=2)
+    assert bands.n_failed == 0
+    assert "the bands are for full elasticity (RealCup) on rings of 6°" in bands.notes
+    _, springs = population(replace(on_cup, surface=None), [FEW_CYCLES], patients=2)
+    assert bands.cohort.table[:, 0, 0] == pytest.approx(springs.cohort.table[:, 0, 0], rel=0.01)
+    assert not any("full elasticity" in note for note in springs.notes)
 
 
 # the command

@@ -216,3 +216,36 @@ def test_a_contact_that_does_not_balance_its_load_is_refused(monkeypatch):
 def test_a_patient_who_would_wear_out_many_liners_is_refused():
     with pytest.raises(ValueError, match="cycles"):
         variability(coefficient=COEFFICIENT).patient({"coefficient": 1.0}).simulate([1e7])
+
+
+def test_patients_with_the_real_cup_share_its_compliance_and_wear_as_on_springs():
+    """Elasticity changes the volume by less than 1 %, and depth and pressure by less than 3 %."""
+    on_springs = variability(coefficient=COEFFICIENT, tilt=Normal(mean=0.5, deviation=0.1))
+    with_cup = replace(on_springs, surface=bs.RealCup())
+    values = [{"coefficient": 2 * K, "tilt": 0.4}, {"coefficient": K, "tilt": 0.6}]
+    patients = [with_cup.patient(sample) for sample in values]
+    assert patients[0].use.foundation is patients[1].use.foundation
+    for patient, sample in zip(patients, values, strict=True):
+        elastic = result_table(patient.simulate([1e5]))[0]
+        springs = result_table(on_springs.patient(sample).simulate([1e5]))[0]
+        changes = dict(zip(RESULT_UNITS, elastic / np.where(springs > 0, springs, 1.0) - 1, strict=True))
+        assert 0 < abs(changes["volume"]) < 0.01
+        assert abs(changes["depth"]) < 0.03
+        assert abs(changes["max_pressure"]) < 0.03
+
+
+def test_patients_with_full_elasticity_have_rings_that_its_model_allows():
+    wide = variability(hip(ring_width=radians(10.0)), clearance=TIGHT)
+    shell = replace(wide, surface=bs.ClosedShell())
+    assert shell.coarse_simulation.ring_width == pytest.approx(radians(6.0))
+    assert shell.patient({"clearance": 0.07}).use.contact_model.ring_width == pytest.approx(radians(6.0))
+    assert wide.coarse_simulation.ring_width == pytest.approx(radians(10.0))
+    checked = hip(surface=bs.ClosedShell(), ring_width=radians(8.0))
+    assert checked.unworn_checks[0].valid
+    assert checked.contact_model.ring_width == pytest.approx(radians(6.0))
+
+
+def test_patients_have_springs_by_default_next_to_an_elastic_nominal_hip():
+    elastic = variability(hip(surface=bs.ClosedShell(), ring_width=radians(5.0)), clearance=TIGHT)
+    assert isinstance(elastic.coarse_simulation.surface, bs.Springs)
+    assert elastic.coarse_simulation.ring_width == pytest.approx(radians(8.0))

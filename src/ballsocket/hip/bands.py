@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import degrees
 from typing import Any
 
 import numpy
@@ -165,11 +166,10 @@ class Bands:
     def notes(self) -> tuple[str, ...]:
         """Sentences on the assumptions and limits of the bands."""
         assumed = f"assumed: given and independent distributions of {', '.join(self.variability.distributions)}"
-        surface = () if self.variability.use.uses_springs else ("the bands are for radial springs",)
         return (
             assumed,
             *self._coefficient_note,
-            *surface,
+            *self._surface_note,
             *self._failure_note,
             *self._wear_through_note,
             *self._validity_note,
@@ -196,6 +196,15 @@ class Bands:
         unit = "" if coefficient is None else coefficient.unit.text
         band = f"{100 * self.level:g} % between {low:.3g} and {high:.3g} {unit}".rstrip()
         return (f"the wear coefficient is unknown, but the same for all {self.noun}: {band}",)
+
+    @property
+    def _surface_note(self) -> tuple[str, ...]:
+        """Sentence on the foundation of the patients, if the nominal patient or they have full elasticity."""
+        patients = self.variability.coarse_simulation
+        if not patients.uses_springs:
+            rings = degrees(patients.ring_width)
+            return (f"the bands are for full elasticity ({type(patients.surface).__name__}) on rings of {rings:.2g}°",)
+        return () if self.variability.use.uses_springs else ("the bands are for radial springs",)
 
     @property
     def _failure_note(self) -> tuple[str, ...]:

@@ -339,7 +339,9 @@ def _read_uncertainty(tables: HipTable, table: UncertaintyTable, use: HipSimulat
     count = int(table.count)
     require("count", count, count >= 2, f"it must be at least 2, such as {DEFAULT_COUNT}")
     weight = _body_weight(tables) if "body_weight" in distributions else None
-    variability = PatientVariability(use=use, distributions=distributions, body_weight=weight)
+    variability = PatientVariability(
+        use=use, distributions=distributions, body_weight=weight, surface=_ELASTIC_SURFACES[table.contact]
+    )
     for name, value in _nominal_values(use).items():
         if name in distributions:
             check_nominal(name, value, distributions[name], _SAMPLED_KINDS.get(name, Kind.NUMBER).written)

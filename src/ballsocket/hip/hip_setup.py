@@ -18,7 +18,7 @@ from ..core.display import OneLine, html_list
 from ..core.validity import check_domain
 from ..elasticity.finite_elements.mesh import socket_shape
 from ..elasticity.off_axis.grid import Grid, even_grid, graded_grid
-from ..elasticity.off_axis.model import Sphere
+from ..elasticity.off_axis.model import MAX_RING_WIDTH, Sphere
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..lubrication import Lubricant
 from ..models.foundation import RadialFoundation
@@ -273,7 +273,8 @@ class HipSetup(OneLine):
         """Contact model with the same foundation as the simulation: radial springs, or full elasticity."""
         if isinstance(self.surface, Springs):
             return RadialFoundation(modulus=self.surface.modulus)
-        return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=self.ring_width)
+        ring_width = min(self.ring_width, MAX_RING_WIDTH)
+        return Sphere(cup=self._unoriented_cup, surface=self.surface, ring_width=ring_width)
 
     @renamed_arguments(rest="equilibrium")
     def worst_contacts(self, equilibrium: CycleEquilibrium, depth: Numbers | float = 0.0) -> Numbers:

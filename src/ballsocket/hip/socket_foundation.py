@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Protocol
 
 import numpy
@@ -12,18 +11,10 @@ from ..core.arrays import Numbers
 from ..elasticity.off_axis.bore_contact import initial_displacement
 from ..elasticity.off_axis.directions import magnitudes_and_directions
 from ..elasticity.off_axis.grid import Grid
-
-_MAX_ITERATIONS = 60
-"""Number of Newton steps after which an equilibrium counts as not converged."""
-
-FORCE_TOLERANCE = 1e-8
-"""Allowed error of the force balance, relative to the load."""
+from .spring_equilibrium import SpringContact, load_blocks, spring_solver
 
 NO_LATERAL_SPRING = numpy.zeros((3, 3))
 """Stiffness matrix (N/mm) for a ball without a lateral spring."""
-
-_REGULARISATION = 1e-12
-"""Stiffness added to the tangent stiffness, relative to its trace."""
 
 _CONTACT_STEP = 1e-3
 """Step of a ball without contact beyond the clearance, relative to the socket's radius."""
@@ -181,10 +172,11 @@ class SpringFoundation:
         """Return a mask (cells,) of the cells in a contact or close to one under any load.
 
         The margin is relative to the largest overlap.
-
-        The margin is relative to the largest overlap.
         """
-        overlap = (equilibrium.displacement @ self.normals).max(axis=0, initial=0.0) - self.clearance - depth
+        displacement, approach = equilibrium.displacement, numpy.zeros(len(self.areas))
+        for block in load_blocks(len(displacement), len(self.areas)):
+            approach = numpy.maximum(approach, (displacement[block] @ self.normals).max(axis=0))
+        overlap = approach - self.clearance - depth
         mask: Numbers = overlap > -margin * float(overlap.max())
         return mask
 
@@ -215,16 +207,17 @@ class SpringFoundation:
         """Foundation modulus in MPa/mm, the ratio of pressure change to worn depth."""
         return self.modulus
 
-    @cached_property
-    def _pressure_to_force(self) -> Numbers:
-        """Matrix (cells, 3) that converts pressures in MPa to a force in N."""
-        return (self.normals * self.areas).T.copy()
-
-    @cached_property
-    def _contact_to_stiffness(self) -> Numbers:
-        """Matrix (cells, 9) that converts contact masks to stiffness matrices over the modulus."""
-        n = self.normals
-        return (n[:, None] * n[None] * self.areas).reshape(9, -1).T.copy()
+    def contact(self, loads: Numbers, depth: Numbers, lateral_stiffness: Numbers = NO_LATERAL_SPRING) -> SpringContact:
+        """Collect loads in N, springs and bore of a worn depth in mm for a solver; see `solve_equilibrium`."""
+        return SpringContact(
+            loads=numpy.ascontiguousarray(loads),
+            closing=numpy.atleast_2d(self.clearance + depth),
+            normals=numpy.ascontiguousarray(self.normals),
+            areas=self.areas,
+            modulus=float(self.modulus),
+            lateral_stiffness=lateral_stiffness,
+            approach=float(self.clearance + _CONTACT_STEP * self.socket_radius),
+        )
 
     def solve_equilibrium(
         self,
@@ -239,48 +232,21 @@ class SpringFoundation:
         ----------
         loads : array (loads, 3)
             Forces in N in the cup's frame, none of them zero.
-        depth : array (cells,)
+        depth : array (cells,) or (loads, cells)
             Depth of the worn bore below the sphere in mm.
         start : CycleEquilibrium, optional
             Initial guess.
         lateral_stiffness : array (3, 3)
             Stiffness (N/mm) of a spring that unloads the ball as it moves.
         """
-        displacement = (
+        displacement: Numbers = (
             initial_displacement(self, self.modulus, depth, *magnitudes_and_directions(loads))
             if start is None
-            else start.displacement
+            else start.displacement.copy()
         )
-        force_tolerance = FORCE_TOLERANCE * numpy.linalg.norm(loads, axis=1)
-        relative_error = numpy.inf
-        for _ in range(_MAX_ITERATIONS):
-            overlap = displacement @ self.normals
-            overlap -= self.clearance + depth
-            in_contact = (overlap > 0).astype(float)
-            pressure = numpy.maximum(overlap, 0.0, out=overlap)
-            pressure *= self.modulus
-            residual = loads - displacement @ lateral_stiffness - pressure @ self._pressure_to_force
-            relative_error = float((numpy.linalg.norm(residual, axis=1) / force_tolerance).max(initial=0.0))
-            if relative_error <= 1:
-                break
-            displacement = displacement + self._newton_step(in_contact, residual, loads, lateral_stiffness)
-        return CycleEquilibrium(displacement=displacement, pressure=pressure, converged=relative_error <= 1)
-
-    def _newton_step(
-        self, in_contact: Numbers, residual: Numbers, loads: Numbers, lateral_stiffness: Numbers
-    ) -> Numbers:
-        """Compute the Newton step (loads, 3) of the displacements in mm.
-
-        A ball without contact moves along its load until it touches the bore.
-        """
-        tangent = self.modulus * (in_contact @ self._contact_to_stiffness).reshape(-1, 3, 3)
-        trace = numpy.trace(tangent, axis1=1, axis2=2)
-        separated = trace <= 0
-        tangent += lateral_stiffness
-        regularisation = numpy.where(separated, 1.0, _REGULARISATION * trace)
-        step = numpy.linalg.solve(tangent + regularisation[:, None, None] * numpy.eye(3), residual[:, :, None])[:, :, 0]
-        direction = loads / numpy.linalg.norm(loads, axis=1)[:, None]
-        return numpy.where(separated[:, None], (self.clearance + _CONTACT_STEP * self.socket_radius) * direction, step)
+        pressure = numpy.empty((len(loads), len(self.areas)))
+        converged = spring_solver()(self.contact(loads, depth, lateral_stiffness), displacement, pressure)
+        return CycleEquilibrium(displacement=displacement, pressure=pressure, converged=converged)
 
 
 def grid_neighbours(grid: Grid) -> Numbers:

@@ -13,7 +13,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import check_names, require
 from ..core.deprecation import RenamedAttribute, renamed_names
-from ..elasticity.off_axis.surfaces import Springs
+from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
 from ..studies.distributions import Distribution
 from .contact_checks import utilisation_and_validity
 from .cycle import Cycle
@@ -38,7 +38,10 @@ DEFAULT_COUNT = 64
 """Default number of samples in each sample set of an uncertainty analysis."""
 
 _COARSE_RINGS = radians(8.0)
-"""Least ring width in a patient's simulation, which is quick: its error is below the variability."""
+"""Least ring width in a patient's simulation on springs, which is quick: its error is below the variability."""
+
+_COARSE_ELASTIC_RINGS = radians(6.0)
+"""Ring width in a patient's simulation with full elasticity, the largest of `Sphere`."""
 
 _COARSE_INSTANTS = 32
 """Largest number of instants of a cycle in a patient's simulation."""
@@ -65,13 +68,16 @@ class PatientVariability:
     Parameters
     ----------
     use : HipSimulation
-        Hip of the nominal patient. The other patients have radial springs, rings of 8° and 32 instants a cycle.
+        Hip of the nominal patient. The other patients have rings of 8° (springs) or 6° and 32 instants a cycle.
     distributions : mapping of str to Rectangular, Normal or LogNormal
         Distributions by name of `SAMPLED_QUANTITIES`. Forces are proportional to `body_weight`, cycles in a given time
         to `cycles_per_year`. `coefficient` is that of the wear law. Of a law with two coefficients it is that on a
         straight track, and their ratio stays the same.
     body_weight : float, optional
         Body weight in N that the cycle's forces belong to. Default: the median.
+    surface : Springs, ClosedShell or RealCup, optional
+        Foundation of the patients' sockets. Default: the springs of `use`, or the paper's. A patient with `RealCup()`
+        takes some 100 times as long as one on springs. Patients with the same joint share the compliance of their cup.
 
     Raises
     ------
@@ -95,6 +101,7 @@ class PatientVariability:
     use: HipSimulation
     distributions: Mapping[str, Distribution]
     body_weight: float | None = None
+    surface: Springs | ClosedShell | RealCup | None = None
     quick = RenamedAttribute("coarse_simulation")
 
     def __post_init__(self) -> None:
@@ -136,11 +143,14 @@ class PatientVariability:
     @cached_property
     def coarse_simulation(self) -> HipSimulation:
         """Simulation of the nominal patient with few time steps and wide rings."""
-        use = self.use
+        use, surface = self.use, self.surface
+        if surface is None:
+            surface = self.use.surface if self.use.uses_springs else Springs()
+        on_springs = isinstance(surface, Springs)
         return replace(
             use,
-            surface=use.surface if use.uses_springs else Springs(),
-            ring_width=max(use.ring_width, _COARSE_RINGS),
+            surface=surface,
+            ring_width=max(use.ring_width, _COARSE_RINGS) if on_springs else _COARSE_ELASTIC_RINGS,
             cycle=use.cycle.transformed(_tabulate_cycle),
             cup=use.frame.placed,
         )

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 KEPT = ("fields", "summary")
 """What `Sphere` may keep of each contact."""
 
-_MIN_RING_WIDTH, _MAX_RING_WIDTH = radians(0.5), radians(6.0)
+_MIN_RING_WIDTH, MAX_RING_WIDTH = radians(0.5), radians(6.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +118,7 @@ class Sphere(Model):
                 raise TypeError(f"{name} must be {allowed}, got {getattr(self, name)!r}")
         check_gap(self.gap)
         width = check_number("ring_width", self.ring_width)
-        in_range = _MIN_RING_WIDTH <= width <= _MAX_RING_WIDTH
+        in_range = _MIN_RING_WIDTH <= width <= MAX_RING_WIDTH
         require("ring_width", width, in_range, "a ring is 0.5 to 6 degrees wide, 0.00873 to 0.105 radians")
         if self.worn is not None and (isinstance(self.worn, type) or not hasattr(self.worn, "depth")):
             raise TypeError(f"worn must have a method depth(directions), got {shown(self.worn)}")

@@ -1,0 +1,60 @@
+"""Equilibria of many patients in JAX: the same as those of NumPy, patient by patient."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ballsocket.hip.jax_springs import join_contacts, solve_patients
+from ballsocket.hip.socket_foundation import NO_LATERAL_SPRING
+from ballsocket.hip.spring_equilibrium import solve_in_blocks
+
+from .test_foundations import SPRINGS, TILTED
+
+pytest.importorskip("jax")
+
+RNG = np.random.default_rng(2)
+LATERAL = np.diag([500.0, 0.0, 0.0])
+WORN = RNG.uniform(0.0, 0.02, (3, len(SPRINGS.areas)))
+
+
+def contacts(depths, lateral=NO_LATERAL_SPRING):
+    """Contacts of three patients: another clearance, modulus, load and worn depth each."""
+    patients = zip((0.05, 0.1, 0.2), (80.0, 100.0, 300.0), (0.5, 1.0, 2.0), depths, strict=True)
+    return [
+        replace(SPRINGS, clearance=clearance, modulus=modulus).contact(factor * TILTED, depth, lateral)
+        for clearance, modulus, factor, depth in patients
+    ]
+
+
+@pytest.mark.parametrize(
+    ("depths", "lateral"),
+    [(WORN, NO_LATERAL_SPRING), (WORN, LATERAL), (WORN[:, None] * np.array([[0.5], [1.0], [2.0]]), LATERAL)],
+    ids=["worn", "a lateral spring", "another depth under each load"],
+)
+def test_every_patient_has_the_equilibrium_of_numpy(depths, lateral):
+    """From starts in contact and far from it."""
+    patients = contacts(depths, lateral)
+    start = np.stack([factor * TILTED / 1000.0 for factor in (0.3, 0.2, -0.2)])
+    solved = solve_patients(join_contacts(patients), start)
+    assert solved.displacement.dtype == np.float64
+    assert np.asarray(solved.converged).all()
+    for patient, contact in enumerate(patients):
+        displacement, pressure = start[patient].copy(), np.empty((3, len(SPRINGS.areas)))
+        assert solve_in_blocks(contact, displacement, pressure)
+        np.testing.assert_allclose(solved.displacement[patient], displacement, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(solved.pressure[patient], pressure, rtol=0, atol=1e-11 * pressure.max())
+
+
+def test_a_patient_that_does_not_converge_leaves_the_others_converged():
+    patients = contacts(np.stack([WORN[0], np.full_like(WORN[0], np.nan), WORN[2]]))
+    solved = solve_patients(join_contacts(patients), np.broadcast_to(0.2 * TILTED / 1000.0, (3, 3, 3)))
+    assert np.asarray(solved.converged).tolist() == [True, False, True]
+
+
+def test_patients_of_other_sizes_are_refused():
+    one, *_ = contacts(WORN)
+    with pytest.raises(ValueError, match="got 2 loads on .* cells, 3 loads on .* cells"):
+        join_contacts([one, SPRINGS.contact(TILTED[:2], WORN[0], NO_LATERAL_SPRING)])
+    with pytest.raises(ValueError, match="at least one patient"):
+        join_contacts([])
