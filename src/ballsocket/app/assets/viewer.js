@@ -29,7 +29,7 @@ const fragment = (kind) => `#version 300 es
     vec4 near = vec4(texel(low, size), texel(low + ivec2(1, 0), size), texel(low + ivec2(0, 1), size), texel(low + 1, size));
     vec4 weight = vec4(left.x * left.y, part.x * left.y, left.x * part.y, part.x * part.y);
     float sum = dot(near, weight), inside = dot(weight, step(0.002, near));
-    return film ? vec2(sum / max(inside, 0.001), smoothstep(0.4, 0.6, inside)) : vec2(sum, smoothstep(0.0, 0.03, sum));
+    return film ? vec2(sum / max(inside, 0.001), smoothstep(0.4, 0.6, inside)) : vec2(sum, smoothstep(0.01, 0.05, sum));
   }
   void main() {
     vec3 base = colour; float opacity = 1.0;

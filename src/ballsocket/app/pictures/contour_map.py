@@ -84,7 +84,7 @@ def contour_map(
     parts = [
         f'<rect class="void" {_FRAME}/>',
         *contours.bands(levels),
-        *(part for level in levels[1:-1] for part in contours.named(level, f"{level:.4g}")),
+        *(part for level in levels[1:-1] if level for part in contours.named(level, f"{level:.4g}")),  # 0 is a limit
         *_axes(plane),
         *marks,
         '<g class="cursor" tabindex="0" role="button"><path class="cross halo" d="M-9,0H9M0,-9V9"/>'
