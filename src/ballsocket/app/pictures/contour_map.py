@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy
 
+from ...core.checks import shown
 from . import svg
 from .svg import Contours
 
@@ -60,6 +61,14 @@ class MapPlane:
         lines = "".join(f"M{x - 3:.1f},{y - 3:.1f}l6,6m0,-6l-6,6" for x, y in points)
         if lines:
             yield outlined("path", "doubt", f'd="{lines}"')
+
+
+def read_point(value: Any, count: int) -> list[float]:
+    """Read the numbers that a browser reports of a point of a map; raise ValueError for other values."""
+    numbers = value if isinstance(value, list) else []
+    if len(numbers) != count or not all(isinstance(number, int | float) for number in numbers):
+        raise ValueError(f"{shown(value)} is not a point of the map")
+    return [float(number) for number in numbers]
 
 
 def outlined(shape: str, kind: str, attributes: str) -> str:

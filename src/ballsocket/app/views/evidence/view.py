@@ -45,7 +45,7 @@ class Evidence(LongView):
         chosen("asked.influence", "Influence of the model on the decision", LEVELS, segments),
         chosen("asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
         text("asked.accuracy", "Allowed error of the numbers"),
-        text("asked.matrix", "Cases, such as force = 2, 3 kN; clearance = 0.05 mm"),
+        text("asked.matrix", "Cases, such as force = 2, 3 kN"),
         text("asked.tolerances", "Tolerances, such as clearance = 0.1 +- 0.02 mm"),
         text("asked.friction", "Coefficient of friction, if any"),
         chosen("asked.elements", "Check the worst cases by finite elements", _NO_YES, segments),
