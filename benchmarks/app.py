@@ -123,7 +123,7 @@ def _slider_moves(browser: Any, explorers: dict[str, Explorer], empty: dict[str,
             numbers, tables, cpu = _moved(
                 browser, explorer.server, f"[data-name={slider}] input[type=range]", (_HEADLINE, _TABLE)
             )
-            verdicts = (_aim(_late(numbers), 100), _aim(_late(tables), 200), _aim(cpu, 15))
+            verdicts = (_aim(_late(numbers), 100), _aim(_late(tables), 200), _aim(cpu, 15)) if name == "ours" else ()
             rows.add(f"{name}: {slider}", _shares(numbers), _shares(tables), short(cpu), "; ".join(verdicts))
     for name, server in empty.items():
         numbers, _, cpu = _moved(browser, server, _EMPTY_SLIDER, (_EMPTY_NUMBER,))
@@ -175,7 +175,8 @@ def _crowd(explorers: dict[str, Explorer]) -> Rows:
     }
     for what, (work, limit) in aims.items():
         values = {name: _measured(what, name, work, explorer) for name, explorer in explorers.items()}
-        rows.add(what, *map(short, values.values()), _aim(values["ours"], limit))
+        cells = (short(value) if value == value else "refused" for value in values.values())
+        rows.add(what, *cells, _aim(values["ours"], limit))
     return rows
 
 
@@ -195,7 +196,9 @@ def _announce(words: str) -> None:
 
 async def _opened(explorer: Explorer, count: int) -> list[Session]:
     sessions = [explorer.new_session() for _ in range(count)]
-    await asyncio.gather(*(session.open() for session in sessions))
+    outcomes = await asyncio.gather(*(session.open() for session in sessions), return_exceptions=True)
+    for failure in filter(None, outcomes):
+        raise failure
     return sessions
 
 
