@@ -36,7 +36,7 @@ def page_of(browser: Any, address: str, size: tuple[int, int]) -> Any:
     page.goto(address)
     page.locator(".app[data-idle=yes][data-shown]").wait_for()
     page.wait_for_function(
-        "() => !document.querySelector('section.view:not([hidden])').textContent.includes('Preparing')",
+        "() => !document.querySelector('section.view:not([hidden])').textContent.toLowerCase().includes('preparing')",
         timeout=120_000,
     )
     return page
