@@ -27,12 +27,18 @@ window.inside = (root, selector) => {
   }
   return null;
 };
+window.everywhere = (root, selector) => [
+  ...root.querySelectorAll(selector),
+  ...[...root.querySelectorAll("*")].filter((node) => node.shadowRoot)
+    .flatMap((node) => window.everywhere(node.shadowRoot, selector)),
+];
 window.textOf = (selector) => {
   const element = window.inside(document, selector);
   return element && (element.dataset.value || element.textContent);
 };
 window.watch = (selectors) => {
   window.reaction = new Promise((resolve) => {
+    const watched = performance.now();
     let start = null;
     const last = selectors.map(window.textOf), first = selectors.map(() => null), final = [...first];
     window.addEventListener("keydown", () => { start = performance.now(); }, { once: true, capture: true });
@@ -46,7 +52,7 @@ window.watch = (selectors) => {
         final[number] = now - start;
       });
       const changed = first.every((moment) => moment !== null);
-      const waited = start === null ? 0 : now - start;
+      const waited = now - (start ?? watched); // a key that no element has received is no reaction
       if ((changed && waited - Math.max(...final) > SETTLED) || waited > SEEN) resolve({ first, final });
       else requestAnimationFrame(look);
     };
@@ -56,7 +62,7 @@ window.watch = (selectors) => {
 """.replace("SETTLED", str(_SETTLED)).replace("SEEN", str(_SEEN))
 _FRAMES = """
 (selector) => new Promise((resolve) => {
-  const canvas = [...document.querySelectorAll(selector)].find((element) => element.clientWidth);
+  const canvas = window.everywhere(document, selector).find((element) => element.clientWidth);
   const box = canvas.getBoundingClientRect(), frames = [];
   const send = (kind, x, target) => target.dispatchEvent(new PointerEvent(kind, {
     clientX: x, clientY: box.top + box.height / 2, bubbles: true, pointerId: 1, isPrimary: true, buttons: 1,

@@ -25,18 +25,18 @@ VIEWS = {
     "compare": ("?view=compare&beside1.preset=hip-36&beside2.preset=suspension-ball-joint", 1300),
     "judge": ("?view=judge&preset=hip-28&load.force=3000&cup.arc_of_cover=160&cup.chamfer=1", 960),
 }
-SIZES = ((390, 844), (1280, 900), (1440, 900))
+SIZES = ((390, 844), (900, 900), (1440, 900))
 RUN = ("judge", "wear", "evidence", "cup")
 """Views that show more after a run."""
 
 
-def page_of(browser: Any, address: str, size: tuple[int, int], theme: str = "light") -> Any:
+def page_of(browser: Any, address: str, size: tuple[int, int]) -> Any:
     """Open a page and wait for its first result."""
-    page = browser.new_page(viewport={"width": size[0], "height": size[1]}, color_scheme=theme)
+    page = browser.new_page(viewport={"width": size[0], "height": size[1]})
     page.goto(address)
     page.locator(".app[data-idle=yes][data-shown]").wait_for()
     page.wait_for_function(
-        "() => !document.querySelector('section.view:not([hidden])').textContent.includes('Preparing')",
+        "() => !document.querySelector('section.view:not([hidden])').textContent.toLowerCase().includes('preparing')",
         timeout=120_000,
     )
     return page
@@ -44,7 +44,7 @@ def page_of(browser: Any, address: str, size: tuple[int, int], theme: str = "lig
 
 def run(page: Any) -> None:
     """Press the button of the view's long work, if it has one, and wait for the end."""
-    button = page.locator("section.view:visible [data-name$='.run'] button")
+    button = page.locator("section.view:visible [data-name$='.run'] button:visible")
     if button.count() and "Cancel" not in button.first.inner_text():
         button.first.click()
         page.wait_for_timeout(1000)
@@ -68,15 +68,15 @@ def make_all(address: str, browser: Any, folder: Path, views: Sequence[str]) -> 
     """Make pictures of views in every size and theme, with the results of their long work."""
     folder.mkdir(parents=True, exist_ok=True)
     for view in views:
-        query = f"?view={view}&beside1.preset=hip-36&{SHELL}&theme="
-        for theme in ("light", "dark"):
-            for size in SIZES:
-                page = page_of(browser, f"{address}{query}{theme}", size, theme)
-                if view in RUN:
-                    run(page)
+        for size in SIZES:
+            page = page_of(browser, f"{address}?view={view}&beside1.preset=hip-36&{SHELL}&theme=light", size)
+            if view in RUN:
+                run(page)
+            for theme in ("light", "dark"):
                 page.wait_for_timeout(1500)
                 page.screenshot(path=folder / f"{view}_{size[0]}_{theme}.png", full_page=True)
-                page.close()
+                page.locator("#theme").click()
+            page.close()
 
 
 def main(words: Sequence[str]) -> None:

@@ -100,6 +100,11 @@ def test_an_uploaded_cycle_is_sent_again(alone):
         user.until("!document.body.dataset.lost")
         user.answered()
         assert user.says("walk.csv: a link does not hold it")
+        user.page.reload()  # this window keeps the table
+        user.answered()
+        assert user.says("walk.csv: a link does not hold it")
+        user.open("?view=gait")  # another link does not get it
+        assert user.page.locator("text=walk.csv").count() == 0
         assert not user.errors
 
 

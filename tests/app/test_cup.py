@@ -87,10 +87,10 @@ def test_the_view_says_what_the_sphere_says(at_once):
     way = page.screen.file.aim["direction"]
     assert degrees(np.arctan2(-way[0], way[2])) == pytest.approx(20)  # the middle is to the left of a right hip
     leaning = bs.Sphere(cup=page.screen.file.cup).press(JOINT, force=3000.0, direction=way)
-    assert f"{degrees(leaning.tilt):.4g} <span class='unit'>°" in told(page, "numbers")
+    assert f"{degrees(leaning.tilt):.4g}<span class='unit'>°" in told(page, "numbers")
     edits(page, "cup.side", "left")
     assert page.screen.file.aim["direction"][0] == pytest.approx(-way[0])
-    assert f"{degrees(leaning.tilt):.4g} <span class='unit'>°" in told(page, "numbers")  # a mirror changes nothing
+    assert f"{degrees(leaning.tilt):.4g}<span class='unit'>°" in told(page, "numbers")  # a mirror changes nothing
     assert "load.direction=" in page.channel.shown_value("link")
     assert opened(page.channel.shown_value("link")).screen == page.screen
 

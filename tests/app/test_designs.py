@@ -16,6 +16,7 @@ pytest.importorskip("tomli_w")
 pytest.importorskip("xarray")
 from ballsocket.app.state.designs import MAX_DESIGNS, file_stem, read_upload, session_text
 from ballsocket.app.state.screen import START, link_of, read_link
+from ballsocket.files.joint_file import read_joint
 from ballsocket.files.toml import MAX_FILE_SIZE
 
 from .test_screen import near, screens
@@ -34,6 +35,11 @@ def test_a_session_file_brings_every_design_back(designs):
         assert near(screen.file, read.file)
         assert all(near(*pair) for pair in zip(screen.beside, read.beside, strict=True))
         assert replace(screen, file=START.file, beside=(), theme="light") == replace(read, file=START.file, beside=())
+
+
+def test_a_session_file_is_no_joint_file():
+    with pytest.raises(ValueError, match=r"^designs.toml: one joint is needed, .* session file with 2 of"):
+        read_joint(EXAMPLE)
 
 
 def test_toml_and_json_hold_the_same():

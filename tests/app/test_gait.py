@@ -182,7 +182,7 @@ def test_a_cycle_of_ones_own_is_read_and_is_in_no_link():
     ("name", "value", "sentence"),
     [
         ("cycle", "dancing", "'dancing' as cycle is not known"),
-        ("body_weight", "0", "Body weight 0 N is not allowed"),
+        ("body_weight", "0", "Body weight must be positive, got 0 N"),
         ("contact", "steel", "'steel' as contact is not known"),
         ("instant", "seven", "an instant of a cycle is a whole number"),
         ("instant", -1, "instant = -1"),

@@ -56,6 +56,21 @@ def test_a_line_that_is_cut_or_silent_heals_and_never_contradicts(browser, addre
             assert longest_contradiction(samples_of(user.page), pressure) < 100 + _SLACK
 
 
+def test_quick_keys_on_a_handle_add_up_and_a_number_keeps_its_unit(browser, address):
+    """With answers 0.4 s late: six steps of 50 N, then inches are chosen and millimetres are typed before they come."""
+    with opened_line(browser, address) as (proxy, user):
+        proxy.delay = 0.4
+        user.page.locator("[tabindex][data-drag=load]").first.focus()
+        for _ in range(6):
+            user.page.keyboard.press("ArrowUp")
+        assert user.answered().number("force") == 3300
+        user.page.locator("[data-name=units] label", has_text="in, lbf, psi").click()
+        user.types("ball_radius", "30")
+        user.answered()
+        assert "units=imperial" in user.page.url
+        assert "joint.ball_radius=15.0" in user.page.url
+
+
 def test_late_answers_are_marked_until_they_belong_to_the_inputs(browser, address):
     """With answers 0.4 s late, numbers are marked as updating from 0.1 s after a change on."""
     with opened_line(browser, address) as (proxy, user):

@@ -47,6 +47,31 @@ def test_a_page_speaks_of_diameters_and_of_what_makers_offer():
         edits(page, "ball_radius", "28")
 
 
+def test_a_number_typed_before_a_choice_of_units_has_the_units_before_it():
+    """The page states the units in which a number was typed: a slow line may bring it after the choice."""
+    page = Page("preset=hip-28&load.force=3000")
+    before = {"units": "SI", "size": "diameter", "angle": "degrees"}
+    does(page, "choose", name="units", value="imperial")
+    does(page, "choose", name="size", value="radius")
+    does(page, "edit", name="ball_radius", value="30", units=before)
+    assert page.screen.file.joint.ball_radius == pytest.approx(15.0, rel=1e-12)
+    does(page, "edit", name="load", value="-3", units=before)
+    assert "must be zero or positive, got -3 N" in trouble(page)
+    does(page, "edit", name="load", value="3", units={"units": "SI"})
+    assert "must have units, size, angle" in trouble(page)
+    assert (page.screen.units, page.screen.size) == ("imperial", "radius")
+
+
+def test_a_body_weight_is_in_the_units_of_the_page():
+    page = Page("view=wear&use.cycle=walking&units=imperial")
+    assert (field(page, "wear.body_weight")["unit"], field(page, "wear.body_weight")["text"]) == ("lbf", "180")
+    edits(page, "wear.body_weight", "200")
+    assert page.screen.use.body_weight == pytest.approx(200 / LBF, rel=1e-9)
+    edits(page, "wear.body_weight", "80 kN")
+    assert "Body weight must be" in trouble(page)
+    assert "lbf" in trouble(page)
+
+
 def test_every_number_beside_a_box_has_its_unit():
     fields = {name: said for name, said in Page("").channel._current.items() if name.startswith("=")}
     bare = [name for name, said in fields.items() if said["kind"] == "number" and not said["unit"]]

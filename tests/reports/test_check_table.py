@@ -36,6 +36,8 @@ def test_pressure_and_von_mises_stress_have_rows_of_their_own():
         pytest.approx(contact.utilisation),
     )
     assert liner_stress.source == "UHMWPE, yield: least of ASTM F648 type 1 (unverified)"
+    estimate = by_title(checks_of(contact, CUP))["von Mises stress in the liner"]
+    assert estimate.source == f"{liner_stress.source}; stress estimated from pressure and half angle"
     assert (pressure.demand, pressure.capacity, pressure.passes) == (contact.max_pressure, None, None)
     assert pressure.source == "no allowable pressure of the liner is known"
     assert rows["von Mises stress in the ball"].capacity == HIP.ball.yield_stress

@@ -12,7 +12,7 @@ from functools import partial
 from typing import Any
 from urllib.parse import parse_qs
 
-from ..core.checks import check_names
+from ..core.checks import check_names, shown
 from ..reports.unit_systems import Units
 from .channel import Channel
 from .jobs import Job, call_later, run_in_thread
@@ -30,6 +30,9 @@ from .widgets.words import alert
 _LOG = logging.getLogger(__name__)
 _CHOSEN = ("view", "answered_by", "shown", "painted", "angle", "size", "units")
 """Fields of the screen that the page's own inputs change."""
+
+_UNIT_CHOICES = ("units", "size", "angle")
+"""Fields of the screen on which the meaning of a number depends."""
 
 _UNITS = ((Units.SI.value, "mm, N, MPa"), (Units.IMPERIAL.value, "in, lbf, psi"))
 
@@ -146,6 +149,22 @@ class Page:
         self._handlers[view] = handler
 
     def _edit(self, words: Mapping[str, Any]) -> None:
+        """Change an input; a number that was typed before a choice of units has the units before it."""
+        present = {name: getattr(self.screen, name) for name in _UNIT_CHOICES}
+        units = words.get("units") or present
+        if units == present:
+            self._edit_as_shown(words)
+            return
+        if not isinstance(units, dict) or set(units) != set(present):
+            raise ValueError(f"units = {shown(units)} must have {', '.join(_UNIT_CHOICES)}")
+        self._change(replace(self.screen, **units))
+        try:
+            self._edit_as_shown(words)
+        finally:
+            self._change(replace(self.screen, **present))
+
+    def _edit_as_shown(self, words: Mapping[str, Any]) -> None:
+        """Change an input whose number is in the units of the screen."""
         name, value = str(words.get("name")), words.get("value")
         view, _, key = name.partition(".")
         if isinstance(value, str) and value == (self.channel.shown_value(f"={name}") or {}).get("text"):
@@ -224,9 +243,9 @@ class Page:
 
     def _fields(self) -> dict[str, Field]:
         """Return every input beside the views by name."""
-        angles = segments("angle", "angles in", ANGLES, self.screen.angle)
-        sizes = segments("size", "balls by", SIZES, self.screen.size)
-        units = segments("units", "units", _UNITS, self.screen.units)
+        angles = segments("angle", "Angles in", ANGLES, self.screen.angle)
+        sizes = segments("size", "Balls by", SIZES, self.screen.size)
+        units = segments("units", "Units", _UNITS, self.screen.units)
         joint = {**fields_of(self.screen), **layer_fields(self.screen.file.joint)}
         return {**joint, "units": units, "size": sizes, "angle": angles}
 

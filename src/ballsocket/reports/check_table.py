@@ -11,7 +11,7 @@ Reports and the explorer show the same rows::
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..contact import Contact
@@ -128,15 +128,24 @@ def checks_at(
     trusted : bool
         True if the numbers lie in the range of their model.
     """
+    estimate = float(von_mises_ratio(half_angle, joint.liner.poisson, joint.thickness_ratio)) * pressure
+    stress = estimate if von_mises is None else von_mises
+    rows = list(_material_checks("liner", joint.liner, pressure, stress, trusted))
     if von_mises is None:
-        von_mises = float(von_mises_ratio(half_angle, joint.liner.poisson, joint.thickness_ratio)) * pressure
-    rows = list(_material_checks("liner", joint.liner, pressure, von_mises, trusted))
+        rows = [replace(row, source=row.source + _ESTIMATED) if _is_stress(row) else row for row in rows]
     if joint.ball is not None:
         ball_stress = float(joint_ball_stress_ratio(joint)) * pressure
         rows += (row for row in _material_checks("ball", joint.ball, pressure, ball_stress, trusted) if row.capacity)
     if edge is not None and not float(joint.clearance) < 0:  # a preloaded contact reaches the rim as a rule
         rows.append(_rim_check(joint, *edge, trusted))
     return sorted_checks(rows)
+
+
+_ESTIMATED = "; stress estimated from pressure and half angle"
+
+
+def _is_stress(row: Check) -> bool:
+    return row.quantity == "von_mises" and row.capacity is not None
 
 
 def sorted_checks(rows: Iterable[Check]) -> tuple[Check, ...]:
@@ -152,7 +161,7 @@ def wear_check(joint: Joint, depth: float) -> Check:
         demand=depth,
         capacity=float(joint.liner_thickness),
         limit="liner thickness",
-        source="the liner is worn through",
+        source="at this depth the liner is worn through",
     )
 
 

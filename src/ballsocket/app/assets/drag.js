@@ -1,4 +1,5 @@
 // Handles of the drawing: what is dragged, or moved by the arrow keys, is the number of an input.
+import { pendingValue } from "./connection.js";
 import { known, move } from "./fields.js";
 import { pointIn } from "./svg.js";
 
@@ -62,7 +63,7 @@ document.addEventListener("keydown", (event) => {
   const handle = event.target.closest?.("[data-drag]");
   const steps = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10 }[event.key];
   if (!handle || !steps) return;
-  const { value, step } = known(handle.dataset.drag);
-  move(handle.dataset.drag, value + steps * step);
+  const { drag: name } = handle.dataset, { value, step } = known(name), pending = Number(pendingValue(name) ?? value);
+  move(name, (Number.isNaN(pending) ? value : pending) + steps * step); // quick keys add up before they are answered
   event.preventDefault();
 });

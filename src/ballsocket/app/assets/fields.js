@@ -6,6 +6,7 @@ const CHOICES = ["answered_by", "shown", "painted", "angle", "size", "units"]; /
 const inputs = new Map(); // by name: the element, what the server said last, and how to show it
 const typed = new Set(); // boxes with text that nobody has confirmed yet
 const stale = new Set(); // inputs that show an edit, until the server has answered it
+const UNITS = ["units", "size", "angle"]; // choices that change what a number means
 
 export function element(tag, attributes = {}, ...content) {
   const node = document.createElement(tag);
@@ -15,11 +16,12 @@ export function element(tag, attributes = {}, ...content) {
 }
 function edit(name, value) {
   stale.add(name);
-  ask("edit", name, value);
+  ask("edit", name, value, { units: inputs.get(name).units }); // another choice of units may be on its way
 }
 function choose(name, value) {
+  if (!CHOICES.includes(name)) return edit(name, value);
   stale.add(name);
-  ask(CHOICES.includes(name) ? "choose" : "edit", name, value);
+  ask("choose", name, value);
 }
 const rounded = (value, step) => Number((Math.round(value / step) * step).toPrecision(12));
 const within = (value, { low, high }) => Math.min(high, Math.max(low, value));
@@ -225,7 +227,11 @@ function refresh() {
     inputs.get(name).show(inputs.get(name).field);
   }
 }
-document.addEventListener("shown", refresh);
+document.addEventListener("shown", () => {
+  refresh();
+  const units = Object.fromEntries(UNITS.map((name) => [name, known(name).value]));
+  for (const [name, input] of inputs) if (!stale.has(name)) input.units = units;
+});
 export function arrange(names) {
   const home = document.getElementById("controls");
   const nodes = names.map((name) => inputs.get(name).node);

@@ -39,9 +39,9 @@ function showCursor(map, share) {
   cursor.append(...lines(words, across > 0.6 ? -10 : 10, up > 0.85 ? 20 : -24, across > 0.6));
 }
 function moveLimit(handle, event) {
-  const rows = (pendingValue("map.limits") ?? known("map.limits").value).map((row) => [...row]);
-  const row = rows[Number(handle.dataset.limit)];
-  row[2] = digits(Number(handle.getAttribute("aria-valuenow")) + STEPS[event.key] * Number(handle.dataset.step));
+  const pending = pendingValue("map.limits"), rows = (pending ?? known("map.limits").value).map((row) => [...row]);
+  const row = rows[Number(handle.dataset.limit)], present = pending ? row[2] : handle.getAttribute("aria-valuenow");
+  row[2] = digits(Number(present) + STEPS[event.key] * Number(handle.dataset.step));
   handle.setAttribute("aria-valuenow", row[2]);
   ask("edit", "map.limits", rows);
 }

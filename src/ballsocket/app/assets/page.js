@@ -9,7 +9,9 @@ const LOST = "Connection lost. These numbers may not belong to the inputs; recon
 const page = document.body, at = (id) => document.getElementById(id);
 const filled = new Set(); // elements that the server has filled
 let news = 0;
-let table = null; // the latest table of a cycle, which no link holds: sent again after a lost connection
+const TABLE = "ballsocket.table"; // key of the latest table of a cycle in the storage of this window
+// no link holds a table: it is sent again after a lost connection and after a reload, but not to another link
+let table = performance.getEntriesByType("navigation")[0].type === "reload" ? JSON.parse(sessionStorage.getItem(TABLE)) : null;
 
 /** Show a sentence for some seconds. */
 export function tell(words) {
@@ -30,7 +32,10 @@ listen((message, request) => {
     for (const name of filled) at(name.slice(1)).toggleAttribute("data-expected", (message.expected || []).includes(name));
   at("inputs").disabled = false;
   if (request) page.dataset.shown = page.dataset.view;
-  if (table && table.cycle !== cycle()) table = null; // another cycle was chosen since
+  if (table && table.cycle !== cycle()) { // another cycle was chosen since
+    table = null;
+    sessionStorage.removeItem(TABLE);
+  }
   if (table && message.fresh) table.lost = true;
   if (table?.lost && table.name.startsWith(`${page.dataset.view}.`)) sendTable();
   document.dispatchEvent(new CustomEvent("shown", { detail: message }));
@@ -48,8 +53,10 @@ function showView(name) {
   page.dataset.view = name;
   for (const section of document.querySelectorAll("section.view")) section.hidden = section.dataset.view !== name;
   for (const button of document.querySelectorAll("button[data-view]"))
-    if (button.dataset.view === name) button.setAttribute("aria-current", "page");
-    else button.removeAttribute("aria-current");
+    if (button.dataset.view === name) {
+      button.setAttribute("aria-current", "page");
+      button.scrollIntoView({ inline: "center", block: "nearest" }); // the views scroll sideways on a telephone
+    } else button.removeAttribute("aria-current");
 }
 function save(file) {
   const bytes = Uint8Array.from(atob(file.content), (letter) => letter.charCodeAt(0));
@@ -94,6 +101,7 @@ document.addEventListener("change", (event) => {
   const input = event.target.closest("input[data-tell-file]");
   if (input) read(input, (name, text) => {
     table = { name: input.dataset.tellFile, value: { name, size: text.length, text }, cycle: cycle() };
+    sessionStorage.setItem(TABLE, JSON.stringify(table));
     sendTable();
   });
 });

@@ -20,16 +20,9 @@ const fragment = (kind) => `#version 300 es
     float place = 4.0 * clamp(share, 0.0, 1.0); int low = min(int(place), 3);
     return mix(HEAT[low], HEAT[low + 1], place - float(low)) / 255.0;
   }
-  float texel(ivec2 place, ivec2 size) {
-    return texelFetch(field, ivec2((place.x + size.x) % size.x, clamp(place.y, 0, size.y - 1)), 0).r;
-  }
-  vec2 value() { // smooth between cells, with the share of the colour; a film is known inside the contact only
-    ivec2 size = textureSize(field, 0); vec2 grid = spot * vec2(size) - 0.5, part = fract(grid), left = 1.0 - part;
-    ivec2 low = ivec2(floor(grid));
-    vec4 near = vec4(texel(low, size), texel(low + ivec2(1, 0), size), texel(low + ivec2(0, 1), size), texel(low + 1, size));
-    vec4 weight = vec4(left.x * left.y, part.x * left.y, left.x * part.y, part.x * part.y);
-    float sum = dot(near, weight), inside = dot(weight, step(0.002, near));
-    return film ? vec2(sum / max(inside, 0.001), smoothstep(0.4, 0.6, inside)) : vec2(sum, smoothstep(0.0, 0.03, sum));
+  vec2 value() { // with the share of the colour; a film is known inside the contact only
+    vec2 known = texture(field, spot).rg; // value and its presence, both smooth between cells
+    return film ? vec2(known.r / max(known.g, 0.001), smoothstep(0.4, 0.6, known.g)) : vec2(known.r, smoothstep(0.01, 0.05, known.r));
   }
   void main() {
     vec3 base = colour; float opacity = 1.0;
@@ -148,7 +141,8 @@ class Viewer {
       gl.vertexAttribPointer(place, count, gl.FLOAT, false, FLOATS * 4, start * 4);
     }
     gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
-    for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, gl.NEAREST);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     gl.enable(gl.DEPTH_TEST);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -243,8 +237,9 @@ class Viewer {
       gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, this.built.indices, gl.STATIC_DRAW);
     }
     if (this.uploaded === this.frame) return;
-    const count = columns * (rings + 1), field = this.bytes.subarray(this.frame * count, (this.frame + 1) * count);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, columns, rings + 1, 0, gl.RED, gl.UNSIGNED_BYTE, field);
+    const count = columns * (rings + 1), field = new Uint8Array(2 * count); // value and presence of each cell
+    for (let cell = 0; cell < count; cell++) field[2 * cell + 1] = (field[2 * cell] = this.bytes[this.frame * count + cell]) ? 255 : 0;
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RG8, columns, rings + 1, 0, gl.RG, gl.UNSIGNED_BYTE, field);
     this.uploaded = this.frame;
   }
   move(gl, part, vertex) {

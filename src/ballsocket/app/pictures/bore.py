@@ -28,7 +28,11 @@ from .svg import Contours, heat, levels_between, scale
 METRIC = Reading()
 """mm, N, MPa and degrees."""
 
+CELLS_EDGE = 0.03
+"""Share of the highest value from which values on cells are drawn: their edge is no sharper."""
+
 _MAP_WIDTH, _MIDDLE, _RADIUS, _MAP_HEIGHT = 400.0, 200.0, 140.0, 420.0
+_TOP = 30.0  # of the picture: above are neither bore nor directions
 _RIM = f'cx="{_MIDDLE}" cy="{_MIDDLE}" r="{_RADIUS}"'
 _POINTS = 181
 _MOSTLY_VERTICAL = 0.7
@@ -37,7 +41,10 @@ _MIN_IN_PLANE = 0.3  # of a unit vector: one that points more steeply out of the
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BoreField:
-    """Values on a bore up to the angle `reach`; `at` takes unit vectors (..., 3) of the cup's frame."""
+    """Values on a bore up to the angle `reach`, drawn from the share `least` of the highest value.
+
+    `at` takes unit vectors (..., 3) of the cup's frame.
+    """
 
     name: str
     at: Callable[[numpy.ndarray], numpy.ndarray]
@@ -45,6 +52,7 @@ class BoreField:
     label: str
     reach: float
     cup: Cup
+    least: float = 1e-3
 
 
 def pressed_bore(contact: OffAxisContact, reading: Reading = METRIC) -> str:
@@ -111,7 +119,7 @@ def bore_map(label: str, field: BoreField, marks: list[str]) -> str:
     values = field.at(from_page(2 * sin(field.reach / 2) * right, 2 * sin(field.reach / 2) * up, field.reach))
     levels = levels_between(0.0, field.highest)
     contours = Contours(_MIDDLE + _RADIUS * right, _MIDDLE - _RADIUS * up, values)
-    name, bands = f"bore-{field.name}", contours.bands([1e-3 * field.highest, *levels[1:]])
+    name, bands = f"bore-{field.name}", contours.bands([field.least * field.highest, *levels[1:]])
     clip = f'<clipPath id="{name}"><circle {_RIM}/></clipPath><g clip-path="url(#{name})">{"".join(bands)}</g>'
     scale_bar = scale(levels, field.label, 60, _MAP_HEIGHT - 34, _MAP_WIDTH - 120)
     return _bore_picture(label, field.cup, field.reach, clip, [*marks, *scale_bar])
@@ -126,7 +134,8 @@ def bare_bore(cup: Cup, reach: float) -> str:
 def _bore_picture(label: str, cup: Cup, reach: float, field: str, marks: Iterable[str]) -> str:
     rim, bore = f'<circle class="rim" {_RIM}/>', f'<circle class="bore" {_RIM}/>'
     parts = [bore, field, *_angle_rings(reach), rim, *marks, *_body_directions(cup)]
-    return svg.picture((_MAP_WIDTH, _MAP_HEIGHT), label, parts)
+    inside = f'<g transform="translate(0 {-_TOP:g})">{"".join(parts)}</g>'
+    return svg.picture((_MAP_WIDTH, _MAP_HEIGHT - _TOP), label, [inside])
 
 
 def _projection(reach: float) -> Callable[[numpy.ndarray], tuple[numpy.ndarray, numpy.ndarray]]:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy
 
+from ...core.checks import shown
 from . import svg
 from .svg import Contours
 
@@ -62,6 +63,14 @@ class MapPlane:
             yield outlined("path", "doubt", f'd="{lines}"')
 
 
+def read_point(value: Any, count: int) -> list[float]:
+    """Read the numbers that a browser reports of a point of a map; raise ValueError for other values."""
+    numbers = value if isinstance(value, list) else []
+    if len(numbers) != count or not all(isinstance(number, int | float) for number in numbers):
+        raise ValueError(f"{shown(value)} is not a point of the map")
+    return [float(number) for number in numbers]
+
+
 def outlined(shape: str, kind: str, attributes: str) -> str:
     """Draw a dark line on a light one, visible on every colour."""
     return f'<{shape} class="{kind} below" {attributes}/><{shape} class="{kind}" {attributes}/>'
@@ -84,7 +93,7 @@ def contour_map(
     parts = [
         f'<rect class="void" {_FRAME}/>',
         *contours.bands(levels),
-        *(part for level in levels[1:-1] for part in contours.named(level, f"{level:.4g}")),
+        *(part for level in levels[1:-1] if level for part in contours.named(level, f"{level:.4g}")),  # 0 is a limit
         *_axes(plane),
         *marks,
         '<g class="cursor" tabindex="0" role="button"><path class="cross halo" d="M-9,0H9M0,-9V9"/>'

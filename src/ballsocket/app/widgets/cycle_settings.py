@@ -1,23 +1,27 @@
 """Settings of the cycle that the views Gait and Wear share."""
 
-from ...core.kinds import Kind, Unit
 from ...hip.cycle_registry import CYCLES
+from ..state.screen import Screen
 from ..state.use import CHOICES
-from .fields import segments
-from .settings import amount, chosen
+from .fields import Field, segments
+from .numbers import BODY_WEIGHT
+from .settings import Setting, changed, chosen
 
 _FOUNDATIONS = {"springs": "springs", "shell": "closed shell", "cup": "real cup"}
 
+
+def _body_weight_field(screen: Screen) -> Field:
+    """Describe the input of the body weight, hidden for a cycle that was not measured in patients."""
+    field = BODY_WEIGHT.field("body_weight", screen.use.body_weight, screen.reading)
+    return {**field, "hidden": not CYCLES[screen.use.cycle].per_body_weight}
+
+
 CYCLE_SETTINGS = (
     chosen("use.cycle", "Cycle", CHOICES["cycle"]),
-    amount(
-        "use.body_weight",
-        "Body weight",
-        (300.0, 1500.0),
-        10.0,
-        Unit("N"),
-        Kind.FORCE,
-        needed=lambda screen: CYCLES[screen.use.cycle].per_body_weight,
+    Setting(
+        "body_weight",
+        _body_weight_field,
+        lambda screen, value: changed(screen, "use.body_weight", BODY_WEIGHT.meant(value, screen.reading)),
     ),
     chosen("use.contact", "Liner model", _FOUNDATIONS, segments, _FOUNDATIONS.__getitem__),
 )

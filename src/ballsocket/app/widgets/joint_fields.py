@@ -38,7 +38,7 @@ def fields_of(screen: Screen) -> dict[str, Field]:
         words("name", "Design", joint.name),
         choice("preset", "Start from", [(_PRESET, "– choose –"), *joints], preset),
         *_numbers(screen, named, ("ball_radius", "clearance", "liner_thickness", "outer_radius")),
-        *([] if joint.backing else [tick("massive", "solid socket (no backing)", isinf(float(joint.liner_thickness)))]),
+        *([] if joint.backing else [tick("massive", "Solid socket (no backing)", isinf(float(joint.liner_thickness)))]),
         segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind),
         load_of(kind).field("load", named["load"][kind], screen.reading),
         TILT.field("tilt", degrees(tilt_of(file)), screen.reading),

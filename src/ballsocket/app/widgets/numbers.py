@@ -47,6 +47,7 @@ _BOUNDS = {
     "force": Bounds(0.0, 1e9, "a bridge bearing carries 1e8 N"),
     "indentation": Bounds(0.0, 1e3, "no liner is thicker"),
     "half_angle": Bounds(0.0, 180.0, "from the pole to its opposite"),
+    "body_weight": Bounds(1.0, 1e4, "at most ten times that of a heavy patient"),
     "tilt": Bounds(0.0, 180.0, "an angle to the cup's axis"),
     "chamfer": Bounds(0.0, 1e3, "no rim is wider"),
     "arc_of_cover": Bounds(40.0, 340.0, "the ball must stay in its socket"),
@@ -125,6 +126,9 @@ _LOADS = {
     "indentation": _number("indentation", "load", "indentation", (1.0, 200.0), 1.0),
     "half_angle": _number("half_angle", "load", "half_angle", (1.0, 80.0), 0.5),
 }
+BODY_WEIGHT = Number(
+    table="use", key="body_weight", quantity=QUANTITIES["force"], ends=(300.0, 1500.0), step=10.0, label="Body weight"
+)
 THICKNESS = _number("thickness", "backing", "thickness", (0.5, 10.0), 0.1)
 ALLOWABLE = _number("allowable_pressure", "liner", "allowable_pressure", (1.0, 100.0), 0.5)
 TILT = replace(_number("tilt", "load", "tilt", (0.0, 90.0), 1.0), label="Load from the cup's axis")

@@ -51,23 +51,14 @@ def chosen(
     return Setting(key, field, read)
 
 
-def amount(
-    path: str,
-    label: str,
-    ends: tuple[float, float],
-    step: float,
-    unit: Unit | None = None,
-    kind: str = Kind.NUMBER,
-    needed: Callable[[Screen], bool] = lambda screen: True,
-) -> Setting:
-    """Return a number with its typical range, hidden where it is not needed."""
-    key, unit = path.rpartition(".")[2], unit or Unit("")
-
-    def field(screen: Screen) -> Field:
-        made = number(key, label, unit, ends, step, attrgetter(path)(screen))
-        return {**made, "hidden": not needed(screen)}
-
-    return Setting(key, field, lambda screen, value: changed(screen, path, typed(label, value, unit, kind)))
+def amount(path: str, label: str, ends: tuple[float, float], step: float) -> Setting:
+    """Return a number without a unit, with its typical range."""
+    key, unit = path.rpartition(".")[2], Unit("")
+    return Setting(
+        key,
+        lambda screen: number(key, label, unit, ends, step, attrgetter(path)(screen)),
+        lambda screen, value: changed(screen, path, typed(label, value, unit, Kind.NUMBER)),
+    )
 
 
 def text(path: str, label: str, rows: int = 1) -> Setting:

@@ -37,9 +37,14 @@ def notes_list(notes: Iterable[str]) -> str:
 
 def number_cell(title: str, value: float, unit: str, more: str = "") -> str:
     """Return a number with its unit, and a remark below it."""
-    behind = "" if isnan(value) else f" <span class='unit'>{escape(unit)}</span>"
+    behind = "" if isnan(value) else _unit_html(unit)
     small = f"<small>{escape(more)}</small>" if more else ""
     return f"<div><dt>{escape(title)}</dt><dd>{number_text(value)}{behind}{small}</dd></div>"
+
+
+def _unit_html(unit: str) -> str:
+    """Return a unit as it stands behind a number."""
+    return f"{'' if unit == '°' else ' '}<span class='unit'>{escape(unit)}</span>"
 
 
 def trust(contact: Contact, notes: Sequence[str]) -> str:
@@ -100,7 +105,7 @@ def _number(column: Column, contact: Contact, exact: Contact | None) -> str:
     value, small = float(column.values_of(contact)), ""
     if exact is not None and exact is not contact:
         share = float(relative_deviation(value, float(column.values_of(exact))))
-        small = f"<small>{percent(share, '+').replace('below', '<')}</small>"
+        small = f"<small>{percent(share, '+').replace('below', '<')}</small>" if share else ""
     return f"<td data-head='{escape(column.head)}'>{number_text(value)}{small}</td>"
 
 
@@ -184,7 +189,7 @@ def _unstated(contact: Contact, notes: Iterable[str]) -> list[str]:
 
 def _quantity_cell(column: Column, contact: Contact) -> str:
     value = float(column.values_of(contact))
-    unit = "" if value != value else f" <span class='unit'>{escape(column.unit)}</span>"
+    unit = "" if isnan(value) else _unit_html(column.unit)
     return (
         f"<div><dt title='{escape(column.symbol)}'>{escape(column.title)}</dt>"
         f"<dd data-name='{column.attribute}' data-value='{value!r}'>{number_text(value)}{unit}</dd></div>"

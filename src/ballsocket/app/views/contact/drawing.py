@@ -92,7 +92,8 @@ def _head(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> Ite
     radius, angle = float(file.joint.ball_radius), radians(118.0)
     start, end = frame.at(0.985 * radius, angle), frame.at(0.985 * radius, angle + pi)
     yield _both_ways(*start, *end)
-    yield _labelled_value(("head", f"⌀ {format_length(2 * radius)}"), frame.x - 62, frame.y + 12, "middle")
+    label = _labelled_value(("head", f"⌀ {format_length(2 * radius)}"), frame.x - 62, frame.y + 12, "middle")
+    yield f'<g class="on-ball">{label}</g>'
 
 
 def _bore_and_gap(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> Iterator[str]:

@@ -9,7 +9,6 @@ from html import escape
 from math import degrees, radians
 from typing import Any
 
-from ....core.checks import shown
 from ....core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
 from ....elasticity.off_axis.contact import OffAxisContact
 from ....reports.check_table import checks_of
@@ -19,6 +18,7 @@ from ....reports.pages import picture, table
 from ....reports.press_report import press_lede
 from ...long_view import LongView, LongWork, long_body
 from ...pictures.bore import bare_bore, pressed_bore, pressed_viewer
+from ...pictures.contour_map import read_point
 from ...running import Work
 from ...state.screen import STANDINGS, Screen
 from ...view import Document, Host
@@ -101,7 +101,8 @@ class CupView(LongView):
         elif key == "usual":
             self._stand(**_TYPICAL)
         elif key == "pick":
-            self._stand(**dict(zip(_TYPICAL, _picked(value), strict=True)))
+            angles = (round(angle, 1) for angle in read_point(value, len(_TYPICAL)))
+            self._stand(**dict(zip(_TYPICAL, angles, strict=True)))
         else:
             self.page.ask(file=cup_edited(self.page.screen, key, value))
 
@@ -148,14 +149,6 @@ _KEY = (
     "Blank: the load leaves the bore, or the rim digs in. "
     "Click, or move the cross by arrow keys and press Enter, to select an orientation.</p>"
 )
-
-
-def _picked(value: Any) -> list[float]:
-    """Read the two angles (degrees) of a point on the map."""
-    numbers = value if isinstance(value, list) else []
-    if len(numbers) != len(_TYPICAL) or not all(isinstance(number, int | float) for number in numbers):
-        raise ValueError(f"{shown(value)} is not a point of the map, which has two angles")
-    return [round(float(number), 1) for number in numbers]
 
 
 def _drawn(screen: Screen) -> dict[str, str]:

@@ -74,5 +74,5 @@ def _handle(number: int, limit: Limit, point: numpy.ndarray, reading: Reading) -
         f'<g tabindex="0" {slider} aria-valuetext="{escape(text)}" data-limit="{number}" data-step="{step:g}"'
         f' transform="translate({point[0]:.1f} {point[1]:.1f})">'
         f'<rect class="square" x="-6" y="-6" width="12" height="12"/>'
-        f"{svg.text(11 if right else -11, 4, text, 'on', 'start' if right else 'end')}</g>"
+        f"{svg.text(11 if right else -11, -6, text, 'on', 'start' if right else 'end')}</g>"
     )

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from ....core.checks import check_names, shown
+from ....core.checks import check_names
 from ....core.quantities import JOINT, QUANTITIES
 from ....files.joint_file import JointFile
 from ....reports.figure_files import figure_bytes
@@ -14,6 +14,7 @@ from ....reports.pages import table
 from ....reports.study_plots import design_map
 from ....reports.study_tables import map_rows
 from ....studies.task import EDGE_DISTANCE
+from ...pictures.contour_map import read_point
 from ...state.screen import AXES, MAPPED, MapAxis, Screen
 from ...view import Document, Host, View
 from ...widgets.design_table import design_table, press_designs, with_drawings, with_stresses
@@ -169,7 +170,7 @@ class DesignMap(View):
 
     def _edit_drag(self, value: Any) -> None:
         """Move a limit to the new position of its line."""
-        number, x, y = _numbers(value, 3)
+        number, x, y = read_point(value, 3)
         point = self._in_study(x, y)
         self.page.ask(limits=move_limit(_map_of(self.page.screen), self.page.screen, int(number), point))
 
@@ -182,7 +183,7 @@ class DesignMap(View):
         return x / across, y / up
 
     def _pick(self, value: Any) -> None:
-        x, y = self._in_study(*_numbers(value, 2))
+        x, y = self._in_study(*read_point(value, 2))
         self._show_point({self.page.screen.across.name: x, self.page.screen.up.name: y})
 
     def _pick_best(self, value: Any) -> None:
@@ -221,14 +222,6 @@ _ACTIONS: Mapping[str, Callable[[DesignMap, Any], None]] = {
     "compare": lambda view, value: view.page.ask(beside=with_compared(view.page.screen, view._picked_file())),
     "drop": lambda view, value: view.page.ask(picked=None),
 }
-
-
-def _numbers(value: Any, count: int) -> list[float]:
-    """Read the numbers of a point of the map."""
-    numbers = value if isinstance(value, list) else []
-    if len(numbers) != count or not all(isinstance(number, int | float) for number in numbers):
-        raise ValueError(f"{shown(value)} is not a point of the map")
-    return [float(number) for number in numbers]
 
 
 def _drawn(screen: Screen) -> dict[str, str]:

@@ -40,16 +40,16 @@ class Evidence(LongView):
     """View that gathers evidence for a question and resumes after a stop."""
 
     settings = (
-        text("asked.question", "What is to be decided", 2),
-        text("asked.context", "What the answer is used for, and for what not", 2),
+        text("asked.question", "Decision", 2),
+        text("asked.context", "Use of the answer, and what it is not for", 2),
         chosen("asked.influence", "Influence of the model on the decision", LEVELS, segments),
         chosen("asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
-        text("asked.accuracy", "How far off the numbers may be"),
-        text("asked.matrix", "Cases: force = 2, 3 kN; clearance = 0.05, 0.1 mm"),
-        text("asked.tolerances", "Tolerances: clearance = 0.1 +- 0.02 mm"),
+        text("asked.accuracy", "Allowed error of the numbers"),
+        text("asked.matrix", "Cases, such as force = 2, 3 kN"),
+        text("asked.tolerances", "Tolerances, such as clearance = 0.1 +- 0.02 mm"),
         text("asked.friction", "Coefficient of friction, if any"),
-        chosen("asked.elements", "Finite elements judge the worst cases", _NO_YES, segments),
-        chosen("asked.wear", "With the wear of the view Wear", _NO_YES, segments),
+        chosen("asked.elements", "Check the worst cases by finite elements", _NO_YES, segments),
+        chosen("asked.wear", "Include the wear of the view Wear", _NO_YES, segments),
     )
     title, name, run_label, longest = "Evidence", "evidence", "Gather the evidence", EVIDENCE_SECONDS
     body = long_body("evidence", _INPUTS, '<div id="evidence-found"></div>').replace("inputs-row", "asking")
@@ -155,7 +155,7 @@ def _case_table(screen: Screen) -> str:
 
 _OFFER = (
     "<p class='trust no'>✗ No limit is stated. "
-    "<button type='button' class='plain' data-tell='evidence.allowable'>Take the liner's allowable pressure</button>"
+    "<button type='button' class='plain' data-tell='evidence.allowable'>Use the liner's allowable pressure</button>"
     "</p>"
 )
 _CONTENTS = (
@@ -166,7 +166,7 @@ _CONTENTS = (
 
 def _pack_html(pack: EvidencePack) -> str:
     """Return the decisions on the limits, failures first, then the other conclusions and the worst cases."""
-    take = "<p><button type='button' class='plain' data-tell='evidence.take'>Take the pack (ZIP)</button></p>"
+    take = "<p><button type='button' class='plain' data-tell='evidence.take'>Download the pack (ZIP)</button></p>"
     limits = pack.record["limits"]
     decided = "".join(_decision(limit) for limit in sorted(limits, key=_is_kept))
     return f"{decided}{items(pack.conclusions[len(limits) :])}{table(*_worst(pack), kind='words')}{take}"

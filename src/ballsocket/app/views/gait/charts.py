@@ -13,7 +13,7 @@ from ....core.kinds import Unit
 from ....core.quantities import CONTACT, DERIVED, FIELD, Quantity
 from ....files.joint_file import JointFile
 from ....reports.style import BLUE, INK, LineStyle
-from ...pictures.bore import BoreField, colour_scale, load_bore, node_field, shape_of, viewer
+from ...pictures.bore import CELLS_EDGE, BoreField, colour_scale, load_bore, node_field, shape_of, viewer
 from ...pictures.chart import Curve, chart, legend
 from ...pictures.svg import levels_between
 from ...pressing import rounded_up
@@ -177,6 +177,7 @@ def flat_bore(result: GaitResult, film: GaitFilm | None, file: JointFile, readin
         label=label,
         reach=result.reach,
         cup=file.cup,
+        least=CELLS_EDGE if film is None else 1e-3,
     )
     phase, highest = result.phase[instant], number_text(nodes.max())
     words = f"{label} at {phase:.1f} % of the cycle, seen from the opening, up to {highest}"

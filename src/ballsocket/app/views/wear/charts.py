@@ -12,7 +12,7 @@ from ....compare import relative_deviation
 from ....core.quantities import CONTACT, DERIVED
 from ....reports.pages import table
 from ....reports.style import BLUE, VERMILLION, LineStyle
-from ...pictures.bore import METRIC, BoreField, grid_field, load_bore
+from ...pictures.bore import CELLS_EDGE, METRIC, BoreField, grid_field, load_bore
 from ...pictures.chart import Curve, chart, legend
 from ...pressing import rounded_up
 from ...widgets.reading import Reading
@@ -31,8 +31,8 @@ def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -
     rows = []
     for name, base in columns[0].items():
         others = [column[name] for column in columns[1:]]
-        apart = [percent(float(relative_deviation(value, base)), "+") if base else "–" for value in others]
-        cells = [f"{number_text(value)} ({share})" for value, share in zip(others, apart, strict=True)]
+        apart = [f" ({percent(float(relative_deviation(value, base)), '+')})" if base else "" for value in others]
+        cells = [number_text(value) + share for value, share in zip(others, apart, strict=True)]
         rows.append([name, number_text(base), *cells])
     used = "".join(
         f"<h3>{escape(name)} after the last cycle</h3>{checked(entry.checks, reading)}"
@@ -43,7 +43,7 @@ def wear_numbers(designs: Mapping[str, WearResult], reading: Reading = METRIC) -
         f"<p class='quiet'>{escape(name)}: {escape(entry.band)}</p>{notes_list(entry.notes)}"
         for name, entry in designs.items()
     )
-    return f"{used}{table(['after the last cycle', *designs], rows)}{notes}"
+    return f"{table(['after the last cycle', *designs], rows)}{used}{notes}"
 
 
 def _final_values(worn: WearResult, reading: Reading) -> dict[str, float]:
@@ -128,5 +128,6 @@ def _depth_map(element: str, name: str, worn: WearResult, highest: float, readin
         label=f"worn depth{unit.text_in_brackets}",
         reach=worn.grid.reach,
         cup=worn.cup,
+        least=CELLS_EDGE,
     )
     return load_bore(field, label, worn.load)

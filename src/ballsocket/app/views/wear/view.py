@@ -27,7 +27,7 @@ from ...widgets.words import unit_of_files
 from .charts import depth_maps, empty_chart, penetration_chart, wear_numbers
 from .worker import WEAR_SECONDS, WearResult, simulate_designs, wear_key
 
-_ALONE, _NOW, _AS_COMPARED = "", "as it is now", "as it was put beside"
+_ALONE, _NOW, _AS_COMPARED = "", "as it is now", "as added"
 
 
 def _beside_field(screen: Screen) -> Field:
@@ -105,7 +105,7 @@ class Wear(LongView):
     body = long_body(
         "wear",
         "".join(f'<div data-field="wear.{setting.key}"></div>' for setting in settings),
-        '<div id="wear-numbers"></div><div id="wear-curve"></div><div class="beside" id="wear-maps"></div>',
+        '<div id="wear-curve"></div><div class="beside" id="wear-maps"></div><div id="wear-numbers"></div>',
     )
 
     def question_of(self, screen: Screen) -> Hashable:
