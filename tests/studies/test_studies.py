@@ -394,8 +394,10 @@ def test_too_many_points_are_refused_with_size_and_time(tmp_path):
     wide = {"force": Span(1.0, 2.0, 10**7), "clearance": Span(0.05, 0.1, 10**6)}
     with pytest.raises(ValueError, match="on the disk of the store"):
         bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", **wide)
-    many = sample(10**12, clearance=Rectangular(low=0.05, high=0.15))
     with pytest.raises(ValueError, match="of memory for the values along its axes; use fewer"):
+        bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", force=Span(1.0, 2.0, 10**12))
+    many = sample(10**12, method=Method.LATIN_HYPERCUBE, clearance=Rectangular(low=0.05, high=0.15))
+    with pytest.raises(ValueError, match="1 000 000 000 000 points take .* on the disk of the store"):
         bs.study(bs.HessForsbach(), HIP, many, store=tmp_path / "s.zarr", force=1000.0)
     assert not (tmp_path / "s.zarr").exists()
 

@@ -33,11 +33,12 @@ from ..files.toml import read_toml
 from ..files.units import as_given, parse
 from ..problem import Joint
 from ..problem.presets import materials, named_material
-from .axes import Method, Span
+from .axes import Span
 from .design import Design, grid, sample, table
 from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 from .expressions import parse_correlations
 from .parameters import PARAMETERS
+from .sampling import Method
 from .store import check_store
 
 Read = Callable[[str, Any], float]

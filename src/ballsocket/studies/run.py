@@ -22,11 +22,13 @@ from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint
+from .axes import CACHED_CHUNKS, Axis, SampleAxis
 from .design import Design, check_values, grid, is_number
 from .metadata import make_dataset
 from .parameters import LOADS, check_aims, press_arguments
+from .sampling import CHUNK_SIZE
 from .store import BlockStore, StudyStore, check_store, read
-from .task import DEFAULT_QUANTITIES, DTYPES, EDGE_DISTANCE, QUANTITIES, Blocks, Task, points_per_block
+from .task import DEFAULT_QUANTITIES, DTYPES, EDGE_DISTANCE, QUANTITIES, Task, divide_study, points_per_block
 
 if TYPE_CHECKING:
     import xarray
@@ -39,9 +41,6 @@ _TABULATED, _EXACT_CURVE = Tabulated(), ExactCurve()
 
 _MANY_HOURS = 100.0
 """Number of hours that is written without digits after the point."""
-
-_COPIES = 3
-"""Copies of the values along an axis in memory: as drawn, as scaled, as labels."""
 
 
 @renamed_fields(done="n_done", points="n_points", found="n_stored", left="seconds_left")
@@ -182,7 +181,7 @@ def _create_task(
         raise ValueError("joint and model of a study have plain numbers: use an axis for a number that varies")
     names = quantities or tuple(name for name in ("force", *DEFAULT_QUANTITIES) if name not in loads)
     computed = tuple(dict.fromkeys(name for name in names if name not in loads))
-    return Task(model, joint, points, computed, Blocks.divide(points.shape, points_per_block(model)))
+    return Task(model, joint, points, computed, divide_study(points.shape, points_per_block(model)))
 
 
 def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> None:
@@ -196,8 +195,7 @@ def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> 
         The space is too small; the message has the size and the computing time.
     """
     count = task.design.size if n_points is None else n_points
-    results = count * sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
-    values = 8 * sum(len(axis) * len(axis.names) for axis in task.design.axes)
+    results = count * _result_size(task)
     duration = _duration_text(count * task.model.seconds_a_press / 3600)
 
     def check(size: int, free: int, hint: str) -> None:
@@ -209,11 +207,35 @@ def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> 
             )
 
     if path is None:
-        check(results + _COPIES * values, available_memory(), "of memory; use a store, or fewer points")
+        check(memory_size(task), available_memory(), "of memory; use a store, or fewer points")
         return
-    check(_COPIES * values, available_memory(), "of memory for the values along its axes; use fewer")
-    labels = values if n_points is None else 0
+    axes = [axis for axis in task.design.axes if not isinstance(axis, SampleAxis)]
+    check(sum(map(_axis_size, axes)), available_memory(), "of memory for the values along its axes; use fewer")
+    labels = 8 * sum(len(axis) * len(axis.names) for axis in task.design.axes) if n_points is None else 0
     check(results + labels, available_disk_space(path), "on the disk of the store")
+
+
+def memory_size(task: Task) -> int:
+    """Estimate the largest memory in bytes of a study without a store.
+
+    These are its results and the values along its axes, and first two blocks, one computed and one received, then the
+    indices of a grid.
+    """
+    axes, size = task.design.axes, _result_size(task)
+    blocks = min(2, len(task.blocks)) * prod(task.blocks.size) * size
+    indices = 8 * sum(len(axis) for axis in axes if axis.name in axis.names)
+    return task.design.size * size + sum(map(_axis_size, axes)) + max(blocks, indices)
+
+
+def _result_size(task: Task) -> int:
+    """Return the size in bytes of the results of one point."""
+    return sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
+
+
+def _axis_size(axis: Axis) -> int:
+    """Return the size in bytes of the values along an axis, and of the cached samples."""
+    cached = min(len(axis), CACHED_CHUNKS * CHUNK_SIZE) if isinstance(axis, SampleAxis) else 0
+    return 8 * (len(axis) + cached) * len(axis.names)
 
 
 def _duration_text(hours: float) -> str:

@@ -19,14 +19,15 @@ from ..core.checks import needs
 from ..core.deprecation import renamed_names
 from ..core.storage.atomic_files import address_of, make_draft_folder, write_atomically
 from ..core.storage.pieces import PieceStore
+from .axes import Axis
 from .metadata import (
     list_differences,
     order_coordinates,
-    parameter_coordinates,
     study_attributes,
     study_identity,
     variable_attributes,
 )
+from .sampling import CHUNK_SIZE
 from .task import DTYPES, Task
 
 if TYPE_CHECKING:
@@ -216,11 +217,10 @@ def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
     codec: Any = BloscCodec(cname="lz4", clevel=1, shuffle="shuffle")
     attributes: Any = {**study_attributes(task), _IDENTITY: identity, "coordinates": " ".join(task.design.names)}
     group = zarr.create_group(path, attributes=attributes)
-    for name, (dims, values) in parameter_coordinates(task.design).items():
-        coordinate = group.create_array(
-            name, shape=values.shape, dtype=values.dtype, dimension_names=dims, attributes=variable_attributes(name)
-        )
-        coordinate[...] = values
+    for name, value in task.design.fixed.items():
+        group.create_array(name, shape=(), dtype="float64", attributes=variable_attributes(name))[...] = value  # type: ignore[index]
+    for axis in task.design.axes:
+        _write_axis(group, axis)
     for name in task.variables:
         dtype = numpy.dtype(DTYPES[name])
         group.create_array(
@@ -236,6 +236,24 @@ def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
     group.create_array(
         CHECKSUM, shape=(len(task.blocks),), chunks=(1,), dtype="int64", fill_value=-1, dimension_names=("block",)
     )
+
+
+def _write_axis(group: Any, axis: Axis) -> None:
+    """Write the values along an axis in sections, since large axes of samples are not held in memory."""
+    coordinates = {
+        name: group.create_array(
+            name,
+            shape=(len(axis),),
+            chunks=(min(len(axis), CHUNK_SIZE),),
+            dtype="float64",
+            dimension_names=(axis.name,),
+            attributes=variable_attributes(name),
+        )
+        for name in axis.names
+    }
+    for section in axis.sections:
+        for name, values in axis.values_in(section).items():
+            coordinates[name][section] = values
 
 
 def _stored_checksum(group: Any, task: Task, number: int) -> int | None:
