@@ -230,7 +230,7 @@ def _escape(text: str) -> str:
     return "".join(char if char.isprintable() else ascii(char)[1:-1] for char in text)
 
 
-def echo_path(path: Path, more: str = "") -> None:
+def echo_path(path: str | Path, more: str = "") -> None:
     """Print the path or address of a written file or folder, with escapes for characters that are not printable."""
     from ..core.storage.atomic_files import address_of
 

@@ -16,7 +16,8 @@ from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core.checks import check_names, needs, shown
 from ..core.deprecation import renamed_fields
-from ..core.executors.processes import Engine, Serial, available_disk_space, available_memory, count_text, size_text
+from ..core.executors.processes import Engine, Serial, available_memory, count_text, size_text
+from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceRun
 from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
@@ -104,8 +105,9 @@ def study(
     quantities : iterable of str
         Quantities of a `Contact`. By default indentation, half angle, peak pressure, area, and the force unless it is
         the load. `status` and `valid` are always included.
-    store : path, optional
-        Folder for a Zarr group. Blocks of the same study in this folder are not computed again.
+    store : path or str, optional
+        Folder for a Zarr group, or its address in a remote store that fsspec knows, such as "s3://bucket/hips.zarr".
+        Blocks of the same study in this folder are not computed again.
     engine : Engine
         Executor: `Serial()`, `Processes()`, `Distributed()`. The results are bit-identical.
     listen : callable
@@ -143,17 +145,17 @@ def study(
     if not callable(getattr(engine, "run", None)) or isinstance(engine, type):
         raise TypeError(f"engine must be an Engine, such as Serial() or Processes(workers=2), got {shown(engine)}")
     task = _create_task(model, joint, design, axes, tuple(quantities))
-    study_store = None if store is None else StudyStore(Path(store).absolute())
-    if study_store is None or not study_store.path.exists():
-        _check_space(task, None if study_store is None else study_store.path)
+    study_store = None if store is None else StudyStore(folder_at(store))
+    if study_store is None or not study_store.folder.exists():
+        _check_space(task, None if study_store is None else study_store.folder)
     check_values(task.design)
     if study_store is None:
         return make_dataset(task, _compute_in_memory(task, engine, listen))
     study_store.prepare(task)
     run = PieceRun(task, range(len(task.blocks)), BlockStore(task, study_store))
-    _check_space(task, study_store.path, sum(map(task.blocks.n_points, run.missing)))
+    _check_space(task, study_store.folder, sum(map(task.blocks.n_points, run.missing)))
     _compute_into_store(study_store, task, run, engine, listen)
-    return read(study_store.path)
+    return read(str(study_store.folder))
 
 
 def _check_types(model: Any, joint: Any, design: Any) -> None:
@@ -184,8 +186,8 @@ def _create_task(
     return Task(model, joint, points, computed, divide_study(points.shape, points_per_block(model)))
 
 
-def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> None:
-    """Check that the results of a study fit into the memory, or on the disk of its store at `path`.
+def _check_space(task: Task, folder: ResultFolder | None, n_points: int | None = None) -> None:
+    """Check that the results of a study fit into the memory, or on the disk of its store.
 
     `n_points` is the number of points to compute, all points by default.
 
@@ -198,7 +200,7 @@ def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> 
     results = count * _result_size(task)
     duration = _duration_text(count * task.model.seconds_a_press / 3600)
 
-    def check(size: int, free: int, hint: str) -> None:
+    def check(size: float, free: float, hint: str) -> None:
         """Raise ValueError if the free space is smaller than a size in bytes."""
         if size > free:
             raise ValueError(
@@ -206,13 +208,13 @@ def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> 
                 f"{size_text(free)} {hint}"
             )
 
-    if path is None:
+    if folder is None:
         check(memory_size(task), available_memory(), "of memory; use a store, or fewer points")
         return
     axes = [axis for axis in task.design.axes if not isinstance(axis, SampleAxis)]
     check(sum(map(_axis_size, axes)), available_memory(), "of memory for the values along its axes; use fewer")
     labels = 8 * sum(len(axis) * len(axis.names) for axis in task.design.axes) if n_points is None else 0
-    check(results + labels, available_disk_space(path), "on the disk of the store")
+    check(results + labels, folder.free_space(), "on the disk of the store")
 
 
 def memory_size(task: Task) -> int:
@@ -267,7 +269,7 @@ def _compute_into_store(store: StudyStore, task: Task, run: PieceRun, engine: En
         raise
     except OSError as error:
         state = f"{n_stored} of {len(task.blocks)} blocks are stored; run the study again to resume"
-        raise OSError(error.errno, f"{error.strerror or error}; {state}", str(store.path)) from error
+        raise OSError(error.errno, f"{error.strerror or error}; {state}", str(store.folder)) from error
 
 
 def _report_progress(
