@@ -16,7 +16,6 @@ from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TextIO
 
-import numpy
 import typer
 from typer.core import TyperCommand, TyperGroup
 
@@ -77,6 +76,11 @@ class CommandGroup(TyperGroup):
             name: imported.get(name) or Placeholder(name=name, help=entry.summary, hidden=entry.hidden)
             for name, entry in _ENTRIES.items()
         }
+
+    def invoke(self, ctx: Any) -> Any:
+        """Call a command without floating-point warnings."""
+        with _without_warnings():
+            return super().invoke(ctx)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return a command by its name, imported if necessary, with the arguments that follow it."""
@@ -155,13 +159,15 @@ def main() -> None:
     _allow_any_encoding()
     if os.environ.get("COLUMNS", "").strip() == "0":  # width 0 means an unknown width
         del os.environ["COLUMNS"]
-    with _exit_on_sigterm(), _without_warnings():
+    with _exit_on_sigterm():
         sys.exit(_run())
 
 
 @contextmanager
 def _without_warnings() -> Iterator[None]:
     """Suppress floating-point warnings; results carry a status and notes."""
+    import numpy
+
     with numpy.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         yield

@@ -17,7 +17,6 @@ from ..executors.processes import available_disk_space
 from ..input_files import open_input
 from .atomic_files import address_of, write_atomically
 
-
 _LOCAL = "file://"
 """Beginning of the address of a local file."""
 
