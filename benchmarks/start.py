@@ -74,6 +74,9 @@ def measure(other: str | None = None) -> Report:
     )
     return Report(
         [rows] if other is None else [rows, processor_time(other)],
-        ["The processes run from this checkout's environment; the command as `python -m ballsocket`."],
+        [
+            "The processes run from this checkout's environment; the command as `python -m ballsocket`.",
+            "Processor times are with one thread of linear algebra; before is the checkout of `--other`.",
+        ],
         ("scipy",),
     )

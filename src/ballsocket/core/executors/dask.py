@@ -81,7 +81,9 @@ class Distributed:
         ImportError
             Dask is not installed.
         ConnectionError
-            The scheduler does not respond or needs certificates, or ends during the run.
+            The scheduler does not respond or needs certificates.
+        OSError
+            The scheduler ends during the run.
         RuntimeError
             The workers of a piece died more often than the scheduler allows.
         """
@@ -92,13 +94,13 @@ class Distributed:
 
         from distributed import KilledWorker
 
-        with self._connect_client() as client, _report_missing_workers(client):
+        with _without_tracebacks(), self._connect_client() as client, _report_missing_workers(client):
             try:
                 yield from _compute_pieces(client, work, numbers, self.retries)
             except KilledWorker as error:
                 raise RuntimeError(f"the workers of a piece died too often: {error}") from error
             except CancelledError as error:
-                raise ConnectionError(None, "the Dask scheduler ended", client.scheduler.address) from error
+                raise OSError(None, "the Dask scheduler ended", self.address) from error
 
     @contextmanager
     def _connect_client(self) -> Iterator[Client]:
@@ -143,6 +145,8 @@ def _compute_pieces(client: Client, work: Work, numbers: Sequence[int], retries:
 
     The work function is a task, not scattered data: if the workers that have it die, it is sent again.
     """
+    from concurrent.futures import CancelledError
+
     import dask
     from distributed import as_completed
 
@@ -153,6 +157,8 @@ def _compute_pieces(client: Client, work: Work, numbers: Sequence[int], retries:
     completed = as_completed(pieces, with_results=True)
     del pieces  # a worker frees each result after it has been received
     for piece, result in completed:
+        if isinstance(result, CancelledError):  # of all pieces, when the connection is lost
+            raise result
         yield result
         piece.release()
 
@@ -165,6 +171,20 @@ def _return_work(work: Work) -> Work:
 def _compute_piece(number: int, work: Work) -> tuple[int, Any]:
     """Compute a piece of work on a worker; return its number and result."""
     return number, work(number)
+
+
+@contextmanager
+def _without_tracebacks() -> Iterator[None]:
+    """Suppress log messages of Dask's client until the end of the block; a lost scheduler is raised as an error."""
+    loggers = [logging.getLogger(name) for name in ("distributed.client", "tornado.application")]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
 
 
 @contextmanager
