@@ -29,6 +29,10 @@ BENCHMARKS = {
     "papers-mesh": ("papers_mesh", "CalculiX and the finite elements on the paper's mesh: a quarter of an hour"),
     "reproduce": ("reproduce", "the whole paper by one command: quick, full, and when everything is kept"),
     "studies": ("studies", "studies of ten million presses, what they add, and their cost against size: 10 minutes"),
+    "blocks": (
+        "blocks",
+        "blocks of large studies, Dask's processor time for each, and memory of samples",
+    ),
     "tabulated": (
         "tabulated",
         "a million presses by force from the tables, beside the exact solver and the paper's model",
@@ -74,7 +78,9 @@ def main(words: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("names", nargs="*", metavar="NAME", help="which to run; none lists them")
     parser.add_argument("--write", action="store_true", help="also put the rows into benchmarks/RESULTS.md")
-    parser.add_argument("--other", metavar="PATH", help="checkout of another version, which `app` measures too")
+    parser.add_argument(
+        "--other", metavar="PATH", help="checkout of another version, which `app`, `blocks` and `import` measure too"
+    )
     parser.add_argument("--python", metavar="PATH", help="interpreter with the rivals of `app`, if not this one")
     given = parser.parse_args(words)
     for name in given.names:

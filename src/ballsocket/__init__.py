@@ -8,78 +8,85 @@
 Lengths are in mm, forces in N, moduli and pressures in MPa, angles in rad.
 """
 
+import sys
 from importlib import import_module
+from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from . import studies
-from .catalogue import catalogue
-from .compare import compare
-from .contact import Contact, Model
 from .core.deprecation import present_module_path, register_old_paths
-from .core.sources import Source, cite
-from .core.validity import OutsideDomainError, Range, Status
-from .elasticity.exact.exact_curve import ExactCurve
-from .elasticity.exact.model import Exact
-from .elasticity.exact.tabulated.model import Tabulated
-from .elasticity.finite_elements.model import FiniteElement
-from .elasticity.finite_elements.spacing import Adapted, Element, Uniform
-from .elasticity.off_axis import (
-    BoreDeviation,
-    ClosedShell,
-    DepthTable,
-    Orientations,
-    OvalBore,
-    Pinched,
-    Preload,
-    RealCup,
-    Sphere,
-    Springs,
-    Worn,
-    orient,
-    pull_out,
-    read_scan,
-)
-from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
-from .lubrication import Lubricant
-from .models.adhesion import AdhesiveSocket
-from .models.closed_form import ClosedForm
-from .models.foundation import (
-    Bartel,
-    BondedLayer,
-    BondedLayerExact,
-    CosineLimit,
-    HessForsbach,
-    RadialFoundation,
-    Vessel,
-)
-from .models.half_space import Hertz, LiuReconstruction, Steuermann
-from .models.kinematics import cosine_kinematics, exact_kinematics, linear_kinematics
-from .models.modulus import bonded_layer, constant, corrected_vessel, hess_forsbach, polynomial, spherical_vessel
-from .models.pin_in_hole import PinInHole
-from .models.plane_layer import PlaneLayer
-from .models.refined import Refined
-from .problem import Joint, Layer, Material, Support
-from .problem.cup import AngleDefinition, Cup, Interface, Side
-from .problem.gaps import CircularGap, LinearGap
-from .problem.presets import (
-    ALUMINA,
-    ALUMINA_COMPOSITE,
-    BONE_CEMENT,
-    CANCELLOUS_BONE,
-    COCR,
-    CORTICAL_BONE,
-    CROSSLINKED_PE,
-    POM,
-    STEEL,
-    STRUCTURAL_STEEL,
-    TITANIUM,
-    UHMWPE,
-    joints,
-    materials,
-)
 from .reports.figure_files import register_plots
-from .studies.run import study
 from .version import __version__ as __version__
+
+if TYPE_CHECKING:
+    from . import studies as studies
+    from .catalogue import catalogue
+    from .compare import compare
+    from .contact import Contact, Model
+    from .core.sources import Source, cite
+    from .core.validity import OutsideDomainError, Range, Status
+    from .dynamics.element import ForceElement
+    from .elasticity.exact.exact_curve import ExactCurve
+    from .elasticity.exact.model import Exact
+    from .elasticity.exact.tabulated.model import Tabulated
+    from .elasticity.finite_elements.model import FiniteElement
+    from .elasticity.finite_elements.spacing import Adapted, Element, Uniform
+    from .elasticity.off_axis import (
+        BoreDeviation,
+        ClosedShell,
+        DepthTable,
+        Orientations,
+        OvalBore,
+        Pinched,
+        Preload,
+        RealCup,
+        Sphere,
+        Springs,
+        Worn,
+        orient,
+        pull_out,
+        read_scan,
+    )
+    from .files.joint_file import read_joint
+    from .identify import as_constant, as_corrected_vessel, as_polynomial, calibrate, identify
+    from .lubrication import Lubricant
+    from .lubrication.film import film
+    from .models.adhesion import AdhesiveSocket
+    from .models.closed_form import ClosedForm
+    from .models.foundation import (
+        Bartel,
+        BondedLayer,
+        BondedLayerExact,
+        CosineLimit,
+        HessForsbach,
+        RadialFoundation,
+        Vessel,
+    )
+    from .models.half_space import Hertz, LiuReconstruction, Steuermann
+    from .models.kinematics import cosine_kinematics, exact_kinematics, linear_kinematics
+    from .models.modulus import bonded_layer, constant, corrected_vessel, hess_forsbach, polynomial, spherical_vessel
+    from .models.pin_in_hole import PinInHole
+    from .models.plane_layer import PlaneLayer
+    from .models.refined import Refined
+    from .problem import Joint, Layer, Material, Support
+    from .problem.cup import AngleDefinition, Cup, Interface, Side
+    from .problem.gaps import CircularGap, LinearGap
+    from .problem.presets import (
+        ALUMINA,
+        ALUMINA_COMPOSITE,
+        BONE_CEMENT,
+        CANCELLOUS_BONE,
+        COCR,
+        CORTICAL_BONE,
+        CROSSLINKED_PE,
+        POM,
+        STEEL,
+        STRUCTURAL_STEEL,
+        TITANIUM,
+        UHMWPE,
+        joints,
+        materials,
+    )
+    from .studies.run import study
 
 register_old_paths()
 register_plots()
@@ -190,26 +197,66 @@ _HINTS = {
 }
 """Sentences on names that users look for here."""
 
-_DOORS = ("dynamics", "evidence", "export", "hip")
+_DOORS = ("dynamics", "evidence", "export", "hip", "studies")
 """Subpackages for users, which are imported on first use."""
 
-_ON_FIRST_USE = {
-    "ForceElement": "dynamics.element",
-    "film": "lubrication.film",
-    "read_joint": "files.joint_file",
+_NAMES_BY_MODULE = {
+    "catalogue": "catalogue",
+    "compare": "compare",
+    "contact": "Contact Model",
+    "core.sources": "Source cite",
+    "core.validity": "OutsideDomainError Range Status",
+    "dynamics.element": "ForceElement",
+    "elasticity.exact.exact_curve": "ExactCurve",
+    "elasticity.exact.model": "Exact",
+    "elasticity.exact.tabulated.model": "Tabulated",
+    "elasticity.finite_elements.model": "FiniteElement",
+    "elasticity.finite_elements.spacing": "Adapted Element Uniform",
+    "elasticity.off_axis": "BoreDeviation ClosedShell DepthTable Orientations OvalBore Pinched Preload RealCup "
+    "Sphere Springs Worn orient pull_out read_scan",
+    "files.joint_file": "read_joint",
+    "identify": "as_constant as_corrected_vessel as_polynomial calibrate identify",
+    "lubrication": "Lubricant",
+    "lubrication.film": "film",
+    "models.adhesion": "AdhesiveSocket",
+    "models.closed_form": "ClosedForm",
+    "models.foundation": "Bartel BondedLayer BondedLayerExact CosineLimit HessForsbach RadialFoundation Vessel",
+    "models.half_space": "Hertz LiuReconstruction Steuermann",
+    "models.kinematics": "cosine_kinematics exact_kinematics linear_kinematics",
+    "models.modulus": "bonded_layer constant corrected_vessel hess_forsbach polynomial spherical_vessel",
+    "models.pin_in_hole": "PinInHole",
+    "models.plane_layer": "PlaneLayer",
+    "models.refined": "Refined",
+    "problem": "Joint Layer Material Support",
+    "problem.cup": "AngleDefinition Cup Interface Side",
+    "problem.gaps": "CircularGap LinearGap",
+    "problem.presets": "ALUMINA ALUMINA_COMPOSITE BONE_CEMENT CANCELLOUS_BONE COCR CORTICAL_BONE CROSSLINKED_PE POM "
+    "STEEL STRUCTURAL_STEEL TITANIUM UHMWPE joints materials",
+    "studies.run": "study",
 }
-"""Names whose modules are imported on first use, since pressing a joint needs none of them."""
+"""Names for users by module. A module is imported on the first use of one of its names."""
 
-if TYPE_CHECKING:
-    from .dynamics.element import ForceElement
-    from .files.joint_file import read_joint
-    from .lubrication.film import film
-else:
+_MODULES = {name: module for module, names in _NAMES_BY_MODULE.items() for name in names.split()}
+
+
+class _Package(ModuleType):
+    """Module whose functions `compare` and `identify` and whose list `catalogue` hide the modules of their names."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Set an attribute; Python sets a submodule after its import."""
+        super().__setattr__(name, getattr(value, name) if name in _MODULES and isinstance(value, ModuleType) else value)
+
+
+sys.modules[__name__].__class__ = _Package
+
+if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        """Import a name that few need, a subpackage, or a moved module of version 1.0 on first use."""
-        if name in _ON_FIRST_USE:
-            return getattr(import_module(f"{__name__}.{_ON_FIRST_USE[name]}"), name)
+        """Import a name, a subpackage, or a moved module of version 1.0 on first use."""
+        if name in _MODULES:
+            value = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+            globals()[name] = value
+            return value
         if name not in _DOORS and present_module_path(f"{__name__}.{name}") is None:
             hint = f"; {_HINTS[name]}" if name in _HINTS else ""
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}{hint}")

@@ -1,14 +1,17 @@
 """Start of the program: imports on demand, the list of commands, and the help of each."""
 
+import ast
 import re
 import subprocess
 import sys
 from dataclasses import fields
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 import typer
 
+import ballsocket as bs
 from ballsocket.cli.options import JointOptions
 from ballsocket.cli.root import app, load_commands
 from ballsocket.core.deprecation import MOVED
@@ -17,7 +20,10 @@ from ballsocket.core.quantities import QUANTITIES
 from .command import run
 
 COMMANDS = load_commands()
-HEAVY = ("dask", "jinja2", "matplotlib", "mcp", "numba", "pandas", "pint", "scipy", "skfem", "xarray")
+HEAVY = (
+    *("dask", "jinja2", "matplotlib", "mcp", "multiprocessing", "numba", "pandas", "pint", "pydantic", "scipy"),
+    *("skfem", "xarray"),
+)
 ORDER = (
     *("press", "curve", "film", "orient", "map", "optimise", "sensitivity", "study", "hip", "planning"),
     *("models", "presets", "cite", "identify", "calibrate", "evidence", "deck", "fmu", "export"),
@@ -71,6 +77,48 @@ def test_a_command_imports_its_own_modules_and_no_heavy_package(words, modules):
     }
     own = {name.removeprefix("ballsocket.cli.") for name in loaded if name.startswith("ballsocket.cli.")}
     assert modules <= own & commands <= {"press_files", *modules}
+
+
+def test_the_help_needs_no_numbers():
+    assert not {"numpy", "ballsocket.catalogue"} & set(modules_after("--help"))
+
+
+def test_the_package_is_imported_name_by_name():
+    code = (
+        "import sys, ballsocket as bs\n"
+        "print('numpy' in sys.modules, dir(bs) == sorted({*bs.__all__, *bs._DOORS, '__doc__', '__version__'}))\n"
+        "bs.UHMWPE\n"
+        "print('ballsocket.catalogue' in sys.modules, 'numpy' in sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
+    assert done.stdout.split() == ["False", "True", "False", "True"]
+
+
+def test_every_name_of_the_package_is_imported_by_its_first_use():
+    """The names for type checkers are those of the table; functions hide the modules of their names."""
+    assert set(bs.__all__) <= {*bs._MODULES, "studies"}
+    assert all(hasattr(bs, name) for name in bs.__all__)
+    tree = ast.parse(Path(bs.__file__).read_bytes())
+    imported = {
+        (node.module, alias.name)
+        for block in tree.body
+        if isinstance(block, ast.If)
+        for node in block.body
+        if isinstance(node, ast.ImportFrom) and node.module
+        for alias in node.names
+    }
+    assert imported == {(module, name) for name, module in bs._MODULES.items()}
+    for name in ("compare", "identify"):
+        import_module(f"ballsocket.{name}")
+        assert callable(getattr(bs, name))
+    assert "exact" in bs.catalogue
+
+
+def test_texts_that_are_given_pass_as_they_are_and_numbers_are_checked():
+    assert run("press", "hip-36", "--force", "3 kN", "--model", "hertz", "--model", "exact").returncode == 0
+    done = run("press", "hip-36", "--force", "3 kN", "--friction", "much")
+    assert (done.returncode, "'--friction'" in done.stderr, done.stderr.count("\n")) == (2, True, 1)
+    assert run("study").returncode == 2
 
 
 def test_help_lists_the_commands_in_order_with_the_first_lines_of_their_docstrings():

@@ -6,16 +6,19 @@ import subprocess
 import sys
 import time
 from collections import deque
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from datetime import datetime
 from importlib import import_module
+from ipaddress import ip_address
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from ballsocket.core.executors import Distributed, Processes, Serial
 from ballsocket.core.executors import processes as module
-from ballsocket.core.executors.dask import _build_dataset, local_cluster
+from ballsocket.core.executors.dask import local_cluster
 from ballsocket.core.executors.processes import available_cores, limit_threads
 
 WORK = """
@@ -262,11 +265,105 @@ def test_an_error_on_a_dask_worker_is_raised(scheduler):
         list(Distributed(address=scheduler, retries=0).run(len, [1]))
 
 
-def test_a_piece_is_a_task_of_dask():
-    pytest.importorskip("dask")
-    blocks = _build_dataset("plugin", [4, 5, 9])
-    assert blocks.chunksizes == {"block": (1, 1, 1)}
-    assert blocks.result.dtype == object
+def test_a_piece_is_a_task_of_dask_and_nothing_is_left_after_the_run(scheduler):
+    from distributed import Client
+
+    def tasks(dask_scheduler):
+        return [str(key) for key in dask_scheduler.tasks], list(dask_scheduler.worker_plugins)
+
+    executor = Distributed(address=scheduler)
+    with Client(scheduler) as client:
+        _, plugins = client.run_on_scheduler(tasks)
+        results = executor.run(abs, range(5))
+        next(results)
+        during, _ = client.run_on_scheduler(tasks)
+        results.close()
+        wait_until(lambda: client.run_on_scheduler(tasks) == ([], plugins))
+    assert 1 < len(during) <= 6
+    assert sum(key.endswith("-work") for key in during) == 1
+
+
+def test_a_large_work_function_is_sent_without_a_warning(scheduler):
+    columns = np.zeros(2_000_000)
+    assert list(Distributed(address=scheduler).run(columns.take, [7])) == [(7, 0.0)]
+
+
+def wait_until(condition):
+    """Wait until a condition is met, at most half a minute."""
+    end = time.monotonic() + 30
+    while not condition() and time.monotonic() < end:
+        time.sleep(0.05)
+    assert condition()
+
+
+def test_missing_workers_are_reported_within_seconds(monkeypatch, caplog):
+    """The work waits for the first worker, which it then uses."""
+    distributed = pytest.importorskip("distributed")
+    monkeypatch.setattr("ballsocket.core.executors.dask._WORKER_CHECK_INTERVAL", 0.1)
+
+    def warnings():
+        return [record.getMessage() for record in caplog.records if record.name == "ballsocket.executors"]
+
+    options = {"threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50, "processes": False}
+    with distributed.LocalCluster(n_workers=0, **options) as cluster, ThreadPoolExecutor() as pool:
+        waiting = pool.submit(list, Distributed(address=cluster.scheduler_address).run(abs, [-1]))
+        wait_until(warnings)
+        assert not waiting.done()
+        cluster.scale(1)
+        assert waiting.result(60) == [(-1, 1)]
+    address = cluster.scheduler_address
+    assert warnings() == [
+        f"the Dask scheduler at {address} has no workers: the work waits for the first one; Ctrl-C stops it"
+    ]
+
+
+def test_certificates_need_an_address():
+    with pytest.raises(ValueError, match="security needs the address of a scheduler"):
+        Distributed(security=object())
+
+
+def test_a_tls_address_without_certificates_is_one_sentence():
+    pytest.importorskip("distributed")
+    with pytest.raises(ConnectionError, match="needs certificates: 'tls://127.0.0.1:1'"):
+        list(Distributed(address="tls://127.0.0.1:1").run(abs, [1]))
+
+
+def write_certificate(folder):
+    """Write a self-made certificate of this machine and its key, and return the options of Dask."""
+    x509 = pytest.importorskip("cryptography.x509")
+    from cryptography.hazmat.primitives import hashes, serialization
+    from cryptography.hazmat.primitives.asymmetric import ec
+
+    key, name = ec.generate_private_key(ec.SECP256R1()), x509.Name([])
+    builder = x509.CertificateBuilder(
+        issuer_name=name,
+        subject_name=name,
+        public_key=key.public_key(),
+        serial_number=x509.random_serial_number(),
+        not_valid_before=datetime(2000, 1, 1),
+        not_valid_after=datetime(2100, 1, 1),
+    )
+    names = x509.SubjectAlternativeName([x509.IPAddress(ip_address("127.0.0.1"))])
+    certificate = builder.add_extension(names, critical=False).sign(key, hashes.SHA256())
+    private = serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+    (folder / "key.pem").write_bytes(key.private_bytes(serialization.Encoding.PEM, *private))
+    (folder / "certificate.pem").write_bytes(certificate.public_bytes(serialization.Encoding.PEM))
+    files = {"cert": str(folder / "certificate.pem"), "key": str(folder / "key.pem")}
+    roles = {f"tls_{role}_{part}": path for role in ("client", "scheduler", "worker") for part, path in files.items()}
+    return {"tls_ca_file": files["cert"], "require_encryption": True, **roles}
+
+
+@pytest.mark.long
+def test_tls_needs_the_certificates(tmp_path):
+    distributed = pytest.importorskip("distributed")
+    security = distributed.Security(**write_certificate(tmp_path))
+    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
+    with distributed.LocalCluster(security=security, protocol="tls", processes=False, **options) as cluster:
+        address = cluster.scheduler_address
+        assert address.startswith("tls://")
+        assert list(Distributed(address=address, security=security).run(abs, [-1])) == [(-1, 1)]
+        with pytest.raises(ConnectionError, match="needs certificates"):
+            list(Distributed(address=address).run(abs, [-1]))
 
 
 def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable(monkeypatch):
@@ -298,7 +395,7 @@ def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable(monkeypatc
 def test_a_scheduler_that_does_not_respond_is_an_error(monkeypatch):
     distributed = pytest.importorskip("distributed")
 
-    def refuse(address, timeout):
+    def refuse(address, timeout, security):
         raise OSError(f"timed out after {timeout} s")
 
     monkeypatch.setattr(distributed, "Client", refuse)

@@ -120,7 +120,7 @@ def test_models_of_ones_own_are_told_apart(store):
 
 def test_a_finished_study_is_opened_on_a_full_disk(store, monkeypatch):
     presses(store)
-    monkeypatch.setattr("ballsocket.studies.run.available_disk_space", lambda path: 0)
+    monkeypatch.setattr("ballsocket.core.storage.folders.available_disk_space", lambda path: 0)
     _, blocks = presses(store)
     assert blocks == 0
 

@@ -1,11 +1,13 @@
 """A study as a process of the system: killed, interrupted, out of room. The result is that of an undisturbed one."""
 
+import json
 import os
 import random
 import signal
 import subprocess
 import sys
 import time
+from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
 
@@ -59,9 +61,9 @@ def test_files_that_may_not_grow_stop_the_command_with_one_sentence(tmp_path):
     )
 
 
-def started(folder, stderr=subprocess.DEVNULL):
+def started(folder, stderr=subprocess.DEVNULL, *options):
     return subprocess.Popen(
-        [sys.executable, "-m", "ballsocket", "study", "s.toml"],
+        [sys.executable, "-m", "ballsocket", "study", "s.toml", *options],
         cwd=folder,
         env={name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"},  # as users have it
         stdout=subprocess.DEVNULL,
@@ -167,6 +169,54 @@ def _descendants(pid):
 
 def _is_worker(pid):
     return b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("end", ["interrupted", "killed", "scheduler killed"])
+def test_a_study_on_the_users_workers_ends_without_tracebacks_and_leaves_nothing(tmp_path, end):
+    """The workers belong to the user: they go on, without tasks of a study that has ended."""
+    distributed = pytest.importorskip("distributed")
+    (tmp_path / "s.toml").write_text(STUDY.format(engine="dask", clearances=60, radii=30, model="exact"), "utf-8")
+    file = tmp_path / "scheduler.json"
+    common = ("--no-dashboard", "--host", "127.0.0.1", "--scheduler-file", str(file))
+    with ExitStack() as stack:
+        log = stack.enter_context((tmp_path / "worker.log").open("w"))
+        scheduler, worker = (
+            stack.enter_context(server(words, tmp_path, log))
+            for words in (("scheduler", *common, "--port", "0"), ("worker", *common, "--no-nanny", "--nthreads", "1"))
+        )
+        while not file.exists() or not file.read_text("utf-8"):
+            time.sleep(0.05)
+        address = json.loads(file.read_text("utf-8"))["address"]
+        process = started(tmp_path, subprocess.PIPE, "--scheduler", address)
+        while done_blocks(tmp_path / "s.zarr") < 2 and process.poll() is None:
+            time.sleep(0.02)
+        ended = scheduler if end == "scheduler killed" else process
+        ended.send_signal(signal.SIGINT if end == "interrupted" else signal.SIGKILL)
+        _, said = process.communicate(timeout=PATIENCE)
+        assert "Traceback" not in said
+        if end == "scheduler killed":
+            assert process.returncode == 2
+            assert "blocks are stored; run the study again to resume" in " ".join(said.split())
+            return
+        assert worker.poll() is None
+        with distributed.Client(address) as client:
+            deadline = time.time() + 60
+            while client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)) and time.time() < deadline:
+                time.sleep(0.2)
+            assert client.run_on_scheduler(lambda dask_scheduler: list(dask_scheduler.tasks)) == []
+    assert "Traceback" not in (tmp_path / "worker.log").read_text("utf-8")
+    assert done_blocks(tmp_path / "s.zarr") >= 2
+
+
+@contextmanager
+def server(words, folder, log):
+    """A command of Dask's that runs until it is no longer needed."""
+    with subprocess.Popen([sys.executable, "-m", "dask", *words], cwd=folder, stdout=log, stderr=log) as running:
+        try:
+            yield running
+        finally:
+            running.terminate()
 
 
 def test_control_c_and_a_kill_leave_a_store_that_resumes(tmp_path):

@@ -13,7 +13,6 @@ import typer
 
 from ..catalogue import listed_models
 from ..core.checks import nearest, normalise_name
-from ..core.executors.processes import Engine, Processes
 from ..core.input_files import resolve_input
 from ..files.joint_file import JointFile, joint_of, read_cup, read_joint, read_load, varied
 from ..problem.dimensions import LENGTHS
@@ -24,6 +23,8 @@ from .json_answers import echo_json
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from ..core.executors.processes import Engine
 
 
 def complete_material(start: str) -> list[str]:
@@ -316,7 +317,11 @@ def choose_executor(workers: int | None, scheduler: str | None, default: Engine)
         from ..core.executors.dask import Distributed
 
         return Distributed(address=scheduler, workers=workers)
-    return default if workers is None else Processes(workers=workers)
+    if workers is None:
+        return default
+    from ..core.executors.processes import Processes
+
+    return Processes(workers=workers)
 
 
 # --- groups of options in the signature of a command ---

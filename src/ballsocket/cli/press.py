@@ -6,7 +6,7 @@ import sys
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import degrees, pi
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy
 import typer
@@ -17,7 +17,6 @@ from ..contact import Contact, Model
 from ..core.checks import known_name
 from ..core.quantities import CONTACT
 from ..core.validity import Status
-from ..dynamics import Friction
 from ..elasticity.off_axis import Preload, PullOut
 from ..elasticity.off_axis import pull_out as compute_pull_out
 from ..files.joint_file import JointFile
@@ -55,6 +54,9 @@ from .options import (
 )
 from .press_files import FigureOptions, ReportOptions
 from .root import FAILURE, app, print_message
+
+if TYPE_CHECKING:
+    from ..dynamics import Friction
 
 DEFAULT_MODEL = "hess-forsbach"
 
@@ -120,9 +122,15 @@ class FrictionOptions:
     def check(self) -> None:
         """Raise ValueError for a negative coefficient, and for static friction without, or below, sliding friction."""
         if self.friction is not None:
-            Friction(coefficient=self.friction, static_coefficient=self.static_friction)
+            self._law(self.friction)
         elif self.static_friction is not None:
             raise ValueError("--static-friction needs the coefficient of sliding friction: add --friction")
+
+    def _law(self, coefficient: float) -> Friction:
+        """Return the law of friction with a coefficient of sliding."""
+        from ..dynamics import Friction
+
+        return Friction(coefficient=coefficient, static_coefficient=self.static_friction)
 
     def check_pull_out(self, models: Container[str], assumed_arc: bool) -> None:
         """Raise ValueError for a pull-out force without the model `sphere`, or without an arc of cover."""
@@ -137,7 +145,7 @@ class FrictionOptions:
         """Compute the friction torques of a contact in N mm, with their coefficients; empty without friction."""
         if self.friction is None:
             return {}
-        friction = Friction(coefficient=self.friction, static_coefficient=self.static_friction)
+        friction = self._law(self.friction)
         sliding, static = friction.coefficient, friction.breakaway_coefficient
         across, along = (contact.friction_torque(1.0, axis_angle) for axis_angle in (pi / 2, 0.0))
         return {

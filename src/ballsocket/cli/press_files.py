@@ -6,7 +6,7 @@ from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import degrees
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -19,11 +19,11 @@ from ..files.joint_file import JointFile
 from ..reports.figure_files import check_format, save
 from ..reports.pages import check_page_path, write_page
 from ..reports.unit_systems import Units
-from ..studies.derivatives import LocalUncertainty, local_uncertainty, off_axis_uncertainty
-from ..studies.distributions import Distribution
-from ..studies.expressions import parse_distribution
-from ..studies.parameters import PARAMETERS
 from .root import print_message
+
+if TYPE_CHECKING:
+    from ..studies.derivatives import LocalUncertainty
+    from ..studies.distributions import Distribution
 
 _VIEW_FORMAT = ".png"
 
@@ -158,7 +158,12 @@ class ReportOptions:
     @property
     def tolerances(self) -> dict[str, Distribution]:
         """Distributions of the tolerances by parameter; ValueError for an unknown name or a name stated twice."""
-        parsed = list(map(parse_distribution, self.tolerance or ()))
+        if not self.tolerance:
+            return {}
+        from ..studies.expressions import parse_distribution
+        from ..studies.parameters import PARAMETERS
+
+        parsed = list(map(parse_distribution, self.tolerance))
         names = [name for name, _ in parsed]
         for name in names:
             check_names([name], PARAMETERS, "among what can have a tolerance")
@@ -204,6 +209,8 @@ class ReportOptions:
 
     def _tolerance_study(self, comparison: Comparison, file: JointFile) -> LocalUncertainty | None:
         """Compute the effect of the tolerances; None without contact, and off the axis without tolerances."""
+        from ..studies.derivatives import local_uncertainty, off_axis_uncertainty
+
         load = {name: float(value) for name, value in file.load.items()}
         if not any(value > 0 for value in load.values()):
             return None

@@ -16,7 +16,6 @@ from io import TextIOWrapper
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, TextIO
 
-import numpy
 import typer
 from typer.core import TyperCommand, TyperGroup
 
@@ -61,6 +60,44 @@ def add_commands(entries: Mapping[str, CommandEntry]) -> None:
     _ENTRIES.update(entries)
 
 
+class PlainCommand(TyperCommand):
+    """A command that takes texts and defaults as they are."""
+
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Return the parameters and the option for help."""
+        return [_pass_plain_values(parameter) for parameter in super().get_params(ctx)]
+
+
+def _pass_plain_values(parameter: Any) -> Any:
+    """Let a parameter pass texts and defaults unchecked: pydantic, which checks them, takes 0.2 s to import."""
+    annotation = getattr(getattr(parameter, "type_descriptor", None), "annotation", None)
+    if annotation is not None and not parameter.required and "process_value" not in vars(parameter):
+        parameter.process_value = _with_plain_values(parameter, annotation, parameter.process_value)
+    return parameter
+
+
+def _with_plain_values(parameter: Any, annotation: Any, process_value: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function that passes values of the annotated type, and processes other values as typer does."""
+
+    def process(ctx: Any, value: Any) -> Any:
+        """Return a value as the command takes it."""
+        if annotation == list[str] and all(isinstance(text, str) for text in value or ()):
+            value = list(value or ())
+        elif not isinstance(annotation, type) or not (value is None or isinstance(value, annotation)):
+            return process_value(ctx, value)
+        return value if parameter.callback is None else parameter.callback(ctx, parameter, value)
+
+    return process
+
+
+class Program(typer.Typer):
+    """Application whose commands are of the class `PlainCommand`."""
+
+    def command(self, *names: Any, **options: Any) -> Any:
+        """Return the decorator that makes a command of a function."""
+        return super().command(*names, cls=PlainCommand, **options)
+
+
 class Placeholder(TyperCommand):
     """A command that is listed but not imported yet."""
 
@@ -78,6 +115,15 @@ class CommandGroup(TyperGroup):
             for name, entry in _ENTRIES.items()
         }
 
+    def get_params(self, ctx: Any) -> list[Any]:
+        """Return the parameters of the program and the option for help."""
+        return [_pass_plain_values(parameter) for parameter in super().get_params(ctx)]
+
+    def invoke(self, ctx: Any) -> Any:
+        """Call a command without floating-point warnings."""
+        with _without_warnings():
+            return super().invoke(ctx)
+
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Return a command by its name, imported if necessary, with the arguments that follow it."""
         name = args[0]
@@ -88,7 +134,7 @@ class CommandGroup(TyperGroup):
         return super().resolve_command(ctx, args)
 
 
-app = typer.Typer(
+app = Program(
     name=PROGRAM,
     cls=CommandGroup,
     help="Contact of a ball in a socket of nearly its own radius. A number without a unit is in mm, N, MPa or degrees.",
@@ -155,13 +201,15 @@ def main() -> None:
     _allow_any_encoding()
     if os.environ.get("COLUMNS", "").strip() == "0":  # width 0 means an unknown width
         del os.environ["COLUMNS"]
-    with _exit_on_sigterm(), _without_warnings():
+    with _exit_on_sigterm():
         sys.exit(_run())
 
 
 @contextmanager
 def _without_warnings() -> Iterator[None]:
     """Suppress floating-point warnings; results carry a status and notes."""
+    import numpy
+
     with numpy.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         yield
@@ -230,7 +278,7 @@ def _escape(text: str) -> str:
     return "".join(char if char.isprintable() else ascii(char)[1:-1] for char in text)
 
 
-def echo_path(path: Path, more: str = "") -> None:
+def echo_path(path: str | Path, more: str = "") -> None:
     """Print the path or address of a written file or folder, with escapes for characters that are not printable."""
     from ..core.storage.atomic_files import address_of
 

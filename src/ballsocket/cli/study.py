@@ -14,6 +14,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn
 
 from ..core.executors.processes import count_text
+from ..core.storage.atomic_files import address_of
+from ..core.storage.folders import folder_at
 from ..reports import study_plots, study_tables
 from ..reports.figure_files import check_format, save
 from ..reports.unit_systems import Units
@@ -36,7 +38,11 @@ if TYPE_CHECKING:
 def study(
     file: Annotated[Path, typer.Argument(help="Study file (TOML).")],
     store: Annotated[
-        Path | None, typer.Option(help="Folder that stores the results. Default: the store of the file.")
+        Path | None,
+        typer.Option(
+            help="Folder that stores the results, also in a cloud store: 's3://bucket/hips.zarr'. "
+            "Default: the store of the file."
+        ),
     ] = None,
     out: Annotated[
         Path | None,
@@ -105,13 +111,13 @@ def _choose_plot(study_file: StudyFile, path: Path) -> Callable[..., Figure]:
 
 
 @contextmanager
-def _progress_bar(store: Path | None) -> Iterator[Listener]:
+def _progress_bar(store: str | Path | None) -> Iterator[Listener]:
     """Show a progress bar with rate and remaining time; after Ctrl-C, print the number of stored points."""
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[state]}"))
     progress = Progress(*columns, console=Console(stderr=True))
     task = progress.add_task("reading the store", total=None, state="")
     latest: list[StudyProgress] = []
-    if store is not None and store.exists():
+    if store is not None and folder_at(store).exists():
         progress.start()
 
     def update(state: StudyProgress) -> None:
@@ -127,7 +133,8 @@ def _progress_bar(store: Path | None) -> Iterator[Listener]:
     except KeyboardInterrupt:
         _stop(progress)
         if store is not None and latest:
-            stored = f"{count_text(latest[0].n_done)} of {count_text(latest[0].n_points)} points are stored in {store}"
+            counts = f"{count_text(latest[0].n_done)} of {count_text(latest[0].n_points)}"
+            stored = f"{counts} points are stored in {address_of(store) or store}"
             print_message(f"stopped; {stored}: run the command again to resume")
         raise
     finally:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..core.checks import shown
-from ..core.storage.atomic_files import is_draft_folder, write_atomically
+from ..core.storage.atomic_files import is_draft_folder, make_folder, write_atomically
 from .question import Question
 from .signature import PublicKey, SignatureError, sign, verify
 
@@ -203,7 +203,7 @@ def _top_names(names: set[str]) -> set[str]:
 
 def _write_file(path: Path, content: bytes) -> Path:
     """Write a file atomically."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     with write_atomically(path) as draft:
         draft.write_bytes(content)
     return path

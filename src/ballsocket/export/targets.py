@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy
 
 from ..core.deprecation import RenamedAttribute
-from ..core.storage.atomic_files import write_text
+from ..core.storage.atomic_files import make_folder, write_text
 from ..dynamics import ContactState, ForceElement, PreloadedElement
 from ..dynamics.ball_centre import Constants
 from ..version import __version__
@@ -117,7 +117,7 @@ class Target:
         OSError
             A folder that cannot be made, or written to.
         """
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         paths = []
         for name, text in self.texts(job).items():
             (folder / name).parent.mkdir(parents=True, exist_ok=True)

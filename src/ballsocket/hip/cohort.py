@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from io import BytesIO
 from math import ceil
 from pathlib import Path
 
@@ -14,7 +15,8 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
-from ..core.storage.atomic_files import read_arrays, write_arrays, write_text
+from ..core.storage.atomic_files import pack_arrays, unpack_arrays
+from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
 from ..studies.axes import SampleAxis
 from .simulation import make_checkpoint
@@ -140,26 +142,22 @@ class CohortStore(PieceStore):
 
     Attributes
     ----------
-    folder : Path
-        Absolute path of the folder.
+    folder : ResultFolder
+        Local or remote folder.
     identity : str
         Digest of the nominal hip, the distributions, the seed and the code, without the number of patients.
     n_patients : int
         Number of patients of the present run. A stored last piece with fewer patients is computed again.
     """
 
-    folder: Path
+    folder: ResultFolder
     identity: str
     n_patients: int = 0
 
-    @property
-    def _label_file_path(self) -> Path:
-        """Path of the label file, which identifies the cohort."""
-        return self.folder / _LABEL_NAME
-
-    def _piece_path(self, piece: int) -> Path:
-        """Return the path of the file with the results of a piece (group of patients)."""
-        return self.folder / f"patients_{piece:06d}.npz"
+    @staticmethod
+    def _piece_name(piece: int) -> str:
+        """Return the name of the file with the results of a piece (group of patients)."""
+        return f"patients_{piece:06d}.npz"
 
     def create(self) -> None:
         """Create the folder and the label file of the store, unless they exist.
@@ -169,9 +167,8 @@ class CohortStore(PieceStore):
         OSError
             The folder is not writable.
         """
-        self.folder.mkdir(parents=True, exist_ok=True)
-        if not self._label_file_path.exists():
-            write_text(self._label_file_path, json.dumps({"identity": self.identity}))
+        if self._read_label() is None:
+            self.folder.write(_LABEL_NAME, json.dumps({"identity": self.identity}).encode())
 
     def check(self) -> None:
         """Check that an existing store belongs to this cohort; ValueError otherwise.
@@ -181,19 +178,29 @@ class CohortStore(PieceStore):
         ValueError
             The folder has another cohort or a damaged label.
         """
-        label = self._label_file_path
-        if not label.exists():
+        label = self._read_label()
+        if label is None:
             return
         try:
-            identity = json.loads(label.read_bytes())["identity"]
+            identity = json.loads(label)["identity"]
         except (ValueError, LookupError, TypeError) as error:
-            raise ValueError(f"{label} is not the label of a patient cohort; delete it to start again") from error
+            raise ValueError(
+                f"{self.folder}/{_LABEL_NAME} is not the label of a patient cohort; delete it to start again"
+            ) from error
         if identity != self.identity:
             raise ValueError(f"{self.folder} has another cohort, or one of another version; choose another folder")
 
+    def _read_label(self) -> bytes | None:
+        """Read the label file, which identifies the cohort; return None if it does not exist."""
+        try:
+            return self.folder.read(_LABEL_NAME)
+        except FileNotFoundError:
+            return None
+
     def load(self, numbers: Sequence[int]) -> dict[int, CohortResult]:
         """Load the stored results of some pieces; omit missing and damaged files."""
-        results = {piece: self._read_piece(piece) for piece in numbers}
+        stored = self.folder.names()
+        results = {piece: self._read_piece(piece) for piece in numbers if self._piece_name(piece) in stored}
         return {piece: result for piece, result in results.items() if result is not None}
 
     def save(self, number: int, result: CohortResult) -> CohortResult:
@@ -205,13 +212,14 @@ class CohortStore(PieceStore):
             The folder is not writable or the disk is full.
         """
         arrays = {array.name: getattr(result, array.name) for array in fields(result)}
-        write_arrays(self._piece_path(number), identity=self.identity, **arrays)
+        self.folder.write(self._piece_name(number), pack_arrays(identity=self.identity, **arrays))
         return result
 
     def _read_piece(self, piece: int) -> CohortResult | None:
         """Read the result of a piece; return None if the file is missing, damaged or of another cohort."""
         try:
-            arrays = read_arrays(self._piece_path(piece))
+            name = self._piece_name(piece)
+            arrays = unpack_arrays(BytesIO(self.folder.read(name)), name)
             if str(arrays.pop("identity")) != self.identity:
                 return None
             result = CohortResult(**arrays)
@@ -222,13 +230,15 @@ class CohortStore(PieceStore):
 
 
 @renamed_arguments(scatter="variability")
-def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence[float], seed: int) -> CohortStore:
+def cohort_store(
+    folder: str | Path, variability: PatientVariability, counts: Sequence[float], seed: int
+) -> CohortStore:
     """Create the store of a cohort in a folder; ValueError if the folder stores another cohort.
 
     Parameters
     ----------
-    folder : Path
-        Folder of the store. It is created by the first run.
+    folder : str or Path
+        Folder of the store, or its address in a remote store that fsspec knows. It is created by the first run.
     variability : PatientVariability
         Distributions of the patients.
     counts : sequence of float
@@ -241,10 +251,10 @@ def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence
     ValueError
         The folder has another cohort or a damaged label.
     """
-    nominal = make_checkpoint(variability.coarse_simulation, folder).identity
+    nominal = make_checkpoint(variability.coarse_simulation, Path(folder)).identity
     distributions = dict(variability.distributions)
     identity = hash_inputs(fingerprint(), nominal, distributions, variability.body_weight, tuple(counts), seed)
-    store = CohortStore(folder=folder.absolute(), identity=identity)
+    store = CohortStore(folder=folder_at(folder), identity=identity)
     store.check()
     return store
 
@@ -275,7 +285,7 @@ def table_columns(run: CohortRun, result: CohortResult) -> Iterator[tuple[str, N
 
 
 def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
-    """Write the patient table to a CSV file, one row for each patient, and return its path.
+    """Write the patient table to a CSV file, local or remote, one row for each patient, and return its path.
 
     Raises
     ------
@@ -286,7 +296,8 @@ def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
     rows = (
         ",".join("" if numpy.isnan(value) else f"{value:.9g}" for value in row) for row in numpy.stack(columns, axis=1)
     )
-    return write_text(path, "\n".join([",".join(names), *rows]) + "\n")
+    folder_at(path.parent).write(path.name, ("\n".join([",".join(names), *rows]) + "\n").encode())
+    return path
 
 
 __getattr__ = renamed_names(

@@ -15,7 +15,7 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
-from ..core.storage.atomic_files import read_arrays, write_arrays
+from ..core.storage.atomic_files import make_folder, read_arrays, write_arrays
 from ..core.storage.pieces import hash_inputs
 from ..lubrication import Lubricant
 from .ball_wear import map_counterface
@@ -67,7 +67,7 @@ class Checkpoint:
         OSError
             The folder is not writable or the disk is full.
         """
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make_folder(self.folder)
         report_arrays = {
             f"report_{number}_{field.name}": getattr(report, field.name)
             for number, report in enumerate(reports)

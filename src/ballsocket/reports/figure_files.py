@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..core.display import Plot, register_plot
-from ..core.storage.atomic_files import check_parent_folder, write_atomically
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,6 +25,8 @@ def check_format(path: Path) -> None:
     ValueError
         Another ending, or a folder that does not exist.
     """
+    from ..core.storage.atomic_files import check_parent_folder
+
     if path.suffix.lower().lstrip(".") not in FORMATS:
         raise ValueError(f"figure {str(path)!r} must end in {', '.join('.' + name for name in FORMATS)}")
     check_parent_folder(path)
@@ -41,6 +42,8 @@ def save(figure: Figure, path: str | Path) -> None:
     OSError
         The path cannot be written to.
     """
+    from ..core.storage.atomic_files import write_atomically
+
     path = Path(path)
     check_format(path)
     with write_atomically(path) as draft:

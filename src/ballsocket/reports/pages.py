@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 from ..core.checks import needs
 from ..core.input_files import open_input
 from ..core.storage.atomic_files import check_parent_folder, write_atomically
-from ..core.storage.pieces import fingerprint
 from ..files.joint_file import ReportDetails
 from .figure_files import figure_bytes
 
@@ -183,6 +182,8 @@ def render_page(template: str, title: str, sections: Sections, **context: Any) -
         for name, (head, html) in sections.items()
     }
     page = _environment().get_template(template)
+    from ..core.storage.pieces import fingerprint
+
     return page.render(title=title, sections=parts, fingerprint=fingerprint(), **context)
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..core.checks import nearest
 from ..core.display import load_plot
-from .axes import Method, Span
+from .axes import Span
 from .derivatives import elasticities
 from .design import Design, grid, sample, table
 from .distributions import LogNormal, Normal, Rectangular, tolerance
@@ -23,6 +23,7 @@ from .optimisation import Optimum, optimise
 from .parameters import PARAMETERS
 from .pareto import pareto
 from .run import Progress, study
+from .sampling import Method
 from .sensitivity import sensitivity
 from .store import read
 

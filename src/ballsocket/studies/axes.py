@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import warnings
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import lru_cache
 from math import inf
@@ -13,10 +12,10 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.checks import require
-from ..core.kinds import Choice
 from ..core.quantities import MATERIAL, QUANTITIES
 from ..problem import Material
 from .distributions import Distribution, copula_matrix, correlate
+from .sampling import CHUNK_SIZE, Method, draw_chunk
 
 MAX_COUNT = 10**15
 """Largest number of values along an axis."""
@@ -44,6 +43,15 @@ class Axis(ABC):
 
     def __len__(self) -> int:
         return len(next(iter(self.values.values())))
+
+    def values_in(self, section: slice) -> Mapping[str, Numbers]:
+        """Return the values of each parameter in a section of the axis."""
+        return {name: values[section] for name, values in self.values.items()}
+
+    @property
+    def sections(self) -> Iterator[slice]:
+        """Sections of at most `CHUNK_SIZE` values, in which large axes are written."""
+        return (slice(start, min(start + CHUNK_SIZE, len(self))) for start in range(0, len(self), CHUNK_SIZE))
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,16 +156,9 @@ class MaterialAxis(Axis):
         return tuple(material.name or str(material) for material in self.materials)
 
 
-class Method(Choice):
-    """Methods of sampling."""
-
-    SOBOL = "sobol"
-    LATIN_HYPERCUBE = "latin-hypercube"
-
-
 @dataclass(frozen=True, kw_only=True)
 class SampleAxis(Axis):
-    """Axis of samples of distributions, drawn from the seed when they are used.
+    """Axis of samples of distributions, drawn from the seed in chunks when they are used.
 
     `correlation` lists pairs of names with their rank correlation.
     """
@@ -178,25 +179,33 @@ class SampleAxis(Axis):
 
     @property
     def values(self) -> Mapping[str, Numbers]:
-        return _draw_samples(self)
+        return self.values_in(slice(0, self.count))
+
+    def values_in(self, section: slice) -> Mapping[str, Numbers]:
+        """Draw the samples of each parameter in a section of the axis; workers receive the seed, not the samples."""
+        start, stop, _ = section.indices(self.count)
+        values = {name: numpy.empty(stop - start) for name in self.names}
+        for number in range(start // CHUNK_SIZE, -(-stop // CHUNK_SIZE)):
+            first = number * CHUNK_SIZE
+            low, high = max(start, first), min(stop, first + CHUNK_SIZE)
+            for column, samples in zip(values.values(), _draw_samples(self, number), strict=True):
+                column[low - start : high - start] = samples[low - first : high - first]
+        return values
 
 
-@lru_cache(maxsize=4)
-def _draw_samples(axis: SampleAxis) -> Mapping[str, Numbers]:
-    """Draw the samples of an axis, once in each process: workers receive the seed instead of the samples."""
-    from scipy.stats.qmc import LatinHypercube, Sobol
+CACHED_CHUNKS = 8
+"""Number of chunks of samples that each process keeps."""
 
-    engines = {Method.SOBOL: Sobol, Method.LATIN_HYPERCUBE: LatinHypercube}
-    engine = engines[axis.method](len(axis.distributions), rng=axis.seed)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", UserWarning)  # SciPy warns of counts other than powers of two
-        probabilities = engine.random(axis.count).T
+
+@lru_cache(maxsize=CACHED_CHUNKS)
+def _draw_samples(axis: SampleAxis, chunk: int) -> tuple[Numbers, ...]:
+    """Draw the samples of one chunk, an array for each parameter."""
+    probabilities = draw_chunk(axis.method, axis.count, len(axis.distributions), axis.seed, chunk)
     if axis.correlation:
         probabilities = correlate(probabilities, copula_matrix(axis.names, dict(axis.correlation)))
-    return {
-        name: distribution.frozen.ppf(row)
-        for (name, distribution), row in zip(axis.distributions, probabilities, strict=True)
-    }
+    return tuple(
+        distribution.frozen.ppf(row) for (_, distribution), row in zip(axis.distributions, probabilities, strict=True)
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,6 @@ from .axes import (
     Axis,
     GridAxis,
     MaterialAxis,
-    Method,
     SampleAxis,
     Span,
     SpanAxis,
@@ -30,6 +29,7 @@ from .axes import (
 )
 from .distributions import Correlation, Distribution, copula_matrix
 from .parameters import MATERIAL_PARTS, PARAMETERS, check_contradictions
+from .sampling import MAX_SOBOL_COUNT, Method
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,9 +99,9 @@ class Design:
         arrays = {name: numpy.full([1] * len(self.axes), value) for name, value in self.fixed.items()}
         for dimension, (axis, section) in enumerate(zip(self.axes, box, strict=True)):
             shape = [1] * len(self.axes)
-            for name, values in axis.values.items():
+            for name, values in axis.values_in(section).items():
                 shape[dimension] = -1
-                arrays[name] = values[section].reshape(shape)
+                arrays[name] = values.reshape(shape)
         return arrays
 
 
@@ -148,21 +148,39 @@ def check_values(design: Design) -> None:
         A value is not allowed; the message has the first one.
     """
     for axis in design.axes:
+        if isinstance(axis, SampleAxis):
+            _check_samples(axis)
+            continue
         ends = {axis.name: numpy.array([axis.span.low, axis.span.high])} if isinstance(axis, SpanAxis) else axis.values
         for name, values in ends.items():
-            _check_allowed(name, values, "; truncate the distribution" if isinstance(axis, SampleAxis) else "")
+            _check_allowed(name, values)
     for name, value in design.fixed.items():
-        _check_allowed(name, numpy.array([value]), "")
+        _check_allowed(name, numpy.array([value]))
 
 
-def _check_allowed(name: str, values: Numbers, hint: str) -> None:
-    """Raise ValueError for the first value outside the range of a parameter."""
+def _check_samples(axis: SampleAxis) -> None:
+    """Raise ValueError for a sample outside the range of its parameter; draw only what a distribution allows there."""
+    doubtful = [
+        name
+        for name, distribution in axis.distributions
+        if not PARAMETERS[name].allows(numpy.array(distribution.frozen.support())).all()
+    ]
+    for section in axis.sections if doubtful else ():
+        values = axis.values_in(section)
+        for name in doubtful:
+            _check_allowed(name, values[name], "; truncate the distribution", section.start)
+
+
+def _check_allowed(name: str, values: Numbers, hint: str = "", start: int = 0) -> None:
+    """Raise ValueError for the first value outside the range of a parameter; the first index is `start`."""
     bad = ~PARAMETERS[name].allows(values)
     if bad.any():
         first = int(numpy.argmax(bad))
         more = f" (and {int(bad.sum()) - 1} more)" if bad.sum() > 1 else ""
         title, degrees = PARAMETERS[name].title, PARAMETERS[name].radian_hint(float(values[first]))
-        raise ValueError(f"{name}[{first}] = {values[first]:g}{more} is not allowed for a {title}{hint}{degrees}")
+        raise ValueError(
+            f"{name}[{start + first}] = {values[first]:g}{more} is not allowed for a {title}{hint}{degrees}"
+        )
 
 
 def is_number(value: Any) -> bool:
@@ -219,7 +237,8 @@ def sample(
     Raises
     ------
     ValueError
-        No distribution, fewer than one sample, a seed below 0, or correlations that are not possible.
+        No distribution, fewer than one sample, more than 2^30 of Sobol's sequence, a seed below 0, or correlations that
+        are not possible.
 
     Examples
     --------
@@ -228,6 +247,8 @@ def sample(
     ('sample',)
     """
     require("count", count, 1 <= count <= MAX_COUNT, "at least one sample is drawn, at most 1e15")
+    if method is Method.SOBOL:
+        require("count", count, count <= MAX_SOBOL_COUNT, "Sobol's sequence has 2^30 points; use latin-hypercube")
     require("seed", seed, seed >= 0, "a seed is 0 or more")
     if not distributions:
         raise ValueError("samples need at least one parameter with a distribution")

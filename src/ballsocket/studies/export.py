@@ -12,6 +12,7 @@ import numpy
 from ..core.checks import needs
 from ..core.quantities import QUANTITIES
 from ..core.storage.atomic_files import address_of, check_parent_folder, write_atomically
+from ..core.storage.folders import folder_at, open_address
 from .task import Blocks
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def check_suffix(path: Path) -> None:
     needs("study", *_LIBRARIES.get(suffix, ()))
     address = address_of(path)
     if address is not None:
-        _open_address(address)
+        _open_export(address)
         return
     check_parent_folder(path)
     if suffix == ".zarr" and path.exists():
@@ -112,7 +113,7 @@ def _upload(study: xarray.Dataset, address: str) -> None:
     with TemporaryDirectory() as folder:
         local = Path(folder) / address.rpartition("/")[2]
         export(study, local)
-        system, target = _open_address(address)
+        system, target = _open_export(address)
         try:
             if local.is_dir():
                 system.put(f"{local}/", f"{target}/", recursive=True)
@@ -122,20 +123,10 @@ def _upload(study: xarray.Dataset, address: str) -> None:
             raise OSError(None, f"cannot be written: {error}", address) from error
 
 
-def _open_address(address: str) -> tuple[Any, str]:
-    """Return the file system of an address and the path in it."""
-    needs("study", "fsspec")
-    from fsspec.core import url_to_fs
-
-    try:
-        system, target = url_to_fs(address)
-        exists = system.exists(target)
-    except ImportError as error:
-        raise ImportError(f"{address}: {error}", name=error.name) from error
-    except ValueError as error:
-        raise ValueError(f"{address}: {error}") from error
-    except Exception as error:  # each store raises errors of its own
-        raise OSError(None, f"the remote store does not respond: {error}", address) from error
+def _open_export(address: str) -> tuple[Any, str]:
+    """Return the file system of an address and the path in it; ValueError for a Zarr group that exists."""
+    system, target = open_address(address)
+    exists = folder_at(address).exists()
     if exists and target.lower().endswith(".zarr"):
         raise ValueError(f"{address} exists: choose another name for the Zarr group, or remove it")
     return system, target

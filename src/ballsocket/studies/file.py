@@ -14,7 +14,7 @@ from ..core.deprecation import renamed_names
 from ..core.executors.dask import Distributed
 from ..core.executors.processes import Engine, Processes, Serial
 from ..core.kinds import Kind
-from ..core.storage.atomic_files import check_local
+from ..core.storage.atomic_files import address_of, check_local
 from ..files.joint_file import JointTables, joint_in
 from ..files.schema import (
     QUANTITIES_SCHEMA,
@@ -33,12 +33,12 @@ from ..files.toml import read_toml
 from ..files.units import as_given, parse
 from ..problem import Joint
 from ..problem.presets import materials, named_material
-from .axes import Method, Span
+from .axes import Span
 from .design import Design, grid, sample, table
 from .distributions import Distribution, LogNormal, Normal, Rectangular, tolerance
 from .expressions import parse_correlations
 from .parameters import PARAMETERS
-from .store import check_store
+from .sampling import Method
 
 Read = Callable[[str, Any], float]
 """Function from name and value of a number in a file to the number."""
@@ -215,7 +215,7 @@ class StudyFile:
     joint: Joint
     design: Design
     quantities: tuple[str, ...]
-    store: Path | None
+    store: str | Path | None
     engine: Engine
 
 
@@ -246,15 +246,15 @@ def _study(content: Mapping[str, Any], folder: Path) -> StudyFile:
         joint=file.joint,
         design=_design(tables, content, folder),
         quantities=tuple(map(str, tables.quantities or ())),
-        store=None if tables.store is None else folder / _store(tables.store),
+        store=None if tables.store is None else _store(tables.store, folder),
         engine=_engine(tables.engine),
     )
 
 
-def _store(text: str) -> str:
-    """Return the path of a store; ValueError if it is empty or remote."""
-    check_store(check_filled("store", text))
-    return str(text)
+def _store(text: str, folder: Path) -> str | Path:
+    """Return the path of a store beside the file, or its address; ValueError if it is empty."""
+    filled = check_filled("store", text)
+    return folder / filled if address_of(filled) is None else str(filled)
 
 
 def _engine(table: EngineTable) -> Engine:

@@ -16,17 +16,20 @@ from ..contact import Model
 from ..contact.assembly import check_joint
 from ..core.checks import check_names, needs, shown
 from ..core.deprecation import renamed_fields
-from ..core.executors.processes import Engine, Serial, available_disk_space, available_memory, count_text, size_text
+from ..core.executors.processes import Engine, Serial, available_memory, count_text, size_text
+from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceRun
 from ..core.validity import OutsideDomainError, check_domain
 from ..elasticity.exact.exact_curve import ExactCurve
 from ..elasticity.exact.tabulated.model import Tabulated
 from ..problem import Joint
+from .axes import CACHED_CHUNKS, Axis, SampleAxis
 from .design import Design, check_values, grid, is_number
 from .metadata import make_dataset
 from .parameters import LOADS, check_aims, press_arguments
+from .sampling import CHUNK_SIZE
 from .store import BlockStore, StudyStore, check_store, read
-from .task import DEFAULT_QUANTITIES, DTYPES, EDGE_DISTANCE, QUANTITIES, Blocks, Task, points_per_block
+from .task import DEFAULT_QUANTITIES, DTYPES, EDGE_DISTANCE, QUANTITIES, Task, divide_study, points_per_block
 
 if TYPE_CHECKING:
     import xarray
@@ -39,9 +42,6 @@ _TABULATED, _EXACT_CURVE = Tabulated(), ExactCurve()
 
 _MANY_HOURS = 100.0
 """Number of hours that is written without digits after the point."""
-
-_COPIES = 3
-"""Copies of the values along an axis in memory: as drawn, as scaled, as labels."""
 
 
 @renamed_fields(done="n_done", points="n_points", found="n_stored", left="seconds_left")
@@ -105,8 +105,9 @@ def study(
     quantities : iterable of str
         Quantities of a `Contact`. By default indentation, half angle, peak pressure, area, and the force unless it is
         the load. `status` and `valid` are always included.
-    store : path, optional
-        Folder for a Zarr group. Blocks of the same study in this folder are not computed again.
+    store : path or str, optional
+        Folder for a Zarr group, or its address in a remote store that fsspec knows, such as "s3://bucket/hips.zarr".
+        Blocks of the same study in this folder are not computed again.
     engine : Engine
         Executor: `Serial()`, `Processes()`, `Distributed()`. The results are bit-identical.
     listen : callable
@@ -144,17 +145,17 @@ def study(
     if not callable(getattr(engine, "run", None)) or isinstance(engine, type):
         raise TypeError(f"engine must be an Engine, such as Serial() or Processes(workers=2), got {shown(engine)}")
     task = _create_task(model, joint, design, axes, tuple(quantities))
-    study_store = None if store is None else StudyStore(Path(store).absolute())
-    if study_store is None or not study_store.path.exists():
-        _check_space(task, None if study_store is None else study_store.path)
+    study_store = None if store is None else StudyStore(folder_at(store))
+    if study_store is None or not study_store.folder.exists():
+        _check_space(task, None if study_store is None else study_store.folder)
     check_values(task.design)
     if study_store is None:
         return make_dataset(task, _compute_in_memory(task, engine, listen))
     study_store.prepare(task)
     run = PieceRun(task, range(len(task.blocks)), BlockStore(task, study_store))
-    _check_space(task, study_store.path, sum(map(task.blocks.n_points, run.missing)))
+    _check_space(task, study_store.folder, sum(map(task.blocks.n_points, run.missing)))
     _compute_into_store(study_store, task, run, engine, listen)
-    return read(study_store.path)
+    return read(str(study_store.folder))
 
 
 def _check_types(model: Any, joint: Any, design: Any) -> None:
@@ -182,11 +183,11 @@ def _create_task(
         raise ValueError("joint and model of a study have plain numbers: use an axis for a number that varies")
     names = quantities or tuple(name for name in ("force", *DEFAULT_QUANTITIES) if name not in loads)
     computed = tuple(dict.fromkeys(name for name in names if name not in loads))
-    return Task(model, joint, points, computed, Blocks.divide(points.shape, points_per_block(model)))
+    return Task(model, joint, points, computed, divide_study(points.shape, points_per_block(model)))
 
 
-def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> None:
-    """Check that the results of a study fit into the memory, or on the disk of its store at `path`.
+def _check_space(task: Task, folder: ResultFolder | None, n_points: int | None = None) -> None:
+    """Check that the results of a study fit into the memory, or on the disk of its store.
 
     `n_points` is the number of points to compute, all points by default.
 
@@ -196,11 +197,10 @@ def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> 
         The space is too small; the message has the size and the computing time.
     """
     count = task.design.size if n_points is None else n_points
-    results = count * sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
-    values = 8 * sum(len(axis) * len(axis.names) for axis in task.design.axes)
+    results = count * _result_size(task)
     duration = _duration_text(count * task.model.seconds_a_press / 3600)
 
-    def check(size: int, free: int, hint: str) -> None:
+    def check(size: float, free: float, hint: str) -> None:
         """Raise ValueError if the free space is smaller than a size in bytes."""
         if size > free:
             raise ValueError(
@@ -208,12 +208,36 @@ def _check_space(task: Task, path: Path | None, n_points: int | None = None) -> 
                 f"{size_text(free)} {hint}"
             )
 
-    if path is None:
-        check(results + _COPIES * values, available_memory(), "of memory; use a store, or fewer points")
+    if folder is None:
+        check(memory_size(task), available_memory(), "of memory; use a store, or fewer points")
         return
-    check(_COPIES * values, available_memory(), "of memory for the values along its axes; use fewer")
-    labels = values if n_points is None else 0
-    check(results + labels, available_disk_space(path), "on the disk of the store")
+    axes = [axis for axis in task.design.axes if not isinstance(axis, SampleAxis)]
+    check(sum(map(_axis_size, axes)), available_memory(), "of memory for the values along its axes; use fewer")
+    labels = 8 * sum(len(axis) * len(axis.names) for axis in task.design.axes) if n_points is None else 0
+    check(results + labels, folder.free_space(), "on the disk of the store")
+
+
+def memory_size(task: Task) -> int:
+    """Estimate the largest memory in bytes of a study without a store.
+
+    These are its results and the values along its axes, and first two blocks, one computed and one received, then the
+    indices of a grid.
+    """
+    axes, size = task.design.axes, _result_size(task)
+    blocks = min(2, len(task.blocks)) * prod(task.blocks.size) * size
+    indices = 8 * sum(len(axis) for axis in axes if axis.name in axis.names)
+    return task.design.size * size + sum(map(_axis_size, axes)) + max(blocks, indices)
+
+
+def _result_size(task: Task) -> int:
+    """Return the size in bytes of the results of one point."""
+    return sum(numpy.dtype(DTYPES[name]).itemsize for name in task.variables)
+
+
+def _axis_size(axis: Axis) -> int:
+    """Return the size in bytes of the values along an axis, and of the cached samples."""
+    cached = min(len(axis), CACHED_CHUNKS * CHUNK_SIZE) if isinstance(axis, SampleAxis) else 0
+    return 8 * (len(axis) + cached) * len(axis.names)
 
 
 def _duration_text(hours: float) -> str:
@@ -245,7 +269,7 @@ def _compute_into_store(store: StudyStore, task: Task, run: PieceRun, engine: En
         raise
     except OSError as error:
         state = f"{n_stored} of {len(task.blocks)} blocks are stored; run the study again to resume"
-        raise OSError(error.errno, f"{error.strerror or error}; {state}", str(store.path)) from error
+        raise OSError(error.errno, f"{error.strerror or error}; {state}", str(store.folder)) from error
 
 
 def _report_progress(

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import filecmp
 import json
-import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import gettempdir
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
@@ -17,16 +15,17 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import needs
 from ..core.deprecation import renamed_names
-from ..core.storage.atomic_files import address_of, make_draft_folder, write_atomically
+from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceStore
+from .axes import Axis
 from .metadata import (
     list_differences,
     order_coordinates,
-    parameter_coordinates,
     study_attributes,
     study_identity,
     variable_attributes,
 )
+from .sampling import CHUNK_SIZE
 from .task import DTYPES, Task
 
 if TYPE_CHECKING:
@@ -56,31 +55,29 @@ _MISSING_FILE_ERRORS = (FileNotFoundError, NotADirectoryError, IsADirectoryError
 
 
 def check_store(path: str | Path) -> None:
-    """Check that a store is a local folder; raise ValueError for the address of a remote store."""
-    address = address_of(path)
-    if address is not None:
-        raise ValueError(
-            f"store = {address!r} is not a local folder, which a store must be, since its blocks are updated one by "
-            "one: use a local store, and write the finished study to the address with --out or export"
-        )
+    """Check that a store can be opened; raise ValueError, ImportError or OSError for an address that cannot."""
+    folder_at(path).exists()
 
 
 def read(path: str | Path) -> xarray.Dataset:
-    """Open a stored study; its numbers are read when they are used.
+    """Open a stored study at a path or an address; its numbers are read when they are used.
 
     Raises
     ------
     OSError
-        The store does not exist.
+        The store does not exist or does not respond.
     ValueError
         The path is not a study.
     """
     import xarray
 
-    if Path(path).exists():
-        StudyStore(Path(path)).read_identity()
+    folder = folder_at(path)
+    if folder.exists():
+        StudyStore(folder).read_identity()
     try:
-        dataset = xarray.open_dataset(path, engine="zarr", consolidated=False, chunks=None)
+        with folder.errors():
+            options: Any = {"engine": "zarr", "zarr_format": 3, "consolidated": False, "chunks": None}
+            dataset = xarray.open_dataset(folder.zarr_store(), **options)
     except UnicodeError as error:
         raise ValueError(f"{path} is a damaged store: {error}; run its study again to repair it") from error
     return order_coordinates(dataset[[name for name in DTYPES if name in dataset.data_vars]])
@@ -88,9 +85,9 @@ def read(path: str | Path) -> xarray.Dataset:
 
 @dataclass(frozen=True)
 class StudyStore:
-    """Zarr group of one study."""
+    """Zarr group of one study in a local or remote folder."""
 
-    path: Path
+    folder: ResultFolder
 
     def prepare(self, task: Task) -> None:
         """Create the group with labels and without results, or check that it has the study of a task.
@@ -98,30 +95,29 @@ class StudyStore:
         Raises
         ------
         ValueError
-            The path has another study, a study of another version, or something else.
+            The folder has another study, a study of another version, or something else.
         OSError
-            The path is not writable.
+            The folder is not writable.
         """
         needs("study", "zarr")
         requested = json.loads(json.dumps(study_identity(task)))
-        if not self.path.exists():
-            self.path.parent.mkdir(parents=True, exist_ok=True)
-            if self._create(task, requested):
-                return
+        if not self.folder.exists() and self._create(task, requested):
+            return
         stored = self.read_identity()
         if stored == requested:
             self._repair_labels(task, requested)
         else:
             differences = "; ".join(list_differences(stored, requested)[:_MAX_DIFFERENCES])
-            raise ValueError(f"{self.path} has another study: {differences}. Choose another folder, or remove this one")
+            raise ValueError(
+                f"{self.folder} has another study: {differences}. Choose another folder, or remove this one"
+            )
 
     def _create(self, task: Task, identity: Mapping[str, Any]) -> bool:
         """Create the group; return False if another process created it first."""
         try:
-            with write_atomically(self.path) as draft:
-                _write_group(draft, task, identity)
+            self.folder.create(lambda draft: _write_group(draft, task, identity))
         except OSError:
-            if not self.path.exists():
+            if not self.folder.exists():
                 raise
             return False
         return True
@@ -129,14 +125,21 @@ class StudyStore:
     def _repair_labels(self, task: Task, identity: Mapping[str, Any]) -> None:
         """Write damaged or missing labels again; they are all files of a group without results."""
         # a temporary folder, since the store may be read-only
-        with make_draft_folder(Path(gettempdir()) / self.path.name) as folder:
-            draft = folder / self.path.name
+        with TemporaryDirectory() as temporary_folder:
+            draft = Path(temporary_folder) / "draft"
             _write_group(draft, task, identity)
             for label in draft.rglob("*"):
-                target = self.path / label.relative_to(draft)
-                if label.is_file() and not (target.is_file() and filecmp.cmp(label, target, shallow=False)):
-                    target.parent.mkdir(parents=True, exist_ok=True)
-                    shutil.copyfile(label, target)
+                if label.is_file():
+                    self._repair_label(label.relative_to(draft).as_posix(), label.read_bytes())
+
+    def _repair_label(self, name: str, content: bytes) -> None:
+        """Write a label again unless it has its content."""
+        try:
+            stored = self.folder.read(name)
+        except _MISSING_FILE_ERRORS:
+            stored = b""
+        if stored != content:
+            self.folder.write(name, content)
 
     def read_identity(self) -> Mapping[str, Any]:
         """Read the identity of the stored study.
@@ -144,22 +147,21 @@ class StudyStore:
         Raises
         ------
         ValueError
-            The path is not a study.
+            The folder is not a study.
         """
         try:
-            with (self.path / _LABEL_FILE).open("rb") as stream:
-                identity = json.loads(stream.read(_MAX_LABEL_BYTES))["attributes"][_IDENTITY]
+            identity = json.loads(self.folder.read(_LABEL_FILE, _MAX_LABEL_BYTES))["attributes"][_IDENTITY]
         except (*_MISSING_FILE_ERRORS, ValueError, LookupError, TypeError, RecursionError) as error:
-            raise ValueError(f"{self.path} exists and is not a study") from error
+            raise ValueError(f"{self.folder} exists and is not a study") from error
         if not isinstance(identity, Mapping):
-            raise ValueError(f"{self.path} exists and is not a study")
+            raise ValueError(f"{self.folder} exists and is not a study")
         return identity
 
     def intact_blocks(self, task: Task, numbers: Sequence[int]) -> list[int]:
         """Return the numbers of those blocks that are stored with a correct checksum."""
         import zarr
 
-        group = zarr.open_group(self.path, mode="r")
+        group = zarr.open_group(self.folder.zarr_store(), mode="r", zarr_format=3)
         try:
             checksums = numpy.asarray(group[CHECKSUM][:])  # type: ignore[index]
         except Exception:  # without the list of checksums, every block is computed again
@@ -180,10 +182,11 @@ class StudyStore:
         """
         import zarr
 
-        group = zarr.open_group(self.path, mode="r+")
-        for name, values in results.items():
-            group[name][task.blocks[number]] = values  # type: ignore[index]
-        group[CHECKSUM][number] = _checksum(results, task)  # type: ignore[index]
+        with self.folder.errors():
+            group = zarr.open_group(self.folder.zarr_store(), mode="r+", zarr_format=3)
+            for name, values in results.items():
+                group[name][task.blocks[number]] = values  # type: ignore[index]
+            group[CHECKSUM][number] = _checksum(results, task)  # type: ignore[index]
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,11 +219,10 @@ def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
     codec: Any = BloscCodec(cname="lz4", clevel=1, shuffle="shuffle")
     attributes: Any = {**study_attributes(task), _IDENTITY: identity, "coordinates": " ".join(task.design.names)}
     group = zarr.create_group(path, attributes=attributes)
-    for name, (dims, values) in parameter_coordinates(task.design).items():
-        coordinate = group.create_array(
-            name, shape=values.shape, dtype=values.dtype, dimension_names=dims, attributes=variable_attributes(name)
-        )
-        coordinate[...] = values
+    for name, value in task.design.fixed.items():
+        group.create_array(name, shape=(), dtype="float64", attributes=variable_attributes(name))[...] = value
+    for axis in task.design.axes:
+        _write_axis(group, axis)
     for name in task.variables:
         dtype = numpy.dtype(DTYPES[name])
         group.create_array(
@@ -236,6 +238,24 @@ def _write_group(path: Path, task: Task, identity: Mapping[str, Any]) -> None:
     group.create_array(
         CHECKSUM, shape=(len(task.blocks),), chunks=(1,), dtype="int64", fill_value=-1, dimension_names=("block",)
     )
+
+
+def _write_axis(group: Any, axis: Axis) -> None:
+    """Write the values along an axis in sections, since large axes of samples are not held in memory."""
+    coordinates = {
+        name: group.create_array(
+            name,
+            shape=(len(axis),),
+            chunks=(min(len(axis), CHUNK_SIZE),),
+            dtype="float64",
+            dimension_names=(axis.name,),
+            attributes=variable_attributes(name),
+        )
+        for name in axis.names
+    }
+    for section in axis.sections:
+        for name, values in axis.values_in(section).items():
+            coordinates[name][section] = values
 
 
 def _stored_checksum(group: Any, task: Task, number: int) -> int | None:

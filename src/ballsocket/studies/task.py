@@ -45,7 +45,10 @@ _BLOCK_SECONDS = 0.5
 """Intended computing time of a block in s."""
 
 _MAX_BLOCK_POINTS = 1 << 20
-"""Largest number of points of a block."""
+"""Number of points above which a block is not enlarged."""
+
+_MAX_BLOCKS = 10_000
+"""Number of blocks above which the blocks of a study are enlarged."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,19 @@ class Blocks:
         return prod(section.stop - section.start for section in self[number])
 
 
+def divide_study(shape: tuple[int, ...], n_points: int) -> Blocks:
+    """Divide a study into blocks of about `n_points` points; into larger ones if there are more than 10 000 blocks.
+
+    Larger blocks have 2, 4, 8 ... times as many points, at most a million. The blocks do not depend on the workers, so
+    that a study resumes on other workers.
+    """
+    blocks = Blocks.divide(shape, n_points)
+    while len(blocks) > _MAX_BLOCKS and n_points < _MAX_BLOCK_POINTS:
+        n_points *= 2
+        blocks = Blocks.divide(shape, n_points)
+    return blocks
+
+
 def _even_size(length: int, max_size: int) -> int:
     """Return the block length, at most `max_size`, that divides a length most evenly."""
     return ceil(length / ceil(length / max_size)) if length else 1
@@ -133,7 +149,7 @@ class Task:
         box = self.blocks[number]
         shape = tuple(section.stop - section.start for section in box)
         results = {name: numpy.empty(shape, dtype=DTYPES[name]) for name in self.variables}
-        presses = Blocks.divide(shape, _POINTS_PER_PRESS)
+        presses = Blocks.divide(shape, min(_POINTS_PER_PRESS, points_per_block(self.model)))
         values = self.design.values_in(box)
         for press_number in range(len(presses)):
             section = presses[press_number]

@@ -6,30 +6,36 @@ import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
-
-import numpy
 
 from ..checks import needs, require
 from .processes import MAX_WORKERS, Work, available_cores
 
 if TYPE_CHECKING:
-    import xarray
     from distributed import Client, LocalCluster
+    from distributed.security import Security
+
+_LOG = logging.getLogger("ballsocket.executors")
 
 _CONNECTION_TIMEOUT = 10
 """Seconds to wait for a scheduler."""
+
+_WORKER_CHECK_INTERVAL = 3.0
+"""Seconds between two checks that the scheduler has workers."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Distributed:
     """Executor that distributes pieces of work over Dask workers.
 
-    `xarray.map_blocks` makes one Dask task of each piece.
+    Each piece is one Dask task. The work function is a task too, whose result each worker receives once. Both leave the
+    cluster with the client, also if the client is killed.
 
-    If a worker dies, its pieces are computed again. Workers on other machines need the same version of this package.
-    They must reach the store under the same path.
+    If a worker dies, its pieces are computed again. Without any worker, the pieces wait for the first one, and a
+    warning is logged within a few seconds. Workers on other machines need the same version of this package. They must
+    reach the store under the same path or address.
 
     Parameters
     ----------
@@ -42,18 +48,23 @@ class Distributed:
         Number of times that a piece is computed again after an error. A cluster on this machine also tolerates as many
         deaths of the workers of one piece. Elsewhere this is the scheduler's setting
         `distributed.scheduler.allowed-failures`.
+    security : distributed.Security, optional
+        Certificates for a scheduler at a "tls://" address. Default: those of Dask's configuration.
 
     Raises
     ------
     ValueError
-        Both an address and workers, fewer than one worker, or more than 1000.
+        Both an address and workers, fewer than one worker, more than 1000, or certificates without an address.
     """
 
     address: str | None = None
     workers: int | None = None
     retries: int = 3
+    security: Security | None = None
 
     def __post_init__(self) -> None:
+        if self.security is not None and self.address is None:
+            raise ValueError("security needs the address of a scheduler: a cluster on this machine is not reachable")
         if self.workers is not None:
             require("workers", self.workers, 1 <= self.workers <= MAX_WORKERS, f"it must be 1 to {MAX_WORKERS}")
             if self.address is not None:
@@ -70,25 +81,26 @@ class Distributed:
         ImportError
             Dask is not installed.
         ConnectionError
-            The scheduler does not respond.
+            The scheduler does not respond or needs certificates.
+        OSError
+            The scheduler ends during the run.
         RuntimeError
             The workers of a piece died more often than the scheduler allows.
         """
         if not len(numbers):
             return
-        needs("study", "dask", "distributed", "xarray")
-        from distributed import KilledWorker, as_completed, futures_of
+        needs("study", "dask", "distributed")
+        from concurrent.futures import CancelledError
 
-        with self._connect_client() as client, _send_work(client, work) as plugin_name:
-            blocks = client.persist(_build_dataset(plugin_name, numbers), retries=self.retries)
-            completed = as_completed(futures_of(blocks), with_results=True)
-            del blocks  # a worker frees each result after it has been received
+        from distributed import KilledWorker
+
+        with _without_tracebacks(), self._connect_client() as client, _report_missing_workers(client):
             try:
-                for future, results in completed:
-                    yield from results.tolist()
-                    future.release()
+                yield from _compute_pieces(client, work, numbers, self.retries)
             except KilledWorker as error:
                 raise RuntimeError(f"the workers of a piece died too often: {error}") from error
+            except CancelledError as error:
+                raise OSError(None, "the Dask scheduler ended", self.address) from error
 
     @contextmanager
     def _connect_client(self) -> Iterator[Client]:
@@ -97,9 +109,11 @@ class Distributed:
 
         if self.address is not None:
             try:
-                client = Client(self.address, timeout=_CONNECTION_TIMEOUT)
+                client = Client(self.address, timeout=_CONNECTION_TIMEOUT, security=self.security)
             except OSError as error:
                 raise ConnectionError(None, "the Dask scheduler does not respond", self.address) from error
+            except TypeError as error:  # of Dask, for an encrypted address alone
+                raise ConnectionError(None, "the Dask scheduler needs certificates", self.address) from error
             with client:
                 yield client
             return
@@ -126,44 +140,77 @@ def local_cluster(workers: int, retries: int = 3) -> Iterator[LocalCluster]:
         yield cluster
 
 
-@contextmanager
-def _send_work(client: Client, work: Work) -> Iterator[str]:
-    """Send the work function once to all workers, and yield the name of its Dask plugin.
+def _compute_pieces(client: Client, work: Work, numbers: Sequence[int], retries: int) -> Iterator[tuple[int, Any]]:
+    """Compute pieces of work as Dask tasks; yield (number, result) in the order of completion.
 
-    Workers that join later receive it too.
+    The work function is a task, not scattered data: if the workers that have it die, it is sent again.
     """
-    from distributed import WorkerPlugin
+    from concurrent.futures import CancelledError
 
-    class WorkPlugin(WorkerPlugin):
-        """Dask plugin that stores the work function on a worker."""
-
-        def __init__(self) -> None:
-            self.work = work
+    import dask
+    from distributed import as_completed
 
     name = f"ballsocket-{uuid4()}"
-    client.register_plugin(WorkPlugin(), name=name)
+    with dask.config.set({"distributed.admin.large-graph-warning-threshold": "1 PB"}):  # columns of a large table
+        shared_work = client.submit(_return_work, work, key=f"{name}-work", retries=retries)
+    pieces = client.map(_compute_piece, numbers, work=shared_work, key=name, retries=retries, pure=False)
+    completed = as_completed(pieces, with_results=True)
+    del pieces  # a worker frees each result after it has been received
+    for piece, result in completed:
+        if isinstance(result, CancelledError):  # of all pieces, when the connection is lost
+            raise result
+        yield result
+        piece.release()
+
+
+def _return_work(work: Work) -> Work:
+    """Return the work function, as the result of a Dask task."""
+    return work
+
+
+def _compute_piece(number: int, work: Work) -> tuple[int, Any]:
+    """Compute a piece of work on a worker; return its number and result."""
+    return number, work(number)
+
+
+@contextmanager
+def _without_tracebacks() -> Iterator[None]:
+    """Suppress log messages of Dask's client until the end of the block; a lost scheduler is raised as an error."""
+    loggers = [logging.getLogger(name) for name in ("distributed.client", "tornado.application")]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
     try:
-        yield name
+        yield
     finally:
-        client.unregister_worker_plugin(name)
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
 
 
-def _build_dataset(plugin_name: str, numbers: Sequence[int]) -> xarray.Dataset:
-    """Build a Dask dataset with one piece per chunk, whose computed elements are (number, result)."""
-    import xarray
+@contextmanager
+def _report_missing_workers(client: Client) -> Iterator[None]:
+    """Log a warning each time that the scheduler has lost all its workers, or has none, until the end of the block."""
+    ended = Event()
 
-    pieces = xarray.Dataset({"result": ("block", numpy.array(numbers))}).chunk(block=1)
-    return xarray.map_blocks(
-        _compute_block, pieces, kwargs={"plugin_name": plugin_name}, template=pieces.astype(object)
-    )
+    def watch() -> None:
+        """Check the workers at intervals."""
+        had_workers = True
+        while not ended.wait(_WORKER_CHECK_INTERVAL):
+            try:
+                has_workers = bool(client.ncores())
+            except Exception:  # the connection is lost, which the main thread reports
+                return
+            if had_workers and not has_workers:
+                _LOG.warning(
+                    "the Dask scheduler at %s has no workers: the work waits for the first one; Ctrl-C stops it",
+                    client.scheduler.address,
+                )
+            had_workers = has_workers
 
-
-def _compute_block(block: xarray.Dataset, plugin_name: str) -> xarray.Dataset:
-    """Compute the pieces of one chunk on a worker."""
-    from distributed import get_worker
-
-    plugin: Any = get_worker().plugins[plugin_name]
-    results = numpy.empty(block.sizes["block"], dtype=object)
-    for index, number in enumerate(block.result.values.tolist()):
-        results[index] = (number, plugin.work(number))
-    return block.assign(result=("block", results))
+    thread = Thread(target=watch, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()

@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from hashlib import sha256
+from io import BytesIO
 from pathlib import Path
 from shutil import rmtree
 from tempfile import TemporaryDirectory
@@ -71,6 +72,12 @@ def check_local(path: str | Path) -> None:
     address = address_of(path)
     if address is not None:
         raise ValueError(f"{address!r} is the address of a remote store: use a local file or folder, and copy it")
+
+
+def make_folder(path: Path) -> None:
+    """Create a local folder and its parents unless they exist; raise ValueError for the address of a remote store."""
+    check_local(path)
+    path.mkdir(parents=True, exist_ok=True)
 
 
 @contextmanager
@@ -177,8 +184,15 @@ def write_arrays(path: Path, **arrays: Any) -> None:
     OSError
         The folder is not writable or the disk is full.
     """
-    with write_atomically(path) as draft, draft.open("wb") as stream:
-        numpy.savez(stream, **arrays)
+    with write_atomically(path) as draft:
+        draft.write_bytes(pack_arrays(**arrays))
+
+
+def pack_arrays(**arrays: Any) -> bytes:
+    """Return the content of an npz file with named arrays, numbers and texts, and checksums."""
+    stream = BytesIO()
+    numpy.savez(stream, **arrays)
+    return stream.getvalue()
 
 
 def read_arrays(path: Path) -> dict[str, Numbers]:
@@ -191,18 +205,29 @@ def read_arrays(path: Path) -> dict[str, Numbers]:
     OSError
         The file does not exist or is not readable.
     """
+    with open_input(path) as stream:
+        return unpack_arrays(stream, path.name)
+
+
+def unpack_arrays(stream: BinaryIO, name: str) -> dict[str, Numbers]:
+    """Read the arrays of an npz file by name, and verify their checksums.
+
+    Raises
+    ------
+    ValueError
+        The file is damaged or is not an npz file; the message has its `name`.
+    """
     try:
-        with open_input(path) as stream:
-            with ZipFile(stream) as archive:
-                damaged = archive.testzip()  # NumPy accepts a damaged, smaller shape without this test
-                n_members = len(archive.infolist())
-            if damaged is not None or n_members != _count_zip_members(stream):
-                raise ValueError(f"{path.name} is damaged")
-            stream.seek(0)
-            with numpy.load(stream, allow_pickle=False) as file:
-                return {name: file[name] for name in file.files}
+        with ZipFile(stream) as archive:
+            damaged = archive.testzip()  # NumPy accepts a damaged, smaller shape without this test
+            n_members = len(archive.infolist())
+        if damaged is not None or n_members != _count_zip_members(stream):
+            raise ValueError(f"{name} is damaged")
+        stream.seek(0)
+        with numpy.load(stream, allow_pickle=False) as file:
+            return {key: file[key] for key in file.files}
     except (BadZipFile, EOFError, KeyError, RuntimeError) as error:
-        raise ValueError(f"{path.name} is damaged") from error
+        raise ValueError(f"{name} is damaged") from error
 
 
 def _count_zip_members(stream: BinaryIO) -> int:

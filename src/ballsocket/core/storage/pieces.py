@@ -20,7 +20,7 @@ from ...version import __version__
 from ..deprecation import renamed_arguments
 from ..display import full_repr
 from ..executors.processes import Engine, Serial, Work
-from .atomic_files import write_text
+from .atomic_files import make_folder, write_text
 
 _SUFFIXES = {".py", ".npz", ".toml", ".csv", ".html", ".css"}
 
@@ -168,7 +168,7 @@ class Plan:
             The folder is not writable or the disk is full.
         """
         folder = folder / self.name
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         pieces = [(part, name) for part, pieces in self.parts.items() for name in pieces]
         store = _ResultFiles(
             paths=tuple(folder / f"{part}{_file_suffix(name)}.json" for part, name in pieces),

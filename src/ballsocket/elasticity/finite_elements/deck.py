@@ -30,7 +30,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import require
-from ...core.storage.atomic_files import write_text
+from ...core.storage.atomic_files import make_folder, write_text
 from ...problem.gaps import LinearGap
 from ...version import __version__
 from .deck_bodies import TYPES, DeckBodies, DeckBody, faceting_gap, node_set_lines
@@ -125,7 +125,7 @@ class Deck:
             The folder cannot be written to.
         """
         folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         write_text(folder / EXPECTED, json.dumps(self._expected_record(), indent=1) + "\n", encoding="ascii")
         return write_text(folder / f"{NAME}.inp", self.text(), encoding="ascii")
 

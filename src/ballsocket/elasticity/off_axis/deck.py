@@ -20,7 +20,7 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...core.checks import require
-from ...core.storage.atomic_files import write_text
+from ...core.storage.atomic_files import make_folder, write_text
 from ...problem import Joint
 from ...problem.cup import Cup, Interface
 from ..finite_elements.calculix import last_output, read_printed, run_calculix
@@ -234,7 +234,7 @@ class TiltedDeck:
     def write(self, folder: Path) -> Path:
         """Write `ballsocket.inp` and `expected.json` into a new or existing folder; return the path of the deck."""
         folder = Path(folder)
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         record = {"scale": self.scale, "tilt_deg": degrees(self.tilt), **self.expected}
         write_text(folder / EXPECTED, json.dumps(record) + "\n", encoding="ascii")
         return write_text(folder / f"{NAME}.inp", self.text(), encoding="ascii")

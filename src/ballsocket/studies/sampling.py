@@ -1,0 +1,168 @@
+"""Points of Sobol's sequence and of Latin hypercubes, drawn in chunks that need no other points."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from functools import lru_cache
+from threading import get_ident
+from typing import TYPE_CHECKING
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.kinds import Choice
+
+if TYPE_CHECKING:
+    from scipy.stats.qmc import Sobol
+
+CHUNK_SIZE = 1 << 16
+"""Number of points of a chunk."""
+
+MAX_SOBOL_COUNT = 1 << 30
+"""Number of points of SciPy's Sobol sequence."""
+
+_MAX_SCIPY_COUNT = 1 << 20
+"""Number of points up to which a Latin hypercube is drawn by SciPy, as a whole."""
+
+_N_ROUNDS = 8
+"""Rounds of the Feistel network."""
+
+_MULTIPLIERS = (0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53)
+"""Multipliers of the 64-bit finaliser of MurmurHash3 (Appleby 2011)."""
+
+
+class Method(Choice):
+    """Methods of sampling."""
+
+    SOBOL = "sobol"
+    LATIN_HYPERCUBE = "latin-hypercube"
+
+
+def draw_chunk(method: Method, count: int, dimension: int, seed: int, number: int) -> Numbers:
+    """Draw one chunk of a design of uniform points in the unit cube.
+
+    Parameters
+    ----------
+    method : Method
+    count : int
+        Number of points of the whole design.
+    dimension : int
+        Number of coordinates of a point.
+    seed : int
+    number : int
+        Number of the chunk, from 0.
+
+    Returns
+    -------
+    array (dimension, points of the chunk)
+    """
+    start = number * CHUNK_SIZE
+    draw: dict[Method, Callable[[int, int, int, int, int], Numbers]] = {
+        Method.SOBOL: _draw_sobol,
+        Method.LATIN_HYPERCUBE: _draw_latin_hypercube if count > _MAX_SCIPY_COUNT else _draw_small_hypercube,
+    }
+    return draw[method](count, dimension, seed, start, min(count, start + CHUNK_SIZE)).T
+
+
+def _draw_sobol(count: int, dimension: int, seed: int, start: int, stop: int) -> Numbers:
+    """Draw the points of a section of the scrambled Sobol sequence of a seed."""
+    engine = _sobol_engine(dimension, seed, get_ident())
+    if engine.num_generated > start:
+        engine.reset()
+    if engine.num_generated < start:
+        engine.fast_forward(start - engine.num_generated)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # SciPy warns of counts other than powers of two
+        points: Numbers = engine.random(stop - start)
+    return points
+
+
+@lru_cache(maxsize=32)
+def _sobol_engine(dimension: int, seed: int, thread: int) -> Sobol:
+    """Create the engine of a sequence for one thread; its position moves on with each draw."""
+    from scipy.stats.qmc import Sobol
+
+    return Sobol(dimension, rng=seed)
+
+
+def _draw_small_hypercube(count: int, dimension: int, seed: int, start: int, stop: int) -> Numbers:
+    """Draw the points of a section of a Latin hypercube that SciPy draws as a whole."""
+    return _scipy_hypercube(count, dimension, seed)[start:stop]
+
+
+@lru_cache(maxsize=1)
+def _scipy_hypercube(count: int, dimension: int, seed: int) -> Numbers:
+    """Draw a Latin hypercube, of shape (count, dimension)."""
+    from scipy.stats.qmc import LatinHypercube
+
+    points: Numbers = LatinHypercube(dimension, rng=seed).random(count)
+    return points
+
+
+def _draw_latin_hypercube(count: int, dimension: int, seed: int, start: int, stop: int) -> Numbers:
+    """Draw the points of a section of a Latin hypercube.
+
+    Point i lies in the stratum π(i) of `count` strata, at a random position in it. The permutation π of each dimension
+    is a function of i, so that no other points are needed.
+    """
+    bits = numpy.random.PCG64(seed).advance(start * dimension)
+    positions = numpy.random.Generator(bits).random((stop - start, dimension))
+    keys = numpy.random.SeedSequence(seed).spawn(1)[0].generate_state(dimension * _N_ROUNDS, numpy.uint64)
+    indices = numpy.arange(start, stop, dtype=numpy.uint64)
+    strata = [permute(indices, count, column) for column in keys.reshape(dimension, _N_ROUNDS)]
+    return (numpy.stack(strata, axis=1) + 1.0 - positions) / count
+
+
+def permute(indices: Numbers, count: int, keys: Numbers) -> Numbers:
+    """Compute a random permutation of the numbers below `count`, for some of them.
+
+    A Feistel network permutes the numbers below the next power of four. Results of `count` or more are permuted again
+    until they are below.
+
+    Parameters
+    ----------
+    indices : array of uint64
+        Numbers below `count`.
+    count : int
+    keys : array of uint64
+        One key for each round; other keys give another permutation.
+
+    Returns
+    -------
+    array of uint64
+
+    References
+    ----------
+    Black & Rogaway 2002, Ciphers with arbitrary finite domains, method "cycle walking".
+
+    Examples
+    --------
+    >>> keys = numpy.arange(8, dtype=numpy.uint64)
+    >>> sorted(permute(numpy.arange(10, dtype=numpy.uint64), 10, keys).tolist())
+    [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]
+    """
+    half_bits = numpy.uint64(max(1, -(-(count - 1).bit_length() // 2)))
+    permuted = _feistel(indices, half_bits, keys)
+    outside = permuted >= count
+    while outside.any():
+        permuted[outside] = _feistel(permuted[outside], half_bits, keys)
+        outside = permuted >= count
+    return permuted
+
+
+def _feistel(values: Numbers, half_bits: numpy.uint64, keys: Numbers) -> Numbers:
+    """Permute numbers of 2 `half_bits` bits by a Feistel network."""
+    mask = (numpy.uint64(1) << half_bits) - numpy.uint64(1)
+    left, right = values >> half_bits, values & mask
+    for key in keys:
+        left, right = right, left ^ (_hash(right ^ key) & mask)
+    return (left << half_bits) | right
+
+
+def _hash(values: Numbers) -> Numbers:
+    """Mix the bits of 64-bit numbers, by the finaliser of MurmurHash3."""
+    shift = numpy.uint64(33)
+    for multiplier in _MULTIPLIERS:
+        values = (values ^ (values >> shift)) * numpy.uint64(multiplier)
+    return values ^ (values >> shift)

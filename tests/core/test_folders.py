@@ -1,0 +1,68 @@
+"""Folders of results, on a local disk and in remote stores: files, drafts, errors and addresses."""
+
+import pytest
+
+from ballsocket.core.storage.folders import LocalFolder, RemoteFolder, folder_at, open_address
+
+fsspec = pytest.importorskip("fsspec")
+
+
+@pytest.fixture(params=["local", "memory"])
+def folder(request, tmp_path):
+    """Return an empty folder; the store of fsspec in the memory stands for a bucket."""
+    if request.param == "local":
+        yield folder_at(tmp_path / "results")
+        return
+    yield folder_at("memory://bucket/results")
+    system = fsspec.filesystem("memory")
+    if system.exists("/bucket"):
+        system.rm("/bucket", recursive=True)
+
+
+def test_files_are_read_as_they_were_written(folder):
+    assert not folder.exists()
+    assert folder.names() == set()
+    folder.write("a.json", b"one")
+    folder.write("a.json", b"two")
+    folder.write("b.npz", bytes(100))
+    assert folder.exists()
+    assert folder.names() == {"a.json", "b.npz"}
+    assert (folder.read("a.json"), folder.read("a.json", 2)) == (b"two", b"tw")
+    with pytest.raises(FileNotFoundError):
+        folder.read("c.json")
+
+
+def write_draft(path):
+    """Write a folder with a label and an array."""
+    (path / "array").mkdir(parents=True)
+    (path / "label").write_text("label", encoding="utf-8")
+    (path / "array" / "part").write_text("part", encoding="utf-8")
+
+
+def test_a_folder_is_created_from_a_draft(folder):
+    folder.create(write_draft)
+    assert (folder.read("label"), folder.read("array/part")) == (b"label", b"part")
+
+
+def test_a_remote_folder_has_its_label_first(monkeypatch):
+    written = []
+    monkeypatch.setattr(RemoteFolder, "write", lambda self, name, content: written.append(name))
+    folder_at("memory://bucket/results").create(write_draft)
+    assert written == ["label", "array/part"]
+
+
+def test_addresses_and_paths_are_folders_of_their_kind(tmp_path):
+    assert folder_at("s3://bucket/a.zarr/") == RemoteFolder("s3://bucket/a.zarr")
+    assert folder_at(f"file://{tmp_path}") == folder_at(tmp_path) == LocalFolder(tmp_path)
+    assert folder_at(tmp_path).free_space() < folder_at("s3://bucket/a").free_space()
+
+
+def test_errors_of_a_remote_store_are_one_sentence_with_the_address(monkeypatch):
+    def fail(self, path):
+        raise RuntimeError("no\nanswer")
+
+    monkeypatch.setattr(fsspec.filesystem("memory").__class__, "exists", fail)
+    with pytest.raises(OSError, match="the remote store failed: no answer: 'memory://bucket'"):
+        folder_at("memory://bucket").exists()
+    with pytest.raises(ValueError, match="unknown://bucket/a: Protocol not known: unknown"):
+        open_address("unknown://bucket/a")

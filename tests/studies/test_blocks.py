@@ -1,0 +1,179 @@
+"""Blocks of a study, the samples that each block draws, and the memory that a study takes."""
+
+import tracemalloc
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.core.executors import Processes, Serial
+from ballsocket.studies import axes, run, sampling
+from ballsocket.studies.axes import TableAxis
+from ballsocket.studies.design import Design, Span, grid, sample
+from ballsocket.studies.distributions import Normal, Rectangular, tolerance
+from ballsocket.studies.run import _create_task, memory_size
+from ballsocket.studies.sampling import CHUNK_SIZE, Method, permute
+from ballsocket.studies.task import Blocks, divide_study, points_per_block
+
+from ..extent import either, some
+
+HIP = bs.joints["hess-forsbach"]
+SCATTER = {"clearance": tolerance(0.1, 0.05), "liner_poisson": Rectangular(low=0.3, high=0.4)}
+EVERYTHING = (slice(None),)
+
+
+# blocks
+
+
+@pytest.mark.parametrize("shape", [(10**8,), (464, 464, 464), (10**4, 10**4), (10, 10, 10**6), (3162, 31623)])
+def test_a_large_study_has_at_most_ten_thousand_blocks(shape):
+    blocks = divide_study(shape, points_per_block(bs.Exact()))
+    assert 2000 < len(blocks) <= 10_000
+    assert sum(blocks.n_points(number) for number in (0, len(blocks) - 1)) > 0
+
+
+@pytest.mark.parametrize("shape", [(10**6,), (100, 100, 100), (500,)])
+def test_a_small_study_has_blocks_of_half_a_second(shape):
+    """The blocks are those of earlier versions, so that several workers share them."""
+    points = points_per_block(bs.Exact())
+    assert divide_study(shape, points) == Blocks.divide(shape, points)
+
+
+def test_blocks_of_closed_forms_have_at_most_a_million_points():
+    blocks = divide_study((10**11,), points_per_block(bs.HessForsbach()))
+    assert blocks.n_points(0) <= 1 << 20
+
+
+def test_an_enlarged_block_has_the_results_of_small_ones(monkeypatch):
+    """A large block is pressed in parts of half a second."""
+    forces = np.linspace(500.0, 3000.0, 40).tolist()
+    small = bs.study(bs.Exact(), HIP, force=forces)
+    monkeypatch.setattr("ballsocket.studies.task.points_per_block", lambda model: 10)
+    task = replace(_create_task(bs.Exact(), HIP, None, {"force": forces}, ()), blocks=Blocks((40,), (40,)))
+    np.testing.assert_allclose(task(0)["max_pressure"], small.max_pressure, rtol=1e-12)
+
+
+# samples
+
+
+@pytest.fixture
+def small_chunks(monkeypatch):
+    """Chunks of 64 samples, and hypercubes that are drawn in parts."""
+    for module in (axes, sampling):
+        monkeypatch.setattr(module, "CHUNK_SIZE", 64)
+    monkeypatch.setattr(sampling, "_MAX_SCIPY_COUNT", 0)
+    axes._draw_samples.cache_clear()
+    yield
+    axes._draw_samples.cache_clear()
+
+
+@pytest.mark.parametrize("method", Method)
+def test_any_section_of_samples_is_that_of_all_samples(method, small_chunks):
+    design = sample(1000, seed=4, method=method, correlation={("clearance", "liner_poisson"): 0.5}, **SCATTER)
+    every = design.values_in(EVERYTHING)
+    for start, stop in ((999, 1000), (0, 1), (63, 65), (100, 900), (640, 704), (5, 6)):
+        part = design.values_in([slice(start, stop)])
+        for name, values in every.items():
+            np.testing.assert_array_equal(part[name], values[start:stop])
+
+
+def test_sobol_samples_are_those_of_scipy_for_a_seed(small_chunks):
+    from scipy.stats.qmc import Sobol
+
+    design = sample(1024, seed=7, **SCATTER)
+    points = Sobol(2, rng=7).random(1024)
+    for column, (name, distribution) in zip(points.T, SCATTER.items(), strict=True):
+        np.testing.assert_array_equal(design.values_in(EVERYTHING)[name], distribution.frozen.ppf(column))
+
+
+def test_small_hypercubes_are_those_of_scipy_for_a_seed():
+    from scipy.stats.qmc import LatinHypercube
+
+    design = sample(CHUNK_SIZE + 50, seed=7, method=Method.LATIN_HYPERCUBE, liner_poisson=SCATTER["liner_poisson"])
+    points = LatinHypercube(1, rng=7).random(CHUNK_SIZE + 50)[:, 0]
+    expected = SCATTER["liner_poisson"].frozen.ppf(points)
+    np.testing.assert_array_equal(design.values_in(EVERYTHING)["liner_poisson"], expected)
+
+
+def test_large_hypercubes_have_one_sample_in_each_stratum(small_chunks):
+    count = 5003
+    chunks = [sampling.draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 1, number) for number in range(-(-count // 64))]
+    points = np.concatenate(chunks, axis=1)
+    for coordinate in points:
+        assert sorted(np.floor(coordinate * count).astype(int)) == list(range(count))
+    assert abs(np.corrcoef(points) - np.eye(3)).max() < 4 / count**0.5
+    positions = points * count % 1.0
+    assert positions.mean() == pytest.approx(0.5, abs=0.02)
+    other = sampling.draw_chunk(Method.LATIN_HYPERCUBE, count, 3, 2, 0)
+    assert not np.isclose(other, chunks[0]).any()
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 64, 65, 1000])
+def test_a_permutation_has_each_number_once(count):
+    keys = np.random.SeedSequence(0).generate_state(8, np.uint64)
+    permuted = permute(np.arange(count, dtype=np.uint64), count, keys)
+    assert sorted(permuted.tolist()) == list(range(count))
+    assert count < 64 or np.mean(permuted == np.arange(count)) < 0.1
+
+
+def test_no_worker_draws_all_samples(monkeypatch, small_chunks):
+    drawn = []
+    draw = axes.draw_chunk
+    monkeypatch.setattr(axes, "draw_chunk", lambda *inputs: drawn.append(inputs[-1]) or draw(*inputs))
+    monkeypatch.setattr(run, "points_per_block", lambda model: 64)
+    task = _create_task(bs.HessForsbach(), HIP, sample(1000, **SCATTER), {"force": 1e3}, ())
+    task(5)
+    first, count = task.blocks[5][0].start, task.blocks.n_points(5)
+    assert set(drawn) == set(range(first // 64, -(-(first + count) // 64)))
+    assert len(drawn) <= 2
+
+
+def test_samples_outside_the_range_of_a_parameter_are_named_by_their_index(small_chunks):
+    design = sample(640, clearance=Normal(mean=0.1, deviation=0.038))
+    values = design.values_in(EVERYTHING)["clearance"]
+    first = int(np.argmax(values <= 0))
+    assert first > 64
+    with pytest.raises(ValueError, match=rf"clearance\[{first}\] = -.* truncate the distribution"):
+        bs.study(bs.HessForsbach(), HIP, design, force=1e3)
+
+
+def test_more_points_than_sobols_sequence_has_are_refused():
+    with pytest.raises(ValueError, match="count = 1073741825 is not allowed: Sobol's sequence has 2.30 points"):
+        sample(2**30 + 1, **SCATTER)
+    assert sample(2**30 + 1, method=Method.LATIN_HYPERCUBE, **SCATTER).size == 2**30 + 1
+
+
+@pytest.mark.parametrize("method", Method)
+def test_samples_in_chunks_are_the_same_in_a_store_and_for_other_processes(method, tmp_path, monkeypatch):
+    monkeypatch.setattr(run, "points_per_block", lambda model: 30_000)
+    design = sample(CHUNK_SIZE + 5000, method=method, **SCATTER)
+    here = bs.study(bs.HessForsbach(), HIP, design, force=1e3)
+    engine = either(quick=Serial(), long=Processes(workers=2))
+    stored = bs.study(bs.HessForsbach(), HIP, design, force=1e3, store=tmp_path / "s.zarr", engine=engine)
+    assert stored.load().equals(here)
+
+
+# memory
+
+COUNT = 1 << 21
+"""Points of the studies of memory: two blocks of closed forms."""
+
+DESIGNS = {
+    "samples": lambda: sample(COUNT, **SCATTER) * grid(force=1e3),
+    "span": lambda: grid(force=Span(1e3, 2e3, COUNT)),
+    "table": lambda: Design((TableAxis({"clearance": np.full(COUNT, 0.1), "force": np.full(COUNT, 1e3)}),)),
+}
+
+
+@pytest.mark.parametrize("name", some(list(DESIGNS), 1))
+def test_the_memory_check_is_true_to_twenty_percent(name):
+    """The largest memory of a study against its estimate; one quantity keeps the test short."""
+    bs.study(bs.Hertz(), HIP, clearance=0.1, force=[1e3])  # imports
+    tracemalloc.start()
+    design = DESIGNS[name]()
+    bs.study(bs.Hertz(), HIP, design, quantities=["max_pressure"])
+    measured = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    task = _create_task(bs.Hertz(), HIP, design, {}, ("max_pressure",))
+    assert memory_size(task) == pytest.approx(measured, rel=0.2)

@@ -1,0 +1,237 @@
+"""Stores at addresses of fsspec: studies, exports and cohorts there are those of a local folder, or one sentence."""
+
+import os
+import threading
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import ballsocket as bs
+from ballsocket.core.executors import Processes
+from ballsocket.core.storage.folders import RemoteFolder
+from ballsocket.hip.cohort import CohortRun, cohort_store, sample_patients, write_csv
+from ballsocket.studies.export import export
+from ballsocket.studies.file import read_study
+from ballsocket.studies.run import read
+from ballsocket.studies.store import CHECKSUM
+
+from ..cli.command import run
+from ..hip.test_cohort import FEW_CYCLES, quick_variability
+from ..hip.test_uncertainty import short_file
+
+fsspec = pytest.importorskip("fsspec")
+HIP = bs.joints["hess-forsbach"]
+AXES = {"clearance": [0.05, 0.1, 0.2, 0.3], "force": [1000.0, 2000.0, 3000.0]}
+
+
+@pytest.fixture
+def bucket(monkeypatch, tmp_path):
+    """Return the store of fsspec in the memory, which stands for a bucket; the working folder stays empty."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 4)
+    system = fsspec.filesystem("memory")
+    yield system
+    if system.exists("/bucket"):
+        system.rm("/bucket", recursive=True)
+    assert not list(tmp_path.iterdir())
+
+
+def study(store, told=None, **axes):
+    listen = (lambda progress: None) if told is None else told.append
+    return bs.study(bs.HessForsbach(), HIP, store=store, listen=listen, **(axes or AXES))
+
+
+def test_a_study_at_an_address_is_that_of_the_memory_and_resumes(bucket):
+    address, whole = "memory://bucket/s.zarr", study(None)
+    assert study(address).load().equals(whole)
+    told = []
+    assert study(Path(address), told).load().equals(whole)
+    assert [progress.n_done for progress in told] == [12]
+    chunks = [path for path in bucket.find("/bucket/s.zarr") if "/max_pressure/c/" in path]
+    bucket.pipe_file(chunks[1], b"nonsense")
+    bucket.rm("/bucket/s.zarr/clearance/zarr.json")
+    told.clear()
+    assert study(address, told).load().equals(whole)
+    assert [progress.n_done for progress in told] == [9, 12]
+    assert read(address).attrs["model"] == "hess-forsbach"
+    assert xr.open_zarr(address, consolidated=False).max_pressure.equals(whole.max_pressure)
+
+
+def test_a_remote_store_of_another_study_is_refused(bucket):
+    study("memory://bucket/s.zarr")
+    with pytest.raises(ValueError, match="memory://bucket/s.zarr has another study: axes.clearance"):
+        study("memory://bucket/s.zarr", force=[1000.0])
+    bucket.pipe_file("/bucket/other/precious.txt", b"mine")
+    with pytest.raises(ValueError, match="memory://bucket/other exists and is not a study"):
+        study("memory://bucket/other")
+
+
+def test_a_remote_store_that_fails_says_how_many_blocks_are_stored(bucket, monkeypatch):
+    from ballsocket.studies.store import StudyStore
+
+    write = StudyStore.write
+
+    def fail(self, task, number, results):
+        with self.folder.errors():
+            if number == 2:
+                raise RuntimeError("slow down")
+            write(self, task, number, results)
+
+    monkeypatch.setattr(StudyStore, "write", fail)
+    with pytest.raises(
+        OSError, match="the remote store failed: slow down; 2 of 4 blocks are stored; run the study"
+    ) as no:
+        study("memory://bucket/s.zarr")
+    assert no.value.filename == "memory://bucket/s.zarr"
+
+
+def test_a_store_of_a_file_is_an_address_or_a_path_beside_it(tmp_path):
+    text = "joint = 'hip-36'\nstore = '{}'\n[axes]\nforce = [1, 2]\n"
+    for store, expected in (("s3://bucket/s.zarr", "s3://bucket/s.zarr"), ("s.zarr", tmp_path / "s.zarr")):
+        (tmp_path / "study.toml").write_text(text.format(store), encoding="utf-8")
+        assert read_study(tmp_path / "study.toml").store == expected
+
+
+def test_a_command_stores_a_study_at_an_address(tmp_path):
+    (tmp_path / "study.toml").write_text("joint = 'hip-36'\n[axes]\nforce = [1, 2]\n", encoding="utf-8")
+    for _ in range(2):
+        done = run("study", "study.toml", "--store", "memory://bucket/c.zarr", folder=tmp_path)
+        assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "memory://bucket/c.zarr")
+    fsspec.filesystem("memory").rm("/bucket", recursive=True)
+    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
+
+
+def test_exports_to_addresses_are_complete(bucket):
+    pressed = study(None)
+    for name in ("s.parquet", "s.zarr", "s.csv"):
+        export(pressed, f"memory://bucket/{name}")
+    assert {path.split("/")[2] for path in bucket.find("/bucket")} == {"s.parquet", "s.zarr", "s.csv"}
+    with xr.open_zarr("memory://bucket/s.zarr", consolidated=False) as again:
+        assert again.load().identical(pressed)
+    with pytest.raises(ValueError, match="memory://bucket/s.zarr exists: choose another name"):
+        export(pressed, "memory://bucket/s.zarr")
+
+
+def test_addresses_without_a_store_are_one_sentence(bucket):
+    refusals = (
+        (lambda: study("unknown://bucket/s.zarr"), "unknown://bucket/s.zarr: Protocol not known: unknown"),
+        (lambda: export(study(None), "unknown://bucket/s.csv"), "unknown://bucket/s.csv: Protocol not known: unknown"),
+        (lambda: bs.studies.table("s3://bucket/rows.csv"), "'s3://bucket/rows.csv' is the address of a remote store"),
+    )
+    for refused, message in refusals:
+        with pytest.raises(ValueError, match=message):
+            refused()
+    if find_spec("s3fs") is None:
+        with pytest.raises(ImportError, match="s3://bucket/s.zarr: Install s3fs"):
+            study("s3://bucket/s.zarr")
+
+
+def test_commands_refuse_addresses_that_they_cannot_use(tmp_path):
+    (tmp_path / "study.toml").write_text("joint = 'hip-36'\n[axes]\nforce = [1, 2]\n", encoding="utf-8")
+    short_file(tmp_path)
+    files = sorted(path.name for path in tmp_path.iterdir())
+    commands = (
+        ("study", "study.toml", "--store", "unknown://bucket/s.zarr"),
+        ("study", "study.toml", "--figure", "s3://bucket/s.png"),
+        ("hip", "hip.toml", "--store", "s3://bucket/run"),
+        ("deck", "hip-36", "--force", "3 kN", "--out", "s3://bucket/deck"),
+        ("export", "c", "hip-36", "--out", "s3://bucket/c"),
+        ("reproduce", "--quick", "--out", "s3://bucket/paper"),
+    )
+    for words in commands:
+        done = run(*words, folder=tmp_path)
+        sentence = done.stderr.splitlines()[-1]  # after a progress bar
+        assert (done.returncode, words[-1] in sentence, len(sentence) < 200) == (2, True, True), done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == files
+
+
+def test_a_cohort_at_an_address_resumes(bucket):
+    one = quick_variability()
+    cohort = CohortRun(variability=one, counts=(FEW_CYCLES,), values=sample_patients(one, 2, 0))
+    store = cohort_store("memory://bucket/patients", one, [FEW_CYCLES], 0)
+    first = cohort.simulate(store=store)
+    assert {path.rpartition("/")[2] for path in bucket.find("/bucket")} == {"patients.json", "patients_000000.npz"}
+    done = []
+    again = cohort.simulate(store=store, progress=done.append)
+    assert done == [2]
+    assert again.table.tobytes() == first.table.tobytes()
+    path = write_csv(Path("memory://bucket/patients") / "patients.csv", cohort, first)
+    assert bucket.cat_file("/bucket/patients/patients.csv").startswith(b"clearance_mm,")
+    assert path.name == "patients.csv"
+    with pytest.raises(ValueError, match="memory://bucket/patients has another cohort"):
+        cohort_store("memory://bucket/patients", one, [FEW_CYCLES], 1)
+
+
+# S3
+
+
+@contextmanager
+def s3_server():
+    """Yield the address of moto's S3 server in this process, with an empty bucket."""
+    pytest.importorskip("s3fs")
+    moto = pytest.importorskip("moto.moto_server.werkzeug_app")
+    from werkzeug.serving import WSGIRequestHandler, make_server
+
+    app = moto.DomainDispatcherApplication(moto.create_backend_app)
+
+    class Quiet(WSGIRequestHandler):
+        """Handler without a line for each request."""
+
+        def log_request(self, *status):
+            pass
+
+    def with_one_server_header(environ, start_response):
+        """Call moto without its header "Server", which werkzeug adds and clients refuse twice."""
+
+        def start(status, headers, error=None):
+            return start_response(status, [header for header in headers if header[0].lower() != "server"], error)
+
+        return app(environ, start)
+
+    server = make_server("127.0.0.1", 0, with_one_server_header, threaded=True, request_handler=Quiet)
+    thread = threading.Thread(target=server.serve_forever)
+    thread.start()
+    try:
+        yield f"http://127.0.0.1:{server.server_port}"
+    finally:
+        server.shutdown()
+        thread.join()
+        server.server_close()
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
+def test_s3_has_the_study_and_the_cohort_of_processes(monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 4)
+    for name, value in (("ACCESS_KEY_ID", "test"), ("SECRET_ACCESS_KEY", "test"), ("DEFAULT_REGION", "us-east-1")):
+        monkeypatch.setenv(f"AWS_{name}", value)
+    with s3_server() as url:
+        monkeypatch.setenv("AWS_ENDPOINT_URL", url)
+        with pytest.raises(FileNotFoundError, match="no such file or bucket: 's3://bucket/s.zarr'"):
+            study("s3://bucket/s.zarr")
+        fsspec.filesystem("s3").mkdir("bucket")
+        whole, told = study(None), []
+        stored = bs.study(bs.HessForsbach(), HIP, store="s3://bucket/s.zarr", engine=Processes(workers=2), **AXES)
+        assert stored.load().equals(whole)
+        assert study("s3://bucket/s.zarr", told).load().equals(whole)
+        assert len(told) == 1
+        assert len(fsspec.filesystem("s3").find(f"bucket/s.zarr/{CHECKSUM}/c")) == 4
+        short_file(tmp_path)
+        words = ("hip", "hip.toml", "--patients", "2", "--store", "s3://bucket/patients")
+        for workers in ((), ("--workers", "1")):
+            done = run(*words, *workers, folder=tmp_path)
+            assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "s3://bucket/patients/patients.csv")
+    assert [path.name for path in tmp_path.iterdir()] == ["hip.toml"]
+    assert not os.path.exists("s3:")
+
+
+def test_a_remote_folder_is_sent_to_other_processes():
+    """A store is an address, so that its copy opens the address anew."""
+    import pickle
+
+    folder = RemoteFolder("s3://bucket/s.zarr")
+    assert pickle.loads(pickle.dumps(folder)) == folder

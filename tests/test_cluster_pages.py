@@ -1,0 +1,126 @@
+"""Pages on clusters: the submit script of SLURM by a dry run, and the manifest of Kubernetes."""
+
+import ast
+import os
+import re
+import stat
+import subprocess
+import sys
+
+import pytest
+
+import ballsocket as bs
+from ballsocket.core.executors import Distributed
+from ballsocket.studies.file import read_study
+
+from .places import ROOT
+
+HOW_TO = ROOT / "docs" / "how-to"
+
+
+def blocks(page, language):
+    return re.findall(
+        rf"^```{language}\n(.*?)^```$", (HOW_TO / page).read_text("utf-8"), flags=re.MULTILINE | re.DOTALL
+    )
+
+
+SLURM_PROGRAM, _, SLURM_SCRIPT = blocks("slurm.md", "text")[:3]
+
+
+def slurm_options():
+    """Return the options of the cluster in the program of the page."""
+    calls = [node for node in ast.walk(ast.parse(SLURM_PROGRAM)) if isinstance(node, ast.Call)]
+    call = next(call for call in calls if getattr(call.func, "id", "") == "SLURMCluster")
+    return {keyword.arg: ast.literal_eval(keyword.value) for keyword in call.keywords}
+
+
+def plain(script):
+    """Return a submit script without interpreter, address and version of Dask's command."""
+    script = re.sub(r"\S*python\S* -m", "python -m", script.strip())
+    script = re.sub(r"tcp://\S+", "tcp://", script)
+    return [line.strip() for line in script.splitlines() if line.strip()]
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_the_submit_script_is_that_of_the_page():
+    jobqueue = pytest.importorskip("dask_jobqueue")
+    local = {"scheduler_options": {"host": "127.0.0.1", "dashboard_address": "127.0.0.1:0"}}
+    with jobqueue.SLURMCluster(**slurm_options(), **local) as cluster:
+        script = cluster.job_script()
+    assert plain(script) == plain(SLURM_SCRIPT)
+
+
+SBATCH = """#!/bin/sh
+cp "$1" submitted.sh
+sh "$1" > worker.log 2>&1 &
+echo $! >> jobs
+echo "Submitted batch job 7"
+"""
+
+SCANCEL = """#!/bin/sh
+kill $(cat jobs) 2> /dev/null
+"""
+
+
+@pytest.mark.long
+def test_the_program_of_the_page_runs_where_sbatch_is_a_shell(tmp_path):
+    """A job starts at once, as a process of this machine, with one core and few points."""
+    pytest.importorskip("dask_jobqueue")
+    for name, text in (("sbatch", SBATCH), ("scancel", SCANCEL)):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        (tmp_path / name).chmod(stat.S_IRWXU)
+    program = SLURM_PROGRAM.replace("cores=32", "cores=1").replace("processes=32", "processes=1")
+    program = program.replace("jobs=8", "jobs=1").replace(", 100)", ", 3)").replace("64GB", "1GB")
+    program = program.replace("walltime=", "scheduler_options={'host': '127.0.0.1'}, walltime=")
+    (tmp_path / "run_study.py").write_text(program, encoding="utf-8")
+    path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
+    words = [sys.executable, "run_study.py"]
+    done = subprocess.run(
+        words, cwd=tmp_path, env={**os.environ, "PATH": path}, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stderr
+    assert "#SBATCH -p compute" in (tmp_path / "submitted.sh").read_text(encoding="utf-8")
+    assert bs.studies.read(tmp_path / "hips.zarr").max_pressure.shape == (3, 3, 3)
+
+
+def test_the_manifest_of_kubernetes_is_complete(tmp_path):
+    yaml = pytest.importorskip("yaml")
+    parts = list(yaml.safe_load_all(blocks("kubernetes.md", "yaml")[0]))
+    kinds = {(part["kind"], part["metadata"]["name"]): part for part in parts}
+    assert list(kinds) == [
+        ("PersistentVolumeClaim", "hips"),
+        ("Service", "scheduler"),
+        ("Deployment", "scheduler"),
+        ("Deployment", "worker"),
+        ("Job", "study"),
+    ]
+    pods = {name: part["spec"]["template"]["spec"] for name, part in kinds.items() if "template" in part["spec"]}
+    images = {container["image"] for pod in pods.values() for container in pod["containers"]}
+    assert images == {"registry.example.org/ballsocket:1"}
+    for deployment in ("scheduler", "worker"):
+        spec = kinds["Deployment", deployment]["spec"]
+        assert spec["selector"]["matchLabels"] == spec["template"]["metadata"]["labels"]
+    assert kinds["Service", "scheduler"]["spec"]["selector"] == {"app": "scheduler"}
+    mounts = {
+        name: {mount["name"]: mount["mountPath"] for mount in pod["containers"][0].get("volumeMounts", ())}
+        for name, pod in pods.items()
+    }
+    assert mounts["Deployment", "worker"]["hips"] == mounts["Job", "study"]["hips"] == "/hips"
+
+    file = tmp_path / "study.toml"
+    file.write_text(blocks("kubernetes.md", "toml")[0], encoding="utf-8")
+    port = kinds["Service", "scheduler"]["spec"]["ports"][0]["port"]
+    assert read_study(file).engine == Distributed(address=f"tcp://scheduler:{port}")
+    assert f"tcp://scheduler:{port}" in pods["Deployment", "worker"]["containers"][0]["command"]
+
+
+@pytest.mark.parametrize("role", ["scheduler", "worker"])
+def test_dask_has_the_options_of_the_manifest(role):
+    yaml = pytest.importorskip("yaml")
+    module = pytest.importorskip(f"distributed.cli.dask_{role}")
+    parts = yaml.safe_load_all(blocks("kubernetes.md", "yaml")[0])
+    specs = [part["spec"]["template"]["spec"] for part in parts if part["kind"] == "Deployment"]
+    command = next(words for spec in specs if (words := spec["containers"][0]["command"])[:2] == ["dask", role])
+    options = {option for parameter in module.main.params for option in (*parameter.opts, *parameter.secondary_opts)}
+    assert {word for word in command if word.startswith("--")} <= options
