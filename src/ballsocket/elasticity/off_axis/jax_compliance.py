@@ -16,7 +16,7 @@ from ...core.arrays import Array, Numbers
 from ...problem import Joint
 from ...problem.cup import Cup
 from .compliance import cached_compliance
-from .model import Sphere
+from .jax_search import Grids
 from .ring_matrices import liner_numbers, vary_liner
 from .surfaces import Surface
 
@@ -29,6 +29,13 @@ class Operators(NamedTuple):
     coarse_softness: Array
     coarse_stiffness: Array
 
+    def replace_in(self, grids: Grids) -> Grids:
+        """Return the arrays of a bore with these matrices."""
+        return Grids(
+            fine=grids.fine._replace(softness=self.softness, stiffness=self.stiffness),
+            coarse=grids.coarse._replace(softness=self.coarse_softness, stiffness=self.coarse_stiffness),
+        )
+
 
 @dataclass(frozen=True, kw_only=True)
 class LinerCompliance:
@@ -36,19 +43,22 @@ class LinerCompliance:
 
     Parameters
     ----------
-    model : Sphere
-        An elastic surface, in rings of 3° or less.
+    surface : RealCup or ClosedShell
     joint : Joint
         A joint without arrays. Its bore stays the same.
+    cup : Cup
+    ring_width : float
+        In rad, 3° or less.
     """
 
-    model: Sphere
+    surface: Any
     joint: Joint
+    cup: Cup
+    ring_width: float
 
     def operators(self, liner: Numbers) -> Operators:
         """Compute the matrices for Young's modulus in MPa, Poisson's ratio and thickness in mm of the liner."""
-        model = self.model
-        compliance = cached_compliance(model.surface, self._vary(liner), model.cup, model.ring_width)
+        compliance = cached_compliance(self.surface, self._vary(liner), self.cup, self.ring_width)
         coarser = compliance.coarser_compliance
         if coarser is None:
             raise ValueError("the compliance of a liner needs rings of 3 degrees or less")
@@ -57,8 +67,7 @@ class LinerCompliance:
 
     def softness_slopes(self, liner: Numbers) -> tuple[Numbers, Numbers]:
         """Compute the derivatives of both softnesses by the three numbers of the liner: (3, m, rings, rings)."""
-        surface: Any = self.model.surface
-        return _softness_slopes(surface, self._vary(liner), self.model.cup, self.model.ring_width)
+        return _softness_slopes(self.surface, self._vary(liner), self.cup, self.ring_width)
 
     def _vary(self, liner: Numbers) -> Joint:
         """Return the joint with another liner."""

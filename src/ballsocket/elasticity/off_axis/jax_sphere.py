@@ -180,7 +180,11 @@ class JaxSphere:
     @cached_property
     def _operators(self) -> Callable[[Array], Operators]:
         """Function from the numbers of a liner to the matrices of the bore."""
-        return differentiable_operators(LinerCompliance(model=self.model, joint=self.joint), self.dtype)
+        model = self.model
+        compliance = LinerCompliance(
+            surface=model.surface, joint=self.joint, cup=model.cup, ring_width=model.ring_width
+        )
+        return differentiable_operators(compliance, self.dtype)
 
     def press(
         self,
@@ -262,14 +266,10 @@ class JaxSphere:
             liner=Material(young=young, poisson=poisson, name=self.joint.liner.name), liner_thickness=thickness
         )
         operators = self._operators(xp.stack([young, poisson, thickness]))
-        bores, softening = self._bores, self.joint.effective_modulus / varied.effective_modulus
-        fine, coarse = bores.grids
-        return bores._replace(
-            grids=Grids(
-                fine=fine._replace(softness=operators.softness, stiffness=operators.stiffness),
-                coarse=coarse._replace(softness=operators.coarse_softness, stiffness=operators.coarse_stiffness),
-            ),
-            edge_compliance=bores.edge_compliance * softening,
+        softening = self.joint.effective_modulus / varied.effective_modulus
+        return self._bores._replace(
+            grids=operators.replace_in(self._bores.grids),
+            edge_compliance=self._bores.edge_compliance * softening,
         )
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache, lru_cache
 from math import pi
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy
 
@@ -21,7 +21,22 @@ from ..finite_elements.mesh import SocketShape, socket_shape
 
 if TYPE_CHECKING:
     from ..finite_elements.harmonics import Harmonics, StiffnessPowers
-    from .grid import Grid
+
+
+class RingGrid(Protocol):
+    """Rings of a `Grid`: their limits in rad, largest width in rad, number, areas on a unit sphere, and largest m."""
+
+    @property
+    def edges(self) -> Numbers: ...
+    @property
+    def width(self) -> float: ...
+    @property
+    def rings(self) -> int: ...
+    @property
+    def ring_areas(self) -> Numbers: ...
+    @property
+    def max_harmonic(self) -> int: ...
+
 
 _MAX_CONSECUTIVE_HARMONIC = 6
 """Largest m up to which every harmonic is computed."""
@@ -67,14 +82,14 @@ def _harmonic_nodes(max_harmonic: int) -> Numbers:
     return numpy.array(nodes)
 
 
-def sphere_rings(compliance: ModalCompliance, grid: Grid) -> Numbers:
+def sphere_rings(compliance: ModalCompliance, grid: RingGrid) -> Numbers:
     """Compute the compliance matrices between rings on a solid ball or a closed shell.
 
     Parameters
     ----------
     compliance : function
         From degrees n to modal compliances in mm/MPa.
-    grid : Grid
+    grid : RingGrid
 
     Returns
     -------
@@ -94,7 +109,7 @@ def sphere_rings(compliance: ModalCompliance, grid: Grid) -> Numbers:
     return interpolate_harmonics(compute_harmonics, grid.max_harmonic)
 
 
-def legendre_ring_integrals(grid: Grid, m: Numbers, max_degree: int) -> Numbers:
+def legendre_ring_integrals(grid: RingGrid, m: Numbers, max_degree: int) -> Numbers:
     """Integrate the normalised associated Legendre functions P_n^m over each ring: (m, rings, degrees n).
 
     The integrand is P_n^m sin θ.
@@ -124,7 +139,7 @@ def _next_legendre(n: int, m: Numbers, before_last: Numbers, last: Numbers, x: N
     return rise * x * last - drop / numpy.sqrt(max(2 * n - 3, 1)) * before_last
 
 
-def cup_rings(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+def cup_rings(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
     """Compute the compliance matrices between rings of a cup by finite elements: (m, rings, rings).
 
     They are ∫ u dA in mm/MPa on a unit sphere.
@@ -146,12 +161,12 @@ def _bore_scale(joint: Joint) -> float:
     return float(joint.socket_radius) / float(joint.liner.young)
 
 
-def are_cup_rings_cached(joint: Joint, cup: Cup, grid: Grid) -> bool:
+def are_cup_rings_cached(joint: Joint, cup: Cup, grid: RingGrid) -> bool:
     """Return True if the compliance matrices of `cup_rings` are cached on disk."""
     return is_array_cached(_unit_inputs(joint, cup, grid))
 
 
-def _unit_inputs(joint: Joint, cup: Cup, grid: Grid) -> tuple[SocketShape, tuple[float, ...], int]:
+def _unit_inputs(joint: Joint, cup: Cup, grid: RingGrid) -> tuple[SocketShape, tuple[float, ...], int]:
     """Return the inputs of the matrices for a bore of radius 1 and a liner of modulus 1."""
     return socket_shape(joint, cup), tuple(grid.edges.tolist()), grid.max_harmonic
 
@@ -203,7 +218,7 @@ def difference_rings(rings: Callable[[Joint], Numbers], joint: Joint) -> Numbers
     return numpy.stack([(rings(high) - rings(low)) / (2 * step) for step, low, high in liner_steps(joint)])
 
 
-def cup_ring_slopes(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+def cup_ring_slopes(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
     """Compute or load derivatives of `cup_rings` by the numbers of the liner: (3, m, rings, rings).
 
     The mesh moves with the thickness and keeps its elements. Only the element matrices are differences of 1e-5, whose
@@ -213,7 +228,7 @@ def cup_ring_slopes(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
     return cached_array(key, lambda: _compute_cup_ring_slopes(joint, cup, grid))
 
 
-def _compute_cup_ring_slopes(joint: Joint, cup: Cup, grid: Grid) -> Numbers:
+def _compute_cup_ring_slopes(joint: Joint, cup: Cup, grid: RingGrid) -> Numbers:
     """Compute derivatives of `cup_rings` by the numbers of the liner, without a cache."""
     from ..finite_elements.harmonics import socket_harmonics  # slow to import
 
