@@ -264,3 +264,20 @@ def test_tracing_the_exact_model_is_refused_with_alternatives():
     jax = pytest.importorskip("jax")
     with pytest.raises(TypeError, match="exact cannot be traced by JAX: use tabulated or refined"):
         jax.grad(lambda force: bs.Exact().press(HIP, force=force).max_pressure)(3000.0)
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore")  # tracing warns of caches in array_api_compat
+def test_a_press_is_one_graph_of_torch():
+    """`fullgraph` raises an error where tracing has to leave the graph."""
+    torch, model = pytest.importorskip("torch"), bs.HessForsbach()
+
+    def press(force, clearance):
+        joint = bs.Joint(ball_radius=16.0, clearance=clearance, liner_thickness=6.0, liner=bs.UHMWPE)
+        contact = model.press(joint, force=force)
+        return contact.max_pressure, contact.indentation
+
+    inputs = torch.tensor([500.0, 3000.0], dtype=torch.float64), torch.tensor([0.05, 0.1], dtype=torch.float64)
+    compiled = torch.compile(press, fullgraph=True, backend="eager")
+    for value, expected in zip(compiled(*inputs), press(*inputs), strict=True):
+        assert value.tolist() == pytest.approx(expected.tolist(), rel=1e-14)

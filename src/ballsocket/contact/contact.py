@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from math import cos, inf, pi, sin
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy
@@ -17,6 +15,7 @@ from ..core.checks import check_numeric, check_vectors, degrees_hint, require, s
 from ..core.deprecation import RenamedAttribute, renamed_arguments, renamed_names
 from ..core.display import load_plot
 from ..core.kinds import Unit
+from ..core.lazy import cached_property
 from ..core.quantities import QUANTITIES
 from ..core.validity import Range
 from . import describe, strength
@@ -58,7 +57,9 @@ def _quantity_property(name: str) -> Any:
         """Compute the quantity and set failed points to NaN."""
         return self._evaluate(read_quantity)
 
-    read_quantity = attrgetter(name)
+    def read_quantity(laws: Laws) -> Array:
+        """Read the quantity of formulas or a solution; `torch.compile` does not trace an `attrgetter`."""
+        return getattr(laws, name)
 
     quantity = QUANTITIES[name]
     compute_quantity.__doc__ = f"{quantity.input_label(Unit(''))} in {quantity.unit}. {quantity.meaning}"

@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from typing import Protocol
 
 import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import renamed_names
+from ..core.lazy import cached_property
 
 PolynomialPieces = Sequence[Sequence[float]]
 """Coefficients of each piece of a curve, the highest power first."""

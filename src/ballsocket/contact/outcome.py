@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy
@@ -13,6 +12,7 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array
 from ..core.deprecation import renamed_names
+from ..core.lazy import cached_property
 from ..core.sources import Source
 from ..core.validity import Promise, Range, Remark, Status, is_missing
 from ..problem import Joint
@@ -146,7 +146,7 @@ class Outcome(ABC):
 
     def _mask_failed(self, compute_quantity: Callable[[], Array]) -> Array:
         """Compute a quantity by a function, and replace its values at failed points by NaN."""
-        with numpy.errstate(all="ignore"):  # a failed point has a status, not a warning
+        with arrays.silent_numpy(self._load):  # a failed point has a status, not a warning
             value = compute_quantity()
             return self._match_load(arrays.where(self._failed, numpy.nan, value) if self._has_failed_points else value)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cached_property
 from math import inf, prod
 from types import SimpleNamespace
 from typing import Any, ClassVar
@@ -15,6 +14,7 @@ import numpy
 from ..core import arrays
 from ..core.arrays import Array
 from ..core.deprecation import renamed_arguments
+from ..core.lazy import cached_property
 from ..problem import Joint
 from . import strength
 from .contact import Contact

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
-from functools import cached_property
 from math import inf
 from typing import Any, NamedTuple
 
 from .arrays import Array, all_true, logical_not, safe_divisor, to_numpy, where
 from .deprecation import RenamedAttribute
 from .kinds import Unit
+from .lazy import cached_property
 from .quantities import QUANTITIES
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from math import degrees, inf, pi
 from typing import Any, ClassVar
 
@@ -15,6 +14,7 @@ from ..contact.roots import increasing_root
 from ..core import arrays
 from ..core.arrays import Array, asinh, atan, broadcast, clip, log, safe_divisor, sqrt, tan, where
 from ..core.checks import check_numeric, require, select_load
+from ..core.lazy import cached_property
 from ..core.sources import Source
 from ..core.validity import Range, Status
 from ..problem import Joint

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from math import ceil, inf, pi, radians
 from typing import ClassVar
 
@@ -27,6 +27,7 @@ from ..core.arrays import (
     sqrt,
     where,
 )
+from ..core.lazy import cached_property
 from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, RIGID_BALL, SMALL_STRAIN, Promise, Range, Status
 from ..problem import Joint

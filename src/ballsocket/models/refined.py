@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from math import inf, nan, pi, radians
 from typing import ClassVar
 
@@ -12,6 +12,7 @@ from ..contact.assembly import SolverResult
 from ..contact.closed_sphere import HEMISPHERE_NOTE
 from ..core import arrays
 from ..core.arrays import Array, broadcast, clip, integral, safe_divisor, sin, where
+from ..core.lazy import cached_property
 from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
 from ..problem import Joint

@@ -6,11 +6,11 @@ Directions are those of the patient's body: x to the right, y to the front, z up
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import atan2, cos, degrees, hypot, pi, radians, sin
+from math import atan2, degrees, hypot, pi, radians
 from typing import Any, Self
 
 from ..core import arrays
-from ..core.arrays import Array, is_plain_number
+from ..core.arrays import Array, cos, is_plain_number, sin
 from ..core.checks import check_numeric, require, shown
 from ..core.kinds import Choice
 from ..core.quantities import CUP
@@ -52,7 +52,7 @@ class AngleDefinition(Choice):
     ANATOMICAL = "anatomical"
 
 
-def _opening_of(inclination: float, anteversion: float, definition: AngleDefinition) -> Direction:
+def _opening_of(inclination: Array, anteversion: Array, definition: AngleDefinition) -> tuple[Array, Array, Array]:
     """Return the axis of a cup out of its opening: lateral, to the front, downwards."""
     if definition is AngleDefinition.OPERATIVE:
         across = cos(inclination)
@@ -72,6 +72,19 @@ def _angles_of(opening: Direction, definition: AngleDefinition) -> tuple[float, 
     if definition is AngleDefinition.ANATOMICAL:
         return atan2(hypot(lateral, front), down), atan2(front, lateral)
     return atan2(lateral, down), atan2(front, hypot(lateral, down))
+
+
+def cup_axes(inclination: Array, anteversion: Array, side: Side) -> tuple[Any, Any, Any]:
+    """Compute the unit vectors x, y, z of a cup's frame in the body frame, each a tuple of three components.
+
+    The angles in rad are numbers or arrays of any library.
+    """
+    lateral, front, down = _opening_of(inclination, anteversion, AngleDefinition.RADIOGRAPHIC)
+    sign = 1.0 if side is Side.RIGHT else -1.0
+    level = cos(inclination)
+    x, z = (sign * level, 0.0 * level, sin(inclination)), (-sign * lateral, -front, down)
+    y = (z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0])
+    return x, y, z
 
 
 _MAX_PELVIC_TILT = pi / 2
@@ -231,7 +244,9 @@ class Cup:
         chosen = _definition(definition)
         if chosen is AngleDefinition.RADIOGRAPHIC:
             return float(self.inclination), float(self.anteversion)
-        return _angles_of(_opening_of(self.inclination, self.anteversion, AngleDefinition.RADIOGRAPHIC), chosen)
+        return _angles_of(
+            _opening_of(float(self.inclination), float(self.anteversion), AngleDefinition.RADIOGRAPHIC), chosen
+        )
 
     def __str__(self) -> str:
         angles = ("arc_of_cover", "inclination", "anteversion")
@@ -260,7 +275,9 @@ class Cup:
     @property
     def opening(self) -> Direction:
         """Unit vector along the axis of the cup, out of its opening, in the body frame."""
-        lateral, front, down = _opening_of(self.inclination, self.anteversion, AngleDefinition.RADIOGRAPHIC)
+        lateral, front, down = _opening_of(
+            float(self.inclination), float(self.anteversion), AngleDefinition.RADIOGRAPHIC
+        )
         return (lateral if self.side is Side.RIGHT else -lateral), front, -down
 
     @property
@@ -277,10 +294,7 @@ class Cup:
 
         In an inclined cup, a vertical load lies between x and z.
         """
-        level = cos(self.inclination)
-        x, z = (level if self.side is Side.RIGHT else -level, 0.0, sin(self.inclination)), self.dome
-        y = (z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0])
-        return x, y, z
+        return cup_axes(float(self.inclination), float(self.anteversion), self.side)
 
     def tilted(self, angle: float) -> Cup:
         """Return a copy of the cup, tilted by an angle in rad between its axis and a vertical load.

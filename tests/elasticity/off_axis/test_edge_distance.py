@@ -76,6 +76,24 @@ def test_edge_distance_of_a_cut_contact_needs_few_presses(name):
     assert len(presses) <= 9
 
 
+def test_edge_distances_of_many_cut_contacts_need_the_presses_of_a_few():
+    """The tilts at first rim contact of 40 loads follow from those of 8, within 0.03°."""
+    model, force = bs.Sphere(ring_width=radians(4.0)), np.geomspace(800.0, 5000.0, 40)
+    contact = model.press(HIP, force=force, tilt=radians(75.0))
+    state, solved = contact.laws.pieces[0][1].state, []
+
+    def solve(bore, load, *arguments):
+        solved.append(len(load))
+        return state.solve(bore, load, *arguments)
+
+    margins = edge_margins(replace(state, solve=solve))
+    few = force[3::9]
+    each = [float(model.press(HIP, force=value, tilt=radians(75.0)).edge_margin) for value in few]
+    assert (margins < 0).all()
+    assert np.degrees(margins[3::9]) == pytest.approx(np.degrees(each), abs=0.03)
+    assert sum(solved) <= 8 * 9
+
+
 def test_half_angle_is_resolved_between_the_cells():
     """Half angles of closed shells at rings of 2°: within 0.25° of the exact ones, of 14 random joints."""
     random, errors = np.random.default_rng(11), []

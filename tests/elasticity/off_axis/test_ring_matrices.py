@@ -11,8 +11,8 @@ from ballsocket.elasticity.finite_elements.harmonics import socket_harmonics
 from ballsocket.elasticity.finite_elements.mesh import socket_shape
 from ballsocket.elasticity.off_axis.compliance import AxisymmetricOperator
 from ballsocket.elasticity.off_axis.grid import graded_grid
-from ballsocket.elasticity.off_axis.surfaces import _harmonic_nodes as harmonic_nodes
-from ballsocket.elasticity.off_axis.surfaces import interpolate_harmonics, legendre_ring_integrals, sphere_rings
+from ballsocket.elasticity.off_axis.ring_matrices import _harmonic_nodes as harmonic_nodes
+from ballsocket.elasticity.off_axis.ring_matrices import interpolate_harmonics, legendre_ring_integrals, sphere_rings
 
 from ...joints import HIP
 

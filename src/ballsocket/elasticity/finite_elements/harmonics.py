@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf
+from typing import Any
 
 import numpy
 from scipy.sparse import coo_matrix, csc_matrix
@@ -26,6 +27,10 @@ from .surfaces import lagrange
 _DIRECT, _HOOP, _SHEARS = 4, 3, (4, 5)
 _SCALE = numpy.sqrt(numpy.array([2.0, 2.0, 1.0, 2.0, 1.0, 1.0]))[:, None]
 _NODES, _WEIGHTS = (numpy.array(part) for part in gauss_legendre(5))
+
+
+StiffnessPowers = tuple[csc_matrix, csc_matrix, csc_matrix]
+"""Stiffness matrices K0, K1 and K2 of the powers of m, or their derivatives."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -72,6 +77,23 @@ class Harmonics:
         loads = self._ring_loads(edges)
         return numpy.stack([self._harmonic_compliance(m, loads) for m in degrees])
 
+    def ring_compliance_slopes(self, edges: Numbers, degrees: Iterable[int], slopes: list[StiffnessPowers]) -> Numbers:
+        """Compute the derivatives of `ring_compliance` from those of the stiffness: (slopes, degrees, rings, rings).
+
+        With the displacements U under the loads, the derivative of the compliance is -Uᵀ dK U.
+        """
+        loads = self._ring_loads(edges)
+        return numpy.stack([self._harmonic_slopes(m, loads, slopes) for m in degrees], axis=1)
+
+    def _harmonic_slopes(self, m: int, loads: Numbers, slopes: list[StiffnessPowers]) -> Numbers:
+        """Compute the derivatives of the compliance matrix between rings for one harmonic: (slopes, rings, rings)."""
+        order, count = self._elimination_order(m)
+        load = numpy.zeros((len(order), loads.shape[1]))
+        load[-count:] = loads[-count:]
+        displacements = self._factorize_stiffness(m, order).solve(load)
+        forces = [_sum_powers(slope, m)[order][:, order] @ displacements for slope in slopes]
+        return numpy.stack([-displacements.T @ force for force in forces])
+
     def _ring_loads(self, edges: Numbers) -> Numbers:
         """Compute the nodal forces on the bore by unit pressure on each ring: (nodes, rings)."""
         corners = self._block.angle[: len(self.bore) : self._block.order]
@@ -85,13 +107,16 @@ class Harmonics:
     def _harmonic_compliance(self, m: int, loads: Numbers) -> Numbers:
         """Compute the compliance matrix between rings (rings, rings) for one harmonic m."""
         order, count = self._elimination_order(m)
-        constant, linear, quadratic = self._stiffness_matrices
-        matrix = (constant + m * linear + m * m * quadratic)[order][:, order].tocsc()
-        factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        factors = self._factorize_stiffness(m, order)
         lower, upper = factors.L[-count:, -count:].toarray(), factors.U[-count:, -count:].toarray()
         normal_loads = loads[-count:]
         compliance = normal_loads.T @ numpy.linalg.solve(upper, numpy.linalg.solve(lower, normal_loads))
         return (compliance + compliance.T) / 2
+
+    def _factorize_stiffness(self, m: int, order: Numbers) -> Any:
+        """Compute the LU factors of the stiffness matrix for one harmonic m in this order of the free unknowns."""
+        matrix = _sum_powers(self.stiffness_powers, m)[order][:, order].tocsc()
+        return splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
     def _elimination_order(self, m: int) -> tuple[Numbers, int]:
         """Return the free unknowns in the order of elimination, and the number of contact unknowns at the end."""
@@ -136,8 +161,12 @@ class Harmonics:
         numbers = shared[3 * self._block.elements[..., None] + numpy.arange(3)]
         return numbers.transpose(1, 0, 2).reshape(self._block.elements.shape[1], -1)
 
+    def has_mesh_of(self, other: Harmonics) -> bool:
+        """Return True if both meshes have the same elements, at any radii."""
+        return numpy.array_equal(self._block.layer, other.elastic.block.layer)
+
     @cached_property
-    def _stiffness_matrices(self) -> tuple[csc_matrix, csc_matrix, csc_matrix]:
+    def stiffness_powers(self) -> StiffnessPowers:
         """Stiffness matrices K0, K1 and K2 of the powers of m."""
         size = 3 * self._block.number.size
         rows, columns = numpy.broadcast_arrays(self._element_unknowns[:, :, None], self._element_unknowns[:, None, :])
@@ -213,6 +242,12 @@ def socket_harmonics(shape: SocketShape, edges: Numbers) -> Harmonics:
     angle = shape.extend_to_rim(edges, size)
     mesh = socket_block(shape, angle, shape.radii(angle, resolution), resolution.order)
     return Harmonics(elastic=socket_elastic(shape, mesh), shape=shape)
+
+
+def _sum_powers(powers: StiffnessPowers, m: int) -> csc_matrix:
+    """Sum the stiffness matrices of the powers of m: K0 + m K1 + m² K2."""
+    constant, linear, quadratic = powers
+    return constant + m * linear + m * m * quadratic
 
 
 def _merge_strain_axes(strain: Numbers) -> Numbers:

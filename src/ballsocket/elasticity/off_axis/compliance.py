@@ -16,7 +16,8 @@ from ...problem.cup import Cup
 from ..exact.modes import ball_of
 from ..finite_elements.mesh import socket_shape
 from .grid import Grid, rim_grid
-from .surfaces import Springs, Surface, sphere_rings
+from .ring_matrices import sphere_rings
+from .surfaces import Springs, Surface
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

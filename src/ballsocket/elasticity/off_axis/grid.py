@@ -115,13 +115,31 @@ class Grid:
         the pole that are shorter than two rings get the compliance of waves of two rings. The grid does not resolve
         them, and without this limit the residual of the iteration would appear as pressure.
         """
+        cells = self._attenuate(ring_matrices)
+        return self._fill_unresolved(cells, self._missing_compliance(cells) > 0)
+
+    def average_slopes(self, ring_matrices: Numbers, slopes: Numbers) -> Numbers:
+        """Convert derivatives (n, m, rings, rings) of compliance matrices between rings to those between cells."""
+        filled = self._missing_compliance(self._attenuate(ring_matrices)) > 0
+        return numpy.stack([self._fill_unresolved(self._attenuate(slope), filled) for slope in slopes])
+
+    def _attenuate(self, ring_matrices: Numbers) -> Numbers:
+        """Convert matrices between rings to means over the widths of cells."""
         attenuation = numpy.sinc(numpy.arange(self.max_harmonic + 1) / self.meridians) ** 2
-        cells = ring_matrices * attenuation[:, None, None] / self.ring_areas[:, None]
-        ring, diagonal = numpy.arange(self.rings), numpy.einsum("mii->mi", cells)
+        cells: Numbers = ring_matrices * attenuation[:, None, None] / self.ring_areas[:, None]
+        return cells
+
+    def _missing_compliance(self, cells: Numbers) -> Numbers:
+        """Compute the compliance (m, rings) that cells lack from that of waves of two rings; 0 of longer waves."""
+        diagonal, harmonic = numpy.einsum("mii->mi", cells), numpy.arange(self.max_harmonic + 1)[:, None]
         two_rings = numpy.ceil(pi * numpy.sin(self.polar) / self.width).clip(2, self.max_harmonic).astype(int)
-        unresolved = numpy.arange(self.max_harmonic + 1)[:, None] > two_rings
-        missing = numpy.maximum(diagonal[two_rings, ring] - diagonal, 0.0)
-        cells[:, ring, ring] += numpy.where(unresolved, missing, 0.0)
+        missing = diagonal[two_rings, numpy.arange(self.rings)] - diagonal
+        return numpy.where(harmonic > two_rings, missing, 0.0)
+
+    def _fill_unresolved(self, cells: Numbers, filled: Numbers) -> Numbers:
+        """Add the compliance that cells lack, in the harmonics and rings of a mask (m, rings)."""
+        ring = numpy.arange(self.rings)
+        cells[:, ring, ring] += numpy.where(filled, self._missing_compliance(cells), 0.0)
         return cells
 
     @cached_property

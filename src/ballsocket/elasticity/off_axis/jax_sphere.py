@@ -1,14 +1,12 @@
 """Contacts of `Sphere` in JAX, on processors and GPUs: many loads at once, compiled and differentiable.
 
-The search is that of `coupled_search`: lanes that have converged are masked, not dropped. Products of matrices run in
-full precision; on NVIDIA GPUs JAX would round their factors to TF32 by default, and nothing would converge.
-
-Derivatives follow from one Newton step at the solution, in its touching cells. The step is zero there, and its
-derivative is that of the solution.
+Products of matrices run in full precision; on NVIDIA GPUs JAX would round their factors to TF32 by default, and nothing
+would converge.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 from math import pi, radians
@@ -18,31 +16,21 @@ import numpy
 
 from ...core.arrays import Array
 from ...core.checks import check_number, needs, require
+from ...core.quantities import CUP
 from ...models.kinematics import linear_indentation
-from ...problem import Joint
+from ...problem import Joint, Material
+from ...problem.cup import cup_axes
 from .bore_contact import BoreContact
 from .coupled_search import (
-    COARSE_ITERATIONS,
-    COARSE_ROUNDS,
-    COARSE_TOLERANCE,
-    SENSITIVITY_ITERATIONS,
     TANGENT_ITERATIONS,
     BoreArrays,
-    Lanes,
-    Predictor,
-    advance_lanes,
-    apply_operator,
     compute_force,
-    make_predictor,
     measure,
-    newton_step,
-    refine_fields,
-    refine_sensitivity,
-    solve_change,
     solve_sensitivity,
-    start_coarse,
     start_lanes,
 )
+from .jax_compliance import LinerCompliance, Operators, differentiable_operators
+from .jax_search import Grids, differentiable_search
 from .lane_solver import coarser_lanes, make_bore_arrays
 from .model import Sphere
 from .patch_measures import (
@@ -53,23 +41,21 @@ from .patch_measures import (
     edge_loaded,
     edge_margins,
     half_angles,
+    interpolate,
     largest_pressures,
+    level_table,
     make_cell_arrays,
+    ray_azimuths,
+    ray_directions,
+    rim_angles,
 )
-
-_MAX_ITERATIONS = 30
-
-_TOLERANCE_FACTOR = 0.8
-"""Fraction of the tolerance to which lanes are iterated, before their residuals are computed anew."""
+from .ring_matrices import liner_numbers
 
 _MIN_STEP = radians(2.0)
 """Width of the rings from which the number of steps along a ray follows; wider rings take fewer."""
 
 _MEASURED_CONTACTS = 64
 """Number of contacts whose outlines are computed together."""
-
-_NEWTON_ITERATIONS = 20
-"""Number of conjugate-gradient iterations in the Newton step that carries derivatives."""
 
 
 class JaxContacts(NamedTuple):
@@ -92,7 +78,9 @@ class JaxContacts(NamedTuple):
     edge_loaded : array of bool (loads,)
         True where the contact reaches the end of the bore.
     stiffness_matrix : array (loads, 3, 3)
-        In N/mm.
+        In N/mm; without derivatives.
+    pressure : array (loads, rings, meridians)
+        In MPa, in the cells of the bore.
     """
 
     converged: Array
@@ -105,13 +93,13 @@ class JaxContacts(NamedTuple):
     edge_margin: Array
     edge_loaded: Array
     stiffness_matrix: Array
+    pressure: Array
 
 
 class _Bores(NamedTuple):
     """Arrays of the bore in both grids, of its cells, and of the relation between pressure and gap at the edge."""
 
-    fine: BoreArrays
-    coarse: BoreArrays
+    grids: Grids
     cells: CellArrays
     edge_compliance: Array
     unbounded: Array
@@ -179,9 +167,9 @@ class JaxSphere:
             raise ValueError("JaxSphere needs an elastic surface, LinearGap and rings of 3 degrees or less")
         grid = self._bore.compliance.grid
         edges = self.model.surface.edges(self.joint, self.model.cup, grid)
+        fine, coarse = (make_bore_arrays(bore, numpy.float64) for bore in (self._bore, coarser))
         bores = _Bores(
-            fine=make_bore_arrays(self._bore, numpy.float64),
-            coarse=make_bore_arrays(coarser, numpy.float64),
+            grids=Grids(fine=fine, coarse=coarse),
             cells=make_cell_arrays(grid, edges.inset),
             edge_compliance=edges.compliance,
             unbounded=numpy.asarray(float(not edges.bounded)),
@@ -189,8 +177,27 @@ class JaxSphere:
         )
         return jax.tree.map(partial(jax.numpy.asarray, dtype=self.dtype), bores)
 
+    @cached_property
+    def _operators(self) -> Callable[[Array], Operators]:
+        """Function from the numbers of a liner to the matrices of the bore."""
+        model = self.model
+        compliance = LinerCompliance(
+            surface=model.surface, joint=self.joint, cup=model.cup, ring_width=model.ring_width
+        )
+        return differentiable_operators(compliance, self.dtype)
+
     def press(
-        self, force: Array, direction: Array, *, clearance: Array | None = None, depth: Array | None = None
+        self,
+        force: Array,
+        direction: Array,
+        *,
+        clearance: Array | None = None,
+        depth: Array | None = None,
+        young: Array | None = None,
+        poisson: Array | None = None,
+        liner_thickness: Array | None = None,
+        inclination: Array | None = None,
+        anteversion: Array | None = None,
     ) -> JaxContacts:
         """Press the ball by many forces at once.
 
@@ -204,17 +211,23 @@ class JaxSphere:
             Clearance in mm in the same bore, in place of the joint's.
         depth : array (rings, meridians), optional
             Worn depth in mm of the cells, in place of the model's.
+        young, poisson, liner_thickness : array (), optional
+            Young's modulus in MPa, Poisson's ratio and thickness in mm of the liner, in place of the joint's. NumPy
+            computes the compliance of another liner, in about a second, and its derivatives in a few.
+        inclination, anteversion : array (), optional
+            Orientation of the cup in rad, in place of the model's.
 
         Returns
         -------
         JaxContacts
-            Displacement, force vector, indentation and largest pressure have derivatives by all arguments, of first
-            order. `press` may be called inside `jax.jit` and `jax.grad`; what is not used there is not computed.
+            All numbers but `error` and `stiffness_matrix` have derivatives by all arguments, of first order, with the
+            cells in contact fixed. `press` may be called inside `jax.jit` and `jax.grad`; what is not used there is not
+            computed.
 
         Raises
         ------
         ValueError, ImportError
-            See the class.
+            See the class; a number of the liner outside its range, unless JAX traces it.
         """
         import jax.numpy as xp
 
@@ -223,8 +236,41 @@ class JaxSphere:
         direction = xp.broadcast_to(xp.asarray(direction, dtype=self.dtype), (*force.shape, 3))
         c = xp.asarray(gap.clearance if clearance is None else clearance, dtype=self.dtype)
         worn = xp.asarray(gap.depth if depth is None else depth, dtype=self.dtype)
-        modulus = self._bore.compliance.uniform_stiffness
-        return _compiled_press()(self._bores, force, direction, c, worn, modulus, self.tolerance)
+        bores = self._bores
+        if not (young is None and poisson is None and liner_thickness is None):
+            bores = self._replace_liner((young, poisson, liner_thickness))
+        if not (inclination is None and anteversion is None):
+            bores = bores._replace(frame=self._orient(inclination, anteversion))
+        return _compiled_press()(bores, force, direction, c, worn, self.tolerance)
+
+    def _orient(self, inclination: Array | None, anteversion: Array | None) -> Array:
+        """Compute the frame (3, 3) of the cup in another orientation; None is the angle of the model."""
+        import jax.numpy as xp
+
+        cup, angles = self.model.cup, {"inclination": inclination, "anteversion": anteversion}
+        first, second = (
+            xp.asarray(getattr(cup, name) if angle is None else CUP[name].check(angle), dtype=self.dtype)
+            for name, angle in angles.items()
+        )
+        return xp.stack([xp.stack(axis) for axis in cup_axes(first, second, cup.side)])
+
+    def _replace_liner(self, numbers: tuple[Array | None, ...]) -> _Bores:
+        """Return the arrays of the bore with another liner; None is the number of the joint."""
+        import jax.numpy as xp
+
+        own = liner_numbers(self.joint)
+        young, poisson, thickness = (
+            xp.asarray(old if new is None else new, dtype=self.dtype) for old, new in zip(own, numbers, strict=True)
+        )
+        varied = self.joint.replace(
+            liner=Material(young=young, poisson=poisson, name=self.joint.liner.name), liner_thickness=thickness
+        )
+        operators = self._operators(xp.stack([young, poisson, thickness]))
+        softening = self.joint.effective_modulus / varied.effective_modulus
+        return self._bores._replace(
+            grids=operators.replace_in(self._bores.grids),
+            edge_compliance=self._bores.edge_compliance * softening,
+        )
 
 
 @cache
@@ -242,7 +288,7 @@ def _compiled_press() -> Any:
 
 
 def _press_loads(
-    bores: _Bores, force: Array, direction: Array, clearance: Array, depth: Array, modulus: Array, tolerance: Array
+    bores: _Bores, force: Array, direction: Array, clearance: Array, depth: Array, tolerance: Array
 ) -> JaxContacts:
     """Press the ball by forces (loads,) along directions (loads, 3) of the body; see `JaxSphere.press`."""
     import jax
@@ -251,33 +297,42 @@ def _press_loads(
     axes = direction @ bores.frame.T
     axes = axes / xp.linalg.norm(axes, axis=1, keepdims=True)
     load, gap = (axes * force[:, None]).T, (clearance + depth.T)[..., None]
-    deepest = xp.maximum(clearance, 0.0) + xp.max(xp.maximum(depth, 0.0))
-    radius = xp.sqrt(bores.fine.scale)
-    start = axes.T * (deepest + linear_indentation(radius, xp.maximum(clearance, 0.0), modulus, force))
-    displacement, pressure = _solver()(bores, load, gap, jax.lax.stop_gradient(start), tolerance)
-    measured = measure(bores.fine._replace(gap=gap), load, displacement, pressure)
-    lanes = start_lanes(load, force, displacement, pressure, measured)
+    fine = bores.grids.fine._replace(gap=gap)
+    start = jax.lax.stop_gradient(_initial_displacement(fine, axes, force, clearance, depth))
+    displacement, pressure = differentiable_search()(bores.grids, load, gap, start, tolerance)
+    lanes = start_lanes(load, force, displacement, pressure, measure(fine, load, displacement, pressure))
     fields = pressure.transpose(2, 1, 0)
-    outline = jax.lax.stop_gradient((fields, lanes.remaining.transpose(2, 1, 0), axes))
     half_angle, margin = jax.lax.map(
-        partial(_measure_outline, bores), outline, batch_size=min(_MEASURED_CONTACTS, len(force))
+        partial(_measure_outline, bores),
+        (fields, lanes.remaining.transpose(2, 1, 0), jax.lax.stop_gradient(axes)),
+        batch_size=min(_MEASURED_CONTACTS, len(force)),
     )
-    tangent = solve_sensitivity(bores.fine, jax.lax.stop_gradient(pressure) > 0, TANGENT_ITERATIONS).tangent
-    error, loaded = jax.lax.stop_gradient(lanes.error), edge_loaded(fields)
-    largest, _ = largest_pressures(bores.cells, fields, axes)
+    touching, error = jax.lax.stop_gradient((pressure > 0, lanes.error))
+    loaded, largest = edge_loaded(fields), largest_pressures(bores.cells, fields, axes)[0]
     contacts = JaxContacts(
         converged=error <= tolerance,
         error=error,
         displacement=displacement.T,
-        force_vector=compute_force(bores.fine, pressure).T,
+        force_vector=compute_force(fine, pressure).T,
         indentation=xp.sqrt(xp.sum(displacement * displacement, axis=0)) - clearance,
         max_pressure=xp.where(loaded & (bores.unbounded > 0), xp.inf, largest),
         half_angle=half_angle,
         edge_margin=margin,
         edge_loaded=loaded,
-        stiffness_matrix=tangent,
+        stiffness_matrix=solve_sensitivity(jax.lax.stop_gradient(fine), touching, TANGENT_ITERATIONS).tangent,
+        pressure=fields,
     )
     return _mask_unconverged(contacts)
+
+
+def _initial_displacement(bore: BoreArrays, axes: Array, force: Array, clearance: Array, depth: Array) -> Array:
+    """Estimate displacements (3, loads) in mm along the loads, as `bore_contact.initial_displacement`."""
+    import jax.numpy as xp
+
+    modulus = bore.areas @ bore.stiffness[0].sum(axis=1) / bore.areas.sum()  # under a uniform displacement
+    positive = xp.maximum(clearance, 0.0)
+    indentation = linear_indentation(xp.sqrt(bore.scale), positive, modulus, force)
+    return axes.T * (positive + xp.max(xp.maximum(depth, 0.0)) + indentation)
 
 
 def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
@@ -299,139 +354,34 @@ def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:
 
 def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tuple[Array, Array]:
     """Compute half angle and margin of one contact from its pressures, remaining overlaps and axis."""
+    import jax
     import jax.numpy as xp
 
     pressure, remaining, axis = contact
     level = xp.where(pressure > 0, pressure * bores.edge_compliance, xp.minimum(remaining, 0.0))
     patches = Patches(pressure=pressure[None], level=level[None], axis=axis[None])
-    steps = int(2 * pi / _MIN_STEP)
-    edges = edge_angles(bores.cells, patches.level, contact_centres(bores.cells, patches), steps)
+    fixed = jax.lax.stop_gradient(patches)
+    centres, steps = contact_centres(bores.cells, fixed), int(2 * pi / _MIN_STEP)
+    edges = edge_angles(bores.cells, fixed.level, centres, steps)
+    edges = _differentiable_edges(bores.cells, patches.level, centres, edges)
     return half_angles(bores.cells, patches, edges)[0], edge_margins(bores.cells, patches)[0]
 
 
-@cache
-def _solver() -> Any:
-    """Return the solver of displacements and pressures, with its derivatives by loads and gaps."""
-    import jax
+def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges: Array) -> Array:
+    """Give the edge angles (contacts, rays) their derivatives by the level, whose zero they are.
 
-    @jax.custom_jvp
-    def solve(bores: _Bores, load: Array, gap: Array, start: Array, tolerance: Array) -> tuple[Array, Array]:
-        """Solve displacements (3, loads) and pressures (meridians, rings, loads)."""
-        return _search(bores, load, gap, start, tolerance)
-
-    @solve.defjvp
-    def differentiate(primals: Any, tangents: Any) -> Any:
-        """Compute the derivatives of displacements and pressures in the touching cells."""
-        bores, _, gap, *_ = primals
-        _, load_change, gap_change, *_ = tangents
-        displacement, pressure = solve(*primals)
-        changes = _differentiate(bores.fine._replace(gap=gap), pressure > 0, load_change, gap_change)
-        return (displacement, pressure), changes
-
-    return solve
-
-
-def _differentiate(bore: BoreArrays, touching: Array, load_change: Array, gap_change: Array) -> tuple[Array, Array]:
-    """Compute the changes of displacements and pressures under changes of the loads and the gap."""
+    A Newton step of size 0 has them. Edges at the end of the bore do not move.
+    """
     import jax
     import jax.numpy as xp
 
-    sensitivity = solve_sensitivity(bore, touching, _NEWTON_ITERATIONS)
-    areas = bore.areas[:, None]
+    table, azimuths = level_table(level), ray_azimuths(level)
 
-    def deform(change: Array) -> Array:
-        """Compute the displacements of touching cells; others are copied."""
-        return xp.where(touching, apply_operator(bore, bore.softness, change * touching), change)
+    def level_at(angle: Array) -> Array:
+        """Interpolate the level in mm at angles from the centres along the rays."""
+        return interpolate(cells, table, ray_directions(centres[:, None], angle, azimuths))
 
-    def solve(_: Any, overlap: Array) -> Array:
-        """Compute the pressures that displace touching cells; others are copied."""
-        change = solve_change(bore, touching, overlap, _NEWTON_ITERATIONS)[0]
-        return xp.where(touching, change, overlap)
-
-    def solve_transposed(_: Any, values: Array) -> Array:
-        """Solve the transposed system: the compliance is symmetric with the areas of the cells as weights."""
-        return areas * solve(_, values / areas)
-
-    fixed = jax.lax.custom_linear_solve(deform, -gap_change * touching, solve, solve_transposed)
-    missing = load_change - compute_force(bore, fixed)
-    step = xp.sum(xp.linalg.inv(sensitivity.tangent).transpose(1, 2, 0) * missing, axis=1)
-    moved = sum(part * step[axis] for axis, part in enumerate(xp.split(sensitivity.pressure, 3, axis=-1)))
-    return step, fixed + moved
-
-
-def _search(bores: _Bores, load: Array, gap: Array, start: Array, tolerance: Array) -> tuple[Array, Array]:
-    """Search in wide cells, and in those of the bore."""
-    import jax.numpy as xp
-
-    scale = xp.sqrt(xp.sum(load * load, axis=0))
-    fine = bores.fine._replace(gap=gap)
-    coarse = bores.coarse._replace(gap=_coarsen(fine, gap))
-    rough, predictor = _search_wide_cells(coarse, start_coarse(coarse, load, scale, start))
-    pressure = refine_fields(fine, rough.pressure)
-    predictor = make_predictor(refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
-    measured = measure(fine, load, rough.displacement, pressure)
-    lanes = start_lanes(load, scale, rough.displacement, pressure, measured)
-    lanes = _iterate(fine, lanes, predictor, _TOLERANCE_FACTOR * tolerance, _MAX_ITERATIONS)
-    return lanes.displacement, lanes.pressure
-
-
-def _coarsen(bore: BoreArrays, gap: Array) -> Array:
-    """Compute the means of gaps (meridians, rings, 1) over cells twice as wide; the last ring may stay alone."""
-    import jax.numpy as xp
-
-    odd = gap.shape[1] % 2
-    weights = xp.pad(bore.areas, (0, odd)).reshape(-1, 2)
-    pairs = xp.pad(gap[..., 0], ((0, 0), (0, odd))).reshape(gap.shape[0] // 2, 2, -1, 2).mean(axis=1)
-    return ((pairs * weights).sum(axis=-1) / weights.sum(axis=-1))[..., None]
-
-
-def _search_wide_cells(bore: BoreArrays, lanes: Lanes) -> tuple[Lanes, Predictor]:
-    """Search in wide cells, in rounds with a new sensitivity for the lanes that have not converged."""
-    import jax
-    import jax.numpy as xp
-
-    def is_unfinished(state: tuple[Array, Lanes, Predictor]) -> Array:
-        """Return True in the first round, and until all lanes have converged."""
-        number, lanes, _ = state
-        return (number == 0) | ((number < COARSE_ROUNDS) & ~xp.all(lanes.error <= COARSE_TOLERANCE))
-
-    def run_round(state: tuple[Array, Lanes, Predictor]) -> tuple[Array, Lanes, Predictor]:
-        """Iterate with a new sensitivity."""
-        number, lanes, predictor = state
-        kept = (lanes.error <= COARSE_TOLERANCE) & (number > 0)
-        renewed = make_predictor(solve_sensitivity(bore, lanes.pressure > 0, SENSITIVITY_ITERATIONS))
-        predictor = Predictor(
-            sensitivity=xp.where(xp.tile(kept, 3), predictor.sensitivity, renewed.sensitivity),
-            inverse_tangent=xp.where(kept[:, None, None], predictor.inverse_tangent, renewed.inverse_tangent),
-        )
-        measured = measure(bore, lanes.load, lanes.displacement, lanes.pressure)
-        fresh = start_lanes(lanes.load, lanes.force_scale, lanes.displacement, lanes.pressure, measured)
-        return number + 1, _iterate(bore, fresh, predictor, COARSE_TOLERANCE, COARSE_ITERATIONS), predictor
-
-    meridians, rings, count = lanes.pressure.shape
-    empty = Predictor(
-        sensitivity=xp.zeros((meridians, rings, 3 * count), lanes.pressure.dtype),
-        inverse_tangent=xp.zeros((count, 3, 3), lanes.pressure.dtype),
-    )
-    _, lanes, predictor = jax.lax.while_loop(is_unfinished, run_round, (0, lanes, empty))
-    return lanes, predictor
-
-
-def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: Array, max_iterations: int) -> Lanes:
-    """Iterate until all lanes are within a tolerance; lanes that are stay as they are."""
-    import jax
-    import jax.numpy as xp
-
-    def is_unfinished(state: tuple[Array, Lanes]) -> Array:
-        """Return True until all lanes have converged."""
-        number, lanes = state
-        return (number < max_iterations) & ~xp.all(lanes.error <= tolerance)
-
-    def advance(state: tuple[Array, Lanes]) -> tuple[Array, Lanes]:
-        """Advance the lanes that have not converged."""
-        number, lanes = state
-        advanced = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)
-        converged = lanes.error <= tolerance
-        return number + 1, jax.tree.map(partial(xp.where, converged), lanes, advanced)
-
-    return jax.lax.while_loop(is_unfinished, advance, (0, lanes))[1]
+    value, slope = jax.jvp(level_at, (edges + cells.inset,), (xp.ones_like(edges),))
+    fixed_value, fixed_slope = jax.lax.stop_gradient((value, slope))
+    moves = (edges < rim_angles(cells, centres)) & (edges > 0) & (fixed_slope < 0)
+    return edges - xp.where(moves, (value - fixed_value) / xp.where(moves, fixed_slope, 1.0), 0.0)

@@ -174,7 +174,47 @@ def _rim_contact_tilts(states: ContactStates | ContactSummaries, cut_indices: Nu
     group, tilt, level = group.ravel(), polar_angle(states.axes[cut_indices].T), states.rim_level[cut_indices]
     smallest = numpy.array([numpy.flatnonzero(group == i)[tilt[group == i].argmin()] for i in range(rows.shape[1])])
     load, azimuth = rows
-    return _solve_rim_contact(states, load, azimuth, tilt[smallest], level[smallest])[group]
+    tilts = _interpolate_rim_contact if not worn and load[0] > 0 else _solve_rim_contact
+    return tilts(states, load, azimuth, tilt[smallest], level[smallest])[group]
+
+
+_MAX_RIM_NODES = 8
+"""Number of loads from which the tilts of all others at first rim contact are interpolated."""
+
+_MIN_NODE_DISTANCE = 1e-3
+"""Difference of ln load below which two loads need not both be solved."""
+
+
+def _interpolate_rim_contact(
+    states: ContactStates | ContactSummaries, load: Numbers, azimuth: Numbers, high: Numbers, high_level: Numbers
+) -> Numbers:
+    """Find the tilts in rad at first rim contact by a spline in ln load through a few of them.
+
+    See `_solve_rim_contact` for the arguments. Loads that fill the bore along its axis have no such tilt; then all are
+    solved.
+    """
+    nodes = _spread_nodes(numpy.log(load))
+    solved = _solve_rim_contact(states, load[nodes], azimuth[nodes], high[nodes], high_level[nodes])
+    if len(nodes) == len(load):
+        return solved
+    if not (solved > 0).all():
+        return _solve_rim_contact(states, load, azimuth, high, high_level)
+    from scipy.interpolate import make_interp_spline  # slow to import
+
+    spline = make_interp_spline(numpy.log(load[nodes]), solved, k=min(3, len(nodes) - 1))
+    tilts: Numbers = spline(numpy.log(load))
+    return tilts
+
+
+def _spread_nodes(positions: Numbers) -> Numbers:
+    """Choose indices of a few ascending positions so that none is far from the nearest chosen one: ascending."""
+    nodes = [0, len(positions) - 1] if len(positions) > 1 else [0]
+    while len(nodes) < min(_MAX_RIM_NODES, len(positions)):
+        distance = abs(positions[:, None] - positions[nodes]).min(axis=1)
+        if distance.max() < _MIN_NODE_DISTANCE:
+            break
+        nodes.append(int(distance.argmax()))
+    return numpy.sort(nodes)
 
 
 def _solve_rim_contact(

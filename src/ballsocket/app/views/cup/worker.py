@@ -15,7 +15,7 @@ from ....elasticity.finite_elements.progress import progress_to
 from ....elasticity.off_axis import Orientations, Sphere, orient
 from ....elasticity.off_axis.contact import OffAxisContact
 from ....elasticity.off_axis.grid import rim_grid
-from ....elasticity.off_axis.surfaces import are_cup_rings_cached
+from ....elasticity.off_axis.ring_matrices import are_cup_rings_cached
 from ....files.joint_file import JointFile
 from ....problem import Joint
 from ....problem.cup import Cup, Side

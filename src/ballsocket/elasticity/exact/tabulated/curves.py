@@ -13,13 +13,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 import numpy
 
 from ....core import arrays
 from ....core.arrays import Array, cos, exp, log1p, sin
+from ....core.lazy import cached_property
 from ....problem import Joint
 from .chebyshev import (
     ANGLE_SCALE,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 from math import inf, pi, prod
 from typing import Any, ClassVar
 
@@ -16,6 +16,7 @@ from ....contact.assembly import SolverResult
 from ....contact.closed_sphere import HEMISPHERE_NOTE, LIKE_HEMISPHERE
 from ....core import arrays
 from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
+from ....core.lazy import cached_property
 from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
 from ....problem import Joint

@@ -1,0 +1,181 @@
+"""Search for the equilibrium of many balls in JAX, compiled, with derivatives.
+
+The search is that of `coupled_search`: lanes that have converged are masked, not dropped. Derivatives follow from one
+Newton step at the solution, in its touching cells. The step is zero there, and its derivative is that of the solution.
+"""
+
+from __future__ import annotations
+
+from functools import cache, partial
+from typing import Any, NamedTuple
+
+from ...core.arrays import Array
+from .coupled_search import (
+    COARSE_ITERATIONS,
+    COARSE_ROUNDS,
+    COARSE_TOLERANCE,
+    SENSITIVITY_ITERATIONS,
+    BoreArrays,
+    Lanes,
+    Predictor,
+    advance_lanes,
+    apply_operator,
+    compute_force,
+    make_predictor,
+    measure,
+    newton_step,
+    refine_fields,
+    refine_sensitivity,
+    solve_change,
+    solve_sensitivity,
+    start_coarse,
+    start_lanes,
+)
+
+_MAX_ITERATIONS = 30
+
+_TOLERANCE_FACTOR = 0.8
+"""Fraction of the tolerance to which lanes are iterated, before their residuals are computed anew."""
+
+_NEWTON_ITERATIONS = 20
+"""Number of conjugate-gradient iterations in the Newton step that carries derivatives."""
+
+
+class Grids(NamedTuple):
+    """Arrays of the bore in its own cells, and in cells twice as wide."""
+
+    fine: BoreArrays
+    coarse: BoreArrays
+
+
+@cache
+def differentiable_search() -> Any:
+    """Return the solver of displacements and pressures, with derivatives by loads, gaps and compliance.
+
+    Its arguments are `Grids`, loads (3, loads) in N, gaps (meridians, rings, 1) in mm, initial displacements (3, loads)
+    in mm, and the tolerance. It returns displacements (3, loads) and pressures (meridians, rings, loads).
+    """
+    import jax
+
+    @jax.custom_jvp
+    def solve(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Array) -> tuple[Array, Array]:
+        """Solve displacements and pressures."""
+        return _search(grids, load, gap, start, tolerance)
+
+    @solve.defjvp
+    def differentiate(primals: Any, tangents: Any) -> Any:
+        """Compute the derivatives of displacements and pressures in the touching cells."""
+        grids, _, gap, *_ = primals
+        grids_change, load_change, gap_change, *_ = tangents
+        displacement, pressure = solve(*primals)
+        overlap_change = -gap_change - apply_operator(grids.fine, grids_change.fine.softness, pressure)
+        changes = _differentiate(grids.fine._replace(gap=gap), pressure > 0, load_change, overlap_change)
+        return (displacement, pressure), changes
+
+    return solve
+
+
+def _differentiate(bore: BoreArrays, touching: Array, load_change: Array, overlap_change: Array) -> tuple[Array, Array]:
+    """Compute the changes of displacements and pressures under changes of loads, and of overlaps of a fixed ball."""
+    import jax
+    import jax.numpy as xp
+
+    sensitivity = solve_sensitivity(bore, touching, _NEWTON_ITERATIONS)
+    areas = bore.areas[:, None]
+
+    def deform(change: Array) -> Array:
+        """Compute the displacements of touching cells; others are copied."""
+        return xp.where(touching, apply_operator(bore, bore.softness, change * touching), change)
+
+    def solve(_: Any, overlap: Array) -> Array:
+        """Compute the pressures that displace touching cells; others are copied."""
+        change = solve_change(bore, touching, overlap, _NEWTON_ITERATIONS)[0]
+        return xp.where(touching, change, overlap)
+
+    def solve_transposed(_: Any, values: Array) -> Array:
+        """Solve the transposed system: the compliance is symmetric with the areas of the cells as weights."""
+        return areas * solve(_, values / areas)
+
+    fixed = jax.lax.custom_linear_solve(deform, overlap_change * touching, solve, solve_transposed)
+    missing = load_change - compute_force(bore, fixed)
+    step = xp.sum(xp.linalg.inv(sensitivity.tangent).transpose(1, 2, 0) * missing, axis=1)
+    moved = sum(part * step[axis] for axis, part in enumerate(xp.split(sensitivity.pressure, 3, axis=-1)))
+    return step, fixed + moved
+
+
+def _search(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Array) -> tuple[Array, Array]:
+    """Search in wide cells, and in those of the bore."""
+    import jax.numpy as xp
+
+    scale = xp.sqrt(xp.sum(load * load, axis=0))
+    fine = grids.fine._replace(gap=gap)
+    coarse = grids.coarse._replace(gap=_coarsen(fine, gap))
+    rough, predictor = _search_wide_cells(coarse, start_coarse(coarse, load, scale, start))
+    pressure = refine_fields(fine, rough.pressure)
+    predictor = make_predictor(refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
+    measured = measure(fine, load, rough.displacement, pressure)
+    lanes = start_lanes(load, scale, rough.displacement, pressure, measured)
+    lanes = _iterate(fine, lanes, predictor, _TOLERANCE_FACTOR * tolerance, _MAX_ITERATIONS)
+    return lanes.displacement, lanes.pressure
+
+
+def _coarsen(bore: BoreArrays, gap: Array) -> Array:
+    """Compute the means of gaps (meridians, rings, 1) over cells twice as wide; the last ring may stay alone."""
+    import jax.numpy as xp
+
+    odd = gap.shape[1] % 2
+    weights = xp.pad(bore.areas, (0, odd)).reshape(-1, 2)
+    pairs = xp.pad(gap[..., 0], ((0, 0), (0, odd))).reshape(gap.shape[0] // 2, 2, -1, 2).mean(axis=1)
+    return ((pairs * weights).sum(axis=-1) / weights.sum(axis=-1))[..., None]
+
+
+def _search_wide_cells(bore: BoreArrays, lanes: Lanes) -> tuple[Lanes, Predictor]:
+    """Search in wide cells, in rounds with a new sensitivity for the lanes that have not converged."""
+    import jax
+    import jax.numpy as xp
+
+    def is_unfinished(state: tuple[Array, Lanes, Predictor]) -> Array:
+        """Return True in the first round, and until all lanes have converged."""
+        number, lanes, _ = state
+        return (number == 0) | ((number < COARSE_ROUNDS) & ~xp.all(lanes.error <= COARSE_TOLERANCE))
+
+    def run_round(state: tuple[Array, Lanes, Predictor]) -> tuple[Array, Lanes, Predictor]:
+        """Iterate with a new sensitivity."""
+        number, lanes, predictor = state
+        kept = (lanes.error <= COARSE_TOLERANCE) & (number > 0)
+        renewed = make_predictor(solve_sensitivity(bore, lanes.pressure > 0, SENSITIVITY_ITERATIONS))
+        predictor = Predictor(
+            sensitivity=xp.where(xp.tile(kept, 3), predictor.sensitivity, renewed.sensitivity),
+            inverse_tangent=xp.where(kept[:, None, None], predictor.inverse_tangent, renewed.inverse_tangent),
+        )
+        measured = measure(bore, lanes.load, lanes.displacement, lanes.pressure)
+        fresh = start_lanes(lanes.load, lanes.force_scale, lanes.displacement, lanes.pressure, measured)
+        return number + 1, _iterate(bore, fresh, predictor, COARSE_TOLERANCE, COARSE_ITERATIONS), predictor
+
+    meridians, rings, count = lanes.pressure.shape
+    empty = Predictor(
+        sensitivity=xp.zeros((meridians, rings, 3 * count), lanes.pressure.dtype),
+        inverse_tangent=xp.zeros((count, 3, 3), lanes.pressure.dtype),
+    )
+    _, lanes, predictor = jax.lax.while_loop(is_unfinished, run_round, (0, lanes, empty))
+    return lanes, predictor
+
+
+def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: Array, max_iterations: int) -> Lanes:
+    """Iterate until all lanes are within a tolerance; lanes that are stay as they are."""
+    import jax
+    import jax.numpy as xp
+
+    def is_unfinished(state: tuple[Array, Lanes]) -> Array:
+        """Return True until all lanes have converged."""
+        number, lanes = state
+        return (number < max_iterations) & ~xp.all(lanes.error <= tolerance)
+
+    def advance(state: tuple[Array, Lanes]) -> tuple[Array, Lanes]:
+        """Advance the lanes that have not converged."""
+        number, lanes = state
+        advanced = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)
+        converged = lanes.error <= tolerance
+        return number + 1, jax.tree.map(partial(xp.where, converged), lanes, advanced)
+
+    return jax.lax.while_loop(is_unfinished, advance, (0, lanes))[1]
