@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cache, cached_property
 from pathlib import Path
 
 import numpy
 from matplotlib.figure import Figure
 
 import ballsocket as bs
+from ballsocket.core.arrays import Numbers
 from ballsocket.evidence.hip_wear import INPUTS, PUBLISHED, Predicted, Ratio, patients, ratios, simulators
-from ballsocket.hip import Archard, HipSimulation, Lubricant, Stribeck, in_vivo
+from ballsocket.hip import Archard, Film, HipSimulation, Lubricant, Stribeck, in_vivo
 from ballsocket.reports.style import BLUE, INK, LEGEND, ORANGE, VERMILLION, finish
 
 DOCS = Path(__file__).parent
@@ -21,26 +24,113 @@ PAGE = DOCS / "explanation" / "hip_validation.md"
 BODY_WEIGHT, HEAD_RADIUS = 800.0, 16.0
 """Weight of the patient in N, and radius of the head in mm, of the calculated friction."""
 
-MEASURED_COEFFICIENT = {0.12: (0.04, 0.03, 0.06), 0.50: (0.06, 0.04, 0.08), 0.62: (0.14, 0.09, 0.23)}
-"""Mean, least and largest coefficient by the phase of the cycle: Damm et al. 2013, doi 10.1371/journal.pone.0078373."""
+MEASURED_COEFFICIENT = {
+    0.12: ("contralateral toe-off", 0.04, 0.03, 0.06),
+    0.50: ("contralateral heel strike", 0.06, 0.04, 0.08),
+    0.62: ("toe-off", 0.14, 0.09, 0.23),
+}
+"""Event, and mean, least and largest coefficient by the phase of the cycle, in eight patients.
 
-MEASURED_PEAK_MOMENT = 0.26
-"""Mean of the peak moments of the same patients, in % of body weight times m."""
+Source: Damm et al. 2013, doi 10.1371/journal.pone.0078373.
+"""
+
+MEASURED_PEAK_FORCE, MEASURED_PEAK_MOMENT, MEASURED_POWER = 248, 0.26, (2.3, 1.4, 3.8)
+"""Means of the peaks in % of body weight and in % of body weight times m; mean power in W, with its range.
+
+Source: as above.
+"""
 
 LUBRICANTS = {
     "μ 0.06": (Lubricant(friction=0.06), INK, "-"),
-    "film, μ 0.08 where surfaces touch, Ra 1 µm": (
+    "by the film, μ 0.08 where surfaces touch, Ra 1 µm": (
         Lubricant(friction=Stribeck(boundary=0.08), ball_roughness=0.0, cup_roughness=1e-3),
         BLUE,
         "--",
     ),
-    "film, μ 0.2 where surfaces touch, Ra 0.1 µm": (
+    "by the film, μ 0.2 where surfaces touch, Ra 0.1 µm": (
         Lubricant(friction=Stribeck(boundary=0.2), ball_roughness=0.0, cup_roughness=1e-4),
         ORANGE,
         "-.",
     ),
 }
 """Lubricants of the calculated friction, with their lines."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WalkingFriction:
+    """Friction of the hip of a patient over a cycle of walking.
+
+    Attributes
+    ----------
+    film : Film
+    forces : array (instants,)
+        Sizes of the loads in N.
+    """
+
+    film: Film
+    forces: Numbers
+
+    @cached_property
+    def moments(self) -> Numbers:
+        """Sizes of the friction moments (instants,) in N mm."""
+        return numpy.asarray(numpy.linalg.norm(self.film.moment, axis=1))
+
+    @cached_property
+    def coefficients(self) -> Numbers:
+        """Friction moments over force and radius of the head (instants,)."""
+        return self.moments / (self.forces * HEAD_RADIUS)
+
+    @property
+    def relative_moments(self) -> Numbers:
+        """Friction moments (instants,) in % of body weight times m."""
+        return 0.1 * self.moments / BODY_WEIGHT
+
+    @property
+    def power(self) -> float:
+        """Mean power in W."""
+        return self.film.heat / self.film.duration
+
+    def coefficient_at(self, phase: float) -> float:
+        """Interpolate the coefficient at a phase of the cycle, 0 to 1."""
+        return float(numpy.interp(phase, self.film.phases, self.coefficients))
+
+
+@cache
+def walking_friction(label: str) -> WalkingFriction:
+    """Compute the friction in walking with one of the lubricants."""
+    liner = bs.Material(young=1000.0, poisson=0.4)
+    joint = bs.Joint(ball_radius=HEAD_RADIUS, clearance=0.1, liner_thickness=7.0, liner=liner)
+    cycle = in_vivo("walking", BODY_WEIGHT, 50)
+    use = HipSimulation(joint=joint, cycle=cycle, wear=Archard(coefficient=1e-6))
+    forces = numpy.asarray(numpy.linalg.norm(cycle.forces, axis=1))
+    return WalkingFriction(film=use.film(LUBRICANTS[label][0]), forces=forces)
+
+
+def friction_column(label: str) -> list[str]:
+    """Return the column of the table of friction for one of the lubricants."""
+    friction = walking_friction(label)
+    return [
+        f"{100 * friction.forces.max() / BODY_WEIGHT:.0f} (input)",
+        f"{friction.relative_moments.max():.2f}",
+        *(f"{friction.coefficient_at(phase):.3f}" for phase in MEASURED_COEFFICIENT),
+        f"{friction.power:.1f}",
+    ]
+
+
+def friction_table() -> str:
+    """Return the table of friction in walking, measured and calculated, as Markdown."""
+    measured = [
+        ("peak force, % of body weight", f"{MEASURED_PEAK_FORCE}"),
+        ("peak moment, % of body weight times m", f"{MEASURED_PEAK_MOMENT}"),
+        *(
+            (f"coefficient at {event}", f"{mean} ({least} to {largest})")
+            for event, mean, least, largest in MEASURED_COEFFICIENT.values()
+        ),
+        ("mean power, W", "{} ({} to {})".format(*MEASURED_POWER)),
+    ]
+    columns = [friction_column(label) for label in LUBRICANTS]
+    rows = [(*row, *numbers) for row, numbers in zip(measured, zip(*columns, strict=True), strict=True)]
+    return _table(("", "measured", *LUBRICANTS), rows)
 
 
 def ratio_table(found: Iterable[Ratio]) -> str:
@@ -105,20 +195,13 @@ def figure(panels: dict[str, list[Predicted]]) -> Figure:
 
 def friction_figure() -> Figure:
     """Coefficient of friction and friction moment in walking, calculated and measured in patients."""
-    liner = bs.Material(young=1000.0, poisson=0.4)
-    joint = bs.Joint(ball_radius=HEAD_RADIUS, clearance=0.1, liner_thickness=7.0, liner=liner)
-    cycle = in_vivo("walking", BODY_WEIGHT, 50)
-    use = HipSimulation(joint=joint, cycle=cycle, wear=Archard(coefficient=1e-6))
     drawn = Figure(figsize=(9.0, 4.6), layout="constrained")
     coefficient_axes, moment_axes = drawn.subplots(1, 2)
-    for label, (lubricant, color, line) in LUBRICANTS.items():
-        film = use.film(lubricant)
-        moment = numpy.linalg.norm(film.moment, axis=1)
-        force = numpy.linalg.norm(cycle.forces, axis=1)
-        percent, style = 100 * film.phases, {"color": color, "linestyle": line, "label": label}
-        coefficient_axes.plot(percent, moment / (force * HEAD_RADIUS), **style)
-        moment_axes.plot(percent, 0.1 * moment / BODY_WEIGHT, **style)
-    for phase, (mean, least, largest) in MEASURED_COEFFICIENT.items():
+    for label, (_, color, line) in LUBRICANTS.items():
+        friction, style = walking_friction(label), {"color": color, "linestyle": line, "label": label}
+        coefficient_axes.plot(100 * friction.film.phases, friction.coefficients, **style)
+        moment_axes.plot(100 * friction.film.phases, friction.relative_moments, **style)
+    for phase, (_, mean, least, largest) in MEASURED_COEFFICIENT.items():
         spread = [[mean - least], [largest - mean]]
         name = "measured in eight patients, with ranges" if phase == min(MEASURED_COEFFICIENT) else None
         coefficient_axes.errorbar(100 * phase, mean, yerr=spread, fmt="o", color=VERMILLION, capsize=3, label=name)
@@ -134,7 +217,12 @@ def friction_figure() -> Figure:
 
 def main() -> None:
     shaken, walked = list(simulators()), list(patients())
-    found = {"inputs": inputs(), "ratios": ratio_table(ratios()), "bands": band_table([*shaken, *walked])}
+    found = {
+        "inputs": inputs(),
+        "ratios": ratio_table(ratios()),
+        "bands": band_table([*shaken, *walked]),
+        "friction": friction_table(),
+    }
     text = PAGE.read_text(encoding="utf-8")
     for name, part in found.items():
         text = re.sub(rf"(?<=% {name} begin\n).*?(?=% {name} end)", f"\n{part}\n\n", text, flags=re.S)

@@ -283,3 +283,22 @@ def test_a_negative_spin_turns_the_film_round():
     forward, backward = (bs.film(CONTACT, spin=(rate, 0.0, 0.0)) for rate in (1.5, -1.5))
     assert backward.central == pytest.approx(forward.central, rel=1e-6)
     assert backward.minimum == pytest.approx(forward.minimum, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("words", "note"),
+    [
+        ({"lubricant": bs.Lubricant(viscosity=1e-9)}, "the smallest film is below 1 nm"),
+        ({"spin": (1e5, 0.0, 0.0)}, "of the film is above 1440: the flow is turbulent"),
+    ],
+)
+def test_films_of_few_molecules_and_turbulent_films_are_not_valid(words, note):
+    film = bs.film(CONTACT, cell_width=radians(4.0), **words)
+    assert not film.valid
+    assert any(note in text for text in film.notes)
+
+
+def test_reynolds_number_is_that_of_a_film_of_water():
+    film = bs.film(CONTACT)
+    assert film.reynolds_number == pytest.approx(1000.0 * 0.027 * film.central / 1e3 / 2.5e-3)
+    assert film.valid

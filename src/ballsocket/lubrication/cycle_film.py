@@ -14,6 +14,7 @@ from math import acos, pi
 import numpy
 
 from ..core.arrays import Numbers
+from .cycle_error import film_errors, refreshed_mean_error
 from .dry_contact import DryContact
 from .film_core import FilmMotion
 from .inlet import Edge
@@ -31,15 +32,6 @@ SETTLED_CHANGE = 0.1
 
 _MARCHED, _MOST_MARCHED = 3, 10
 """Least and largest number of cycles that are followed instant by instant: one before the core's drift."""
-
-_CORE_CELL_ERROR = 0.5
-"""Relative error of the film of the core times the number of rings of the drift's cells in it; measured."""
-
-_REFRESHED_CELL_ERROR = 0.6
-"""Relative error of the mean film of the refreshed part times the number of rings of cells; measured."""
-
-_SMALL_CORE = 0.01
-"""Share of a contact up to which the error of its core does not count."""
 
 _NO_FILM = 1e-30
 """Film in mm, and area in mm², that count as none."""
@@ -99,7 +91,8 @@ class CycleFilm:
     central, minimum : array (instants,)
         Film in mm at the load, and the smallest in the contact.
     error : array (instants,)
-        Estimated relative error of the central and the smallest film: of the wave, and of the cells.
+        Estimated relative error of the central and the smallest film: of the wave, of the cells, and of changes that
+        cells and instants smear.
     refreshed_mean_error : float
         Estimated relative error of the mean of `refreshed_mean` over the cycle. It contains the cells at the edge.
     drift : float
@@ -331,11 +324,6 @@ def _at_loads(motion: FilmMotion, waves: Sequence[FilmWave], thickness: Numbers)
     return numpy.where(total > 0, weighted / numpy.where(total > 0, total, 1.0), numpy.nan)
 
 
-def _rings(cells: Numbers) -> Numbers:
-    """Estimate the number of rings in round regions of square cells; at least 1."""
-    return numpy.sqrt(numpy.maximum(cells / pi, 1.0))
-
-
 def _summarise(
     waves: Sequence[FilmWave],
     thickness: Numbers,
@@ -346,28 +334,15 @@ def _summarise(
     cycles: int,
 ) -> CycleFilm:
     """Collect central and smallest films, and the errors, of the last cycle."""
-    minimum = [_smallest(wave, row) for wave, row in zip(waves, thickness, strict=True)]
-    wave_error = numpy.array(
-        [
-            wave.contact.edge.wave_error(
-                wave.viscosity, wave.contact.speed(wave.spin), max(wave.contact.contact_radius, 1e-9)
-            )
-            for wave in waves
-        ]
-    )
-    inside = numpy.isfinite(thickness)
-    rings = _rings(inside.sum(axis=1))
-    has_core = (core & inside) @ motion.mesh.area > _SMALL_CORE * (inside @ motion.mesh.area)
-    core_error = numpy.where(has_core, _CORE_CELL_ERROR / _rings(motion.drifting.sum()), 0.0)
-    cell_error = numpy.array([wave.contact.cell_error for wave in waves]) / rings
+    central = _at_loads(motion, waves, thickness)
     return CycleFilm(
         area=motion.mesh.area,
         thickness=thickness,
         core=core,
-        central=_at_loads(motion, waves, thickness),
-        minimum=numpy.array(minimum),
-        error=wave_error + numpy.maximum(cell_error, core_error),
-        refreshed_mean_error=float((wave_error + _REFRESHED_CELL_ERROR / rings).mean()),
+        central=central,
+        minimum=numpy.array([_smallest(wave, row) for wave, row in zip(waves, thickness, strict=True)]),
+        error=film_errors(waves, thickness, core, central, motion),
+        refreshed_mean_error=refreshed_mean_error(waves, thickness),
         drift=float(numpy.linalg.norm(motion.net_rotation)),
         cycles=cycles,
         change=change,

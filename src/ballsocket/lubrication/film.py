@@ -28,6 +28,18 @@ MAX_ERROR = 0.1
 _MAX_RATE = 1e6
 """Largest rotation rate about an axis in rad/s."""
 
+_THINNEST = 1e-6
+"""Film in mm, 1 nm, below which a lubricant is a few molecules and not a fluid."""
+
+_WATER_DENSITY = 1e-9
+"""Density of water in t/mm³, which is about that of joint fluid and oil."""
+
+_MAX_REYNOLDS_NUMBER = 1440.0
+"""Reynolds number U h/ν of a laminar film.
+
+Plane Couette flow stays turbulent above 360 with half the speed and half the gap: N. Tillmark, P. H. Alfredsson,
+J. Fluid Mech. 235 (1992) 89 (unverified).
+"""
 
 _NO_ENTRAINMENT = "the ball does not turn across the load: no lubricant enters, and the film is squeezed out"
 _CIRCLING_NOTE = (
@@ -35,6 +47,7 @@ _CIRCLING_NOTE = (
     "and the film there is thinner than computed"
 )
 _RIM_NOTE = "the rim cuts the contact: no lubricant enters there, and the film behind it is thinner than computed"
+_MOLECULES_NOTE = "the smallest film is below 1 nm: a few molecules are not a fluid"
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -95,22 +108,37 @@ class FilmResult:
         return self.dry.speed(self.spin)
 
     @property
+    def reynolds_number(self) -> float:
+        """Reynolds number U h/ν of the central film, with the density of water."""
+        return self.speed * self.central * _WATER_DENSITY / self.lubricant.viscosity_mpa
+
+    @property
     def valid(self) -> bool:
-        """True if the contact is valid, lubricant enters all of it, and the estimated error is at most 10 %."""
-        entrained = self.central > 0 and not self.dry.cut and not self.dry.contains_axis(self.spin)
-        return bool(self.contact.valid and entrained and self.error <= MAX_ERROR and self.status is Status.OK)
+        """True if the contact is valid, lubricant enters all of it, and the estimated error is at most 10 %.
+
+        The film must also be a fluid in laminar flow.
+        """
+        return bool(self.contact.valid and not self._reasons)
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Sentences on the contact, on missing entrainment, on its axis, on the rim, the error and the iteration."""
+        """Sentences on the contact, and on all reasons for which the film is not valid."""
+        return (*self.contact.notes, *self._reasons)
+
+    @property
+    def _reasons(self) -> tuple[str, ...]:
+        """Sentences on missing entrainment, the axis, the rim, the error, the iteration and the fluid."""
         reasons = {
             _NO_ENTRAINMENT: self.central == 0,
             _CIRCLING_NOTE: self.central > 0 and self.dry.contains_axis(self.spin),
             _RIM_NOTE: self.dry.cut,
             f"estimated error {100 * self.error:.3g} % is above {100 * MAX_ERROR:.0f} %": self.error > MAX_ERROR,
             f"{self.status.sentence}: this is the best film so far": self.status is not Status.OK,
+            _MOLECULES_NOTE: 0 < self.minimum < _THINNEST,
+            f"the Reynolds number {self.reynolds_number:.3g} of the film is above {_MAX_REYNOLDS_NUMBER:.4g}: the flow "
+            "is turbulent": self.reynolds_number > _MAX_REYNOLDS_NUMBER,
         }
-        return (*self.contact.notes, *(note for note, holds in reasons.items() if holds))
+        return tuple(note for note, holds in reasons.items() if holds)
 
     def summary(self) -> dict[str, Any]:
         """Return the film as a dictionary for JSON, with thicknesses in nm; missing numbers are None."""
@@ -141,7 +169,7 @@ class FilmResult:
     def __repr__(self) -> str:
         central, least = 1e6 * self.central, 1e6 * self.minimum
         return (
-            f"film by {self.method} on {self.contact.model.name}: central {central:.1f} nm, minimum {least:.1f} nm, "
+            f"film by {self.method} on {self.contact.model.name}: central {central:.4g} nm, minimum {least:.4g} nm, "
             f"λ = {self.ratio:.3g}, estimated error {100 * self.error:.1f} %{'' if self.valid else ', not valid'}"
         )
 
@@ -165,8 +193,8 @@ def film(
     lubricant : Lubricant
     method : str
         "inlet" is the closed form at the edge. "wave" (default) carries the film over the dry contact. "reynolds"
-        solves Reynolds' equation with the deformation and the balance of the load, for contacts on springs and those of
-        `exact`, `tabulated` and `Sphere` that the rim does not cut.
+        solves Reynolds' equation with the deformation and the balance of the load. It takes contacts on springs, of
+        `exact`, of `tabulated`, and of `Sphere` where the rim does not cut them.
     cell_width : float
         Width of the cells of the wave in rad; 2° by default.
 

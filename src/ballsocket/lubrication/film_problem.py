@@ -231,14 +231,16 @@ def make_contact_film(
     )
 
 
+def shortest_inlet(dry_contacts: Sequence[DryContact], spin: Numbers, viscosity: float) -> float:
+    """Compute the shortest inlet length in mm of contacts, at one rotation rate."""
+    return min(float(dry.edge.inlet_length(viscosity, numpy.asarray(dry.speed(spin)))) for dry in dry_contacts)
+
+
 def _finest_ring(
     dry_contacts: Sequence[DryContact], spin: Numbers, viscosity: float, settings: _MeshSettings, band: float
 ) -> float:
     """Choose the width in rad of the finest rings, which lie in a band (rad) of edges."""
-    inlets = [
-        float(dry.edge.inlet_length(viscosity, numpy.asarray(dry.speed(spin)))) / dry.radius for dry in dry_contacts
-    ]
-    inlet = min(inlets)
+    inlet = shortest_inlet(dry_contacts, spin, viscosity) / dry_contacts[0].radius
     finest = max(min(inlet / settings.rings_of_inlet, settings.coarsest), band / _MAX_EDGE_RINGS)
     if finest > inlet / _MIN_RINGS_OF_INLET:
         raise ValueError(

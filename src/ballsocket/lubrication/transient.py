@@ -14,7 +14,7 @@ from ..core.validity import Status
 from ..problem import Joint
 from .carried_film import CentralShare, all_upwind, smooth_share
 from .dry_contact import check_single_contact, dry_contact
-from .film_problem import ContactFilm, check_reynolds, make_contact_film
+from .film_problem import ContactFilm, check_reynolds, make_contact_film, shortest_inlet
 from .lubricant import Lubricant
 from .reynolds import FilmProblem, FilmState, advance
 
@@ -29,6 +29,9 @@ _ATTEMPTS: tuple[tuple[CentralShare, int], ...] = (
 )
 """Carried film and number of parts of a time step, in the order of the attempts."""
 
+
+_MAX_EDGE_TRAVEL = 1.0
+"""Largest movement of the edge in a time step, in inlet lengths, that implicit Euler resolves to about 3 %."""
 
 _DRY_CELL = numpy.radians(4.0)
 """Width in rad of the cells of the dry contacts, of which only axis and edge are used."""
@@ -99,7 +102,7 @@ def solve_cycle(
     cycles : int
         Number of cycles.
     parts : int
-        Number of time steps in each step of load and motion.
+        Number of time steps in each step of load and motion, in which both change linearly from the step before.
 
     Returns
     -------
@@ -111,8 +114,7 @@ def solve_cycle(
     for _ in range(cycles):
         states = []
         for step in steps:
-            piece = replace(step, duration=step.duration / parts)
-            for _ in range(parts):
+            for piece in _divide(before, step, parts):
                 state = _solve_step(problem, state, before, piece)
                 before = piece
             states.append(state)
@@ -166,10 +168,21 @@ class FilmSteps:
         Reynolds' equation with its mesh.
     film : TransientFilm
         States, thickness (steps, cells) in mm, and status of each step.
+    edge_travel : array (steps,)
+        Movement of the edge of the dry contact in one time step, in inlet lengths.
     """
 
     case: ContactFilm
     film: TransientFilm
+    edge_travel: Numbers
+
+    @property
+    def resolved(self) -> Numbers:
+        """Mask of the steps (steps,) in whose time steps the edge moves by at most an inlet length.
+
+        Elsewhere the film that enters has an error in time: 9 % at 5 inlet lengths, 5 % at 2. More `parts` resolve it.
+        """
+        return self.edge_travel <= _MAX_EDGE_TRAVEL
 
     @property
     def central(self) -> Numbers:
@@ -224,7 +237,8 @@ def film_over_steps(
     cycles : int
         Number of times that the steps are repeated; the result has the last one.
     parts : int
-        Number of time steps in each step of load and motion.
+        Number of time steps in each step of load and motion, in which both change linearly from the step before. The
+        edge of the contact should move by less than an inlet length in each; `resolved` states it.
 
     Returns
     -------
@@ -262,16 +276,20 @@ def film_over_steps(
     dry_contacts = [dry_contact(contact, _DRY_CELL) for contact in contacts]
     for contact, dry in zip(contacts, dry_contacts, strict=True):
         check_reynolds(contact, dry)
-    axis = dry_contacts[0].axis
+    axis, viscosity = dry_contacts[0].axis, lubricant.viscosity_mpa
     fastest = rates[numpy.linalg.norm(numpy.cross(rates, axis), axis=1).argmax()]
     if not dry_contacts[0].speed(fastest) > 0:
         raise ValueError("the ball does not move across the load in any step: no lubricant enters")
-    case = make_contact_film(contacts, dry_contacts, fastest, lubricant.viscosity_mpa)
+    case = make_contact_film(contacts, dry_contacts, fastest, viscosity)
     steps = [
         LoadStep(force=force * axis, spin=spin, duration=float(duration))
         for force, spin, duration in zip(loads, rates, numpy.broadcast_to(times, loads.shape), strict=True)
     ]
-    return FilmSteps(case=case, film=solve_cycle(case.problem, case.start, steps, cycles, parts))
+    return FilmSteps(
+        case=case,
+        film=solve_cycle(case.problem, case.start, steps, cycles, parts),
+        edge_travel=_edge_shifts(model, joint, loads) / parts / shortest_inlet(dry_contacts, fastest, viscosity),
+    )
 
 
 def _finite(name: str, values: Array) -> Numbers:
@@ -279,6 +297,14 @@ def _finite(name: str, values: Array) -> Numbers:
     array = numpy.asarray(check_numeric(name, values), dtype=float)
     require(name, array, numpy.isfinite(array), "a number is finite")
     return array
+
+
+def _edge_shifts(model: Model, joint: Joint, loads: Numbers) -> Numbers:
+    """Compute the movement (steps,) of the edge in mm from the load before to each load in N; the last is first."""
+    forces, numbers = numpy.unique(loads, return_inverse=True)
+    angles = numpy.array([float(_press(model, joint, force).half_angle) for force in forces])[numbers]
+    shifts: Numbers = float(joint.socket_radius) * numpy.abs(angles - numpy.roll(angles, 1))
+    return shifts
 
 
 def _press(model: Model, joint: Joint, force: float) -> Contact:
