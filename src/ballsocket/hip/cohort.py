@@ -13,13 +13,13 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import renamed_arguments, renamed_names
-from ..core.executors.processes import Engine, Serial
-from ..core.storage.atomic_files import read_arrays, write_arrays, write_text
+from ..core.executors.processes import Engine, Serial, check_memory, count_text
+from ..core.storage.atomic_files import read_arrays, write_arrays, write_atomically, write_text
 from ..core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
 from ..studies.axes import SampleAxis
+from .cup_frame import ANGLES
 from .simulation import make_checkpoint
 from .variability import (
-    ANGLES,
     RESULT_UNITS,
     CohortResult,
     PatientVariability,
@@ -32,6 +32,12 @@ PATIENTS_PER_PIECE = 16
 """Patients of one piece of work: about half a second."""
 
 _MAX_PATIENTS = 1_000_000
+
+_COPIES = 4
+"""Copies of the results in memory: the table, those for shared coefficients, and a sorted column of a band."""
+
+_ROWS_PER_BLOCK = 10_000
+"""Rows of the table of patients that are written at once."""
 
 _LABEL_NAME = "patients.json"
 """Name of the file with the identity of a stored cohort."""
@@ -146,11 +152,14 @@ class CohortStore(PieceStore):
         Digest of the nominal hip, the distributions, the seed and the code, without the number of patients.
     n_patients : int
         Number of patients of the present run. A stored last piece with fewer patients is computed again.
+    prefix : str
+        Beginning of the file names.
     """
 
     folder: Path
     identity: str
     n_patients: int = 0
+    prefix: str = "patients"
 
     @property
     def _label_file_path(self) -> Path:
@@ -159,7 +168,7 @@ class CohortStore(PieceStore):
 
     def _piece_path(self, piece: int) -> Path:
         """Return the path of the file with the results of a piece (group of patients)."""
-        return self.folder / f"patients_{piece:06d}.npz"
+        return self.folder / f"{self.prefix}_{piece:06d}.npz"
 
     def create(self) -> None:
         """Create the folder and the label file of the store, unless they exist.
@@ -249,6 +258,18 @@ def cohort_store(folder: Path, variability: PatientVariability, counts: Sequence
     return store
 
 
+def check_cohort_memory(patients: int, n_quantities: int, n_reports: int) -> None:
+    """Check that the results of a cohort and their bands fit into the memory; ValueError otherwise.
+
+    Raises
+    ------
+    ValueError
+        The memory is too small; the message has both sizes.
+    """
+    numbers = n_quantities + _COPIES * (n_reports * len(RESULT_UNITS) + 3 * (1 + n_reports))
+    check_memory(f"results of {count_text(max(patients, 0))} patients", 8 * numbers * max(patients, 0))
+
+
 def sample_patients(variability: PatientVariability, count: int, seed: int) -> Mapping[str, Numbers]:
     """Sample the quantities of patients from a Sobol sequence; the first patients do not depend on `count`.
 
@@ -283,10 +304,17 @@ def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
         The folder is not writable or the disk is full.
     """
     names, columns = zip(*table_columns(run, result), strict=True)
-    rows = (
-        ",".join("" if numpy.isnan(value) else f"{value:.9g}" for value in row) for row in numpy.stack(columns, axis=1)
-    )
-    return write_text(path, "\n".join([",".join(names), *rows]) + "\n")
+    with write_atomically(path) as draft, draft.open("w", encoding="utf-8") as file:
+        file.write(",".join(names) + "\n")
+        for first in range(0, len(run), _ROWS_PER_BLOCK):
+            block = numpy.stack([column[first : first + _ROWS_PER_BLOCK] for column in columns], axis=1)
+            file.writelines(map(_format_row, block))
+    return path
+
+
+def _format_row(row: Numbers) -> str:
+    """Write numbers with commas between them and a line break at the end; an unknown number is empty."""
+    return ",".join(["" if value != value else f"{value:.9g}" for value in row.tolist()]) + "\n"
 
 
 __getattr__ = renamed_names(
