@@ -53,11 +53,14 @@ class Box:
         return scaled
 
     def sample(self, count: int) -> list[dict[str, float]]:
-        """Return points of a Sobol sequence, denser at the ends as the points of Chebyshev; more keep the first."""
+        """Return points of a Sobol sequence, denser at the ends as the points of Chebyshev; more keep the first.
+
+        A box without axes has a single point.
+        """
         from scipy.stats.qmc import Sobol
 
         if not self.axes:
-            return [{name: low for name, (low, _) in self.ranges.items()}] * count
+            return [{name: low for name, (low, _) in self.ranges.items()}][:count]
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", UserWarning)  # SciPy warns of counts other than powers of two
             scaled = -numpy.cos(numpy.pi * Sobol(len(self.axes), rng=0).random(count))

@@ -288,7 +288,7 @@ def fit_series(family: FamilyRun, pieces: Sequence[Mapping[str, Numbers]], degre
     unworn, worn = (numpy.concatenate([piece[name] for piece in pieces]) for name in ("unworn", "worn"))
     known = numpy.isfinite(unworn).all(axis=1) & numpy.isfinite(worn).all(axis=(1, 2))
     points, exponents = family.box.sample(len(known)), _exponents(family.box, degree)
-    if known.sum() < max(_MIN_MEMBERS_PER_TERM * len(exponents), 1):
+    if known.sum() < (_MIN_MEMBERS_PER_TERM * len(exponents) if family.box.axes else 1):
         raise NoSeriesError(f"{len(known) - int(known.sum())} of {len(known)} simulations of a series have no result")
     columns = {name: numpy.array([point[name] for point in points])[known] for name in family.box.ranges}
     terms = basis(family.box.scale(columns), exponents)
