@@ -166,8 +166,9 @@ class CohortSeries:
     @cached_property
     def family(self) -> FamilyRun:
         """Family that covers the patients, except those whose loads point to the rim."""
-        similarity, counts = Similarity(variability=self.run.variability), self.run.counts
-        distributions = tuple(self.run.variability.distributions.items())
+        patients, counts = self.run.variability, self.run.counts
+        coarse = replace(patients, use=patients.coarse_simulation)  # workers need a cycle of tables
+        similarity, distributions = Similarity(variability=coarse), tuple(patients.distributions.items())
         reference = SampleAxis(count=_REFERENCE_COUNT, distributions=distributions, seed=self.seed).values
         ranges = {name: _range(values) for name, values in similarity.numbers(reference).items()}
         centre = {name: float(numpy.median(reference[name])) for name in similarity.angles}
