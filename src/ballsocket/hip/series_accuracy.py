@@ -11,7 +11,7 @@ import numpy
 from .variability import RESULT_UNITS, CohortResult
 
 TOLERANCES: Mapping[str, float] = {
-    "volume": 5e-4,
+    "volume": 1e-3,
     "depth": 1e-2,
     "penetration": 5e-3,
     "max_pressure": 5e-3,
