@@ -54,6 +54,7 @@ BENCHMARKS = {
     "element-in-c": ("element_in_c", "one evaluation of the force element: exported to C, in Python, in NumPy"),
     "scaling": ("scaling", "cost against size: presses, tilted loads, cells, instants, patients and workers"),
     "patients": ("patients", "hips of patients who differ, a million cycles each, and ten thousand of them on paper"),
+    "cohort": ("cohort", "a million similar patients by a series, beside a simulation of each: time and error"),
     "bounce": ("bounce", "a ball that bounces in its socket, in every program that a joint is exported to"),
     "four-bar": ("four_bar", "a second of a spatial four-bar with clearance: compiled, in Python, in Exudyn"),
     "identify": ("identify", "clearance and modulus from twenty points: the best point, 4000 samples of the posterior"),

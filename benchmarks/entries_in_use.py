@@ -273,6 +273,10 @@ def patients(results: Results, folder: Path) -> None:
         scatter = wear.Scatter(use=replace(use, wear=law, creep=wear.logarithmic()), distributions=everything)
         _, bands = wear.population(scatter, [1e5, 3e5], patients=40, seed=1)
         results.add("cross-shear", bands.summary())
+    with results.attempt("series"):
+        scatter = wear.Scatter(use=use, distributions=scatters["coefficient"])
+        _, bands = wear.population(scatter, [1e5, 3e5], patients=40, seed=1, method="series")
+        results.add("series", bands.summary())
     for name, text in _hip_files(folder).items():
         path = folder / f"{name}.toml"
         path.write_text(text, encoding="utf-8")

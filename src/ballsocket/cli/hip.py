@@ -51,6 +51,13 @@ def hip(
             "Default: one hip, as in the file."
         ),
     ] = None,
+    method: Annotated[
+        str | None,
+        typer.Option(
+            help="Method of --patients: series (polynomials from a few hundred simulations) or runs (a simulation of "
+            "each patient). Default: series, where it holds and is quicker."
+        ),
+    ] = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
 ) -> None:
@@ -68,6 +75,8 @@ def hip(
     for path, check in ((report, check_page_path), (figure, check_format), (csv, check_table)):
         if path is not None:
             check(path)
+    if method is not None and patients is None:
+        raise ValueError("--method is the method of a cohort: add --patients, or leave out --method")
     hip_files, engine = [read_hip(path) for path in files], choose_executor(workers, scheduler, Serial())
     several = len(files) > 1
     if patients is not None:
@@ -76,7 +85,7 @@ def hip(
                 raise ValueError(f"{option} shows one hip: leave out {option} or --patients")
         if several:
             raise ValueError(f"--patients needs one file, got {len(files)}")
-        _simulate_cohort(hip_files[0], patients, engine, store, as_json, units)
+        _simulate_cohort(hip_files[0], patients, method, engine, store, as_json, units)
         return
     if report is not None and units is not Units.SI:
         raise ValueError("--report of a hip is in mm, N and MPa: leave out --units or --report")
@@ -169,7 +178,13 @@ def _summarize_run(run: HipRun) -> dict[str, Any]:
 
 
 def _simulate_cohort(
-    hip_file: HipFile, patients: int, engine: Engine, store: Path | None, as_json: bool, units: Units
+    hip_file: HipFile,
+    patients: int,
+    method: str | None,
+    engine: Engine,
+    store: Path | None,
+    as_json: bool,
+    units: Units,
 ) -> None:
     """Simulate and print a patient cohort; with a store, also write a table of the patients."""
     from ..hip.cohort import cohort_store, write_csv
@@ -190,6 +205,7 @@ def _simulate_cohort(
             engine=engine,
             store=folder,
             progress=progress,
+            method=method,
         )
     if as_json:
         notes = [*bands.nominal_notes, *bands.notes]

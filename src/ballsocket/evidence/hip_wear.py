@@ -12,14 +12,13 @@ import numpy
 
 from ..core.arrays import Numbers
 from ..core.deprecation import renamed_fields, renamed_names
-from ..hip.bands import DEFAULT_LEVEL
 from ..hip.creep_laws import logarithmic
 from ..hip.cycle import Cycle
 from ..hip.cycle_registry import named_cycle
 from ..hip.simulation import HipSimulation
 from ..hip.simulator_cycles import iso_14242_1, iso_14242_4, rocking
 from ..hip.uncertainty import population
-from ..hip.variability import RESULT_UNITS, PatientVariability
+from ..hip.variability import DEFAULT_LEVEL, RESULT_UNITS, PatientVariability
 from ..hip.wear_law import WearLaw
 from ..hip.wear_laws import Archard, ContactAreaWear
 from ..problem import Joint, Material

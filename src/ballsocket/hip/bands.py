@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from math import degrees
 from typing import Any
 
@@ -13,20 +14,22 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.deprecation import RenamedAttribute, renamed_arguments
 from .contact_checks import list_check_notes
-from .variability import RESULT_UNITS, CohortResult, PatientVariability, summarize_distributions
+from .series_accuracy import SeriesAccuracy
+from .variability import (
+    DEFAULT_LEVEL,
+    INFLUENCED_RESULTS,
+    RESULT_UNITS,
+    CohortResult,
+    PatientVariability,
+    summarize_distributions,
+)
 from .wear_law import coefficient_field
-
-DEFAULT_LEVEL = 0.95
-"""Default fraction of the predictions within a band."""
 
 COEFFICIENT = "coefficient"
 """Name of the wear coefficient among the sampled quantities."""
 
 CONVERTED = ("volume", "depth", "penetration")
 """Results that are converted to shared coefficients."""
-
-INFLUENCED_RESULTS = ("volume", "depth", "penetration")
-"""Results whose variance is divided among the sampled quantities."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,7 +49,15 @@ class SharedCoefficient:
 
     def quantile(self, coefficient: str, name: str, fraction: float) -> Numbers:
         """Compute a quantile of a result over the patients at each report, for one wear coefficient."""
-        return numpy.nanquantile(self.results[coefficient][:, :, CONVERTED.index(name)], fraction, axis=0)
+        key = coefficient, name, fraction
+        if key not in self._quantiles:
+            self._quantiles[key] = quantile_of_known(self.results[coefficient][:, :, CONVERTED.index(name)], fraction)
+        return self._quantiles[key]
+
+    @cached_property
+    def _quantiles(self) -> dict[tuple[str, str, float], Numbers]:
+        """Computed quantiles by coefficient, result and fraction."""
+        return {}
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -74,6 +85,10 @@ class Bands:
         Noun for the members of the bands; by default that of the variability.
     shared : SharedCoefficient, optional
         Results of the patients for a shared wear coefficient; None without a sampled coefficient and another quantity.
+    accuracy : SeriesAccuracy, optional
+        Accuracy of the series that the results of a cohort come from; None if each patient was simulated.
+    obstacle : str
+        Reason in one clause why the cohort has no series; empty if it has one, or none was needed.
     """
 
     variability: PatientVariability
@@ -85,6 +100,8 @@ class Bands:
     quick_run_errors: Mapping[str, float] = field(default_factory=dict)
     shared: SharedCoefficient | None = None
     members: str = ""
+    accuracy: SeriesAccuracy | None = None
+    obstacle: str = ""
 
     @property
     def noun(self) -> str:
@@ -131,7 +148,15 @@ class Bands:
         """
         if self.n_failed == self.n_patients:
             return numpy.full(len(self.counts), numpy.nan)
-        return numpy.nanquantile(self.cohort.table[:, :, list(RESULT_UNITS).index(name)], fraction, axis=0)
+        if (name, fraction) not in self._quantiles:
+            values = self.cohort.table[:, :, list(RESULT_UNITS).index(name)]
+            self._quantiles[name, fraction] = quantile_of_known(values, fraction)
+        return self._quantiles[name, fraction]
+
+    @cached_property
+    def _quantiles(self) -> dict[tuple[str, float], Numbers]:
+        """Computed quantiles by result and fraction."""
+        return {}
 
     def band(self, name: str) -> tuple[Numbers, Numbers]:
         """Compute the lower and upper end of the band of one result at each report, such as "volume"."""
@@ -167,6 +192,7 @@ class Bands:
         """Sentences on the assumptions and limits of the bands."""
         assumed = f"assumed: given and independent distributions of {', '.join(self.variability.distributions)}"
         return (
+            *self._method_notes,
             assumed,
             *self._coefficient_note,
             *self._surface_note,
@@ -207,6 +233,13 @@ class Bands:
         return () if self.variability.use.uses_springs else ("the bands are for radial springs",)
 
     @property
+    def _method_notes(self) -> tuple[str, ...]:
+        """Sentences on the series of a cohort and its error, or on the reason why there is none."""
+        if self.accuracy is not None:
+            return self.accuracy.notes(self.noun, self.n_patients)
+        return (f"each of the {self.noun} was simulated, without a series: {self.obstacle}",) if self.obstacle else ()
+
+    @property
     def _failure_note(self) -> tuple[str, ...]:
         """Sentence on the number of patients without a result."""
         if not self.n_failed:
@@ -236,7 +269,7 @@ class Bands:
         )
         return (sentence,) if invalid_count else ()
 
-    @property
+    @cached_property
     def peak_utilisation(self) -> Numbers:
         """Largest ratio of von Mises to yield stress of each patient up to each report: (patients, reports)."""
         return self.cohort.peak_utilisation
@@ -305,6 +338,8 @@ class Bands:
                 "scatter": summarize_distributions(self.variability),
                 "coefficient": None if self.shared is None else dict(self.shared.values),
                 "quick_run_off": dict(self.quick_run_errors),
+                "method": "runs" if self.accuracy is None else "series",
+                "series": None if self.accuracy is None else self.accuracy.summary(),
             },
         }
 
@@ -363,6 +398,12 @@ class Bands:
     off = RenamedAttribute("quick_run_errors")
     usual_notes = RenamedAttribute("nominal_notes")
     valid_share = RenamedAttribute("valid_fraction")
+
+
+def quantile_of_known(values: Numbers, fraction: float) -> Numbers:
+    """Compute a quantile of the values (patients, reports) that are not NaN at each report."""
+    reports = (column[~numpy.isnan(column)] for column in values.T)
+    return numpy.array([numpy.quantile(known, fraction) if len(known) else numpy.nan for known in reports])
 
 
 def _finite_or_none(value: float) -> float | None:

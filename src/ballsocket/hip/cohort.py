@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from io import BytesIO
 from math import ceil
 from pathlib import Path
 
@@ -14,14 +13,13 @@ import numpy
 from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import renamed_arguments, renamed_names
-from ..core.executors.processes import Engine, Serial
-from ..core.storage.atomic_files import pack_arrays, unpack_arrays
+from ..core.executors.processes import Engine, Serial, check_memory, count_text
 from ..core.storage.folders import ResultFolder, folder_at
 from ..core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
 from ..studies.axes import SampleAxis
+from .cup_frame import ANGLES
 from .simulation import make_checkpoint
 from .variability import (
-    ANGLES,
     RESULT_UNITS,
     CohortResult,
     PatientVariability,
@@ -34,6 +32,12 @@ PATIENTS_PER_PIECE = 16
 """Patients of one piece of work: about half a second."""
 
 _MAX_PATIENTS = 1_000_000
+
+_COPIES = 4
+"""Copies of the results in memory: the table, those for shared coefficients, and a sorted column of a band."""
+
+_ROWS_PER_BLOCK = 10_000
+"""Rows of the table of patients that are written at once."""
 
 _LABEL_NAME = "patients.json"
 """Name of the file with the identity of a stored cohort."""
@@ -148,16 +152,18 @@ class CohortStore(PieceStore):
         Digest of the nominal hip, the distributions, the seed and the code, without the number of patients.
     n_patients : int
         Number of patients of the present run. A stored last piece with fewer patients is computed again.
+    prefix : str
+        Beginning of the file names.
     """
 
     folder: ResultFolder
     identity: str
     n_patients: int = 0
+    prefix: str = "patients"
 
-    @staticmethod
-    def _piece_name(piece: int) -> str:
+    def _piece_name(self, piece: int) -> str:
         """Return the name of the file with the results of a piece (group of patients)."""
-        return f"patients_{piece:06d}.npz"
+        return f"{self.prefix}_{piece:06d}.npz"
 
     def create(self) -> None:
         """Create the folder and the label file of the store, unless they exist.
@@ -212,14 +218,13 @@ class CohortStore(PieceStore):
             The folder is not writable or the disk is full.
         """
         arrays = {array.name: getattr(result, array.name) for array in fields(result)}
-        self.folder.write(self._piece_name(number), pack_arrays(identity=self.identity, **arrays))
+        self.folder.write_arrays(self._piece_name(number), identity=self.identity, **arrays)
         return result
 
     def _read_piece(self, piece: int) -> CohortResult | None:
         """Read the result of a piece; return None if the file is missing, damaged or of another cohort."""
         try:
-            name = self._piece_name(piece)
-            arrays = unpack_arrays(BytesIO(self.folder.read(name)), name)
+            arrays = self.folder.read_arrays(self._piece_name(piece))
             if str(arrays.pop("identity")) != self.identity:
                 return None
             result = CohortResult(**arrays)
@@ -259,6 +264,18 @@ def cohort_store(
     return store
 
 
+def check_cohort_memory(patients: int, n_quantities: int, n_reports: int) -> None:
+    """Check that the results of a cohort and their bands fit into the memory; ValueError otherwise.
+
+    Raises
+    ------
+    ValueError
+        The memory is too small; the message has both sizes.
+    """
+    numbers = n_quantities + _COPIES * (n_reports * len(RESULT_UNITS) + 3 * (1 + n_reports))
+    check_memory(f"results of {count_text(max(patients, 0))} patients", 8 * numbers * max(patients, 0))
+
+
 def sample_patients(variability: PatientVariability, count: int, seed: int) -> Mapping[str, Numbers]:
     """Sample the quantities of patients from a Sobol sequence; the first patients do not depend on `count`.
 
@@ -293,11 +310,21 @@ def write_csv(path: Path, run: CohortRun, result: CohortResult) -> Path:
         The folder is not writable or the disk is full.
     """
     names, columns = zip(*table_columns(run, result), strict=True)
-    rows = (
-        ",".join("" if numpy.isnan(value) else f"{value:.9g}" for value in row) for row in numpy.stack(columns, axis=1)
-    )
-    folder_at(path.parent).write(path.name, ("\n".join([",".join(names), *rows]) + "\n").encode())
+    folder_at(path.parent).write_blocks(path.name, _csv_blocks(names, columns))
     return path
+
+
+def _csv_blocks(names: Sequence[str], columns: Sequence[Numbers]) -> Iterator[bytes]:
+    """Yield the lines of a table in blocks of rows, the names first."""
+    yield f"{','.join(names)}\n".encode()
+    for first in range(0, len(columns[0]), _ROWS_PER_BLOCK):
+        block = numpy.stack([column[first : first + _ROWS_PER_BLOCK] for column in columns], axis=1)
+        yield "".join(map(_format_row, block)).encode()
+
+
+def _format_row(row: Numbers) -> str:
+    """Write numbers with commas between them and a line break at the end; an unknown number is empty."""
+    return ",".join(["" if value != value else f"{value:.9g}" for value in row.tolist()]) + "\n"
 
 
 __getattr__ = renamed_names(

@@ -191,12 +191,22 @@ def utilisation_and_validity(model: Model, joint: Joint, stages: Sequence[Number
     table = numpy.concatenate(stages)
     if not len(table):
         return numpy.tile([nan, 1.0], (len(stages), 1))
-    contact = grid_contact(model, joint, table)
-    utilisation, valid = (
-        numpy.broadcast_to(numpy.asarray(values, dtype=float), len(table))
-        for values in (contact.utilisation, contact.valid)
-    )
+    utilisation, valid = check_rows(model, joint, table)
     return numpy.stack([utilisation.reshape(shape).max(axis=1), valid.reshape(shape).min(axis=1)], axis=1)
+
+
+def check_rows(model: Model, joint: Joint, worst: Numbers) -> Numbers:
+    """Compute the ratio of von Mises to yield stress, and validity, of rows of worst contacts: (2, rows).
+
+    The clearance of the joint may be an array (rows,).
+    """
+    contact = grid_contact(model, joint, worst)
+    return numpy.stack(
+        [
+            numpy.broadcast_to(numpy.asarray(values, dtype=float), len(worst))
+            for values in (contact.utilisation, contact.valid)
+        ]
+    )
 
 
 def check_contact(model: Model, joint: Joint, worst: Numbers, activity: str, instant: str) -> ContactCheck:

@@ -17,6 +17,9 @@ from .kinematics import sliding_distance
 from .mix import Mix
 from .rim import Microseparation, SpringLoadedBall
 
+ANGLES = ("inclination", "anteversion", "tilt")
+"""Names of the angles that orient a cup, in rad; summaries and tables show them in degrees."""
+
 _MIN_RELATIVE_FORCE = 1e-6
 """Force below which the ball counts as unloaded, relative to the largest force."""
 

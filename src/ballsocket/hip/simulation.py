@@ -25,7 +25,7 @@ from .rim import mask_edge_loading
 from .socket_foundation import CycleEquilibrium
 from .wear_integrator import WearIntegrator
 
-_MAX_WORN_LINERS = 10.0
+MAX_WORN_LINERS = 10.0
 """Largest wear by the rate of the first cycle, in liner thicknesses."""
 
 _VERSION = 7
@@ -150,10 +150,10 @@ def check_total_wear(setup: HipSetup, cycles: float) -> None:
     thickness = float(min(setup.joint.liner_thickness, setup.joint.socket_radius))
     laws = (law for law in (setup.wear, setup.ball_wear) if law is not None)
     estimated_depth = cycles * max(float(law.depth(exposure).max(initial=0.0)) for law in laws)
-    if not estimated_depth <= _MAX_WORN_LINERS * thickness:
+    if not estimated_depth <= MAX_WORN_LINERS * thickness:
         raise ValueError(
             f"{cycles:g} cycles at the rate of the first one would wear {estimated_depth:.3g} mm away, more than "
-            f"{_MAX_WORN_LINERS:g} times the {thickness:g} mm of the liner: reduce the wear coefficient or the cycles"
+            f"{MAX_WORN_LINERS:g} times the {thickness:g} mm of the liner: reduce the wear coefficient or the cycles"
         )
 
 

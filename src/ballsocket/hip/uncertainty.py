@@ -13,11 +13,14 @@ from ..core.checks import require
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial
 from ..studies.variance_indices import check_sample_memory, sobol_indices
-from .bands import COEFFICIENT, CONVERTED, DEFAULT_LEVEL, INFLUENCED_RESULTS, Bands, SharedCoefficient
-from .cohort import CohortRun, CohortStore, ProgressCallback, sample_patients
+from .bands import COEFFICIENT, CONVERTED, Bands, SharedCoefficient
+from .cohort import CohortRun, CohortStore, ProgressCallback, check_cohort_memory, sample_patients
+from .cohort_series import solve_cohort
 from .history import History, Report
 from .variability import (
     DEFAULT_COUNT,
+    DEFAULT_LEVEL,
+    INFLUENCED_RESULTS,
     RESULT_UNITS,
     CohortResult,
     Patient,
@@ -106,8 +109,12 @@ def population(
     engine: Engine = _SERIAL,
     store: CohortStore | None = None,
     progress: ProgressCallback = _ignore_progress,
+    method: str | None = None,
 ) -> tuple[CohortRun, Bands]:
-    """Simulate a sampled patient cohort, and compute the bands of its results.
+    """Compute the results of a sampled patient cohort, and their bands.
+
+    Patients on springs are similar: a few hundred simulations and a series of polynomials give the results of all of
+    them. `Bands.accuracy` has the error of the series, from patients that were simulated.
 
     Parameters
     ----------
@@ -125,23 +132,31 @@ def population(
         Store of the patients' results. Stored patients are not simulated again.
     progress : function
         Called with the number of finished patients.
+    method : str, optional
+        "series", or "runs" to simulate each patient. By default a series, if patients are similar and many enough.
 
     Raises
     ------
     ValueError
-        Fewer than one patient, too many, or a negative seed.
+        Fewer than one patient, too many for the memory, a negative seed, an unknown method, or a series of patients
+        that are not similar.
     OSError
         The store is not writable or the disk is full.
     """
+    check_cohort_memory(patients, len(variability.distributions), len(counts))
     run = CohortRun(
         variability=variability, counts=tuple(sorted(counts)), values=sample_patients(variability, patients, seed)
     )
     reports = Patient(use=variability.use, cycle_ratio=1.0).simulate(run.counts)
-    cohort = run.simulate(engine, store, progress)
+    solution = solve_cohort(run, seed, method, engine, store, progress)
+    cohort = solution.result
     bands = Bands(
         variability=variability,
         counts=run.counts,
         cohort=cohort,
+        indices=solution.indices,
+        accuracy=solution.accuracy,
+        obstacle=solution.obstacle,
         seed=seed,
         members="patients",
         quick_run_errors=_quick_run_errors(variability, reports),
@@ -282,8 +297,8 @@ def _cycle_ratios(variability: PatientVariability, sampled: Mapping[str, Numbers
 __getattr__ = renamed_names(
     __name__,
     {
-        "LEVEL": "ballsocket.hip.bands.DEFAULT_LEVEL",
-        "SHARED": "ballsocket.hip.bands.INFLUENCED_RESULTS",
+        "LEVEL": "ballsocket.hip.variability.DEFAULT_LEVEL",
+        "SHARED": "ballsocket.hip.variability.INFLUENCED_RESULTS",
         "COUNT": "ballsocket.hip.variability.DEFAULT_COUNT",
     },
 )

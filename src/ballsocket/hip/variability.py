@@ -14,8 +14,10 @@ from ..core.arrays import Numbers
 from ..core.checks import check_names, require
 from ..core.deprecation import RenamedAttribute, renamed_names
 from ..elasticity.off_axis.surfaces import ClosedShell, RealCup, Springs
+from ..problem.cup import Cup
 from ..studies.distributions import Distribution
 from .contact_checks import utilisation_and_validity
+from .cup_frame import ANGLES
 from .cycle import Cycle
 from .cycle_registry import CYCLES
 from .history import Report
@@ -46,9 +48,11 @@ _COARSE_ELASTIC_RINGS = radians(6.0)
 _COARSE_INSTANTS = 32
 """Largest number of instants of a cycle in a patient's simulation."""
 
-ANGLES = ("inclination", "anteversion", "tilt")
-"""Quantities that summaries and tables show in degrees."""
+DEFAULT_LEVEL = 0.95
+"""Default fraction of the predictions within a band."""
 
+INFLUENCED_RESULTS = ("volume", "depth", "penetration")
+"""Results whose variance is divided among the sampled quantities."""
 
 RESULT_UNITS: Mapping[str, str] = {
     "volume": "mm3",
@@ -168,10 +172,7 @@ class PatientVariability:
         ValueError
             A value that is not allowed, or an orientation in which the cup does not hold the ball.
         """
-        use, cup = self.coarse_simulation, self.coarse_simulation.cup
-        cup = cup.tilted(values["tilt"]) if "tilt" in values else cup
-        orientation: Any = {name: values[name] for name in ("inclination", "anteversion") if name in values}
-        cup = replace(cup, **orientation)
+        use, cup = self.coarse_simulation, self.orient_cup(values)
         cycle_ratio, force_ratio = (
             self._ratio_to_nominal(values, "cycles_per_year"),
             self._ratio_to_nominal(values, "body_weight"),
@@ -197,9 +198,26 @@ class PatientVariability:
         """Compute a patient's quantity divided by that of the nominal patient."""
         if name not in values:
             return 1.0
-        nominal = self.body_weight if name == "body_weight" else self.cycles_per_year
         require(name, values[name], 0 < values[name] < inf, "it must be positive")
-        return values[name] / (nominal or self._medians_by_name[name])
+        return values[name] / self.nominal_value(name)
+
+    def nominal_value(self, name: str) -> float:
+        """Return the body weight in N, or the cycles a year, that the cycle of the nominal patient belongs to."""
+        stated = self.body_weight if name == "body_weight" else self.cycles_per_year
+        return stated or self._medians_by_name[name]
+
+    def orient_cup(self, values: Mapping[str, float]) -> Cup:
+        """Return the cup of a patient, with the angles in rad among the patient's values.
+
+        Raises
+        ------
+        ValueError
+            An angle that is not allowed.
+        """
+        cup = self.coarse_simulation.cup
+        cup = cup.tilted(values["tilt"]) if "tilt" in values else cup
+        orientation: Any = {name: values[name] for name in ("inclination", "anteversion") if name in values}
+        return replace(cup, **orientation)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -291,6 +309,10 @@ class CohortResult:
     refused: Numbers
     contact: Numbers
 
+    def select(self, patients: Numbers) -> CohortResult:
+        """Return the results of some patients by their mask or indices."""
+        return CohortResult(table=self.table[patients], refused=self.refused[patients], contact=self.contact[patients])
+
     @property
     def peak_utilisation(self) -> Numbers:
         """Largest ratio of von Mises to yield stress up to each report: (patients, reports)."""
@@ -311,7 +333,7 @@ def join_results(results: Sequence[CohortResult]) -> CohortResult:
     """Join the results of consecutive groups of patients to one `CohortResult`."""
     return CohortResult(
         table=numpy.concatenate([result.table for result in results]),
-        refused=numpy.concatenate([result.refused for result in results]),
+        refused=numpy.concatenate([result.refused.astype(object) for result in results]),
         contact=numpy.concatenate([result.contact for result in results]),
     )
 

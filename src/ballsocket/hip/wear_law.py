@@ -136,6 +136,11 @@ class WearLaw(Law):
     def depth(self, cycle: CycleExposure) -> Numbers:
         """Compute the worn depth in mm of each point in a cycle: (points,)."""
 
+    @property
+    def pressure_degree(self) -> float | None:
+        """Degree of the law in pressure: a times all pressures wear a^degree times the depth. None if unknown."""
+        return None
+
     def with_coefficient(self, value: float) -> WearLaw:
         """Return this law with another value of its wear coefficient.
 

@@ -128,6 +128,10 @@ class Archard(WearLaw):
         factor = wear_factor_of(material)
         return cls(coefficient=factor.value, source=factor.description)
 
+    @property
+    def pressure_degree(self) -> float:
+        return 1.0
+
     def depth(self, cycle: CycleExposure) -> Numbers:
         return METRE * self.coefficient * cycle.work
 
@@ -161,6 +165,10 @@ class FrictionEnergyWear(WearLaw):
     coefficient: float = law_field(WEAR_PER_ENERGY, "worn volume e per friction energy", example=2e-5)
     friction: float = law_field(NUMBER, "coefficient of friction", example=0.05, high=10.0)
 
+    @property
+    def pressure_degree(self) -> float:
+        return 1.0
+
     def depth(self, cycle: CycleExposure) -> Numbers:
         return METRE * self.coefficient * self.friction * cycle.work
 
@@ -184,6 +192,10 @@ class ContactAreaWear(WearLaw):
     name: ClassVar[str] = "area"
     title: ClassVar[str] = "wear by sliding in contact at any pressure"
     coefficient: float = law_field(WEAR_PER_SLIDE, "worn depth C per length of sliding", example=1e-9)
+
+    @property
+    def pressure_degree(self) -> float:
+        return 0.0
 
     def depth(self, cycle: CycleExposure) -> Numbers:
         return self.coefficient * numpy.einsum("tp,tp->p", cycle.contact, cycle.sliding.distances)
@@ -213,6 +225,10 @@ class CrossShear(WearLaw):
     circular: float = law_field(WEAR_FACTOR, "wear factor on a circle", example=2e-6)
     exponent: float = law_field(NUMBER, "exponent", example=0.0, default=0.0, low=-1.0, high=3.0, low_included=False)
     reference: float = law_field(PRESSURE, "reference pressure", example=1.0, default=1.0, low_included=False)
+
+    @property
+    def pressure_degree(self) -> float:
+        return 1.0 + self.exponent
 
     def depth(self, cycle: CycleExposure) -> Numbers:
         factor = self.straight + 2 * cycle.cross_shear * (self.circular - self.straight)

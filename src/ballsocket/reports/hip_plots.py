@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy
 
 from ..hip.ball_wear import ball_directions
-from ..hip.bands import INFLUENCED_RESULTS, Bands
+from ..hip.bands import Bands
 from ..hip.history import History, Report
 from ..hip.kinematics import tracks
+from ..hip.variability import INFLUENCED_RESULTS
 from .style import BLUE, ORANGE, finish
 
 if TYPE_CHECKING:

@@ -11,10 +11,11 @@ from rich.table import Table
 from rich.text import Text
 
 from ..core.arrays import Numbers
-from ..hip.bands import INFLUENCED_RESULTS, Bands
+from ..hip.bands import Bands
 from ..hip.contact_checks import largest_utilisation
 from ..hip.film import Film
 from ..hip.history import History
+from ..hip.variability import INFLUENCED_RESULTS
 from ..lubrication.friction import Stribeck
 from .terminal import console, print_columns, print_folded, print_joint
 from .unit_systems import Units
@@ -152,16 +153,18 @@ def band_contact_line(bands: Bands) -> str:
 
 
 def sobol_lines(bands: Bands) -> Iterator[str]:
-    """Describe the total Sobol indices of each result in one line, largest first."""
+    """Describe the first-order and total Sobol indices of each result in one line, largest total first."""
     if bands.indices is None:
         return
     for row, result in enumerate(INFLUENCED_RESULTS):
-        values = bands.indices["total_order"][row]
+        first, values = (bands.indices[f"{order}_order"][row] for order in ("first", "total"))
         low, high = (bands.indices[f"total_order_{end}"][row] for end in ("low", "high"))
         order = numpy.argsort(-numpy.nan_to_num(values, nan=-inf))
         names = list(bands.variability.distributions)
-        indices = ", ".join(f"{names[i]} {values[i]:.2f} ({low[i]:.2f} to {high[i]:.2f})" for i in order)
-        yield f"Sobol indices of {result} (total order): {indices}"
+        indices = ", ".join(
+            f"{names[i]} {first[i]:.2f} and {values[i]:.2f} ({low[i]:.2f} to {high[i]:.2f})" for i in order
+        )
+        yield f"Sobol indices of {result} (first and total order): {indices}"
 
 
 def print_hip(history: History, units: Units = Units.SI, name: str = "") -> None:

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from errno import ENOENT
+from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from ..arrays import Numbers
 from ..checks import needs
 from ..executors.processes import available_disk_space
 from ..input_files import open_input
-from .atomic_files import address_of, write_atomically
+from .atomic_files import address_of, pack_arrays, unpack_arrays, write_atomically
 
 _LOCAL = "file://"
 """Beginning of the address of a local file."""
@@ -47,14 +49,34 @@ class ResultFolder(ABC):
         """
 
     @abstractmethod
-    def write(self, name: str, content: bytes) -> None:
-        """Write or replace a file; its folder is created if necessary.
+    def write_blocks(self, name: str, blocks: Iterable[bytes]) -> None:
+        """Write or replace a file from blocks of its content; its folder is created if necessary.
 
         Raises
         ------
         OSError
             The folder is not writable or the disk is full.
         """
+
+    def write(self, name: str, content: bytes) -> None:
+        """Write or replace a file; see `write_blocks`."""
+        self.write_blocks(name, (content,))
+
+    def write_arrays(self, name: str, **arrays: Any) -> None:
+        """Write named arrays, numbers and texts to an npz file, with checksums; see `write_blocks`."""
+        self.write(name, pack_arrays(**arrays))
+
+    def read_arrays(self, name: str) -> dict[str, Numbers]:
+        """Read the arrays of an npz file by name, and verify their checksums.
+
+        Raises
+        ------
+        ValueError
+            The file is damaged or is not an npz file.
+        OSError
+            The file does not exist or is not readable.
+        """
+        return unpack_arrays(BytesIO(self.read(name)), name)
 
     @abstractmethod
     def create(self, write: Callable[[Path], None]) -> None:
@@ -99,10 +121,10 @@ class LocalFolder(ResultFolder):
         with open_input(self.path / name) as stream:
             return stream.read(-1 if max_size is None else max_size)
 
-    def write(self, name: str, content: bytes) -> None:
+    def write_blocks(self, name: str, blocks: Iterable[bytes]) -> None:
         (self.path / name).parent.mkdir(parents=True, exist_ok=True)
-        with write_atomically(self.path / name) as draft:
-            draft.write_bytes(content)
+        with write_atomically(self.path / name) as draft, draft.open("wb") as file:
+            file.writelines(blocks)
 
     def create(self, write: Callable[[Path], None]) -> None:
         self.path.parent.mkdir(parents=True, exist_ok=True)
@@ -145,10 +167,11 @@ class RemoteFolder(ResultFolder):
             content: bytes = system.cat_file(f"{path}/{name}", end=max_size)
             return content
 
-    def write(self, name: str, content: bytes) -> None:
+    def write_blocks(self, name: str, blocks: Iterable[bytes]) -> None:
+        """Send the blocks at once: a file that is sent in parts would remain incomplete after an error."""
         system, path = open_address(self.address)
         with self.errors():
-            system.pipe_file(f"{path}/{name}", content)
+            system.pipe_file(f"{path}/{name}", b"".join(blocks))
 
     def create(self, write: Callable[[Path], None]) -> None:
         """Copy a draft file by file, those of the top folder first: what is missing after a stop is repaired later."""

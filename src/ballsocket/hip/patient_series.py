@@ -1,0 +1,307 @@
+"""Results of similar patients from a series: polynomials fitted to some hundred simulations of their family."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import ceil, log
+
+import numpy
+
+from ..core.arrays import Numbers
+from ..core.storage.folders import ResultFolder
+from ..core.storage.pieces import PieceStore, check_worker_code, fingerprint
+from .chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
+from .contact_checks import check_rows
+from .similarity import CLEARANCE, RIM_NUMBERS, UNWORN_NUMBERS, Similarity
+from .simulation import MAX_WORN_LINERS
+from .variability import RESULT_UNITS, CohortResult
+
+MEMBERS_PER_PIECE = 8
+"""Simulations of one piece of work: about half a second."""
+
+_NODES_PER_UNIT = 1.5
+"""Interpolation points per unit of the logarithm of the exposure."""
+
+_MAX_NODES = 24
+"""Largest number of interpolation points of the exposure."""
+
+_MEMBERS_PER_TERM = 2
+"""Simulations per term of the polynomial."""
+
+_WEIGHTS = {CLEARANCE: 4}
+"""Weights of variables in the degree. The modulus, and with it the creep of a family, hardly depends on clearance."""
+
+_MIN_MEMBERS_PER_TERM = 1.5
+"""Least number of simulations with a result per term of the polynomial."""
+
+_WEAR_SAFETY = 0.95
+"""Part of the largest allowed wear up to which a patient takes its result from the series."""
+
+_ROUNDING = 1e-12
+"""Margin of the range of the logarithm of the exposure."""
+
+_BLOCK = 2048
+"""Patients whose results are computed at once."""
+
+_CONTACT_FIELDS = 3
+"""Numbers of each worst contact: indentation, half angle, pressure."""
+
+
+class NoSeriesError(ValueError):
+    """Reason in one clause why patients have no series."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FamilyRun:
+    """Simulations of a family at sampled numbers, divided into pieces of a few.
+
+    Attributes
+    ----------
+    similarity : Similarity
+    box : Box
+        Ranges of the numbers.
+    log_exposures : (float, float)
+        Range of the logarithm of the exposure.
+    code : str
+        Fingerprint of the code that the workers must have.
+    """
+
+    similarity: Similarity
+    box: Box
+    log_exposures: tuple[float, float]
+    code: str = field(default_factory=fingerprint)
+
+    @property
+    def n_nodes(self) -> int:
+        """Number of interpolation points of the exposure."""
+        low, high = self.log_exposures
+        return 1 if high == low else min(2 + ceil(_NODES_PER_UNIT * (high - low)), _MAX_NODES)
+
+    def __call__(self, piece: int) -> dict[str, Numbers]:
+        """Simulate the members of a piece; those without a result are NaN.
+
+        Raises
+        ------
+        ValueError
+            This worker has another version of the package than the process that started the run.
+        """
+        check_worker_code(self.code)
+        first = piece * MEMBERS_PER_PIECE
+        members = [self._simulate(numbers) for numbers in self.box.sample(first + MEMBERS_PER_PIECE)[first:]]
+        return {"unworn": numpy.stack([unworn for unworn, _ in members]), "worn": numpy.stack([w for _, w in members])}
+
+    def _simulate(self, numbers: Mapping[str, float]) -> tuple[Numbers, Numbers]:
+        """Simulate one member; return its numbers of the unworn and of the worn bore."""
+        contacts = _CONTACT_FIELDS * len(self.similarity.setup.frame.activities)
+        try:
+            member = self.similarity.simulate(numbers, chebyshev_points(*self.log_exposures, self.n_nodes).tolist())
+        except ValueError:
+            n_numbers = len(self.similarity.results) + len(RIM_NUMBERS) + contacts
+            unworn = numpy.full(len(UNWORN_NUMBERS) + contacts, numpy.nan)
+            return unworn, numpy.full((self.n_nodes, n_numbers), numpy.nan)
+        return member.unworn, member.worn
+
+
+@dataclass(frozen=True, kw_only=True)
+class FamilyStore(PieceStore):
+    """Folder of stored simulations of a family, one file for each piece.
+
+    Attributes
+    ----------
+    folder : ResultFolder
+        Local or remote folder.
+    identity : str
+        Digest of the cohort.
+    """
+
+    folder: ResultFolder
+    identity: str
+
+    @staticmethod
+    def _piece_name(piece: int) -> str:
+        """Return the name of the file of a piece."""
+        return f"series_{piece:06d}.npz"
+
+    def load(self, numbers: Sequence[int]) -> dict[int, dict[str, Numbers]]:
+        """Load the stored pieces; omit missing and damaged files."""
+        stored = self.folder.names()
+        pieces = {number: self._read(number) for number in numbers if self._piece_name(number) in stored}
+        return {number: piece for number, piece in pieces.items() if piece is not None}
+
+    def save(self, number: int, result: dict[str, Numbers]) -> dict[str, Numbers]:
+        """Write a piece to its file, and return it.
+
+        Raises
+        ------
+        OSError
+            The folder is not writable or the disk is full.
+        """
+        self.folder.write_arrays(self._piece_name(number), identity=self.identity, **result)
+        return result
+
+    def _read(self, piece: int) -> dict[str, Numbers] | None:
+        """Read a piece; return None if its file is missing, damaged or of another cohort."""
+        try:
+            arrays = self.folder.read_arrays(self._piece_name(piece))
+            return (
+                arrays if str(arrays.pop("identity")) == self.identity and set(arrays) == {"unworn", "worn"} else None
+            )
+        except (OSError, ValueError, KeyError):
+            return None
+
+
+def members_of(box: Box, degree: int) -> int:
+    """Return the number of simulations for a polynomial of a degree: whole pieces, two simulations a term."""
+    wanted = _MEMBERS_PER_TERM * len(_exponents(box, degree)) if box.axes else 1
+    return MEMBERS_PER_PIECE * ceil(wanted / MEMBERS_PER_PIECE)
+
+
+def _exponents(box: Box, degree: int) -> Numbers:
+    """List the exponents of the terms up to a degree: (terms, axes)."""
+    return exponents_of([_WEIGHTS.get(name, 1) for name in box.axes], degree)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PatientSeries:
+    """Polynomials that give the results of patients from their dimensionless numbers.
+
+    Attributes
+    ----------
+    family : FamilyRun
+        Family, with the ranges of its numbers.
+    degree : int
+        Total degree of the polynomials.
+    n_members : int
+        Number of simulations that the polynomials are fitted to.
+    unworn, worn : array
+        Coefficients (terms, numbers) and (terms, exposures, numbers).
+    """
+
+    family: FamilyRun
+    degree: int
+    n_members: int
+    unworn: Numbers
+    worn: Numbers
+
+    def results(self, values: Mapping[str, Numbers], counts: Sequence[float]) -> tuple[CohortResult, Numbers]:
+        """Compute the results of patients at the nominal patient's cycle counts.
+
+        Returns
+        -------
+        CohortResult
+            Results. Those of patients outside the ranges of the series are those at its nearest end.
+        array of bool (patients,)
+            Mask of the patients within the ranges.
+        """
+        count = len(next(iter(values.values())))
+        table = numpy.empty((count, len(counts), len(RESULT_UNITS)))
+        contact, inside = numpy.empty((count, 1 + len(counts), 3)), numpy.empty(count, dtype=bool)
+        for first in range(0, count, _BLOCK):
+            block = slice(first, first + _BLOCK)
+            part = {name: column[block] for name, column in values.items()}
+            table[block], contact[block], inside[block] = self._block(part, counts)
+        return CohortResult(table=table, refused=numpy.full(count, "", dtype=object), contact=contact), inside
+
+    def _block(self, values: Mapping[str, Numbers], counts: Sequence[float]) -> tuple[Numbers, Numbers, Numbers]:
+        """Compute table and contacts of a block of patients, and the mask of those within the ranges."""
+        similarity, box = self.family.similarity, self.family.box
+        numbers, exposure = similarity.numbers(values), similarity.log_exposure(values)
+        terms = basis(box.scale(numbers), _exponents(box, self.degree))
+        at_nodes = (terms @ self.worn.reshape(len(self.worn), -1)).reshape(len(terms), *self.worn.shape[1:])
+        unworn = terms @ self.unworn
+        stages = [numpy.matmul(self._weights(exposure + log(count))[:, None, :], at_nodes)[:, 0] for count in counts]
+        inside = box.contains(numbers) & self._wears_allowed_depth(unworn[:, 0] + exposure + log(counts[-1]), values)
+        for count in (counts[0], counts[-1]):
+            inside &= (exposure + log(count) >= self._exposures[0]) & (exposure + log(count) <= self._exposures[1])
+        return self._table(stages, values), self._contacts(unworn, stages, values), inside
+
+    @property
+    def _exposures(self) -> tuple[float, float]:
+        """Range of the logarithm of the exposure, with a margin for rounding."""
+        low, high = self.family.log_exposures
+        return low - _ROUNDING, high + _ROUNDING
+
+    def _wears_allowed_depth(self, log_depth: Numbers, values: Mapping[str, Numbers]) -> Numbers:
+        """Return the mask of the patients whose wear by the rate of the first cycle, over c, is clearly allowed."""
+        joint, clearance = self.family.similarity.setup.joint, self.family.similarity.clearances(values)
+        thickness = numpy.minimum(float(joint.liner_thickness), self.family.similarity.socket_radius(clearance))
+        mask: Numbers = log_depth <= numpy.log(_WEAR_SAFETY * MAX_WORN_LINERS * thickness / clearance)
+        return mask
+
+    def _weights(self, log_exposure: Numbers) -> Numbers:
+        """Compute the weights of the simulated exposures for those of patients: (patients, exposures)."""
+        return interpolation_weights(log_exposure, *self.family.log_exposures, self.family.n_nodes)
+
+    def _table(self, stages: Sequence[Numbers], values: Mapping[str, Numbers]) -> Numbers:
+        """Convert the numbers of worn bores (patients, numbers) to results: (patients, reports, results)."""
+        similarity = self.family.similarity
+        units, names = similarity.units(similarity.clearances(values)), similarity.results
+        table = numpy.zeros((len(stages[0]), len(stages), len(RESULT_UNITS)))
+        for report, stage in enumerate(stages):
+            results = {name: numpy.exp(stage[:, column]) for column, name in enumerate(names)}
+            results["edge_distance"] = numpy.maximum(stage[:, len(names)], 0.0)
+            for name, ratios in results.items():
+                table[:, report, list(RESULT_UNITS).index(name)] = ratios * units[name]
+        return table
+
+    def _contacts(self, unworn: Numbers, stages: Sequence[Numbers], values: Mapping[str, Numbers]) -> Numbers:
+        """Compute utilisation, validity and edge loading of the first cycle and each report: (patients, stages, 3)."""
+        rim = len(self.family.similarity.results)
+        worst = [unworn[:, len(UNWORN_NUMBERS) :], *(stage[:, rim + len(RIM_NUMBERS) :] for stage in stages)]
+        checks = numpy.stack([self._contact_checks(contacts, values) for contacts in worst], axis=1)
+        at_rim = unworn[:, UNWORN_NUMBERS.index("rim_distance")] <= 0
+        edge = [at_rim, *(_edge_loaded(stage[:, rim], stage[:, rim + 1], at_rim) for stage in stages)]
+        return numpy.concatenate([checks, numpy.stack(edge, axis=1)[:, :, None]], axis=2)
+
+    def _contact_checks(self, stage: Numbers, values: Mapping[str, Numbers]) -> Numbers:
+        """Compute utilisation and validity of patients from their worst contacts: (patients, 2)."""
+        similarity = self.family.similarity
+        clearance, forces = similarity.clearances(values), similarity.largest_forces(values)
+        indentation, half_angle, pressure = stage.reshape(len(stage), -1, _CONTACT_FIELDS).transpose(2, 1, 0)
+        pressure_unit = similarity.modulus(clearance) * clearance
+        columns = (
+            numpy.zeros_like(forces),
+            forces,
+            numpy.exp(indentation) * clearance,
+            half_angle,
+            numpy.exp(pressure) * pressure_unit,
+        )
+        rows = numpy.stack(columns, axis=-1).reshape(-1, len(columns))
+        joint = replace(similarity.setup.joint, clearance=numpy.tile(clearance, len(forces)))
+        utilisation, valid = check_rows(similarity.setup.contact_model, joint, rows).reshape(2, *forces.shape)
+        return numpy.stack([utilisation.max(axis=0), valid.min(axis=0)], axis=1)
+
+
+def _edge_loaded(distance: Numbers, excess: Numbers, unworn_at_rim: Numbers) -> Numbers:
+    """Return the mask of the patients with edge loading of a worn bore; see `mask_edge_loading`."""
+    mask: Numbers = (distance <= 0) & (unworn_at_rim | (excess >= 0))
+    return mask
+
+
+def fit_series(family: FamilyRun, pieces: Sequence[Mapping[str, Numbers]], degree: int) -> PatientSeries:
+    """Fit polynomials of a degree to the simulated members of a family by least squares.
+
+    Raises
+    ------
+    NoSeriesError
+        Too many members have no result.
+    """
+    unworn, worn = (numpy.concatenate([piece[name] for piece in pieces]) for name in ("unworn", "worn"))
+    known = numpy.isfinite(unworn).all(axis=1) & numpy.isfinite(worn).all(axis=(1, 2))
+    points, exponents = family.box.sample(len(known)), _exponents(family.box, degree)
+    if known.sum() < (_MIN_MEMBERS_PER_TERM * len(exponents) if family.box.axes else 1):
+        raise NoSeriesError(f"{len(known) - int(known.sum())} of {len(known)} simulations of a series have no result")
+    columns = {name: numpy.array([point[name] for point in points])[known] for name in family.box.ranges}
+    terms = basis(family.box.scale(columns), exponents)
+    solved = numpy.linalg.lstsq(
+        terms, numpy.concatenate([unworn[known], worn[known].reshape(int(known.sum()), -1)], axis=1), rcond=None
+    )[0]
+    n_unworn = unworn.shape[1]
+    return PatientSeries(
+        family=family,
+        degree=degree,
+        n_members=len(known),
+        unworn=solved[:, :n_unworn],
+        worn=solved[:, n_unworn:].reshape(-1, *worn.shape[1:]),
+    )

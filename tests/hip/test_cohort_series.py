@@ -1,0 +1,297 @@
+"""Cohorts by a series: accuracy against simulations, patients outside, the store, and the words of the command."""
+
+import json
+import pickle
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+from ballsocket.core.executors import Processes, Serial, processes
+from ballsocket.hip import CustomWearLaw, iso_14242_1, logarithmic, population
+from ballsocket.hip import cohort_series as module
+from ballsocket.hip.chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
+from ballsocket.hip.cohort import CohortRun, check_cohort_memory, cohort_store, sample_patients
+from ballsocket.hip.cohort_series import CohortSeries
+from ballsocket.hip.series_accuracy import TOLERANCES
+from ballsocket.hip.similarity import Similarity
+from ballsocket.hip.variability import RESULT_UNITS
+from ballsocket.studies import LogNormal, Normal, Rectangular
+
+from ..cli.command import run as run_command
+from .test_uncertainty import short_file
+from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
+from .test_wear import QUICK, K, hip
+
+COUNTS = (2e5, 4e5)
+NARROW = {"coefficient": LogNormal(median=K, factor=1.2), "body_weight": Normal(mean=800.0, deviation=60.0)}
+FEW = 12
+
+
+@pytest.fixture
+def few_held_out(monkeypatch):
+    """Hold out few patients, and take few samples for Sobol indices."""
+    monkeypatch.setattr(module, "N_HELD_OUT", FEW)
+    monkeypatch.setattr(module, "_SOBOL_COUNT", 512)
+
+
+def quick(**distributions):
+    return variability(hip(**QUICK), **(distributions or NARROW))
+
+
+# polynomials
+
+
+def test_polynomials_of_the_degree_are_fitted_exactly():
+    box = Box(ranges={"x": (-1.0, 3.0), "constant": (2.0, 2.0), "y": (0.0, 0.5)})
+    points, exponents = box.sample(40), exponents_of([1, 2], 4)
+    assert box.axes == ("x", "y")
+    assert len(exponents) == 5 + 3 + 1
+    columns = {name: np.array([point[name] for point in points]) for name in box.ranges}
+    assert (columns["constant"] == 2.0).all()
+    assert box.contains(columns).all()
+
+    def polynomial(x, y):
+        return 1 - x + 2 * x**4 + x**2 * y - 3 * y**2
+
+    values = polynomial(columns["x"], columns["y"])
+    coefficients = np.linalg.lstsq(basis(box.scale(columns), exponents), values, rcond=None)[0]
+    other = {"x": np.array([0.3, 2.9]), "constant": np.full(2, 2.0), "y": np.array([0.1, 0.4])}
+    np.testing.assert_allclose(basis(box.scale(other), exponents) @ coefficients, polynomial(other["x"], other["y"]))
+    assert [point["x"] for point in box.sample(7)] == [point["x"] for point in points[:7]]
+
+
+def test_polynomials_are_interpolated_exactly():
+    nodes = chebyshev_points(2.0, 5.0, 6)
+    at = np.array([2.0, 3.3, 5.0])
+    np.testing.assert_allclose(interpolation_weights(at, 2.0, 5.0, 6) @ nodes**5, at**5, rtol=1e-12)
+    np.testing.assert_array_equal(interpolation_weights(at, 2.0, 2.0, 1), np.ones((3, 1)))
+
+
+# accuracy
+
+
+def test_a_series_agrees_with_simulations_of_held_out_patients(few_held_out):
+    """Patients beyond those with which the error was estimated."""
+    patients = quick()
+    run, bands = population(patients, COUNTS, patients=400, method="series", seed=3)
+    held_out = replace(run, values={name: values[FEW:30] for name, values in run.values.items()})
+    simulated, table = held_out.simulate(), bands.cohort.table[FEW:30]
+    for name, largest in (("volume", 5e-4), ("depth", 1e-2), ("penetration", 5e-3), ("max_pressure", 5e-3)):
+        column = list(RESULT_UNITS).index(name)
+        errors = abs(table[:, :, column] / simulated.table[:, :, column] - 1)
+        assert np.quantile(errors, 0.95) < largest, name
+        assert 0 < bands.accuracy.relative[name] <= bands.accuracy.largest[name]
+    contact = bands.cohort.contact[FEW:30]
+    np.testing.assert_allclose(contact[:, :, 0], simulated.contact[:, :, 0], rtol=2e-2)
+    np.testing.assert_array_equal(contact[:, :, 1], simulated.contact[:, :, 1])
+    assert bands.accuracy.within_tolerance
+    assert bands.n_failed == 0
+    assert bands.indices["total_order"].shape == (3, 2)
+
+
+def test_a_series_has_the_indices_of_a_product(few_held_out):
+    """The volume of few cycles is proportional to coefficient and cycles."""
+    two = quick(
+        coefficient=Normal(mean=K, deviation=0.1 * K), cycles_per_year=Normal(mean=1.5e6, deviation=0.2 * 1.5e6)
+    )
+    _, bands = population(two, [1e3], patients=300)
+    assert bands.accuracy.n_simulations == 1  # the force and the cup are the same
+    assert bands.accuracy.relative["volume"] < 1e-5
+    for order in ("first_order", "total_order"):
+        assert bands.indices[order][0] == pytest.approx([0.2, 0.8], abs=0.02)
+
+
+def test_more_patients_keep_the_first_ones(few_held_out):
+    few, more = (population(quick(coefficient=COEFFICIENT), COUNTS, patients=n)[1].cohort.table for n in (150, 300))
+    np.testing.assert_allclose(more[:150], few, rtol=1e-12)
+
+
+def test_the_error_is_that_of_the_held_out_patients(few_held_out, monkeypatch):
+    """A series of a low degree is refined; without refinement its error is stated, or patients are simulated."""
+    monkeypatch.setattr(module, "_FIRST_DEGREES", (0,) * 5)
+    monkeypatch.setattr(module, "_DEGREE_STEP", 6)
+    patients = quick(body_weight=Normal(mean=800.0, deviation=130.0, low=400.0, high=1400.0))
+    refined = population(patients, COUNTS[:1], patients=200, method="series")[1].accuracy
+    assert refined.degree == 6
+    monkeypatch.setattr(module, "_MAX_MEMBERS", 8)
+    run, bands = population(patients, COUNTS[:1], patients=200, method="series")
+    accuracy = bands.accuracy
+    assert (accuracy.degree, accuracy.within_tolerance) == (0, False)
+    assert accuracy.relative["volume"] > refined.relative["volume"]
+    assert any("this exceeds the tolerance of 0.1 % in volume" in note for note in bands.notes)
+    solution = CohortSeries(run=run, seed=0, engine=Serial()).solve(lambda finished: None)
+    assert solution.is_accurate  # a simulation of 200 patients takes much longer than one of 8 members
+    monkeypatch.setattr(module, "_MAX_MEMBERS", 100)
+    assert not solution.is_accurate
+
+
+# where it holds
+
+
+def test_few_patients_are_simulated():
+    bands = population(quick(), COUNTS[:1], patients=3)[1]
+    assert bands.accuracy is None
+    assert bands.obstacle == ""
+    assert bands.summary()["uncertainty"]["method"] == "runs"
+    assert bands.summary()["uncertainty"]["series"] is None
+
+
+def test_patients_who_are_not_similar_are_simulated_and_the_reason_is_stated():
+    law = CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
+    patients = variability(hip(**QUICK, wear=law), body_weight=WEIGHT)
+    bands = population(patients, [1e3], patients=3)[1]
+    note = "each of the patients was simulated, without a series: the wear law CustomWearLaw has no known degree"
+    assert any(text.startswith(note) for text in bands.notes)
+    with pytest.raises(ValueError, match="the method 'series' does not hold: the wear law CustomWearLaw has no known"):
+        population(patients, [1e3], patients=3, method="series")
+
+
+def test_an_unknown_method_is_refused():
+    with pytest.raises(ValueError, match="method 'serie' is not known; did you mean 'series'"):
+        population(quick(), [1e3], patients=2, method="serie")
+
+
+def test_patients_whose_loads_point_to_the_rim_are_simulated():
+    """Their cups do not hold the ball: they have no result, but the same message."""
+    loose = quick(tilt=Rectangular(low=0.0, high=radians(89.0)))
+    values = sample_patients(loose, 60, 0)
+    series = CohortSeries(run=CohortRun(variability=loose, counts=(1e3,), values=values), seed=0, engine=Serial())
+    low, high = series.family.box.ranges["tilt"]
+    assert low < radians(1.0)
+    assert radians(84.0) < high <= radians(85.0)
+
+
+def test_patients_outside_the_ranges_have_the_results_of_simulations(few_held_out):
+    patients = quick(coefficient=COEFFICIENT)
+    values = sample_patients(patients, 40, 0)
+    values = {"coefficient": np.concatenate([values["coefficient"], [0.0, 50 * K, 1e5 * K]])}
+    run = CohortRun(variability=patients, counts=COUNTS, values=values)
+    solution = CohortSeries(run=run, seed=0, engine=Serial()).solve(lambda finished: None)
+    outside = replace(run, values={"coefficient": values["coefficient"][40:]}).simulate()
+    np.testing.assert_array_equal(solution.result.table[40:], outside.table)
+    assert solution.accuracy.n_outside == 3
+    assert "would wear" in solution.result.refused[-1]
+    assert solution.result.refused[-1] == outside.refused[-1]
+
+
+# store, executors and memory
+
+
+def test_a_stored_series_is_not_simulated_again(tmp_path, few_held_out, monkeypatch):
+    patients = quick(coefficient=COEFFICIENT)
+    store = cohort_store(tmp_path / "store", patients, COUNTS, 0)
+    first = population(patients, COUNTS, patients=300, store=store)[1].cohort
+    names = sorted(path.name for path in (tmp_path / "store").iterdir())
+    assert names == ["patients.json", "patients_000000.npz", "series_000000.npz"]
+
+    def refuse(*arguments):
+        raise AssertionError("simulated again")
+
+    monkeypatch.setattr(Similarity, "simulate", refuse)
+    monkeypatch.setattr(CohortRun, "_simulate_patient", refuse)
+    again = CohortSeries(
+        run=CohortRun(variability=patients, counts=COUNTS, values=sample_patients(patients, 300, 0)),
+        seed=0,
+        engine=Serial(),
+        store=store,
+    ).solve(lambda finished: None)
+    np.testing.assert_array_equal(again.result.table, first.table)
+    (tmp_path / "store" / "series_000000.npz").write_bytes(b"damaged")
+    with pytest.raises(AssertionError, match="simulated again"):
+        CohortSeries(
+            run=CohortRun(variability=patients, counts=COUNTS, values=sample_patients(patients, 300, 0)),
+            seed=0,
+            engine=Serial(),
+            store=store,
+        ).solve(lambda finished: None)
+
+
+def test_results_that_do_not_fit_into_memory_are_refused(monkeypatch):
+    monkeypatch.setattr(processes, "available_memory", lambda: 10**8)
+    with pytest.raises(ValueError, match="results of 1 000 000 patients take about .* and there are 100 MB of memory"):
+        check_cohort_memory(1_000_000, 5, 2)
+    check_cohort_memory(10_000, 5, 2)
+
+
+def test_workers_can_simulate_the_members_of_a_family():
+    """A scaled cycle has a local function, which no worker can import."""
+    use = hip(**QUICK)
+    patients = variability(replace(use, cycle=use.cycle.scaled(1.1)), coefficient=COEFFICIENT)
+    run = CohortRun(variability=patients, counts=COUNTS[:1], values=sample_patients(patients, 4, 0))
+    family = CohortSeries(run=run, seed=0, engine=Serial()).family
+    sent = pickle.loads(pickle.dumps(family))
+    np.testing.assert_array_equal(sent(0)["worn"], family(0)["worn"])
+
+
+@pytest.mark.long
+def test_a_series_does_not_depend_on_the_executor():
+    patients = quick()
+    serial, parallel = (
+        population(patients, COUNTS[:1], patients=200, method="series", engine=engine)[1].cohort.table
+        for engine in (Serial(), Processes(workers=2))
+    )
+    np.testing.assert_array_equal(serial, parallel)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "angles",
+    [
+        {"tilt": Normal(mean=radians(30.0), deviation=radians(7.0), low=0.0, high=radians(60.0))},
+        {
+            "inclination": Normal(mean=radians(42.0), deviation=radians(6.0), low=radians(25.0), high=radians(60.0)),
+            "anteversion": Normal(mean=radians(15.0), deviation=radians(5.0), low=0.0, high=radians(30.0)),
+        },
+    ],
+    ids=["tilt", "both angles"],
+)
+def test_a_series_of_oriented_cups_is_within_its_tolerance(angles):
+    weights = Normal(mean=780.0, deviation=130.0, low=400.0, high=1400.0)
+    spread = {"coefficient": COEFFICIENT, "clearance": TIGHT, "body_weight": weights}
+    accuracy = population(variability(hip(cycle=iso_14242_1(32)), **spread, **angles), [1e6], patients=1000)[1].accuracy
+    assert accuracy.within_tolerance
+    assert accuracy.relative["volume"] <= TOLERANCES["volume"]
+    assert accuracy.wrong_edge_loading < 0.1
+
+
+@pytest.mark.long
+def test_a_series_of_creeping_patients_is_within_its_tolerance():
+    creeping = hip(**QUICK, creep=logarithmic(), seconds_per_cycle=20.0)
+    accuracy = population(variability(creeping, coefficient=COEFFICIENT), [1e6], patients=300)[1].accuracy
+    assert accuracy.within_tolerance
+    assert accuracy.relative["creep_depth"] < TOLERANCES["creep_depth"]
+
+
+# the command
+
+
+def test_the_command_states_method_and_error(tmp_path, few_held_out):
+    file = short_file(tmp_path, extra='[uncertainty]\ncoefficient = { median = "1.066e-6 mm^3/(N m)", factor = 1.5 }\n')
+    words = "hip", str(file), "--patients", "200"
+    answer = json.loads(run_command(*words, "--json").stdout)
+    series = answer["uncertainty"]["series"]
+    assert answer["uncertainty"]["method"] == "series"
+    assert series["simulations"] == 1
+    assert series["error"]["volume"] <= series["tolerance"]["volume"]
+    assert series["within_tolerance"] is True
+    assert set(answer["sobol"]["volume"]) == {"coefficient"}
+    shown = " ".join(run_command(*words).stdout.split())
+    assert f"series of 1 simulations in place of 200: 95 % of the results of {FEW} simulated" in shown
+    assert "Sobol indices of volume (first and total order): coefficient " in shown
+    simulated = json.loads(run_command(*words[:3], "30", "--method", "runs", "--json").stdout)
+    assert simulated["uncertainty"]["series"] is None
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--method", "runs"], "--method is the method of a cohort: add --patients, or leave out --method"),
+        (["--patients", "2", "--method", "all"], "method 'all' is not known"),
+    ],
+)
+def test_wrong_words_of_the_command_are_refused(tmp_path, words, message):
+    done = run_command("hip", str(short_file(tmp_path)), *words)
+    assert done.returncode == 2
+    assert message in done.stderr
