@@ -64,6 +64,7 @@ GALLERY = {
     "does_a_worn_ball_joint_rattle",  # thousands of steps
     "what_does_clearance_do_to_a_four_bar",
     "how_far_does_a_head_wander_in_a_simulator",
+    "which_cup_presses_least",  # compiled by JAX
 }
 """Examples that take long: the gallery of the documentation runs them, and its build fails where one fails."""
 
