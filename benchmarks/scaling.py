@@ -110,14 +110,14 @@ CURVES = (
     Curve("exact", "presses", (10, 100, 1000), press(bs.Exact())),
     Curve("real cup at a tilt, rings of 2°", "loads", (1, 8, 64, 512), press_tilted),
     Curve(
-        "hip to 10⁶ cycles, springs, 100 instants",
+        "hip to 10⁶ cycles, 100 instants, by its cells",
         "cells",
         (8, 4, 2, 1),
         lambda width: wear(replace(HIP_IN_USE, ring_width=radians(width))),
         cells_of,
     ),
     Curve(
-        "hip to 10⁶ cycles, springs, rings of 4°",
+        "hip to 10⁶ cycles, rings of 4°, by its instants",
         "instants",
         (32, 64, 128, 256),
         lambda count: wear(replace(HIP_IN_USE, ring_width=radians(4.0), cycle=iso_14242_1(count))),
@@ -132,7 +132,13 @@ def measure() -> Report:
     rows = Rows("Seconds of one core", ("what", "counted", "sizes", "seconds", "exponent"))
     for one in measured:
         counts = ", ".join(f"{count:.3g}" for count in one.counts)
-        rows.add(one.curve.title, one.curve.noun, counts, ", ".join(map(short, one.seconds)), f"{one.exponent:.2f}")
+        rows.add(
+            one.curve.title,
+            one.curve.noun,
+            counts,
+            ", ".join(f"{seconds:.2g}" for seconds in one.seconds),
+            f"{one.exponent:.2f}",
+        )
     cost = Rows("Cost of a million", ("what", "core-hours"))
     for one in measured:
         if one.curve.noun in ("presses", "loads", "patients"):
@@ -165,16 +171,20 @@ def _draw(measured: list[Measured]) -> None:
     from matplotlib.figure import Figure
 
     from ballsocket.reports.figure_files import save
-    from ballsocket.reports.style import LEGEND, finish, in_matplotlib, numbered
+    from ballsocket.reports.style import finish, in_matplotlib, numbered
 
-    figure = Figure(figsize=(9.6, 4.2), layout="constrained")
+    figure = Figure(figsize=(9.6, 5.0), layout="constrained")
     many, one_hip = figure.subplots(1, 2)
-    panels = {"cells": one_hip, "instants": one_hip}
-    for index, one in enumerate(measured):
-        style = {**in_matplotlib(numbered(index)), "marker": "o"}
-        panels.get(one.curve.noun, many).loglog(one.counts, one.seconds, label=one.curve.title, **style)
-    finish(many, "presses, loads or patients", "seconds of one core")
-    finish(one_hip, "cells of the bore, or instants of the cycle", "seconds of one core")
-    for axes in (many, one_hip):
-        axes.legend(**LEGEND)
+    for axes, nouns, label in (
+        (many, ("presses", "loads", "patients"), "presses, loads or patients"),
+        (one_hip, ("cells", "instants"), "cells of the bore, or instants of the cycle"),
+    ):
+        for index, one in enumerate(one for one in measured if one.curve.noun in nouns):
+            style = {**in_matplotlib(numbered(index)), "marker": _MARKERS[index]}
+            axes.loglog(one.counts, one.seconds, label=one.curve.title, **style)
+        finish(axes, label, "seconds of one core")
+        axes.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), fontsize="small")
     save(figure, ROOT / "docs" / "scaling.png")
+
+
+_MARKERS = "os^Dv*"

@@ -12,6 +12,8 @@ from multiprocessing import get_context
 from statistics import median
 from typing import Any
 
+from threadpoolctl import threadpool_limits
+
 Work = Callable[[], object]
 
 
@@ -82,16 +84,20 @@ def _counted(seconds: dict[str, list[float]]) -> Spreads:
 
 @contextmanager
 def one_core() -> Iterator[bool]:
-    """Keeps this process, and the threads it starts inside, on one core; False where the system cannot do that."""
-    if not hasattr(os, "sched_setaffinity"):
-        yield False
-        return
-    before = os.sched_getaffinity(0)
-    os.sched_setaffinity(0, {max(before)})
-    try:
-        yield True
-    finally:
-        os.sched_setaffinity(0, before)
+    """Keeps this process on one core, with one thread of linear algebra; False where the system cannot do that.
+
+    Two threads that wait for each other on one core would double the process time of small products.
+    """
+    with threadpool_limits(1):
+        if not hasattr(os, "sched_setaffinity"):
+            yield False
+            return
+        before = os.sched_getaffinity(0)
+        os.sched_setaffinity(0, {max(before)})
+        try:
+            yield True
+        finally:
+            os.sched_setaffinity(0, before)
 
 
 def apart(work: Callable[[], Any], **environment: str) -> Any:
