@@ -14,8 +14,8 @@ from ..core.arrays import Numbers
 from ..core.checks import require
 from ..core.deprecation import renamed_arguments, renamed_names
 from ..core.executors.processes import Engine, Serial, check_memory, count_text
-from ..core.storage.folders import ResultFolder, folder_at
-from ..core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
+from ..core.storage.folders import ArrayPieceStore, folder_at
+from ..core.storage.pieces import PieceRun, check_worker_code, fingerprint, hash_inputs
 from ..studies.axes import SampleAxis
 from .cup_frame import ANGLES
 from .simulation import make_checkpoint
@@ -141,7 +141,7 @@ class CohortRun:
 
 
 @dataclass(frozen=True, kw_only=True)
-class CohortStore(PieceStore):
+class CohortStore(ArrayPieceStore):
     """Folder of stored cohort results, one file for each piece (group of patients).
 
     Attributes
@@ -156,14 +156,8 @@ class CohortStore(PieceStore):
         Beginning of the file names.
     """
 
-    folder: ResultFolder
-    identity: str
     n_patients: int = 0
     prefix: str = "patients"
-
-    def _piece_name(self, piece: int) -> str:
-        """Return the name of the file with the results of a piece (group of patients)."""
-        return f"{self.prefix}_{piece:06d}.npz"
 
     def create(self) -> None:
         """Create the folder and the label file of the store, unless they exist.
@@ -203,33 +197,13 @@ class CohortStore(PieceStore):
         except FileNotFoundError:
             return None
 
-    def load(self, numbers: Sequence[int]) -> dict[int, CohortResult]:
-        """Load the stored results of some pieces; omit missing and damaged files."""
-        stored = self.folder.names()
-        results = {piece: self._read_piece(piece) for piece in numbers if self._piece_name(piece) in stored}
-        return {piece: result for piece, result in results.items() if result is not None}
+    def to_arrays(self, result: CohortResult) -> dict[str, Numbers]:
+        """Return the arrays of a result by name."""
+        return {array.name: getattr(result, array.name) for array in fields(result)}
 
-    def save(self, number: int, result: CohortResult) -> CohortResult:
-        """Write the result of a piece to its file, and return the result.
-
-        Raises
-        ------
-        OSError
-            The folder is not writable or the disk is full.
-        """
-        arrays = {array.name: getattr(result, array.name) for array in fields(result)}
-        self.folder.write_arrays(self._piece_name(number), identity=self.identity, **arrays)
-        return result
-
-    def _read_piece(self, piece: int) -> CohortResult | None:
-        """Read the result of a piece; return None if the file is missing, damaged or of another cohort."""
-        try:
-            arrays = self.folder.read_arrays(self._piece_name(piece))
-            if str(arrays.pop("identity")) != self.identity:
-                return None
-            result = CohortResult(**arrays)
-        except (OSError, ValueError, TypeError, KeyError):
-            return None
+    def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> CohortResult | None:
+        """Return the result of a piece; None if it has another number of patients."""
+        result = CohortResult(**arrays)
         patient_count = min(PATIENTS_PER_PIECE, self.n_patients - piece * PATIENTS_PER_PIECE)
         return result if len(result.table) == patient_count else None
 

@@ -9,8 +9,8 @@ from math import ceil, log
 import numpy
 
 from ..core.arrays import Numbers
-from ..core.storage.folders import ResultFolder
-from ..core.storage.pieces import PieceStore, check_worker_code, fingerprint
+from ..core.storage.folders import ArrayPieceStore
+from ..core.storage.pieces import check_worker_code, fingerprint
 from .chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
 from .contact_checks import check_rows
 from .similarity import CLEARANCE, RIM_NUMBERS, UNWORN_NUMBERS, Similarity
@@ -104,51 +104,18 @@ class FamilyRun:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FamilyStore(PieceStore):
-    """Folder of stored simulations of a family, one file for each piece.
+class FamilyStore(ArrayPieceStore):
+    """Folder of stored simulations of a family, one file for each piece; see `ArrayPieceStore`."""
 
-    Attributes
-    ----------
-    folder : ResultFolder
-        Local or remote folder.
-    identity : str
-        Digest of the cohort.
-    """
+    prefix: str = "series"
 
-    folder: ResultFolder
-    identity: str
-
-    @staticmethod
-    def _piece_name(piece: int) -> str:
-        """Return the name of the file of a piece."""
-        return f"series_{piece:06d}.npz"
-
-    def load(self, numbers: Sequence[int]) -> dict[int, dict[str, Numbers]]:
-        """Load the stored pieces; omit missing and damaged files."""
-        stored = self.folder.names()
-        pieces = {number: self._read(number) for number in numbers if self._piece_name(number) in stored}
-        return {number: piece for number, piece in pieces.items() if piece is not None}
-
-    def save(self, number: int, result: dict[str, Numbers]) -> dict[str, Numbers]:
-        """Write a piece to its file, and return it.
-
-        Raises
-        ------
-        OSError
-            The folder is not writable or the disk is full.
-        """
-        self.folder.write_arrays(self._piece_name(number), identity=self.identity, **result)
+    def to_arrays(self, result: dict[str, Numbers]) -> dict[str, Numbers]:
+        """Return the arrays of a piece."""
         return result
 
-    def _read(self, piece: int) -> dict[str, Numbers] | None:
-        """Read a piece; return None if its file is missing, damaged or of another cohort."""
-        try:
-            arrays = self.folder.read_arrays(self._piece_name(piece))
-            return (
-                arrays if str(arrays.pop("identity")) == self.identity and set(arrays) == {"unworn", "worn"} else None
-            )
-        except (OSError, ValueError, KeyError):
-            return None
+    def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> dict[str, Numbers] | None:
+        """Return the arrays of a piece, without those of another kind of file."""
+        return arrays if set(arrays) == {"unworn", "worn"} else None
 
 
 def members_of(box: Box, degree: int) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from errno import ENOENT
@@ -18,6 +18,7 @@ from ..checks import needs
 from ..executors.processes import available_disk_space
 from ..input_files import open_input
 from .atomic_files import address_of, pack_arrays, unpack_arrays, write_atomically
+from .pieces import PieceStore
 
 _LOCAL = "file://"
 """Beginning of the address of a local file."""
@@ -199,6 +200,63 @@ class RemoteFolder(ResultFolder):
             raise FileNotFoundError(ENOENT, "no such file or bucket", self.address) from error
         except Exception as error:  # each store raises errors of its own
             raise OSError(None, f"the remote store failed: {' '.join(str(error).split())}", self.address) from error
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArrayPieceStore(PieceStore):
+    """Base class of stores with one npz file for each piece, which carries the identity of its run.
+
+    Attributes
+    ----------
+    folder : ResultFolder
+        Local or remote folder.
+    identity : str
+        Digest of the run.
+    prefix : str
+        Beginning of the file names.
+    """
+
+    folder: ResultFolder
+    identity: str
+    prefix: str
+
+    @abstractmethod
+    def to_arrays(self, result: Any) -> Mapping[str, Any]:
+        """Return the arrays of a result by name."""
+
+    @abstractmethod
+    def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> Any:
+        """Return the result of a piece from its arrays; None if it belongs to another run.
+
+        Raises
+        ------
+        ValueError, TypeError, KeyError
+            An array is missing or has another shape.
+        """
+
+    def load(self, numbers: Sequence[int]) -> dict[int, Any]:
+        """Load the stored results of some pieces; omit missing and damaged files."""
+        stored = self.folder.names()
+        results = {piece: self._read_piece(piece) for piece in numbers if self._piece_name(piece) in stored}
+        return {piece: result for piece, result in results.items() if result is not None}
+
+    def save(self, number: int, result: Any) -> Any:
+        """Write the result of a piece to its file, and return the result; see `ResultFolder.write_blocks`."""
+        self.folder.write_arrays(self._piece_name(number), identity=self.identity, **self.to_arrays(result))
+        return result
+
+    def _piece_name(self, piece: int) -> str:
+        """Return the name of the file of a piece."""
+        return f"{self.prefix}_{piece:06d}.npz"
+
+    def _read_piece(self, piece: int) -> Any:
+        """Read the result of a piece; return None if the file is missing, damaged or of another run."""
+        try:
+            arrays = self.folder.read_arrays(self._piece_name(piece))
+            is_of_this_run = str(arrays.pop("identity")) == self.identity
+            return self.from_arrays(piece, arrays) if is_of_this_run else None
+        except (OSError, ValueError, TypeError, KeyError):
+            return None
 
 
 def folder_at(path: str | Path) -> ResultFolder:
