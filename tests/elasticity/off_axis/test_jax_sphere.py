@@ -173,6 +173,13 @@ def test_derivatives_are_slopes_of_the_numpy_solution():
         assert not misses, "\n".join(f"{key}: {error:.1e}" for key, error in misses.items())
 
 
+def test_first_press_may_be_traced():
+    """The arrays of the bore are cached with their numbers; tracers would be invalid after the trace."""
+    cup = JaxSphere(model=MODEL, joint=HIP)
+    jax.eval_shape(lambda force: cup.press(force, DIRECTION), FORCE)
+    assert np.asarray(cup._bores.frame) == pytest.approx(np.array(MODEL.cup.frame))
+
+
 def test_bores_without_lanes_are_refused():
     with pytest.raises(ValueError, match="JaxSphere needs an elastic surface, LinearGap and rings of 3 deg"):
         JaxSphere(model=COARSE, joint=HIP).press(FORCE, DIRECTION)

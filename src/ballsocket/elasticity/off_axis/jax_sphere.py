@@ -175,7 +175,8 @@ class JaxSphere:
             unbounded=numpy.asarray(float(not edges.bounded)),
             frame=numpy.array(self.model.cup.frame),
         )
-        return jax.tree.map(partial(jax.numpy.asarray, dtype=self.dtype), bores)
+        with jax.ensure_compile_time_eval():  # the first press may be traced; the cached arrays must not be
+            return jax.tree.map(partial(jax.numpy.asarray, dtype=self.dtype), bores)
 
     @cached_property
     def _operators(self) -> Callable[[Array], Operators]:
