@@ -62,17 +62,34 @@ kill $(cat jobs) 2> /dev/null
 """
 
 
+def encrypted(folder):
+    """Return the program with the lines of the page that encrypt the ports, and certificates in a folder."""
+    page = (HOW_TO / "slurm.md").read_text("utf-8")
+    lines = re.search(r"^  ```text\n(.*?)^  ```$", page, flags=re.MULTILINE | re.DOTALL)[1]
+    security, cluster, engine = (line.strip() for line in lines.splitlines())
+    options = cluster.removeprefix("cluster = SLURMCluster(").removesuffix(", ...)").replace("/home/me", str(folder))
+    program = SLURM_PROGRAM.replace(
+        "    cluster = SLURMCluster(", f"    {security}\n    cluster = SLURMCluster({options},"
+    )
+    program = re.sub(r"engine = Distributed\(.*\)", engine, program)
+    return f"import distributed\n{program}"
+
+
 @pytest.mark.long
-def test_the_program_of_the_page_runs_where_sbatch_is_a_shell(tmp_path):
+@pytest.mark.parametrize(
+    ("program", "protocol"), [(lambda _: SLURM_PROGRAM, "tcp://"), (encrypted, "tls://")], ids=["plain", "encrypted"]
+)
+def test_the_program_of_the_page_runs_where_sbatch_is_a_shell(tmp_path, program, protocol):
     """A job starts at once, as a process of this machine, with one core and few points."""
     pytest.importorskip("dask_jobqueue")
     for name, text in (("sbatch", SBATCH), ("scancel", SCANCEL)):
         (tmp_path / name).write_text(text, encoding="utf-8")
         (tmp_path / name).chmod(stat.S_IRWXU)
-    program = SLURM_PROGRAM.replace("cores=32", "cores=1").replace("processes=32", "processes=1")
-    program = program.replace("jobs=8", "jobs=1").replace(", 100)", ", 3)").replace("64GB", "1GB")
-    program = program.replace("walltime=", "scheduler_options={'host': '127.0.0.1'}, walltime=")
-    (tmp_path / "run_study.py").write_text(program, encoding="utf-8")
+    (tmp_path / "certificates").mkdir()
+    text = program(tmp_path).replace("cores=32", "cores=1").replace("processes=32", "processes=1")
+    text = text.replace("jobs=8", "jobs=1").replace(", 100)", ", 3)").replace("64GB", "1GB")
+    text = text.replace("walltime=", "scheduler_options={'host': '127.0.0.1'}, walltime=")
+    (tmp_path / "run_study.py").write_text(text, encoding="utf-8")
     path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
     words = [sys.executable, "run_study.py"]
     done = subprocess.run(
@@ -80,7 +97,9 @@ def test_the_program_of_the_page_runs_where_sbatch_is_a_shell(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert "Traceback" not in done.stderr
-    assert "#SBATCH -p compute" in (tmp_path / "submitted.sh").read_text(encoding="utf-8")
+    submitted = (tmp_path / "submitted.sh").read_text(encoding="utf-8")
+    assert "#SBATCH -p compute" in submitted
+    assert protocol in submitted
     assert bs.studies.read(tmp_path / "hips.zarr").max_pressure.shape == (3, 3, 3)
 
 
