@@ -277,8 +277,8 @@ class CohortSeries:
         """Compute the Sobol indices of the results at the last report; None if orientations are not covered."""
         run = self.run
         names, counts, box = list(run.variability.distributions), run.counts[-1:], self.family.box
-        cut = [name for name in self.family.similarity.angles if _cuts(box.ranges[name], run.values[name])]
-        if cut:
+        cut_angles = [name for name in self.family.similarity.angles if _cuts(box.ranges[name], run.values[name])]
+        if cut_angles:
             return None
         columns = [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]
 
@@ -337,20 +337,20 @@ def _extend(
 ) -> dict[str, tuple[float, float]]:
     """Move some ends of covered ranges towards those of the limited ranges, until a load points to the rim."""
 
-    def moved(fraction: float) -> dict[str, tuple[float, float]]:
+    def move_ends(fraction: float) -> dict[str, tuple[float, float]]:
         """Return the ranges after a fraction of the movement."""
         ends = {name: list(pair) for name, pair in covered.items()}
         for name, end in moved_ends:
             ends[name][end] += fraction * (limited[name][end] - ends[name][end])
         return {name: (low, high) for name, (low, high) in ends.items()}
 
-    if _keeps_loads_inside(similarity, moved(1.0)):
-        return moved(1.0)
+    if _keeps_loads_inside(similarity, move_ends(1.0)):
+        return move_ends(1.0)
     low, high = 0.0, 1.0
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2
-        low, high = (middle, high) if _keeps_loads_inside(similarity, moved(middle)) else (low, middle)
-    return moved(low)
+        low, high = (middle, high) if _keeps_loads_inside(similarity, move_ends(middle)) else (low, middle)
+    return move_ends(low)
 
 
 def _keeps_loads_inside(similarity: Similarity, ranges: Mapping[str, tuple[float, float]]) -> bool:
