@@ -45,7 +45,18 @@ def relative_difference(use, values, coefficient=K, **distributions):
     worn = np.exp(member.worn[:, : len(similarity.results)])
     scaled = worn * np.array([float(units[name][0]) for name in similarity.results])
     columns = [list(RESULT_UNITS).index(name) for name in similarity.results]
+    assert_equal_contacts(similarity, values["clearance"], member.worn[:, len(similarity.results) :], reports)
     return abs(scaled / result_table(reports)[:, columns] - 1).max()
+
+
+def assert_equal_contacts(similarity, clearance, numbers, reports):
+    """Compare rim distance, indentation, half angle and largest pressure with those of a patient's reports."""
+    pressure_unit = float(similarity.modulus(clearance)) * clearance
+    for (rim, _, indentation, half_angle, pressure), report in zip(numbers, reports, strict=True):
+        distance = max(rim, 0.0) * float(similarity.socket_radius(clearance))
+        assert distance == pytest.approx(report.edge_distance.min(), rel=1e-9, abs=1e-9)
+        scaled = np.exp(indentation) * clearance, half_angle, np.exp(pressure) * pressure_unit
+        assert scaled == pytest.approx(report.worst_contacts[0, 2:5], rel=1e-9)
 
 
 @pytest.mark.parametrize(

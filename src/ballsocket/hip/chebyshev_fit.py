@@ -35,7 +35,7 @@ class Box:
         return tuple(name for name, (low, high) in self.ranges.items() if high > low)
 
     def contains(self, numbers: Mapping[str, Numbers]) -> Numbers:
-        """Return the mask of the points inside the box, but for rounding; NaN is outside."""
+        """Return the mask of the points inside the box, up to rounding; NaN is outside."""
         masks = [
             (numbers[name] >= low - _ROUNDING) & (numbers[name] <= high + _ROUNDING)
             for name, (low, high) in self.ranges.items()
@@ -53,9 +53,9 @@ class Box:
         return scaled
 
     def sample(self, count: int) -> list[dict[str, float]]:
-        """Return points of a Sobol sequence, denser at the ends as the points of Chebyshev; more keep the first.
+        """Return points of a Sobol sequence, denser at the ends like Chebyshev points.
 
-        A box without axes has a single point.
+        A larger count has the same first points. A box without axes has a single point.
         """
         from scipy.stats.qmc import Sobol
 
@@ -88,12 +88,12 @@ def basis(scaled: Numbers, exponents: Numbers) -> Numbers:
 
 
 def chebyshev_points(low: float, high: float, count: int) -> Numbers:
-    """Return the zeros of the Chebyshev polynomial of a degree between two ends, in ascending order."""
+    """Return the zeros of the Chebyshev polynomial of degree `count`, mapped to a range, in ascending order."""
     return (low + high) / 2 - (high - low) / 2 * numpy.cos(numpy.pi * (numpy.arange(count) + 0.5) / count)
 
 
 def interpolation_weights(points: Numbers, low: float, high: float, count: int) -> Numbers:
-    """Compute the weights of values at `chebyshev_points` in the interpolated values at points: (points, count)."""
+    """Compute weights (points, count) that interpolate values at `chebyshev_points` to other points."""
     if count == 1:
         return numpy.ones((len(points), 1))
     scaled = numpy.clip((2 * points - low - high) / (high - low), -1.0, 1.0)

@@ -247,7 +247,7 @@ def check_cohort_memory(patients: int, n_quantities: int, n_reports: int) -> Non
         The memory is too small; the message has both sizes.
     """
     numbers = n_quantities + _COPIES * (n_reports * len(RESULT_UNITS) + 3 * (1 + n_reports))
-    check_memory(f"results of {count_text(max(patients, 0))} patients", 8 * numbers * max(patients, 0))
+    check_memory(f"results of {count_text(patients)} patients", 8 * numbers * patients)
 
 
 def sample_patients(variability: PatientVariability, count: int, seed: int) -> Mapping[str, Numbers]:

@@ -32,10 +32,10 @@ from .similarity import CLEARANCE, Similarity, find_obstacle
 from .variability import DEFAULT_LEVEL, INFLUENCED_RESULTS, RESULT_UNITS, CohortResult
 
 N_HELD_OUT = 64
-"""Patients that are simulated to estimate the error of a series; they are the first of the cohort."""
+"""Number of patients that are simulated to estimate the error of a series: the first of the cohort."""
 
 _REFERENCE_COUNT = 65_536
-"""Patients whose numbers set the ranges of a series. They do not depend on the size of the cohort."""
+"""Number of samples that set the ranges of a series, for a cohort of any size."""
 
 _FIRST_DEGREES = (0, 12, 10, 7, 6)
 """Degree of the first series by the number of its variables besides the clearance."""
@@ -47,26 +47,28 @@ _MAX_MEMBERS = 2048
 """Largest number of simulations of a refined series."""
 
 _MEMBER_COST = 3
-"""Time of a simulation of a series, which has many reports, over that of a patient."""
+"""Ratio of the time of a family member, which has many reports, to that of a patient."""
 
 _LEAST_IMPROVEMENT = 0.9
 """Ratio of errors above which a refinement counts as useless."""
 
 _ANGLE_LIMITS = {"tilt": (0.0, pi / 2), "inclination": (0.0, pi / 2), "anteversion": (-pi / 2, pi / 2)}
-_GRID = 9
-"""Orientations checked along each angle of a range."""
+"""Lowest and highest angle of a cup in rad."""
+
+_GRID_COUNT = 9
+"""Number of orientations that are checked along each angle of a range."""
 
 _BISECTIONS = 12
+"""Number of bisections for the end of a covered range."""
 
 _LEAST_WIDTH = 1e-9
 """Relative width below which a range is one number."""
 
 _MAX_CUT = 1e-3
-"""Largest fraction of patients outside the covered orientations with Sobol indices."""
+"""Largest fraction of patients outside the covered orientations for which Sobol indices are computed."""
 
 _SOBOL_COUNT = 4096
 """Samples in each set of the Sobol indices."""
-
 
 METHODS = ("series", "runs")
 """Methods of a cohort: a series of polynomials, or a simulation of each patient."""
@@ -93,8 +95,8 @@ class CohortSolution:
     obstacle: str = ""
 
     @property
-    def is_accurate(self) -> bool:
-        """True if the error of the series is allowed, or a simulation of each patient would take much longer."""
+    def is_acceptable(self) -> bool:
+        """True without a series, within the tolerances, or if simulating each patient would take much longer."""
         if self.accuracy is None:
             return True
         return self.accuracy.within_tolerance or len(self.result.table) > _MEMBER_COST * _MAX_MEMBERS
@@ -133,8 +135,9 @@ def solve_cohort(
             raise NoSeriesError(obstacle)
         if method == "series" or (method is None and len(run) > series.cost):
             solution = series.solve(progress)
-            if method == "series" or solution.is_accurate:
+            if method == "series" or solution.is_acceptable:
                 return solution
+            obstacle = "its error exceeds the tolerance"
     except NoSeriesError as error:
         if method == "series":
             raise ValueError(f"the method 'series' does not hold: {error}; use the method 'runs'") from error
@@ -274,8 +277,8 @@ class CohortSeries:
         """Compute the Sobol indices of the results at the last report; None if orientations are not covered."""
         run = self.run
         names, counts, box = list(run.variability.distributions), run.counts[-1:], self.family.box
-        cut = [name for name in self.family.similarity.angles if _cuts(box.ranges[name], run.values[name])]
-        if cut:
+        cut_angles = [name for name in self.family.similarity.angles if _cuts(box.ranges[name], run.values[name])]
+        if cut_angles:
             return None
         columns = [list(RESULT_UNITS).index(name) for name in INFLUENCED_RESULTS]
 
@@ -334,25 +337,25 @@ def _extend(
 ) -> dict[str, tuple[float, float]]:
     """Move some ends of covered ranges towards those of the limited ranges, until a load points to the rim."""
 
-    def moved(fraction: float) -> dict[str, tuple[float, float]]:
-        """Return the ranges with a fraction of the way."""
+    def move_ends(fraction: float) -> dict[str, tuple[float, float]]:
+        """Return the ranges after a fraction of the movement."""
         ends = {name: list(pair) for name, pair in covered.items()}
         for name, end in moved_ends:
             ends[name][end] += fraction * (limited[name][end] - ends[name][end])
         return {name: (low, high) for name, (low, high) in ends.items()}
 
-    if _keeps_loads_inside(similarity, moved(1.0)):
-        return moved(1.0)
+    if _keeps_loads_inside(similarity, move_ends(1.0)):
+        return move_ends(1.0)
     low, high = 0.0, 1.0
     for _ in range(_BISECTIONS):
         middle = (low + high) / 2
-        low, high = (middle, high) if _keeps_loads_inside(similarity, moved(middle)) else (low, middle)
-    return moved(low)
+        low, high = (middle, high) if _keeps_loads_inside(similarity, move_ends(middle)) else (low, middle)
+    return move_ends(low)
 
 
 def _keeps_loads_inside(similarity: Similarity, ranges: Mapping[str, tuple[float, float]]) -> bool:
     """Check on a grid if no load points to the rim for angles within ranges."""
-    axes = [numpy.linspace(low, high, _GRID) for low, high in ranges.values()]
+    axes = [numpy.linspace(low, high, _GRID_COUNT) for low, high in ranges.values()]
     return all(
         similarity.keeps_loads_inside(dict(zip(ranges, map(float, angles), strict=True))) for angles in product(*axes)
     )

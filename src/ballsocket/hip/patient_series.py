@@ -36,7 +36,7 @@ _MIN_MEMBERS_PER_TERM = 1.5
 """Least number of simulations with a result per term of the polynomial."""
 
 _WEAR_SAFETY = 0.95
-"""Part of the largest allowed wear up to which a patient takes its result from the series."""
+"""Fraction of the largest allowed wear up to which a patient takes its result from the series."""
 
 _ROUNDING = 1e-12
 """Margin of the range of the logarithm of the exposure."""
@@ -49,7 +49,7 @@ _CONTACT_FIELDS = 3
 
 
 class NoSeriesError(ValueError):
-    """Reason in one clause why patients have no series."""
+    """Error raised for patients without a series; its message is a reason in one clause."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -114,7 +114,7 @@ class FamilyStore(ArrayPieceStore):
         return result
 
     def from_arrays(self, piece: int, arrays: dict[str, Numbers]) -> dict[str, Numbers] | None:
-        """Return the arrays of a piece, without those of another kind of file."""
+        """Return the arrays of a piece; None if the file has other arrays."""
         return arrays if set(arrays) == {"unworn", "worn"} else None
 
 
@@ -190,7 +190,7 @@ class PatientSeries:
         return low - _ROUNDING, high + _ROUNDING
 
     def _wears_allowed_depth(self, log_depth: Numbers, values: Mapping[str, Numbers]) -> Numbers:
-        """Return the mask of the patients whose wear by the rate of the first cycle, over c, is clearly allowed."""
+        """Return the mask of the patients clearly below the largest allowed wear, by ln of depth over c."""
         joint, clearance = self.family.similarity.setup.joint, self.family.similarity.clearances(values)
         thickness = numpy.minimum(float(joint.liner_thickness), self.family.similarity.socket_radius(clearance))
         mask: Numbers = log_depth <= numpy.log(_WEAR_SAFETY * MAX_WORN_LINERS * thickness / clearance)

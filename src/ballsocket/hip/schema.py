@@ -285,7 +285,7 @@ class UncertaintyTable(Table, frozen=True, kw_only=True):
     """Quantities that differ between patients, with their distributions."""
 
     contact: Annotated[
-        ContactName, meaning("foundation of the patients' sockets; 'cup' takes some 100 times as long as 'springs'")
+        ContactName, meaning("foundation of the patients' sockets; 'cup' takes some 80 times as long as 'springs'")
     ] = ContactName("springs")
     count: Annotated[SampleNumber, meaning("number of samples from 2; a power of two fills the space most evenly")] = (
         SampleNumber(DEFAULT_COUNT)

@@ -30,7 +30,7 @@ _RIM_MARGIN = radians(5.0)
 """Least angle in rad between a load and the end of the bore in a family member."""
 
 _RIM_SLOPE = 0.5
-"""Angle in rad beyond the rim for an overlap there of one clearance: continues the distance from the rim below 0."""
+"""Angle in rad beyond the rim per overlap of one clearance at the rim. It continues the rim distance below 0."""
 
 _CONTACT_COLUMNS = slice(2, 5)
 """Indentation, half angle and largest pressure in a table of worst contacts."""

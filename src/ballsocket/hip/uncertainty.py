@@ -143,10 +143,9 @@ def population(
     OSError
         The store is not writable or the disk is full.
     """
-    check_cohort_memory(patients, len(variability.distributions), len(counts))
-    run = CohortRun(
-        variability=variability, counts=tuple(sorted(counts)), values=sample_patients(variability, patients, seed)
-    )
+    values = sample_patients(variability, patients, seed)
+    check_cohort_memory(patients, len(values), len(counts))
+    run = CohortRun(variability=variability, counts=tuple(sorted(counts)), values=values)
     reports = Patient(use=variability.use, cycle_ratio=1.0).simulate(run.counts)
     solution = solve_cohort(run, seed, method, engine, store, progress)
     cohort = solution.result

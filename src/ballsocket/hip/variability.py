@@ -81,7 +81,7 @@ class PatientVariability:
         Body weight in N that the cycle's forces belong to. Default: the median.
     surface : Springs, ClosedShell or RealCup, optional
         Foundation of the patients' sockets. Default: the springs of `use`, or the paper's. A patient with `RealCup()`
-        takes some 100 times as long as one on springs. Patients with the same joint share the compliance of their cup.
+        takes some 80 times as long as one on springs. Patients with the same joint share the compliance of their cup.
 
     Raises
     ------

@@ -23,7 +23,7 @@ MAX_SOBOL_COUNT = 1 << 30
 """Number of points of SciPy's Sobol sequence."""
 
 _MAX_SCIPY_COUNT = 1 << 20
-"""Number of points up to which a Latin hypercube is drawn by SciPy, as a whole."""
+"""Number of points up to which SciPy draws a Latin hypercube, all points at once."""
 
 _N_ROUNDS = 8
 """Rounds of the Feistel network."""
@@ -46,7 +46,7 @@ def draw_chunk(method: Method, count: int, dimension: int, seed: int, number: in
     ----------
     method : Method
     count : int
-        Number of points of the whole design.
+        Total number of points of the design.
     dimension : int
         Number of coordinates of a point.
     seed : int
@@ -87,7 +87,7 @@ def _sobol_engine(dimension: int, seed: int, thread: int) -> Sobol:
 
 
 def _draw_small_hypercube(count: int, dimension: int, seed: int, start: int, stop: int) -> Numbers:
-    """Draw the points of a section of a Latin hypercube that SciPy draws as a whole."""
+    """Return the points of a section of a Latin hypercube that SciPy draws at once."""
     return _scipy_hypercube(count, dimension, seed)[start:stop]
 
 

@@ -14,6 +14,7 @@ from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.elasticity.off_axis.jax_sphere import JaxSphere
 from ballsocket.elasticity.off_axis.lane_solver import make_bore_arrays
 from ballsocket.elasticity.off_axis.ring_matrices import vary_liner
+from ballsocket.problem.cup import Side
 
 from ...joints import HIP
 from .shapes import COARSE
@@ -178,6 +179,23 @@ def test_first_press_may_be_traced():
     cup = JaxSphere(model=MODEL, joint=HIP)
     jax.eval_shape(lambda force: cup.press(force, DIRECTION), FORCE)
     assert np.asarray(cup._bores.frame) == pytest.approx(np.array(MODEL.cup.frame))
+
+
+def test_an_orientation_has_the_frame_of_its_cup_and_its_derivatives():
+    """Derivatives of the axes by both angles, against differences of the frames of other cups."""
+    angles, step = np.array([0.7, 0.3]), 1e-6
+    left = bs.Sphere(cup=bs.Cup(inclination=0.2, side=Side.LEFT), ring_width=radians(3.0))
+
+    def frame(inclination, anteversion):
+        return np.array(bs.Cup(inclination=inclination, anteversion=anteversion, side=Side.LEFT).frame)
+
+    with jax.enable_x64(True):
+        cup = JaxSphere(model=left, joint=HIP, dtype="float64")
+        assert np.asarray(cup._orient(None, 0.3)) == pytest.approx(frame(0.2, 0.3), abs=1e-12)
+        slopes = np.asarray(jax.jacfwd(lambda x: cup._orient(*x))(angles))
+    for column in range(2):
+        low, high = (frame(*(angles + change * np.eye(2)[column])) for change in (-step, step))
+        assert slopes[..., column] == pytest.approx((high - low) / (2 * step), abs=1e-8)
 
 
 def test_bores_without_lanes_are_refused():

@@ -333,7 +333,7 @@ def test_summaries_have_the_numbers_of_contacts_with_fields(monkeypatch):
         assert of_summary == pytest.approx(of_contact, rel=1e-6)
     assert summary.stiffness_matrix == pytest.approx(contact.stiffness_matrix, rel=1e-4, abs=1.0)
     assert summary.notes == contact.notes
-    with pytest.raises(ValueError, match='pressure needs the pressure fields: press with keep="fields"'):
+    with pytest.raises(ValueError, match='a summary has no pressure: profiles, .* press with keep="fields"'):
         summary.pressure(0.1)
 
 

@@ -268,6 +268,7 @@ def is_array_cached(key: object) -> bool:
 
 
 def _cached_path(key: object) -> Path:
+    """Return the path of the cached array of these inputs."""
     return cache_folder() / f"cup-{sha256(f'{_CACHE_VERSION} {key!r}'.encode()).hexdigest()[:32]}.npz"
 
 

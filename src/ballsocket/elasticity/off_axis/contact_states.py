@@ -354,7 +354,9 @@ class ContactSummaries:
     def __getattr__(self, name: str) -> Any:
         """Raise ValueError for what needs the pressure fields."""
         if hasattr(ContactStates, name) or name == "equilibrium":
-            raise ValueError(f'{name} needs the pressure fields: press with keep="fields" for it')
+            raise ValueError(
+                f'a summary has no {name}: profiles, maps and outlines need pressure fields; press with keep="fields"'
+            )
         raise AttributeError(name)
 
 

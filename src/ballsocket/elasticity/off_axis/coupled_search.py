@@ -395,7 +395,7 @@ def advance_lanes(bore: BoreArrays, step: Array, lanes: Lanes) -> Lanes:
 
 
 def subtract_response(bore: BoreArrays, remaining: Array, correction: Array) -> Array:
-    """Subtract the displacements by pressure corrections from overlaps; few lanes have corrections in NumPy."""
+    """Subtract the displacements by pressure corrections from overlaps; in NumPy, only of lanes with corrections."""
     if arrays.namespace(correction) is not numpy:
         return remaining - apply_operator(bore, bore.softness, correction)
     corrected = correction.any(axis=0).any(axis=0)

@@ -1,6 +1,6 @@
 """Compliance of a bore in JAX as a function of its liner: Young's modulus, Poisson's ratio and thickness.
 
-NumPy computes the matrices and their derivatives; JAX calls it back.
+NumPy computes the matrices and their derivatives; JAX calls NumPy for them.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def _softness_slopes(surface: Surface, joint: Joint, cup: Cup, width: float) -> 
 def differentiable_operators(bore: LinerCompliance, dtype: str) -> Callable[[Array], Operators]:
     """Return a function of JAX from the numbers of a liner (3,) to `Operators`, with derivatives of first order.
 
-    The stiffnesses have no derivatives: they guide the iteration alone.
+    The stiffnesses have no derivatives: they only precondition the iteration.
     """
     import jax
 

@@ -162,7 +162,7 @@ def _search_wide_cells(bore: BoreArrays, lanes: Lanes) -> tuple[Lanes, Predictor
 
 
 def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: Array, max_iterations: int) -> Lanes:
-    """Iterate until all lanes are within a tolerance; lanes that are stay as they are."""
+    """Iterate until all lanes are within a tolerance; converged lanes stay unchanged."""
     import jax
     import jax.numpy as xp
 

@@ -127,7 +127,7 @@ class JaxSphere:
     Raises
     ------
     ValueError
-        In `press`: a bore without lanes (springs, `CircularGap`, wide rings); a tolerance outside 1e-9 to 1e-2.
+        A tolerance outside 1e-9 to 1e-2. In `press`: springs, `CircularGap`, or rings wider than 3°.
     ImportError
         In `press`: JAX or the extra `fem` is not installed.
 
@@ -221,9 +221,9 @@ class JaxSphere:
         Returns
         -------
         JaxContacts
-            All numbers but `error` and `stiffness_matrix` have derivatives by all arguments, of first order, with the
-            cells in contact fixed. `press` may be called inside `jax.jit` and `jax.grad`; what is not used there is not
-            computed.
+            All numbers except `error` and `stiffness_matrix` have first-order derivatives by all arguments, with fixed
+            cells in contact. `press` may be called inside `jax.jit` and `jax.grad`; unused results are not computed
+            there.
 
         Raises
         ------
@@ -369,9 +369,9 @@ def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tupl
 
 
 def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges: Array) -> Array:
-    """Give the edge angles (contacts, rays) their derivatives by the level, whose zero they are.
+    """Attach derivatives by the level to edge angles (contacts, rays), at which the level is 0.
 
-    A Newton step of size 0 has them. Edges at the end of the bore do not move.
+    A Newton step of size 0 carries them. Edges at the end of the bore do not move.
     """
     import jax
     import jax.numpy as xp

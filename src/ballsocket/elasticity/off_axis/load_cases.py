@@ -278,7 +278,7 @@ def _overhang_angles(states: ContactStates) -> Numbers:
 
 
 _BLOCK_LOADS = 512
-"""Number of loads whose fields are in memory at once where they are not kept."""
+"""Number of loads whose fields are in memory at once while summaries are computed."""
 
 _FIELD_COPIES = 4
 """Number of fields per load at the peak: pressures, their copies in the solver, and levels."""
@@ -287,7 +287,7 @@ _SUMMARY_NUMBERS = 100
 """Number of values per load at the peak of a summary."""
 
 KeepFunction = Callable[[LoadSolver, BoreContact, Numbers, Numbers, EdgeRelation], "ContactStates | ContactSummaries"]
-"""Function from a load solver and its arguments to what is kept of the contacts."""
+"""Function from a load solver and its arguments to contacts with their fields or to their summaries."""
 
 
 def _keep_fields(
@@ -302,7 +302,7 @@ def _keep_fields(
 def _keep_summary(
     solve: LoadSolver, bore: BoreContact, load: Numbers, axes: Numbers, edges: EdgeRelation
 ) -> ContactSummaries:
-    """Solve the loads block by block, and keep the numbers of each contact alone."""
+    """Solve the loads block by block, and keep only the numbers of each contact."""
     size = 8 * _SUMMARY_NUMBERS * len(load) + _field_bytes(bore, min(len(load), _BLOCK_LOADS))
     check_memory(f"summaries of {count_text(len(load))} contacts", size)
     starts = range(0, max(len(load), 1), _BLOCK_LOADS)
@@ -318,4 +318,4 @@ def _field_bytes(bore: BoreContact, count: int) -> int:
 KEEP_FUNCTIONS: MappingProxyType[str, KeepFunction] = MappingProxyType(
     {"fields": _keep_fields, "summary": _keep_summary}
 )
-"""What is kept of the contacts, by its name."""
+"""Functions that solve loads, by the value of `keep`."""

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from .bore_contact import BoreContact
 
 KEPT = ("fields", "summary")
-"""What `Sphere` may keep of each contact."""
+"""Allowed values of `keep` of a `Sphere`."""
 
 _MIN_RING_WIDTH, MAX_RING_WIDTH = radians(0.5), radians(6.0)
 
