@@ -69,7 +69,5 @@ def test_contacts_that_do_not_fit_are_refused():
         join_contacts([one, SPRINGS.contact(TILTED, np.tile(WORN[0], (3, 1)), NO_LATERAL_SPRING)])
     with pytest.raises(TypeError, match="contacts must be those of join_contacts"):
         solve_patients(one, start)
-    with pytest.raises(
-        ValueError, match=r"start of shape \(1, 3, 3\) is not allowed: .* shape \(2, 3, 3\) of the loads"
-    ):
+    with pytest.raises(ValueError, match=r"start of shape \(1, 3, 3\) is not allowed: its shape is \(2, 3, 3\)"):
         solve_patients(join_contacts([one, two]), start[:1])

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy
 
 from ..core.arrays import Array, Numbers
-from ..core.checks import needs, require, shown
+from ..core.checks import check_shape, needs, require, shown
 from .spring_equilibrium import FORCE_TOLERANCE, MAX_ITERATIONS, REGULARISATION, SpringContact, newton_step
 
 _TRIANGLE = numpy.triu_indices(3)
@@ -103,9 +103,7 @@ def solve_patients(contacts: SpringContact, start: Numbers) -> PatientEquilibria
 
     if not isinstance(contacts, SpringContact) or numpy.ndim(contacts.loads) != 3:
         raise TypeError(f"contacts must be those of join_contacts, with an axis of patients; got {shown(contacts)}")
-    if numpy.shape(start) != numpy.shape(contacts.loads):
-        shapes = numpy.shape(start), numpy.shape(contacts.loads)
-        raise ValueError("start of shape {} is not allowed: it has the shape {} of the loads".format(*shapes))
+    check_shape("start", start, (numpy.shape(contacts.loads),))
     with jax.enable_x64(True):
         return PatientEquilibria(*_compiled_solver()(contacts, start))
 

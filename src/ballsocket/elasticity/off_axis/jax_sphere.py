@@ -14,8 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy
 
+from ...contact.assembly import check_joint
 from ...core.arrays import Array
-from ...core.checks import check_number, needs, require
+from ...core.checks import check_number, check_numeric, check_shape, check_vectors, needs, require, shown
 from ...core.quantities import CUP
 from ...core.validity import check_domain
 from ...models.kinematics import linear_indentation
@@ -31,11 +32,10 @@ from .coupled_search import (
     start_lanes,
 )
 from .jax_compliance import LinerCompliance, Operators, differentiable_operators
-from .jax_inputs import check_bore, check_dtype, check_loads, check_precision, check_shape
 from .jax_search import Grids, differentiable_search
 from .lane_solver import coarser_lanes, make_bore_arrays
 from .load_cases import MAX_EQUILIBRIUM_DISPLACEMENT
-from .model import Sphere
+from .model import Sphere, check_sphere
 from .patch_measures import (
     CellArrays,
     Patches,
@@ -59,6 +59,10 @@ _MIN_STEP = radians(2.0)
 
 _MEASURED_CONTACTS = 64
 """Number of contacts whose outlines are computed together."""
+
+
+_DTYPES = ("float32", "float64")
+"""Precisions of the solver."""
 
 
 class JaxContacts(NamedTuple):
@@ -155,8 +159,8 @@ class JaxSphere:
 
     def __post_init__(self) -> None:
         """Validate model, joint, precision and tolerance."""
-        check_bore(self.model, self.joint)
-        check_dtype(self.dtype)
+        _check_bore(self.model, self.joint)
+        _check_dtype(self.dtype)
         value = check_number("tolerance", self.tolerance)
         require("tolerance", value, 1e-9 <= value <= 1e-2, "a tolerance is 1e-9 to 1e-2")
 
@@ -245,8 +249,8 @@ class JaxSphere:
         needs("jax", "jax")
         import jax.numpy as xp
 
-        check_precision(self.dtype)
-        gap, (force, direction) = self._bore.gap, check_loads(force, direction)
+        _check_precision(self.dtype)
+        gap, (force, direction) = self._bore.gap, _check_loads(force, direction)
         force = xp.asarray(force, dtype=self.dtype)
         direction = xp.broadcast_to(xp.asarray(direction, dtype=self.dtype), (*force.shape, 3))
         c = self._replace("clearance", gap.clearance, clearance)
@@ -291,6 +295,57 @@ class JaxSphere:
             grids=operators.replace_in(self._bores.grids),
             edge_compliance=self._bores.edge_compliance * softening,
         )
+
+
+def _check_bore(model: Any, joint: Any) -> None:
+    """Check that model and joint describe one bore that `Sphere` solves.
+
+    Raises
+    ------
+    TypeError
+        Another type than `Sphere` or `Joint`, or a joint with arrays.
+    OutsideDomainError
+        A joint outside the domain of the model.
+    """
+    check_sphere(model)
+    check_joint(joint)
+    if any(numpy.shape(number) for number in joint.numbers()):
+        raise TypeError("joint must have plain numbers, got arrays: one JaxSphere presses one joint")
+    check_domain(model.domain, joint, model.name)
+
+
+def _check_dtype(dtype: Any) -> None:
+    """Check the name of a precision; raise ValueError for another."""
+    if not (isinstance(dtype, str) and dtype in _DTYPES):
+        raise ValueError(f"dtype = {shown(dtype)} is not allowed: it is {' or '.join(map(repr, _DTYPES))}")
+
+
+def _check_precision(dtype: str) -> None:
+    """Check that JAX has the precision that is asked for; raise ValueError otherwise."""
+    import jax
+
+    if jax.dtypes.canonicalize_dtype(dtype) != dtype:
+        raise ValueError(
+            'dtype = "float64" needs jax.config.update("jax_enable_x64", True) first: the default of JAX is single'
+        )
+
+
+def _check_loads(force: Any, direction: Any) -> tuple[Array, Array]:
+    """Check forces (loads,) and their directions (loads, 3) or (3,); return both as arrays.
+
+    Raises
+    ------
+    TypeError
+        Another type than real numbers.
+    ValueError
+        Another shape.
+    """
+    force, direction = check_numeric("force", force), check_vectors("direction", direction, "x, y, z")
+    shape = numpy.shape(force)
+    if len(shape) != 1 or 0 in shape:
+        raise ValueError(f"force of shape {shape} is not allowed: it is a row (loads,) of one or more forces")
+    check_shape("direction", direction, ((3,), (1, 3), (*shape, 3)))
+    return force, direction
 
 
 @cache
