@@ -234,3 +234,17 @@ def test_estimated_change_on_a_hemisphere_is_that_of_the_exact_solution(ball, lo
         closed_sphere.hemisphere_indentation_change(soft) - closed_sphere.hemisphere_indentation_change(contact)
     ) / 0.02
     assert per_ratio > 0
+
+
+@pytest.mark.parametrize(
+    "press",
+    [
+        lambda: bs.HessForsbach().press(HIP.replace(clearance=np.array([0.1, 0.2])), force=[1.0, 2.0, 3.0]),
+        lambda: bs.Sphere().press(HIP, force=[1.0, 2.0, 3.0], tilt=[0.1, 0.2]),
+    ],
+)
+def test_shapes_that_do_not_broadcast_are_refused(press):
+    with pytest.raises(
+        ValueError, match=r"the shapes \(2,\), \(3,\) of joint, load and direction do not broadcast: an axis"
+    ):
+        press()

@@ -113,6 +113,28 @@ def test_an_address_excludes_a_number_of_workers():
         Distributed(address="tcp://host:1", workers=2)
 
 
+@pytest.mark.parametrize("address", ["", "nonsense", "tcp://", "udp://10.0.0.1:1", 8786])
+def test_an_address_is_one_of_a_scheduler(address):
+    with pytest.raises(
+        ValueError, match=f"address = {address!r} is not allowed: a Dask scheduler has an address such as"
+    ):
+        Distributed(address=address)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "message"),
+    [
+        ({"workers": 1.5}, "workers = 1.5 is not allowed: a whole number"),
+        ({"workers": True}, "workers = True is not allowed: a whole number"),
+        ({"retries": -1}, "retries = -1 is not allowed: a whole number from 0"),
+        ({"retries": "x"}, "retries = 'x' is not allowed: a whole number"),
+    ],
+)
+def test_numbers_of_a_cluster_are_whole(numbers, message):
+    with pytest.raises(ValueError, match=message):
+        Distributed(**numbers)
+
+
 def test_available_cores_are_those_of_this_process(monkeypatch):
     monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0: {3, 4, 7}}[process], raising=False)
     assert available_cores() == 3
@@ -364,6 +386,9 @@ def test_tls_needs_the_certificates(tmp_path):
         assert list(Distributed(address=address, security=security).run(abs, [-1])) == [(-1, 1)]
         with pytest.raises(ConnectionError, match="needs certificates"):
             list(Distributed(address=address).run(abs, [-1]))
+        plain = address.replace("tls://", "tcp://")
+        with pytest.raises(ConnectionError, match="address, scheduler and security differ in their encryption"):
+            list(Distributed(address=plain, security=security).run(abs, [-1]))
 
 
 def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable(monkeypatch):

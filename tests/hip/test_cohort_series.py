@@ -14,7 +14,7 @@ from ballsocket.hip import cohort_series as module
 from ballsocket.hip.chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
 from ballsocket.hip.cohort import CohortRun, check_cohort_memory, cohort_store, sample_patients
 from ballsocket.hip.cohort_series import CohortSeries
-from ballsocket.hip.series_accuracy import TOLERANCES
+from ballsocket.hip.series_accuracy import TOLERANCES, SeriesAccuracy
 from ballsocket.hip.similarity import Similarity
 from ballsocket.hip.variability import RESULT_UNITS
 from ballsocket.studies import LogNormal, Normal, Rectangular
@@ -134,6 +134,23 @@ def test_patients_are_simulated_where_the_error_of_their_series_is_too_large(few
     assert bands.accuracy is None
     note = "each of the patients was simulated, without a series: its error exceeds the tolerance"
     assert note in bands.notes
+
+
+@pytest.mark.parametrize(("fraction", "stated"), [(0.0, False), (0.03, False), (0.08, True)])
+def test_another_edge_loading_is_stated(fraction, stated):
+    """Above 5 % of the held-out results, as for cups whose contacts often just reach the rim."""
+    accuracy = SeriesAccuracy(
+        n_simulations=8,
+        degree=1,
+        n_held_out=64,
+        relative={"volume": 1e-4},
+        largest={"volume": 1e-3},
+        edge_distance=0.1,
+        utilisation=0.0,
+        wrong_edge_loading=fraction,
+        wrong_validity=0.0,
+    )
+    assert ("edge loading differs in 8 % of these results" in accuracy.notes("patients", 100)[0]) == stated
 
 
 # where it holds

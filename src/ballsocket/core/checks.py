@@ -133,6 +133,23 @@ def check_vectors(name: str, value: Any, axes: str) -> Array:
     return to_common_arrays(value)[0]
 
 
+def check_shape(name: str, value: Any, allowed: tuple[tuple[int, ...], ...]) -> Array:
+    """Check that a value has real numbers and one of several shapes, and return it.
+
+    Raises
+    ------
+    TypeError
+        Another type than real numbers.
+    ValueError
+        Another shape.
+    """
+    value = check_numeric(name, value)
+    if _array_shape(value) not in allowed:
+        shapes = " or ".join(dict.fromkeys(map(str, allowed)))
+        raise ValueError(f"{name} of shape {_array_shape(value)} is not allowed: its shape is {shapes}")
+    return value
+
+
 def _check_integer(name: str, value: float) -> float:
     """Return an integer as a float; raise ValueError if it is too large for a float."""
     try:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy
 
 from ..core.arrays import Array, Numbers
-from ..core.checks import needs, require
+from ..core.checks import check_shape, needs, require, shown
 from .spring_equilibrium import FORCE_TOLERANCE, MAX_ITERATIONS, REGULARISATION, SpringContact, newton_step
 
 _TRIANGLE = numpy.triu_indices(3)
@@ -51,12 +51,18 @@ def join_contacts(contacts: list[SpringContact]) -> SpringContact:
     ------
     ValueError
         No contact, or contacts with different numbers of loads or cells.
+    TypeError
+        Another type than a list of `SpringContact`.
     """
+    if not isinstance(contacts, list) or not all(isinstance(contact, SpringContact) for contact in contacts):
+        raise TypeError(f"contacts must be a list of SpringContact, got {shown(contacts)}")
     require("number of contacts", len(contacts), len(contacts) > 0, "at least one patient is solved")
     sizes = {(len(contact.loads), contact.normals.shape[1]) for contact in contacts}
     if len(sizes) > 1:
-        shown = ", ".join(f"{loads} loads on {cells} cells" for loads, cells in sorted(sizes))
-        raise ValueError(f"patients in one block need the same numbers of loads and cells, got {shown}")
+        texts = ", ".join(f"{loads} loads on {cells} cells" for loads, cells in sorted(sizes))
+        raise ValueError(f"patients in one block need the same numbers of loads and cells, got {texts}")
+    if len({len(contact.closing) for contact in contacts}) > 1:
+        raise ValueError("patients in one block need a depth under each load, or one depth, but not both")
     return SpringContact._make(numpy.stack(numbers) for numbers in zip(*contacts, strict=True))
 
 
@@ -77,6 +83,10 @@ def solve_patients(contacts: SpringContact, start: Numbers) -> PatientEquilibria
     ------
     ImportError
         JAX is not installed; the message has the command.
+    TypeError
+        Contacts that are not joined.
+    ValueError
+        Initial displacements of another shape than the loads.
 
     Examples
     --------
@@ -91,6 +101,9 @@ def solve_patients(contacts: SpringContact, start: Numbers) -> PatientEquilibria
     needs("jax", "jax")
     import jax
 
+    if not isinstance(contacts, SpringContact) or numpy.ndim(contacts.loads) != 3:
+        raise TypeError(f"contacts must be those of join_contacts, with an axis of patients; got {shown(contacts)}")
+    check_shape("start", start, (numpy.shape(contacts.loads),))
     with jax.enable_x64(True):
         return PatientEquilibria(*_compiled_solver()(contacts, start))
 

@@ -100,6 +100,8 @@ class SeriesAccuracy:
             described += (
                 f"; this exceeds the tolerance of {limits.replace('_', ' ')}: the method 'runs' has no such error"
             )
+        if self.wrong_edge_loading > 1 - _FRACTION:
+            described += f"; edge loading differs in {100 * self.wrong_edge_loading:.2g} % of these results"
         outside = f"{self.n_outside} of {n_patients} {noun} are outside the range of the series and were simulated"
         return (described, outside) if self.n_outside else (described,)
 

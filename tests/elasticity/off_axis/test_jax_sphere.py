@@ -199,10 +199,63 @@ def test_an_orientation_has_the_frame_of_its_cup_and_its_derivatives():
 
 
 def test_bores_without_lanes_are_refused():
-    with pytest.raises(ValueError, match="JaxSphere needs an elastic surface, LinearGap and rings of 3 deg"):
+    with pytest.raises(ValueError, match="JaxSphere needs LinearGap and rings of 3 deg"):
         JaxSphere(model=COARSE, joint=HIP).press(FORCE, DIRECTION)
 
 
 def test_tolerance_is_limited():
     with pytest.raises(ValueError, match="tolerance = 0.1 is not allowed: a tolerance is 1e-9 to 1e-2"):
         JaxSphere(model=MODEL, joint=HIP, tolerance=0.1)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "error", "message"),
+    [
+        ({"model": "sphere"}, TypeError, "model must be Sphere, got 'sphere'"),
+        ({"joint": "hip-36"}, TypeError, r"joint must be a Joint, got 'hip-36'; use bs.joints\['hip-36'\]"),
+        ({"joint": HIP.replace(clearance=np.array([0.1, 0.2]))}, TypeError, "joint must have plain numbers"),
+        ({"joint": HIP.replace(liner=bs.Material(young=750.0, poisson=0.5))}, ValueError, "no answer for ν = 0.5"),
+        ({"dtype": "float16"}, ValueError, "dtype = 'float16' is not allowed: it is 'float32' or 'float64'"),
+        ({"dtype": None}, ValueError, "dtype = None is not allowed"),
+    ],
+)
+def test_wrong_bores_are_refused(inputs, error, message):
+    with pytest.raises(error, match=message):
+        JaxSphere(**{"model": MODEL, "joint": HIP} | inputs)
+
+
+@pytest.mark.parametrize(
+    ("inputs", "error", "message"),
+    [
+        ({"force": 1000.0}, ValueError, r"force of shape \(\) is not allowed: it is a row \(loads,\)"),
+        ({"force": []}, ValueError, r"force of shape \(0,\) is not allowed"),
+        ({"force": "3 kN"}, TypeError, "force must be a number or an array of real numbers"),
+        ({"direction": [[0.0, 1.0]]}, ValueError, r"direction of shape \(1, 2\) is not allowed: its last axis holds x"),
+        ({"direction": np.ones((3, 3))}, ValueError, r"direction of shape \(3, 3\) is not allowed: its shape is"),
+        ({"clearance": [0.1, 0.2]}, ValueError, r"clearance of shape \(2,\) is not allowed: its shape is \(\)"),
+        ({"depth": 0.01}, ValueError, r"depth of shape \(\) is not allowed: its shape is \(34, 120\)"),
+        ({"young": [700.0, 800.0]}, ValueError, r"young of shape \(2,\) is not allowed"),
+        ({"poisson": 0.5}, ValueError, "sphere has no answer for ν = 0.5: an incompressible body"),
+        ({"inclination": [0.7, 0.8]}, ValueError, r"inclination of shape \(2,\) is not allowed"),
+    ],
+)
+def test_wrong_loads_are_refused(inputs, error, message):
+    with pytest.raises(error, match=message):
+        JaxSphere(model=MODEL, joint=HIP).press(**{"force": FORCE, "direction": DIRECTION} | inputs)
+
+
+def test_double_precision_needs_the_setting_of_jax():
+    with pytest.raises(ValueError, match="float64.* needs jax.config.update.*jax_enable_x64"):
+        JaxSphere(model=MODEL, joint=HIP, dtype="float64").press(FORCE, DIRECTION)
+
+
+@pytest.mark.long
+def test_loads_that_the_bore_does_not_hold_have_not_converged():
+    """The length of a direction does not matter; a load that no cell carries is not balanced."""
+    direction = np.zeros((4, 3))
+    direction[:, 2] = 1e30, 1e-30, 1.0, 1.0
+    contacts = JaxSphere(model=MODEL, joint=HIP).press([1000.0, 1000.0, 1e-30, 1e9], direction)
+    expected = MODEL.press(HIP, force=1000.0).max_pressure
+    assert np.asarray(contacts.converged).tolist() == [True, True, False, False]
+    assert np.asarray(contacts.max_pressure)[:2] == pytest.approx(expected, rel=1e-4)
+    assert np.isnan(np.asarray(contacts.max_pressure)[2:]).all()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 from uuid import uuid4
 
-from ..checks import needs, require
+from ..checks import check_whole_number, needs, require, shown
 from .processes import MAX_WORKERS, Work, available_cores
 
 if TYPE_CHECKING:
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from distributed.security import Security
 
 _LOG = logging.getLogger("ballsocket.executors")
+
+_ADDRESS = re.compile(r"((tcp|tls|ws|wss|ucx)://)?[^\s/]+:\d{1,5}|inproc://\S+")
+"""Addresses of a scheduler that Dask connects to."""
 
 _CONNECTION_TIMEOUT = 10
 """Seconds to wait for a scheduler."""
@@ -54,7 +58,8 @@ class Distributed:
     Raises
     ------
     ValueError
-        Both an address and workers, fewer than one worker, more than 1000, or certificates without an address.
+        Both an address and workers, fewer than one worker, more than 1000, certificates without an address, another
+        address than Dask has, or retries that are not a whole number.
     """
 
     address: str | None = None
@@ -65,7 +70,14 @@ class Distributed:
     def __post_init__(self) -> None:
         if self.security is not None and self.address is None:
             raise ValueError("security needs the address of a scheduler: a cluster on this machine is not reachable")
+        if self.address is not None and not (isinstance(self.address, str) and _ADDRESS.fullmatch(self.address)):
+            raise ValueError(
+                f"address = {shown(self.address)} is not allowed: a Dask scheduler has an address such as "
+                "tcp://10.0.0.1:8786, or one that begins with tls://"
+            )
+        check_whole_number("retries", self.retries)
         if self.workers is not None:
+            check_whole_number("workers", self.workers, -MAX_WORKERS)
             require("workers", self.workers, 1 <= self.workers <= MAX_WORKERS, f"it must be 1 to {MAX_WORKERS}")
             if self.address is not None:
                 raise ValueError(
@@ -81,7 +93,7 @@ class Distributed:
         ImportError
             Dask is not installed.
         ConnectionError
-            The scheduler does not respond or needs certificates.
+            The scheduler does not respond, needs certificates, or is not encrypted as the address states.
         OSError
             The scheduler ends during the run.
         RuntimeError
@@ -114,6 +126,10 @@ class Distributed:
                 raise ConnectionError(None, "the Dask scheduler does not respond", self.address) from error
             except TypeError as error:  # of Dask, for an encrypted address alone
                 raise ConnectionError(None, "the Dask scheduler needs certificates", self.address) from error
+            except (RuntimeError, ValueError) as error:  # of Dask, for encryption on one side alone
+                raise ConnectionError(
+                    None, "address, scheduler and security differ in their encryption (tcp:// or tls://)", self.address
+                ) from error
             with client:
                 yield client
             return

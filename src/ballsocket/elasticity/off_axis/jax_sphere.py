@@ -14,9 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy
 
+from ...contact.assembly import check_joint
 from ...core.arrays import Array
-from ...core.checks import check_number, needs, require
+from ...core.checks import check_number, check_numeric, check_shape, check_vectors, needs, require, shown
 from ...core.quantities import CUP
+from ...core.validity import check_domain
 from ...models.kinematics import linear_indentation
 from ...problem import Joint, Material
 from ...problem.cup import cup_axes
@@ -32,7 +34,8 @@ from .coupled_search import (
 from .jax_compliance import LinerCompliance, Operators, differentiable_operators
 from .jax_search import Grids, differentiable_search
 from .lane_solver import coarser_lanes, make_bore_arrays
-from .model import Sphere
+from .load_cases import MAX_EQUILIBRIUM_DISPLACEMENT
+from .model import Sphere, check_sphere
 from .patch_measures import (
     CellArrays,
     Patches,
@@ -58,13 +61,18 @@ _MEASURED_CONTACTS = 64
 """Number of contacts whose outlines are computed together."""
 
 
+_DTYPES = ("float32", "float64")
+"""Precisions of the solver."""
+
+
 class JaxContacts(NamedTuple):
     """Contacts of many loads as JAX arrays; vectors are in the cup's frame, as those of `OffAxisContact`.
 
     Attributes
     ----------
     converged : array of bool (loads,)
-        True where force and overlaps are within the tolerance; the other numbers are NaN elsewhere.
+        True where force and overlaps are within the tolerance and the bore holds the ball: its centre is displaced by a
+        quarter of the bore's radius or less. The other numbers are NaN elsewhere.
     error : array (loads,)
         Larger one of both relative residuals.
     displacement, force_vector : array (loads, 3)
@@ -115,7 +123,7 @@ class JaxSphere:
     Parameters
     ----------
     model : Sphere
-        An elastic surface and `LinearGap`, in rings of 3° or less.
+        `LinearGap`, and rings of 3° or less.
     joint : Joint
         A joint without arrays.
     tolerance : float
@@ -127,7 +135,10 @@ class JaxSphere:
     Raises
     ------
     ValueError
-        A tolerance outside 1e-9 to 1e-2. In `press`: springs, `CircularGap`, or rings wider than 3°.
+        A joint outside the domain of `Sphere`, another precision, a tolerance outside 1e-9 to 1e-2. In `press`:
+        `CircularGap`, rings wider than 3°, or double precision without `jax_enable_x64`.
+    TypeError
+        Another type than `Sphere`, another than `Joint`, or a joint with arrays.
     ImportError
         In `press`: JAX or the extra `fem` is not installed.
 
@@ -147,7 +158,9 @@ class JaxSphere:
     dtype: str = "float32"
 
     def __post_init__(self) -> None:
-        """Validate the tolerance."""
+        """Validate model, joint, precision and tolerance."""
+        _check_bore(self.model, self.joint)
+        _check_dtype(self.dtype)
         value = check_number("tolerance", self.tolerance)
         require("tolerance", value, 1e-9 <= value <= 1e-2, "a tolerance is 1e-9 to 1e-2")
 
@@ -164,7 +177,7 @@ class JaxSphere:
 
         coarser = coarser_lanes(self._bore)
         if coarser is None:
-            raise ValueError("JaxSphere needs an elastic surface, LinearGap and rings of 3 degrees or less")
+            raise ValueError("JaxSphere needs LinearGap and rings of 3 degrees or less")
         grid = self._bore.compliance.grid
         edges = self.model.surface.edges(self.joint, self.model.cup, grid)
         fine, coarse = (make_bore_arrays(bore, numpy.float64) for bore in (self._bore, coarser))
@@ -228,15 +241,20 @@ class JaxSphere:
         Raises
         ------
         ValueError, ImportError
-            See the class; a number of the liner outside its range, unless JAX traces it.
+            See the class; loads of another shape; a number of the liner or an angle outside its range, unless JAX
+            traces it.
+        TypeError
+            Loads that are not real numbers.
         """
+        needs("jax", "jax")
         import jax.numpy as xp
 
-        gap = self._bore.gap
+        _check_precision(self.dtype)
+        gap, (force, direction) = self._bore.gap, _check_loads(force, direction)
         force = xp.asarray(force, dtype=self.dtype)
         direction = xp.broadcast_to(xp.asarray(direction, dtype=self.dtype), (*force.shape, 3))
-        c = xp.asarray(gap.clearance if clearance is None else clearance, dtype=self.dtype)
-        worn = xp.asarray(gap.depth if depth is None else depth, dtype=self.dtype)
+        c = self._replace("clearance", gap.clearance, clearance)
+        worn = self._replace("depth", gap.depth, depth)
         bores = self._bores
         if not (young is None and poisson is None and liner_thickness is None):
             bores = self._replace_liner((young, poisson, liner_thickness))
@@ -244,13 +262,19 @@ class JaxSphere:
             bores = bores._replace(frame=self._orient(inclination, anteversion))
         return _compiled_press()(bores, force, direction, c, worn, self.tolerance)
 
+    def _replace(self, name: str, own: Array, value: Array | None) -> Array:
+        """Return a value of the same shape in place of the model's or the joint's, which None keeps."""
+        import jax.numpy as xp
+
+        return xp.asarray(own if value is None else check_shape(name, value, (numpy.shape(own),)), dtype=self.dtype)
+
     def _orient(self, inclination: Array | None, anteversion: Array | None) -> Array:
         """Compute the frame (3, 3) of the cup in another orientation; None is the angle of the model."""
         import jax.numpy as xp
 
         cup, angles = self.model.cup, {"inclination": inclination, "anteversion": anteversion}
         first, second = (
-            xp.asarray(getattr(cup, name) if angle is None else CUP[name].check(angle), dtype=self.dtype)
+            self._replace(name, getattr(cup, name), None if angle is None else CUP[name].check(angle))
             for name, angle in angles.items()
         )
         return xp.stack([xp.stack(axis) for axis in cup_axes(first, second, cup.side)])
@@ -259,19 +283,69 @@ class JaxSphere:
         """Return the arrays of the bore with another liner; None is the number of the joint."""
         import jax.numpy as xp
 
-        own = liner_numbers(self.joint)
-        young, poisson, thickness = (
-            xp.asarray(old if new is None else new, dtype=self.dtype) for old, new in zip(own, numbers, strict=True)
-        )
+        own, names = liner_numbers(self.joint), ("young", "poisson", "liner_thickness")
+        young, poisson, thickness = map(self._replace, names, own, numbers)
         varied = self.joint.replace(
             liner=Material(young=young, poisson=poisson, name=self.joint.liner.name), liner_thickness=thickness
         )
+        check_domain(self.model.domain, varied, self.model.name)
         operators = self._operators(xp.stack([young, poisson, thickness]))
         softening = self.joint.effective_modulus / varied.effective_modulus
         return self._bores._replace(
             grids=operators.replace_in(self._bores.grids),
             edge_compliance=self._bores.edge_compliance * softening,
         )
+
+
+def _check_bore(model: Any, joint: Any) -> None:
+    """Check that model and joint describe one bore that `Sphere` solves.
+
+    Raises
+    ------
+    TypeError
+        Another type than `Sphere` or `Joint`, or a joint with arrays.
+    OutsideDomainError
+        A joint outside the domain of the model.
+    """
+    check_sphere(model)
+    check_joint(joint)
+    if any(numpy.shape(number) for number in joint.numbers()):
+        raise TypeError("joint must have plain numbers, got arrays: one JaxSphere presses one joint")
+    check_domain(model.domain, joint, model.name)
+
+
+def _check_dtype(dtype: Any) -> None:
+    """Check the name of a precision; raise ValueError for another."""
+    if not (isinstance(dtype, str) and dtype in _DTYPES):
+        raise ValueError(f"dtype = {shown(dtype)} is not allowed: it is {' or '.join(map(repr, _DTYPES))}")
+
+
+def _check_precision(dtype: str) -> None:
+    """Check that JAX has the precision that is asked for; raise ValueError otherwise."""
+    import jax
+
+    if jax.dtypes.canonicalize_dtype(dtype) != dtype:
+        raise ValueError(
+            'dtype = "float64" needs jax.config.update("jax_enable_x64", True) first: the default of JAX is single'
+        )
+
+
+def _check_loads(force: Any, direction: Any) -> tuple[Array, Array]:
+    """Check forces (loads,) and their directions (loads, 3) or (3,); return both as arrays.
+
+    Raises
+    ------
+    TypeError
+        Another type than real numbers.
+    ValueError
+        Another shape.
+    """
+    force, direction = check_numeric("force", force), check_vectors("direction", direction, "x, y, z")
+    shape = numpy.shape(force)
+    if len(shape) != 1 or 0 in shape:
+        raise ValueError(f"force of shape {shape} is not allowed: it is a row (loads,) of one or more forces")
+    check_shape("direction", direction, ((3,), (1, 3), (*shape, 3)))
+    return force, direction
 
 
 @cache
@@ -295,7 +369,8 @@ def _press_loads(
     import jax
     import jax.numpy as xp
 
-    axes = direction @ bores.frame.T
+    largest_component = xp.max(abs(jax.lax.stop_gradient(direction)), axis=1, keepdims=True)
+    axes = direction / largest_component @ bores.frame.T  # squares of large and small components would overflow
     axes = axes / xp.linalg.norm(axes, axis=1, keepdims=True)
     load, gap = (axes * force[:, None]).T, (clearance + depth.T)[..., None]
     fine = bores.grids.fine._replace(gap=gap)
@@ -311,7 +386,7 @@ def _press_loads(
     touching, error = jax.lax.stop_gradient((pressure > 0, lanes.error))
     loaded, largest = edge_loaded(fields), largest_pressures(bores.cells, fields, axes)[0]
     contacts = JaxContacts(
-        converged=error <= tolerance,
+        converged=(error <= tolerance) & touching.any(axis=(0, 1)) & _holds_ball(fine, displacement),
         error=error,
         displacement=displacement.T,
         force_vector=compute_force(fine, pressure).T,
@@ -334,6 +409,14 @@ def _initial_displacement(bore: BoreArrays, axes: Array, force: Array, clearance
     positive = xp.maximum(clearance, 0.0)
     indentation = linear_indentation(xp.sqrt(bore.scale), positive, modulus, force)
     return axes.T * (positive + xp.max(xp.maximum(depth, 0.0)) + indentation)
+
+
+def _holds_ball(bore: BoreArrays, displacement: Array) -> Array:
+    """Return the mask (loads,) of the balls in their bore, by the limit of `Sphere` for displacements (3, loads)."""
+    import jax.numpy as xp
+
+    limit = MAX_EQUILIBRIUM_DISPLACEMENT * xp.sqrt(bore.scale)
+    return xp.linalg.norm(displacement, axis=0) <= limit
 
 
 def _mask_unconverged(contacts: JaxContacts) -> JaxContacts:

@@ -25,7 +25,7 @@ A ball whose centre lies beyond the surface of the bore has left it in any case.
 angle are searched up to the same limit.
 """
 
-_MAX_EQUILIBRIUM_DISPLACEMENT = 0.25
+MAX_EQUILIBRIUM_DISPLACEMENT = 0.25
 """Displacement of a ball in equilibrium, as a fraction of the bore's radius.
 
 A preloaded ball beyond was pushed out by its bore.
@@ -65,7 +65,7 @@ def _solve_forces(bore: BoreContact, force: Numbers, axes: Numbers, edges: EdgeR
     equilibrium = solve_force(bore, axes * force[:, None], start, held)
     displacement = equilibrium.displacement
     swung_out = polar_angle(displacement.T) > reach + _MAX_SWING
-    max_distance = _MAX_EQUILIBRIUM_DISPLACEMENT * bore.gap.socket_radius
+    max_distance = MAX_EQUILIBRIUM_DISPLACEMENT * bore.gap.socket_radius
     pushed_out = held & (numpy.linalg.norm(displacement, axis=1) > max_distance)
     dislocated = ~held | pushed_out | (~equilibrium.converged & swung_out)
     return ContactStates(
