@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.elasticity.off_axis.bore_contact import make_bore_arrays
 from ballsocket.elasticity.off_axis.compliance import make_compliance
 from ballsocket.elasticity.off_axis.contact_patch import ContactPatch
 from ballsocket.elasticity.off_axis.coupled_search import apply_operator, integrate
 from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.elasticity.off_axis.jax_sphere import JaxSphere
-from ballsocket.elasticity.off_axis.lane_solver import make_bore_arrays
 from ballsocket.elasticity.off_axis.ring_matrices import vary_liner
 
 from ...joints import HIP

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.off_axis.bore_contact import BoreContact, GapField, initial_displacement
+from ballsocket.elasticity.off_axis.bore_contact import (
+    BoreContact,
+    GapField,
+    initial_displacement,
+    make_bore_arrays,
+)
 from ballsocket.elasticity.off_axis.compliance import cached_compliance
 from ballsocket.elasticity.off_axis.coupled_search import (
     apply_operator,
@@ -16,7 +21,7 @@ from ballsocket.elasticity.off_axis.coupled_search import (
     solve_sensitivity,
     start_coarse,
 )
-from ballsocket.elasticity.off_axis.lane_solver import coarser_lanes, make_bore_arrays, solve_lanes
+from ballsocket.elasticity.off_axis.lane_solver import coarser_lanes, solve_lanes
 from ballsocket.elasticity.off_axis.surfaces import ClosedShell
 
 from ...joints import HIP

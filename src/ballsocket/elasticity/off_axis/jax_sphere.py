@@ -20,7 +20,7 @@ from ...core.quantities import CUP
 from ...models.kinematics import linear_indentation
 from ...problem import Joint, Material
 from ...problem.cup import cup_axes
-from .bore_contact import BoreContact
+from .bore_contact import BoreContact, make_bore_arrays
 from .coupled_search import (
     TANGENT_ITERATIONS,
     BoreArrays,
@@ -31,7 +31,7 @@ from .coupled_search import (
 )
 from .jax_compliance import LinerCompliance, Operators, differentiable_operators
 from .jax_search import Grids, differentiable_search
-from .lane_solver import coarser_lanes, make_bore_arrays
+from .lane_solver import coarser_lanes
 from .model import Sphere
 from .patch_measures import (
     CellArrays,
