@@ -20,8 +20,15 @@ from ...core.arrays import Numbers
 from ...problem.gaps import LinearGap
 from .bore_contact import BoreContact, GapField, make_bore_arrays
 from .compliance import Compliance
-from .coupled_search import BoreArrays, advance_lanes, estimate_pressure, measure, refine_fields, start_lanes
-from .directions import unit_vectors
+from .coupled_search import (
+    BoreArrays,
+    advance_lanes,
+    estimate_pressure,
+    fold_bore,
+    measure,
+    refine_fields,
+    start_lanes,
+)
 from .grid import Grid
 from .patch_measures import make_cell_arrays
 
@@ -88,7 +95,7 @@ class RimPoints(NamedTuple):
 
 
 class _RimCells(NamedTuple):
-    """Grid and arrays of a bore, arrays of the bore without its last ring, and edges in its rings in rad and mm/MPa."""
+    """Grid, folded arrays of a bore with and without its last ring, and edges in the rings in rad and mm/MPa."""
 
     grid: Grid
     bore: BoreArrays
@@ -181,16 +188,16 @@ def _make_rim_cells(compliance: Compliance, edge_softness: float, inset: float) 
     grid = compliance.grid
     depth = numpy.zeros((grid.rings, grid.meridians))
     gap = GapField(grid=grid, clearance=1.0, socket_radius=1.0, depth=depth, kind=LinearGap)
-    bore = make_bore_arrays(BoreContact(compliance=compliance, gap=gap))
-    normals = bore.normals.reshape(grid.meridians, grid.rings, 3)
-    weights = bore.force_weights.reshape(3, grid.meridians, grid.rings)
+    bore = fold_bore(make_bore_arrays(BoreContact(compliance=compliance, gap=gap)), even=True)
+    normals = bore.normals.reshape(-1, grid.rings, 2)
+    weights = bore.force_weights.reshape(2, -1, grid.rings)
     open_bore = bore._replace(
         softness=numpy.ascontiguousarray(bore.softness[:, :-1, :-1]),
         stiffness=numpy.ascontiguousarray(bore.stiffness[:, :-1, :-1]),
-        normals=normals[:, :-1].reshape(-1, 3),
+        normals=normals[:, :-1].reshape(-1, 2),
         gap=bore.gap[:, :-1],
         areas=bore.areas[:-1],
-        force_weights=weights[:, :, :-1].reshape(3, -1),
+        force_weights=weights[:, :, :-1].reshape(2, -1),
     )
     edge_nodes, widths = make_cell_arrays(grid, inset).edge_nodes, numpy.diff(grid.edges)
     return _RimCells(grid, bore, open_bore, edge_nodes, edge_softness * widths)
@@ -210,8 +217,9 @@ class _RimSearch:
 
     @property
     def _displacement(self) -> Numbers:
-        """Displacements of the balls in mm: (3, contacts)."""
-        axes = unit_vectors(self.cells.grid.reach - self.rim_angle, 0.0 * self.rim_angle)
+        """Displacements of the balls towards the rim and the dome in mm: (2, contacts)."""
+        polar = self.cells.grid.reach - self.rim_angle
+        axes = numpy.stack([numpy.sin(polar), numpy.cos(polar)])
         displacement: Numbers = (axes * (1 + numpy.exp(self.log_indentation))).astype(numpy.float32)
         return displacement
 
@@ -254,7 +262,7 @@ class _RimSearch:
             lanes = advance_lanes(bore, no_load, lanes)
         self.pressure = numpy.concatenate([lanes.pressure, 0.0 * lanes.pressure[:, :1]], axis=1)
         remaining = measure(self.cells.bore, no_load, displacement, self.pressure).remaining
-        self.error, (x, _, z) = lanes.error, -lanes.imbalance
+        self.error, (x, z) = lanes.error, -lanes.imbalance
         return RimPoints(
             rim_angle=self.rim_angle,
             log_indentation=self.log_indentation,
