@@ -304,7 +304,7 @@ def _press_loads(
     fields = pressure.transpose(2, 1, 0)
     half_angle, margin = jax.lax.map(
         partial(_measure_outline, bores),
-        (fields, lanes.remaining.transpose(2, 1, 0), jax.lax.stop_gradient(axes)),
+        (fields, lanes.remaining.transpose(2, 1, 0), axes),
         batch_size=min(_MEASURED_CONTACTS, len(force)),
     )
     touching, error = jax.lax.stop_gradient((pressure > 0, lanes.error))
@@ -360,17 +360,16 @@ def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tupl
     pressure, remaining, axis = contact
     level = xp.where(pressure > 0, pressure * bores.edge_compliance, xp.minimum(remaining, 0.0))
     patches = Patches(pressure=pressure[None], level=level[None], axis=axis[None])
-    fixed = jax.lax.stop_gradient(patches)
-    centres, steps = contact_centres(bores.cells, fixed), int(2 * pi / _MIN_STEP)
-    edges = edge_angles(bores.cells, fixed.level, centres, steps)
+    centres, steps = contact_centres(bores.cells, patches), range(1, int(2 * pi / _MIN_STEP) + 1)
+    edges = edge_angles(bores.cells, *jax.lax.stop_gradient((patches.level, centres)), steps)
     edges = _differentiable_edges(bores.cells, patches.level, centres, edges)
     return half_angles(bores.cells, patches, edges)[0], edge_margins(bores.cells, patches)[0]
 
 
 def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges: Array) -> Array:
-    """Give the edge angles (contacts, rays) their derivatives by the level, whose zero they are.
+    """Give the edge angles (contacts, rays) their derivatives by the level, whose zero they are, and by the centres.
 
-    A Newton step of size 0 has them. Edges at the end of the bore do not move.
+    A Newton step of size 0 has them. Edges at the end of the bore stay there.
     """
     import jax
     import jax.numpy as xp
@@ -383,5 +382,7 @@ def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges
 
     value, slope = jax.jvp(level_at, (edges + cells.inset,), (xp.ones_like(edges),))
     fixed_value, fixed_slope = jax.lax.stop_gradient((value, slope))
-    moves = (edges < rim_angles(cells, centres)) & (edges > 0) & (fixed_slope < 0)
-    return edges - xp.where(moves, (value - fixed_value) / xp.where(moves, fixed_slope, 1.0), 0.0)
+    rim = rim_angles(cells, centres)
+    moves = (edges < rim) & (edges > 0) & (fixed_slope < 0)
+    moved = edges - xp.where(moves, (value - fixed_value) / xp.where(moves, fixed_slope, 1.0), 0.0)
+    return xp.where(edges < rim, moved, rim)
