@@ -139,11 +139,11 @@ class Predictor(NamedTuple):
     sensitivity: Array
     inverse_tangent: Array
 
-    def select(self, mask: Array) -> Predictor:
-        """Return the predictor of the lanes in a mask."""
-        xp = arrays.namespace(self.sensitivity)
-        components = self.inverse_tangent.shape[-1]
-        return Predictor(self.sensitivity[..., xp.tile(mask, components)], self.inverse_tangent[mask])
+    def take(self, indices: Array) -> Predictor:
+        """Return the predictor of the lanes at these indices."""
+        count, _, components = self.inverse_tangent.shape
+        fields = self.sensitivity.reshape(*self.sensitivity.shape[:2], components, count)[..., indices]
+        return Predictor(fields.reshape(*fields.shape[:2], -1), self.inverse_tangent[indices])
 
     def store(self, indices: Array, part: Predictor) -> None:
         """Copy the predictor of some lanes to these indices, in NumPy arrays."""

@@ -141,7 +141,7 @@ def _on_all_meridians(bore: BoreContact, pressure: Numbers) -> Numbers:
     return pressure if len(pressure) == bore.compliance.grid.meridians else unfold_fields(pressure)
 
 
-class _Bores(NamedTuple):
+class _LaneBores(NamedTuple):
     """Arrays of a bore in double and in single precision, and of the bore in wide cells in single precision."""
 
     double: BoreArrays
@@ -149,10 +149,10 @@ class _Bores(NamedTuple):
     coarse: BoreArrays
 
 
-def _make_bores(bore: BoreContact, coarser: BoreContact, *, folded: bool) -> _Bores:
+def _make_bores(bore: BoreContact, coarser: BoreContact, *, folded: bool) -> _LaneBores:
     """Make the arrays of a bore, on one side of the plane of φ = 0 if it is folded."""
     bores = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore), make_bore_arrays(coarser)
-    return _Bores(*(fold_bore(arrays, even=True) if folded else arrays for arrays in bores))
+    return _LaneBores(*(fold_bore(arrays, even=True) if folded else arrays for arrays in bores))
 
 
 class _Solution(NamedTuple):
@@ -163,7 +163,7 @@ class _Solution(NamedTuple):
     error: Numbers
 
 
-def _solve_block(bores: _Bores, load: Numbers, force_scale: Numbers, start: Numbers, tolerance: float) -> _Solution:
+def _solve_block(bores: _LaneBores, load: Numbers, force_scale: Numbers, start: Numbers, tolerance: float) -> _Solution:
     """Solve one block of lanes: in wide cells, in the cells of the bore, and again after failed checks."""
     double, single, coarse = bores
     single_load, single_scale = load.astype(numpy.float32), force_scale.astype(numpy.float32)
@@ -210,7 +210,11 @@ def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: fl
         if active.mean() <= 1 - _DROPPED_FRACTION:
             for name, total in result._asdict().items():
                 total[..., indices] = getattr(lanes, name)
-            indices, lanes, predictor = indices[active], _select_lanes(lanes, active), predictor.select(active)
+            indices, lanes, predictor = (
+                indices[active],
+                _select_lanes(lanes, active),
+                predictor.take(numpy.flatnonzero(active)),
+            )
         if not len(indices):
             break
         lanes = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)
