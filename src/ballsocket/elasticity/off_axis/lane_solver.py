@@ -108,6 +108,8 @@ def solve_lanes(
     )
     symmetric = _are_symmetric(bore, load) & _are_symmetric(bore, start)
     for components, lanes in ((_PLANE, symmetric), (numpy.arange(3), ~symmetric)):
+        if not lanes.any():
+            continue
         bores = _make_bores(bore, coarser, folded=components is _PLANE)
         indices, size = numpy.flatnonzero(lanes), max(_BLOCK_CELLS // bores.single.gap.size, 1)
         for block in (indices[i : i + size] for i in range(0, len(indices), size)):
