@@ -14,6 +14,7 @@ import numpy
 
 import ballsocket as bs
 from ballsocket.elasticity.off_axis.jax_sphere import JaxSphere
+from ballsocket.elasticity.off_axis.rim_curve import cached_rim_points
 
 from .report import Report, Rows
 from .timing import Clock, Spread, interleaved, one_core
@@ -39,8 +40,16 @@ def measure() -> Report:
     with one_core():
         for count, aim in ((1, ""), (64, "4"), (512, "")):
             rows.add(f"NumPy, by force, {count} at once", _per_load(_pressed(count), count), aim)
+        rows.add(
+            "NumPy, by force, out of the plane of the axis, 64 at once", _per_load(_pressed(64, azimuth=0.5), 64), ""
+        )
         for title, name in QUANTITIES.items():
             rows.add(f"then {title}, 64 at once", _afterwards(name), "less than the solve")
+        rows.add(
+            "the first edge distances in the bore, 64 at once",
+            _afterwards("edge_margin", cached_rim_points.cache_clear),
+            "",
+        )
         rows.add('NumPy, keep="summary", 64 at once', _per_load(_pressed(64, "summary"), 64), "")
     tables, notes = [rows], ["500 to 3500 N at 0 to 69 degrees from the axis of a hemisphere, rings of 2 degrees."]
     try:
@@ -52,9 +61,9 @@ def measure() -> Report:
     return Report(tables, notes, ("jax", "scipy"))
 
 
-def _pressed(count: int, keep: str = "fields") -> Callable[[], Any]:
+def _pressed(count: int, keep: str = "fields", azimuth: float = 0.0) -> Callable[[], Any]:
     force, tilt = loads(count)
-    return lambda: MODEL.press(JOINT, force=force, tilt=tilt, keep=keep)
+    return lambda: MODEL.press(JOINT, force=force, tilt=tilt, azimuth=azimuth, keep=keep)
 
 
 def _per_load(work: Callable[[], Any], count: int) -> Spread:
@@ -62,15 +71,16 @@ def _per_load(work: Callable[[], Any], count: int) -> Spread:
     return seconds["work"].per(1e-3 * count)
 
 
-def _afterwards(name: str) -> Spread:
-    """Milliseconds a contact for a quantity of contacts that are solved."""
+def _afterwards(name: str, prepare: Callable[[], object] = lambda: None) -> Spread:
+    """Milliseconds a contact for a quantity of contacts that are solved, after a preparation; the first is left out."""
     seconds = []
-    for _ in range(REPEATS):
+    for _ in range(REPEATS + 1):
         contact = _pressed(64)()
+        prepare()
         start = time.process_time()
         getattr(contact, name)
         seconds.append(time.process_time() - start)
-    return Spread(tuple(seconds)).per(64e-3)
+    return Spread(tuple(seconds[1:])).per(64e-3)
 
 
 def jax_seconds(count: int, tolerance: float, clock: Clock) -> Spread:

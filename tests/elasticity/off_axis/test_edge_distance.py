@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.elasticity.off_axis import load_cases
 from ballsocket.elasticity.off_axis.load_cases import edge_margins
 
 from ...extent import either
@@ -92,6 +93,26 @@ def test_edge_distances_of_many_cut_contacts_need_the_presses_of_a_few():
     assert (margins < 0).all()
     assert np.degrees(margins[3::9]) == pytest.approx(np.degrees(each), abs=0.03)
     assert sum(solved) <= 8 * 9
+
+
+@pytest.mark.parametrize("load", [{"force": [400.0, 2000.0]}, {"indentation": [0.01, 0.04]}])
+def test_contacts_leave_the_rim_at_the_tilt_that_their_curve_states(load):
+    """They end before the rim at a tilt 0.1° below it, and reach it 0.1° above."""
+    model, ((kind, values),) = bs.Sphere(ring_width=radians(3.0)), load.items()
+    cut = model.press(HIP, **load, tilt=radians(80.0))
+    touching = radians(80.0) + cut.edge_margin
+    near = touching + np.radians([[-0.1], [0.1]])
+    assert model.press(HIP, **{kind: np.array(values)}, tilt=near).edge_loaded.tolist() == [[False] * 2, [True] * 2]
+
+
+def test_edge_distances_of_an_unworn_bore_need_no_presses(monkeypatch):
+    """Tilts at first touch depend on the force over the clearance, in one bore."""
+    model, tilt = bs.Sphere(ring_width=radians(3.0)), radians(75.0)
+    narrow = model.press(HIP, force=[500.0, 1000.0], tilt=tilt).edge_margin
+    wider = HIP.replace(ball_radius=HIP.ball_radius - HIP.clearance, clearance=2 * HIP.clearance)
+    contact = model.press(wider, force=[1000.0, 2000.0], tilt=tilt)
+    monkeypatch.setattr(load_cases, "_solve_rim_contact", None)
+    assert contact.edge_margin == pytest.approx(narrow, abs=radians(0.01))
 
 
 def test_half_angle_is_resolved_between_the_cells():

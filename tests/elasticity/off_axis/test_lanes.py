@@ -6,17 +6,27 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.off_axis.bore_contact import BoreContact, GapField, initial_displacement
+from ballsocket.elasticity.off_axis.bore_contact import (
+    BoreContact,
+    GapField,
+    initial_displacement,
+    make_bore_arrays,
+)
 from ballsocket.elasticity.off_axis.compliance import cached_compliance
 from ballsocket.elasticity.off_axis.coupled_search import (
+    TANGENT_ITERATIONS,
     apply_operator,
+    compute_force,
+    fold_bore,
+    integrate,
     make_predictor,
     measure,
     newton_step,
+    project_on_normals,
     solve_sensitivity,
     start_coarse,
 )
-from ballsocket.elasticity.off_axis.lane_solver import coarser_lanes, make_bore_arrays, solve_lanes
+from ballsocket.elasticity.off_axis.lane_solver import coarser_lanes, solve_lanes, solve_tangents
 from ballsocket.elasticity.off_axis.surfaces import ClosedShell
 
 from ...joints import HIP
@@ -44,6 +54,31 @@ def test_operator_of_lanes_equals_that_of_the_compliance():
     arrays = make_bore_arrays(bore_of(), np.float64)
     displacement = apply_operator(arrays, arrays.softness, np.ascontiguousarray(fields.T))
     assert pytest.approx(COMPLIANCE.displacement(fields), abs=1e-12 * abs(displacement).max()) == displacement.T
+
+
+@pytest.mark.parametrize("even", [True, False])
+def test_symmetric_fields_need_one_side_of_the_plane_of_the_load(even):
+    """Overlaps, forces and displacements of even and odd fields are those of both sides together."""
+    bore = make_bore_arrays(bore_of(), np.float64)
+    side, sign = fold_bore(bore, even=even), 1 if even else -1
+    half = np.random.default_rng(0).standard_normal((GRID.meridians // 2, GRID.rings, 3))
+    both = np.concatenate([half, sign * half[::-1]])
+    displacement = apply_operator(bore, bore.softness, both)
+    folded = apply_operator(side, side.softness, half)
+    assert folded == pytest.approx(displacement[: len(half)], abs=1e-12 * abs(displacement).max())
+    assert integrate(side, half, folded) == pytest.approx(integrate(bore, both, displacement))
+    components = [0, 2] if even else [1]
+    assert compute_force(side, half) == pytest.approx(compute_force(bore, both)[components], rel=1e-9, abs=1e-9)
+    overlap = project_on_normals(bore, np.eye(3)[:, components])
+    assert project_on_normals(side, np.eye(len(components))) == pytest.approx(overlap[: len(half)])
+
+
+def test_contacts_in_a_plane_of_symmetry_have_the_tangents_of_both_sides():
+    pressure = solve(bore_of(), np.arange(2)).pressure
+    tangents = solve_tangents(bore_of(), pressure)
+    bore = make_bore_arrays(bore_of())
+    expected = solve_sensitivity(bore, pressure.T > 0, TANGENT_ITERATIONS).tangent
+    assert tangents == pytest.approx(expected, abs=1e-5 * float(abs(expected).max()))
 
 
 @pytest.mark.parametrize("depth", [0.0, 0.03])

@@ -11,7 +11,8 @@ import numpy
 from ...core.arrays import Numbers
 from ...models.kinematics import linear_indentation
 from ...problem.gaps import CircularGap, LinearGap
-from .compliance import Compliance
+from .compliance import Compliance, UniformOperator
+from .coupled_search import BoreArrays
 from .grid import Grid
 from .pressure_solver import solve_pressure, solve_pressure_change
 
@@ -222,3 +223,33 @@ class BoreContact:
         """Return pressures of 0 for a number of contacts: (count, rings, meridians)."""
         grid = self.compliance.grid
         return numpy.zeros((count, grid.rings, grid.meridians))
+
+
+def make_bore_arrays(bore: BoreContact, dtype: type = numpy.float32) -> BoreArrays:
+    """Make the NumPy arrays of a ball in an elastic bore with a linear gap."""
+    grid, half = bore.compliance.grid, bore.compliance.grid.meridians // 2
+    phase = grid.azimuth[:half]
+    cosines, sines = (numpy.sqrt(1 / half) * numpy.ones((half, half)) for _ in range(2))
+    cosines *= numpy.cos(numpy.arange(half)[:, None] * phase)
+    sines *= numpy.sin(numpy.arange(1, half + 1)[:, None] * phase)
+    cosines[0] *= numpy.sqrt(0.5)
+    sines[-1] *= numpy.sqrt(0.5)
+    normals = grid.normals.transpose(2, 1, 0)
+    softness, stiffness = bore.compliance.softness, bore.compliance.stiffness
+    if dtype is numpy.float32:
+        softness = bore.compliance.single_precision_softness
+    if isinstance(softness, UniformOperator) or isinstance(stiffness, UniformOperator):
+        raise TypeError("a bore of springs has no matrices")
+    bore_arrays = BoreArrays(
+        cosines=cosines,
+        sines=sines,
+        softness=softness.matrices,
+        stiffness=stiffness.matrices,
+        normals=normals.reshape(-1, 3),
+        gap=(bore.gap.clearance + bore.gap.depth.T)[..., None],
+        areas=grid.areas[:, 0],
+        force_weights=(bore.area * grid.areas * normals).reshape(-1, 3).T,
+        scale=numpy.asarray(bore.area),
+        tether=bore.tether,
+    )
+    return BoreArrays(*(numpy.ascontiguousarray(array, dtype=dtype) for array in bore_arrays))

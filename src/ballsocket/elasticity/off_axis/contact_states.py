@@ -26,6 +26,7 @@ from .patch_measures import (
     measure_edges,
     tangents_at,
 )
+from .rim_curve import CurveFunction
 from .surfaces import EdgeRelation
 
 _PRESSURE_ERRORS = {
@@ -74,6 +75,8 @@ class ContactStates:
         Prescribed force (N), indentation (mm) or half angle (rad) along the axes.
     solve : function
         Solver of the same kind of load, for other loads and axes.
+    rim_curve : function, optional
+        Maker of the curve of tilts at first rim contact, for this kind of load: see `RimCurve`.
     too_wide : array of bool (contacts,)
         True where no contact in this bore has the prescribed half angle.
     """
@@ -85,6 +88,7 @@ class ContactStates:
     dislocated: Numbers
     load: Numbers
     solve: LoadSolver
+    rim_curve: CurveFunction | None = None
     too_wide: Numbers | bool = False
 
     @property
@@ -317,6 +321,7 @@ class ContactSummaries:
     bore: BoreContact
     edges: EdgeRelation
     solve: LoadSolver
+    rim_curve: CurveFunction | None
     load: Numbers
     components: Numbers
     dislocated: Numbers

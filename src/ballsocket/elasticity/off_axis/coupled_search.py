@@ -9,12 +9,13 @@ does not wait for the pressures, and the pressures do not start again after each
 The functions here are written for NumPy and JAX. Balls are lanes: fields are arrays (meridians, rings, lanes), vectors
 (3, lanes). A lane does not depend on the others. Fields are divided into parts even and odd about φ = 0. Two small
 matrices transform these parts to harmonics, which is faster than an FFT at this size, and needs no transposition.
+Where loads and wear are symmetric about the plane of φ = 0, fields have half the meridians: see `fold_bore`.
 """
 
 from __future__ import annotations
 
 from functools import partial
-from math import inf
+from math import inf, sqrt
 from typing import NamedTuple
 
 import numpy
@@ -50,12 +51,15 @@ _MAX_STEP = 0.5
 class BoreArrays(NamedTuple):
     """Ball and bore as arrays of one library and data type.
 
+    A folded bore has the meridians of one side alone, and the components of its parity in place of three.
+
     Attributes
     ----------
     cosines, sines : array (half, half)
-        From the even and odd parts of a field (half its meridians) to its cosine and sine coefficients, orthonormal.
+        From twice the even and odd parts of a field (half its meridians) to its cosine and sine coefficients. A folded
+        bore has one of them, from the part itself.
     softness, stiffness : array (half + 1, rings, rings)
-        Matrices of `Compliance` for each harmonic.
+        Matrices of `Compliance` for each harmonic; (half, rings, rings) of a folded bore.
     normals : array (cells, 3)
         Mean outward normals of the cells.
     gap : array (meridians, rings, 1)
@@ -135,34 +139,64 @@ class Predictor(NamedTuple):
     sensitivity: Array
     inverse_tangent: Array
 
-    def select(self, mask: Array) -> Predictor:
-        """Return the predictor of the lanes in a mask."""
-        xp = arrays.namespace(self.sensitivity)
-        return Predictor(self.sensitivity[..., xp.tile(mask, 3)], self.inverse_tangent[mask])
+    def take(self, indices: Array) -> Predictor:
+        """Return the predictor of the lanes at these indices."""
+        count, _, components = self.inverse_tangent.shape
+        fields = self.sensitivity.reshape(*self.sensitivity.shape[:2], components, count)[..., indices]
+        return Predictor(fields.reshape(*fields.shape[:2], -1), self.inverse_tangent[indices])
 
     def store(self, indices: Array, part: Predictor) -> None:
         """Copy the predictor of some lanes to these indices, in NumPy arrays."""
-        count = len(self.inverse_tangent)
-        for axis, sensitivity in enumerate(numpy.split(part.sensitivity, 3, axis=-1)):
+        count, _, components = self.inverse_tangent.shape
+        for axis, sensitivity in enumerate(numpy.split(part.sensitivity, components, axis=-1)):
             self.sensitivity[..., axis * count + indices] = sensitivity
         self.inverse_tangent[indices] = part.inverse_tangent
+
+
+def fold_bore(bore: BoreArrays, *, even: bool) -> BoreArrays:
+    """Return the arrays of a bore for NumPy fields on one side of the plane of φ = 0, even or odd about it.
+
+    Displacements and forces have the components x and z in even problems, and y alone in odd ones.
+    """
+    half, components = len(bore.cosines), [0, 2] if even else [1]
+    harmonics = slice(None, -1) if even else slice(1, None)
+    cells = half * bore.gap.shape[1]
+    folded = bore._replace(
+        cosines=sqrt(2) * (bore.cosines if even else bore.sines),
+        softness=bore.softness[harmonics],
+        stiffness=bore.stiffness[harmonics],
+        normals=bore.normals[:cells, components],
+        gap=bore.gap[:half],
+        areas=2 * bore.areas,
+        force_weights=2 * bore.force_weights[components, :cells],
+        tether=bore.tether[numpy.ix_(components, components)],
+    )
+    return BoreArrays(*(numpy.ascontiguousarray(array) for array in folded))
+
+
+def unfold_fields(fields: Array) -> Array:
+    """Return fields (meridians, rings, lanes) from the side of the plane of φ = 0 on which even ones were computed."""
+    xp = arrays.namespace(fields)
+    return xp.concat([fields, xp.flip(fields, axis=0)])
 
 
 def apply_operator(bore: BoreArrays, matrices: Array, fields: Array) -> Array:
     """Apply the axisymmetric operator of these matrices to fields (meridians, rings, lanes)."""
     xp = arrays.namespace(fields)
-    meridians, rings, lanes = fields.shape
-    half = meridians // 2
+    half = len(bore.cosines)
+    if len(matrices) == half:
+        return _apply_to_part(bore.cosines, matrices, fields)
     low, high = fields[:half], xp.flip(fields[half:], axis=0)
-    parts = []
-    for transform, part, harmonics in (
-        (bore.cosines, low + high, matrices[:-1]),
-        (bore.sines, low - high, matrices[1:]),
-    ):
-        waves = (transform @ part.reshape(half, rings * lanes)).reshape(half, rings, lanes)
-        parts.append(transform.T @ (harmonics @ waves).reshape(half, rings * lanes))
-    even, odd = parts
-    return xp.concat([even + odd, xp.flip(even - odd, axis=0)]).reshape(meridians, rings, lanes)
+    even = _apply_to_part(bore.cosines, matrices[:-1], low + high)
+    odd = _apply_to_part(bore.sines, matrices[1:], low - high)
+    return xp.concat([even + odd, xp.flip(even - odd, axis=0)])
+
+
+def _apply_to_part(transform: Array, matrices: Array, part: Array) -> Array:
+    """Apply matrices for each harmonic to the even or odd part (half, rings, lanes) of fields."""
+    half, rings, lanes = part.shape
+    waves = (transform @ part.reshape(half, rings * lanes)).reshape(half, rings, lanes)
+    return (transform.T @ (matrices @ waves).reshape(half, rings * lanes)).reshape(half, rings, lanes)
 
 
 def integrate(bore: BoreArrays, first: Array, second: Array) -> Array:
@@ -274,7 +308,8 @@ class Sensitivity(NamedTuple):
 
 def refine_sensitivity(bore: BoreArrays, touching: Array, sensitivity: Array) -> Sensitivity:
     """Transfer a sensitivity (meridians, rings, 3 * lanes) from cells twice as wide to those that touch."""
-    change = refine_fields(bore, sensitivity) * arrays.namespace(touching).tile(touching, (1, 1, 3))
+    mask = arrays.namespace(touching).tile(touching, (1, 1, len(bore.tether)))
+    change = refine_fields(bore, sensitivity) * mask
     return Sensitivity(pressure=change, tangent=_symmetric(_forces_by_axis(bore, change)) + bore.tether)
 
 
@@ -284,10 +319,11 @@ def solve_sensitivity(bore: BoreArrays, touching: Array, iterations: int) -> Sen
     With the residual r = n - S q of the derivative q, the tangent n·q + q·r is accurate to the square of the residual.
     """
     xp = arrays.namespace(touching)
-    mask = xp.tile(touching, (1, 1, 3))
-    normals = xp.repeat(bore.normals.reshape(*touching.shape[:2], 3), touching.shape[-1], axis=-1)
+    components = len(bore.tether)
+    mask = xp.tile(touching, (1, 1, components))
+    normals = xp.repeat(bore.normals.reshape(*touching.shape[:2], components), touching.shape[-1], axis=-1)
     change, residual = solve_change(bore, mask, normals, iterations)
-    changes, residuals = (xp.split(fields, 3, axis=-1) for fields in (change, residual))
+    changes, residuals = (xp.split(fields, components, axis=-1) for fields in (change, residual))
     missing = xp.stack([xp.stack([integrate(bore, q, r) for r in residuals]) for q in changes])
     tangent = _forces_by_axis(bore, change) + bore.scale * missing.transpose(2, 0, 1)
     return Sensitivity(pressure=change, tangent=_symmetric(tangent) + bore.tether)
@@ -320,7 +356,8 @@ def solve_change(bore: BoreArrays, touching: Array, overlap: Array, iterations: 
 
 def _forces_by_axis(bore: BoreArrays, change: Array) -> Array:
     """Compute the forces of changes of pressure (meridians, rings, 3 * lanes): (lanes, 3, 3)."""
-    return compute_force(bore, change).reshape(3, 3, -1).transpose(2, 0, 1)
+    components = len(bore.tether)
+    return compute_force(bore, change).reshape(components, components, -1).transpose(2, 0, 1)
 
 
 def _symmetric(matrices: Array) -> Array:
@@ -333,7 +370,7 @@ def make_predictor(sensitivity: Sensitivity) -> Predictor:
     xp = arrays.namespace(sensitivity.tangent)
     tangent = sensitivity.tangent
     trace = positive_or_one(xp.trace(tangent, axis1=1, axis2=2))
-    regularised = tangent + (_REGULARISATION * trace)[:, None, None] * xp.eye(3, dtype=tangent.dtype)
+    regularised = tangent + (_REGULARISATION * trace)[:, None, None] * xp.eye(tangent.shape[-1], dtype=tangent.dtype)
     return Predictor(sensitivity=sensitivity.pressure, inverse_tangent=xp.linalg.inv(regularised))
 
 
@@ -349,7 +386,7 @@ def newton_step(bore: BoreArrays, lanes: Lanes, predictor: Predictor) -> Array:
     missing = xp.stack(
         [
             integrate(bore, predictor.sensitivity[..., axis * count : (axis + 1) * count], lanes.residual)
-            for axis in range(3)
+            for axis in range(len(bore.tether))
         ]
     )
     imbalance = lanes.imbalance - bore.scale * missing

@@ -1,6 +1,7 @@
 """Search for the equilibrium of many balls in JAX, compiled, with derivatives.
 
-The search is that of `coupled_search`: lanes that have converged are masked, not dropped. Derivatives follow from one
+The search is that of `coupled_search`. Lanes that have converged are masked until a quarter is left, which continues
+in arrays of its own. Derivatives follow from one
 Newton step at the solution, in its touching cells. The step is zero there, and its derivative is that of the solution.
 """
 
@@ -39,6 +40,10 @@ _TOLERANCE_FACTOR = 0.8
 
 _NEWTON_ITERATIONS = 20
 """Number of conjugate-gradient iterations in the Newton step that carries derivatives."""
+
+
+_REMAINING_FRACTION = 4
+"""Lanes are iterated together until one in so many has not converged."""
 
 
 class Grids(NamedTuple):
@@ -115,7 +120,7 @@ def _search(grids: Grids, load: Array, gap: Array, start: Array, tolerance: Arra
     predictor = make_predictor(refine_sensitivity(fine, pressure > 0, predictor.sensitivity))
     measured = measure(fine, load, rough.displacement, pressure)
     lanes = start_lanes(load, scale, rough.displacement, pressure, measured)
-    lanes = _iterate(fine, lanes, predictor, _TOLERANCE_FACTOR * tolerance, _MAX_ITERATIONS)
+    lanes = _iterate_in_stages(fine, lanes, predictor, _TOLERANCE_FACTOR * tolerance)
     return lanes.displacement, lanes.pressure
 
 
@@ -150,7 +155,8 @@ def _search_wide_cells(bore: BoreArrays, lanes: Lanes) -> tuple[Lanes, Predictor
         )
         measured = measure(bore, lanes.load, lanes.displacement, lanes.pressure)
         fresh = start_lanes(lanes.load, lanes.force_scale, lanes.displacement, lanes.pressure, measured)
-        return number + 1, _iterate(bore, fresh, predictor, COARSE_TOLERANCE, COARSE_ITERATIONS), predictor
+        lanes, _ = _iterate(bore, fresh, predictor, COARSE_TOLERANCE, COARSE_ITERATIONS)
+        return number + 1, lanes, predictor
 
     meridians, rings, count = lanes.pressure.shape
     empty = Predictor(
@@ -161,15 +167,36 @@ def _search_wide_cells(bore: BoreArrays, lanes: Lanes) -> tuple[Lanes, Predictor
     return lanes, predictor
 
 
-def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: Array, max_iterations: int) -> Lanes:
-    """Iterate until all lanes are within a tolerance; converged lanes stay unchanged."""
+def _iterate_in_stages(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: Array) -> Lanes:
+    """Iterate all lanes until few have not converged, and these without the others."""
+    import jax
+
+    few = len(lanes.error) // _REMAINING_FRACTION
+    lanes, number = _iterate(bore, lanes, predictor, tolerance, _MAX_ITERATIONS, few)
+    if few == 0:
+        return lanes
+    unconverged = ~(lanes.error <= tolerance)
+    _, indices = jax.lax.top_k(unconverged.astype(lanes.error.dtype), few)
+    part = jax.tree.map(lambda array: array[..., indices], lanes)
+    part, _ = _iterate(bore, part, predictor.take(indices), tolerance, _MAX_ITERATIONS - number)
+    return jax.tree.map(lambda array, solved: array.at[..., indices].set(solved), lanes, part)
+
+
+def _iterate(
+    bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: Array, max_iterations: Array, few: int = 0
+) -> tuple[Lanes, Array]:
+    """Iterate until at most `few` lanes are not within a tolerance; return lanes and number of iterations.
+
+    Converged lanes stay unchanged.
+    """
     import jax
     import jax.numpy as xp
 
     def is_unfinished(state: tuple[Array, Lanes]) -> Array:
-        """Return True until all lanes have converged."""
+        """Return True until few lanes are left."""
         number, lanes = state
-        return (number < max_iterations) & ~xp.all(lanes.error <= tolerance)
+        unconverged = ~(lanes.error <= tolerance)
+        return (number < max_iterations) & (unconverged.sum() > few)
 
     def advance(state: tuple[Array, Lanes]) -> tuple[Array, Lanes]:
         """Advance the lanes that have not converged."""
@@ -178,4 +205,5 @@ def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: Ar
         converged = lanes.error <= tolerance
         return number + 1, jax.tree.map(partial(xp.where, converged), lanes, advanced)
 
-    return jax.lax.while_loop(is_unfinished, advance, (0, lanes))[1]
+    number, lanes = jax.lax.while_loop(is_unfinished, advance, (0, lanes))
+    return lanes, number

@@ -22,7 +22,7 @@ from ...core.validity import check_domain
 from ...models.kinematics import linear_indentation
 from ...problem import Joint, Material
 from ...problem.cup import cup_axes
-from .bore_contact import BoreContact
+from .bore_contact import BoreContact, make_bore_arrays
 from .coupled_search import (
     TANGENT_ITERATIONS,
     BoreArrays,
@@ -33,7 +33,7 @@ from .coupled_search import (
 )
 from .jax_compliance import LinerCompliance, Operators, differentiable_operators
 from .jax_search import Grids, differentiable_search
-from .lane_solver import coarser_lanes, make_bore_arrays
+from .lane_solver import coarser_lanes
 from .load_cases import MAX_EQUILIBRIUM_DISPLACEMENT
 from .model import Sphere, check_sphere
 from .patch_measures import (
@@ -380,7 +380,7 @@ def _press_loads(
     fields = pressure.transpose(2, 1, 0)
     half_angle, margin = jax.lax.map(
         partial(_measure_outline, bores),
-        (fields, lanes.remaining.transpose(2, 1, 0), jax.lax.stop_gradient(axes)),
+        (fields, lanes.remaining.transpose(2, 1, 0), axes),
         batch_size=min(_MEASURED_CONTACTS, len(force)),
     )
     touching, error = jax.lax.stop_gradient((pressure > 0, lanes.error))
@@ -444,15 +444,14 @@ def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tupl
     pressure, remaining, axis = contact
     level = xp.where(pressure > 0, pressure * bores.edge_compliance, xp.minimum(remaining, 0.0))
     patches = Patches(pressure=pressure[None], level=level[None], axis=axis[None])
-    fixed = jax.lax.stop_gradient(patches)
-    centres, steps = contact_centres(bores.cells, fixed), int(2 * pi / _MIN_STEP)
-    edges = edge_angles(bores.cells, fixed.level, centres, steps)
+    centres, steps = contact_centres(bores.cells, patches), range(1, int(2 * pi / _MIN_STEP) + 1)
+    edges = edge_angles(bores.cells, *jax.lax.stop_gradient((patches.level, centres)), steps)
     edges = _differentiable_edges(bores.cells, patches.level, centres, edges)
     return half_angles(bores.cells, patches, edges)[0], edge_margins(bores.cells, patches)[0]
 
 
 def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges: Array) -> Array:
-    """Attach derivatives by the level to edge angles (contacts, rays), at which the level is 0.
+    """Attach derivatives by the level and by the centres to edge angles (contacts, rays), at which the level is 0.
 
     A Newton step of size 0 carries them. Edges at the end of the bore do not move.
     """
@@ -467,5 +466,7 @@ def _differentiable_edges(cells: CellArrays, level: Array, centres: Array, edges
 
     value, slope = jax.jvp(level_at, (edges + cells.inset,), (xp.ones_like(edges),))
     fixed_value, fixed_slope = jax.lax.stop_gradient((value, slope))
-    moves = (edges < rim_angles(cells, centres)) & (edges > 0) & (fixed_slope < 0)
-    return edges - xp.where(moves, (value - fixed_value) / xp.where(moves, fixed_slope, 1.0), 0.0)
+    rim = rim_angles(cells, centres)
+    moves = (edges < rim) & (edges > 0) & (fixed_slope < 0)
+    moved = edges - xp.where(moves, (value - fixed_value) / xp.where(moves, fixed_slope, 1.0), 0.0)
+    return xp.where(edges < rim, moved, rim)

@@ -8,8 +8,8 @@ import numpy
 
 from ...core.arrays import Numbers
 from ...problem.gaps import LinearGap
-from .bore_contact import BoreContact, EquilibriumBatch
-from .compliance import AxisymmetricOperator, UniformOperator
+from .bore_contact import BoreContact, EquilibriumBatch, make_bore_arrays
+from .compliance import AxisymmetricOperator
 from .coupled_search import (
     COARSE_ITERATIONS,
     COARSE_ROUNDS,
@@ -21,6 +21,7 @@ from .coupled_search import (
     Measured,
     Predictor,
     advance_lanes,
+    fold_bore,
     make_predictor,
     measure,
     newton_step,
@@ -29,6 +30,7 @@ from .coupled_search import (
     solve_sensitivity,
     start_coarse,
     start_lanes,
+    unfold_fields,
 )
 
 _BLOCK_CELLS = 142_000
@@ -57,42 +59,30 @@ def coarser_lanes(bore: BoreContact) -> BoreContact | None:
 
 
 def solve_tangents(bore: BoreContact, pressure: Numbers) -> Numbers:
-    """Compute the tangent stiffness in N/mm, (batch, 3, 3), of contacts with pressures (batch, rings, meridians)."""
+    """Compute the tangent stiffness in N/mm, (batch, 3, 3), of contacts with pressures (batch, rings, meridians).
+
+    In a contact that is symmetric about the plane of φ = 0, motions in the plane and across it are solved separately.
+    """
     bore_arrays = make_bore_arrays(bore)
-    size = max(_BLOCK_CELLS // (3 * pressure[0].size), 1) if len(pressure) else 1
-    blocks = [pressure[i : i + size].T > 0 for i in range(0, len(pressure), size)]
-    tangents = [solve_sensitivity(bore_arrays, touching, TANGENT_ITERATIONS).tangent for touching in blocks]
-    return numpy.concatenate([numpy.zeros((0, 3, 3)), *tangents])
+    even, odd = (fold_bore(bore_arrays, even=parity) for parity in (True, False))
+    touching = pressure > 0
+    symmetric = (touching == touching[..., ::-1]).all(axis=(1, 2))
+    tangents = numpy.tile(bore.tether, (len(pressure), 1, 1))
+    half = touching[symmetric][..., : len(even.gap)]
+    plane = numpy.ix_(numpy.flatnonzero(symmetric), _PLANE, _PLANE)
+    tangents[plane] = _solve_block_tangents(even, half)
+    tangents[symmetric, 1, 1] = _solve_block_tangents(odd, half)[:, 0, 0]
+    tangents[~symmetric] = _solve_block_tangents(bore_arrays, touching[~symmetric])
+    return tangents
 
 
-def make_bore_arrays(bore: BoreContact, dtype: type = numpy.float32) -> BoreArrays:
-    """Make the NumPy arrays of a ball in an elastic bore with a linear gap."""
-    grid, half = bore.compliance.grid, bore.compliance.grid.meridians // 2
-    phase = grid.azimuth[:half]
-    cosines, sines = (numpy.sqrt(1 / half) * numpy.ones((half, half)) for _ in range(2))
-    cosines *= numpy.cos(numpy.arange(half)[:, None] * phase)
-    sines *= numpy.sin(numpy.arange(1, half + 1)[:, None] * phase)
-    cosines[0] *= numpy.sqrt(0.5)
-    sines[-1] *= numpy.sqrt(0.5)
-    normals = grid.normals.transpose(2, 1, 0)
-    softness, stiffness = bore.compliance.softness, bore.compliance.stiffness
-    if dtype is numpy.float32:
-        softness = bore.compliance.single_precision_softness
-    if isinstance(softness, UniformOperator) or isinstance(stiffness, UniformOperator):
-        raise TypeError("a bore of springs has no matrices")
-    bore_arrays = BoreArrays(
-        cosines=cosines,
-        sines=sines,
-        softness=softness.matrices,
-        stiffness=stiffness.matrices,
-        normals=normals.reshape(-1, 3),
-        gap=(bore.gap.clearance + bore.gap.depth.T)[..., None],
-        areas=grid.areas[:, 0],
-        force_weights=(bore.area * grid.areas * normals).reshape(-1, 3).T,
-        scale=numpy.asarray(bore.area),
-        tether=bore.tether,
-    )
-    return BoreArrays(*(numpy.ascontiguousarray(array, dtype=dtype) for array in bore_arrays))
+def _solve_block_tangents(bore: BoreArrays, touching: Numbers) -> Numbers:
+    """Compute the tangents (batch, components, components) of touching cells (batch, rings, meridians), in blocks."""
+    components = len(bore.tether)
+    size = max(_BLOCK_CELLS // (components * touching[0].size), 1) if len(touching) else 1
+    blocks = [touching[i : i + size].T for i in range(0, len(touching), size)]
+    tangents = [solve_sensitivity(bore, block, TANGENT_ITERATIONS).tangent for block in blocks]
+    return numpy.concatenate([numpy.zeros((0, components, components)), *tangents])
 
 
 def solve_lanes(
@@ -113,21 +103,58 @@ def solve_lanes(
     tolerance : float
         Largest residual of force and overlap, relative to the force scale and the largest overlap.
     """
-    fine = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore)
-    coarse = make_bore_arrays(coarser)
-    meridians, rings = fine[0].gap.shape[:2]
-    size = max(_BLOCK_CELLS // (meridians * rings), 1)
     solution = EquilibriumBatch(
         displacement=start.copy(), pressure=bore.zero_pressure(len(load)), converged=numpy.zeros(len(load), dtype=bool)
     )
-    for first in range(0, len(load), size):
-        block = slice(first, first + size)
-        with numpy.errstate(all="ignore"):  # a lane that diverges is reported as unconverged
-            lanes = _solve_block(fine, coarse, load[block].T, force_scale[block], start[block].T, tolerance)
-        solution.displacement[block] = lanes.displacement.T
-        solution.pressure[block] = lanes.pressure.T
-        solution.converged[block] = lanes.error <= tolerance
+    symmetric = _are_symmetric(bore, load) & _are_symmetric(bore, start)
+    for components, lanes in ((_PLANE, symmetric), (numpy.arange(3), ~symmetric)):
+        if not lanes.any():
+            continue
+        bores = _make_bores(bore, coarser, folded=components is _PLANE)
+        indices, size = numpy.flatnonzero(lanes), max(_BLOCK_CELLS // bores.single.gap.size, 1)
+        for block in (indices[i : i + size] for i in range(0, len(indices), size)):
+            row = numpy.ix_(block, components)
+            with numpy.errstate(all="ignore"):  # a lane that diverges is reported as unconverged
+                solved = _solve_block(bores, load[row].T, force_scale[block], start[row].T, tolerance)
+            solution.displacement[row] = solved.displacement.T
+            solution.pressure[block] = _on_all_meridians(bore, solved.pressure).T
+            solution.converged[block] = solved.error <= tolerance
     return solution
+
+
+_PLANE = numpy.array([0, 2])
+"""Components x and z of vectors in the plane of φ = 0."""
+
+_PLANE_TOLERANCE = 1e-9
+"""Component of a vector across the plane of φ = 0, relative to its length, below which it lies in the plane."""
+
+
+def _are_symmetric(bore: BoreContact, vectors: Numbers) -> Numbers:
+    """Return True for vectors (batch, 3) in the plane of φ = 0, if bore and tether are symmetric about this plane."""
+    depth, tether = bore.gap.depth, bore.tether
+    if not numpy.array_equal(depth, depth[:, ::-1]) or tether[1, [0, 2]].any() or tether[[0, 2], 1].any():
+        return numpy.zeros(len(vectors), dtype=bool)
+    across: Numbers = abs(vectors[:, 1]) <= _PLANE_TOLERANCE * numpy.linalg.norm(vectors, axis=1)
+    return across
+
+
+def _on_all_meridians(bore: BoreContact, pressure: Numbers) -> Numbers:
+    """Return pressures (meridians, rings, lanes) of a bore that may have been folded."""
+    return pressure if len(pressure) == bore.compliance.grid.meridians else unfold_fields(pressure)
+
+
+class _LaneBores(NamedTuple):
+    """Arrays of a bore in double and in single precision, and of the bore in wide cells in single precision."""
+
+    double: BoreArrays
+    single: BoreArrays
+    coarse: BoreArrays
+
+
+def _make_bores(bore: BoreContact, coarser: BoreContact, *, folded: bool) -> _LaneBores:
+    """Make the arrays of a bore, on one side of the plane of φ = 0 if it is folded."""
+    bores = make_bore_arrays(bore, numpy.float64), make_bore_arrays(bore), make_bore_arrays(coarser)
+    return _LaneBores(*(fold_bore(arrays, even=True) if folded else arrays for arrays in bores))
 
 
 class _Solution(NamedTuple):
@@ -138,16 +165,9 @@ class _Solution(NamedTuple):
     error: Numbers
 
 
-def _solve_block(
-    fine: tuple[BoreArrays, BoreArrays],
-    coarse: BoreArrays,
-    load: Numbers,
-    force_scale: Numbers,
-    start: Numbers,
-    tolerance: float,
-) -> _Solution:
+def _solve_block(bores: _LaneBores, load: Numbers, force_scale: Numbers, start: Numbers, tolerance: float) -> _Solution:
     """Solve one block of lanes: in wide cells, in the cells of the bore, and again after failed checks."""
-    double, single = fine
+    double, single, coarse = bores
     single_load, single_scale = load.astype(numpy.float32), force_scale.astype(numpy.float32)
     solved, predictor = _solve_coarse(coarse, single_load, single_scale, start.astype(numpy.float32))
     pressure = refine_fields(single, solved.pressure)
@@ -192,7 +212,11 @@ def _iterate(bore: BoreArrays, lanes: Lanes, predictor: Predictor, tolerance: fl
         if active.mean() <= 1 - _DROPPED_FRACTION:
             for name, total in result._asdict().items():
                 total[..., indices] = getattr(lanes, name)
-            indices, lanes, predictor = indices[active], _select_lanes(lanes, active), predictor.select(active)
+            indices, lanes, predictor = (
+                indices[active],
+                _select_lanes(lanes, active),
+                predictor.take(numpy.flatnonzero(active)),
+            )
         if not len(indices):
             break
         lanes = advance_lanes(bore, newton_step(bore, lanes, predictor), lanes)

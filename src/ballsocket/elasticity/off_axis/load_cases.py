@@ -16,6 +16,8 @@ from .bore_contact import BoreContact, initial_displacement
 from .contact_states import ContactStates, ContactSummaries, LoadSolver, summarise
 from .directions import polar_angle, unit_vectors
 from .equilibrium import solve_force
+from .lane_solver import coarser_lanes
+from .rim_curve import cached_rim_points, force_curve, indentation_curve
 from .surfaces import EdgeRelation
 
 _MAX_FREE_DISPLACEMENT = 0.5
@@ -54,6 +56,7 @@ def _solve_indentations(bore: BoreContact, indentation: Numbers, axes: Numbers, 
         dislocated=dislocated,
         load=indentation,
         solve=_solve_indentations,
+        rim_curve=indentation_curve,
     )
 
 
@@ -76,6 +79,7 @@ def _solve_forces(bore: BoreContact, force: Numbers, axes: Numbers, edges: EdgeR
         dislocated=dislocated,
         load=force,
         solve=_solve_forces,
+        rim_curve=force_curve,
     )
 
 
@@ -174,8 +178,24 @@ def _rim_contact_tilts(states: ContactStates | ContactSummaries, cut_indices: Nu
     group, tilt, level = group.ravel(), polar_angle(states.axes[cut_indices].T), states.rim_level[cut_indices]
     smallest = numpy.array([numpy.flatnonzero(group == i)[tilt[group == i].argmin()] for i in range(rows.shape[1])])
     load, azimuth = rows
-    tilts = _interpolate_rim_contact if not worn and load[0] > 0 else _solve_rim_contact
-    return tilts(states, load, azimuth, tilt[smallest], level[smallest])[group]
+    tilts = numpy.full(len(load), numpy.nan) if worn else _read_curve(states, load)
+    unknown = numpy.isnan(tilts)
+    if unknown.any():
+        solve = _interpolate_rim_contact if not worn and load[0] > 0 else _solve_rim_contact
+        values = (array[unknown] for array in (load, azimuth, tilt[smallest], level[smallest]))
+        tilts[unknown] = solve(states, *values)
+    return tilts[group]
+
+
+def _read_curve(states: ContactStates | ContactSummaries, load: Numbers) -> Numbers:
+    """Read the tilts of loads in rad from the curve of an unworn bore; NaN where it has none."""
+    bore, make_curve = states.bore, states.rim_curve
+    if make_curve is None or bore.gap.clearance <= 0 or coarser_lanes(bore) is None:
+        return numpy.full(len(load), numpy.nan)
+    grid = bore.compliance.grid
+    softness = float(states.edges.compliance[0, 0] / numpy.diff(grid.edges)[0])
+    points = cached_rim_points(bore.compliance, softness, states.edges.inset)
+    return make_curve(points, grid.reach, bore.gap.clearance, bore.gap.socket_radius).interpolate(load)
 
 
 _MAX_RIM_NODES = 8

@@ -6,6 +6,7 @@ The functions are written for NumPy and JAX. Fields are arrays (contacts, rings,
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import pi, prod
 from typing import NamedTuple
 
@@ -18,8 +19,8 @@ from .grid import Grid
 RAYS = 90
 """Number of rays from the centre of a contact to its outline."""
 
-_BISECTIONS = 8
-"""Number of bisections of a step of half a ring's width."""
+_SECANTS = 5
+"""Number of secants that locate the edge in a step of half a ring's width: half angles within 3e-7 rad."""
 
 _FIT_RADIUS = 2.2
 """Radius of the quadratic fit around the largest pressure, in widths of a ring."""
@@ -29,6 +30,9 @@ _FIT_RINGS = 8
 
 _LATTICE_POINTS = 25
 """Number of points in each direction at which the fit is evaluated."""
+
+_ROUNDING = 1e-6
+"""Relative error of a polar angle by rounding: directions at the end of the bore belong to it."""
 
 _MIN_MARGIN = 1e-6
 """Margin in rad of a contact that comes to the end of the bore without reaching it."""
@@ -134,14 +138,19 @@ def interpolate(cells: CellArrays, table: Array, directions: Array) -> Array:
     ]
     upper = corners[0] + along * (corners[1] - corners[0])
     lower = corners[2] + along * (corners[3] - corners[2])
-    return (upper + down * (lower - upper)) * (polar <= cells.reach)
+    return (upper + down * (lower - upper)) * (polar <= cells.reach * (1 + _ROUNDING))
 
 
 def tangents_at(axis: Array) -> tuple[Array, Array]:
-    """Compute two unit vectors (..., 3) across axes (..., 3): away from the pole, and along the ring of the axis."""
+    """Compute two unit vectors (..., 3) across axes (..., 3): away from the pole, and along the ring of the axis.
+
+    At the pole they have finite derivatives, of 0.
+    """
     xp = arrays.namespace(axis)
     x, y, z = (axis[..., component] for component in range(3))
-    radius, azimuth = xp.hypot(x, y), xp.atan2(y, x)
+    at_pole = (x == 0) & (y == 0)
+    beside = xp.where(at_pole, 1.0, x)
+    radius, azimuth = xp.where(at_pole, 0.0, xp.hypot(beside, y)), xp.atan2(y, beside)
     length = xp.hypot(radius, z)
     cosine, sine = xp.cos(azimuth), xp.sin(azimuth)
     away = xp.stack([z / length * cosine, z / length * sine, -radius / length], axis=-1)
@@ -229,25 +238,33 @@ def axis_pressures(cells: CellArrays, pressure: Array, axis: Array) -> Array:
     return interpolate(cells, pressure_table(cells, pressure), axis[:, None])[:, 0]
 
 
-def ray_steps(cells: CellArrays, patches: Patches, centres: Array) -> int:
-    """Compute the number of steps of half a ring's width after which every ray has left its contact, in NumPy."""
-    distance = numpy.einsum("nk,krm->nrm", centres, cells.middles)
-    farthest = numpy.where(patches.level > 0, distance, 1.0).min(initial=1.0)
-    angle = numpy.arccos(numpy.clip(farthest, -1.0, 1.0)) + 3 * cells.width
-    return int(min(angle, pi) / (cells.width / 2))
+def ray_steps(cells: CellArrays, patches: Patches, centres: Array) -> range:
+    """Compute the steps of half a ring's width in which rays leave their contacts, for all contacts in NumPy."""
+    cosine = numpy.einsum("nk,krm->nrm", centres, cells.middles)
+    loaded, step = patches.level > 0, cells.width / 2
+    farthest = _angle(numpy.where(loaded, cosine, 1.0).min(initial=1.0)) + 3 * cells.width
+    nearest = _angle(numpy.where(loaded, -1.0, cosine).max(initial=-1.0))
+    to_rim = cells.reach - numpy.atan2(numpy.hypot(centres[:, 0], centres[:, 1]), centres[:, 2]).max(initial=0.0)
+    first = (min(nearest, to_rim) - 2 * cells.width) / step
+    return range(max(int(first), 1), int(min(farthest, pi) / step) + 1)
 
 
-def edge_angles(cells: CellArrays, level: Array, centres: Array, steps: int) -> Array:
+def _angle(cosine: Numbers) -> float:
+    """Compute the angle in rad of a cosine."""
+    return float(numpy.arccos(numpy.clip(cosine, -1.0, 1.0)))
+
+
+def edge_angles(cells: CellArrays, level: Array, centres: Array, steps: range) -> Array:
     """Compute the angles in rad from the centre of each contact to its edge along the rays: (contacts, rays).
 
-    The edge is the first zero of the level, or the end of the bore. A ray that never leaves a contact all around the
-    bore has the angle 0.
+    The edge is the first zero of the level, or the end of the bore. It is searched in steps of half a ring's width;
+    before the first of them all rays are inside. A ray that never leaves a contact all around the bore has the angle 0.
     """
     xp = arrays.namespace(level)
     table, azimuths, centre = level_table(level), ray_azimuths(level), centres[:, None]
     step = cells.width / 2
-    angles = xp.arange(1, steps + 1, dtype=level.dtype) * step
-    points = ray_directions(centre[:, None], angles[:, None] + 0.0 * azimuths, azimuths)
+    angles = xp.arange(steps.start, steps.stop, dtype=level.dtype) * step
+    points = ray_directions(centre[:, None], angles[:, None], azimuths)
     in_bore = points[..., 2] >= xp.cos(cells.reach)
     outside = ~((interpolate(cells, table, points) > 0) & in_bore)
     end = xp.argmax(outside, axis=1)  # the first step outside
@@ -255,19 +272,43 @@ def edge_angles(cells: CellArrays, level: Array, centres: Array, steps: int) -> 
     end_in_bore = xp.take_along_axis(in_bore, end[:, None], axis=1)[:, 0]
     end_angle = angles[end]
     high = xp.where(end_in_bore, end_angle, xp.minimum(end_angle, rim))
-    loaded = interpolate(cells, table, ray_directions(centre, high, azimuths)) > 0
 
-    def bisect(bounds: tuple[Array, Array]) -> tuple[Array, Array]:
-        """Halve the interval with the edge on each ray."""
-        low, bound = bounds
-        middle = (low + bound) / 2
-        inside = interpolate(cells, table, ray_directions(centre, middle, azimuths)) > 0
-        return xp.where(inside, middle, low), xp.where(inside, bound, middle)
+    def level_at(angle: Array) -> Array:
+        """Interpolate the level in mm at angles along the rays."""
+        return interpolate(cells, table, ray_directions(centre, angle, azimuths))
 
-    low, bound = arrays.repeat_step(bisect, (end_angle - step, high), _BISECTIONS)
-    edge = (low + bound) / 2 - cells.inset
-    ends = xp.minimum(xp.where(loaded, rim, xp.maximum(edge, 0.0 * edge)), rim)
+    end_level = level_at(high)
+    edge = _find_zero(level_at, end_angle - step, high, end_level) - cells.inset
+    ends = xp.minimum(xp.where(end_level > 0, rim, xp.maximum(edge, 0.0 * edge)), rim)
     return xp.where(xp.any(outside, axis=1), ends, 0.0)
+
+
+def _find_zero(function: Callable[[Array], Array], low: Array, high: Array, high_value: Array) -> Array:
+    """Find the zeros of a function between `low` and `high`, where it is positive and not, by the Illinois method."""
+    xp = arrays.namespace(low)
+
+    def halve(bounds: tuple[Array, ...]) -> tuple[Array, ...]:
+        """Replace one end by the zero of the secant; the value at an end that stays twice is halved."""
+        low, high, low_value, high_value, stayed = bounds
+        middle = _secant_zero(low, high, low_value, high_value)
+        value = function(middle)
+        inside = value > 0
+        high_value = xp.where(inside, xp.where(stayed > 0, high_value / 2, high_value), value)
+        low_value = xp.where(inside, value, xp.where(stayed < 0, low_value / 2, low_value))
+        low, high = xp.where(inside, middle, low), xp.where(inside, high, middle)
+        return low, high, low_value, high_value, xp.where(inside, 1.0, -1.0) + 0.0 * low
+
+    bounds = low, high, function(low), high_value, 0.0 * low
+    low, high, low_value, high_value, _ = arrays.repeat_step(halve, bounds, _SECANTS)
+    return _secant_zero(low, high, low_value, high_value)
+
+
+def _secant_zero(low: Array, high: Array, low_value: Array, high_value: Array) -> Array:
+    """Compute the zero of the secant of two values, or the middle of their arguments if their signs are equal."""
+    xp = arrays.namespace(low)
+    fall = low_value - high_value
+    crosses = (low_value > 0) & (high_value <= 0)
+    return low + (high - low) * xp.where(crosses, low_value / xp.where(crosses, fall, 1.0), 0.5)
 
 
 def rim_angles(cells: CellArrays, centres: Array) -> Array:
@@ -278,8 +319,8 @@ def rim_angles(cells: CellArrays, centres: Array) -> Array:
     start = centres[:, 2:] + 0.0 * azimuths
     side = ray_directions(centres[:, None], 0.0 * azimuths + pi / 2, azimuths)[..., 2]
     cosine = xp.cos(cells.reach) / xp.hypot(start, side)
-    ends = xp.atan2(side, start) + xp.acos(xp.clip(cosine, -1.0, 1.0))
-    return xp.where(xp.abs(cosine) < 1, ends, xp.inf)
+    hits = xp.abs(cosine) < 1
+    return xp.where(hits, xp.atan2(side, start) + xp.acos(xp.where(hits, cosine, 0.0)), xp.inf)
 
 
 def half_angles(cells: CellArrays, patches: Patches, edges: Array) -> Array:
