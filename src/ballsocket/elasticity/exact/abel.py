@@ -236,8 +236,8 @@ class AbelState(PeakPressure):
         return []
 
     def _compute_modes(self, count: int) -> Numbers:
-        """Compute the pressure modes p_n in MPa by Gauss-Legendre quadrature in panels shorter than the wavelengths."""
-        panels = 4 + ceil(count * float(self.half_angle.max(initial=0.0)) / 4)
+        """Compute the pressure modes p_n in MPa by Gauss-Legendre quadrature in panels of at most two wavelengths."""
+        panels = 4 + ceil(count * float(self.half_angle.max(initial=0.0)) / 8)
         x, w = (numpy.array(part) for part in gauss_legendre(12))
         y = ((numpy.arange(panels)[:, None] + x) / panels).ravel()
         weights = numpy.tile(w / panels, panels) * pi / 2 * numpy.cos(pi / 2 * y)
