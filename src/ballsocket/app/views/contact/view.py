@@ -78,8 +78,7 @@ class Press(LongView):
         self._cancel_further()
         self.expect("charts", "table")
         comparison = pressed(screen.file, tuple(dict.fromkeys((screen.answered_by, reference.name))))
-        limit = self._needs_cup(screen, comparison)
-        if limit is not None:
+        if self._needs_cup(screen, comparison) is not None:
             self.long.show(screen)
         else:
             self._show_axial(screen, comparison)
