@@ -131,9 +131,8 @@ def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
     tables = tables_of(file)
     change(tables)
     made = joint_of(tables)
-    if made.joint == file.joint or made.joint == joint_of(tables_of(file)).joint:  # the tables round its numbers
-        return made
-    return replace(made, joint=_as_changed(made.joint))
+    unchanged = made.joint == file.joint or tables == tables_of(file)
+    return made if unchanged else replace(made, joint=_as_changed(made.joint))
 
 
 def _as_changed(joint: Joint) -> Joint:

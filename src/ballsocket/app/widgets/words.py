@@ -109,7 +109,7 @@ def _number(head: str, column: Column, contact: Contact, exact: Contact | None) 
     value, small = float(column.values_of(contact)), ""
     if exact is not None and exact is not contact:
         share = float(relative_deviation(value, float(column.values_of(exact))))
-        small = f"<small>{percent(share, '+').replace('below', '<')}</small>" if share else ""
+        small = f"<small>{escape(percent(share, '+'))}</small>" if share else ""
     return f"<td data-head='{head}'>{number_text(value)}{small}</td>"
 
 
@@ -120,7 +120,7 @@ def percent(share: float, sign: str = "") -> str:
     if share == 0:
         return "0 %"
     if abs(share) < 1e-5:
-        return "below 0.001 %"
+        return "< 0.001 %"
     digits = max(0, 1 - floor(log10(abs(100 * share))))
     return f"{100 * share:{sign}.{digits}f} %"
 
@@ -159,17 +159,19 @@ _AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
 """Quantities that repeat others if the pressure is largest at the pole."""
 
 
+def distinct_columns(reading: Reading, max_pressure_angle: float) -> list[Column]:
+    """List the quantities of a contact, without those that repeat others if the pressure is largest at the pole."""
+    return [column for column in reading.columns if max_pressure_angle or column.attribute not in _AT_THE_POLE]
+
+
+@lru_cache(maxsize=256)
 def headline(
     contact: Contact, exact: Contact | None, cup: Cup, reading: Reading, von_mises: float | None = None
 ) -> str:
     """Return the numbers and checks of a contact as HTML; `von_mises` (MPa) and slow notes may follow."""
-    listed = [
-        column
-        for column in reading.columns
-        if column.attribute not in (_MAIN_QUANTITY, *(_AT_THE_POLE if float(contact.max_pressure_angle) == 0 else ()))
-    ]
-    first = next(column for column in reading.columns if column.attribute == _MAIN_QUANTITY)
-    cells = "".join(_quantity_cell(column, contact) for column in listed)
+    columns = distinct_columns(reading, float(contact.max_pressure_angle))
+    first = next(column for column in columns if column.attribute == _MAIN_QUANTITY)
+    cells = "".join(_quantity_cell(column, contact) for column in columns if column is not first)
     notes = contact.quick_notes if von_mises is None else contact.notes
     return (
         f"<dl class='first'>{_quantity_cell(first, contact)}</dl>"

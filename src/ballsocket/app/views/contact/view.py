@@ -87,8 +87,9 @@ class Press(LongView):
     def _needs_cup(self, screen: Screen, comparison: Comparison) -> AxialLimit | None:
         """Return the reason for the real cup; an axial load near the rim has one that is set up or requested."""
         limit = _limit(comparison, screen)
-        required = tilt_of(screen.file) > AXIAL_TILT or is_prepared(screen.file) or self.long.works_on(screen)
-        return limit if required else None
+        if limit is None or tilt_of(screen.file) > AXIAL_TILT:
+            return limit
+        return limit if is_prepared(screen.file) or self.long.works_on(screen) else None
 
     def _show_axial(self, screen: Screen, comparison: Comparison) -> None:
         """Show the numbers of a model of a load along the axis of the cup."""
