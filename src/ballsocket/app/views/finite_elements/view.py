@@ -16,7 +16,7 @@ from ...long_view import LongView, long_body
 from ...pictures.section import extent_of, section
 from ...running import Work
 from ...state.screen import Screen
-from ...view import Document
+from ...view import Document, field_places
 from ...widgets.cup_fields import cup_edited, cup_fields
 from ...widgets.reading import number_text
 from ...widgets.words import distinct_columns, notes_list, percent
@@ -25,7 +25,6 @@ from .worker import Judged, judged
 
 _NAME = "judge"
 _FIELDS = ("arc_of_cover", "chamfer", "interface")
-_INPUTS = "".join(f'<div data-field="{_NAME}.{name}"></div>' for name in _FIELDS)
 _TO_COME = (
     "A run meshes this section with its rim, chamfer and backing, presses the ball in four load steps and shows the "
     "von Mises stress, the pressure beside the exact one of a complete shell, and the error of the mesh. It takes some "
@@ -39,7 +38,9 @@ class Judge(LongView):
     title = "Check by finite elements"
     name = _NAME
     run_label = "Run finite elements"
-    body = long_body(_NAME, _INPUTS, f'<div id="{_NAME}-numbers"></div><div id="{_NAME}-picture"></div>')
+    body = long_body(
+        _NAME, field_places(_NAME, _FIELDS), f'<div id="{_NAME}-numbers"></div><div id="{_NAME}-picture"></div>'
+    )
 
     def question_of(self, screen: Screen) -> Hashable:
         file, cup = screen.file, screen.file.cup
