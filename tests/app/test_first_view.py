@@ -184,6 +184,17 @@ def test_one_line_says_how_near_all_numbers_are():
     assert Page("").channel.shown_value("#press-numbers").count("of the exact answer") == 1
 
 
+def test_a_design_that_is_shown_again_has_its_stress_at_once(monkeypatch):
+    page = Page("preset=hip-28&load.force=2990")
+    numbers = page.channel.shown_value("#press-numbers")
+    assert "stress estimated" not in numbers
+    monkeypatch.setattr(page, "later", lambda seconds, function: lambda: None)
+    edits(page, "load", 3110)
+    assert "stress estimated" in page.channel.shown_value("#press-numbers")
+    edits(page, "load", 2990)
+    assert page.channel.shown_value("#press-numbers") == numbers
+
+
 def test_stresses_in_the_liner_are_painted_when_they_are_asked_for():
     page = Page("preset=hip-28&load.force=3000")
     assert "von Mises" not in drawing(page)

@@ -86,8 +86,10 @@ class Channel:
         return self._current.get(name)
 
     def send(self) -> None:
-        """Send all changed values in one message, with the number of the last request."""
+        """Send all changed values in one message, with the number of the last request; nothing if it has no news."""
         self.put("expected", sorted(self._expected) or None)
+        if not self._pending and self._answered == self.number:
+            return
         values, self._pending = self._pending, {}
         self._answered = self.number
         self.write(json.dumps({"n": self.number, "question": self.question, **values}, ensure_ascii=False))
@@ -96,5 +98,4 @@ class Channel:
         """Handle one request of the browser, and answer it."""
         self.number = request["n"]
         self._handle_request(request["do"], request)
-        if self._pending or self._answered != self.number:
-            self.send()
+        self.send()

@@ -26,7 +26,7 @@ from .widgets.joint_fields import tilt_of
 from .widgets.reading import Reading
 
 _POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
-_ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 60))
+_ANGLES = numpy.sin(numpy.linspace(0.0, pi / 2, 40))
 
 
 def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:

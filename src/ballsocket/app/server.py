@@ -162,7 +162,7 @@ class PageSocket(_Guarded, WebSocketHandler):
         return self.settings["names"].trust(origin, self.request.host)
 
     def get_compression_options(self) -> dict[str, Any]:
-        return {"compression_level": 5, "mem_level": 5}  # of little memory
+        return {"compression_level": 1, "mem_level": 5}  # of little time and memory
 
     async def on_message(self, message: str | bytes) -> None:
         """Handle one request; the next is not read before, so that a flood waits in its own browser."""

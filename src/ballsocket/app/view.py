@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
@@ -47,6 +47,11 @@ class Document:
     sections: Callable[[], Mapping[str, tuple[str, str]]]
     lede: Callable[[], str] = str
     contact: Contact | None = None
+
+
+def field_places(view: str, keys: Iterable[str]) -> str:
+    """Return the HTML of the places of a view's inputs, by their names without the view."""
+    return "".join(f'<div data-field="{view}.{key}"></div>' for key in keys)
 
 
 class Host(Protocol):

@@ -41,6 +41,7 @@ def polynomial_variables(half_angle: Array, poisson: Array, thickness_ratio: Arr
     )
 
 
+@cache
 def polynomial_exponents(degree: int) -> tuple[tuple[int, int, int], ...]:
     """List the exponents (i, j, k) of the three variables in each term of a polynomial of given degree."""
     orders = range(degree + 1)

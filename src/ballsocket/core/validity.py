@@ -136,7 +136,7 @@ class Range:
         value = self.quantity_of(contact)
         return (value > self.low) & (value < self.high)
 
-    @property
+    @cached_property
     def sentence(self) -> str:
         """Note for a contact outside the range."""
         return f"outside {self}: {self.why}"
@@ -203,7 +203,7 @@ class NeverValid(Range):
     def __str__(self) -> str:
         return "nothing"
 
-    @property
+    @cached_property
     def sentence(self) -> str:
         """Note for all contacts of the model."""
         return f"never valid: {self.why}"
@@ -267,7 +267,7 @@ RIGID_BACKING = Range(
 class Remark(Range):
     """Range outside of which a result gets a note but remains valid."""
 
-    @property
+    @cached_property
     def sentence(self) -> str:
         """Note for a contact outside the range."""
         return self.why

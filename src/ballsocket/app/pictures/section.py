@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from math import isinf, pi
+from math import cos, isinf, pi, sin
 
 import numpy
 
@@ -35,9 +35,7 @@ class DrawingFrame:
 
     def at(self, radius: float, angle: float) -> tuple[float, float]:
         """Return picture coordinates of a radius in mm and an angle in rad."""
-        return self.x + self.scale * radius * float(numpy.sin(angle)), self.y + self.scale * radius * float(
-            numpy.cos(angle)
-        )
+        return self.x + self.scale * radius * sin(angle), self.y + self.scale * radius * cos(angle)
 
     def arc(self, radius: float, half: float) -> str:
         """Return the part of a path along a circle (mm), from -half to half about the pole (rad)."""
@@ -93,7 +91,7 @@ def _sector(frame: DrawingFrame, inner: float, outer: float, rim: float, kind: s
 def _ball(file: JointFile, contact: Contact | None, tilt: float) -> tuple[Numbers, Numbers]:
     """Compute the socket's circle less the gap c - (c + d) cos φ from the load's axis; no gap in the contact."""
     clearance, depth = float(file.joint.clearance), 0.0 if contact is None else float(contact.indentation)
-    angle = numpy.linspace(0.0, 2 * pi, 145)
+    angle = numpy.linspace(0.0, 2 * pi, 97)
     gap = numpy.clip(clearance - (clearance + depth) * numpy.cos(angle + tilt), 0.0, None)
     radius = float(file.joint.socket_radius) - gap_factor(file.joint) * gap
     return radius * numpy.sin(angle), -radius * numpy.cos(angle)

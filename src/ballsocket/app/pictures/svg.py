@@ -139,11 +139,15 @@ class Contours:
 
 
 def scale(levels: Sequence[float], label: str, x: float, y: float, wide: float) -> Iterator[str]:
-    """Draw a row of colours with numbers between them and a label above."""
-    count = len(levels) - 1
+    """Draw a row of colours with numbers between them and a label above; every second number where they are long."""
+    count, numbers = len(levels) - 1, [f"{level:.4g}" for level in levels]
+    stride = 1 if max(map(len, numbers)) * _DIGIT_WIDTH < wide / count else 2
     yield text(x, y - 6, label, "tick", "start")
     for number, fill in enumerate(band_colours(levels)):
         size = f'width="{wide / count + 0.4:.1f}" height="9"'
         yield f'<rect x="{x + wide * number / count:.1f}" y="{y:.1f}" {size} fill="{fill}"/>'
-    for number, level in enumerate(levels):
-        yield text(x + wide * number / count, y + 22, f"{level:.4g}", "tick")
+    for number, words in [*enumerate(numbers)][::stride]:
+        yield text(x + wide * number / count, y + 22, words, "tick")
+
+
+_DIGIT_WIDTH = 8.0  # pixels of a digit in a number below a row of colours, with its share of the space between

@@ -9,8 +9,9 @@ from typing import Any
 
 from ...core.checks import shown
 from ...core.kinds import Kind, Unit
+from ...core.quantities import Quantity
 from ...files.units import parse, split_quantity
-from .reading import behind, box_text
+from .reading import Reading, behind, box_text
 
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
 _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
@@ -116,6 +117,12 @@ def typed(label: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float
     except ValueError as error:
         raise ValueError(f"{rule}, got {shown(stripped)}") from error
     return round((degrees(value) if kind == Kind.ANGLE else value) / times, 12)
+
+
+def typed_quantity(label: str, text: Any, quantity: Quantity, reading: Reading) -> float:
+    """Convert typed text to a number in internal units; a bare number has the unit of the page."""
+    unit, written = reading.unit(quantity), quantity.written.factor
+    return typed(label, text, Unit(unit.text, unit.factor / written), quantity.kind) / written
 
 
 _KEY_REFUSED = re.compile(r"[\w.]+ (?:= (?:'[^']*'|\S+) (?P<rule>is not allowed: .*)|(?P<need>must .*))", re.DOTALL)

@@ -129,10 +129,10 @@ def _with_number(screen: Screen, spec: Number, value: Any) -> JointFile:
 def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
     """Apply a change to the tables of a joint; drop its source if a number differs."""
     tables = tables_of(file)
-    before = joint_of(tables).joint
     change(tables)
     made = joint_of(tables)
-    return made if made.joint == before else replace(made, joint=_as_changed(made.joint))
+    unchanged = made.joint == file.joint or tables == tables_of(file)
+    return made if unchanged else replace(made, joint=_as_changed(made.joint))
 
 
 def _as_changed(joint: Joint) -> Joint:

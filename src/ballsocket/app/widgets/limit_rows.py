@@ -8,12 +8,13 @@ from typing import Any
 
 from ...contact import Contact
 from ...core.checks import check_names, require, shown
-from ...core.quantities import CONTACT, JOINT, PARTS, QUANTITIES, Quantity
+from ...core.quantities import CONTACT, JOINT, PARTS, QUANTITIES
 from ...files.joint_file import JointFile
 from ...studies.limits import Limit
 from ...studies.parameters import nominal_value
 from ...studies.task import EDGE_DISTANCE
-from .fields import Field, typed
+from .fields import Field, typed_quantity
+from .numbers import capital
 from .reading import Reading, box_text
 
 _SIGNS = {"<=": "at most", ">=": "at least"}
@@ -41,7 +42,7 @@ class LimitRows:
             "name": self._name,
             "kind": "limits",
             "label": "Limits",
-            "options": [[key, _title(QUANTITIES[key]), reading.unit(QUANTITIES[key]).text] for key in listed],
+            "options": [[key, capital(QUANTITIES[key].title), reading.unit(QUANTITIES[key]).text] for key in listed],
             "signs": [list(pair) for pair in _SIGNS.items()],
             "value": [list(row) for row in rows],
             "error": sentence,
@@ -107,12 +108,12 @@ def _limit(row: Sequence[str], reading: Reading, present: Callable[[str], float]
     name, sign, text = row
     quantity = QUANTITIES[name]
     if text:
-        end = typed(_title(quantity), text, reading.box_unit(quantity), quantity.kind) / quantity.written.factor
-        require(_title(quantity), end, isfinite(end), "a limit is a finite number")
+        end = typed_quantity(capital(quantity.title), text, quantity, reading)
+        require(capital(quantity.title), end, isfinite(end), "a limit is a finite number")
     else:
         factor = reading.unit(quantity).factor
         end = float(f"{present(name) * factor:.{_DIGITS}g}") / factor
-        require(_title(quantity), end, isfinite(end), "the design has no such number: type a value")
+        require(capital(quantity.title), end, isfinite(end), "the design has no such number: type a value")
     return Limit(name=name, high=end) if sign == "<=" else Limit(name=name, low=end)
 
 
@@ -123,7 +124,3 @@ def _rows_of(limit: Limit, reading: Reading) -> list[Row]:
 
 def _ends(limit: Limit) -> list[tuple[str, float]]:
     return [(sign, end) for sign, end in (("<=", limit.high), (">=", limit.low)) if isfinite(end)]
-
-
-def _title(quantity: Quantity) -> str:
-    return f"{quantity.title[:1].upper()}{quantity.title[1:]}"

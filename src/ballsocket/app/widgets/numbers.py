@@ -101,11 +101,12 @@ class Number:
 
 def _number(name: str, table: str, key: str, ends: tuple[float, float], step: float, *sizes: float) -> Number:
     quantity = QUANTITIES[name]
-    label = f"{table.capitalize()} {MATERIAL[key].title}" if key in MATERIAL else _capital(quantity.title)
+    label = f"{table.capitalize()} {MATERIAL[key].title}" if key in MATERIAL else capital(quantity.title)
     return Number(table=table, key=key, quantity=quantity, ends=ends, step=step, sizes=sizes, label=label)
 
 
-def _capital(title: str) -> str:
+def capital(title: str) -> str:
+    """Write a title with a capital letter."""
     return f"{title[:1].upper()}{title[1:]}"
 
 
@@ -152,7 +153,7 @@ def number_of(name: str, size: str) -> Number:
     if size != "diameter" or name not in _SINGLE:
         return spec
     quantity = JOINT[_SINGLE[name]]
-    return replace(spec, quantity=quantity, times=2, label=_capital(quantity.title))
+    return replace(spec, quantity=quantity, times=2, label=capital(quantity.title))
 
 
 def load_of(kind: str) -> Number:

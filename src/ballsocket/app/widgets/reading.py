@@ -43,11 +43,6 @@ class Reading:
             return Unit(text, factor * unit.factor)
         return unit
 
-    def box_unit(self, quantity: Quantity) -> Unit:
-        """Return the unit beside an input, and the factor to it from the unit of files."""
-        unit = self.unit(quantity)
-        return Unit(unit.text, unit.factor / quantity.written.factor)
-
     @property
     def length(self) -> Unit:
         """Unit of a dimension."""

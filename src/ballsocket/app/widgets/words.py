@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from html import escape
 from math import floor, isfinite, isnan, log10
 from typing import Any
@@ -72,16 +73,18 @@ def axial_models_table(comparison: Comparison, reading: Reading, real: Contact |
     return _table_of_models([*first, *rows], comparison, reading)
 
 
-def _shown_columns(reading: Reading) -> list[Column]:
-    return [column for column in reading.columns if column.attribute in HEADLINE]
+@lru_cache(maxsize=8)
+def _shown_columns(reading: Reading) -> tuple[tuple[str, Column], ...]:
+    """Return the columns of a table of models, each behind its heading in HTML."""
+    return tuple((escape(column.head), column) for column in reading.columns if column.attribute in HEADLINE)
 
 
 def _table_of_models(rows: Iterable[str], comparison: Comparison, reading: Reading) -> str:
     """Return rows of models, and the reasons of the missing ones, as a table."""
-    shown = _shown_columns(reading)
-    heads = "".join(f"<th scope='col' title='{escape(column.title)}'>{escape(column.head)}</th>" for column in shown)
+    columns = _shown_columns(reading)
+    heads = "".join(f"<th scope='col' title='{escape(column.title)}'>{head}</th>" for head, column in columns)
     missing = "".join(
-        f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(shown) + 1}' class='text'>{escape(why)}</td></tr>"
+        f"<tr><th scope='row'>{escape(name)}</th><td colspan='{len(columns) + 1}' class='text'>{escape(why)}</td></tr>"
         for name, why in comparison.missing.items()
     )
     return (
@@ -91,8 +94,9 @@ def _table_of_models(rows: Iterable[str], comparison: Comparison, reading: Readi
     )
 
 
+@lru_cache(maxsize=1024)
 def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading, excluded: str = "") -> str:
-    cells = "".join(_number(column, contact, exact) for column in _shown_columns(reading))
+    cells = "".join(_number(head, column, contact, exact) for head, column in _shown_columns(reading))
     valid = bool(contact.valid) and not excluded
     why = excluded or ("yes" if valid else f"no: {'; '.join(contact.notes)}")
     kind = "doubtful" if not valid else "reference" if name == reference.name else "valid"
@@ -100,13 +104,13 @@ def _row(name: str, contact: Contact, exact: Contact | None, reading: Reading, e
     return f"<tr class='{kind}'>{head}{cells}<td class='text'>{escape(why)}</td></tr>"
 
 
-def _number(column: Column, contact: Contact, exact: Contact | None) -> str:
+def _number(head: str, column: Column, contact: Contact, exact: Contact | None) -> str:
     """Return a table cell with its deviation from the exact result, and its own heading for narrow pages."""
     value, small = float(column.values_of(contact)), ""
     if exact is not None and exact is not contact:
         share = float(relative_deviation(value, float(column.values_of(exact))))
-        small = f"<small>{percent(share, '+').replace('below', '<')}</small>" if share else ""
-    return f"<td data-head='{escape(column.head)}'>{number_text(value)}{small}</td>"
+        small = f"<small>{escape(percent(share, '+'))}</small>" if share else ""
+    return f"<td data-head='{head}'>{number_text(value)}{small}</td>"
 
 
 def percent(share: float, sign: str = "") -> str:
@@ -116,7 +120,7 @@ def percent(share: float, sign: str = "") -> str:
     if share == 0:
         return "0 %"
     if abs(share) < 1e-5:
-        return "below 0.001 %"
+        return "< 0.001 %"
     digits = max(0, 1 - floor(log10(abs(100 * share))))
     return f"{100 * share:{sign}.{digits}f} %"
 
@@ -155,17 +159,19 @@ _AT_THE_POLE = ("pole_pressure", "max_pressure_angle")
 """Quantities that repeat others if the pressure is largest at the pole."""
 
 
+def distinct_columns(reading: Reading, max_pressure_angle: float) -> list[Column]:
+    """List the quantities of a contact, without those that repeat others if the pressure is largest at the pole."""
+    return [column for column in reading.columns if max_pressure_angle or column.attribute not in _AT_THE_POLE]
+
+
+@lru_cache(maxsize=256)
 def headline(
     contact: Contact, exact: Contact | None, cup: Cup, reading: Reading, von_mises: float | None = None
 ) -> str:
     """Return the numbers and checks of a contact as HTML; `von_mises` (MPa) and slow notes may follow."""
-    listed = [
-        column
-        for column in reading.columns
-        if column.attribute not in (_MAIN_QUANTITY, *(_AT_THE_POLE if float(contact.max_pressure_angle) == 0 else ()))
-    ]
-    first = next(column for column in reading.columns if column.attribute == _MAIN_QUANTITY)
-    cells = "".join(_quantity_cell(column, contact) for column in listed)
+    columns = distinct_columns(reading, float(contact.max_pressure_angle))
+    first = next(column for column in columns if column.attribute == _MAIN_QUANTITY)
+    cells = "".join(_quantity_cell(column, contact) for column in columns if column is not first)
     notes = contact.quick_notes if von_mises is None else contact.notes
     return (
         f"<dl class='first'>{_quantity_cell(first, contact)}</dl>"

@@ -236,21 +236,27 @@ class AbelState(PeakPressure):
         return []
 
     def _compute_modes(self, count: int) -> Numbers:
-        """Compute the pressure modes p_n in MPa by Gauss-Legendre quadrature in panels shorter than the wavelengths."""
-        panels = 4 + ceil(count * float(self.half_angle.max(initial=0.0)) / 4)
+        """Compute the pressure modes p_n in MPa by Gauss-Legendre quadrature in panels of at most two wavelengths."""
+        panels = 4 + ceil(count * float(self.half_angle.max(initial=0.0)) / 8)
         x, w = (numpy.array(part) for part in gauss_legendre(12))
         y = ((numpy.arange(panels)[:, None] + x) / panels).ravel()
         weights = numpy.tile(w / panels, panels) * pi / 2 * numpy.cos(pi / 2 * y)
         blocks = -(-count // _MODES_PER_BLOCK)
-        start, step = numpy.arange(blocks)[:, None] * _MODES_PER_BLOCK + 0.5, numpy.arange(_MODES_PER_BLOCK)[:, None]
         pressure_modes = numpy.empty((len(self.half_angle), blocks, _MODES_PER_BLOCK))
         for contact_modes, angle, series in zip(pressure_modes, self.half_angle, self.expansion, strict=True):
             s = angle * numpy.sin(pi / 2 * y)
             G = angle * weights * numpy.sin(s) * _evaluate_even_series(series, y)
-            # sin((start + step) s) is a sum of products: one sine for each start and step, not for each mode
-            contact_modes[:] = (G * numpy.sin(start * s)) @ numpy.cos(step * s).T
-            contact_modes[:] += (G * numpy.cos(start * s)) @ numpy.sin(step * s).T
+            # sin((n + 1/2) s) is the imaginary part of a product of powers, not a sine of each mode
+            starts = _powers(numpy.exp(0.5j * s), numpy.exp(1j * _MODES_PER_BLOCK * s), blocks)
+            contact_modes[:] = (starts @ _powers(G, numpy.exp(1j * s), _MODES_PER_BLOCK).T).imag
         return pressure_modes.reshape(len(pressure_modes), -1)[:, :count] / self.kernel.compliance
+
+
+def _powers(first: Numbers, factor: Numbers, count: int) -> Numbers:
+    """Compute the products of `first` with the powers of `factor` from 0 below `count`: (count, points)."""
+    factors = numpy.tile(factor, (count, 1))
+    factors[0] = first
+    return numpy.cumprod(factors, axis=0)
 
 
 def scaled_pressure(half_angle: Numbers, expansion: Numbers, angle: Numbers) -> Numbers:

@@ -191,8 +191,9 @@ class Socket:
         condition = free_surface_condition(n) if is_free else fixed_surface_condition()
         layers: list[SupportedLayer] = []
         for shell, inner in zip(self.shells[::-1], self._interface_radii[-2::-1], strict=True):
+            if layers:
+                condition = UNIT, -layers[0].compliance
             layers.insert(0, SupportedLayer(**vars(shell), inner=float(inner), n=n, condition=condition))
-            condition = UNIT, -layers[0].compliance
         return layers
 
 

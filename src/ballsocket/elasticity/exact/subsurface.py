@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
-from math import inf, log1p, radians
+from math import inf, isqrt, log1p, radians
 
 import numpy
 
@@ -44,22 +43,31 @@ def _sum_stresses(state: AbelState, angle: Numbers, depth: Numbers, count: int) 
     angle, depth = numpy.broadcast_arrays(angle, depth)
     angles, column = numpy.unique(angle.ravel(), return_inverse=True)
     depths, row = numpy.unique(depth.ravel(), return_inverse=True)
-    fields = state.kernel.socket.fields(numpy.arange(count), state.gap.socket_radius + depths)
     P, slope = _legendre_and_slopes(angles, count)
+    waves = P, -numpy.cos(angles) * slope, -numpy.sin(angles) * slope
     modes = _taper_modes(state, count)
+    counts = numpy.array([min(count, _mode_count(state, float(depth))) for depth in depths])
+    halvings = numpy.floor(numpy.log2(count / counts)).astype(int)  # deep points need few modes
+    tables = numpy.empty((5, len(depths), len(angles)))
+    for halving in numpy.unique(halvings):
+        band, size = halvings == halving, count >> halving
+        tables[:, band] = _sum_fields(state, modes[:size], depths[band], tuple(wave[:size] for wave in waves))
+    radial, meridional, hoop, tilt, shear = tables[:, row.ravel(), column.ravel()].reshape(5, *angle.shape)
+    return Stress(radial=radial, meridional=meridional - tilt, hoop=hoop + tilt, shear=shear)
 
-    def sum_modes(field: Numbers, wave: Numbers) -> Numbers:
-        """Sum the modes of a stress field times their waves along the meridian, at the points."""
-        table = (modes[:, None] * field).T @ wave  # depths by angles
-        return table[row.ravel(), column.ravel()].reshape(angle.shape)
 
-    tilt = sum_modes(fields.sigma_cot, -numpy.cos(angles) * slope)
-    return Stress(
-        radial=sum_modes(fields.sigma_rr, P),
-        meridional=sum_modes(fields.sigma_phiphi, P) - tilt,
-        hoop=sum_modes(fields.sigma_thetatheta, P) + tilt,
-        shear=sum_modes(fields.sigma_rphi, -numpy.sin(angles) * slope),
+def _sum_fields(state: AbelState, modes: Numbers, depths: Numbers, waves: tuple[Numbers, ...]) -> Numbers:
+    """Sum modes times stress fields times waves: σ_rr, σ_φφ and σ_θθ of P, σ_cot and σ_rφ: (5, depths, angles)."""
+    fields = state.kernel.socket.fields(numpy.arange(len(modes)), state.gap.socket_radius + depths)
+    P, cotangent, sine = waves
+    pairs = (
+        (fields.sigma_rr, P),
+        (fields.sigma_phiphi, P),
+        (fields.sigma_thetatheta, P),
+        (fields.sigma_cot, cotangent),
+        (fields.sigma_rphi, sine),
     )
+    return numpy.array([(modes[:, None] * field).T @ wave for field, wave in pairs])
 
 
 def find_peak_stress(state: AbelState, thickness: float) -> Peak:
@@ -168,18 +176,33 @@ def _taper_modes(state: AbelState, count: int) -> Numbers:
 
 def _legendre_and_slopes(angle: Numbers, count: int) -> tuple[Numbers, Numbers]:
     """Compute the Legendre polynomials P_n(cos φ) and their derivatives by cos φ: (count, angles)."""
-    x, n = numpy.cos(angle), numpy.arange(count)[:, None]
-    P, slope = numpy.empty((count, len(x))), numpy.zeros((count, len(x)))
-    P[0], P[1] = 1.0, x
-    factors, previous, scaled = list((2 * n - 1) * x / numpy.maximum(n, 1)), P[0], numpy.empty(len(x))
-    for k, (current, following) in enumerate(pairwise(P[1:]), start=2):
-        numpy.multiply(factors[k], current, out=following)
-        following -= numpy.multiply(previous, 1 - 1 / k, out=scaled)
-        previous = current
-    growth = (2 * n[1:] - 1) * P[:-1]
+    P, n = _legendre(angle, count), numpy.arange(1, count)[:, None]
+    growth, slope = (2 * n - 1) * P[:-1], numpy.zeros_like(P)
     for parity in (0, 1):  # each slope is that two degrees before, and (2n - 1) P_n-1
         slope[1 + parity :: 2] = numpy.cumsum(growth[parity::2], axis=0)
     return P, slope
+
+
+def _legendre(angle: Numbers, count: int) -> Numbers:
+    """Compute the Legendre polynomials P_n(cos φ): (count, angles).
+
+    Blocks of degrees advance together from two starts, as P_n and its difference D_n to P_n-1 depend linearly on those
+    at the end of the block before.
+    """
+    size = isqrt(count) + 1
+    reciprocal = 1 / numpy.arange(1, size * size + 1).reshape(size, size, 1)  # 1/n of blocks and degrees
+    decay, drop = 1 - reciprocal, (2 - reciprocal) * -2 * numpy.sin(angle / 2) ** 2  # cos φ - 1 = -2 sin²(φ/2)
+    starts = numpy.empty((size, 2, size, len(angle)))  # degrees, starts, blocks, angles
+    P, D = (numpy.array(pair)[:, None, None] for pair in ((1.0, 0.0), (0.0, 1.0)))
+    for degree in range(size):  # n P_n = (2n - 1) cos φ P_n-1 - (n - 1) P_n-2
+        D = decay[:, degree] * D + drop[:, degree] * P
+        starts[degree] = P = P + D
+    polynomials = numpy.ones((1 + size * size, len(angle)))
+    last, difference = numpy.ones_like(angle), numpy.zeros_like(angle)
+    for block in range(size):
+        polynomials[1 + block * size :][:size] = starts[:, 0, block] * last + starts[:, 1, block] * difference
+        last, difference = polynomials[(block + 1) * size], D[0, block] * last + D[1, block] * difference
+    return polynomials[:count]
 
 
 _STRESS_INTERVALS = 40  # between half angles where stresses are solved

@@ -20,7 +20,7 @@ from ....reports.press_plots import press_figure
 from ....reports.style import LineStyle, numbered
 from ...pressing import fine_curves, press_charts
 from ...state.screen import MAX_COMPARED, Screen
-from ...view import STRESS_PAUSE, Document, Host, View
+from ...view import STRESS_PAUSE, Document, Host, View, field_places
 from ...widgets.design_table import Designs, design_rows, design_table, press_designs, with_drawings, with_stresses
 from ...widgets.fields import Field, choice
 from ...widgets.words import number_rows
@@ -35,8 +35,8 @@ class Compare(View):
     """View that compares the design on the screen with others."""
 
     name, title = "compare", "Compare"
-    body = """
-<div class="inputs-row"><div data-field="compare.preset"></div><div data-field="compare.base"></div></div>
+    body = f"""
+<div class="inputs-row">{field_places("compare", ("preset", "base"))}</div>
 <p><button type="button" class="plain" data-tell="compare.keep">Add this design to the comparison</button></p>
 <div id="compare-trouble" role="alert"></div><div id="compare-note"></div>
 <div id="compare-table"></div>

@@ -6,6 +6,7 @@ from collections.abc import Callable, Hashable
 from functools import partial
 from html import escape
 from typing import Any
+from weakref import WeakKeyDictionary
 
 from ....catalogue import catalogue, reference
 from ....compare import Comparison, successful_contacts
@@ -31,6 +32,9 @@ from ...widgets.joint_fields import tilt_of
 from ...widgets.words import alert, axial_models_table, headline, models_table, number_rows
 from ..cup.worker import bore_of, is_prepared, pressed_in_cup, set_up
 from .drawing import first_view, frame_of, key
+
+_STRESSES: WeakKeyDictionary[Contact, float] = WeakKeyDictionary()
+"""Largest von Mises stress (MPa) of contacts for which it was computed: shown again, they have it at once."""
 
 _EVERY = tuple(catalogue)
 _PAINTED = {"pressure": "pressure", "stress": "von Mises stress"}
@@ -78,8 +82,7 @@ class Press(LongView):
         self._cancel_further()
         self.expect("charts", "table")
         comparison = pressed(screen.file, tuple(dict.fromkeys((screen.answered_by, reference.name))))
-        limit = self._needs_cup(screen, comparison)
-        if limit is not None:
+        if self._needs_cup(screen, comparison) is not None:
             self.long.show(screen)
         else:
             self._show_axial(screen, comparison)
@@ -88,8 +91,9 @@ class Press(LongView):
     def _needs_cup(self, screen: Screen, comparison: Comparison) -> AxialLimit | None:
         """Return the reason for the real cup; an axial load near the rim has one that is set up or requested."""
         limit = _limit(comparison, screen)
-        required = tilt_of(screen.file) > AXIAL_TILT or is_prepared(screen.file) or self.long.works_on(screen)
-        return limit if required else None
+        if limit is None or tilt_of(screen.file) > AXIAL_TILT:
+            return limit
+        return limit if is_prepared(screen.file) or self.long.works_on(screen) else None
 
     def _show_axial(self, screen: Screen, comparison: Comparison) -> None:
         """Show the numbers of a model of a load along the axis of the cup."""
@@ -99,7 +103,8 @@ class Press(LongView):
         self.channel.put_fields(_fields(screen, real=False))
         by = comparison.contacts.get(screen.answered_by)
         if by is not None:
-            numbers = headline(by, comparison.contacts.get(reference.name), screen.file.cup, screen.reading)
+            exact = comparison.contacts.get(reference.name)
+            numbers = headline(by, exact, screen.file.cup, screen.reading, _STRESSES.get(by))
         elif is_waiting(screen.file, screen.answered_by):
             numbers = f"<p class='quiet'>{escape(comparison.missing[screen.answered_by])}</p>"
         else:
@@ -173,11 +178,14 @@ class Press(LongView):
 
     def _compute_stress(self, screen: Screen, comparison: Comparison) -> None:
         by, exact = (comparison.contacts.get(name) for name in (screen.answered_by, reference.name))
-        if by is not None and not by.status.failed:
-            self.compute(
-                lambda: headline(by, exact, screen.file.cup, screen.reading, float(by.von_mises)),
-                lambda numbers: self.put(numbers=numbers),
-            )
+        if by is None or by.status.failed or by in _STRESSES:
+            return
+
+        def numbers() -> str:
+            _STRESSES[by] = float(by.von_mises)
+            return headline(by, exact, screen.file.cup, screen.reading, _STRESSES[by])
+
+        self.compute(numbers, lambda html: self.put(numbers=html))
 
     def document(self, screen: Screen) -> Document:
         comparison, units = pressed(screen.file, _EVERY), screen.reading.units

@@ -21,7 +21,7 @@ from ...pictures.bore import bare_bore, pressed_bore, pressed_viewer
 from ...pictures.contour_map import read_point
 from ...running import Work
 from ...state.screen import STANDINGS, Screen
-from ...view import Document, Host
+from ...view import Document, Host, field_places
 from ...widgets.cup_fields import cup_edited, cup_fields
 from ...widgets.fields import segments
 from ...widgets.reading import Reading
@@ -48,7 +48,7 @@ class CupView(LongView):
     settings = (chosen("standing", "Map of", STANDINGS, segments, lambda name: QUANTITIES[name].title, key="show"),)
     run_label = "Prepare the cup"
     automatic = True
-    body = f"""{long_body("cup", "".join(f'<div data-field="cup.{name}"></div>' for name in _FIELDS), _SHOWN)}
+    body = f"""{long_body("cup", field_places("cup", _FIELDS), _SHOWN)}
 <figure>
   <figcaption>Cup orientation map</figcaption>
   <div data-field="cup.show"></div>{long_body("cup-stood", "", '<div id="cup-stood"></div>')}

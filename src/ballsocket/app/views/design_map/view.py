@@ -16,9 +16,9 @@ from ....reports.study_tables import map_rows
 from ....studies.task import EDGE_DISTANCE
 from ...pictures.contour_map import read_point
 from ...state.screen import AXES, MAPPED, MapAxis, Screen
-from ...view import Document, Host, View
+from ...view import Document, Host, View, field_places
 from ...widgets.design_table import design_table, press_designs, with_drawings, with_stresses
-from ...widgets.fields import Field, choice, empty_number, segments, typed
+from ...widgets.fields import Field, choice, empty_number, segments, typed_quantity
 from ...widgets.limit_rows import LimitRows, present_value
 from ...widgets.reading import Reading, box_text
 from ...widgets.settings import Setting, chosen
@@ -86,7 +86,7 @@ def _end_setting(key: str) -> Setting:
     def read(screen: Screen, value: Any) -> dict[str, Any]:
         axis: MapAxis = getattr(screen, which)
         quantity = QUANTITIES[axis.name]
-        number = typed(label, value, screen.reading.box_unit(quantity), quantity.kind) / quantity.written.factor
+        number = typed_quantity(label, value, quantity, screen.reading)
         ends = {**vars(axis), end: number}
         low, high = (screen.reading.with_unit(quantity, ends[name]) for name in ("low", "high"))
         if not ends["low"] < ends["high"]:
@@ -108,7 +108,7 @@ class DesignMap(View):
         chosen("sizes", "A picked point has", _SIZES, segments, _SIZES.__getitem__),
     )
     body = f"""
-<div class="inputs-row map-inputs">{"".join(f'<div data-field="map.{name}"></div>' for name in _FIELDS)}</div>
+<div class="inputs-row map-inputs">{field_places("map", _FIELDS)}</div>
 <div data-field="map.limits"></div>
 <div id="map-trouble" role="alert"></div>
 <div class="map-layout">

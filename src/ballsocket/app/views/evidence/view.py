@@ -24,7 +24,7 @@ from ...pressing import pressed
 from ...running import Work
 from ...state.evidence_question import EvidenceQuestion
 from ...state.screen import Screen, phrases_of
-from ...view import Document, Host
+from ...view import Document, Host, field_places
 from ...widgets.fields import segments
 from ...widgets.limit_rows import LimitRows, present_value
 from ...widgets.settings import chosen, text
@@ -32,7 +32,7 @@ from ...widgets.words import alert
 from .worker import EVIDENCE_SECONDS, EvidencePack, axes_of, gather_pack, phrases_in
 
 _NO_YES = ("no", "yes")
-_INPUTS = "".join(f'<div data-field="evidence.{entry.name}"></div>' for entry in fields(EvidenceQuestion))
+_INPUTS = field_places("evidence", (entry.name for entry in fields(EvidenceQuestion)))
 _LIMITED = ("max_pressure", "half_angle", "edge_distance", "indentation", "area", "utilisation")
 
 

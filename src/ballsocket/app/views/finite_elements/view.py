@@ -16,16 +16,15 @@ from ...long_view import LongView, long_body
 from ...pictures.section import extent_of, section
 from ...running import Work
 from ...state.screen import Screen
-from ...view import Document
+from ...view import Document, field_places
 from ...widgets.cup_fields import cup_edited, cup_fields
 from ...widgets.reading import number_text
-from ...widgets.words import notes_list, percent
+from ...widgets.words import distinct_columns, notes_list, percent
 from .charts import pressure_picture, section_picture
 from .worker import Judged, judged
 
 _NAME = "judge"
 _FIELDS = ("arc_of_cover", "chamfer", "interface")
-_INPUTS = "".join(f'<div data-field="{_NAME}.{name}"></div>' for name in _FIELDS)
 _TO_COME = (
     "A run meshes this section with its rim, chamfer and backing, presses the ball in four load steps and shows the "
     "von Mises stress, the pressure beside the exact one of a complete shell, and the error of the mesh. It takes some "
@@ -39,7 +38,9 @@ class Judge(LongView):
     title = "Check by finite elements"
     name = _NAME
     run_label = "Run finite elements"
-    body = long_body(_NAME, _INPUTS, f'<div id="{_NAME}-numbers"></div><div id="{_NAME}-picture"></div>')
+    body = long_body(
+        _NAME, field_places(_NAME, _FIELDS), f'<div id="{_NAME}-numbers"></div><div id="{_NAME}-picture"></div>'
+    )
 
     def question_of(self, screen: Screen) -> Hashable:
         file, cup = screen.file, screen.file.cup
@@ -103,19 +104,21 @@ def _pictures(result: Judged, screen: Screen) -> str:
 def _numbers(result: Judged, screen: Screen) -> str:
     """Tabulate the numbers with mesh errors beside the exact ones."""
     rows = []
-    for column in screen.reading.columns:
+    for column in distinct_columns(screen.reading, result.numbers[CONTACT["max_pressure_angle"].key]):
         factor = column.factor / column.quantity.written.factor  # the numbers are those of JSON
         value = result.numbers[column.name] * factor
         error = result.error.get(column.attribute)
-        row = [f"{column.title} [{column.unit}]", number_text(value), f"± {percent(error)}" if error else "–"]
+        unit = column.unit.replace(" ", "\N{NO-BREAK SPACE}")
+        row = [f"{column.title} [{unit}]", number_text(value), percent(error) if error else "–"]
         if result.exact is None:
             row += ["–", "–"]
         else:
             exact = result.exact[column.name] * factor
             row += [number_text(exact), percent(float(relative_deviation(value, exact)), "+")]
         rows.append(row)
-    heads = ["quantity", "finite elements", "error of the mesh", "exact, a complete shell", "difference"]
+    heads = ["quantity", "finite elements", "mesh error", "exact", "difference"]
     return (
         f"<div class='narrow'>{table(heads, rows)}</div>"
-        f"<p class='quiet'>{result.elements} elements, {result.seconds:.2g} s.</p>{notes_list(result.notes)}"
+        f"<p class='quiet'>{result.elements} elements, {result.seconds:.2g} s. The exact answer is that of a complete "
+        f"shell, without a rim.</p>{notes_list(result.notes)}"
     )

@@ -19,9 +19,10 @@ from ...results import RESULTS
 from ...running import Work
 from ...state.screen import Screen
 from ...state.use import CHOICES, CREEP_INPUTS, LAW_INPUTS, WEAR_INPUTS
-from ...view import Document
+from ...view import Document, field_places
 from ...widgets.cycle_settings import CYCLE_SETTINGS
 from ...widgets.fields import Field, choice, number, segments
+from ...widgets.numbers import capital
 from ...widgets.settings import Setting, amount, changed, chosen
 from ...widgets.words import unit_of_files
 from .charts import depth_maps, empty_chart, penetration_chart, wear_numbers
@@ -76,11 +77,10 @@ def _read_coefficient(screen: Screen, value: Any) -> dict[str, Any]:
 def _law_setting(key: str) -> Setting:
     """Return a number of `LAW_INPUTS`, hidden unless a chosen law has it."""
     part = LAW_INPUTS[key]
-    title = part.meaning[0].upper() + part.meaning[1:]
     return Setting(
         key,
         lambda screen: {
-            **_law_field(key, part, screen.use.law_number(key), title),
+            **_law_field(key, part, screen.use.law_number(key), capital(part.meaning)),
             "hidden": key not in screen.use.used_inputs,
         },
         lambda screen, value: {"use": screen.use.with_law_number(key, _read_law_number(key, part, value))},
@@ -104,7 +104,7 @@ class Wear(LongView):
     )
     body = long_body(
         "wear",
-        "".join(f'<div data-field="wear.{setting.key}"></div>' for setting in settings),
+        field_places("wear", (setting.key for setting in settings)),
         '<div id="wear-curve"></div><div class="beside" id="wear-maps"></div><div id="wear-numbers"></div>',
     )
 
