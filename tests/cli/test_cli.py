@@ -102,7 +102,7 @@ def test_an_infinite_result_is_a_failure_in_one_line(monkeypatch, capsys):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 def test_a_terminated_process_removes_its_unfinished_files(tmp_path):
-    study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 1_000_000}\n"
+    study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 400_000}\n"
     (tmp_path / "s.toml").write_text(study, encoding="utf-8")
     process = subprocess.Popen(
         [sys.executable, "-m", "ballsocket", "study", "s.toml", "--out", "s.csv"],

@@ -119,7 +119,7 @@ ENDLESS = {
 MODELS = (bs.Exact(), bs.FiniteElement(meshes=1))
 
 
-@pytest.mark.parametrize("name", some(ENDLESS, 1))
+@pytest.mark.parametrize("name", some(reversed(ENDLESS), 1))
 def test_models_of_different_bodies_state_their_bodies(name):
     joint = ENDLESS[name]
     exact, fem = (model.press(joint, force=3000.0) for model in MODELS)

@@ -213,8 +213,7 @@ def test_godunovs_flow_is_that_of_the_film_between():
 def test_a_film_that_does_not_become_steady_is_returned_with_its_status(monkeypatch):
     from ballsocket.lubrication import film_problem as module
 
-    state = module.develop_film
-    monkeypatch.setattr(module, "develop_film", lambda *words: replace(state(*words), converged=False))
+    monkeypatch.setattr(module, "develop_film", lambda problem, start, *steps: replace(start, converged=False))
     film = bs.film(CONTACT, method="reynolds")
     assert film.status is Status.NOT_CONVERGED
     assert film.central > 0

@@ -20,8 +20,8 @@ from ballsocket.studies.store import CHECKSUM
 
 from ..extent import either, some
 
-COUNTS = {"clearances": either(quick=30, long=70), "radii": 25, "model": "exact"}
-"""Blocks of half a second: three in a quick run, seven in a long one."""
+COUNTS = {"clearances": either(quick=20, long=70), "radii": 25, "model": "exact"}
+"""Blocks of half a second: two in a quick run, seven in a long one."""
 
 KILLS = min(5, int(os.environ.get("BALLSOCKET_KILLS", "5")))
 TIMES = {"serial": KILLS, "processes": KILLS, "dask": 1}

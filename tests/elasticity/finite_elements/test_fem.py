@@ -162,12 +162,13 @@ def test_arcs_of_cover_below_a_hemisphere_are_softer():
 
 def test_a_contact_that_fills_the_socket_has_a_status_and_numbers():
     cup = bs.Cup(arc_of_cover=np.radians(70.0))
-    loads = np.array([100.0, 2500.0, 3500.0, 4500.0])
+    loads = np.array(some([100.0, 2500.0, 3500.0, 4500.0], 2))
     model = bs.FiniteElement(cup=cup, meshes=1)
     contact = model.press(HIP, force=loads)
-    assert contact.status.tolist() == [0, bs.Status.AT_RIM, bs.Status.AT_RIM, bs.Status.AT_RIM]
-    assert contact.valid.tolist() == [True, False, False, False]
-    assert "3 of 4: the contact fills the socket and reaches its rim" in contact.notes
+    assert contact.status.tolist() == [0, *[bs.Status.AT_RIM] * (len(loads) - 1)]
+    assert contact.valid.tolist() == [True, *[False] * (len(loads) - 1)]
+    note = f"{len(loads) - 1} of {len(loads)}: the contact fills the socket and reaches its rim"
+    assert note in contact.notes
     np.testing.assert_allclose(np.degrees(contact.half_angle[1:]), 35.0)
     np.testing.assert_allclose(contact.force, loads, rtol=1e-9)
     assert np.all(np.diff(contact.indentation) > 0)
@@ -327,7 +328,8 @@ def test_error_bars_hold_for_both_kinds_of_elements(element):
         assert misses.max() < 4, name
 
 
-@pytest.mark.parametrize("clearance", some([0.1, 3.0], 1))
+@pytest.mark.long
+@pytest.mark.parametrize("clearance", [0.1, 3.0])
 def test_a_narrow_contact_in_a_massive_socket_is_hertz(clearance):
     """The patch is that of the socket's radius on both bodies, however much smaller the ball is."""
     soft = bs.Material(young=1000.0, poisson=0.4)
@@ -441,7 +443,7 @@ def test_the_largest_stress_excludes_the_sharp_corner():
     cup = bs.Cup(arc_of_cover=np.radians(80.0))
     peaks = [
         bs.FiniteElement(cup=cup, spacing=bs.Adapted(elements=elements), meshes=1).press(HIP, force=2e4).peak_stress
-        for elements in either(quick=(45, 90), long=(60, 120))
+        for elements in either(quick=(44, 88), long=(60, 120))
     ]
     assert peaks[0].von_mises == pytest.approx(peaks[1].von_mises, rel=1e-2)
 
