@@ -43,6 +43,7 @@ kind = "{engine}"
 """
 
 
+@pytest.mark.long
 def test_files_that_may_not_grow_stop_the_command_with_one_sentence(tmp_path):
     """A real failure of the system's: no file may be larger than 20 kB."""
     (tmp_path / "s.toml").write_text(
