@@ -11,8 +11,9 @@ _GROUPS = {
         )
     ),
     "evidence": ("tests/evidence/",),
+    "sources": tuple(f"tests/test_{name}.py" for name in ("doors", "imports", "patterns", "words")),
 }
-"""Files that share a server and a browser, or a computed pack: one worker takes all of them."""
+"""Files that share a server and a browser, a computed pack or parsed sources: one worker takes all of them."""
 
 _FIRST = (
     *_GROUPS["browser"],

@@ -13,6 +13,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.sources import bibliography
 
+from . import extent
 from .cli.command import run
 from .places import ROOT
 
@@ -30,6 +31,18 @@ def pages(language, mark):
     return [path for path in PAGES if any(mark in block for block in fenced(path.read_text("utf-8"), language))]
 
 
+SLOW = {
+    *("cloud_stores", "cup", "film", "gradients", "hip", "identify"),
+    *("off_axis", "patients", "preloaded", "programs"),
+}
+"""Pages whose examples compute for one to four seconds each; they run with `--long`."""
+
+
+def quick_pages(language, mark):
+    """List the pages with examples for `--long`, and those of them that are not slow otherwise."""
+    return [path for path in pages(language, mark) if extent.whole or path.stem not in SLOW]
+
+
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
     """Beside the examples, as the pages take it."""
@@ -38,7 +51,7 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-@pytest.mark.parametrize("path", pages("python", ">>>"), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", quick_pages("python", ">>>"), ids=lambda path: path.stem)
 def test_python_examples_of_a_page_have_the_output_shown(path, folder):
     text = path.read_text("utf-8")
     for library in ("jax", "torch"):
@@ -52,7 +65,7 @@ def test_python_examples_of_a_page_have_the_output_shown(path, folder):
     assert failed == 0, "".join(said)
 
 
-@pytest.mark.parametrize("path", pages("console", "$ "), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", quick_pages("console", "$ "), ids=lambda path: path.stem)
 def test_commands_of_a_page_print_the_output_shown(path, folder):
     for block in fenced(path.read_text("utf-8"), "console"):
         command, _, shown = block.partition("\n")

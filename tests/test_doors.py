@@ -2,13 +2,11 @@
 
 import ast
 from functools import cache
-from pathlib import Path
 
 import pytest
 
-import ballsocket as bs
+from .rooms import PACKAGE, tree_of
 
-PACKAGE = Path(bs.__file__).parent
 OPENING = {"open", "read_text", "read_bytes", "genfromtxt", "loadtxt", "fromfile", "read_csv", "read_parquet"}
 OWN_FILES = {
     "app/page.py": "files of the page, in the package",
@@ -45,8 +43,8 @@ OWN_FILES = {
 
 @cache
 def modules():
-    """Parse all modules of the package once for all tests of a process."""
-    return {path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_bytes()) for path in PACKAGE.rglob("*.py")}
+    """Return the syntax trees of all modules of the package."""
+    return {path.relative_to(PACKAGE).as_posix(): tree_of(path) for path in PACKAGE.rglob("*.py")}
 
 
 def called(tree):

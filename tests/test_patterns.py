@@ -5,16 +5,17 @@ import importlib
 import re
 import time
 from itertools import product
-from pathlib import Path
 from re import _constants as codes
 from re import _parser as parser
 
 import pytest
 
-import ballsocket as bs
+from .rooms import PACKAGE, tree_of
 
-PACKAGE = Path(bs.__file__).parent
 METHODS = {"match", "fullmatch", "search", "sub", "split", "findall", "finditer"}
+WITH_PATTERNS = re.compile(rf"\bre\.(?:compile|{'|'.join(sorted(METHODS))})\b")
+"""Text of a module that makes or uses patterns; other modules are not parsed."""
+
 SIZES = (500, 1000, 2000, 4000)
 BOUNDED = {
     "app/server.py": "host names of a request, against the names that its administrator gives",
@@ -31,19 +32,16 @@ def uses():
     patterns, made = [], set()
     for path in sorted(PACKAGE.rglob("*.py")):
         text, name = path.read_text(encoding="utf-8"), path.relative_to(PACKAGE).as_posix()
-        if "re." not in text:
+        if not WITH_PATTERNS.search(text):
             continue
-        tree = ast.parse(text)
         calls = [
             (node.func.value.id, node.func.attr, node.args)
-            for node in ast.walk(tree)
+            for node in ast.walk(tree_of(path))
             if isinstance(node, ast.Call)
             and isinstance(node.func, ast.Attribute)
             and isinstance(node.func.value, ast.Name)
             and node.func.attr in METHODS
         ]
-        if not any(owner == "re" for owner, _, _ in calls) and "re.compile" not in text:
-            continue
         for owner, method, arguments in calls:
             if owner == "re":
                 pattern = arguments[0]

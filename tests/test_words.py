@@ -2,6 +2,7 @@
 
 import ast
 import re
+from functools import cache
 from importlib.util import find_spec
 
 import numpy as np
@@ -12,7 +13,7 @@ import ballsocket as bs
 from . import plain_words
 from .joints import HIP
 from .places import ROOT
-from .rooms import files_of, rooms
+from .rooms import files_of, rooms, tree_of
 
 NEEDS_STUDIES = pytest.mark.skipif(find_spec("xarray") is None, reason="the extra for studies is not installed")
 PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
@@ -113,7 +114,7 @@ def test_the_first_line_of_a_docstring_names_its_noun():
     """First lines are read in lists, beside a name and without their context."""
     leaning = []
     for path in sorted((ROOT / "src" / "ballsocket").rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        for node in ast.walk(tree_of(path)):
             if isinstance(node, ast.FunctionDef | ast.ClassDef):
                 said = ast.get_docstring(node) or ""
                 leaning += [f"{path.name}: {said.splitlines()[0]}"] if LEANING.match(said) else []
@@ -127,17 +128,23 @@ NOT_YET_IMPERATIVE = (*NOT_YET,)
 """Rooms whose functions are not yet described by an imperative verb and its object."""
 
 
+@cache
+def measures(room):
+    """Measure a room once for all its rules."""
+    return plain_words.measure(files_of(room))
+
+
 @pytest.mark.parametrize("rule", ["clause", "dialect", "vague name"])
 @pytest.mark.parametrize("room", [room for room in rooms() if room not in NOT_YET])
 def test_rooms_are_written_in_plain_english(room, rule):
     """See `plain_words` for the rules; `python -m tests.plain_words ROOM` prints all figures of a room."""
-    found = plain_words.measure(files_of(room))[rule]
+    found = measures(room)[rule]
     assert found.met, "\n".join([str(found), *map(str, found.findings)])
 
 
 @pytest.mark.parametrize("room", [room for room in rooms() if room not in NOT_YET_IMPERATIVE])
 def test_functions_are_described_by_an_imperative_verb(room):
-    found = plain_words.measure(files_of(room))["no verb"]
+    found = measures(room)["no verb"]
     assert found.met, "\n".join([str(found), *map(str, found.findings)])
 
 

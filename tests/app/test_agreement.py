@@ -209,7 +209,7 @@ _SEEDS = either((28,), (28, 1, 2, 3, 5))
 @pytest.mark.parametrize("seed", _SEEDS)
 def test_boxes_drawing_answer_and_link_agree(browser, address, seed):
     """Answers are up to 0.2 s late, and up to four things are done at a time; the real cup is rarely awaited."""
-    acts, dice = either(40, ACTS // len(_SEEDS)), random.Random(seed)
+    acts, dice = either(25, ACTS // len(_SEEDS)), random.Random(seed)
     with opened_proxy(address) as proxy, opened_profile(browser, proxy.address) as profile:
         user = User(profile, proxy.address).open()
         hand = Hand(user, seed)

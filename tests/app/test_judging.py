@@ -102,6 +102,7 @@ def test_what_cannot_be_meshed_is_said():
     assert "chamfer" in refused.why
 
 
+@pytest.mark.long
 def test_a_contact_as_wide_as_its_cup_is_answered_with_a_note():
     found = until_the_end(judging(JointFile(HIP.joint, {"force": 3e4}, Cup(arc_of_cover=0.75))))[-1].value
     assert any("rim" in note for note in found.notes)

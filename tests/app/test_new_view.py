@@ -28,6 +28,7 @@ assert b"Volume: hip-28" in make_file(page.seen(), "HTML")[1]
 """
 
 
+@pytest.mark.long
 def test_a_new_view_is_a_folder_and_a_line(tmp_path):
     copy = tmp_path / "ballsocket"
     shutil.copytree(Path(bs.__file__).parent, copy, ignore=shutil.ignore_patterns("__pycache__"))

@@ -132,6 +132,7 @@ def test_a_map_is_drawn_and_clicked_in_the_unit_that_its_axis_names():
     assert page.screen.file.joint.ball_radius == 14.0
 
 
+@pytest.mark.long
 def test_a_map_of_joints_that_tables_do_not_know_is_solved():
     page = Page(
         "view=map&joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=UHMWPE"

@@ -8,6 +8,7 @@ import pytest
 
 import ballsocket as bs
 
+from ..extent import either, some
 from ..joints import HIP
 
 FORCES = [0.0, 100.0, 3000.0]
@@ -25,11 +26,19 @@ NAMES = (
     "pressure_integral",
 )
 EVERY = pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
+SOME = pytest.mark.parametrize("model", some(bs.catalogue.values(), 5), ids=lambda model: model.name)
 DIFFERENTIABLE = pytest.mark.parametrize(
     "model",
     [model for model in bs.catalogue.values() if model.name != "exact"],
     ids=[n for n in bs.catalogue if n != "exact"],
 )
+TRACED = pytest.mark.parametrize(
+    "model",
+    some([model for model in bs.catalogue.values() if model.name != "exact"][either(quick=2, long=0) :], 4),
+    ids=lambda model: model.name,
+)
+"""Differentiable models for JAX, which traces and compiles each one for seconds; a quick run takes closed forms."""
+
 INPUTS = (3000.0, 17.9, 0.1, 6.75, 1000.0, 0.41, 230000.0, 0.3)  # 0.41: between the columns of Table 3
 
 
@@ -55,7 +64,7 @@ def central_differences(model):
     return np.array(slopes)
 
 
-@EVERY
+@SOME
 def test_models_need_only_the_array_api_standard(model):
     expected = model.press(HIP, force=np.array(FORCES))
     contact = model.press(HIP, force=array_api_strict.asarray(FORCES))
@@ -98,7 +107,7 @@ def test_mixed_array_libraries_are_refused():
         bs.Hertz().press(joint, force=array_api_strict.asarray([1.0]))
 
 
-@DIFFERENTIABLE
+@TRACED
 def test_jax_gradients_equal_differences_with_and_without_jit(model):
     jax = pytest.importorskip("jax")
     with jax.enable_x64(True):
@@ -132,7 +141,7 @@ def test_joints_and_contacts_are_jax_trees():
         assert isinstance(slopes, bs.Joint)
         assert float(slopes.ball.young) == 0.0  # the paper's model has a rigid ball
         assert float(slopes.clearance) == pytest.approx(central_differences_of_clearance(), rel=1e-6)
-        for model in (bs.HessForsbach(), bs.PlaneLayer()):
+        for model in some([bs.HessForsbach(), bs.PlaneLayer()], 1):
             pressed = jax.jit(lambda joint, model=model: model.press(joint, force=3000.0))(HIP)
             assert isinstance(pressed, bs.Contact)
             assert float(pressed.max_pressure) == pytest.approx(model.press(HIP, force=3000.0).max_pressure, rel=1e-9)
@@ -217,7 +226,7 @@ def test_second_derivative_of_an_inverted_law_equals_differences():
         assert float(second) == pytest.approx((slopes[0] - slopes[1]) / (2 * step), rel=1e-5)
 
 
-@DIFFERENTIABLE
+@TRACED
 def test_derivatives_are_finite_beside_a_point_without_load(model):
     """d/d(joint) of a sum over loads that contains a zero, and of pressures beyond the edge, is finite."""
     jax = pytest.importorskip("jax")

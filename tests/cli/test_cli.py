@@ -15,6 +15,7 @@ import ballsocket as bs
 from ballsocket import cli
 from ballsocket.cli.json_answers import echo_json
 
+from ..extent import some
 from ..places import EXAMPLES
 from .command import run, run_process
 
@@ -25,14 +26,15 @@ NUMBERS += ("--young", "1GPa", "--poisson", "0.4", "--force", "3kN")
 
 @pytest.mark.parametrize(
     ("words", "encoding"),
-    [
-        (("press", EXAMPLE, "--model", "bartel"), "utf-8"),
-        (("press", EXAMPLE, "--model", "bartel", "--json"), "ascii"),
-        (("press", EXAMPLE, "--force", "1e12", "--model", "bartel"), "ascii"),
-        (("press", "hip-29", "--force", "1"), "utf-8"),
-        (("presets",), "utf-8"),
-    ],
-    ids=["table", "json", "no answer", "refused", "list"],
+    some(
+        [
+            (("press", EXAMPLE, "--force", "1e12", "--model", "bartel"), "ascii"),
+            (("press", EXAMPLE, "--model", "bartel", "--json"), "ascii"),
+            (("press", EXAMPLE, "--model", "bartel"), "utf-8"),
+            (("presets",), "utf-8"),
+            (("press", "hip-29", "--force", "1"), "utf-8"),
+        ]
+    ),
 )
 def test_a_process_prints_what_a_call_prints(words, encoding):
     """The other tests call the command: it is the same."""
@@ -40,7 +42,9 @@ def test_a_process_prints_what_a_call_prints(words, encoding):
     assert (there.returncode, there.stdout, there.stderr) == (here.returncode, here.stdout, here.stderr)
 
 
-@pytest.mark.parametrize("words", [("presets",), ("models",), ("cite",), ("press", EXAMPLE, "--json")], ids=" ".join)
+@pytest.mark.parametrize(
+    "words", some([("press", EXAMPLE, "--json"), ("presets",), ("models",), ("cite",)], 1), ids=" ".join
+)
 def test_a_closed_reader_ends_the_program_without_a_message(words):
     command = [sys.executable, "-m", "ballsocket", *words]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, encoding="utf-8") as process:
@@ -98,7 +102,7 @@ def test_an_infinite_result_is_a_failure_in_one_line(monkeypatch, capsys):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 def test_a_terminated_process_removes_its_unfinished_files(tmp_path):
-    study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 1_000_000}\n"
+    study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 400_000}\n"
     (tmp_path / "s.toml").write_text(study, encoding="utf-8")
     process = subprocess.Popen(
         [sys.executable, "-m", "ballsocket", "study", "s.toml", "--out", "s.csv"],

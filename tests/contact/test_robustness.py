@@ -9,7 +9,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.quantities import CONTACT
 
-from ..extent import either
+from ..extent import either, some
 from ..joints import HIP
 
 NUMBERS = ("indentation", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
@@ -42,7 +42,7 @@ def wide_contacts(count: int, seed: int):
 
 
 def test_tabulated_results_do_not_depend_on_the_other_loads():
-    cases = [(WIDE, 1246.1909930719228 * np.linspace(0.9, 1.1, 41)), *wide_contacts(either(quick=150, long=1000), 7)]
+    cases = [(WIDE, 1246.1909930719228 * np.linspace(0.9, 1.1, 41)), *wide_contacts(either(quick=50, long=1000), 7)]
     for joint, force in cases:
         company = bs.Tabulated().press(joint, force=force)
         alone = [bs.Tabulated().press(joint, force=float(one)) for one in force]
@@ -119,8 +119,9 @@ ENDLESS = {
 MODELS = (bs.Exact(), bs.FiniteElement(meshes=1))
 
 
-@pytest.mark.parametrize("joint", ENDLESS.values(), ids=ENDLESS)
-def test_models_of_different_bodies_state_their_bodies(joint):
+@pytest.mark.parametrize("name", some(reversed(ENDLESS), 1))
+def test_models_of_different_bodies_state_their_bodies(name):
+    joint = ENDLESS[name]
     exact, fem = (model.press(joint, force=3000.0) for model in MODELS)
     assert fem.indentation > 1.05 * exact.indentation
     assert fem.max_pressure == pytest.approx(exact.max_pressure, rel=0.04)

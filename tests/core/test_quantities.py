@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from functools import cache
 from importlib import import_module
 from inspect import getattr_static
 from math import inf, nan, pi
@@ -72,14 +73,19 @@ def test_every_quantity_of_contact_joint_and_cup_is_an_attribute_and_no_other_nu
     assert _numbers(bs.Cup()) - {"rim"} == set(CUP)
 
 
+@cache
+def units():
+    """Make the registry of pint once; it takes 0.2 s."""
+    return pint.UnitRegistry()
+
+
 @EVERY
 def test_units_are_read_and_have_the_stated_factors(quantity):
     """A number as files give it is the number inside, and the factors are those of the units' names."""
     for unit in (Unit(quantity.unit), quantity.written, quantity.shown):
         text = unit.text.replace("°", "deg") if unit.text not in ("", "1") else ""
         assert parse(quantity.name, f"{unit.factor!r} {text}".strip(), quantity.kind) == pytest.approx(1.0, rel=1e-15)
-    registry = pint.UnitRegistry()
-    inside = registry.Quantity(quantity.unit.replace("mm2", "mm**2"))
+    inside = units().Quantity(quantity.unit.replace("mm2", "mm**2"))
     for unit in (quantity.written, quantity.shown):
         there = inside.to((unit.text or "1").replace("°", "deg").replace("²", "**2"))
         assert there.magnitude == pytest.approx(unit.factor, rel=1e-15)
@@ -200,6 +206,7 @@ terminal.print_press(bs.compare(hip, force=3000.0, models={"hertz": bs.Hertz()})
 """
 
 
+@pytest.mark.long
 def test_a_quantity_is_added_by_one_entry(tmp_path):
     """Once `conformity`, an attribute of every contact, is among what is printed, everything that prints knows it."""
     shutil.copytree(Path(bs.__file__).parent, tmp_path / "ballsocket", ignore=shutil.ignore_patterns("__pycache__"))

@@ -49,6 +49,7 @@ def run(package, *arguments):
     )
 
 
+@pytest.mark.long
 def test_the_command_lists_and_writes_a_new_target(package):
     assert FUNCTION.count("\n") + LINE.count("\n") <= 20
     assert "octave" in run(package, "export", "--help").stdout

@@ -57,6 +57,7 @@ def python(package, *words):
     return run.stdout
 
 
+@pytest.mark.long
 def test_reading_refusals_schema_and_documentation_follow_a_new_key(package):
     number, *refusals, row = python(package, "-c", CHECK).splitlines()
     assert float(number) == pytest.approx(0.2)

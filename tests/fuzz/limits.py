@@ -24,10 +24,10 @@ _LONG = int(os.environ.get("BALLSOCKET_INPUTS", "50000")) // 100
 
 
 def inputs(share):
-    """A hundredth of all inputs, so many times: 2000 of them in a quick run, 50 000 in a long one, or as many as
+    """A hundredth of all inputs, so many times: 1000 of them in a quick run, 50 000 in a long one, or as many as
     the environment's BALLSOCKET_INPUTS says."""
     return settings(
-        max_examples=either(quick=20, long=_LONG) * share,
+        max_examples=either(quick=10, long=_LONG) * share,
         suppress_health_check=list(HealthCheck),
         deadline=None,
         phases=either(quick=[Phase.generate], long=[Phase.generate, Phase.shrink]),

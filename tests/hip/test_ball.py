@@ -87,6 +87,7 @@ def test_custom_ball_law_cannot_be_stored(tmp_path):
         use.after(1e4, store=tmp_path)
 
 
+@pytest.mark.long
 def test_report_page_has_a_map_of_the_ball_wear(tmp_path):
     history = hip(
         cycle=iso_14242_1(20), ring_width=radians(8.0), wear=Archard(coefficient=K), ball_wear=Archard(coefficient=K)

@@ -55,7 +55,7 @@ def test_a_file_with_an_explicit_zero_angle_has_an_upright_cup(tmp_path, change)
 
 
 def test_the_command_simulates_an_upright_cup(tmp_path):
-    short = ("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]")
+    short = ("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]"), ("instants = 100", "instants = 24")
     upright = json.loads(run("hip", str(write_edited_file(tmp_path, ("30 deg", "0 deg"), *short)), "--json").stdout)
     tilted = json.loads(run("hip", str(write_edited_file(tmp_path, (TILT, ""), *short)), "--json").stdout)
     assert upright["cycle"]["edge"]["distance_mm"] > 4 + tilted["cycle"]["edge"]["distance_mm"]

@@ -15,7 +15,7 @@ from ballsocket.hip.hamrock_dowson import film_thickness
 from ballsocket.hip.simulation import _relative_discretization_error, check_cycles
 from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, neighbours_in_subset, spring_foundation
 
-from .test_wear import hip
+from .test_wear import QUICK, hip
 
 CELLS = graded_grid(radians(90.0), radians(6.0))
 SPRINGS = spring_foundation(CELLS, modulus=100.0, clearance=0.1, socket_radius=14.1)
@@ -188,7 +188,7 @@ def test_film_thickness_is_that_of_hamrock_and_dowson():
 
 
 def test_film_of_a_cycle_has_consistent_ratio_power_and_heat():
-    use = hip()
+    use = hip(**QUICK)
     film = use.film(Lubricant(ball_roughness=3e-5, cup_roughness=4e-5, friction=0.1))
     assert film.ratio == pytest.approx(film.least / 5e-5, rel=1e-12)
     assert film.heat == pytest.approx((film.power * use.cycle.seconds[use.loaded]).sum(), rel=1e-12)

@@ -51,12 +51,16 @@ def test_an_unwritable_report_is_refused_before_the_run(tmp_path):
     assert "cannot write hip.html" in run("hip", file, "--report", str(tmp_path / "no" / "hip.html")).stderr
 
 
+SHORT = (("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]"), ("instants = 100", "instants = 24"))
+"""Changes of the example to few cycles and instants."""
+
+
 def test_results_are_printed_before_the_report_fails(tmp_path, monkeypatch):
     def full(path, *rest):
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("ballsocket.reports.hip_report.write_hip_report", full)
-    words = ["hip", str(write_edited_file(tmp_path, ("5e6\n", "1e4\n"), ("[1e6, 2e6, 5e6]", "[]"))), "--json"]
+    words = ["hip", str(write_edited_file(tmp_path, *SHORT)), "--json"]
     done = CliRunner().invoke(app, [*words, "--report", str(tmp_path / "hip.html")])
     assert isinstance(done.exception, OSError)
     assert json.loads(done.stdout)["history"][0]["cycles"] == 1e4

@@ -20,7 +20,7 @@ from ballsocket.hip import (
     logarithmic,
 )
 
-from .test_wear import K, hip
+from .test_wear import QUICK, K, hip
 
 WALK, STAIRS = in_vivo("walking", 750.0, 40), in_vivo("stairs-up", 750.0, 40)
 STAND = in_vivo("stand-up", 750.0, 24)
@@ -31,7 +31,8 @@ def mixed(*parts):
 
 
 def test_a_mix_of_one_activity_equals_that_activity():
-    alone, mix = hip(cycle=WALK), hip(cycle=mixed((WALK, 1e6)))
+    coarse = {"ring_width": QUICK["ring_width"]}
+    alone, mix = hip(cycle=WALK, **coarse), hip(cycle=mixed((WALK, 1e6)), **coarse)
     assert mix.first == alone.first
     assert mix.after(5e5).last.volume == pytest.approx(alone.after(5e5).last.volume, rel=1e-12)
     assert mix.film(Lubricant()).heat == pytest.approx(alone.film(Lubricant()).heat, rel=1e-12)

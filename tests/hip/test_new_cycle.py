@@ -54,6 +54,7 @@ def package(tmp_path_factory):
     return folder
 
 
+@pytest.mark.long
 def test_a_new_cycle_is_known_to_python_files_command_line_json_and_explorer(package):
     assert FILE.count("\n") <= 21
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}

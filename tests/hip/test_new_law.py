@@ -105,6 +105,7 @@ def run(package, folder, *words):
     )
 
 
+@pytest.mark.long
 def test_new_laws_work_in_python_files_uncertainty_and_explorer(package, tmp_path):
     (tmp_path / "hip.toml").write_text(HIP, "utf-8")
     explorer = EXPLORER if find_spec("tornado") else ""
@@ -112,6 +113,7 @@ def test_new_laws_work_in_python_files_uncertainty_and_explorer(package, tmp_pat
     assert python.returncode == 0, python.stderr
 
 
+@pytest.mark.long
 def test_new_laws_work_on_the_command_line_and_in_json(package, tmp_path):
     (tmp_path / "hip.toml").write_text(HIP[: HIP.index("[uncertainty]")], "utf-8")
     command = run(package, tmp_path, "-m", "ballsocket", "hip", "hip.toml", "--json")

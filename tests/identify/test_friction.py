@@ -53,6 +53,7 @@ def test_estimate_and_band_are_those_of_weighted_linear_regression():
     assert (estimate.high - estimate.low) / 2 == pytest.approx(half, rel=1e-3)
 
 
+@pytest.mark.long
 def test_bands_of_95_percent_contain_the_coefficient_in_most_trials():
     tried = trials(bs.identify(MODEL, JOINT, torques(), RANGE), either(quick=10, long=60), seed=3)
     assert tried.coverage["friction_coefficient"] >= either(quick=0.8, long=0.9)

@@ -199,6 +199,7 @@ def test_each_example_of_a_new_unknown_has_at_most_20_lines():
     assert all(text.count("\n") <= 20 for text in FILES)
 
 
+@pytest.mark.long
 def test_a_new_unknown_costs_one_file_and_one_line_of_the_registry(outputs):
     """It is used from Python, by loads of both kinds, and from a file."""
     by_force, by_depth, from_file = outputs[0]["points"]
@@ -208,10 +209,12 @@ def test_a_new_unknown_costs_one_file_and_one_line_of_the_registry(outputs):
     assert from_file == pytest.approx({"foundation_modulus": 300.0, "frame.seating": 0.005}, rel=1e-3)
 
 
+@pytest.mark.long
 def test_a_new_error_of_a_machine_has_a_sensitivity_and_a_note(outputs):
     assert any(note.startswith("a seating of 1 µm would move foundation_modulus by") for note in outputs[0]["notes"])
 
 
+@pytest.mark.long
 def test_a_new_unknown_is_in_the_json_of_the_command(outputs):
     estimates = {row["name"]: row for row in outputs[1]["estimates"]}
     assert estimates["foundation_modulus"]["unit"] == "MPa/mm"

@@ -171,7 +171,7 @@ cells, by up to 14 nm, and to short steps from 640 and 2560, by up to 7 nm. The 
 """
 
 
-@pytest.mark.parametrize(("width", "count"), some([(2.0, 40), (2.0, 160), (1.0, 160)], few=2))
+@pytest.mark.parametrize(("width", "count"), some([(2.0, 40), (2.0, 160), (1.0, 160)], few=1))
 def test_the_stated_error_covers_a_cycle_that_reverses_load_and_motion(width, count):
     """The ball swings by 86° in 6 s while the load goes from 300 to 2000 N and back, twice."""
     phase = (np.arange(count) + 0.5) / count

@@ -33,6 +33,7 @@ def spin_towards_rim(tilt, rate):
     return rate * cos(radians(tilt)), 0.0, -rate * sin(radians(tilt))
 
 
+@pytest.mark.long
 def test_an_axial_load_in_a_hemisphere_has_the_film_of_exact():
     """The closed shell of `exact` and the cup with a rim, on one mesh of the film: 468.0 and 467.8 nm."""
     axial, cup = (

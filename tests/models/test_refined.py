@@ -235,6 +235,7 @@ def test_validity_is_the_box_of_the_fit():
     assert not MODEL.press(joint_of(0.4, 7.0), half_angle=angle).valid
 
 
+@pytest.mark.long
 def test_a_solution_is_a_jax_tree():
     jax = pytest.importorskip("jax")
     import ballsocket.compiled.pytrees  # noqa: F401 - registers the words

@@ -401,6 +401,7 @@ def test_too_many_points_are_refused_with_size_and_time(tmp_path):
     assert not (tmp_path / "s.zarr").exists()
 
 
+@pytest.mark.long
 def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
     monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 5)
     for model in some([bs.Exact(), bs.HessForsbach()], 1):

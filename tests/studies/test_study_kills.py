@@ -20,8 +20,8 @@ from ballsocket.studies.store import CHECKSUM
 
 from ..extent import either, some
 
-COUNTS = {"clearances": either(quick=30, long=70), "radii": 25, "model": "exact"}
-"""Blocks of half a second: three in a quick run, seven in a long one."""
+COUNTS = {"clearances": either(quick=20, long=70), "radii": 25, "model": "exact"}
+"""Blocks of half a second: two in a quick run, seven in a long one."""
 
 KILLS = min(5, int(os.environ.get("BALLSOCKET_KILLS", "5")))
 TIMES = {"serial": KILLS, "processes": KILLS, "dask": 1}
@@ -43,10 +43,11 @@ kind = "{engine}"
 """
 
 
+@pytest.mark.long
 def test_files_that_may_not_grow_stop_the_command_with_one_sentence(tmp_path):
     """A real failure of the system's: no file may be larger than 20 kB."""
     (tmp_path / "s.toml").write_text(
-        STUDY.format(model="hess-forsbach", clearances=300, radii=300, engine="serial"), encoding="utf-8"
+        STUDY.format(model="hess-forsbach", clearances=100, radii=100, engine="serial"), encoding="utf-8"
     )
     code = (
         "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)); "
@@ -220,7 +221,8 @@ def server(words, folder, log):
 
 
 def test_control_c_and_a_kill_leave_a_store_that_resumes(tmp_path):
-    (tmp_path / "s.toml").write_text(STUDY.format(engine="processes", **COUNTS), encoding="utf-8")
+    engine = either(quick="serial", long="processes")  # three starts of two workers take six seconds
+    (tmp_path / "s.toml").write_text(STUDY.format(engine=engine, **COUNTS), encoding="utf-8")
     process = started(tmp_path, subprocess.PIPE)
     while done_blocks(tmp_path / "s.zarr") < 1 and process.poll() is None:
         time.sleep(0.02)

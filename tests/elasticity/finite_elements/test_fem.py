@@ -101,6 +101,7 @@ def test_stresses_are_the_exact_ones(force):
         assert difference.max() < 0.01 * exact.max_pressure, name
 
 
+@pytest.mark.long
 def test_the_peak_stress_of_a_massive_socket_lies_under_the_contact():
     pivot = bs.joints["tilting-pad-pivot"]
     ours, exact = (model.press(pivot, force=3000.0) for model in (bs.FiniteElement(meshes=1), bs.Exact()))
@@ -121,7 +122,7 @@ def test_displacements_of_the_bore_are_the_exact_ones():
 # --- against CalculiX ---
 
 
-@pytest.mark.parametrize("case", some(CALCULIX, 5), ids=lambda case: case["name"])
+@pytest.mark.parametrize("case", some(CALCULIX), ids=lambda case: case["name"])
 def test_calculix_has_the_same_indentation_pressure_and_half_angle(case):
     """Steel half ball pushed by its equator, hemispherical liner, linearised: the same problem by other elements."""
     joint = bs.Joint(
@@ -145,29 +146,33 @@ def test_the_rim_softens_wide_contacts_most():
     """A hemisphere is softer near its rim; a complete sphere is not."""
     angle = np.radians([30.0, 50.0, 70.0, 80.0])
     joint = lined(0.49, 15.0)
-    open_, closed = (bs.FiniteElement(cup=cup).press(joint, half_angle=angle) for cup in (bs.Cup(), FULL))
+    open_, closed = (bs.FiniteElement(cup=cup, meshes=1).press(joint, half_angle=angle) for cup in (bs.Cup(), FULL))
     softer = closed.stiffness / open_.stiffness - 1
     assert np.all(np.diff(softer) > 0)
     assert softer[-1] > 0.1
 
 
 def test_arcs_of_cover_below_a_hemisphere_are_softer():
-    arcs = np.radians([120.0, 140.0, 160.0, 180.0])
-    depths = [bs.FiniteElement(cup=bs.Cup(arc_of_cover=arc)).press(HIP, force=3000.0).indentation for arc in arcs]
+    arcs = np.radians(some([120.0, 140.0, 160.0, 180.0]))
+    depths = [
+        bs.FiniteElement(cup=bs.Cup(arc_of_cover=arc), meshes=1).press(HIP, force=3000.0).indentation for arc in arcs
+    ]
     assert np.all(np.diff(depths) < 0)
 
 
 def test_a_contact_that_fills_the_socket_has_a_status_and_numbers():
     cup = bs.Cup(arc_of_cover=np.radians(70.0))
-    loads = np.array([100.0, 2500.0, 3500.0, 4500.0])
-    contact = bs.FiniteElement(cup=cup).press(HIP, force=loads)
-    assert contact.status.tolist() == [0, bs.Status.AT_RIM, bs.Status.AT_RIM, bs.Status.AT_RIM]
-    assert contact.valid.tolist() == [True, False, False, False]
-    assert "3 of 4: the contact fills the socket and reaches its rim" in contact.notes
+    loads = np.array(some([100.0, 2500.0, 3500.0, 4500.0], 2))
+    model = bs.FiniteElement(cup=cup, meshes=1)
+    contact = model.press(HIP, force=loads)
+    assert contact.status.tolist() == [0, *[bs.Status.AT_RIM] * (len(loads) - 1)]
+    assert contact.valid.tolist() == [True, *[False] * (len(loads) - 1)]
+    note = f"{len(loads) - 1} of {len(loads)}: the contact fills the socket and reaches its rim"
+    assert note in contact.notes
     np.testing.assert_allclose(np.degrees(contact.half_angle[1:]), 35.0)
     np.testing.assert_allclose(contact.force, loads, rtol=1e-9)
     assert np.all(np.diff(contact.indentation) > 0)
-    again = bs.FiniteElement(cup=cup).press(HIP, indentation=contact.indentation)
+    again = model.press(HIP, indentation=contact.indentation)
     np.testing.assert_allclose(again.force, loads, rtol=1e-6)
 
 
@@ -277,6 +282,7 @@ def test_error_bars_can_be_switched_off():
     assert json.dumps(one.summary()["error"]["indentation"]) == "null"
 
 
+@pytest.mark.long
 def test_doubling_the_elements_changes_results_by_less_than_one_percent():
     """Doubling the elements changes force, half angle and peak pressure by less than 1 % (R1 12, L 8 mm)."""
     joint = bs.Joint(ball_radius=12.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE, ball=bs.STEEL)
@@ -322,7 +328,8 @@ def test_error_bars_hold_for_both_kinds_of_elements(element):
         assert misses.max() < 4, name
 
 
-@pytest.mark.parametrize("clearance", some([3.0, 0.1], 1))
+@pytest.mark.long
+@pytest.mark.parametrize("clearance", [0.1, 3.0])
 def test_a_narrow_contact_in_a_massive_socket_is_hertz(clearance):
     """The patch is that of the socket's radius on both bodies, however much smaller the ball is."""
     soft = bs.Material(young=1000.0, poisson=0.4)
@@ -346,8 +353,8 @@ def test_the_stiffness_near_the_perfect_fit_is_the_slope_of_the_force(clearance)
 
 
 def test_force_indentation_and_half_angle_are_inverse():
-    model = bs.FiniteElement()
-    forces = np.array([1.0, 30.0, 500.0, 1000.0, 3000.0, 4500.0])
+    model = bs.FiniteElement(meshes=1)
+    forces = np.array(some([1.0, 30.0, 500.0, 1000.0, 3000.0, 4500.0]))
     by_force = model.press(HIP, force=forces)
     np.testing.assert_allclose(model.press(HIP, indentation=by_force.indentation).force, forces, rtol=1e-5)
     np.testing.assert_allclose(model.press(HIP, half_angle=by_force.half_angle).force, forces, rtol=1e-4)
@@ -402,7 +409,7 @@ def test_arrays_of_joints_and_loads_give_the_results_of_single_ones():
 
 
 def test_results_do_not_depend_on_the_other_loads():
-    model = bs.FiniteElement()
+    model = bs.FiniteElement(meshes=1)
     alone = model.press(HIP, force=700.0).indentation
     among = model.press(HIP, force=np.array([0.01, 700.0, 4000.0])).indentation[1]
     assert alone == among
@@ -436,7 +443,7 @@ def test_the_largest_stress_excludes_the_sharp_corner():
     cup = bs.Cup(arc_of_cover=np.radians(80.0))
     peaks = [
         bs.FiniteElement(cup=cup, spacing=bs.Adapted(elements=elements), meshes=1).press(HIP, force=2e4).peak_stress
-        for elements in (60, 120)
+        for elements in either(quick=(44, 88), long=(60, 120))
     ]
     assert peaks[0].von_mises == pytest.approx(peaks[1].von_mises, rel=1e-2)
 

@@ -195,6 +195,7 @@ def test_lines_of_a_deck_hold_their_numbers():
     assert numbers == sorted(set(DECK.ball.number.ravel().tolist()) - {0})
 
 
+@pytest.mark.long
 def test_layers_of_the_backing_are_sets_of_elements():
     backed = JOINT.replace(backing=(bs.Layer(thickness=4.0, material=bs.TITANIUM),))
     deck = TiltedDeck(joint=backed, cup=bs.Cup(), indentation=0.04, tilt=0.5, element_size=radians(15.0))

@@ -79,9 +79,10 @@ CUPS = {
 }
 
 
-@pytest.mark.parametrize(("cup", "backing"), CUPS.values(), ids=CUPS)
-def test_axial_load_agrees_with_axisymmetric_elements(cup, backing):
+@pytest.mark.parametrize("name", some(CUPS, 2))
+def test_axial_load_agrees_with_axisymmetric_elements(name):
     """F, pmax and U agree within 0.1 % with a rigid ball; the elements model an elastic one differently."""
+    cup, backing = CUPS[name]
     joint = lined(0.45, backing=backing)
     contact = bs.Sphere(cup=cup).press(joint, indentation=0.05)
     elements = bs.FiniteElement(cup=cup).press(joint, indentation=0.05)
