@@ -341,6 +341,9 @@ def test_summaries_have_the_numbers_of_contacts_with_fields(monkeypatch):
 def test_contacts_that_exceed_the_memory_are_refused_before_the_work():
     with pytest.raises(ValueError, match='2 000 000 contacts .none with keep="summary". take about .* of memory'):
         COARSE.press(HIP, force=np.linspace(1.0, 2.0, 2_000_000))
+    many = np.broadcast_to(1000.0, (10**6, 10**6))  # one number in memory, and more contacts than fit
+    with pytest.raises(ValueError, match="1 000 000 000 000 contacts take about .* of memory"):
+        COARSE.press(HIP, force=many, tilt=0.1, keep="summary")
 
 
 def test_keep_is_fields_or_summary():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from math import pi, radians
@@ -305,6 +306,27 @@ _FIELD_COPIES = 4
 
 _SUMMARY_NUMBERS = 100
 """Number of values per load at the peak of a summary."""
+
+
+def check_contact_memory(*shapes: tuple[int, ...]) -> None:
+    """Check that the numbers of all contacts fit into the memory, before loads and directions are combined.
+
+    Parameters
+    ----------
+    *shapes : tuple of int
+        Shapes of loads and directions. Shapes that do not broadcast are refused elsewhere.
+
+    Raises
+    ------
+    ValueError
+        The memory is too small.
+    """
+    try:
+        count = math.prod(numpy.broadcast_shapes(*shapes))
+    except ValueError:
+        return
+    check_memory(f"{count_text(count)} contacts", 8 * _SUMMARY_NUMBERS * count)
+
 
 KeepFunction = Callable[[LoadSolver, BoreContact, Numbers, Numbers, EdgeRelation], "ContactStates | ContactSummaries"]
 """Function from a load solver and its arguments to contacts with their fields or to their summaries."""

@@ -240,6 +240,7 @@ class Sphere(Model):
                 anteversion=anteversion,
             )
         load = {"force": force, "indentation": indentation, "half_angle": half_angle}
+        _check_contact_memory((*load.values(), tilt, azimuth, inclination, anteversion), (displacement, direction))
         if inclination is not None or anteversion is not None:
             return (
                 self.with_direction(direction, tilt, azimuth)
@@ -368,6 +369,14 @@ class Sphere(Model):
             raise ValueError(f"worn depth of shape {depth.shape} is not allowed: give one depth (mm) per direction")
         require("worn depth", depth, numpy.isfinite(depth), "a depth (mm) is finite")
         return numpy.broadcast_to(depth, directions.shape[1:])
+
+
+def _check_contact_memory(numbers: tuple[Array | None, ...], vectors: tuple[Array | None, ...]) -> None:
+    """Check that the numbers of all contacts fit into the memory, before loads and directions are copied."""
+    from .load_cases import check_contact_memory  # slow to import
+
+    shapes = [numpy.shape(number) for number in numbers if number is not None]
+    check_contact_memory(*shapes, *(numpy.shape(vector)[:-1] for vector in vectors if vector is not None))
 
 
 def check_sphere(model: Any) -> Sphere:
