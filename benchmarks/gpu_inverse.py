@@ -48,7 +48,9 @@ def jax_rates(device: Any, count: int, clock: Clock = time.perf_counter) -> Rows
                 _, seconds = interleaved(REPEATS, {"copy": copy, "press": press}, clock)
                 ours, limit = (seconds[name].per(1e-9 * count) for name in ("press", "copy"))
                 goal = GOALS[model.name, joints]
-                rows.add(f"{model.name}, {joints}", ours, goal, limit, f"{ours.over(limit)} copies", f"{first_call:.1f}")
+                rows.add(
+                    f"{model.name}, {joints}", ours, goal, limit, f"{ours.over(limit)} copies", f"{first_call:.1f}"
+                )
     return rows
 
 

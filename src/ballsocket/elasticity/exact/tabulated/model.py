@@ -230,6 +230,9 @@ def _compute_in_blocks(
     broadcasted = (part if prod(part.shape) == 1 else arrays.broadcast_to(part, shape) for part in numbers)
     flat = [xp.reshape(part, (-1,)) for part in broadcasted]
     loads = xp.reshape(arrays.broadcast_to(where(load > 0, load, SMALL_LOAD), shape), (-1,))
+    if arrays.is_jax_array(loads) and arrays.all_true(loads == loads) is None:
+        values = _map_blocks_in_jax(file, joint, [*flat, loads], compute_quantities)
+        return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in values)
     all_curves = JointCurves(file, joint.with_numbers(flat))
     size = (single_joint_block if is_single_joint else _BLOCK) * (1 if xp is numpy else 64)
     results = []
@@ -241,6 +244,39 @@ def _compute_in_blocks(
         results.append(compute_quantities(curves, loads[block]))
     joined = (xp.concat(parts, axis=-1) if len(parts) > 1 else parts[0] for parts in zip(*results, strict=True))
     return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)
+
+
+def _map_blocks_in_jax(
+    file: str, joint: Joint, rows: list[Array], compute_quantities: CurveReader
+) -> tuple[Array, ...]:
+    """Compute quantities of contacts inside `jax.jit`, block by block in one loop, so that one block is compiled.
+
+    `rows` are the numbers of the joint and the loads: arrays (1,) or (contacts,). Contacts of one joint store no
+    series and need no blocks.
+    """
+    import jax
+
+    count, size = rows[-1].shape[0], _JAX_BLOCKS.get(jax.default_backend(), _JAX_BLOCK)
+    varying = [row for row in rows if row.shape[0] > 1]
+
+    def compute_block(parts: list[Array]) -> tuple[Array, ...]:
+        """Compute the quantities of one block from its varying numbers."""
+        remaining = iter(parts)
+        *numbers, loads = [row if row.shape[0] == 1 else next(remaining) for row in rows]
+        return compute_quantities(JointCurves(file, joint.with_numbers(numbers)), loads)
+
+    if count <= size or all(row.shape[0] == 1 for row in rows[:-1]):
+        return compute_block(varying)
+    padded = [jax.numpy.pad(row, (0, -count % size), mode="edge").reshape(-1, size) for row in varying]
+    values = jax.lax.map(compute_block, padded)
+    return tuple(jax.numpy.moveaxis(part, 0, -2).reshape(*part.shape[1:-1], -1)[..., :count] for part in values)
+
+
+_JAX_BLOCKS = {"cpu": _BLOCK}
+"""Number of contacts in one block by the platform of JAX; on a CPU, the series of a block stay in the cache."""
+
+_JAX_BLOCK = 2**20
+"""Number of contacts in one block on other platforms; their series take 1 GB."""
 
 
 def _shared_curves(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[JointCurves | None, Array | None]:
