@@ -277,4 +277,5 @@ VECTOR_FUNCTIONS: dict[str, Any] = {"exp": exp, "log": log, "log1p": log1p, "sin
 
 def vector_formula(formula: Any, functions: dict[str, Any]) -> Any:
     """Return a formula, registered for compiled code, that calls other functions by the same names."""
-    return inline_formula(FunctionType(formula.__code__, {**formula.__globals__, **functions}))
+    names = {**formula.__globals__, **functions}
+    return inline_formula(FunctionType(formula.__code__, names, formula.__name__, formula.__defaults__))

@@ -16,6 +16,7 @@ from ....contact.assembly import SolverResult
 from ....contact.closed_sphere import HEMISPHERE_NOTE, LIKE_HEMISPHERE
 from ....core import arrays
 from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
+from ....core.chebyshev import chebyshev_polynomials, convert_like, sum_series
 from ....core.lazy import cached_property
 from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
@@ -25,12 +26,10 @@ from .chebyshev import (
     POISSON,
     THICKNESS_RATIO,
     angle_coordinate,
-    chebyshev_polynomials,
     chebyshev_values,
-    convert_like,
 )
-from .curves import SMALL_LOAD, JointCurves, plain_joint_curves, sum_series
-from .inverse import solve_half_angle
+from .curves import SMALL_LOAD, JointCurves, contact_quantities, plain_joint_curves
+from .inverse import solve_state
 
 _BLOCK = 2000  # contacts in one block, which fits into the cache; powers of two collide in the cache
 _BLOCK_OF_ONE_JOINT = 4 * _BLOCK
@@ -184,30 +183,35 @@ CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
 
 def solve_with_tables(
     file: str, joint: Joint, load: Array, compute_quantities: CurveReader, single_joint_block: int
-) -> TableSolution:
+) -> tuple[TableSolution, Array]:
     """Solve contacts for loads with the tables; NaN beyond the range of the tables.
 
-    `compute_quantities` returns ε, d, F, p0 and dF/dd from the curves of joints and the loads.
+    `compute_quantities` returns ε, d, F, p0, dF/dd and the last relative change of ε from the curves of joints and the
+    loads. The last change is returned too.
     """
-    values = _compute_in_blocks(file, joint, load, compute_quantities, single_joint_block)
+    *values, shift = _compute_in_blocks(file, joint, load, compute_quantities, single_joint_block)
     fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
     is_loaded = broadcast(load, values[1]) > 0
     if arrays.all_true(fits & is_loaded) is not True:
-        values = tuple(where(is_loaded, where(fits, value, math.nan), 0.0) for value in values)
+        values = [where(is_loaded, where(fits, value, math.nan), 0.0) for value in values]
     angle, d, F, p0, stiffness = values
-    return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness))
+    return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness)), shift
 
 
 def curve_reader(kind: str) -> CurveReader:
-    """Return a function that computes half angle, d, F, p0 and dF/dd from curves and loads of one kind."""
+    """Return a function that computes ε, d, F, p0, dF/dd and the last change of ε from curves and loads of one kind."""
 
-    def compute_quantities(curves: JointCurves, load: Array) -> tuple[Array, ...]:
-        angle = (
-            where(load <= LIMIT, load, float("nan")) if kind == "half_angle" else solve_half_angle(curves, kind, load)
-        )
-        return (angle, *curves.contact_quantities(angle)[:4])
+    def read_half_angle(curves: JointCurves, load: Array) -> tuple[Array, ...]:
+        """Compute the quantities at half angles."""
+        angle = where(load <= LIMIT, load, math.nan)
+        return (angle, *curves.contact_quantities(angle)[:4], 0.0 * angle)
 
-    return compute_quantities
+    def solve_load(curves: JointCurves, load: Array) -> tuple[Array, ...]:
+        """Compute the quantities under forces or indentations."""
+        state, shift = solve_state(curves, kind, load)
+        return (state.angle, *contact_quantities(state, curves.scale)[:4], shift)
+
+    return read_half_angle if kind == "half_angle" else solve_load
 
 
 def _compute_in_blocks(
@@ -382,28 +386,16 @@ class Tabulated(Model):
 
         `read` is such a function, see `curve_reader`. It gets up to `single_joint_block` loads of one joint at once.
         """
-        solution = solve_with_tables(self.file, joint, load, read, single_joint_block)
+        solution, shift = solve_with_tables(self.file, joint, load, read, single_joint_block)
         d, F, _, _ = solution.values
+        tolerance = _ROUNDING_ERRORS * arrays.machine_epsilon(load)
         return SolverResult(
             laws=solution,
             force=F,
             indentation=d,
-            failures={
-                Status.NOT_CONVERGED: arrays.logical_not(
-                    _relative_residual(kind, load, d, F) <= _rounding_error(load, d / joint.clearance)
-                )
-            },
+            failures={Status.NOT_CONVERGED: arrays.logical_not(shift * shift <= tolerance)},
         )
 
 
-def _rounding_error(load: Array, depth: Array) -> Array:
-    """Return the relative rounding error of a load, which increases with `depth` = d/c."""
-    return arrays.machine_epsilon(load) * (1e4 + 1e2 * depth)
-
-
-def _relative_residual(kind: str, load: Array, d: Array, F: Array) -> Array:
-    """Compute the relative difference between the load and the solution; 0 for half angles."""
-    if kind == "half_angle":
-        return 0.0 * F
-    target = broadcast(load, F)
-    return abs((F if kind == "force" else d) - target) / safe_divisor(target)
+_ROUNDING_ERRORS = 1e4
+"""Largest relative error of a converged half angle over that of rounding; a correction leaves its square as error."""
