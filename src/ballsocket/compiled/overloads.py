@@ -80,6 +80,12 @@ def _overload_sin(x: Any) -> Callable[..., Any]:
     return lambda x: math.sin(x)
 
 
+@overload(arrays.short_sine, strict=False, jit_options={"forceinline": True})
+def _overload_short_sine(x: Any) -> Callable[..., Any]:
+    """Replace `arrays.short_sine` by its series in compiled code."""
+    return arrays.short_sine_series
+
+
 @overload(arrays.cos, strict=False)
 def _overload_cos(x: Any) -> Callable[..., Any]:
     """Implement `arrays.cos` for numbers in compiled code."""

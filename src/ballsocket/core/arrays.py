@@ -84,6 +84,24 @@ asinh = _make_elementwise("asinh", math.asinh)
 asin = _make_elementwise("asin", math.asin)
 
 
+def short_sine(x: Array) -> Array:
+    """Compute sin x for |x| up to 0.75; of arrays by a series, which takes compilers a tenth of the time of `sin`."""
+    return math.sin(x) if type(x) is float else short_sine_series(x)
+
+
+def short_sine_series(x: Array) -> Array:
+    """Compute sin x for |x| up to 0.75 by its Taylor series, to rounding errors."""
+    z = x * x
+    p = -1 / 1307674368000
+    p = p * z + 1 / 6227020800
+    p = p * z - 1 / 39916800
+    p = p * z + 1 / 362880
+    p = p * z - 1 / 5040
+    p = p * z + 1 / 120
+    p = p * z - 1 / 6
+    return x + x * z * p
+
+
 def sqrt(x: Array) -> Array:
     """Compute the square root √x; its derivative at x = 0 is set to 0.
 

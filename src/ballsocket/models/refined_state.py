@@ -9,7 +9,7 @@ from math import log as ln
 from math import pi
 from typing import NamedTuple
 
-from ..core.arrays import Array, clip, cos, exp, sin, sqrt, where
+from ..core.arrays import Array, clip, exp, short_sine, sqrt, where
 from .liner_compliance import Liner, Pair, log_compliance, log_compliance_any_wave
 
 
@@ -94,8 +94,8 @@ def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledCon
     waves = log_compliances(half_angle, liner, fit.waves)
     (c1, rise1), (c2, rise2), (c3, rise3), (c4, rise4) = waves  # by ln k, and k = k_i/ε
     s, v, w = log_slopes(c1, c2, c3, c4, fit.spans)
-    half = sin(half_angle / 2)
-    S, S_rate = half * half, half_angle * cos(half_angle / 2) / half
+    half = short_sine(half_angle / 2)
+    S, S_rate = half * half, half_angle * sqrt(1 - half * half) / half
     s_, v_, w_ = log_slopes(-rise1, -rise2, -rise3, -rise4, fit.spans)
     slopes = s_, v_, w_, S * S_rate
     level = _log_compliance(c2, s, v, w, S, fit)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy
 
 from ....core import arrays
-from ....core.arrays import Array, cos, exp, log1p, sin
+from ....core.arrays import Array, exp, log1p, short_sine, sqrt
 from ....core.chebyshev import Pair, chebyshev_polynomials, convert_like, derivative_matrix, sum_series, traced_series
 from ....core.lazy import cached_property
 from ....problem import Joint
@@ -102,8 +102,8 @@ def log_angle_derivative(angle: Array, root: Array, ratio: Array) -> Array:
 
 def opening(angle: Array, share: Pair) -> Pair:
     """Compute the relative indentation σ = d/(c + d) and its log slope by ln ε from the first tabulated function."""
-    half = sin(angle / 2)
-    return exp(share[0]) * 2 * half * half, share[1] + angle * cos(angle / 2) / half
+    half = short_sine(angle / 2)
+    return exp(share[0]) * 2 * half * half, share[1] + angle * sqrt(1 - half * half) / half
 
 
 class TabulatedState(NamedTuple):
