@@ -89,12 +89,12 @@ def test_angle_polynomial_is_accurate_to_rounding():
 @pytest.mark.parametrize("count", [2, 3])
 def test_blocks_of_series_are_chebyshev_series_with_their_slopes(count):
     functions, x = np.random.default_rng(6).normal(size=(count, 8)), np.array([-0.9, 0.1, 0.8])
-    rows = np.zeros((13, 3))
+    rows = np.zeros((25, 3))
     rows[0] = x
-    table_kernel.sum_series_with_slopes(functions, 0, 3, rows, 0, 1, 7)
+    table_kernel.sum_series_with_slopes(functions, count, 0, 3, rows, 0, 1, 7, 13)
     values, slopes = rows[1 : 1 + count].copy(), rows[4 : 4 + count].copy()
     for value, slope, series in zip(values, slopes, functions, strict=True):
-        table_kernel.sum_series(series, 0, 3, rows, 0, 11, 7)
+        table_kernel.sum_series(series, 0, 3, rows, 0, 11, 7, 13)
         chebyshev = np.polynomial.chebyshev.Chebyshev(series)
         np.testing.assert_allclose(value, chebyshev(x), rtol=1e-12)
         np.testing.assert_allclose(rows[11], chebyshev(x), rtol=1e-12)

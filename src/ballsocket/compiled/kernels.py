@@ -234,7 +234,7 @@ def _kernel(kind: str) -> Any:
             rows[_ROOT, j] = start_log_estimate(rows[_SCALED, j], power, small, large, widest)
             ratio = start_ratio(rows[_RADIUS, j] / rows[_THICKNESS, j])
             rows[_X, j] = start_coordinate(exp(rows[_ROOT, j]), ratio, widest)
-        sum_series(series, first, lanes, rows, _X, _CORRECTION, _WAVE)
+        sum_series(series, first, lanes, rows, _X, _CORRECTION, _WAVE, _SHARE)
         for j in range(lanes):
             root = start_root(rows[_ROOT, j], rows[_CORRECTION, j])
             rows[_ROOT, j], rows[_LOW, j], rows[_HIGH, j] = root, root - 6.0, end

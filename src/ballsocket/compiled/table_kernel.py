@@ -46,72 +46,104 @@ def _overload_copy_inputs(inputs: Any, first: Any, lanes: Any, rows: Any) -> Cal
 
 
 @inline_formula
-def sum_series(series, first, lanes, rows, x, value, wave):  # type: ignore[no-untyped-def]
-    """Sum a Chebyshev series of each contact at row x: T_k+1 = 2x T_k - T_k-1, in the rows `wave` and the next."""
+def sum_series(series, first, lanes, rows, x, value, wave, terms):  # type: ignore[no-untyped-def]
+    """Sum a Chebyshev series of each contact at row x: T_k+1 = 2x T_k - T_k-1.
+
+    The polynomials are in the rows `wave` and the next, four coefficients in those from `terms` on.
+    """
     for j in range(lanes):
         rows[wave, j], rows[wave + 1, j], rows[value, j] = 1.0, rows[x, j], 0.0
     for k in range(0, series.shape[0], 4):
+        copy_coefficients(series, k, first, lanes, rows, terms)
         for j in range(lanes):
             twice, t0, t1 = 2 * rows[x, j], rows[wave, j], rows[wave + 1, j]
             t2 = twice * t1 - t0
             t3 = twice * t2 - t1
-            rows[value, j] += four_terms(series, k, first + j, t0, t1, t2, t3)
+            rows[value, j] += four_terms(series, k, rows, terms, j, t0, t1, t2, t3)
             t0 = twice * t3 - t2
             rows[wave, j], rows[wave + 1, j] = t0, twice * t0 - t3
 
 
 @inline_formula
-def sum_series_with_slopes(functions, first, lanes, rows, x, value, wave):  # type: ignore[no-untyped-def]
-    """Sum two or three series of each contact at row x, and their slopes: T_k' = k U_k-1, U_k+1 = 2x U_k - U_k-1.
+def sum_series_with_slopes(functions, count, first, lanes, rows, x, value, wave, terms):  # type: ignore[no-untyped-def]
+    """Sum the first two or three series of each contact at row x, and their slopes.
 
-    The sums are in the rows from `value` on, the slopes in the three after those of the three sums, the polynomials in
-    four rows from `wave` on.
+    The polynomials have T_k' = k U_k-1 and U_k+1 = 2x U_k - U_k-1. The sums are in the rows from `value` on, the slopes
+    in the three after those of the three sums, the polynomials in four rows from `wave` on, and coefficients in twelve
+    rows from `terms` on.
     """
-    slope, count = value + 3, len(functions)
+    slope = value + 3
     for j in range(lanes):
         rows[wave, j], rows[wave + 1, j], rows[wave + 2, j], rows[wave + 3, j] = 1.0, rows[x, j], 0.0, 1.0
         for row in range(value, value + 6):
             rows[row, j] = 0.0
-    for k in range(0, functions[0].shape[0], 4):
+    for k in range(0, functions.shape[1], 4):
         order = float(k)
+        for row in range(count):
+            copy_coefficients(functions[row], k, first, lanes, rows, terms + 4 * row)
         for j in range(lanes):
-            twice, i = 2 * rows[x, j], first + j
+            twice = 2 * rows[x, j]
             t0, t1, u0, u1 = rows[wave, j], rows[wave + 1, j], rows[wave + 2, j], rows[wave + 3, j]
             t2, u2 = twice * t1 - t0, twice * u1 - u0
             t3, u3 = twice * t2 - t1, twice * u2 - u1
             s0, s1, s2, s3 = order * u0, (order + 1.0) * u1, (order + 2.0) * u2, (order + 3.0) * u3
-            rows[value, j] += four_terms(functions[0], k, i, t0, t1, t2, t3)
-            rows[slope, j] += four_terms(functions[0], k, i, s0, s1, s2, s3)
-            rows[value + 1, j] += four_terms(functions[1], k, i, t0, t1, t2, t3)
-            rows[slope + 1, j] += four_terms(functions[1], k, i, s0, s1, s2, s3)
+            rows[value, j] += four_terms(functions[0], k, rows, terms, j, t0, t1, t2, t3)
+            rows[slope, j] += four_terms(functions[0], k, rows, terms, j, s0, s1, s2, s3)
+            rows[value + 1, j] += four_terms(functions[1], k, rows, terms + 4, j, t0, t1, t2, t3)
+            rows[slope + 1, j] += four_terms(functions[1], k, rows, terms + 4, j, s0, s1, s2, s3)
             if count > 2:
-                rows[value + 2, j] += four_terms(functions[count - 1], k, i, t0, t1, t2, t3)
-                rows[slope + 2, j] += four_terms(functions[count - 1], k, i, s0, s1, s2, s3)
+                rows[value + 2, j] += four_terms(functions[2], k, rows, terms + 8, j, t0, t1, t2, t3)
+                rows[slope + 2, j] += four_terms(functions[2], k, rows, terms + 8, j, s0, s1, s2, s3)
             t0, u0 = twice * t3 - t2, twice * u3 - u2
             rows[wave, j], rows[wave + 1, j] = t0, twice * t0 - t3
             rows[wave + 2, j], rows[wave + 3, j] = u0, twice * u0 - u3
 
 
-@inline_formula
-def four_terms(series, k, i, t0, t1, t2, t3):  # type: ignore[no-untyped-def]
-    """Sum four terms of the series of contact i, from that with index k on."""
-    return (
-        pick_coefficient(series, k, i) * t0
-        + pick_coefficient(series, k + 1, i) * t1
-        + pick_coefficient(series, k + 2, i) * t2
-        + pick_coefficient(series, k + 3, i) * t3
-    )
+def copy_coefficients(series: Any, k: int, first: int, lanes: int, rows: Numbers, terms: int) -> None:
+    """Copy four coefficients of the series of each contact, from that with index k on, to the rows from `terms` on.
+
+    The one series of all contacts needs no copy.
+    """
+    if series.ndim > 1:
+        rows[terms : terms + 4, :lanes] = series[k : k + 4, first : first + lanes]
 
 
-def pick_coefficient(series: Any, k: int, i: int) -> Any:
-    """Return coefficient k of the series of contact i, or of the one series of all contacts."""
-    return series[k, i] if series.ndim > 1 else series[k]
+@overload(copy_coefficients, strict=False, jit_options={"forceinline": True})
+def _overload_copy_coefficients(
+    series: Any, k: Any, first: Any, lanes: Any, rows: Any, terms: Any
+) -> Callable[..., Any]:
+    """Implement `copy_coefficients` in compiled code."""
+
+    def copy(series, k, first, lanes, rows, terms):  # type: ignore[no-untyped-def]
+        for term in range(4):
+            for j in range(lanes):
+                rows[terms + term, j] = series[k + term, first + j]
+
+    return copy if series.ndim > 1 else lambda series, k, first, lanes, rows, terms: None
+
+
+def pick_coefficient(series: Any, k: int, rows: Numbers, term: int, j: int) -> Any:
+    """Return coefficient k of contact j of a block from the row `term`, or from the one series of all contacts."""
+    return rows[term, j] if series.ndim > 1 else series[k]
 
 
 @overload(pick_coefficient, strict=False, jit_options={"forceinline": True})
-def _overload_pick_coefficient(series: Any, k: Any, i: Any) -> Callable[..., Any]:
+def _overload_pick_coefficient(series: Any, k: Any, rows: Any, term: Any, j: Any) -> Callable[..., Any]:
     """Implement `pick_coefficient` in compiled code."""
-    return (lambda series, k, i: series[k, i]) if series.ndim > 1 else (lambda series, k, i: series[k])
+    if series.ndim > 1:
+        return lambda series, k, rows, term, j: rows[term, j]
+    return lambda series, k, rows, term, j: series[k]
+
+
+@inline_formula
+def four_terms(series, k, rows, term, j, t0, t1, t2, t3):  # type: ignore[no-untyped-def]
+    """Sum four terms of the series of contact j of a block, from that with index k on."""
+    return (
+        pick_coefficient(series, k, rows, term, j) * t0
+        + pick_coefficient(series, k + 1, rows, term + 1, j) * t1
+        + pick_coefficient(series, k + 2, rows, term + 2, j) * t2
+        + pick_coefficient(series, k + 3, rows, term + 3, j) * t3
+    )
 
 
 def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> SolverResult:
@@ -126,7 +158,7 @@ def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) ->
             start, functions = start[:, 0].copy(), functions[:, :, 0].copy()
         outputs = numpy.empty((_OUTPUT_COUNT, len(load)))
         rows = tuple(_as_input(number, load.shape) for number in inputs)
-        _tabulated_kernel(kind)(rows, start, tuple(functions), steps, outputs)
+        _tabulated_kernel(kind)(rows, start, functions, steps, outputs)
         return tuple(outputs)
 
     return model.solve_with_reader(joint, kind, load, read_curves, single_joint_block=max(load.size, 1))
@@ -156,10 +188,13 @@ _ANGLE, _INDENTATION, _RESULT_FORCE, _POLE_PRESSURE, _STIFFNESS, _SHIFT = range(
 
 _OUTPUT_COUNT = 6
 
-_X, _ROOT, _SPACING, _VALUES, _SLOPES, _WAVES = 14, 15, 16, 17, 20, 23
+_X, _ROOT, _WIDENING, _VALUES, _SLOPES, _WAVES = 14, 15, 16, 17, 20, 23
 """Rows of coordinate, unknown, its derivative, three functions, three slopes and four Chebyshev polynomials."""
 
-_ROW_COUNT = 27
+_TERMS = 27
+"""First row of twelve coefficients."""
+
+_ROW_COUNT = 39
 
 
 _VECTOR_FORMULAS = dict(VECTOR_FUNCTIONS)
@@ -208,7 +243,7 @@ def _tabulated_kernel(kind: str) -> Any:
             rows[_LOAD, j] *= rows[_LOAD_SCALE, j]
             rows[_ROOT, j] = log_share(rows[_LOAD, j], Widest(rows[_OPENING, j], rows[_FORCE, j]))
             rows[_X, j] = start_coordinate(rows[_ROOT, j], rows[_RATIO, j])
-        sum_series(start, first, lanes, rows, _X, _VALUES, _WAVES)
+        sum_series(start, first, lanes, rows, _X, _VALUES, _WAVES, _TERMS)
         for j in range(lanes):
             rows[_ROOT, j] = start_root(rows[_ROOT, j], rows[_VALUES, j])
 
@@ -219,7 +254,7 @@ def _tabulated_kernel(kind: str) -> Any:
             rows[_ANGLE, j] = half_angle_of_root(rows[_ROOT, j])
             series_root = angle_root(rows[_ANGLE, j], rows[_RATIO, j])
             rows[_X, j] = 2 * series_root - 1
-            rows[_SPACING, j] = log_angle_derivative(rows[_ANGLE, j], series_root, rows[_RATIO, j])
+            rows[_WIDENING, j] = 1 / log_angle_derivative(rows[_ANGLE, j], series_root, rows[_RATIO, j])
 
     @inline_formula
     def write_results(first, lanes, rows, outputs):  # type: ignore[no-untyped-def]
@@ -243,12 +278,12 @@ def _tabulated_kernel(kind: str) -> Any:
             write_start(start, first, lanes, rows)
             write_coordinates(lanes, rows)
             for _ in range(steps):
-                sum_series_with_slopes(functions[:2], first, lanes, rows, _X, _VALUES, _WAVES)
+                sum_series_with_slopes(functions, 2, first, lanes, rows, _X, _VALUES, _WAVES, _TERMS)
                 for j in range(lanes):
                     value, slope = residual(rows[_ROOT, j], rows[_LOAD, j], _evaluated_curve(rows, j))
                     rows[_ROOT, j] = newton_step(rows[_ROOT, j], value, slope)
                 write_coordinates(lanes, rows)
-            sum_series_with_slopes(functions, first, lanes, rows, _X, _VALUES, _WAVES)
+            sum_series_with_slopes(functions, 3, first, lanes, rows, _X, _VALUES, _WAVES, _TERMS)
             write_results(first, lanes, rows, outputs)
 
     return compile_loop(solve_contacts)
@@ -257,14 +292,14 @@ def _tabulated_kernel(kind: str) -> Any:
 @inline_formula
 def _evaluated_curve(rows, j):  # type: ignore[no-untyped-def]
     """Return the tabulated functions that are evaluated for contact j of a block."""
-    spacing = rows[_SPACING, j]
+    widening = rows[_WIDENING, j]
     return _EvaluatedCurve(
         rows[_VALUES, j],
-        rows[_SLOPES, j] / spacing,
+        widening * rows[_SLOPES, j],
         rows[_VALUES + 1, j],
-        rows[_SLOPES + 1, j] / spacing,
+        widening * rows[_SLOPES + 1, j],
         rows[_VALUES + 2, j],
-        rows[_SLOPES + 2, j] / spacing,
+        widening * rows[_SLOPES + 2, j],
     )
 
 

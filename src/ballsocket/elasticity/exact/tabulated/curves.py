@@ -155,12 +155,12 @@ def contact_quantities(state: TabulatedState, scale: Scale) -> tuple[Array, Arra
 
     The units are mm, N, MPa, N/mm and mm.
     """
-    sigma = state.opening
-    reach = scale.clearance / (1 - sigma)
-    outer = sigma * state.opening_rate / (1 - sigma)
-    F = state.force * scale.area * reach / scale.compliance
-    p0 = state.pole * reach / scale.compliance
-    return reach * sigma, F, p0, F * (state.force_rate + outer) / (reach * outer), reach * outer
+    growth = 1 / (1 - state.opening)
+    reach, outer = scale.clearance * growth, state.opening * state.opening_rate * growth
+    modulus = reach / scale.compliance
+    F = state.force * scale.area * modulus
+    slope = reach * outer
+    return reach * state.opening, F, state.pole * modulus, F * (state.force_rate + outer) / slope, slope
 
 
 @dataclass(frozen=True, eq=False)

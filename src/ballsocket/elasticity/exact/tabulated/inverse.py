@@ -170,15 +170,16 @@ def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficient
 
 
 def _force_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of the dimensionless force at a trial half angle, and its slope by ln ε.
+    """Compute the residual of the dimensionless force q at a trial half angle, and its slope by ln ε.
 
-    The residual is ln d/(c + d) minus that of the indentation F/secant, where secant is the ratio F/d.
+    The residual is ln(σ + h/q), which is 0 for q = h/(1 - σ).
     """
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
     share, force = evaluate_table_functions(angle, curve, TWO)
     sigma, rate = opening(angle, share)
-    secant = exp(force[0]) * angle * angle * angle / sigma
-    return log(sigma * (1 + secant / load)), rate + (force[1] + 3 - rate) * secant / (secant + load)
+    part = exp(force[0]) * angle * angle * angle / load
+    total = sigma + part
+    return log(total), (sigma * rate + part * (force[1] + 3)) / total
 
 
 def indentation_shift(state: TabulatedState, load: Array) -> Array:

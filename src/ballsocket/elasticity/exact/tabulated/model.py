@@ -31,8 +31,8 @@ from .chebyshev import (
 from .curves import SMALL_LOAD, JointCurves, contact_quantities, plain_joint_curves
 from .inverse import solve_state
 
-_BLOCK = 2000  # contacts in one block, which fits into the cache; powers of two collide in the cache
-_BLOCK_OF_ONE_JOINT = 4 * _BLOCK
+_BLOCK = 4000  # contacts in one block, which fits into the cache; powers of two collide in the cache
+_BLOCK_OF_ONE_JOINT = 2 * _BLOCK
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
