@@ -17,7 +17,7 @@ from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
 from ..problem import Joint
 from .liner_compliance import Liner, liner_coefficients
-from .refined_inverse import MAX_HALF_ANGLE, solve_contact
+from .refined_inverse import MAX_HALF_ANGLE, flatten_like, solve_contact
 from .refined_state import ScaledContact, peak_position, pressure_ratio, scaled_contact, shape_coefficient
 
 _FITTED = "fitted in this range with a rigid ball"
@@ -87,9 +87,11 @@ class Refined(Model):
         if kind == "half_angle":
             edge = _mask_half_angle(joint, load)
             return make_solver_result(RefinedSolution(joint=joint, edge=edge), kind, load, 0.0 * edge)
-        edge, shift, *state = solve_contact(
-            kind, scaled_load(joint, kind, load), _joint_liner(joint), joint.thickness_ratio
-        )
+        scaled = scaled_load(joint, kind, load)
+        if type(scaled) is not float and arrays.is_jax_array(scaled) and arrays.all_true(scaled == scaled) is None:
+            edge, shift, *state = _solve_in_jax_blocks(joint, kind, scaled)
+        else:
+            edge, shift, *state = solve_contact(kind, scaled, _joint_liner(joint), joint.thickness_ratio)
         solution = RefinedSolution(joint=joint, edge=where(load > 0, edge, 0.0 * load), state=ScaledContact(*state))
         return make_solver_result(solution, kind, load, shift)
 
@@ -220,6 +222,17 @@ class RefinedSolution:
         y = sin(clip(angle, -pi, pi) / 2) ** 2 / self._squared_sine
         ratio = pressure_ratio(y, self._shape_coefficient)
         return where(y < 1, self.pole_pressure * ratio, self._zero_without_load(0.0 * y))
+
+
+def _solve_in_jax_blocks(joint: Joint, kind: str, scaled: Array) -> tuple[Array, ...]:
+    """Solve contacts inside `jax.jit` for dimensionless loads of the shape of all contacts, block by block."""
+
+    def solve_block(poisson: Array, ratio: Array, load: Array) -> tuple[Array, ...]:
+        """Solve the contacts of one block."""
+        return solve_contact(kind, load, liner_coefficients(poisson, 1 + 1 / ratio), ratio)
+
+    rows = [flatten_like(number, scaled) for number in (joint.liner.poisson, joint.thickness_ratio, scaled)]
+    return tuple(value.reshape(scaled.shape) for value in arrays.map_jax_blocks(solve_block, rows))
 
 
 def _mask_half_angle(joint: Joint, half_angle: Array) -> Array:

@@ -170,16 +170,16 @@ def _scalar_start(inverse: _LoadInverse, load: float) -> float:
 def _series_start(kind: str, load: Array, poisson: Array, ratio: Array) -> Array:
     """Compute the first value of the unknown from the fitted series; `load` has the shape of all contacts."""
     numbers = arrays.stop_gradient(load), arrays.stop_gradient(poisson), arrays.stop_gradient(ratio)
-    flat_load, flat_poisson, flat_ratio = (_flatten(number, load.shape) for number in numbers)
+    flat_load, flat_poisson, flat_ratio = (flatten_like(number, load) for number in numbers)
     log_estimate = start_log_estimate(flat_load, *start_constants(kind))
     coordinate = start_coordinate(exp(log_estimate), start_ratio(flat_ratio), start_constants(kind)[3])
     correction = series_values(start_series(kind, flat_poisson, flat_ratio), coordinate)
     return arrays.namespace(load).reshape(start_root(log_estimate, correction), load.shape)
 
 
-def _flatten(number: Array, shape: tuple[int, ...]) -> Array:
-    """Flatten an array of one element, or broadcast an array to a shape and flatten it."""
-    expanded = number if prod(number.shape) == 1 else arrays.broadcast_to(number, shape)
+def flatten_like(number: Array, contacts: Array) -> Array:
+    """Flatten an array of one element, or broadcast an array to the shape of `contacts` and flatten it."""
+    expanded = number if prod(number.shape) == 1 else arrays.broadcast_to(number, contacts.shape)
     return arrays.namespace(number).reshape(expanded, (-1,))
 
 

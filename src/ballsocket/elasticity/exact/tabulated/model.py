@@ -253,34 +253,19 @@ def _compute_in_blocks(
 def _map_blocks_in_jax(
     file: str, joint: Joint, rows: list[Array], compute_quantities: CurveReader
 ) -> tuple[Array, ...]:
-    """Compute quantities of contacts inside `jax.jit`, block by block in one loop, so that one block is compiled.
+    """Compute quantities of contacts inside `jax.jit`, block by block.
 
     `rows` are the numbers of the joint and the loads: arrays (1,) or (contacts,). Contacts of one joint store no
     series and need no blocks.
     """
-    import jax
 
-    count, size = rows[-1].shape[0], _JAX_BLOCKS.get(jax.default_backend(), _JAX_BLOCK)
-    varying = [row for row in rows if row.shape[0] > 1]
+    def compute_block(*parts: Array) -> tuple[Array, ...]:
+        """Compute the quantities of one block."""
+        return compute_quantities(JointCurves(file, joint.with_numbers(list(parts[:-1]))), parts[-1])
 
-    def compute_block(parts: list[Array]) -> tuple[Array, ...]:
-        """Compute the quantities of one block from its varying numbers."""
-        remaining = iter(parts)
-        *numbers, loads = [row if row.shape[0] == 1 else next(remaining) for row in rows]
-        return compute_quantities(JointCurves(file, joint.with_numbers(numbers)), loads)
-
-    if count <= size or all(row.shape[0] == 1 for row in rows[:-1]):
-        return compute_block(varying)
-    padded = [jax.numpy.pad(row, (0, -count % size), mode="edge").reshape(-1, size) for row in varying]
-    values = jax.lax.map(compute_block, padded)
-    return tuple(jax.numpy.moveaxis(part, 0, -2).reshape(*part.shape[1:-1], -1)[..., :count] for part in values)
-
-
-_JAX_BLOCKS = {"cpu": _BLOCK}
-"""Number of contacts in one block by the platform of JAX; on a CPU, the series of a block stay in the cache."""
-
-_JAX_BLOCK = 2**20
-"""Number of contacts in one block on other platforms; their series take 1 GB."""
+    if all(row.shape[0] == 1 for row in rows[:-1]):
+        return compute_block(*rows)
+    return arrays.map_jax_blocks(compute_block, rows)
 
 
 def _shared_curves(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[JointCurves | None, Array | None]:
