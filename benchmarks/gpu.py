@@ -1,4 +1,4 @@
-"""Presses on a GPU: the paper's model and the tables through PyTorch, a real cup and patients through JAX.
+"""Presses on a GPU through PyTorch and JAX; tilted loads on a real cup and patients on springs through JAX.
 
 The limit is a copy of the same bytes: joint, load and three answers read or written once. Fair, because both run on the
 same device with the same arrays, in turns, each waited for.
@@ -12,6 +12,7 @@ from typing import Any
 
 import ballsocket as bs
 
+from .gpu_inverse import jax_rates
 from .off_axis_many import jax_seconds
 from .report import Report, Rows
 from .timing import interleaved
@@ -39,11 +40,15 @@ def _through_torch() -> Report | None:
         import torch
     except ImportError:
         return None
-    return rates(torch.device("cuda"), COUNT) if torch.cuda.is_available() else None
+    if not torch.cuda.is_available():
+        return None
+    report = rates(torch.device("cuda"), COUNT)
+    torch.cuda.empty_cache()  # the memory is JAX's next
+    return report
 
 
 def _through_jax() -> Report | None:
-    """Tilted loads on a real cup and patients on springs; every product of matrices has full precision there."""
+    """Presses by force, tilted loads on a real cup, patients on springs; products of matrices have full precision."""
     try:
         import jax
 
@@ -51,6 +56,7 @@ def _through_jax() -> Report | None:
     except (ImportError, RuntimeError):
         return None
     rows = Rows("Tilted loads on one real cup, µs a load", ("loads at once", "1e-4", "2e-5", "aims at 1e-4"))
+    presses = jax_rates(device, COUNT)
     with jax.default_device(device):
         for count in LOADS:
             spreads = [jax_seconds(count, tolerance, perf_counter).per(1e-6 * count) for tolerance in (1e-4, 2e-5)]
@@ -63,7 +69,8 @@ def _through_jax() -> Report | None:
             springs.add(count, ours, one, f"{one.over(ours)} times faster")
     note = f"Tilted loads on {device.device_kind}: float32, displacements and largest pressures, rings of 2°."
     core = "Patients on springs: float64, rings of 8°; one core solves them one by one, compiled by numba."
-    return Report([rows, springs], [note, core], ("jax",))
+    inverse = f"Presses by force on {device.device_kind}: float64, one compiled call; the limit copies seven arrays."
+    return Report([presses, rows, springs], [inverse, note, core], ("jax",))
 
 
 def rates(device: Any, count: int) -> Report:

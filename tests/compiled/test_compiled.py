@@ -13,7 +13,7 @@ from ..joints import HIP, random_joint
 pytest.importorskip("numba")
 import numba
 
-from ballsocket.compiled import Compiled, compiled_law, kernels, overloads
+from ballsocket.compiled import Compiled, compiled_law, overloads, table_kernel
 from ballsocket.compiled.kernels import _angle_polynomial
 from ballsocket.contact.roots import increasing_root
 from ballsocket.core.deprecation import RenamedAttribute
@@ -86,17 +86,18 @@ def test_angle_polynomial_is_accurate_to_rounding():
         assert _angle_polynomial(float(versine)) == pytest.approx(angle_of(versine), rel=6e-16, abs=0)
 
 
-def test_blocks_of_series_are_chebyshev_series_with_their_slopes():
-    functions, x = np.random.default_rng(6).normal(size=(2, 8)), np.array([-0.9, 0.1, 0.8])
-    rows = np.zeros((kernels._ROW_COUNT, 3))
-    rows[kernels._X] = x
-    kernels._sum_two_series(functions, 0, 3, rows)
-    for row, series in enumerate(functions):
-        value, slope = rows[kernels._VALUES + row].copy(), rows[kernels._SLOPES + row]
-        kernels._sum_series(series, 0, 3, rows, kernels._VALUES)
+@pytest.mark.parametrize("count", [2, 3])
+def test_blocks_of_series_are_chebyshev_series_with_their_slopes(count):
+    functions, x = np.random.default_rng(6).normal(size=(count, 8)), np.array([-0.9, 0.1, 0.8])
+    rows = np.zeros((25, 3))
+    rows[0] = x
+    table_kernel.sum_series_with_slopes(functions, count, 0, 3, rows, 0, 1, 7, 13)
+    values, slopes = rows[1 : 1 + count].copy(), rows[4 : 4 + count].copy()
+    for value, slope, series in zip(values, slopes, functions, strict=True):
+        table_kernel.sum_series(series, 0, 3, rows, 0, 11, 7, 13)
         chebyshev = np.polynomial.chebyshev.Chebyshev(series)
         np.testing.assert_allclose(value, chebyshev(x), rtol=1e-12)
-        np.testing.assert_allclose(rows[kernels._VALUES], chebyshev(x), rtol=1e-12)
+        np.testing.assert_allclose(rows[11], chebyshev(x), rtol=1e-12)
         np.testing.assert_allclose(slope, chebyshev.deriv()(x), rtol=1e-12)
 
 

@@ -10,6 +10,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.models.liner_compliance import liner_coefficients, log_compliance, log_compliance_any_wave
 from ballsocket.models.refined import RefinedSolution
+from ballsocket.models.refined_inverse import solve_contact
 from ballsocket.models.refined_state import NUMBERS
 
 from ..joints import HIP, random_joint
@@ -246,3 +247,26 @@ def test_a_solution_is_a_jax_tree():
         for name in ("max_pressure", "stiffness", "energy"):
             expected = getattr(MODEL.press(HIP, force=3000.0), name)
             assert float(getattr(pressed, name)) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("kind", ["force", "indentation"])
+def test_half_angles_of_loads_are_those_that_the_loads_follow_from(kind):
+    """Inside and outside the range of the fitted start; the last correction leaves its square."""
+    random = np.random.default_rng(8)
+    poisson, ratio = random.uniform(-0.5, 0.495, 2000), np.exp(random.uniform(np.log(0.05), np.log(50.0), 2000))
+    angle = np.radians(random.uniform(0.1, 84.0, 2000))
+    joint = bs.Joint(
+        ball_radius=1.0 - 1e-3,
+        clearance=1e-3,
+        liner_thickness=1 / ratio,
+        liner=bs.Material(young=1.0, poisson=poisson),
+    )
+    known = MODEL.press(joint, half_angle=angle)
+    reached = (known.indentation > 0) & (known.indentation < 20e-3)
+    load = np.where(reached, getattr(known, kind), 1e-9)
+    found = MODEL.press(joint, **{kind: load})
+    np.testing.assert_allclose(found.half_angle[reached], angle[reached], rtol=1e-11)
+    assert set(found.status[reached]) == {bs.Status.OK}
+    scaled = load / (1e-3 if kind == "indentation" else 1e-3 * 1.0 * 1.0)
+    shift = solve_contact(kind, scaled, liner_coefficients(poisson, 1 + 1 / ratio), ratio)[1]
+    assert np.max(abs(shift[reached])) < 1.5e-6

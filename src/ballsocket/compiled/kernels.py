@@ -1,40 +1,29 @@
-"""Compiled loops over arrays of contacts for radial foundations, `Refined` and `Tabulated`."""
+"""Compiled loops over arrays of contacts for radial foundations and for the model `Refined`."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy
-from numba import literal_unroll
 from numba.extending import overload
 
+from ..contact import roots
 from ..contact.assembly import SolverResult
 from ..core.arrays import Numbers
 from ..core.validity import Status
-from ..elasticity.exact.tabulated import chebyshev, curves, inverse
-from ..elasticity.exact.tabulated.curves import JointCurves, Scale, Widest
-from ..elasticity.exact.tabulated.model import Tabulated
-from ..models import kinematics, liner_compliance, refined_state
+from ..models import kinematics, liner_compliance, refined_inverse, refined_state
 from ..models.foundation import RadialFoundation
 from ..models.kinematics import Kinematics
-from ..models.liner_compliance import liner_coefficients
 from ..models.modulus import Formula
-from ..models.refined import RefinedSolution, make_solver_result, scaled_load
-from ..models.refined_state import ScaledContact, half_angle_of_force, half_angle_of_indentation, scaled_contact
+from ..models.refined import RefinedSolution, square_tolerance
+from ..models.refined_state import ScaledContact
 from ..models.table_3 import scaled_modulus
 from ..problem import Joint
-from .overloads import (
-    VECTOR_FUNCTIONS,
-    as_row,
-    compile_loop,
-    inline_formula,
-    jit_formula,
-    pick_element,
-    vector_formula,
-)
+from .overloads import VECTOR_FUNCTIONS, as_row, compile_loop, inline_formula, pick_element, vector_formula
+from .table_kernel import LANES, copy_inputs, sum_series
 
 
 def solve_forces(model: RadialFoundation, joint: Joint, force: Numbers) -> tuple[Numbers, Numbers, Numbers, Numbers]:
@@ -116,259 +105,6 @@ def _angle_polynomial(versine: float) -> float:
     return math.sqrt(2 * versine) * p
 
 
-def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
-    """Solve the model `Refined` in one compiled loop, for arrays of forces or indentations."""
-    shape = numpy.broadcast_shapes(*(number.shape for number in (*joint.numbers(), load)))
-    radius_ratio = 1 + joint.liner_thickness / joint.socket_radius
-    inputs = (load, scaled_load(joint, kind, load), joint.liner.poisson, radius_ratio)
-    outputs = numpy.empty((1 + len(ScaledContact._fields), math.prod(shape)))
-    _refined_kernel(kind)(*(as_row(number, shape) for number in inputs), outputs)
-    edge, *state = (output.reshape(shape) for output in outputs)
-    solution = RefinedSolution(joint=joint, edge=edge)
-    vars(solution)["_scaled_contact"] = ScaledContact(*state)
-    return make_solver_result(solution, kind, load)
-
-
-@cache
-def _refined_kernel(kind: str) -> Any:
-    """Return the compiled loop over contacts of `Refined` for given forces or indentations."""
-    solve = half_angle_of_force if kind == "force" else half_angle_of_indentation
-
-    def solve_contacts(load, scaled, poisson, radius_ratio, outputs):  # type: ignore[no-untyped-def]
-        """Solve each contact for its load; write its half angle and the fields of `ScaledContact` to `outputs`."""
-        for i in range(outputs.shape[1]):
-            liner = liner_coefficients(pick_element(poisson, i), pick_element(radius_ratio, i))
-            edge = solve(pick_element(scaled, i), liner) if pick_element(load, i) > 0 else 0.0
-            state = scaled_contact(edge if edge > 0 else 1.0, liner)
-            outputs[0, i] = edge
-            outputs[1, i], outputs[2, i], outputs[3, i], outputs[4, i] = state[0], state[1], state[2], state[3]
-            outputs[5, i], outputs[6, i], outputs[7, i] = state[4], state[5], state[6]
-
-    return compile_loop(solve_contacts)
-
-
-@overload(refined_state.log_compliances, strict=False)
-def _overload_log_compliances(half_angle: Any, liner: Any, waves: Any) -> Callable[..., Any]:
-    """Replace `log_compliances` by its scalar version in compiled code."""
-    return refined_state.scalar_log_compliances
-
-
-def solve_tabulated(model: Tabulated, joint: Joint, kind: str, load: Numbers) -> SolverResult:
-    """Solve the model `Tabulated` in one compiled loop, for arrays of forces or indentations."""
-    steps = inverse.RIGID_STEPS if joint.ball is None else inverse.ELASTIC_STEPS
-
-    def read_curves(curves: JointCurves, load: Numbers) -> tuple[Numbers, ...]:
-        """Compute half angle, indentation, force, pole pressure and stiffness of contacts: five arrays (contacts,)."""
-        inputs = (curves.scaled_load(kind, load), curves.ratio, *curves.widest, *curves.scale)
-        start, functions = inverse.start_series(curves, kind), curves.functions
-        if functions.shape[2] == 1:
-            inputs, start, functions = tuple(map(_as_number, inputs)), start[:, 0].copy(), functions[:, :, 0].copy()
-        outputs = numpy.empty((5, len(load)))
-        rows = tuple(as_row(number, load.shape) for number in inputs)
-        _tabulated_kernel(kind)(rows, start, functions, steps, outputs)
-        return tuple(outputs)
-
-    return model.solve_with_reader(joint, kind, load, read_curves, single_joint_block=max(load.size, 1))
-
-
-def _as_number(values: Numbers) -> Any:
-    """Return the number in an array of one element; another array itself."""
-    return values.item() if values.size == 1 else values
-
-
-class _EvaluatedCurve(NamedTuple):
-    """Tabulated functions and their slopes by ln ε at the half angle of one contact, in compiled code."""
-
-    share: float
-    share_slope: float
-    force: float
-    force_slope: float
-    pole: float
-
-
-_LANES = 128
-"""Number of contacts that each inner loop of the tables handles; their values stay in the cache.
-
-All values are rows of one array: several arrays might overlap, and then LLVM makes no vector instructions.
-"""
-
-_INPUT_COUNT = 7
-_LOAD, _RATIO, _OPENING, _FORCE, _CLEARANCE, _AREA, _COMPLIANCE = range(_INPUT_COUNT)
-"""Rows of the inputs."""
-
-_ANGLE, _INDENTATION, _RESULT_FORCE, _POLE_PRESSURE, _STIFFNESS = range(7, 12)
-"""Rows of the results."""
-
-_X, _ROOT, _WIDENING, _VALUES, _SLOPES = 12, 13, 14, 15, 18
-"""Rows of coordinate, unknown, its derivative, three functions and three slopes."""
-
-_WAVE, _NEXT_WAVE, _RISE, _NEXT_RISE = range(21, 25)
-"""Rows of the Chebyshev polynomials."""
-
-_ROW_COUNT = 25
-
-
-_VECTOR_FORMULAS = dict(VECTOR_FUNCTIONS)
-"""Elementary functions and formulas of the tables, by name, that compile to vector instructions."""
-
-for _tabulated_formula in (
-    chebyshev.angle_root,
-    curves.angle_derivative,
-    curves.opening,
-    curves.contact_quantities,
-    inverse.start_coordinate,
-    inverse.start_root,
-    inverse.half_angle_of_root,
-    inverse.limited_newton_step,
-    *(each for functions in inverse.INVERSES.values() for each in (functions.residual, functions.log_share)),
-):
-    _VECTOR_FORMULAS[_tabulated_formula.__name__] = vector_formula(_tabulated_formula, _VECTOR_FORMULAS)
-
-
-@cache
-def _tabulated_kernel(kind: str) -> Any:
-    """Return the compiled loop over contacts of `Tabulated` for given forces or indentations.
-
-    Each input is a number or an array.
-    """
-    residual = _VECTOR_FORMULAS[inverse.INVERSES[kind].residual.__name__]
-    log_share = _VECTOR_FORMULAS[inverse.INVERSES[kind].log_share.__name__]
-    angle_root, angle_derivative = _VECTOR_FORMULAS["angle_root"], _VECTOR_FORMULAS["angle_derivative"]
-    start_coordinate, start_root = _VECTOR_FORMULAS["start_coordinate"], _VECTOR_FORMULAS["start_root"]
-    newton_step, half_angle_of_root = _VECTOR_FORMULAS["limited_newton_step"], _VECTOR_FORMULAS["half_angle_of_root"]
-    contact_quantities = _VECTOR_FORMULAS["contact_quantities"]
-
-    def solve_contacts(inputs, start, functions, steps, outputs):  # type: ignore[no-untyped-def]
-        """Solve each contact for its load; write half angle, indentation, force, pole pressure and stiffness."""
-        rows = numpy.empty((_ROW_COUNT, _LANES))
-        for first in range(0, outputs.shape[1], _LANES):
-            lanes = min(_LANES, outputs.shape[1] - first)
-            copy_inputs(inputs, first, lanes, rows)
-            for j in range(lanes):
-                widest = Widest(rows[_OPENING, j], rows[_FORCE, j])
-                rows[_ROOT, j] = log_share(rows[_LOAD, j], widest)
-                rows[_X, j] = start_coordinate(rows[_ROOT, j], rows[_RATIO, j])
-            _sum_series(start, first, lanes, rows, _VALUES)
-            for j in range(lanes):
-                rows[_ROOT, j] = start_root(rows[_ROOT, j], rows[_VALUES, j])
-            for step in range(steps + 1):
-                for j in range(lanes):
-                    rows[_ANGLE, j] = half_angle_of_root(rows[_ROOT, j])
-                    series_root = angle_root(rows[_ANGLE, j], rows[_RATIO, j])
-                    rows[_X, j] = 2 * series_root - 1
-                    rows[_WIDENING, j] = angle_derivative(rows[_ANGLE, j], series_root, rows[_RATIO, j])
-                _sum_two_series(functions, first, lanes, rows)
-                if step < steps:
-                    for j in range(lanes):
-                        value, slope = residual(rows[_ROOT, j], rows[_LOAD, j], _evaluated_curve(rows, j))
-                        rows[_ROOT, j] = newton_step(rows[_ROOT, j], value, slope)
-            _sum_series(functions[2], first, lanes, rows, _VALUES + 2)
-            for j in range(lanes):
-                scale = Scale(rows[_CLEARANCE, j], rows[_AREA, j], rows[_COMPLIANCE, j])
-                d, F, p0, stiffness, _ = contact_quantities(rows[_ANGLE, j], _evaluated_curve(rows, j), scale)
-                rows[_INDENTATION, j], rows[_RESULT_FORCE, j] = d, F
-                rows[_POLE_PRESSURE, j], rows[_STIFFNESS, j] = p0, stiffness
-            outputs[:, first : first + lanes] = rows[_ANGLE : _STIFFNESS + 1, :lanes]
-
-    return compile_loop(solve_contacts)
-
-
-def copy_inputs(inputs: Any, first: int, lanes: int, rows: Numbers) -> None:
-    """Copy the inputs of a block of contacts, numbers or arrays, to the first rows."""
-    for row, values in enumerate(inputs):
-        rows[row, :lanes] = values if numpy.ndim(values) == 0 else values[first : first + lanes]
-
-
-@overload(copy_inputs, strict=False)
-def _overload_copy_inputs(inputs: Any, first: Any, lanes: Any, rows: Any) -> Callable[..., Any]:
-    """Implement `copy_inputs` in compiled code, for a tuple of numbers and arrays."""
-
-    def copy(inputs, first, lanes, rows):  # type: ignore[no-untyped-def]
-        row = 0
-        for values in literal_unroll(inputs):
-            for j in range(lanes):
-                rows[row, j] = pick_element(values, first + j)
-            row = row + 1
-
-    return copy
-
-
-@inline_formula
-def _evaluated_curve(rows, j):  # type: ignore[no-untyped-def]
-    """Return the tabulated functions that are evaluated for contact j of a block."""
-    widening = rows[_WIDENING, j]
-    return _EvaluatedCurve(
-        rows[_VALUES, j],
-        widening * rows[_SLOPES, j],
-        rows[_VALUES + 1, j],
-        widening * rows[_SLOPES + 1, j],
-        rows[_VALUES + 2, j],
-    )
-
-
-@overload(curves.evaluate_table_functions, strict=False, jit_options={"forceinline": True})
-def _overload_evaluate(angle: Any, curve: Any, rows: Any) -> Callable[..., Any]:
-    """Return the tabulated functions that the loop has already evaluated at the half angle of the contact."""
-    if rows.count == 1:
-        return lambda angle, curve, rows: ((curve.share, curve.share_slope),)
-    if rows.count == 2:
-        return lambda angle, curve, rows: ((curve.share, curve.share_slope), (curve.force, curve.force_slope))
-    return lambda angle, curve, rows: (
-        (curve.share, curve.share_slope),
-        (curve.force, curve.force_slope),
-        (curve.pole, 0.0),
-    )
-
-
-@inline_formula
-def _sum_series(series, first, lanes, rows, value_row):  # type: ignore[no-untyped-def]
-    """Sum a Chebyshev series of each contact: T_k+1 = 2x T_k - T_k-1."""
-    for j in range(lanes):
-        rows[_WAVE, j], rows[_NEXT_WAVE, j], rows[value_row, j] = 1.0, rows[_X, j], 0.0
-    for k in range(0, series.shape[0], 2):
-        for j in range(lanes):
-            twice, even, odd = 2 * rows[_X, j], rows[_WAVE, j], rows[_NEXT_WAVE, j]
-            c0, c1 = pick_coefficient(series, k, first + j), pick_coefficient(series, k + 1, first + j)
-            rows[value_row, j] += c0 * even + c1 * odd
-            even = twice * odd - even
-            rows[_WAVE, j], rows[_NEXT_WAVE, j] = even, twice * even - odd
-
-
-@inline_formula
-def _sum_two_series(functions, first, lanes, rows):  # type: ignore[no-untyped-def]
-    """Sum the series of opening and force of each contact, and their slopes: T_k' = k U_k-1, U_k+1 = 2x U_k - U_k-1."""
-    opening, force = functions[0], functions[1]
-    for j in range(lanes):
-        rows[_WAVE, j], rows[_NEXT_WAVE, j], rows[_RISE, j], rows[_NEXT_RISE, j] = 1.0, rows[_X, j], 0.0, 1.0
-        rows[_VALUES, j], rows[_VALUES + 1, j], rows[_SLOPES, j], rows[_SLOPES + 1, j] = 0.0, 0.0, 0.0, 0.0
-    for k in range(0, opening.shape[0], 2):
-        order = float(k)
-        for j in range(lanes):
-            twice, even, odd = 2 * rows[_X, j], rows[_WAVE, j], rows[_NEXT_WAVE, j]
-            even_rise, odd_rise = rows[_RISE, j], rows[_NEXT_RISE, j]
-            even_slope, odd_slope, i = order * even_rise, (order + 1.0) * odd_rise, first + j
-            c0, c1 = pick_coefficient(opening, k, i), pick_coefficient(opening, k + 1, i)
-            rows[_VALUES, j] += c0 * even + c1 * odd
-            rows[_SLOPES, j] += c0 * even_slope + c1 * odd_slope
-            c0, c1 = pick_coefficient(force, k, i), pick_coefficient(force, k + 1, i)
-            rows[_VALUES + 1, j] += c0 * even + c1 * odd
-            rows[_SLOPES + 1, j] += c0 * even_slope + c1 * odd_slope
-            even, even_rise = twice * odd - even, twice * odd_rise - even_rise
-            rows[_WAVE, j], rows[_NEXT_WAVE, j] = even, twice * even - odd
-            rows[_RISE, j], rows[_NEXT_RISE, j] = even_rise, twice * even_rise - odd_rise
-
-
-def pick_coefficient(series: Any, k: int, i: int) -> Any:
-    """Return coefficient k of the series of contact i, or of the one series of all contacts."""
-    return series[k, i] if series.ndim > 1 else series[k]
-
-
-@overload(pick_coefficient, strict=False, jit_options={"forceinline": True})
-def _overload_pick_coefficient(series: Any, k: Any, i: Any) -> Callable[..., Any]:
-    """Implement `pick_coefficient` in compiled code."""
-    return (lambda series, k, i: series[k, i]) if series.ndim > 1 else (lambda series, k, i: series[k])
-
-
 for _formula in (
     scaled_modulus,
     kinematics.linear_indentation,
@@ -379,26 +115,206 @@ for _formula in (
 ):
     inline_formula(_formula)
 
-for _long_formula in (
+
+_FORMULAS = (
     liner_compliance.liner_coefficients,
-    liner_compliance.log_compliance,
-    liner_compliance._scaled_polynomial,
-    liner_compliance.log_compliance_any_wave,
-    liner_compliance._log_compliance_near_one,
-    liner_compliance._reduced_polynomial,
-    liner_compliance._decay_mean,
     liner_compliance._evaluate_polynomial,
-    refined_state.scalar_log_compliances,
+    liner_compliance._scaled_polynomial,
+    liner_compliance.log_compliance,
+    liner_compliance._decay_means,
+    liner_compliance._reduced_polynomial,
+    liner_compliance.log_compliance_any_wave,
+    refined_state.log_compliances,
     refined_state.log_slopes,
     refined_state._log_compliance,
     refined_state._edge_displacement,
     refined_state._pressure_exponent,
     refined_state.angle_derivative,
     refined_state.scaled_contact,
-    refined_state._solve_half_angle,
-    refined_state._indentation_residual,
-    refined_state._force_residual,
-    refined_state.half_angle_of_indentation,
-    refined_state.half_angle_of_force,
-):
-    jit_formula(_long_formula)
+    refined_state.shift_contact,
+    refined_state.shape_coefficient,
+    refined_state.peak_position,
+    refined_state.pressure_ratio,
+    refined_inverse.half_angle_of_root,
+    refined_inverse.last_shift,
+    refined_inverse.masked_half_angle,
+    refined_inverse.start_ratio,
+    refined_inverse.start_log_estimate,
+    refined_inverse.start_coordinate,
+    refined_inverse.start_root,
+    refined_inverse.force_product,
+    refined_inverse.indentation_product,
+    roots.bracketed_update,
+)
+"""Formulas of the model, each after those that it calls."""
+
+_VECTOR_FORMULAS = dict(VECTOR_FUNCTIONS)
+"""Elementary functions and formulas, by name, that compile to vector instructions."""
+
+for _refined_formula in _FORMULAS:
+    _VECTOR_FORMULAS[_refined_formula.__name__] = vector_formula(_refined_formula, _VECTOR_FORMULAS)
+
+
+_BLOCK = 16384
+"""Number of contacts whose series of the start are computed at once."""
+
+_MAX_STEPS = 60
+"""Largest number of Newton steps."""
+
+_LOAD, _RADIUS, _CLEARANCE, _THICKNESS, _YOUNG, _POISSON = range(6)
+"""Rows of the inputs."""
+
+_ROOT, _LOW, _HIGH, _FRESH, _SCALED, _PRODUCT, _SLOPE = range(6, 13)
+"""Rows of the iteration: unknown, bracket, whether its upper end is new, load, and the values of a trial contact."""
+
+_SHARE, _SHARE_RATE, _GAP, _GAP_SLOPE, _COMPLIANCE, _SECANT, _SECANT_RATE, _COMPLIANCE_RATE = range(13, 21)
+"""Rows of the trial contact: the fields of `ScaledContact`."""
+
+_X, _WAVE, _NEXT_WAVE, _CORRECTION = range(21, 25)
+"""Rows of the series of the start."""
+
+_ROW_COUNT = 25
+
+
+def solve_refined(joint: Joint, kind: str, load: Numbers) -> SolverResult:
+    """Solve the model `Refined` in one compiled loop, for arrays of forces or indentations."""
+    shape = numpy.broadcast_shapes(*(number.shape for number in (*joint.numbers(), load)))
+    liner = joint.liner
+    numbers = (load, joint.socket_radius, joint.clearance, joint.liner_thickness, liner.young, liner.poisson)
+    inputs = tuple(as_row(number, shape) for number in numbers)
+    outputs, converged = numpy.empty((3, math.prod(shape))), numpy.empty(math.prod(shape), dtype=bool)
+    for first in range(0, len(converged), _BLOCK):
+        block = slice(first, min(first + _BLOCK, len(converged)))
+        _solve_block(kind, tuple(take_block(row, block) for row in inputs), outputs[:, block], converged[block])
+    edge, answer, max_pressure = (output.reshape(shape) for output in outputs)
+    solution = RefinedSolution(joint=joint, edge=edge)
+    vars(solution)["max_pressure"] = max_pressure
+    loads = numpy.broadcast_to(load, shape)
+    force, indentation = (loads, answer) if kind == "force" else (answer, loads)
+    failures = {Status.NOT_CONVERGED: ~converged.reshape(shape)}
+    return SolverResult(laws=solution, force=force, indentation=indentation, failures=failures)
+
+
+def take_block(row: Any, block: slice) -> Any:
+    """Take a block of an array; return a number itself."""
+    return row if isinstance(row, float) else row[block]
+
+
+def _solve_block(kind: str, inputs: tuple[Any, ...], outputs: Numbers, converged: Numbers) -> None:
+    """Solve a block of contacts; write half angle, the quantity that is not the load, and pressure to `outputs`."""
+    ratio = numpy.atleast_1d(inputs[_RADIUS] / inputs[_THICKNESS])
+    start = refined_inverse.start_series(kind, numpy.atleast_1d(inputs[_POISSON]), ratio)
+    series = start[:, 0].copy() if start.shape[1] == 1 else start
+    limits = refined_inverse.start_constants(kind)
+    _kernel(kind)(inputs, series, limits, square_tolerance(outputs), outputs, converged)
+
+
+@cache
+def _kernel(kind: str) -> Any:
+    """Return the compiled loop over contacts for given forces or indentations."""
+    formulas = _VECTOR_FORMULAS
+    half_angle_of_root, masked_half_angle = formulas["half_angle_of_root"], formulas["masked_half_angle"]
+    last_shift, bracketed_update = formulas["last_shift"], formulas["bracketed_update"]
+    start_log_estimate, start_root = formulas["start_log_estimate"], formulas["start_root"]
+    start_coordinate, start_ratio = formulas["start_coordinate"], formulas["start_ratio"]
+    liner_coefficients, scaled_contact = formulas["liner_coefficients"], formulas["scaled_contact"]
+    shift_contact, shape_coefficient = formulas["shift_contact"], formulas["shape_coefficient"]
+    peak_position, pressure_ratio = formulas["peak_position"], formulas["pressure_ratio"]
+    product_of, is_force = formulas[f"{kind}_product"], kind == "force"
+    exp, log, end, tolerance = formulas["exp"], formulas["log"], refined_inverse.END, refined_inverse.TOLERANCE
+
+    @inline_formula
+    def write_start(series, limits, first, lanes, rows):  # type: ignore[no-untyped-def]
+        """Write dimensionless loads, first values of the unknown, and brackets of a block of contacts."""
+        power, small, large, widest = limits
+        for j in range(lanes):
+            load = rows[_LOAD, j] if rows[_LOAD, j] > 0.0 else 1.0
+            scale = rows[_CLEARANCE, j] * (rows[_YOUNG, j] * rows[_RADIUS, j] if is_force else 1.0)
+            rows[_SCALED, j] = load / scale
+            rows[_ROOT, j] = start_log_estimate(rows[_SCALED, j], power, small, large, widest)
+            ratio = start_ratio(rows[_RADIUS, j] / rows[_THICKNESS, j])
+            rows[_X, j] = start_coordinate(exp(rows[_ROOT, j]), ratio, widest)
+        sum_series(series, first, lanes, rows, _X, _CORRECTION, _WAVE, _SHARE)
+        for j in range(lanes):
+            root = start_root(rows[_ROOT, j], rows[_CORRECTION, j])
+            rows[_ROOT, j], rows[_LOW, j], rows[_HIGH, j] = root, root - 6.0, end
+            rows[_FRESH, j] = 1.0 if root < end else 0.0
+
+    @inline_formula
+    def evaluate_contacts(lanes, rows):  # type: ignore[no-untyped-def]
+        """Write the trial contacts of a block, and their products with the slopes."""
+        for j in range(lanes):
+            liner = liner_coefficients(rows[_POISSON, j], 1.0 + rows[_THICKNESS, j] / rows[_RADIUS, j])
+            contact = scaled_contact(half_angle_of_root(rows[_ROOT, j]), liner)
+            rows[_PRODUCT, j], rows[_SLOPE, j] = product_of(contact, rows[_SCALED, j])
+            rows[_SHARE, j], rows[_SHARE_RATE, j] = contact.share, contact.share_rate
+            rows[_GAP, j], rows[_GAP_SLOPE, j] = contact.gap, contact.gap_slope
+            rows[_COMPLIANCE, j], rows[_COMPLIANCE_RATE, j] = contact.compliance, contact.compliance_rate
+            rows[_SECANT, j], rows[_SECANT_RATE, j] = contact.secant, contact.secant_rate
+
+    @inline_formula
+    def update_roots(lanes, rows):  # type: ignore[no-untyped-def]
+        """Take a bracketed Newton step in a block; return the number of contacts that have not converged."""
+        moving = 0
+        for j in range(lanes):
+            difference, slope, root = log(rows[_PRODUCT, j]), rows[_SLOPE, j], rows[_ROOT, j]
+            next_root, low, high, fresh, has_moved = bracketed_update(
+                difference, slope, tolerance, root, rows[_LOW, j], rows[_HIGH, j], rows[_FRESH, j] > 0.0
+            )
+            rows[_ROOT, j], rows[_LOW, j], rows[_HIGH, j] = next_root, low, high
+            rows[_FRESH, j] = 1.0 if fresh else 0.0
+            moving += 1 if has_moved else 0
+        return moving
+
+    @inline_formula
+    def write_results(square, first, lanes, rows, outputs, converged):  # type: ignore[no-untyped-def]
+        """Correct the contacts of a block linearly, and write half angle, depth or force, and largest pressure."""
+        for j in range(lanes):
+            shift = last_shift(rows[_PRODUCT, j], rows[_SLOPE, j])
+            contact = shift_contact(
+                ScaledContact(
+                    rows[_SHARE, j],
+                    rows[_SHARE_RATE, j],
+                    rows[_GAP, j],
+                    rows[_GAP_SLOPE, j],
+                    rows[_COMPLIANCE, j],
+                    rows[_SECANT, j],
+                    rows[_SECANT_RATE, j],
+                    rows[_COMPLIANCE_RATE, j],
+                ),
+                shift,
+            )
+            load, R2, E = rows[_LOAD, j], rows[_RADIUS, j], rows[_YOUNG, j]
+            edge = masked_half_angle(rows[_ROOT, j], shift) if load > 0.0 else 0.0
+            stiffness = E * R2 * contact.secant
+            beta = shape_coefficient(contact)
+            ratio = pressure_ratio(peak_position(beta), beta)
+            answer = load / stiffness if is_force else load * stiffness
+            depth = rows[_CLEARANCE, j] * (2 * contact.share / contact.gap)
+            pressure = E / (R2 * contact.compliance) * depth * ratio
+            rows[_X, j] = 1.0 if (shift * shift <= square) | (edge == 0.0) else 0.0
+            rows[_SHARE, j] = edge
+            rows[_GAP, j] = answer if edge > 0.0 else 0.0 * edge
+            rows[_SECANT, j] = pressure if edge > 0.0 else 0.0 * edge
+        for j in range(lanes):
+            outputs[0, first + j] = rows[_SHARE, j]
+            outputs[1, first + j] = rows[_GAP, j]
+            outputs[2, first + j] = rows[_SECANT, j]
+            converged[first + j] = rows[_X, j] > 0.0
+
+    def solve_contacts(inputs, series, limits, square, outputs, converged):  # type: ignore[no-untyped-def]
+        """Solve each contact for its load; write half angle, indentation or force, and largest pressure."""
+        rows = numpy.empty((_ROW_COUNT, LANES))
+        for first in range(0, outputs.shape[1], LANES):
+            lanes = min(LANES, outputs.shape[1] - first)
+            copy_inputs(inputs, first, lanes, rows)
+            write_start(series, limits, first, lanes, rows)
+            moving = lanes
+            for step in range(_MAX_STEPS + 1):
+                evaluate_contacts(lanes, rows)
+                if moving == 0 or step == _MAX_STEPS:
+                    break
+                moving = update_roots(lanes, rows)
+            write_results(square, first, lanes, rows, outputs, converged)
+
+    return compile_loop(solve_contacts)

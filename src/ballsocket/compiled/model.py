@@ -21,6 +21,7 @@ from ..models.refined import Refined
 from ..problem import Joint
 from . import kernels
 from .law import CompiledLaw, compiled_law
+from .table_kernel import solve_tabulated
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -103,7 +104,7 @@ class Compiled(ModelWrapper):
             if isinstance(self.model, Refined):
                 return kernels.solve_refined(joint, kind, load)
             if isinstance(self.model, Tabulated):
-                return kernels.solve_tabulated(self.model, joint, kind, load)
+                return solve_tabulated(self.model, joint, kind, load)
         return super()._solve(joint, kind, load)
 
     def _law(self, joint: Joint) -> CompiledLaw:

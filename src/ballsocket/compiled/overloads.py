@@ -80,6 +80,12 @@ def _overload_sin(x: Any) -> Callable[..., Any]:
     return lambda x: math.sin(x)
 
 
+@overload(arrays.short_sine, strict=False, jit_options={"forceinline": True})
+def _overload_short_sine(x: Any) -> Callable[..., Any]:
+    """Replace `arrays.short_sine` by its series in compiled code."""
+    return arrays.short_sine_series
+
+
 @overload(arrays.cos, strict=False)
 def _overload_cos(x: Any) -> Callable[..., Any]:
     """Implement `arrays.cos` for numbers in compiled code."""
@@ -277,4 +283,5 @@ VECTOR_FUNCTIONS: dict[str, Any] = {"exp": exp, "log": log, "log1p": log1p, "sin
 
 def vector_formula(formula: Any, functions: dict[str, Any]) -> Any:
     """Return a formula, registered for compiled code, that calls other functions by the same names."""
-    return inline_formula(FunctionType(formula.__code__, {**formula.__globals__, **functions}))
+    names = {**formula.__globals__, **functions}
+    return inline_formula(FunctionType(formula.__code__, names, formula.__name__, formula.__defaults__))

@@ -75,16 +75,41 @@ def increasing_root(
         """Iterate from a first x until the elements have converged."""
         return _iterate_until_converged(newton_step, (first, low, high, first < high, first == first), steps)
 
+    def residual(x: Array) -> tuple[Array, Array]:
+        """Compute the difference between law and target, and its slope."""
+        value, slope = law(x, *arguments)
+        return value - target, slope
+
+    return implicit_root(residual, solve, start)
+
+
+def implicit_root(residual: Increasing, solve: Callable[[Array], Array], start: Array) -> Array:
+    """Solve residual(x) = 0 with a solver, and give the root its derivatives by the implicit function theorem.
+
+    Parameters
+    ----------
+    residual : callable
+        Increasing function: x -> (value, slope), both of the shape of x.
+    solve : callable
+        Function that computes the root from a first x; nobody differentiates through it.
+    start : array
+        First x.
+
+    Returns
+    -------
+    array
+        The root. Its derivatives are those of all orders in traced JAX, up to the third elsewhere.
+    """
     if namespace(start) is numpy:
         return solve(start)
     if array_api_compat.is_jax_array(start) and all_true(start == start) is None:
-        return _implicit_jax_root(lambda x: law(x, *arguments)[0] - target, solve, start)
+        return _implicit_jax_root(lambda x: residual(x)[0], solve, start)
     with without_gradients(start):
         x = solve(start)
     x = stop_gradient(x)
     for _ in range(2):  # a step at the root keeps its value and doubles the order of the correct derivatives
-        value, slope = law(x, *arguments)
-        x = x - where(slope > 0, (value - target) / safe_divisor(slope), 0.0)
+        value, slope = residual(x)
+        x = x - where(slope > 0, value / safe_divisor(slope), 0.0)
     return x
 
 
@@ -149,10 +174,17 @@ def bracketed_newton_step(
         x, low, high, fresh, and the mask of the elements that moved by more than the tolerance.
     """
     value, slope = law(x, *arguments)
-    low = where(value <= target, x, low)
-    high = where(value >= target, x, high)
+    return bracketed_update(value - target, slope, tolerance, x, low, high, fresh)
+
+
+def bracketed_update(
+    difference: Array, slope: Array, tolerance: float, x: Array, low: Array, high: Array, fresh: Array
+) -> tuple[Array, Array, Array, Array, Array]:
+    """Compute one step of `bracketed_newton_step` from the difference between law and target at x, and its slope."""
+    low = where(difference <= 0, x, low)
+    high = where(difference >= 0, x, high)
     fresh = fresh & (x < high)
-    newton_x = x - (value - target) / safe_divisor(slope)
+    newton_x = x - difference / safe_divisor(slope)
     newton_in_bracket = (slope > 0) & (newton_x >= low) & (newton_x <= high)
     fallback_x = where(fresh & (newton_x > high), high, low + (high - low) / 2)
     next_x = where(newton_in_bracket, newton_x, fallback_x)

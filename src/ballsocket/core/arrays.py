@@ -84,6 +84,24 @@ asinh = _make_elementwise("asinh", math.asinh)
 asin = _make_elementwise("asin", math.asin)
 
 
+def short_sine(x: Array) -> Array:
+    """Compute sin x for |x| up to 0.75; of arrays by a series, which takes compilers a tenth of the time of `sin`."""
+    return math.sin(x) if type(x) is float else short_sine_series(x)
+
+
+def short_sine_series(x: Array) -> Array:
+    """Compute sin x for |x| up to 0.75 by its Taylor series, to rounding errors."""
+    z = x * x
+    p = -1 / 1307674368000
+    p = p * z + 1 / 6227020800
+    p = p * z - 1 / 39916800
+    p = p * z + 1 / 362880
+    p = p * z - 1 / 5040
+    p = p * z + 1 / 120
+    p = p * z - 1 / 6
+    return x + x * z * p
+
+
 def sqrt(x: Array) -> Array:
     """Compute the square root √x; its derivative at x = 0 is set to 0.
 
@@ -147,6 +165,40 @@ def repeat_step(step: Callable[[Any], Any], state: Any, count: int) -> Any:
     for _ in range(count):
         state = step(state)
     return state
+
+
+def map_jax_blocks(function: Callable[..., tuple[Array, ...]], rows: Sequence[Array]) -> tuple[Array, ...]:
+    """Apply a function to rows inside `jax.jit`, block by block in one loop, so that one block is compiled.
+
+    Parameters
+    ----------
+    function : callable
+        Function of as many rows, arrays (1,) or (n,), that returns arrays (..., n).
+    rows : sequence of array
+        Arrays (1,) or (contacts,); the last one has the shape (contacts,).
+    """
+    import jax
+
+    count, size = rows[-1].shape[0], _JAX_BLOCKS.get(jax.default_backend(), _JAX_BLOCK)
+    if count <= size:
+        return function(*rows)
+
+    def apply_to_block(parts: list[Array]) -> tuple[Array, ...]:
+        """Apply the function to one block of the rows that vary."""
+        remaining = iter(parts)
+        return function(*(row if row.shape[0] == 1 else next(remaining) for row in rows))
+
+    varying = [row for row in rows if row.shape[0] > 1]
+    padded = [jax.numpy.pad(row, (0, -count % size), mode="edge").reshape(-1, size) for row in varying]
+    values = jax.lax.map(apply_to_block, padded)
+    return tuple(jax.numpy.moveaxis(part, 0, -2).reshape(*part.shape[1:-1], -1)[..., :count] for part in values)
+
+
+_JAX_BLOCKS = {"cpu": 4000}
+"""Number of contacts in one block by the platform of JAX; on a CPU, the numbers of a block stay in the cache."""
+
+_JAX_BLOCK = 2**20
+"""Number of contacts in one block on other platforms; the series of tables take 1 GB."""
 
 
 def safe_divisor(x: Array) -> Array:

@@ -149,7 +149,7 @@ MOVED = {
     "ballsocket.compiled.teaching": "ballsocket.compiled.overloads",
     "ballsocket.compiled.foundation": "ballsocket.compiled.kernels",
     "ballsocket.compiled.refined": "ballsocket.compiled.kernels",
-    "ballsocket.compiled.tabulated": "ballsocket.compiled.kernels",
+    "ballsocket.compiled.tabulated": "ballsocket.compiled.table_kernel",
     "ballsocket.elastic.exact": "ballsocket.elasticity.exact.model",
     "ballsocket.fem": "ballsocket.elasticity.finite_elements",
     "ballsocket.fem.export": "ballsocket.elasticity.finite_elements",

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..core import arrays
 from ..core.arrays import Array, exp, log, sqrt, where
 
 Pair = tuple[Array, Array]
@@ -98,24 +97,17 @@ def _scaled_polynomial(
 def log_compliance_any_wave(k: Array, liner: Liner) -> Pair:
     """Compute the log modal compliance ln(c E/R2) and its slope by ln k, for all wave numbers.
 
-    Near q = 1 (k² = 3/4), where N and D vanish, it uses the reduced polynomials.
+    N and D share the factor q - 1, which is divided out.
     """
-    offset = k * k - 0.75
-    is_near = (offset > -0.05) & (offset < 0.05)
-    if arrays.all_true(arrays.logical_not(is_near)):
-        return log_compliance(k, liner)
-    value, slope = log_compliance(where(is_near, 2.0, k), liner)
-    value_near, slope_near = _log_compliance_near_one(k, liner)
-    return where(is_near, value_near, value), where(is_near, slope_near, slope)
-
-
-def _log_compliance_near_one(k: Array, liner: Liner) -> Pair:
-    """Compute the log modal compliance and its slope by ln k near q = 1, where N and D share the factor q - 1."""
     nu = liner.poisson
     k0, g, t = 3 - 4 * nu, 8 * (1 - nu) * (1 - 2 * nu), 1 - 4 * nu
     q = sqrt(k * k + 0.25)
+    rate = 2 * liner.growth
+    y, decay = _decay_means(q, rate)
     numerator, rise = _reduced_polynomial(
         q,
+        y,
+        decay,
         liner,
         liner.numerator,
         first=(-4.0, 1 - 4 * g, 0.0),
@@ -125,6 +117,8 @@ def _log_compliance_near_one(k: Array, liner: Liner) -> Pair:
     )
     denominator, fall = _reduced_polynomial(
         q,
+        y,
+        decay,
         liner,
         liner.denominator,
         first=(4.0, 4 * g - 10, 2.25 - 9 * g, 0.0),
@@ -135,8 +129,22 @@ def _log_compliance_near_one(k: Array, liner: Liner) -> Pair:
     return log((1 + nu) * (numerator / denominator)), k * k / q * (rise / numerator - fall / denominator)
 
 
+def _decay_means(q: Array, rate: Array) -> tuple[Array, Pair]:
+    """Compute y = b^(2 - 2q), and z = (1 - y)/(q - 1) with its slope by q; near q = 1, z is a series."""
+    x = (q - 1) * rate
+    y = exp(-x)
+    is_small = (x > -0.05) & (x < 0.05)
+    divisor = where(is_small, 1.0, x)
+    series, series_slope = _evaluate_polynomial(x, _DECAY)
+    mean = (1 - y) / divisor
+    slope = where(is_small, series_slope, (y - mean) / divisor)
+    return y, (rate * where(is_small, series, mean), rate * rate * slope)
+
+
 def _reduced_polynomial(
     q: Array,
+    y: Array,
+    decay: Pair,
     liner: Liner,
     coefficients: tuple[Array, ...],
     first: tuple[Array, ...],
@@ -147,41 +155,41 @@ def _reduced_polynomial(
     """Evaluate numerator N or denominator D of the modal compliance, divided by b^2q (q - 1), with its slope by q.
 
     f(q) b^2q with the first of the middle terms, and f(-q) b^-2q with the last, are q - 1 times polynomials of q - ½.
-    With those and z = (1 - y)/(q - 1) the result is
+    With those, `decay` and y of `_decay_means` the result is
 
         `grown_first` - z `first` + y b^-2 [(q + 1) `middle` + b^-2 (`decayed_last` - z f(-q))].
-    """
-    rate, Q = 2 * liner.growth, q * q
-    y, (z, z_slope) = exp((1 - q) * rate), _decay_mean((q - 1) * rate)
-    z, z_slope = z * rate, z_slope * rate * rate
-    e2, e1, e0, o1, o0 = coefficients[:5]
-    back, back_slope = (e2 * Q + e1) * Q + e0 - q * (o1 * Q + o0), 2 * q * (2 * e2 * Q + e1) - 3 * o1 * Q - o0
-    P, P_slope = _evaluate_polynomial(Q, first)
-    M, M_slope = _evaluate_polynomial(Q, middle)
-    G, G_slope = _evaluate_polynomial(q - 0.5, grown_first)
-    H, H_slope = _evaluate_polynomial(q - 0.5, decayed_last)
-    inner = (q + 1) * M + liner.shrink * (H - z * back)
-    inner_slope = M + (q + 1) * 2 * q * M_slope + liner.shrink * (H_slope - z_slope * back - z * back_slope)
-    value = G - z * P + y * liner.shrink * inner
-    slope = G_slope - z_slope * P - z * 2 * q * P_slope + y * liner.shrink * (inner_slope - rate * inner)
-    return value, slope
 
+    For short waves the first two terms cancel; they are (f(q) + y `first`)/(q - 1).
+    """
+    (z, z_slope), Q, rate = decay, q * q, 2 * liner.growth
+    e2, e1, e0, o1, o0 = coefficients[:5]
+    even, even_slope = (e2 * Q + e1) * Q + e0, 2 * q * (2 * e2 * Q + e1)
+    odd, odd_slope = q * (o1 * Q + o0), 3 * o1 * Q + o0
+    bounded_q = where(q < _MAX_DECAYED_Q, q, _MAX_DECAYED_Q)
+    P, P_slope = _evaluate_polynomial(bounded_q * bounded_q, first)
+    M, M_slope = _evaluate_polynomial(bounded_q * bounded_q, middle)
+    G, G_slope = _evaluate_polynomial(bounded_q - 0.5, grown_first)
+    H, H_slope = _evaluate_polynomial(bounded_q - 0.5, decayed_last)
+    is_short = q > 2.0
+    share = 1 / where(is_short, q - 1, 1.0)
+    short = (even + odd + y * P) * share
+    short_slope = (even_slope + odd_slope + y * (2 * bounded_q * P_slope - rate * P) - short) * share
+    head = where(is_short, short, G - z * P)
+    head_slope = where(is_short, short_slope, G_slope - z_slope * P - z * 2 * bounded_q * P_slope)
+    back, back_slope = even - odd, even_slope - odd_slope
+    inner = (bounded_q + 1) * M + liner.shrink * (H - z * back)
+    inner_slope = (
+        M + (bounded_q + 1) * 2 * bounded_q * M_slope + liner.shrink * (H_slope - z_slope * back - z * back_slope)
+    )
+    tail = y * liner.shrink
+    return head + tail * inner, head_slope + tail * (inner_slope - rate * inner)
+
+
+_MAX_DECAYED_Q = 1e6
+"""Largest q of the polynomials that multiply y, which is 0 for shorter waves; it avoids an overflow."""
 
 _DECAY = (-1 / 40320, 1 / 5040, -1 / 720, 1 / 120, -1 / 24, 1 / 6, -1 / 2, 1.0)
 """Coefficients (-1)^j/(j + 1)!, highest power first."""
-
-
-def _decay_mean(x: Array) -> Pair:
-    """Compute the mean (1 - exp(-x))/x of an exponential decay over 0 to x, and its slope by x.
-
-    Near 0 it uses a series.
-    """
-    small = (x > -0.05) & (x < 0.05)
-    safe = where(small, 1.0, x)
-    series, series_slope = _evaluate_polynomial(x, _DECAY)
-    decayed = exp(-safe)
-    mean = (1 - decayed) / safe
-    return where(small, series, mean), where(small, series_slope, (decayed - mean) / safe)
 
 
 def _evaluate_polynomial(x: Array, coefficients: tuple[Array, ...]) -> Pair:

@@ -17,7 +17,8 @@ from ..core.sources import Source
 from ..core.validity import RIGID_BACKING, SMALL_STRAIN, Promise, Range, Remark, Status
 from ..problem import Joint
 from .liner_compliance import Liner, liner_coefficients
-from .refined_state import MAX_HALF_ANGLE, ScaledContact, half_angle_of_force, half_angle_of_indentation, scaled_contact
+from .refined_inverse import MAX_HALF_ANGLE, flatten_like, solve_contact
+from .refined_state import ScaledContact, peak_position, pressure_ratio, scaled_contact, shape_coefficient
 
 _FITTED = "fitted in this range with a rigid ball"
 
@@ -83,19 +84,29 @@ class Refined(Model):
 
     def _solve(self, joint: Joint, kind: str, load: Array) -> SolverResult:
         """Solve contacts for given forces, indentations or half angles."""
-        edge = _mask_half_angle(joint, load) if kind == "half_angle" else _solve_half_angle(joint, kind, load)
-        return make_solver_result(RefinedSolution(joint=joint, edge=edge), kind, load)
+        if kind == "half_angle":
+            edge = _mask_half_angle(joint, load)
+            return make_solver_result(RefinedSolution(joint=joint, edge=edge), kind, load, 0.0 * edge)
+        scaled = scaled_load(joint, kind, load)
+        if type(scaled) is not float and arrays.is_jax_array(scaled) and arrays.all_true(scaled == scaled) is None:
+            edge, shift, *state = _solve_in_jax_blocks(joint, kind, scaled)
+        else:
+            edge, shift, *state = solve_contact(kind, scaled, _joint_liner(joint), joint.thickness_ratio)
+        solution = RefinedSolution(joint=joint, edge=where(load > 0, edge, 0.0 * load), state=ScaledContact(*state))
+        return make_solver_result(solution, kind, load, shift)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RefinedSolution:
     """Solution of the refined model at a half angle, with the quantities of a `Contact`.
 
-    `edge` is the half angle in rad: 0 without load, NaN without a solution.
+    `edge` is the half angle in rad: 0 without load, NaN without a solution. `state` is the contact at that half angle,
+    if it is known; its derivatives are those at an angle whose relative difference is below 1e-6.
     """
 
     joint: Joint
     edge: Array
+    state: ScaledContact | None = None
 
     @cached_property
     def _joint_liner(self) -> Liner:
@@ -104,8 +115,13 @@ class RefinedSolution:
 
     @cached_property
     def _scaled_contact(self) -> ScaledContact:
-        """Dimensionless contact quantities at the half angle."""
+        """Dimensionless contact quantities at the half angle, with their derivatives there."""
         return scaled_contact(safe_divisor(self.edge), self._joint_liner)
+
+    @property
+    def _contact_values(self) -> ScaledContact:
+        """Dimensionless contact quantities at the half angle, without their derivatives."""
+        return self._scaled_contact if self.state is None else self.state
 
     def _zero_without_load(self, value: Array) -> Array:
         """Replace values of contacts without load by 0."""
@@ -114,7 +130,7 @@ class RefinedSolution:
     @property
     def _secant_stiffness(self) -> Array:
         """Secant stiffness F/d in N/mm."""
-        return self.joint.liner.young * self.joint.socket_radius * self._scaled_contact.secant
+        return self.joint.liner.young * self.joint.socket_radius * self._contact_values.secant
 
     def force_and_indentation(self, kind: str, load: Array) -> tuple[Array, Array]:
         """Compute the force F in N and the indentation d in mm from the applied load.
@@ -124,14 +140,8 @@ class RefinedSolution:
         if kind == "force":
             d = load / self._secant_stiffness
             return self._zero_without_load(load), self._zero_without_load(d)
-        d = load if kind == "indentation" else self.joint.clearance * self._scaled_contact.indentation
+        d = load if kind == "indentation" else self.joint.clearance * self._contact_values.indentation
         return self._zero_without_load(d * self._secant_stiffness), self._zero_without_load(d)
-
-    def relative_residual(self, indentation: Array) -> Array:
-        """Compute the relative error of the solved half angle from the prescribed indentation in mm."""
-        d = self._scaled_contact.indentation
-        error = abs(1 - indentation / (self.joint.clearance * d)) / self._scaled_contact.indentation_rate
-        return where(self.edge > 0, error, 0.0)
 
     @property
     def half_angle(self) -> Array:
@@ -140,7 +150,7 @@ class RefinedSolution:
     @property
     def indentation(self) -> Array:
         """Indentation d in mm."""
-        return self._zero_without_load(self.joint.clearance * self._scaled_contact.indentation)
+        return self._zero_without_load(self.joint.clearance * self._contact_values.indentation)
 
     @cached_property
     def stiffness(self) -> Array:
@@ -170,7 +180,7 @@ class RefinedSolution:
     @property
     def _modulus(self) -> Array:
         """Foundation modulus K = p0/d in MPa/mm."""
-        return self.joint.liner.young / (self.joint.socket_radius * self._scaled_contact.compliance)
+        return self.joint.liner.young / (self.joint.socket_radius * self._contact_values.compliance)
 
     @property
     def foundation_modulus(self) -> Array:
@@ -182,13 +192,12 @@ class RefinedSolution:
 
     @property
     def _peak_position(self) -> Array:
-        """Position y = sin²(φ/2)/sin²(ε/2) of the largest pressure: 0, the pole, for β up to 1/2."""
-        beta = self._shape_coefficient
-        return where(beta > 0.5, (2 * beta - 1) / where(beta > 0.5, 3 * beta, 1.0), 0.0)
+        """Position y = sin²(φ/2)/sin²(ε/2) of the largest pressure."""
+        return peak_position(self._shape_coefficient)
 
-    @property
+    @cached_property
     def max_pressure(self) -> Array:
-        return self.pole_pressure * self._pressure_ratio(self._peak_position)
+        return self.pole_pressure * pressure_ratio(self._peak_position, self._shape_coefficient)
 
     @property
     def max_pressure_angle(self) -> Array:
@@ -201,26 +210,29 @@ class RefinedSolution:
 
     @cached_property
     def _shape_coefficient(self) -> Array:
-        """Shape coefficient β of the pressure profile, from the balance of pressure and force.
-
-        The balance is 2π R2² ∫ p cos φ sin φ dφ = F.
-        """
-        S = self._squared_sine
-        mean = self._scaled_contact.secant * self._scaled_contact.compliance / (4 * pi * S)
-        return (mean - 2 / 3 + 8 * S / 15) / (4 / 15 - 32 * S / 105)
+        """Shape coefficient β of the pressure profile."""
+        return shape_coefficient(self._contact_values)
 
     @cached_property
     def pressure_integral(self) -> Array:
         ring = 4 * pi * self.joint.socket_radius**2 * self._squared_sine
         return ring * self.pole_pressure * (2 / 3 + 4 * self._shape_coefficient / 15)
 
-    def _pressure_ratio(self, y: Array) -> Array:
-        """Compute the pressure ratio p/p0 at the position y = sin²(φ/2)/sin²(ε/2), 0 to 1."""
-        return arrays.sqrt(clip(1 - y, 0.0, 1.0)) * (1 + self._shape_coefficient * y)
-
     def pressure(self, angle: Array) -> Array:
         y = sin(clip(angle, -pi, pi) / 2) ** 2 / self._squared_sine
-        return where(y < 1, self.pole_pressure * self._pressure_ratio(y), self._zero_without_load(0.0 * y))
+        ratio = pressure_ratio(y, self._shape_coefficient)
+        return where(y < 1, self.pole_pressure * ratio, self._zero_without_load(0.0 * y))
+
+
+def _solve_in_jax_blocks(joint: Joint, kind: str, scaled: Array) -> tuple[Array, ...]:
+    """Solve contacts inside `jax.jit` for dimensionless loads of the shape of all contacts, block by block."""
+
+    def solve_block(poisson: Array, ratio: Array, load: Array) -> tuple[Array, ...]:
+        """Solve the contacts of one block."""
+        return solve_contact(kind, load, liner_coefficients(poisson, 1 + 1 / ratio), ratio)
+
+    rows = [flatten_like(number, scaled) for number in (joint.liner.poisson, joint.thickness_ratio, scaled)]
+    return tuple(value.reshape(scaled.shape) for value in arrays.map_jax_blocks(solve_block, rows))
 
 
 def _mask_half_angle(joint: Joint, half_angle: Array) -> Array:
@@ -230,31 +242,27 @@ def _mask_half_angle(joint: Joint, half_angle: Array) -> Array:
     return where((edge == 0) | ((edge <= MAX_HALF_ANGLE) & (d > 0)), edge, nan)
 
 
-def _solve_half_angle(joint: Joint, kind: str, load: Array) -> Array:
-    """Solve for the half angle in rad of a force or an indentation; NaN beyond the largest half angle."""
-    half_angle_of = half_angle_of_force if kind == "force" else half_angle_of_indentation
-    return where(load > 0, half_angle_of(scaled_load(joint, kind, load), _joint_liner(joint)), 0.0 * load)
-
-
 def scaled_load(joint: Joint, kind: str, load: Array) -> Array:
     """Compute the dimensionless load F/(E R2 c) or d/c; a zero load is replaced by a positive number."""
     scale = joint.clearance * (joint.liner.young * joint.socket_radius if kind == "force" else 1.0)
     return broadcast(safe_divisor(load) / scale, load, *joint.numbers())
 
 
-def make_solver_result(solution: RefinedSolution, kind: str, load: Array) -> SolverResult:
-    """Make the solver result of solved contacts, with a check of their convergence."""
+def make_solver_result(solution: RefinedSolution, kind: str, load: Array, shift: Array) -> SolverResult:
+    """Make the solver result of solved contacts, with a check of their last relative change of the half angle."""
     force, indentation = solution.force_and_indentation(kind, load)
+    converged = (shift * shift <= square_tolerance(load)) | (solution.edge == 0)
     return SolverResult(
         laws=solution,
         force=force,
         indentation=indentation,
-        failures={
-            Status.NOT_CONVERGED: arrays.logical_not(
-                solution.relative_residual(indentation) <= 1e5 * arrays.machine_epsilon(load)
-            )
-        },
+        failures={Status.NOT_CONVERGED: arrays.logical_not(converged)},
     )
+
+
+def square_tolerance(load: Array) -> float:
+    """Return the largest square of the last relative change of ε; the error left by the change is of that order."""
+    return 1e4 * arrays.machine_epsilon(load)
 
 
 def _joint_liner(joint: Joint) -> Liner:

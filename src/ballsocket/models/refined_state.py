@@ -6,12 +6,10 @@ import tomllib
 from collections.abc import Sequence
 from importlib.resources import files
 from math import log as ln
-from math import nan, pi, radians
+from math import pi
 from typing import NamedTuple
 
-from ..contact.roots import Increasing, increasing_root
-from ..core import arrays
-from ..core.arrays import Array, cos, exp, log, sin, where
+from ..core.arrays import Array, clip, exp, short_sine, sqrt, where
 from .liner_compliance import Liner, Pair, log_compliance, log_compliance_any_wave
 
 
@@ -73,6 +71,7 @@ class ScaledContact(NamedTuple):
     secant: Array
     """Scaled secant stiffness F/(E R2 d)."""
     secant_rate: Array
+    compliance_rate: Array
 
     @property
     def indentation(self) -> Array:
@@ -95,20 +94,16 @@ def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledCon
     waves = log_compliances(half_angle, liner, fit.waves)
     (c1, rise1), (c2, rise2), (c3, rise3), (c4, rise4) = waves  # by ln k, and k = k_i/ε
     s, v, w = log_slopes(c1, c2, c3, c4, fit.spans)
-    half = sin(half_angle / 2)
-    S, S_rate = half * half, half_angle * cos(half_angle / 2) / half
+    half = short_sine(half_angle / 2)
+    S, S_rate = half * half, half_angle * sqrt(1 - half * half) / half
     s_, v_, w_ = log_slopes(-rise1, -rise2, -rise3, -rise4, fit.spans)
     slopes = s_, v_, w_, S * S_rate
     level = _log_compliance(c2, s, v, w, S, fit)
     edge, exponent = _edge_displacement(s, v, w, S, fit.edge), _pressure_exponent(s, v, w, S, fit.exponent)
     m, m_slope = exponent[0], angle_derivative(exponent, slopes)
+    compliance_rate = angle_derivative(level, slopes) - rise2
     deficit = 2 * S / (m + 2)
-    secant_rate = (
-        S_rate
-        - deficit * (S_rate - m_slope / (m + 2)) / (1 - deficit)
-        - m_slope / (m + 1)
-        - (angle_derivative(level, slopes) - rise2)
-    )
+    secant_rate = S_rate - deficit * (S_rate - m_slope / (m + 2)) / (1 - deficit) - m_slope / (m + 1) - compliance_rate
     chi = exp(level[0])
     return ScaledContact(
         share=S,
@@ -118,6 +113,24 @@ def scaled_contact(half_angle: Array, liner: Liner, fit: Fit = FIT) -> ScaledCon
         compliance=chi,
         secant=4 * pi * S * (1 - deficit) / ((m + 1) * chi),  # of p0 (1 - y)^m, over p0 R2²
         secant_rate=secant_rate,
+        compliance_rate=compliance_rate,
+    )
+
+
+def shift_contact(contact: ScaledContact, shift: Array) -> ScaledContact:
+    """Move a contact by a small shift of ln ε; the relative error is of the order of the squared shift.
+
+    The derivatives stay those of the contact before the shift.
+    """
+    return ScaledContact(
+        share=contact.share * (1 + contact.share_rate * shift),
+        share_rate=contact.share_rate,
+        gap=contact.gap + contact.gap_slope * shift,
+        gap_slope=contact.gap_slope,
+        compliance=contact.compliance * (1 + contact.compliance_rate * shift),
+        secant=contact.secant * (1 + contact.secant_rate * shift),
+        secant_rate=contact.secant_rate,
+        compliance_rate=contact.compliance_rate,
     )
 
 
@@ -126,17 +139,6 @@ def log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -
 
     Only the smallest wave number may come near q = 1.
     """
-    if arrays.is_plain_number(half_angle):
-        return scalar_log_compliances(half_angle, liner, waves)
-    xp = arrays.namespace(half_angle)
-    short = xp.asarray(waves[1:], dtype=half_angle.dtype, device=arrays.device(half_angle))
-    values, slopes = log_compliance(xp.reshape(short, (-1, *(1 for _ in half_angle.shape))) / half_angle, liner)
-    second, third, fourth = ((values[i, ...], slopes[i, ...]) for i in range(3))
-    return log_compliance_any_wave(waves[0] / half_angle, liner), second, third, fourth
-
-
-def scalar_log_compliances(half_angle: Array, liner: Liner, waves: tuple[float, ...]) -> tuple[Pair, Pair, Pair, Pair]:
-    """Compute the log compliance ln c and its slope by ln k at the four wave numbers of a scalar half angle."""
     return (
         log_compliance_any_wave(waves[0] / half_angle, liner),
         log_compliance(waves[1] / half_angle, liner),
@@ -213,49 +215,21 @@ def angle_derivative(value_and_slopes: ValueAndSlopes, slopes: tuple[Array, Arra
     )
 
 
-MAX_HALF_ANGLE = radians(85.0)
-"""Largest half angle in rad that is solved."""
+def shape_coefficient(contact: ScaledContact) -> Array:
+    """Compute the shape coefficient β of the pressure profile, from the balance of pressure and force.
 
-_LOG_OFFSET = -1.0
-"""Value of the unknown, a shifted ln ε, at the widest contact; the shift keeps it away from zero."""
-
-
-def half_angle_of_indentation(load: Array, liner: Liner) -> Array:
-    """Solve for the half angle ε in rad of a dimensionless indentation d/c; NaN beyond the largest half angle."""
-    return _solve_half_angle(_indentation_residual, load, log(1.5 * load / (1 + load)) / 2, liner)
-
-
-def half_angle_of_force(load: Array, liner: Liner) -> Array:
-    """Solve for the half angle ε in rad of a dimensionless force F/(E R2 c); NaN beyond the largest half angle."""
-    return _solve_half_angle(_force_residual, load, log(load / (2.5 + load / 3)) / 3, liner)
-
-
-def _solve_half_angle(residual: Increasing, load: Array, log_estimate: Array, liner: Liner) -> Array:
-    """Solve for the half angle ε in rad by Newton's method, from an estimate of ln ε."""
-    start = log_estimate + (_LOG_OFFSET - ln(MAX_HALF_ANGLE))
-    end = 0.0 * start + (_LOG_OFFSET + 1e-12)  # includes the widest contact itself
-    root = increasing_root(residual, 0.0 * start, start - 6.0, end, start, arguments=(load, liner))
-    return where(root < end, exp(root - _LOG_OFFSET) * MAX_HALF_ANGLE, nan)
-
-
-def _indentation_residual(log_angle: Array, load: Array, liner: Liner) -> Pair:
-    """Compute the residual of the indentation at a trial half angle, and its slope by ln ε.
-
-    The residual is ln x/(1 + x), x = d/c, less its value at the load.
+    The balance is 2π R2² ∫ p cos φ sin φ dφ = F.
     """
-    contact = scaled_contact(exp(log_angle - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
-    total = 2 * contact.share + contact.gap
-    residual = log(2 * contact.share / total * (1 + 1 / load))
-    return residual, (contact.share_rate * contact.gap - contact.gap_slope) / total
+    S = contact.share
+    mean = contact.secant * contact.compliance / (4 * pi * S)
+    return (mean - 2 / 3 + 8 * S / 15) / (4 / 15 - 32 * S / 105)
 
 
-def _force_residual(log_angle: Array, load: Array, liner: Liner) -> Pair:
-    """Compute the residual of the force at a trial half angle, and its slope by ln ε.
+def peak_position(beta: Array) -> Array:
+    """Compute the position y = sin²(φ/2)/sin²(ε/2) of the largest pressure: 0, the pole, for β up to 1/2."""
+    return where(beta > 0.5, (2 * beta - 1) / where(beta > 0.5, 3 * beta, 1.0), 0.0)
 
-    The residual is ln x/(1 + x), x = d/c, less its value at the load over the secant stiffness.
-    """
-    contact = scaled_contact(exp(log_angle - _LOG_OFFSET) * MAX_HALF_ANGLE, liner)
-    total = 2 * contact.share + contact.gap
-    residual = log(2 * contact.share / total * (1 + contact.secant / load))
-    indentation_slope = (contact.share_rate * contact.gap - contact.gap_slope) / total
-    return residual, indentation_slope + contact.secant_rate * contact.secant / (contact.secant + load)
+
+def pressure_ratio(y: Array, beta: Array) -> Array:
+    """Compute the pressure ratio p/p0 at the position y = sin²(φ/2)/sin²(ε/2), 0 to 1."""
+    return sqrt(clip(1 - y, 0.0, 1.0)) * (1 + beta * y)

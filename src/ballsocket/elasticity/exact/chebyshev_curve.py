@@ -17,6 +17,7 @@ import numpy
 from ...contact.per_joint import JointContacts
 from ...contact.roots import PeakPressure, find_peak_pressure
 from ...core.arrays import Numbers
+from ...core.chebyshev import chebyshev_coefficients, chebyshev_points, chebyshev_polynomials
 from ...problem.gaps import Gap
 from .abel import ROUNDING, AbelState, scaled_pressure
 from .kernel import Kernel
@@ -24,12 +25,9 @@ from .load_curve import LoadCurve, estimate_errors, log_slope
 from .subsurface import StressCurve
 from .tabulated.chebyshev import (
     angle_root,
-    chebyshev_coefficients,
-    chebyshev_points,
-    chebyshev_polynomials,
     half_angle_at,
 )
-from .tabulated.curves import angle_derivative
+from .tabulated.curves import log_angle_derivative
 
 _TERMS, _POINTS, _ATTEMPTS = 32, 28, 4
 """Number of contacts and of quadrature points each at first; half as many more of one of them at each attempt."""
@@ -142,8 +140,9 @@ class ChebyshevCurve:
         rows = _evaluate_contacts_in_blocks(
             lambda block: self._chebyshev_coefficients @ self.evaluate_polynomials(block), angle
         )
-        slope = angle_derivative(angle, angle_root(angle, self.curve.ratio), self.curve.ratio) / self._widest_coordinate
-        return rows[:-LOG_FUNCTIONS], rows[-LOG_FUNCTIONS:] * slope
+        root = angle_root(angle, self.curve.ratio)
+        spacing = log_angle_derivative(angle, root, self.curve.ratio) * self._widest_coordinate
+        return rows[:-LOG_FUNCTIONS], rows[-LOG_FUNCTIONS:] / spacing
 
     def evaluate_polynomials(self, angle: Numbers) -> Numbers:
         """Evaluate the Chebyshev polynomials (terms, contacts) at half angles."""

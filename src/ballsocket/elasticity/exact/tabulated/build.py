@@ -17,6 +17,7 @@ from typing import Any
 import numpy
 
 from ....core.arrays import Numbers
+from ....core.chebyshev import chebyshev_coefficients, chebyshev_points
 from ....core.storage.atomic_files import write_atomically
 from ....problem import Joint, Material
 from ....problem.gaps import LinearGap
@@ -158,16 +159,16 @@ def _tabulated_functions(state: AbelState) -> Numbers:
 
 def _profile_coefficients(state: AbelState) -> Numbers:
     """Compute the Chebyshev coefficients of the pressure profile p/(p0 sqrt(1 - v)) in 2v - 1."""
-    v = (1 + chebyshev.chebyshev_points(_PROFILE_POINTS)[:, None]) / 2
+    v = (1 + chebyshev_points(_PROFILE_POINTS)[:, None]) / 2
     angle = 2 * numpy.arcsin(numpy.sqrt(v) * numpy.sin(state.half_angle / 2))
-    return chebyshev.chebyshev_coefficients(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
+    return chebyshev_coefficients(state.pressure(angle) / state.pole_pressure / numpy.sqrt(1 - v), 0)
 
 
 def _sample_rigid_ball(
     liner: _LinerParameters, *, function: Callable[[AbelState], Numbers], angles: int, points: int
 ) -> Numbers:
     """Sample a function of contacts with a rigid ball, at Chebyshev points of the half angle."""
-    return function(_solve_state(liner, chebyshev.half_angle_at(chebyshev.chebyshev_points(angles), liner[1]), points))
+    return function(_solve_state(liner, chebyshev.half_angle_at(chebyshev_points(angles), liner[1]), points))
 
 
 def _sample_ball_change(
@@ -180,7 +181,7 @@ def _sample_ball_change(
     balls: Sequence[float],
 ) -> Numbers:
     """Sample the change of a function by balls of several shares and ν, divided by the coordinate of the share."""
-    angle = chebyshev.half_angle_at(chebyshev.chebyshev_points(angles), liner[1])
+    angle = chebyshev.half_angle_at(chebyshev_points(angles), liner[1])
     rigid = function(_solve_state(liner, angle, points))
 
     def function_change(coordinate: float, ball_poisson: float) -> Numbers:
@@ -189,7 +190,7 @@ def _sample_ball_change(
         return (function(state) - rigid) * (2 / (1 + coordinate))
 
     return numpy.array(
-        [[function_change(float(coordinate), nu) for nu in balls] for coordinate in chebyshev.chebyshev_points(shares)]
+        [[function_change(float(coordinate), nu) for nu in balls] for coordinate in chebyshev_points(shares)]
     )
 
 
@@ -209,14 +210,14 @@ class _TableSpec:
         `map_function` applies a function to all liners.
         """
         poisson, ratio = (
-            _poisson_at(chebyshev.chebyshev_points(self.counts[0])),
-            chebyshev.thickness_ratio_at(chebyshev.chebyshev_points(self.counts[1])),
+            _poisson_at(chebyshev_points(self.counts[0])),
+            chebyshev.thickness_ratio_at(chebyshev_points(self.counts[1])),
         )
         liners = [(float(nu), float(z)) for nu in poisson for z in ratio]
         sampled = numpy.array(list(map_function(self.sample, liners, chunksize=4)))
         values = sampled.reshape(*self.counts, *((1, 1) if not self.balls else ()), *sampled.shape[1:])
         for axis in (0, 1, 2, 5):
-            values = chebyshev.chebyshev_coefficients(values, axis)
+            values = chebyshev_coefficients(values, axis)
         if self.balls:
             values = numpy.moveaxis(_shrinkage_coefficients(self.balls, numpy.moveaxis(values, 3, 0)), 0, 3)
         orders = numpy.ogrid[tuple(slice(n) for n in values.shape[:4])]

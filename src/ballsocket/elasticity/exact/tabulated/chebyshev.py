@@ -6,19 +6,17 @@ import math
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from math import log, pi, prod, radians
+from math import log, prod, radians
 from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy
 
 from ....core import arrays
-from ....core.arrays import Array, Numbers, exp, log1p, sqrt
+from ....core.arrays import Array, exp, log1p, sqrt
 from ....core.arrays import log as ln
+from ....core.chebyshev import chebyshev_polynomials, contract_factors, convert_like
 from ....core.input_files import open_input
-
-Pair = tuple[Array, Array]
-"""Two arrays, such as a value and its slope."""
 
 LIMIT = radians(85.0)
 """Largest half angle of the tables in rad."""
@@ -132,9 +130,9 @@ class ChebyshevTable:
         There may be more orders than this table has.
         """
         first, second, *ball = (values[:count, ...] for values, count in zip(polynomials, self.counts, strict=False))
-        matrix, products = _contract_factors(convert_like(self.liner, first), first, second)
+        matrix, products = contract_factors(convert_like(self.liner, first), first, second)
         if ball:
-            matrix, products = _contract_factors(convert_like(self.ball, first), *ball, matrix @ products)
+            matrix, products = contract_factors(convert_like(self.ball, first), *ball, matrix @ products)
         curves = convert_like(self.curves, first)
         few_products = matrix.shape[1] < matrix.shape[0]  # such as those of R2/L alone: the smaller matrices first
         values = (curves @ matrix) @ products if few_products else curves @ (matrix @ products)
@@ -149,64 +147,6 @@ class ChebyshevTable:
         return (self.curves @ combinations).reshape(self.shape)
 
 
-def multiply_factors(matrix: Array, *factors: Array) -> Array:
-    """Multiply a matrix by the outer product of the columns of several factors, for each joint.
-
-    The matrix has the shape (rows, products), each factor (rows, joints or 1).
-    """
-    contracted, products = _contract_factors(matrix, *factors)
-    return contracted @ products
-
-
-def _contract_factors(matrix: Array, *factors: Array) -> Pair:
-    """Multiply a matrix (rows, products) by the factors that all joints share; return it and the other products.
-
-    A sweep of one material is three times as fast as with the products of all factors.
-    """
-    xp = arrays.namespace(matrix)
-    cube = xp.reshape(matrix, (-1, *(factor.shape[0] for factor in factors)))
-    for axis in reversed(range(len(factors))):
-        if factors[axis].shape[1] == 1:
-            cube = xp.tensordot(cube, factors[axis][:, 0], axes=((axis + 1,), (0,)))
-    varying = [factor for factor in factors if factor.shape[1] > 1]
-    if not varying:
-        return cube[:, None], xp.ones((1, 1), dtype=matrix.dtype, device=arrays.device(matrix))
-    products = varying[0]
-    for factor in varying[1:]:
-        products = xp.reshape(products[:, None, :] * factor[None, :, :], (-1, products.shape[1]))
-    return xp.reshape(cube, (matrix.shape[0], -1)), products
-
-
-def chebyshev_polynomials(coordinate: Array, count: int) -> Array:
-    """Compute the Chebyshev polynomials T_0 ... T_count-1 at coordinates (n,), as rows."""
-    xp = arrays.namespace(coordinate)
-    if xp is not numpy:
-        waves = xp.stack([0.0 * coordinate + 1.0, coordinate])
-        while waves.shape[0] < count:  # T_m+j = 2 T_m T_j - T_m-j doubles their number
-            waves = xp.concat([waves, 2 * waves[-1, ...] * waves[1:, ...] - xp.flip(waves[:-1, ...], axis=0)])
-        return waves[:count, ...]
-    twice, rows = 2 * coordinate, numpy.empty((count, *coordinate.shape), dtype=coordinate.dtype)
-    rows[0], rows[1:2] = 1.0, coordinate
-    for k in range(2, count):
-        numpy.multiply(twice, rows[k - 1], out=rows[k])
-        rows[k] -= rows[k - 2]
-    return rows
-
-
-def chebyshev_points(count: int) -> Numbers:
-    """Compute the Chebyshev points of this number between -1 and 1, ascending."""
-    return -numpy.cos(pi * (numpy.arange(count) + 0.5) / count)
-
-
-def chebyshev_coefficients(values: Numbers, axis: int) -> Numbers:
-    """Compute the Chebyshev coefficients of the polynomial through values at `chebyshev_points`."""
-    count = values.shape[axis]
-    angles = pi * (numpy.arange(count) + 0.5) / count
-    matrix = numpy.cos(numpy.arange(count)[:, None] * (pi - angles)) * (2 / count)
-    matrix[0] /= 2
-    return numpy.moveaxis(numpy.tensordot(matrix, values, (1, axis)), 0, axis)
-
-
 def chebyshev_values(coordinate: float, count: int) -> numpy.ndarray:
     """Compute the Chebyshev polynomials T_0 ... T_count-1 at one coordinate."""
     return numpy.cos(_polynomial_orders(count) * math.acos(min(max(coordinate, -1.0), 1.0)))
@@ -216,14 +156,6 @@ def chebyshev_values(coordinate: float, count: int) -> numpy.ndarray:
 def _polynomial_orders(count: int) -> numpy.ndarray:
     """Return the orders of the Chebyshev polynomials, 0 to count - 1, as floats."""
     return numpy.arange(count, dtype=float)
-
-
-def convert_like(values: numpy.ndarray, like: Array) -> Array:
-    """Convert a table to the library, dtype and device of the caller's array."""
-    xp = arrays.namespace(like)
-    if xp is numpy and like.dtype == values.dtype:
-        return values
-    return xp.asarray(values, dtype=like.dtype, device=arrays.device(like))
 
 
 @cache

@@ -11,28 +11,25 @@ Slopes are those by ln ε.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy
 
 from ....core import arrays
-from ....core.arrays import Array, cos, exp, log1p, sin
+from ....core.arrays import Array, exp, log1p, short_sine, sqrt
+from ....core.chebyshev import Pair, chebyshev_polynomials, convert_like, derivative_matrix, sum_series, traced_series
 from ....core.lazy import cached_property
 from ....problem import Joint
 from .chebyshev import (
     ANGLE_SCALE,
     LIMIT,
     WITH_BALL,
-    Pair,
     angle_root,
     ball_coordinate,
     ball_shrinkage,
-    chebyshev_polynomials,
     chebyshev_values,
-    convert_like,
     load_tables,
     poisson_coordinate,
     thickness_coordinate,
@@ -84,101 +81,86 @@ class Widest(NamedTuple):
 def evaluate_table_functions(angle: Array, curve: CurveCoefficients, rows: tuple[int, ...]) -> tuple[Pair, ...]:
     """Evaluate the tabulated functions in `rows`, with their slopes by ln ε, at half angles above 0."""
     root = angle_root(angle, curve.ratio)
-    coordinate, widening = 2 * root - 1, angle_derivative(angle, root, curve.ratio)
+    coordinate, spacing = 2 * root - 1, log_angle_derivative(angle, root, curve.ratio)
     if type(angle) is float:
         values = (curve.functions @ chebyshev_values(coordinate, curve.functions.shape[1])).tolist()
-        return tuple((values[k], widening * values[k + 3]) for k in rows)
-    if arrays.all_true(coordinate == coordinate) is None:
+        return tuple((values[k], values[k + 3] / spacing) for k in rows)
+    if arrays.all_true(coordinate == coordinate) is None:  # XLA stores a quotient, but repeats sums for each use
         series = (traced_series(curve.functions[k, ...], coordinate) for k in rows)
-        return tuple((value, widening * slope) for value, slope in series)
+        return tuple((value, slope / spacing) for value, slope in series)
     waves = chebyshev_polynomials(coordinate, curve.functions.shape[1])
     return tuple(
-        (sum_series(curve.functions[k, ...], waves), widening * sum_series(curve.slopes[k, ...], waves)) for k in rows
+        (sum_series(curve.functions[k, ...], waves), sum_series(curve.slopes[k, ...], waves) / spacing) for k in rows
     )
 
 
-def traced_series(coefficients: Array, x: Array) -> Pair:
-    """Evaluate a Chebyshev series and its slope at x inside `jax.jit` or `torch.compile`.
-
-    `coefficients` has the shape (angles, joints or 1), x (..., contacts).
-    """
-    return (_jax_clenshaw_sum() if arrays.is_jax_array(x) else clenshaw_sum)(coefficients, x)
-
-
-@cache
-def _jax_clenshaw_sum() -> Callable[[Array, Array], Pair]:
-    """Return `clenshaw_sum` for JAX, with the derivatives of `stored_series`, which compile faster."""
-    import jax
-
-    series = jax.custom_jvp(clenshaw_sum)
-
-    @series.defjvp
-    def _series_tangent(values: tuple[Array, Array], tangents: tuple[Array, Array]) -> tuple[Pair, Pair]:
-        """Compute the series and its directional derivative."""
-        return series(*values), jax.jvp(stored_series, values, tangents)[1]
-
-    return series
-
-
-def stored_series(coefficients: Array, x: Array) -> Pair:
-    """Evaluate a Chebyshev series and its slope at x from all polynomials; shapes as in `traced_series`."""
-    waves, xp = chebyshev_polynomials(x, coefficients.shape[0]), arrays.namespace(x)
-    shape = (coefficients.shape[0], *(1 for _ in x.shape[1:]), coefficients.shape[1])
-    slopes = convert_like(_derivative_matrix(shape[0]), x) @ coefficients
-    value, slope = (xp.sum(xp.reshape(series, shape) * waves, axis=0) for series in (coefficients, slopes))
-    return value, slope
-
-
-def clenshaw_sum(coefficients: Array, x: Array) -> Pair:
-    """Evaluate a Chebyshev series and its slope at x by one recurrence of Clenshaw, which stores nothing.
-
-    Compilers fuse it with the formulas around it. `coefficients` has the shape (angles, joints or 1).
-    """
-    twice = 2 * x
-    value = previous = slope = previous_slope = 0.0 * x
-    for k in range(coefficients.shape[0] - 1, 0, -1):
-        slope, previous_slope = 2 * value + twice * slope - previous_slope, slope
-        value, previous = coefficients[k, ...] + twice * value - previous, value
-    return coefficients[0, ...] + x * value - previous, value + x * slope - previous_slope
-
-
-def sum_series(coefficients: Array, waves: Array) -> Array:
-    """Evaluate Chebyshev series at contacts, from coefficients and polynomials.
-
-    `coefficients` has the shape (angles, joints or 1), `waves` (angles, contacts).
-    """
-    xp = arrays.namespace(waves)
-    if coefficients.shape[-1] == 1:
-        return coefficients[:, 0] @ waves
-    return numpy.einsum("ij,ij->j", coefficients, waves) if xp is numpy else xp.sum(coefficients * waves, axis=0)
-
-
-def angle_derivative(angle: Array, root: Array, ratio: Array) -> Array:
-    """Compute the derivative of the table coordinate 2 root - 1 with respect to ln ε."""
+def log_angle_derivative(angle: Array, root: Array, ratio: Array) -> Array:
+    """Compute the derivative of ln ε with respect to the table coordinate 2 root - 1."""
     near = ANGLE_SCALE * (1 + ratio)
-    return near * angle / ((1 + near * angle) * log1p(near * LIMIT) * root)
+    return (1 + near * angle) * log1p(near * LIMIT) * root / (near * angle)
 
 
 def opening(angle: Array, share: Pair) -> Pair:
     """Compute the relative indentation σ = d/(c + d) and its log slope by ln ε from the first tabulated function."""
-    half = sin(angle / 2)
-    return exp(share[0]) * 2 * half * half, share[1] + angle * cos(angle / 2) / half
+    half = short_sine(angle / 2)
+    return exp(share[0]) * 2 * half * half, share[1] + angle * sqrt(1 - half * half) / half
 
 
-def contact_quantities(
-    angle: Array, curve: CurveCoefficients, scale: Scale
-) -> tuple[Array, Array, Array, Array, Array]:
-    """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε) at half angles above 0.
+class TabulatedState(NamedTuple):
+    """Dimensionless contact at a half angle, with the derivatives of the logarithms by ln ε (rates)."""
+
+    angle: Array
+    """ε in rad."""
+    opening: Array
+    """σ = d/(c + d)."""
+    force: Array
+    """h = F C/(R2² (c + d))."""
+    pole: Array
+    """p0 C/(c + d)."""
+    opening_rate: Array
+    force_rate: Array
+    pole_rate: Array
+
+
+def tabulated_state(angle: Array, curve: CurveCoefficients) -> TabulatedState:
+    """Evaluate the tabulated functions at half angles above 0."""
+    share, force, pole = evaluate_table_functions(angle, curve, ALL)
+    sigma, rate = opening(angle, share)
+    return TabulatedState(
+        angle=angle,
+        opening=sigma,
+        force=exp(force[0]) * angle * angle * angle,
+        pole=exp(pole[0]) * angle,
+        opening_rate=rate,
+        force_rate=force[1] + 3,
+        pole_rate=pole[1] + 1,
+    )
+
+
+def shift_state(state: TabulatedState, shift: Array) -> TabulatedState:
+    """Move a state by a small shift of ln ε; the relative error is of the order of the squared shift."""
+    return TabulatedState(
+        angle=state.angle * (1 + shift),
+        opening=state.opening * (1 + state.opening_rate * shift),
+        force=state.force * (1 + state.force_rate * shift),
+        pole=state.pole * (1 + state.pole_rate * shift),
+        opening_rate=state.opening_rate,
+        force_rate=state.force_rate,
+        pole_rate=state.pole_rate,
+    )
+
+
+def contact_quantities(state: TabulatedState, scale: Scale) -> tuple[Array, Array, Array, Array, Array]:
+    """Compute indentation d, force, pole pressure, stiffness and the slope dd/d(ln ε).
 
     The units are mm, N, MPa, N/mm and mm.
     """
-    share, load, pole = evaluate_table_functions(angle, curve, ALL)
-    sigma, rate = opening(angle, share)
-    reach = scale.clearance / (1 - sigma)
-    outer = sigma * rate / (1 - sigma)
-    F = exp(load[0]) * angle * angle * angle * scale.area * reach / scale.compliance
-    p0 = exp(pole[0]) * angle * reach / scale.compliance
-    return reach * sigma, F, p0, F * (load[1] + 3 + outer) / (reach * outer), reach * outer
+    growth = 1 / (1 - state.opening)
+    reach, outer = scale.clearance * growth, state.opening * state.opening_rate * growth
+    modulus = reach / scale.compliance
+    F = state.force * scale.area * modulus
+    slope = reach * outer
+    return reach * state.opening, F, state.pole * modulus, F * (state.force_rate + outer) / slope, slope
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,9 +255,7 @@ class JointCurves:
     def curve(self) -> CurveCoefficients:
         """Chebyshev coefficients of the tabulated functions and of their derivatives."""
         if self.has_plain_joint:
-            stacked = numpy.concatenate(
-                [self.functions, self.functions @ _derivative_matrix(self.functions.shape[1]).T]
-            )
+            stacked = numpy.concatenate([self.functions, self.functions @ derivative_matrix(self.functions.shape[1]).T])
             return CurveCoefficients(self.ratio, stacked, stacked)
         return CurveCoefficients(self.ratio, self.functions, self.slopes)
 
@@ -303,12 +283,16 @@ class JointCurves:
 
     def contact_quantities(self, angle: Array) -> tuple[Array, ...]:
         """Compute the quantities of `contact_quantities` at half angles above 0."""
-        return contact_quantities(angle, self.curve, self.scale)
+        return contact_quantities(tabulated_state(angle, self.curve), self.scale)
 
     def scaled_load(self, kind: str, load: Array) -> Array:
         """Compute the dimensionless load: F C/(R2² c) of a force, d/c of an indentation."""
+        return load * self.load_scale(kind)
+
+    def load_scale(self, kind: str) -> Array:
+        """Compute the ratio of the dimensionless load to a force in N or an indentation in mm."""
         c, area, compliance = self.scale
-        return load * compliance / (area * c) if kind == "force" else load / c
+        return compliance / (area * c) if kind == "force" else 1 / c
 
 
 @lru_cache(maxsize=256)
@@ -319,16 +303,8 @@ def plain_joint_curves(file: str, joint: Joint) -> JointCurves:
 
 def derivative_series(functions: Array) -> Array:
     """Compute the Chebyshev coefficients (functions, angles, joints) of the derivatives of series of that shape."""
-    derivative = convert_like(_derivative_matrix(functions.shape[1]), functions)
+    derivative = convert_like(derivative_matrix(functions.shape[1]), functions)
     return arrays.namespace(functions).stack([derivative @ functions[row, ...] for row in range(functions.shape[0])])
-
-
-@cache
-def _derivative_matrix(count: int) -> numpy.ndarray:
-    """Compute the matrix from the Chebyshev coefficients of a function to those of its derivative."""
-    square = numpy.zeros((count, count))
-    square[:-1] = numpy.polynomial.chebyshev.chebder(numpy.eye(count))
-    return square
 
 
 SMALL_LOAD = 1e-3

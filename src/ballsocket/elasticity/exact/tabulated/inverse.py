@@ -1,4 +1,4 @@
-"""Half angles of forces and indentations: a start from a fitted series, then a few Newton steps.
+"""Half angles of forces and indentations: a start from a fitted series, a Newton step, and a linear correction.
 
 With y = ε/LIMIT, the relative indentation σ = d/(c + d) and h = F C/(R2² (c + d)) are about σ1 y² and h1 y³, with σ1
 and h1 at LIMIT. An indentation has σ = (d/c)/(1 + d/c), so y² is about σ/σ1. A force has q = F C/(R2² c) = h/(1 - σ),
@@ -14,19 +14,22 @@ from typing import NamedTuple
 
 import numpy
 
-from ....contact.roots import Increasing, increasing_root
+from ....contact.roots import Increasing, implicit_root, scalar_increasing_root
 from ....core import arrays
 from ....core.arrays import Array, Numbers, exp, log, where
+from ....core.chebyshev import (
+    Pair,
+    chebyshev_coefficients,
+    chebyshev_points,
+    convert_like,
+    multiply_factors,
+    series_values,
+)
 from .chebyshev import (
     LIMIT,
     angle_root,
-    chebyshev_coefficients,
-    chebyshev_points,
-    chebyshev_polynomials,
-    convert_like,
     half_angle_at,
     load_tables,
-    multiply_factors,
     thickness_ratio_at,
 )
 from .curves import (
@@ -34,13 +37,13 @@ from .curves import (
     TWO,
     CurveCoefficients,
     JointCurves,
-    Pair,
+    TabulatedState,
     Widest,
     derivative_series,
     evaluate_table_functions,
     opening,
-    sum_series,
-    traced_series,
+    shift_state,
+    tabulated_state,
 )
 
 _LOG_OFFSET = -1.0
@@ -49,32 +52,50 @@ _LOG_OFFSET = -1.0
 _END = _LOG_OFFSET + 1e-12
 """Upper end of the unknown, which includes the widest contact itself."""
 
-RIGID_STEPS, ELASTIC_STEPS = 2, 5
-"""Newton steps from the start to rounding errors, with a rigid ball and with an elastic one, which the start omits."""
+RIGID_STEPS, ELASTIC_STEPS = 1, 3
+"""Newton steps from the start to errors below 1e-6, with a rigid ball and with an elastic one; the start has none."""
 
-_START_COUNTS = (10, 11, 16)
+_START_COUNTS = (12, 13, 20)
 """Numbers of Chebyshev polynomials of ν, R2/L and half angle in the start."""
 
 _FIT_STEPS = 8
 """Newton steps to the half angles that the start is fitted to."""
 
 
-def solve_half_angle(curves: JointCurves, kind: str, load: Array) -> Array:
-    """Solve for the half angle in rad under a positive load; NaN beyond the tables."""
+def solve_state(curves: JointCurves, kind: str, load: Array) -> tuple[TabulatedState, Array]:
+    """Solve for the dimensionless contact under a positive load, and its last correction; NaN beyond the tables."""
     inverse, scaled = INVERSES[kind], curves.scaled_load(kind, load)
+    steps = RIGID_STEPS if curves.joint.ball is None else ELASTIC_STEPS
+
+    def residual(root: Array) -> Pair:
+        """Compute the residual of the load at a trial value of the unknown, and its slope."""
+        return inverse.residual(root, scaled, curves.curve)
+
+    def solve(root: Array) -> Array:
+        """Take the Newton steps from a first value of the unknown."""
+        for _ in range(steps):
+            root = limited_newton_step(root, *residual(root))
+        return root
+
     if curves.has_plain_joint:
-        start, steps = inverse.estimate(scaled) + (_LOG_OFFSET - math.log(LIMIT)), _SCALAR_STEPS
+        root = _solve_scalar(residual, inverse.estimate(scaled) + (_LOG_OFFSET - math.log(LIMIT)))
     else:
-        start = _start_from_series(curves, kind, scaled)
-        steps = RIGID_STEPS if curves.joint.ball is None else ELASTIC_STEPS
-    end = 0.0 * start + _END
-    arguments = (scaled, curves.curve)
-    root = increasing_root(inverse.residual, 0.0 * start, start - 6.0, end, start, arguments=arguments, steps=steps)
-    return half_angle_of_root(root)
+        root = implicit_root(residual, solve, _start_from_series(curves, kind, scaled))
+    state = tabulated_state(half_angle_of_root(root), curves.curve)
+    shift = inverse.shift(state, scaled)
+    return shift_state(state, shift), shift
+
+
+def _solve_scalar(residual: Increasing, start: float) -> float:
+    """Solve for the unknown of a single press, from an estimate."""
+    return scalar_increasing_root(residual, 0.0, start - 6.0, _END, start, (), _SCALAR_STEPS, _SCALAR_TOLERANCE)
 
 
 _SCALAR_STEPS = 16
 """Largest number of Newton steps from the estimate for a single press."""
+
+_SCALAR_TOLERANCE = 1e-4
+"""Newton step of a single press after which its error is below 1e-7."""
 
 
 def half_angle_of_root(root: Array) -> Array:
@@ -86,11 +107,7 @@ def _start_from_series(curves: JointCurves, kind: str, load: Array) -> Array:
     """Compute the first value of the unknown under a dimensionless load, from the fitted series of each joint."""
     log_share = arrays.stop_gradient(INVERSES[kind].log_share(load, curves.widest))
     coordinate = start_coordinate(log_share, curves.ratio)
-    series = arrays.stop_gradient(start_series(curves, kind))
-    if arrays.all_true(load == load) is None:
-        correction = traced_series(series, coordinate)[0]
-    else:
-        correction = sum_series(series, chebyshev_polynomials(coordinate, series.shape[0]))
+    correction = series_values(arrays.stop_gradient(start_series(curves, kind)), coordinate)
     return start_root(log_share, correction)
 
 
@@ -153,15 +170,27 @@ def _indentation_residual(log_angle: Array, load: Array, curve: CurveCoefficient
 
 
 def _force_residual(log_angle: Array, load: Array, curve: CurveCoefficients) -> Pair:
-    """Compute the residual of the dimensionless force at a trial half angle, and its slope by ln ε.
+    """Compute the residual of the dimensionless force q at a trial half angle, and its slope by ln ε.
 
-    The residual is ln d/(c + d) minus that of the indentation F/secant, where secant is the ratio F/d.
+    The residual is ln(σ + h/q), which is 0 for q = h/(1 - σ).
     """
     angle = exp(log_angle - _LOG_OFFSET) * LIMIT
     share, force = evaluate_table_functions(angle, curve, TWO)
     sigma, rate = opening(angle, share)
-    secant = exp(force[0]) * angle * angle * angle / sigma
-    return log(sigma * (1 + secant / load)), rate + (force[1] + 3 - rate) * secant / (secant + load)
+    part = exp(force[0]) * angle * angle * angle / load
+    total = sigma + part
+    return log(total), (sigma * rate + part * (force[1] + 3)) / total
+
+
+def indentation_shift(state: TabulatedState, load: Array) -> Array:
+    """Compute the change of ln ε to a relative indentation d/c, by a Newton step for σ = (d/c)/(1 + d/c)."""
+    return (load / (1 + load) / state.opening - 1) / state.opening_rate
+
+
+def force_shift(state: TabulatedState, load: Array) -> Array:
+    """Compute the change of ln ε to a dimensionless force q, by a Newton step for σ + h/q = 1."""
+    part = state.force / load
+    return (1 - state.opening - part) / (state.opening * state.opening_rate + part * state.force_rate)
 
 
 def force_log_share(load: Array, widest: Widest) -> Array:
@@ -179,6 +208,8 @@ class _Inverse(NamedTuple):
 
     residual: Increasing
     """Residual and its slope by ln ε at a trial value of the unknown."""
+    shift: Callable[[TabulatedState, Array], Array]
+    """Change of ln ε from a state near the root to the root."""
     log_share: Callable[[Array, Widest], Array]
     """Estimate of ln(ε/LIMIT) from a dimensionless load."""
     load_at: Callable[[Array, Widest], Array]
@@ -190,12 +221,14 @@ class _Inverse(NamedTuple):
 INVERSES = {
     "force": _Inverse(
         residual=_force_residual,
+        shift=force_shift,
         log_share=force_log_share,
         load_at=lambda share, widest: widest.force / (1 / share**3 - widest.opening),
         estimate=lambda load: log(load / (3 + load)) / 3,
     ),
     "indentation": _Inverse(
         residual=_indentation_residual,
+        shift=indentation_shift,
         log_share=indentation_log_share,
         load_at=lambda share, widest: 1 / (1 / (share * share * widest.opening) - 1),
         estimate=lambda load: log(1.5 * load / (1 + load)) / 2,

@@ -16,6 +16,7 @@ from ....contact.assembly import SolverResult
 from ....contact.closed_sphere import HEMISPHERE_NOTE, LIKE_HEMISPHERE
 from ....core import arrays
 from ....core.arrays import Array, broadcast, clip, gauss_legendre, safe_divisor, sin, sqrt, where
+from ....core.chebyshev import chebyshev_polynomials, convert_like, sum_series
 from ....core.lazy import cached_property
 from ....core.sources import Source
 from ....core.validity import SMALL_STRAIN, Promise, Range, Remark, Status
@@ -25,15 +26,13 @@ from .chebyshev import (
     POISSON,
     THICKNESS_RATIO,
     angle_coordinate,
-    chebyshev_polynomials,
     chebyshev_values,
-    convert_like,
 )
-from .curves import SMALL_LOAD, JointCurves, plain_joint_curves, sum_series
-from .inverse import solve_half_angle
+from .curves import SMALL_LOAD, JointCurves, contact_quantities, plain_joint_curves
+from .inverse import solve_state
 
-_BLOCK = 2000  # contacts in one block, which fits into the cache; powers of two collide in the cache
-_BLOCK_OF_ONE_JOINT = 4 * _BLOCK
+_BLOCK = 4000  # contacts in one block, which fits into the cache; powers of two collide in the cache
+_BLOCK_OF_ONE_JOINT = 2 * _BLOCK
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -184,30 +183,35 @@ CurveReader = Callable[[JointCurves, Array], tuple[Array, ...]]
 
 def solve_with_tables(
     file: str, joint: Joint, load: Array, compute_quantities: CurveReader, single_joint_block: int
-) -> TableSolution:
+) -> tuple[TableSolution, Array]:
     """Solve contacts for loads with the tables; NaN beyond the range of the tables.
 
-    `compute_quantities` returns ε, d, F, p0 and dF/dd from the curves of joints and the loads.
+    `compute_quantities` returns ε, d, F, p0, dF/dd and the last relative change of ε from the curves of joints and the
+    loads. The last change is returned too.
     """
-    values = _compute_in_blocks(file, joint, load, compute_quantities, single_joint_block)
+    *values, shift = _compute_in_blocks(file, joint, load, compute_quantities, single_joint_block)
     fits = arrays.logical_not(values[1] < 0)  # a negative indentation is wider than the perfect fit
     is_loaded = broadcast(load, values[1]) > 0
     if arrays.all_true(fits & is_loaded) is not True:
-        values = tuple(where(is_loaded, where(fits, value, math.nan), 0.0) for value in values)
+        values = [where(is_loaded, where(fits, value, math.nan), 0.0) for value in values]
     angle, d, F, p0, stiffness = values
-    return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness))
+    return TableSolution(file=file, joint=joint, angle=angle, values=(d, F, p0, stiffness)), shift
 
 
 def curve_reader(kind: str) -> CurveReader:
-    """Return a function that computes half angle, d, F, p0 and dF/dd from curves and loads of one kind."""
+    """Return a function that computes ε, d, F, p0, dF/dd and the last change of ε from curves and loads of one kind."""
 
-    def compute_quantities(curves: JointCurves, load: Array) -> tuple[Array, ...]:
-        angle = (
-            where(load <= LIMIT, load, float("nan")) if kind == "half_angle" else solve_half_angle(curves, kind, load)
-        )
-        return (angle, *curves.contact_quantities(angle)[:4])
+    def read_half_angle(curves: JointCurves, load: Array) -> tuple[Array, ...]:
+        """Compute the quantities at half angles."""
+        angle = where(load <= LIMIT, load, math.nan)
+        return (angle, *curves.contact_quantities(angle)[:4], 0.0 * angle)
 
-    return compute_quantities
+    def solve_load(curves: JointCurves, load: Array) -> tuple[Array, ...]:
+        """Compute the quantities under forces or indentations."""
+        state, shift = solve_state(curves, kind, load)
+        return (state.angle, *contact_quantities(state, curves.scale)[:4], shift)
+
+    return read_half_angle if kind == "half_angle" else solve_load
 
 
 def _compute_in_blocks(
@@ -230,6 +234,9 @@ def _compute_in_blocks(
     broadcasted = (part if prod(part.shape) == 1 else arrays.broadcast_to(part, shape) for part in numbers)
     flat = [xp.reshape(part, (-1,)) for part in broadcasted]
     loads = xp.reshape(arrays.broadcast_to(where(load > 0, load, SMALL_LOAD), shape), (-1,))
+    if arrays.is_jax_array(loads) and arrays.all_true(loads == loads) is None:
+        values = _map_blocks_in_jax(file, joint, [*flat, loads], compute_quantities)
+        return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in values)
     all_curves = JointCurves(file, joint.with_numbers(flat))
     size = (single_joint_block if is_single_joint else _BLOCK) * (1 if xp is numpy else 64)
     results = []
@@ -241,6 +248,24 @@ def _compute_in_blocks(
         results.append(compute_quantities(curves, loads[block]))
     joined = (xp.concat(parts, axis=-1) if len(parts) > 1 else parts[0] for parts in zip(*results, strict=True))
     return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)
+
+
+def _map_blocks_in_jax(
+    file: str, joint: Joint, rows: list[Array], compute_quantities: CurveReader
+) -> tuple[Array, ...]:
+    """Compute quantities of contacts inside `jax.jit`, block by block.
+
+    `rows` are the numbers of the joint and the loads: arrays (1,) or (contacts,). Contacts of one joint store no
+    series and need no blocks.
+    """
+
+    def compute_block(*parts: Array) -> tuple[Array, ...]:
+        """Compute the quantities of one block."""
+        return compute_quantities(JointCurves(file, joint.with_numbers(list(parts[:-1]))), parts[-1])
+
+    if all(row.shape[0] == 1 for row in rows[:-1]):
+        return compute_block(*rows)
+    return arrays.map_jax_blocks(compute_block, rows)
 
 
 def _shared_curves(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[JointCurves | None, Array | None]:
@@ -346,28 +371,16 @@ class Tabulated(Model):
 
         `read` is such a function, see `curve_reader`. It gets up to `single_joint_block` loads of one joint at once.
         """
-        solution = solve_with_tables(self.file, joint, load, read, single_joint_block)
+        solution, shift = solve_with_tables(self.file, joint, load, read, single_joint_block)
         d, F, _, _ = solution.values
+        tolerance = _ROUNDING_ERRORS * arrays.machine_epsilon(load)
         return SolverResult(
             laws=solution,
             force=F,
             indentation=d,
-            failures={
-                Status.NOT_CONVERGED: arrays.logical_not(
-                    _relative_residual(kind, load, d, F) <= _rounding_error(load, d / joint.clearance)
-                )
-            },
+            failures={Status.NOT_CONVERGED: arrays.logical_not(shift * shift <= tolerance)},
         )
 
 
-def _rounding_error(load: Array, depth: Array) -> Array:
-    """Return the relative rounding error of a load, which increases with `depth` = d/c."""
-    return arrays.machine_epsilon(load) * (1e4 + 1e2 * depth)
-
-
-def _relative_residual(kind: str, load: Array, d: Array, F: Array) -> Array:
-    """Compute the relative difference between the load and the solution; 0 for half angles."""
-    if kind == "half_angle":
-        return 0.0 * F
-    target = broadcast(load, F)
-    return abs((F if kind == "force" else d) - target) / safe_divisor(target)
+_ROUNDING_ERRORS = 1e4
+"""Largest relative error of a converged half angle over that of rounding; a correction leaves its square as error."""
