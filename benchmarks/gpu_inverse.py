@@ -34,7 +34,7 @@ def jax_rates(device: Any, count: int, clock: Clock = time.perf_counter) -> Rows
     import jax
 
     rows = Rows(
-        f"Presses by force through JAX, d, ε, p0, {count:.0e} at once, ns a press",
+        f"Presses by force through JAX, d, ε, p0, {count:,} at once, ns a press",
         ("what", "ours", "goal", "copy", "ratio", "first call, s"),
     )
     with jax.enable_x64(True), jax.default_device(device):

@@ -167,7 +167,9 @@ def repeat_step(step: Callable[[Any], Any], state: Any, count: int) -> Any:
     return state
 
 
-def map_jax_blocks(function: Callable[..., tuple[Array, ...]], rows: Sequence[Array]) -> tuple[Array, ...]:
+def map_jax_blocks(
+    function: Callable[..., tuple[Array, ...]], rows: Sequence[Array], stored_numbers: int
+) -> tuple[Array, ...]:
     """Apply a function to rows inside `jax.jit`, block by block in one loop, so that one block is compiled.
 
     Parameters
@@ -176,10 +178,13 @@ def map_jax_blocks(function: Callable[..., tuple[Array, ...]], rows: Sequence[Ar
         Function of as many rows, arrays (1,) or (n,), that returns arrays (..., n).
     rows : sequence of array
         Arrays (1,) or (contacts,); the last one has the shape (contacts,).
+    stored_numbers : int
+        Number of values that the function stores for each contact.
     """
     import jax
 
-    count, size = rows[-1].shape[0], _JAX_BLOCKS.get(jax.default_backend(), _JAX_BLOCK)
+    count = rows[-1].shape[0]
+    size = _JAX_BLOCKS.get(jax.default_backend(), _JAX_BLOCK_BYTES // (8 * stored_numbers))
     if count <= size:
         return function(*rows)
 
@@ -197,8 +202,8 @@ def map_jax_blocks(function: Callable[..., tuple[Array, ...]], rows: Sequence[Ar
 _JAX_BLOCKS = {"cpu": 4000}
 """Number of contacts in one block by the platform of JAX; on a CPU, the numbers of a block stay in the cache."""
 
-_JAX_BLOCK = 2**20
-"""Number of contacts in one block on other platforms; the series of tables take 1 GB."""
+_JAX_BLOCK_BYTES = 2**30
+"""Size of the values that one block stores on other platforms. Small blocks would leave a GPU idle between kernels."""
 
 
 def safe_divisor(x: Array) -> Array:

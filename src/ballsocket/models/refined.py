@@ -232,7 +232,8 @@ def _solve_in_jax_blocks(joint: Joint, kind: str, scaled: Array) -> tuple[Array,
         return solve_contact(kind, load, liner_coefficients(poisson, 1 + 1 / ratio), ratio)
 
     rows = [flatten_like(number, scaled) for number in (joint.liner.poisson, joint.thickness_ratio, scaled)]
-    return tuple(value.reshape(scaled.shape) for value in arrays.map_jax_blocks(solve_block, rows))
+    values = arrays.map_jax_blocks(solve_block, rows, len(ScaledContact._fields))
+    return tuple(value.reshape(scaled.shape) for value in values)
 
 
 def _mask_half_angle(joint: Joint, half_angle: Array) -> Array:

@@ -250,6 +250,10 @@ def _compute_in_blocks(
     return tuple(xp.reshape(part, (*part.shape[:-1], *shape)) for part in joined)
 
 
+_SERIES_NUMBERS = 128
+"""Number of stored values of a contact with a joint of its own: three series of 32 terms, and that of the start."""
+
+
 def _map_blocks_in_jax(
     file: str, joint: Joint, rows: list[Array], compute_quantities: CurveReader
 ) -> tuple[Array, ...]:
@@ -265,7 +269,7 @@ def _map_blocks_in_jax(
 
     if all(row.shape[0] == 1 for row in rows[:-1]):
         return compute_block(*rows)
-    return arrays.map_jax_blocks(compute_block, rows)
+    return arrays.map_jax_blocks(compute_block, rows, _SERIES_NUMBERS)
 
 
 def _shared_curves(file: str, joint: Joint, shape: tuple[int, ...]) -> tuple[JointCurves | None, Array | None]:
