@@ -217,7 +217,7 @@ def made(**changes):
     x, y = np.radians([20.0, 40.0, 60.0]), np.radians([0.0, 20.0])
     apart = np.array([[5.0, 4.0], [2.0, 1.0], [-2.0, -3.0]])
     held = np.ones((3, 2), dtype=bool)
-    known = {"edge_distance": apart, "max_pressure": 10 + apart**2, "held": held, "summary": {}, "figure": b""}
+    known = {"edge_distance": apart, "max_pressure": 10 + apart**2, "held": held, "figure": b""}
     return replace(Stood(inclination=x, anteversion=y, **known), **changes)
 
 

@@ -6,11 +6,18 @@ import pickle
 import time
 from collections import OrderedDict
 from collections.abc import Hashable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+from ..problem import Joint
 
 SECONDS = 86_400.0
 """Seconds that a result is stored."""
+
+
+def without_name(joint: Joint) -> Joint:
+    """Return a joint without its name and source, on which no result depends."""
+    return replace(joint, name="", source="")
 
 
 @dataclass(eq=False)

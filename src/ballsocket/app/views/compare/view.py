@@ -58,8 +58,7 @@ class Compare(View):
             self.page.ask(base=str(value))
         elif key == "remove":
             check_names([value], list(compared_files(screen))[1:], "among the compared designs")
-            index = list(compared_files(screen)).index(value) - 1
-            self.page.ask(beside=(*screen.beside[:index], *screen.beside[index + 1 :]))
+            self.page.ask(**_without_compared(screen, list(compared_files(screen)).index(value)))
 
     def show(self, screen: Screen) -> None:
         files = compared_files(screen)
@@ -108,6 +107,12 @@ def with_compared(screen: Screen, file: JointFile) -> tuple[JointFile, ...]:
     if len(screen.beside) >= MAX_COMPARED:
         raise ValueError(f"{MAX_COMPARED} designs are compared with this one already: remove one of them first")
     return (*screen.beside, file)
+
+
+def _without_compared(screen: Screen, column: int) -> dict[str, Any]:
+    """Return the changes that remove the design of a column; the base stays the same design unless that is removed."""
+    base = int(screen.base) - (column < int(screen.base))
+    return {"beside": (*screen.beside[: column - 1], *screen.beside[column:]), "base": str(base)}
 
 
 def compared_files(screen: Screen) -> dict[str, JointFile]:

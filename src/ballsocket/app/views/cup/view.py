@@ -6,7 +6,7 @@ from collections.abc import Hashable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import degrees, radians
+from math import radians
 from typing import Any
 
 from ....core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
@@ -213,10 +213,10 @@ def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> s
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
     """State in words if the contact stays on the bore."""
     apart = reading.with_unit(DERIVED["edge_distance"], float(contact.edge_distance))
-    margin = degrees(float(contact.edge_margin))
+    angle = reading.with_unit(CUP["inclination"], float(contact.edge_margin))
     if contact.edge_loaded:
         return "<p class='trust no'>✗ Rim contact (edge loading): the contact reaches the rim of the cup</p>"
-    return f"<p class='trust yes'>✓ The contact ends {apart} ({margin:.1f}°) before the rim</p>"
+    return f"<p class='trust yes'>✓ The contact ends {apart} ({angle}) before the rim</p>"
 
 
 def _hint(contact: OffAxisContact) -> str:

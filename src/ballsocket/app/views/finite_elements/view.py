@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import replace
 from functools import partial
 from html import escape
 from typing import Any
@@ -14,6 +13,7 @@ from ....files.joint_file import JointFile
 from ....reports.pages import picture, table
 from ...long_view import LongView, long_body
 from ...pictures.section import extent_of, section
+from ...results import without_name
 from ...running import Work
 from ...state.screen import Screen
 from ...view import Document, field_places
@@ -44,8 +44,7 @@ class Judge(LongView):
 
     def question_of(self, screen: Screen) -> Hashable:
         file, cup = screen.file, screen.file.cup
-        joint = replace(file.joint, name="", source="")
-        return joint, tuple(file.load.items()), cup.arc_of_cover, cup.chamfer, cup.interface
+        return without_name(file.joint), tuple(file.load.items()), cup.arc_of_cover, cup.chamfer, cup.interface
 
     def work(self, screen: Screen) -> Work:
         return partial(judged, screen.file)

@@ -16,6 +16,7 @@ from ....hip.cycle_registry import CYCLES
 from ....reports.check_table import Check, checks_at
 from ....reports.figure_files import figure_bytes
 from ...pictures.bore import node_directions, relative_bytes
+from ...results import without_name
 from ...running import Reached, Report
 from ...state.use import UploadedCycle, Use, hip_of
 
@@ -78,7 +79,7 @@ class GaitFilm:
 def gait_key(file: JointFile, use: Use, upload: UploadedCycle | None) -> Hashable:
     """Return a key of the inputs of a gait result."""
     weight = use.body_weight if upload is not None or CYCLES[use.cycle].per_body_weight else None
-    return file.joint, file.cup, file.cup.oriented, weight, use.contact, upload or use.cycle
+    return without_name(file.joint), file.cup, file.cup.oriented, weight, use.contact, upload or use.cycle
 
 
 def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, report: Report) -> GaitResult:

@@ -17,6 +17,7 @@ from ....reports.check_table import Check, sorted_checks, wear_check
 from ....reports.figure_files import figure_bytes
 from ....reports.hip_plots import penetration_curve
 from ....studies.distributions import LogNormal
+from ...results import without_name
 from ...running import Reached, Report
 from ...state.use import Use, hip_of
 from ..gait.worker import checks_in_use
@@ -54,7 +55,7 @@ def wear_key(file: JointFile, use: Use) -> Hashable:
     weight = use.body_weight if CYCLES[use.cycle].per_body_weight else 0.0
     numbers = tuple((name, use.law_number(name)) for name in use.used_inputs)
     plain = replace(use, instant=None, law_numbers=numbers)
-    return file.joint, file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0)
+    return without_name(file.joint), file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0)
 
 
 def simulate_designs(
