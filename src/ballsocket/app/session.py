@@ -16,7 +16,6 @@ from ..core.checks import check_names, shown
 from ..reports.unit_systems import Units
 from .channel import Channel
 from .jobs import Job, call_later, run_in_thread
-from .pressing import pressed
 from .running import RunFinished, RunRefused
 from .solving import Errand
 from .state.designs import read_upload, session_text
@@ -24,7 +23,7 @@ from .state.screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, read_link
 from .view import ScreenContent, View, make_file, print_page
 from .views.registry import view_class
 from .widgets.fields import Field, in_words_of, segments
-from .widgets.joint_fields import behind, edited, fields_of, layer_fields, layers_edited
+from .widgets.joint_fields import behind, joint_inputs, layer_fields, layers_edited
 from .widgets.words import alert
 
 _LOG = logging.getLogger(__name__)
@@ -174,7 +173,8 @@ class Page:
             self.refuse("")
             self._handlers[view](key, value)
         else:
-            file = edited(self.screen, name, value, self._same_load)
+            check_names([name], self._joint_inputs, "among the inputs")
+            file = self._joint_inputs[name].edit(value)
             self.refuse("")
             self.ask(file=file)
         self.channel.accept_field(name)
@@ -246,8 +246,9 @@ class Page:
         angles = segments("angle", "Angles in", ANGLES, self.screen.angle)
         sizes = segments("size", "Balls by", SIZES, self.screen.size)
         units = segments("units", "Units", _UNITS, self.screen.units)
-        joint = {**fields_of(self.screen), **layer_fields(self.screen.file.joint)}
-        return {**joint, "units": units, "size": sizes, "angle": angles}
+        joint = {name: entry.field for name, entry in self._joint_inputs.items()}
+        layers = layer_fields(self.screen.file.joint)
+        return {**joint, **layers, "units": units, "size": sizes, "angle": angles}
 
     def attempt(self, action: Callable[[], None]) -> None:
         """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
@@ -266,6 +267,7 @@ class Page:
 
     def _put(self) -> None:
         """Set every input to the state of the screen."""
+        self._joint_inputs = joint_inputs(self.screen)
         self.inputs = self._fields()
         self.channel.put_fields(self.inputs)
         self.channel.put("order", list(self.inputs))
@@ -290,14 +292,6 @@ class Page:
             document=self.view.document(self.screen),
             units=self.screen.reading.units,
         )
-
-    def _same_load(self, kind: str) -> dict[str, float]:
-        """Return a load of another kind that presses equally, by the model on top."""
-        comparison = pressed(self.screen.file, (self.screen.answered_by,))
-        contact = comparison.contacts.get(self.screen.answered_by)
-        value = float("nan") if contact is None else float(getattr(contact, kind))
-        defaults = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}
-        return {kind: float(f"{value:.6g}") if value > 0 else defaults[kind]}
 
     def leave(self) -> None:
         """Stop all work of a closed page."""

@@ -23,12 +23,11 @@ from ....studies.derivatives import LocalUncertainty, local_uncertainty
 from ...long_view import LongView
 from ...pictures.chart import swatch
 from ...pictures.section import LinerStresses, liner_stresses, painted_stresses
-from ...pressing import AXIAL_TILT, AxialLimit, axial_limit, fine_curves, is_waiting, press_charts, pressed
+from ...pressing import AXIAL_TILT, AxialLimit, axial_limit, fine_curves, is_waiting, press_charts, pressed, tilt_of
 from ...running import Work
 from ...state.screen import PAINTED, Screen
 from ...view import STRESS_PAUSE, Document, Host
 from ...widgets.fields import choice, segments, several
-from ...widgets.joint_fields import tilt_of
 from ...widgets.words import alert, axial_models_table, headline, models_table, number_rows
 from ..cup.worker import bore_of, is_prepared, pressed_in_cup, set_up
 from .drawing import first_view, frame_of, key
