@@ -15,7 +15,7 @@ from ballsocket.app.running import Reached, RunFinished, RunRefused
 from ballsocket.app.session import Page
 from ballsocket.app.state.screen import START
 from ballsocket.app.state.use import Use
-from ballsocket.app.views.cup.worker import bore_of, stand_of
+from ballsocket.app.views.cup.worker import bore_of, orientation_key
 from ballsocket.app.views.gait.worker import gait_key
 from ballsocket.app.views.wear.worker import wear_key
 
@@ -171,6 +171,6 @@ def test_a_store_of_results_is_bounded_in_number_bytes_and_time(monkeypatch):
 
 def test_results_do_not_depend_on_the_name_of_a_design():
     named = replace(START.file, joint=replace(START.file.joint, name="Anna", source="a drawing"))
-    for key in (bore_of, stand_of, partial(gait_key, use=Use(), upload=None), partial(wear_key, use=Use())):
+    for key in (bore_of, orientation_key, partial(gait_key, use=Use(), upload=None), partial(wear_key, use=Use())):
         assert key(named) == key(START.file)
         assert key(replace(named, joint=replace(named.joint, clearance=0.3))) != key(START.file)

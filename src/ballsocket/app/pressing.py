@@ -46,7 +46,7 @@ def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
     return Comparison(file.joint, contacts, missing)
 
 
-_WAITING = "Preparing {}: at R2/L = {:.3g} that takes seconds"
+_WAITING = "Computing {}: at R2/L = {:.3g} this takes some seconds"
 
 
 def is_waiting(file: JointFile, name: str) -> bool:
@@ -75,12 +75,14 @@ def axial_limit(file: JointFile, contact: Contact | None) -> AxialLimit | None:
     tilt = tilt_of(file)
     if tilt > AXIAL_TILT:
         reason = f"the load is tilted {degrees(tilt):.3g}° against the axis of the cup"
-        return AxialLimit(reason, "axial load only: not for this tilt")
+        return AxialLimit(reason, "for an axial load: not valid at this tilt")
     if contact is None or contact.status.failed:
         return None
     radius = float(file.joint.socket_radius)
     if file.cup.edge_distance(radius, float(contact.half_angle)) < min(float(file.joint.liner_thickness), radius):
-        return AxialLimit("the contact ends near the rim of the cup", "bore without a rim: not this near the rim")
+        return AxialLimit(
+            "the contact ends near the rim of the cup", "for a bore without a rim: not valid so near the rim"
+        )
     return None
 
 

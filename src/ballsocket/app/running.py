@@ -75,7 +75,7 @@ class RunFinished:
 
 @dataclass(eq=False)
 class Run:
-    """Run of some work, at most `longest` seconds; poll `news`, which first waits for a free place."""
+    """Run of some work, at most `longest` seconds; poll `news`, which first waits in the queue."""
 
     work: Work
     longest: float = LONGEST
@@ -87,7 +87,7 @@ class Run:
         """Return the news since the last call, or None; the last news is `RunFinished` or `RunRefused`."""
         if self._process is None:
             if not LINE.admit(self):
-                return Reached(share=0.0, words="waiting for a free place: others are running")
+                return Reached(share=0.0, words="waiting: other computations are running")
             try:
                 self._begin()
             except OSError as error:
@@ -98,13 +98,13 @@ class Run:
             try:
                 message = self._pipe.recv()
             except EOFError:
-                message = RunRefused(why="its process died; it may have had too little memory")
+                message = RunRefused(why="the process ended unexpectedly, perhaps for lack of memory")
             if isinstance(message, RunFinished | RunRefused):
                 self.stop()
             return message
         if time.monotonic() - self._start > self.longest:
             self.stop()
-            return RunRefused(why=f"stopped after {self.longest:g} s, the longest that a run may take here")
+            return RunRefused(why=f"stopped after {self.longest:g} s, the time limit of a run")
         return None
 
     def _begin(self) -> None:
@@ -135,7 +135,7 @@ def _run(pipe: Connection, work: Work) -> None:
     except (ValueError, OutsideDomainError, ImportError) as error:
         pipe.send(RunRefused(why=str(error)))
     except MemoryError:
-        pipe.send(RunRefused(why=f"this takes more than {MEMORY / 1e9:g} GB, the most that a run may have here"))
+        pipe.send(RunRefused(why=f"this needs more than {MEMORY / 1e9:g} GB, the memory limit of a run"))
     except Exception as error:
         pipe.send(RunRefused(why=f"this run failed: {type(error).__name__}: {error}"))
         raise

@@ -17,7 +17,7 @@ from ..reports.unit_systems import Units
 from .channel import Channel
 from .jobs import Job, call_later, run_in_thread
 from .running import RunFinished, RunRefused
-from .solving import Errand
+from .solving import SlowPresses
 from .state.designs import read_upload, session_text
 from .state.screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, read_link
 from .view import ScreenContent, View, make_file, print_page
@@ -54,7 +54,7 @@ class Page:
             "designs": self._handle_designs,
         }
         self._timers: set[TimerHandle] = set()
-        self._errand = Errand(self._refresh)
+        self._slow_presses = SlowPresses(self._refresh)
         self._printing = Job(self._printed)
         self.channel.once("fresh", True)
         self._put()
@@ -244,7 +244,7 @@ class Page:
     def _fields(self) -> dict[str, Field]:
         """Return every input beside the views by name."""
         angles = segments("angle", "Angles in", ANGLES, self.screen.angle)
-        sizes = segments("size", "Balls by", SIZES, self.screen.size)
+        sizes = segments("size", "Ball size as", SIZES, self.screen.size)
         units = segments("units", "Units", _UNITS, self.screen.units)
         joint = {name: entry.field for name, entry in self._joint_inputs.items()}
         layers = layer_fields(self.screen.file.joint)
@@ -263,7 +263,7 @@ class Page:
     def _refresh(self) -> None:
         self._put()
         self.attempt(lambda: self.view.show(self.screen))
-        self._errand.ask(*self.view.asks(self.screen))
+        self._slow_presses.ask(*self.view.asks(self.screen))
 
     def _put(self) -> None:
         """Set every input to the state of the screen."""
@@ -295,7 +295,7 @@ class Page:
 
     def leave(self) -> None:
         """Stop all work of a closed page."""
-        self._errand.leave()
+        self._slow_presses.leave()
         self._printing.stop()
         for timer in self._timers:
             timer.cancel()

@@ -96,7 +96,7 @@ def _press(file: JointFile, name: str) -> Contact | str:
     return contact
 
 
-class Errand:
+class SlowPresses:
     """Slow presses of one page, in at most one process for the present screen; `changed` is called on news."""
 
     def __init__(self, changed: Callable[[], None]) -> None:
@@ -122,7 +122,7 @@ class Errand:
             self._files = file, _unfinished(file, names)
         elif isinstance(news, RunRefused):
             for name in names:
-                result = solved(file, name) or f"{name} has no answer here: {news.why}"
+                result = solved(file, name) or f"{name} has no result here: {news.why}"
                 _store(file, name, SolvedPress(result, complete=True))
         self._changed()
 

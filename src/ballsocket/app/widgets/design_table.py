@@ -121,7 +121,7 @@ def design_rows(
         unit = reading.unit(JOINT[name])
         lengths = [float(getattr(design.file.joint, name)) * unit.factor for design in listed]
         rows.append((f"{JOINT[name].title}{unit.text_in_brackets}", [Cell(text=f"{length:.5g}") for length in lengths]))
-    rows.append(("liner", [Cell(text=design.file.joint.liner.name or "own numbers") for design in listed]))
+    rows.append(("liner", [Cell(text=design.file.joint.liner.name or "custom numbers") for design in listed]))
     rows.append(("ball", [Cell(text=_ball(design.file)) for design in listed]))
     for column in reading.columns:
         if column.attribute in names:
@@ -132,7 +132,7 @@ def design_rows(
 
 
 def _ball(file: JointFile) -> str:
-    return "rigid" if file.joint.ball is None else file.joint.ball.name or "own numbers"
+    return "rigid" if file.joint.ball is None else file.joint.ball.name or "custom numbers"
 
 
 def _value(design: PressedDesign, attribute: str, factor: float) -> float:

@@ -71,7 +71,7 @@ def behind(unit: str) -> str:
 def number_text(value: float, unit: str = "") -> str:
     """Format a number with four digits, inches with at most four decimals; NaN and infinity in words."""
     if isnan(value):
-        return "no answer"
+        return "no result"
     if 10**_DIGITS <= abs(value) < _LARGEST_PLAIN:
         return f"{value:.0f}"
     return f"{_in_tenths(value, unit):.{_DIGITS}g}" if abs(value) < inf else "∞"

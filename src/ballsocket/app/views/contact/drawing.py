@@ -116,7 +116,7 @@ def _liner(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> It
     if not isinf(thickness):
         yield _both_ways(*inner, *outer)
     yield _leader(*outer, 112.0, outer[1] + 14)
-    thick = "massive" if isinf(thickness) else format_length(thickness)
+    thick = "solid" if isinf(thickness) else format_length(thickness)
     yield _labelled_value(("liner", thick), 106.0, outer[1] + 10, "end")
 
 

@@ -138,8 +138,8 @@ class Press(LongView):
         limit = self._needs_cup(screen, pressed(screen.file, (screen.answered_by,)))
         if limit is None:
             return ""
-        words = "By full elasticity of the ball in the real cup (<code>sphere</code>)"
-        return f"<p class='quiet'>{words}: {limit.reason}.</p>"
+        words = "Computed by the elastic model of the real cup (<code>sphere</code>)"
+        return f"<p class='quiet'>{words}, because {limit.reason}.</p>"
 
     def _draw(self, screen: Screen, contact: Contact | None) -> None:
         """Draw the joint with its pressure; stresses follow from a thread."""
@@ -252,8 +252,8 @@ def _fields(screen: Screen, real: bool) -> dict[str, Any]:
     pieces = {name: swatch(line_of(name)) for name in _EVERY}
     return {
         "answered_by": {**choice("answered_by", "Model", _EVERY, screen.answered_by), "hidden": real},
-        "painted": segments("painted", "Painted", [(name, _PAINTED[name]) for name in PAINTED], screen.painted),
-        "shown": several("shown", "Curves of", _EVERY, screen.shown, pieces),
+        "painted": segments("painted", "Colours show", [(name, _PAINTED[name]) for name in PAINTED], screen.painted),
+        "shown": several("shown", "Curves of the models", _EVERY, screen.shown, pieces),
     }
 
 

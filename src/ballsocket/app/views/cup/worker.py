@@ -80,7 +80,7 @@ def set_up(joint: Joint, cup: Cup, report: Report) -> bool:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Stood:
+class OrientationMap:
     """Edge distances (mm) and pressures (MPa) over inclinations and anteversions (rad).
 
     `held` is True where the bore holds the ball; `figure` is the figure of `Orientations` as PNG.
@@ -94,12 +94,12 @@ class Stood:
     figure: bytes
 
 
-def stand_of(file: JointFile) -> Hashable:
+def orientation_key(file: JointFile) -> Hashable:
     """Return a key of a map over orientations."""
     return bore_of(file), file.cup.side, tuple(file.load.items()), tuple(file.aim.items())
 
 
-def stood(file: JointFile, report: Report) -> Stood:
+def map_orientations(file: JointFile, report: Report) -> OrientationMap:
     """Press one load of the body in cups of many orientations, in a separate process."""
     if "tilt" in file.aim:
         raise ValueError("a load that is given by its tilt turns with the cup: give its direction in the body")
@@ -113,11 +113,11 @@ def stood(file: JointFile, report: Report) -> Stood:
 
     with progress_to(heard):
         orientations = orient(file.joint, model=model, inclination=INCLINATIONS, anteversion=ANTEVERSIONS, **file.load)
-    return _stood(orientations)
+    return _as_map(orientations)
 
 
-def _stood(orientations: Orientations) -> Stood:
-    return Stood(
+def _as_map(orientations: Orientations) -> OrientationMap:
+    return OrientationMap(
         inclination=orientations.inclination,
         anteversion=orientations.anteversion,
         edge_distance=orientations.edge_distance,

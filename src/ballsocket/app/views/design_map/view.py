@@ -45,9 +45,9 @@ _LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))
 
 _FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
 _ENDS = {f"{which}_{end}": (which, end) for which in ("across", "up") for end in ("low", "high")}
-_AXIS_WORDS, _END_WORDS = {"across": "Across", "up": "Upwards"}, {"low": "from", "high": "to"}
-_SIZES = {"any": "any size", "catalogue": "catalogue sizes"}
-_PRESENT, _PICKED = "this design", "at the point"
+_AXIS_WORDS, _END_WORDS = {"across": "x axis", "up": "y axis"}, {"low": "from", "high": "to"}
+_SIZES = {"any": "any", "catalogue": "catalogue"}
+_PRESENT, _PICKED = "this design", "selected point"
 _HINT = (
     "<p class='quiet'>Click the map, or move its cross with the arrow keys and press Enter: the design at that point "
     "is shown here beside the present one, which is the white ring.</p>"
@@ -105,7 +105,7 @@ class DesignMap(View):
         *map(_end_setting, _ENDS),
         chosen("quantity", "Map of", MAPPED, titles=lambda name: QUANTITIES[name].title),
         chosen("map_model", "Model", models_of, key="model"),
-        chosen("sizes", "A picked point has", _SIZES, segments, _SIZES.__getitem__),
+        chosen("sizes", "Sizes at a selected point", _SIZES, segments, _SIZES.__getitem__),
     )
     body = f"""
 <div class="inputs-row map-inputs">{field_places("map", _FIELDS)}</div>

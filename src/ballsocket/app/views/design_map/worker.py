@@ -128,7 +128,7 @@ def map_summary(results: Any, screen: Screen) -> str:
     if not bool(results.valid.all()):
         words.append("Crosses: the model is not valid there.")
     if not bool(fine.all()):
-        words.append("Faded: a limit is broken. Grey: no result.")
+        words.append("Faded: outside a limit. Grey: no result.")
     return f"<p class='quiet'>{' '.join(words)}</p>"
 
 
@@ -149,7 +149,7 @@ def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
     rounded = {name: float(f"{value:.4g}") for name, value in chosen.items()}
     made, load, possible = press_arguments(file.joint, rounded)
     if not bool(possible):
-        raise ValueError("these numbers make no joint: no liner or no clearance is left")
+        raise ValueError("invalid geometry: the clearance would be negative, or the liner would have no thickness")
     plain = replace(
         made,
         ball_radius=round(float(made.ball_radius), 9),

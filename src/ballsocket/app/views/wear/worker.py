@@ -101,11 +101,11 @@ def _wear_result(hip: HipSimulation, history: History, bands: Any) -> WearResult
     penetration = courses["penetration"]
     if bands is None:
         low, high = (penetration * (1 + sign * history.error.depth) for sign in (-1, 1))
-        band = f"band: what the run may be off by, {100 * history.error.depth:.2g} %"
+        band = f"band: numerical error of the run, {100 * history.error.depth:.2g} %"
     else:
         low, high = (numpy.array([0.0, *ends]) for ends in bands.band("penetration"))
         share = f"{100 * bands.level:g} % of the predictions for {bands.n_patients} patients"
-        band = f"band: {share}, for a wear coefficient known within a factor"
+        band = f"band: {share}, for the scatter of the wear coefficient"
     largest = hip.loads[hip.largest_load_index[0]]
     return WearResult(
         cycles=numpy.array([0.0, *(report.cycles / 1e6 for report in reports)]),
