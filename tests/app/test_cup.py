@@ -63,7 +63,7 @@ def test_the_view_says_what_the_sphere_says(at_once):
     page = opened()
     contact = bs.Sphere(cup=page.screen.file.cup).press(JOINT, force=3000.0)
     assert f"{float(contact.edge_distance):.4g} <span class='unit'>mm" in told(page, "numbers")
-    assert f"{degrees(contact.edge_margin):.3g}° of arc" in told(page, "numbers")
+    assert f"{degrees(contact.edge_margin):.4g}° of arc" in told(page, "numbers")
     assert f"{float(contact.max_pressure):.4g} <span class='unit'>MPa" in told(page, "numbers")
     assert f"{float(contact.edge_distance):.4g} mm from the rim" in told(page, "map")
     viewed = json.loads(re.search(r"data-viewer='([^']*)'", told(page, "viewer"))[1])

@@ -37,7 +37,7 @@ def until_the_end(run, seconds=600.0):
 @pytest.fixture(autouse=True)
 def all_places_are_given_back():
     yield
-    assert len(running.LINE) == 0
+    assert len(running.QUEUE) == 0
 
 
 def test_a_run_answers_what_a_press_answers():
@@ -77,7 +77,7 @@ def test_a_run_that_is_stopped_gives_its_place_back():
 
 
 def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
-    monkeypatch.setattr(running, "LINE", running.RunQueue(1))
+    monkeypatch.setattr(running, "QUEUE", running.RunQueue(1))
     first, second, third = (Run(callable) for _ in range(3))  # work of an instant: it returns True
     first.news()
     for run in (second, third):

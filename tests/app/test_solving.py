@@ -50,7 +50,7 @@ def waited_for(page, seconds=300.0):
 def nothing_is_left_running():
     solving._solved.clear()
     yield
-    assert len(running.LINE) == 0
+    assert len(running.QUEUE) == 0
 
 
 def presses_of(monkeypatch):
@@ -109,7 +109,7 @@ def test_what_was_solved_elsewhere_is_what_a_press_answers():
 
 
 def test_what_takes_too_long_is_ended_and_said(monkeypatch):
-    monkeypatch.setattr(solving, "LONGEST", 0.01)
+    monkeypatch.setattr(solving, "PRESS_SECONDS", 0.01)
     page = Page(link(190))
     waited_for(page)
     words = "exact has no result here: stopped after 0.01 s, the time limit of a run"

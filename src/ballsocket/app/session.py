@@ -19,11 +19,11 @@ from .jobs import Job, call_later, run_in_thread
 from .running import RunFinished, RunRefused
 from .solving import SlowPresses
 from .state.designs import read_upload, session_text
-from .state.screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, read_link
+from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, read_link
 from .view import ScreenContent, View, make_file, print_page
 from .views.registry import view_class
 from .widgets.fields import Field, in_words_of, segments
-from .widgets.joint_fields import behind, joint_inputs, layer_fields, layers_edited
+from .widgets.joint_fields import joint_inputs, layer_fields, layer_list, layers_edited
 from .widgets.words import alert
 
 _LOG = logging.getLogger(__name__)
@@ -67,8 +67,8 @@ class Page:
         if not query:
             return START
         try:
-            if len(query) > 3 * LONGEST_LINK:  # a character may take three in an address
-                raise ValueError(f"it is longer than {LONGEST_LINK} characters")
+            if len(query) > 3 * MAX_LINK_LENGTH:  # a character may take three in an address
+                raise ValueError(f"it is longer than {MAX_LINK_LENGTH} characters")
             return read_link(parse_qs(query, keep_blank_values=True))
         except ValueError as error:
             self.refuse(f"This link cannot be read: {error}")
@@ -271,7 +271,7 @@ class Page:
         self.inputs = self._fields()
         self.channel.put_fields(self.inputs)
         self.channel.put("order", list(self.inputs))
-        self.channel.put("#behind", behind(self.screen.file.joint))
+        self.channel.put("#behind", layer_list(self.screen.file.joint))
         self.channel.put("view", self.screen.view)
         self.channel.put("link", self.screen.link)
 
@@ -305,7 +305,7 @@ class Page:
 
 def _check_link(screen: Screen) -> None:
     """Raise ValueError for a screen whose link would be too long."""
-    if len(screen.link) > LONGEST_LINK:
+    if len(screen.link) > MAX_LINK_LENGTH:
         raise ValueError(
-            f"a link to this would be longer than {LONGEST_LINK} characters: shorten the names in the file"
+            f"a link to this would be longer than {MAX_LINK_LENGTH} characters: shorten the names in the file"
         )

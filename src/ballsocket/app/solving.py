@@ -18,7 +18,7 @@ from ..problem.cup import Cup
 from .jobs import Job
 from .running import Report, RunRefused
 
-LONGEST = 20.0
+PRESS_SECONDS = 20.0
 """Seconds that the presses of one joint may take."""
 
 _MAX_SOLVED = 256
@@ -102,7 +102,7 @@ class SlowPresses:
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
         self._files: tuple[JointFile, tuple[str, ...]] | None = None
-        self.job = Job(self._store_news, LONGEST)
+        self.job = Job(self._store_news, PRESS_SECONDS)
 
     def ask(self, files: Iterable[JointFile], names: tuple[str, ...]) -> None:
         """Start the presses of the first file that has unsolved models."""

@@ -156,7 +156,7 @@ def _chosen(table: Tables) -> str:
     return str(table["material"]) if set(table) - set(STRESS_LIMITS) == {"material"} else _CUSTOM
 
 
-def behind(joint: Joint) -> str:
+def layer_list(joint: Joint) -> str:
     """List the layers behind the liner as HTML."""
     layers = "".join(f"<li>{escape(str(layer))}</li>" for layer in joint.backing)
     return f"<p>Behind the liner:</p><ul>{layers}</ul>" if layers else ""

@@ -10,7 +10,7 @@ from ...core.quantities import JOINT, MATERIAL, QUANTITIES, Quantity
 from ...problem.dimensions import DIAMETERS
 from ...reports.unit_systems import Units
 from .fields import Field, empty_number, number, typed
-from .reading import Reading, behind, box_text, handy_step
+from .reading import Reading, box_text, handy_step, unit_suffix
 
 _SMALL = 0.01
 """Share of the largest number below which the smallest is hardly more than zero."""
@@ -29,10 +29,10 @@ class Bounds:
         if self.low <= value <= self.high:
             return value
         low, high, written = (box_text(number * unit.factor, unit.text) for number in (self.low, self.high, value))
-        rule = f"{low} to {high}{behind(unit.text)} ({self.reason})"
+        rule = f"{low} to {high}{unit_suffix(unit.text)} ({self.reason})"
         if value <= 0 <= self.low < _SMALL * self.high:
             rule = "positive" if self.low else "zero or positive"
-        raise ValueError(f"{label} must be {rule}, got {written}{behind(unit.text)}")
+        raise ValueError(f"{label} must be {rule}, got {written}{unit_suffix(unit.text)}")
 
 
 _BOUNDS = {

@@ -55,7 +55,7 @@ class Reading:
     def with_unit(self, quantity: Quantity, value: float) -> str:
         """Write a number in internal units with its chosen unit."""
         unit = self.unit(quantity)
-        return f"{number_text(value * unit.factor, unit.text)}{behind(unit.text)}"
+        return f"{number_text(value * unit.factor, unit.text)}{unit_suffix(unit.text)}"
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
@@ -63,7 +63,7 @@ class Reading:
         return tuple(Column(quantity, self.unit(quantity)) for quantity in CONTACT.values())
 
 
-def behind(unit: str) -> str:
+def unit_suffix(unit: str) -> str:
     """Return the text of a unit as it stands behind a number."""
     return unit if unit in ("", "°") else f" {unit}"
 

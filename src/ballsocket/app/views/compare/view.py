@@ -27,6 +27,7 @@ from ...widgets.words import number_rows
 
 _CHOOSE = ""
 _PRESENT = "this design"
+_INPUTS = ("keep", "preset", "base", "remove")
 _EXAMPLES = ("hip-36", "hip-28")
 """Presets of which the first that differs from the design is shown beside it on an empty page."""
 
@@ -48,6 +49,7 @@ class Compare(View):
         self._cancel_stress: Callable[[], None] = lambda: None
 
     def edit(self, key: str, value: Any) -> None:
+        check_names([key], _INPUTS, f"among the inputs of {self.title}")
         screen = self.page.screen
         if key == "keep":
             self.page.ask(beside=with_compared(screen, screen.file))

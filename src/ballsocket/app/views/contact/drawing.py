@@ -207,12 +207,12 @@ def _handle(name: str, how: str, field: Field) -> str:
     )
 
 
-def key(top: str, quantity: Quantity, instead: bool) -> str:
-    """Draw the colour scale from 0 to a value; `instead` notes that the model has no stresses."""
+def key(top: str, quantity: Quantity, note: str = "") -> str:
+    """Draw the colour scale from 0 to a value, with a note."""
     stops = ", ".join(svg.heat(share / 8) for share in range(9))
-    note = "<span>this model has no stresses inside the liner</span>" if instead else ""
+    remark = f"<span>{escape(note)}</span>" if note else ""
     return (
         f"<p class='scale'><span>{escape(quantity.title)}: 0</span>"
         f"<i style='background: linear-gradient(to right, {stops})'></i>"
-        f"<span>{escape(top)}</span>{note}</p>"
+        f"<span>{escape(top)}</span>{remark}</p>"
     )

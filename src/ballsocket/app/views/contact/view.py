@@ -99,7 +99,7 @@ class Press(LongView):
         self.long.leave()
         near_rim = _limit(comparison, screen) is not None
         self.long.put_button(hidden=not near_rim)
-        self.channel.put_fields(_fields(screen, real=False))
+        self.channel.put_fields(_fields(screen))
         by = comparison.contacts.get(screen.answered_by)
         if by is not None:
             exact = comparison.contacts.get(reference.name)
@@ -113,7 +113,8 @@ class Press(LongView):
 
     def show_result(self, screen: Screen, result: bool | None) -> None:
         """Show the numbers of the real cup; its bore is set up first if it is new."""
-        self.channel.put_fields(_fields(screen, real=True))
+        fields = _fields(screen)
+        self.channel.put_fields({**fields, "answered_by": {**fields["answered_by"], "hidden": True}})  # one model alone
         self.put(offer="")
         if self.long.result(screen) is None:
             self.put(numbers=self._reason(screen))
@@ -156,9 +157,9 @@ class Press(LongView):
             legend = ""
         elif inside is None:
             top = screen.reading.with_unit(FIELD["pressure"], float(contact.max_pressure))
-            legend = key(top, FIELD["pressure"], screen.painted == "stress")
+            legend = key(top, FIELD["pressure"], _NO_STRESSES if screen.painted == "stress" else "")
         else:
-            legend = key(screen.reading.with_unit(BEARING["von_mises"], inside.largest), BEARING["von_mises"], False)
+            legend = key(screen.reading.with_unit(BEARING["von_mises"], inside.largest), BEARING["von_mises"])
         self.put(section=drawing + legend)
 
     def _fill(self, screen: Screen) -> None:
@@ -224,6 +225,7 @@ class Press(LongView):
         return [screen.file], tuple(dict.fromkeys((*first, *_EVERY)))
 
 
+_NO_STRESSES = "this model has no stresses inside the liner"
 _OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
@@ -247,11 +249,11 @@ def _limit(comparison: Comparison, screen: Screen) -> AxialLimit | None:
     return axial_limit(screen.file, contacts.get(screen.answered_by) or next(iter(contacts.values()), None))
 
 
-def _fields(screen: Screen, real: bool) -> dict[str, Any]:
-    """Return the inputs of the view; a load in the real cup has one model alone."""
+def _fields(screen: Screen) -> dict[str, Any]:
+    """Return the inputs of the view."""
     pieces = {name: swatch(line_of(name)) for name in _EVERY}
     return {
-        "answered_by": {**choice("answered_by", "Model", _EVERY, screen.answered_by), "hidden": real},
+        "answered_by": choice("answered_by", "Model", _EVERY, screen.answered_by),
         "painted": segments("painted", "Colours show", [(name, _PAINTED[name]) for name in PAINTED], screen.painted),
         "shown": several("shown", "Curves of the models", _EVERY, screen.shown, pieces),
     }

@@ -191,8 +191,7 @@ _TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:
     reading = screen.reading
     angle = reading.unit(CUP["inclination"])
-    degree = angle.text if angle.text == "°" else f" {angle.text}"
-    margin = f"{float(contact.edge_margin) * angle.factor:.3g}{degree} of arc"
+    margin = f"{reading.with_unit(CUP['inclination'], float(contact.edge_margin))} of arc"
     cells = [
         _cell(DERIVED["edge_distance"], contact.edge_distance, reading, margin),
         _cell(CONTACT["max_pressure"], contact.max_pressure, reading),
