@@ -132,7 +132,7 @@ BODY_WEIGHT = Number(
 )
 THICKNESS = _number("thickness", "backing", "thickness", (0.5, 10.0), 0.1)
 ALLOWABLE = _number("allowable_pressure", "liner", "allowable_pressure", (1.0, 100.0), 0.5)
-TILT = replace(_number("tilt", "load", "tilt", (0.0, 90.0), 1.0), label="Load from the cup's axis")
+TILT = replace(_number("tilt", "load", "tilt", (0.0, 90.0), 1.0), label="Tilt of the load")
 CUP_NUMBERS: Mapping[str, Number] = {
     "inclination": _number("inclination", "cup", "inclination", (0.0, 90.0), 1.0),
     "anteversion": _number("anteversion", "cup", "anteversion", (-30.0, 60.0), 1.0),

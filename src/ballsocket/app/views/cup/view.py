@@ -195,7 +195,7 @@ def _numbers(contact: OffAxisContact, screen: Screen) -> str:
     cells = [
         _cell(DERIVED["edge_distance"], contact.edge_distance, reading, margin),
         _cell(CONTACT["max_pressure"], contact.max_pressure, reading),
-        number_cell("load from the cup's axis", float(contact.tilt) * angle.factor, angle.text),
+        number_cell("tilt of the load", float(contact.tilt) * angle.factor, angle.text),
         _cell(CONTACT["half_angle"], contact.half_angle, reading),
         _cell(CONTACT["force"], contact.force, reading),
     ]

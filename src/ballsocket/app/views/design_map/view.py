@@ -45,7 +45,7 @@ _LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))
 
 _FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
 _ENDS = {f"{which}_{end}": (which, end) for which in ("across", "up") for end in ("low", "high")}
-_AXIS_WORDS, _END_WORDS = {"across": "x axis", "up": "y axis"}, {"low": "from", "high": "to"}
+_AXIS_LETTERS, _END_WORDS = {"across": "x", "up": "y"}, {"low": "from", "high": "to"}
 _SIZES = {"any": "any", "catalogue": "catalogue"}
 _PRESENT, _PICKED = "this design", "selected point"
 _HINT = (
@@ -63,7 +63,7 @@ def _axis_setting(which: str) -> Setting:
 
     def field(screen: Screen) -> Field:
         axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in AXES]
-        return choice(which, _AXIS_WORDS[which], axes, getattr(screen, which).name)
+        return choice(which, f"{_AXIS_LETTERS[which]} axis", axes, getattr(screen, which).name)
 
     def read(screen: Screen, value: Any) -> dict[str, Any]:
         check_names([value], AXES, "among the axes of a map")
@@ -75,7 +75,7 @@ def _axis_setting(which: str) -> Setting:
 def _end_setting(key: str) -> Setting:
     """Return the box of one end of an axis."""
     which, end = _ENDS[key]
-    label = f"{_AXIS_WORDS[which]} {_END_WORDS[end]}"
+    label = f"{_AXIS_LETTERS[which]} {_END_WORDS[end]}"
 
     def field(screen: Screen) -> Field:
         axis: MapAxis = getattr(screen, which)

@@ -124,7 +124,9 @@ def map_summary(results: Any, screen: Screen) -> str:
     if point is not None:
         position = " and ".join(_with_title(name, value, reading) for name, value in point.items())
         smallest = reading.with_unit(QUANTITIES[screen.quantity], float(results[screen.quantity].sel(point)))
-        words.append(f"Smallest {QUANTITIES[screen.quantity].title} there: <b>{smallest}</b> at {escape(position)}.")
+        within = " within the limits" if screen.limits else ""
+        title = QUANTITIES[screen.quantity].title
+        words.append(f"Minimum of the {title}{within}: <b>{smallest}</b> at {escape(position)}.")
     if not bool(results.valid.all()):
         words.append("Crosses: the model is not valid there.")
     if not bool(fine.all()):
