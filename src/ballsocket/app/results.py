@@ -41,7 +41,7 @@ class ResultStore:
         return self._results[question][0]
 
     def put(self, question: Hashable, result: Any) -> None:
-        """Store a result; forget those that have not been shown for longest beyond the limits."""
+        """Store a result; beyond the limits, remove those that were not shown for the longest time."""
         self._remove(question)
         size = len(pickle.dumps(result))
         self._results[question] = result, size, time.monotonic()

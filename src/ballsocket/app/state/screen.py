@@ -113,7 +113,7 @@ class Screen:
             chosen = getattr(self, name)
             check_names(chosen if isinstance(chosen, tuple) else (chosen,), known, f"as {name}")
         if len(self.beside) > MAX_COMPARED:
-            raise ValueError(f"at most {MAX_COMPARED} joints are put beside this one, got {len(self.beside)}")
+            raise ValueError(f"at most {MAX_COMPARED} designs are compared with this one, got {len(self.beside)}")
         if len(self.limits) > MAX_LIMITS:
             raise ValueError(f"a map has at most {MAX_LIMITS} limits, got {len(self.limits)}")
         if not self.file.load:

@@ -12,8 +12,8 @@ from ...reports.unit_systems import Units
 from .fields import Field, empty_number, number, typed
 from .reading import Reading, box_text, handy_step, unit_suffix
 
-_SMALL = 0.01
-"""Share of the largest number below which the smallest is hardly more than zero."""
+_NEARLY_ZERO = 0.01
+"""Share of the largest number below which the smallest is stated as zero."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Bounds:
             return value
         low, high, written = (box_text(number * unit.factor, unit.text) for number in (self.low, self.high, value))
         rule = f"{low} to {high}{unit_suffix(unit.text)} ({self.reason})"
-        if value <= 0 <= self.low < _SMALL * self.high:
+        if value <= 0 <= self.low < _NEARLY_ZERO * self.high:
             rule = "positive" if self.low else "zero or positive"
         raise ValueError(f"{label} must be {rule}, got {written}{unit_suffix(unit.text)}")
 

@@ -49,7 +49,7 @@ class Reading:
         return self.unit(JOINT["ball_radius"])
 
     def label(self, quantity: Quantity) -> str:
-        """Title, symbol and unit, for an axis."""
+        """Return title, symbol and unit for an axis."""
         return quantity.label(self.unit(quantity))
 
     def with_unit(self, quantity: Quantity, value: float) -> str:

@@ -165,7 +165,7 @@ _NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="
 
 
 def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]:
-    """Plain numbers of a file, by the names of JSON, each with its unit."""
+    """Yield the numbers of a file by their names in JSON, each with its unit."""
     for name, value in contact.summary().items():
         quantity = _NAMED.get(name.removesuffix("_deg"))
         if quantity is not None and isinstance(value, float | int):
@@ -176,7 +176,7 @@ def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]
 
 
 def _report_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[str]]:
-    """Titles and values of the quantities of a contact, for readers."""
+    """Yield title and value of each quantity of a contact, for readers."""
     for name, value in contact.summary().items():
         quantity = _NAMED.get(name.removesuffix("_deg"))
         if quantity is not None and isinstance(value, float | int):
