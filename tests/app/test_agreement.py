@@ -15,8 +15,9 @@ from .proxy import opened_proxy
 from .user import User, opened_profile
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
+from ballsocket.app.pressing import tilt_of
 from ballsocket.app.state.screen import read_link
-from ballsocket.app.widgets.joint_fields import fields_of, tilt_of
+from ballsocket.app.widgets.joint_fields import joint_inputs
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.validity import OutsideDomainError
 
@@ -156,7 +157,7 @@ def assert_inputs_agree(user, history):
     user.page.locator(".app[data-idle=yes][data-shown]:not([data-lost])").wait_for()
     shown = user.page.evaluate(_SHOWN, list(_NUMBERS))
     screen = read_link(parse_qs(shown["link"]))
-    fields = fields_of(screen)
+    fields = {name: entry.field for name, entry in joint_inputs(screen).items()}
     for name, text in shown["boxes"].items():
         if name in shown["refused"]:  # keeps what was typed, marked as refused
             assert text in _REFUSED[name], history

@@ -189,7 +189,7 @@ def test_the_keyboard_is_enough(user):
     """The first stop leads past the controls; every slider is a stop that says what it is."""
     user.open()
     user.page.keyboard.press("Tab")
-    assert user.page.evaluate("document.activeElement.textContent") == "Go to the answers"
+    assert user.page.evaluate("document.activeElement.textContent") == "Go to the results"
     bars = user.page.locator(".side").get_by_role("slider")
     assert bars.count() == user.page.locator(".side input[type=range]:visible").count() > 5
     user.page.get_by_role("slider", name="Diametral clearance mm").focus()

@@ -25,7 +25,7 @@ from ballsocket.app.session import Page
 from ballsocket.app.views.cup import worker
 from ballsocket.app.views.cup.charts import angle_map
 from ballsocket.app.views.cup.view import _hint
-from ballsocket.app.views.cup.worker import Stood
+from ballsocket.app.views.cup.worker import OrientationMap
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.problem.cup import Cup, Side
 from ballsocket.reports.check_table import checks_html, checks_of
@@ -63,7 +63,7 @@ def test_the_view_says_what_the_sphere_says(at_once):
     page = opened()
     contact = bs.Sphere(cup=page.screen.file.cup).press(JOINT, force=3000.0)
     assert f"{float(contact.edge_distance):.4g} <span class='unit'>mm" in told(page, "numbers")
-    assert f"{degrees(contact.edge_margin):.3g}° of arc" in told(page, "numbers")
+    assert f"{degrees(contact.edge_margin):.4g}° of arc" in told(page, "numbers")
     assert f"{float(contact.max_pressure):.4g} <span class='unit'>MPa" in told(page, "numbers")
     assert f"{float(contact.edge_distance):.4g} mm from the rim" in told(page, "map")
     viewed = json.loads(re.search(r"data-viewer='([^']*)'", told(page, "viewer"))[1])
@@ -79,7 +79,7 @@ def test_the_view_says_what_the_sphere_says(at_once):
     report = saved(page, "HTML").decode()
     assert f"<td>{float(contact.max_pressure):.4g} MPa</td>" in report
     assert checks_html(checks_of(contact, page.screen.file.cup), page.screen.reading.with_unit) in report
-    listed = re.sub("<[^>]*>", "", report.split(">In the cup<")[1].split("</table>")[0])
+    listed = re.sub("<[^>]*>", "", report.split(">Contact in the cup<")[1].split("</table>")[0])
     assert "_" not in listed
     assert at_once[-1] == "cup-stood"  # the orientations follow
 
@@ -217,8 +217,8 @@ def made(**changes):
     x, y = np.radians([20.0, 40.0, 60.0]), np.radians([0.0, 20.0])
     apart = np.array([[5.0, 4.0], [2.0, 1.0], [-2.0, -3.0]])
     held = np.ones((3, 2), dtype=bool)
-    known = {"edge_distance": apart, "max_pressure": 10 + apart**2, "held": held, "summary": {}, "figure": b""}
-    return replace(Stood(inclination=x, anteversion=y, **known), **changes)
+    known = {"edge_distance": apart, "max_pressure": 10 + apart**2, "held": held, "figure": b""}
+    return replace(OrientationMap(inclination=x, anteversion=y, **known), **changes)
 
 
 def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
@@ -239,7 +239,7 @@ def test_the_map_is_that_of_python(monkeypatch):
     page, angles = opened(), {"inclination": worker.INCLINATIONS[::5], "anteversion": worker.ANTEVERSIONS[::5]}
     for name, values in angles.items():
         monkeypatch.setattr(worker, f"{name.upper()}S", values)
-    found = worker.stood(page.screen.file, lambda news: None)
+    found = worker.map_orientations(page.screen.file, lambda news: None)
     asked = bs.orient(JOINT, model=bs.Sphere(cup=Cup(side=Side.RIGHT)), force=3000.0, **angles)
     assert found.edge_distance == pytest.approx(asked.edge_distance, rel=1e-5)  # as far as a press is solved
     assert found.figure.startswith(b"\x89PNG")

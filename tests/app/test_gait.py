@@ -107,7 +107,7 @@ def test_the_page_plays_what_the_process_found():
     assert opened(page.channel.shown_value("link")).screen == page.screen
     head, first, *_ = saved(page, "CSV").decode().splitlines()
     press = "phase [%],load [N],largest pressure [MPa],edge distance [mm]"
-    assert head == f"{press},least film [nm],central film [nm],film ratio λ"
+    assert head == f"{press},smallest film thickness [nm],central film thickness [nm],film ratio λ"
     assert float(first.split(",")[2]) == pytest.approx(found.pressure[0])
 
 
@@ -134,7 +134,7 @@ def test_the_film_is_shown_on_the_bore_with_its_own_scale():
     assert film["bytes"] != pressure["bytes"]
     assert "film thickness [nm]" in told(page, "viewer")
     assert "film thickness [nm] at 12.5 % of the cycle" in told(page, "flat")
-    assert "✗ by the wave, outside its validity" in told(page, "numbers")
+    assert "✗ wave method, not valid here" in told(page, "numbers")
     assert "estimated error 12 %" in told(page, "numbers")
     assert "fresh lubricant does not reach a core, up to 56 % of the contact" in told(page, "numbers")
 

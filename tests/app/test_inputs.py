@@ -6,7 +6,7 @@ pytest.importorskip("tomli_w")
 from ballsocket.app.state.screen import START
 from ballsocket.app.widgets.cup_fields import cup_edited, cup_fields
 from ballsocket.app.widgets.fields import in_words_of
-from ballsocket.app.widgets.joint_fields import edited, fields_of
+from ballsocket.app.widgets.joint_fields import joint_inputs
 from ballsocket.app.widgets.numbers import NUMBERS
 from ballsocket.app.widgets.reading import box_text, number_text
 
@@ -16,7 +16,11 @@ INCHES = screen_with(units="imperial")
 
 
 def typed(name, value, screen=START):
-    return edited(screen, name, value, lambda kind: {})
+    return joint_inputs(screen)[name].edit(value)
+
+
+def fields_of(screen):
+    return {name: entry.field for name, entry in joint_inputs(screen).items()}
 
 
 @pytest.mark.parametrize(

@@ -13,13 +13,13 @@ from ballsocket.problem.cup import Cup
 pytest.importorskip("skfem")
 from ballsocket.app import running
 from ballsocket.app.running import Reached, Run, RunFinished, RunRefused
-from ballsocket.app.views.finite_elements.worker import judged
+from ballsocket.app.views.finite_elements.worker import run_finite_elements
 
 HIP = JointFile(bs.joints["hip-28"], {"force": 3000.0})
 
 
 def judging(file, **limits):
-    return Run(partial(judged, file), **limits)
+    return Run(partial(run_finite_elements, file), **limits)
 
 
 def until_the_end(run, seconds=600.0):
@@ -37,7 +37,7 @@ def until_the_end(run, seconds=600.0):
 @pytest.fixture(autouse=True)
 def all_places_are_given_back():
     yield
-    assert len(running.LINE) == 0
+    assert len(running.QUEUE) == 0
 
 
 def test_a_run_answers_what_a_press_answers():
@@ -58,14 +58,14 @@ def test_a_run_answers_what_a_press_answers():
 
 def test_a_run_that_takes_too_long_is_ended():
     refused = until_the_end(judging(HIP, longest=0.2))[-1]
-    assert refused.why == "stopped after 0.2 s, the longest that a run may take here"
+    assert refused.why == "stopped after 0.2 s, the time limit of a run"
 
 
 def test_a_run_whose_process_dies_says_so():
     run = judging(HIP)
     run.news()
     run._process.kill()
-    assert "its process died; it may have had too little memory" in until_the_end(run)[-1].why
+    assert "the process ended unexpectedly, perhaps for lack of memory" in until_the_end(run)[-1].why
 
 
 def test_a_run_that_is_stopped_gives_its_place_back():
@@ -77,11 +77,11 @@ def test_a_run_that_is_stopped_gives_its_place_back():
 
 
 def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
-    monkeypatch.setattr(running, "LINE", running.RunQueue(1))
+    monkeypatch.setattr(running, "QUEUE", running.RunQueue(1))
     first, second, third = (Run(callable) for _ in range(3))  # work of an instant: it returns True
     first.news()
     for run in (second, third):
-        assert run.news().words == "waiting for a free place: others are running"
+        assert run.news().words == "waiting: other computations are running"
     second.stop()
     assert isinstance(until_the_end(first)[-1], RunFinished)
     assert isinstance(until_the_end(third)[-1], RunFinished)

@@ -84,6 +84,15 @@ def test_joints_are_compared_with_the_one_that_is_chosen():
     assert Page(f"view=compare&{HIP}").screen.base == "1"  # nothing has been chosen by looking
 
 
+def test_a_base_remains_the_same_design_when_another_is_removed():
+    page = Page(f"view=compare&{HIP}&beside1.preset=hip-36&beside2.preset=hip-32&base=2")
+    edits(page, "compare.remove", "hip-36")
+    assert "the difference from hip-32" in page.channel.shown_value("#compare-note")
+    edits(page, "compare.remove", "hip-32")
+    assert page.screen.beside == ()
+    assert "the difference from hip-36" in page.channel.shown_value("#compare-note")  # the example
+
+
 def test_six_designs_are_compared_by_the_checks_of_contact():
     """The von Mises stress of the checks is that of the model itself, as in Contact."""
     names = [name for name in bs.joints if name not in ("hip-28", "hess-forsbach")][:6]

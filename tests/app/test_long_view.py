@@ -1,6 +1,7 @@
 """Long work of a view: its button, its progress, and results that stay."""
 
 import json
+from dataclasses import replace
 from functools import partial
 
 import pytest
@@ -12,6 +13,11 @@ from ballsocket.app.long_view import LongView, long_body
 from ballsocket.app.results import ResultStore
 from ballsocket.app.running import Reached, RunFinished, RunRefused
 from ballsocket.app.session import Page
+from ballsocket.app.state.screen import START
+from ballsocket.app.state.use import Use
+from ballsocket.app.views.cup.worker import bore_of, orientation_key
+from ballsocket.app.views.gait.worker import gait_key
+from ballsocket.app.views.wear.worker import wear_key
 
 from .asking import does, edits
 
@@ -161,3 +167,10 @@ def test_a_store_of_results_is_bounded_in_number_bytes_and_time(monkeypatch):
     assert (store.get("d"), store.get("b")) == (None, None)
     now[0] = 11.0
     assert store.get("e") is None
+
+
+def test_results_do_not_depend_on_the_name_of_a_design():
+    named = replace(START.file, joint=replace(START.file.joint, name="Anna", source="a drawing"))
+    for key in (bore_of, orientation_key, partial(gait_key, use=Use(), upload=None), partial(wear_key, use=Use())):
+        assert key(named) == key(START.file)
+        assert key(replace(named, joint=replace(named.joint, clearance=0.3))) != key(START.file)

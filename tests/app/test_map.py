@@ -237,7 +237,7 @@ def test_models_that_know_the_joint_are_offered_and_exact_is_one_of_them():
 @pytest.mark.long
 def test_a_backed_joint_is_mapped_by_the_exact_solution():
     page = Page(BACKED)
-    assert "Smallest largest pressure" in part(page, "note")
+    assert "Minimum of the largest pressure" in part(page, "note")
     assert "exact" in [name for name, _ in page.channel.shown_value("=map.model")["options"]]
     assert found(page).attrs["model"] == "exact"
 

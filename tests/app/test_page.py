@@ -77,7 +77,7 @@ def test_a_map_of_angles_has_the_unit_that_is_chosen(angle, unit, factor):
     found = mapped(page.screen.file, page.screen.across, page.screen.up, page.screen.map_model)
     least = float(found.half_angle.min()) * factor
     gap = "" if unit == "°" else " "
-    assert f"Smallest half angle there: <b>{least:.4g}{gap}{unit}</b>" in page.channel.shown_value("#map-note")
+    assert f"Minimum of the half angle: <b>{least:.4g}{gap}{unit}</b>" in page.channel.shown_value("#map-note")
 
 
 def test_a_load_of_zero_is_compared_without_shares():
@@ -140,7 +140,7 @@ def test_a_map_of_joints_that_tables_do_not_know_is_solved():
     )
     told = page.channel.shown_value("#map-note")
     assert "Model exact, since tabulated covers none of these joints" in told
-    assert "Smallest largest pressure" in told
+    assert "Minimum of the largest pressure" in told
 
 
 def test_the_exact_curve_lies_below_those_through_which_it_can_be_seen():

@@ -40,8 +40,8 @@ def link(ratio, poisson=0.3, clearance=0.1, **more):
 def waited_for(page, seconds=300.0):
     """Until nothing is being solved for a page."""
     start = time.monotonic()
-    while page._errand.job.works:
-        page._errand.job.hear()
+    while page._slow_presses.job.works:
+        page._slow_presses.job.hear()
         assert time.monotonic() - start < seconds, "nothing more was heard for minutes"
         time.sleep(0.02)
 
@@ -50,7 +50,7 @@ def waited_for(page, seconds=300.0):
 def nothing_is_left_running():
     solving._solved.clear()
     yield
-    assert len(running.LINE) == 0
+    assert len(running.QUEUE) == 0
 
 
 def presses_of(monkeypatch):
@@ -81,7 +81,7 @@ def test_a_link_to_thin_liners_does_not_hold_the_server(query, monkeypatch):
     assert not page.channel.shown_value("#trouble")
     assert all(float(joint.thickness_ratio) <= THIN_LINER_RATIO for joint in seen)
     said = page.channel.shown_value("#press-table") or page.channel.shown_value("#compare-table")
-    assert "Preparing exact: at R2/L = " in said
+    assert "Computing exact: at R2/L = " in said
 
 
 def test_joints_as_people_make_them_are_pressed_at_once():
@@ -109,27 +109,27 @@ def test_what_was_solved_elsewhere_is_what_a_press_answers():
 
 
 def test_what_takes_too_long_is_ended_and_said(monkeypatch):
-    monkeypatch.setattr(solving, "LONGEST", 0.01)
+    monkeypatch.setattr(solving, "PRESS_SECONDS", 0.01)
     page = Page(link(190))
     waited_for(page)
-    words = "exact has no answer here: stopped after 0.01 s, the longest that a run may take here"
+    words = "exact has no result here: stopped after 0.01 s, the time limit of a run"
     assert words in page.channel.shown_value("#press-numbers")
     assert "hess-forsbach" in page.channel.shown_value("#press-table")
     again = Page(link(190))
-    assert not again._errand.job.works
+    assert not again._slow_presses.job.works
     assert words in again.channel.shown_value("#press-numbers")
 
 
 def test_only_what_is_on_the_screen_is_solved():
     """A slider that moves on, or leads back, ends what was asked for before."""
     page = Page(link(190))
-    first = page._errand.job._run
-    page._errand.job.hear()
+    first = page._slow_presses.job._run
+    page._slow_presses.job.hear()
     page.ask(file=JointFile(page.screen.file.joint, {"force": 100.0}))
-    assert page._errand.job._run is not first
+    assert page._slow_presses.job._run is not first
     assert not first._process.is_alive()
     page.ask(file=JointFile(bs.joints["hip-28"], {"force": 100.0}))
-    assert not page._errand.job.works
+    assert not page._slow_presses.job.works
 
 
 def test_a_client_that_only_looks_makes_nothing_work(served, monkeypatch):

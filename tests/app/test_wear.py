@@ -84,7 +84,7 @@ def test_a_life_is_that_of_python(at_once):
     does(page, "choose", name="units", value="imperial")
     assert saved(page, "CSV").startswith(b"design,million cycles,penetration [mil],low [mil]")
     does(page, "choose", name="units", value="SI")
-    assert "what the run may be off by" in told(page, "numbers")
+    assert "numerical error of the run" in told(page, "numbers")
     assert f"up to {1e3 * last.depth:.4g} µm" in told(page, "maps")
     shares = [news.share for news in at_once]
     assert shares == sorted(shares)

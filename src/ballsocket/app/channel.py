@@ -8,14 +8,14 @@ from typing import Any
 
 from .widgets.fields import Field
 
-LONGEST = 300_000
+MAX_REQUEST_LENGTH = 300_000
 """Characters of one request: an uploaded joint file is shorter."""
 
 
 def read_request(text: str | bytes) -> dict[str, Any] | None:
     """Read one request of a browser; return None for text that is not a request."""
     try:
-        words = json.loads(text) if len(text) <= LONGEST else None
+        words = json.loads(text) if len(text) <= MAX_REQUEST_LENGTH else None
     except (ValueError, RecursionError):
         return None
     valid = isinstance(words, dict) and isinstance(words.get("do"), str) and isinstance(words.get("n"), int)

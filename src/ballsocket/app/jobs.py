@@ -9,9 +9,8 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from contextvars import Context, ContextVar, copy_context
 from typing import Any
 
-from .running import Run, RunFinished, RunRefused, Work
+from .running import MAX_SECONDS, Run, RunFinished, RunRefused, Work
 
-LONGEST = 60.0  # s, of work that nobody gave longer
 _POLL_INTERVAL = 0.15  # s between two questions for news
 
 
@@ -43,7 +42,7 @@ class Job:
     Jobs that ask for equal work, a partial function with equal arguments, share one process.
     """
 
-    def __init__(self, heard: Callable[[Hashable, Any], None], longest: float = LONGEST) -> None:
+    def __init__(self, heard: Callable[[Hashable, Any], None], longest: float = MAX_SECONDS) -> None:
         self._heard, self._longest = heard, longest
         self._key: Hashable = None
         self._work: Hashable = None

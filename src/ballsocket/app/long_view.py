@@ -9,8 +9,8 @@ from functools import partial
 from typing import Any
 
 from . import results
-from .jobs import LONGEST, Job
-from .running import Reached, RunFinished, RunRefused, Work
+from .jobs import Job
+from .running import MAX_SECONDS, Reached, RunFinished, RunRefused, Work
 from .state.screen import Screen
 from .view import Host, View
 from .widgets.words import alert
@@ -38,7 +38,7 @@ class LongWork:
     work: Callable[[Screen], Work]  # raises ValueError if the inputs of a screen allow none
     show_result: Callable[[Screen, Any], None]  # shows the result for a screen; None clears it
     automatic: bool = False  # starts without a click
-    longest: float = LONGEST  # s
+    longest: float = MAX_SECONDS  # s
     kind: str = ""  # of the result, by default the name
     _shown: Any = field(default=None, init=False)
     _asked: Hashable = field(default=None, init=False)
@@ -146,7 +146,7 @@ class LongView(View):
 
     run_label = "Run"
     automatic = False
-    longest = LONGEST
+    longest = MAX_SECONDS
     result_kind = ""
 
     def __init__(self, page: Host) -> None:

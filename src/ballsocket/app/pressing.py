@@ -17,12 +17,11 @@ from ..core.quantities import FIELD
 from ..core.validity import OutsideDomainError
 from ..files.joint_file import JointFile
 from ..problem import Joint
-from ..problem.cup import Cup
+from ..problem.cup import UP, Cup
 from ..reports.press_plots import force_axes
 from ..reports.style import LineStyle
 from .pictures.chart import Curve, chart, legend
 from .solving import heavy, solved, solved_curve
-from .widgets.joint_fields import tilt_of
 from .widgets.reading import Reading
 
 _POINTS = numpy.sqrt(numpy.linspace(0.0, 1.0, 17))
@@ -47,7 +46,7 @@ def pressed(file: JointFile, names: tuple[str, ...]) -> Comparison:
     return Comparison(file.joint, contacts, missing)
 
 
-_WAITING = "Preparing {}: at R2/L = {:.3g} that takes seconds"
+_WAITING = "Computing {}: at R2/L = {:.3g} this takes some seconds"
 
 
 def is_waiting(file: JointFile, name: str) -> bool:
@@ -76,17 +75,40 @@ def axial_limit(file: JointFile, contact: Contact | None) -> AxialLimit | None:
     tilt = tilt_of(file)
     if tilt > AXIAL_TILT:
         reason = f"the load is tilted {degrees(tilt):.3g}° against the axis of the cup"
-        return AxialLimit(reason, "axial load only: not for this tilt")
+        return AxialLimit(reason, "for an axial load: not valid at this tilt")
     if contact is None or contact.status.failed:
         return None
     radius = float(file.joint.socket_radius)
     if file.cup.edge_distance(radius, float(contact.half_angle)) < min(float(file.joint.liner_thickness), radius):
-        return AxialLimit("the contact ends near the rim of the cup", "bore without a rim: not this near the rim")
+        return AxialLimit(
+            "the contact ends near the rim of the cup", "for a bore without a rim: not valid so near the rim"
+        )
     return None
 
 
 AXIAL_TILT = 1e-9
 """Tilt in rad up to which a load counts as axial."""
+
+
+def tilt_of(file: JointFile) -> float:
+    """Return the angle in rad between the load and the axis of the cup."""
+    return float(file.aim["tilt"]) if "tilt" in file.aim else _tilt_to(file.cup, tuple(file.aim.get("direction", UP)))
+
+
+@lru_cache(maxsize=256)
+def _tilt_to(cup: Cup, direction: tuple[float, ...]) -> float:
+    return float(cup.tilt(direction))
+
+
+_DEFAULT_LOADS = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}
+"""Loads (N, mm, rad) of a joint for which a model has no contact."""
+
+
+def same_load(file: JointFile, model: str, kind: str) -> dict[str, float]:
+    """Return the load of another kind with the same contact by a model."""
+    contact = pressed(file, (model,)).contacts.get(model)
+    value = float("nan") if contact is None else float(getattr(contact, kind))
+    return {kind: float(f"{value:.6g}") if value > 0 else _DEFAULT_LOADS[kind]}
 
 
 def curve(contact: Contact, largest: float) -> Contact | None:

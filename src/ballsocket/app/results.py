@@ -6,11 +6,18 @@ import pickle
 import time
 from collections import OrderedDict
 from collections.abc import Hashable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
+
+from ..problem import Joint
 
 SECONDS = 86_400.0
 """Seconds that a result is stored."""
+
+
+def without_name(joint: Joint) -> Joint:
+    """Return a joint without its name and source, on which no result depends."""
+    return replace(joint, name="", source="")
 
 
 @dataclass(eq=False)
@@ -34,7 +41,7 @@ class ResultStore:
         return self._results[question][0]
 
     def put(self, question: Hashable, result: Any) -> None:
-        """Store a result; forget those that have not been shown for longest beyond the limits."""
+        """Store a result; beyond the limits, remove those that were not shown for the longest time."""
         self._remove(question)
         size = len(pickle.dumps(result))
         self._results[question] = result, size, time.monotonic()

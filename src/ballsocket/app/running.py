@@ -12,10 +12,10 @@ from typing import Any
 from ..core.executors.processes import available_cores, exit_with_parent, limit_threads
 from ..core.validity import OutsideDomainError
 
-LONGEST = 60.0
+MAX_SECONDS = 60.0
 """Seconds that a run may take."""
 
-MEMORY = 4_000_000_000
+MAX_MEMORY = 4_000_000_000
 """Bytes that its process may ask for."""
 
 Report = Callable[[Any], None]
@@ -47,7 +47,7 @@ class RunQueue:
             self._runs.remove(run)
 
 
-LINE = RunQueue(max(1, available_cores()))
+QUEUE = RunQueue(max(1, available_cores()))
 """Queue of all pages: as many runs at once as there are cores."""
 
 
@@ -75,10 +75,10 @@ class RunFinished:
 
 @dataclass(eq=False)
 class Run:
-    """Run of some work, at most `longest` seconds; poll `news`, which first waits for a free place."""
+    """Run of some work, at most `longest` seconds; poll `news`, which first waits in the queue."""
 
     work: Work
-    longest: float = LONGEST
+    longest: float = MAX_SECONDS
     _process: Any = field(default=None, init=False)
     _pipe: Connection | None = field(default=None, init=False)
     _start: float = field(default=0.0, init=False)
@@ -86,8 +86,8 @@ class Run:
     def news(self) -> Any:
         """Return the news since the last call, or None; the last news is `RunFinished` or `RunRefused`."""
         if self._process is None:
-            if not LINE.admit(self):
-                return Reached(share=0.0, words="waiting for a free place: others are running")
+            if not QUEUE.admit(self):
+                return Reached(share=0.0, words="waiting: other computations are running")
             try:
                 self._begin()
             except OSError as error:
@@ -98,13 +98,13 @@ class Run:
             try:
                 message = self._pipe.recv()
             except EOFError:
-                message = RunRefused(why="its process died; it may have had too little memory")
+                message = RunRefused(why="the process ended unexpectedly, perhaps for lack of memory")
             if isinstance(message, RunFinished | RunRefused):
                 self.stop()
             return message
         if time.monotonic() - self._start > self.longest:
             self.stop()
-            return RunRefused(why=f"stopped after {self.longest:g} s, the longest that a run may take here")
+            return RunRefused(why=f"stopped after {self.longest:g} s, the time limit of a run")
         return None
 
     def _begin(self) -> None:
@@ -118,7 +118,7 @@ class Run:
 
     def stop(self) -> None:
         """End the run, and free its place for the next."""
-        LINE.leave(self)
+        QUEUE.leave(self)
         if self._process is not None:
             self._process.kill()
             self._process.join()
@@ -135,16 +135,16 @@ def _run(pipe: Connection, work: Work) -> None:
     except (ValueError, OutsideDomainError, ImportError) as error:
         pipe.send(RunRefused(why=str(error)))
     except MemoryError:
-        pipe.send(RunRefused(why=f"this takes more than {MEMORY / 1e9:g} GB, the most that a run may have here"))
+        pipe.send(RunRefused(why=f"this needs more than {MAX_MEMORY / 1e9:g} GB, the memory limit of a run"))
     except Exception as error:
         pipe.send(RunRefused(why=f"this run failed: {type(error).__name__}: {error}"))
         raise
 
 
 def limit_memory() -> None:
-    """Limit the memory of this process and of its children to `MEMORY` each."""
+    """Limit the memory of this process and of its children to `MAX_MEMORY` each."""
     try:
         import resource
     except ImportError:  # no such limits on this system: only the time is limited
         return
-    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    resource.setrlimit(resource.RLIMIT_AS, (MAX_MEMORY, MAX_MEMORY))

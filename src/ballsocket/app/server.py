@@ -266,9 +266,9 @@ def server(
     Parameters
     ----------
     port : int
-        0 takes any that is free.
+        Port of the server; 0 takes a free one.
     address : str
-        Of the interface it listens on; other machines reach it only if this is not the loopback.
+        Address of the interface to listen on; other machines reach the server only if it is not the loopback.
     origins : sequence of str
         Hosts under which browsers may reach it, "hips.example.org:5006", beside this machine's own names.
     show : bool
@@ -277,7 +277,7 @@ def server(
     Raises
     ------
     ValueError
-        A port or an address that is none.
+        The port or the address is invalid.
     OSError
         The port is taken.
     """
@@ -285,7 +285,7 @@ def server(
     try:
         socket.getaddrinfo(address, None)
     except (OSError, UnicodeError) as error:
-        rule = "no interface of this machine is called so"
+        rule = "this machine has no interface with this address"
         raise ValueError(f"address = {shown(address)} is not allowed: {rule}") from error
     sys.setswitchinterval(_SWITCH_INTERVAL)
     threadpool_limits(1)  # a press has small matrices: threads cost more time than they save
@@ -303,6 +303,6 @@ def _allow_many_connections() -> None:
         import resource
     except ImportError:  # no such limit on this system
         return
-    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    _, hard_limit = resource.getrlimit(resource.RLIMIT_NOFILE)
     with suppress(ValueError, OSError):
-        resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+        resource.setrlimit(resource.RLIMIT_NOFILE, (hard_limit, hard_limit))

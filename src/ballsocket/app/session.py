@@ -16,15 +16,14 @@ from ..core.checks import check_names, shown
 from ..reports.unit_systems import Units
 from .channel import Channel
 from .jobs import Job, call_later, run_in_thread
-from .pressing import pressed
 from .running import RunFinished, RunRefused
-from .solving import Errand
+from .solving import SlowPresses
 from .state.designs import read_upload, session_text
-from .state.screen import ANGLES, LONGEST_LINK, SIZES, START, Screen, read_link
+from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, read_link
 from .view import ScreenContent, View, make_file, print_page
 from .views.registry import view_class
 from .widgets.fields import Field, in_words_of, segments
-from .widgets.joint_fields import behind, edited, fields_of, layer_fields, layers_edited
+from .widgets.joint_fields import joint_inputs, layer_fields, layer_list, layers_edited
 from .widgets.words import alert
 
 _LOG = logging.getLogger(__name__)
@@ -55,7 +54,7 @@ class Page:
             "designs": self._handle_designs,
         }
         self._timers: set[TimerHandle] = set()
-        self._errand = Errand(self._refresh)
+        self._slow_presses = SlowPresses(self._refresh)
         self._printing = Job(self._printed)
         self.channel.once("fresh", True)
         self._put()
@@ -68,8 +67,8 @@ class Page:
         if not query:
             return START
         try:
-            if len(query) > 3 * LONGEST_LINK:  # a character may take three in an address
-                raise ValueError(f"it is longer than {LONGEST_LINK} characters")
+            if len(query) > 3 * MAX_LINK_LENGTH:  # a character may take three in an address
+                raise ValueError(f"it is longer than {MAX_LINK_LENGTH} characters")
             return read_link(parse_qs(query, keep_blank_values=True))
         except ValueError as error:
             self.refuse(f"This link cannot be read: {error}")
@@ -174,7 +173,8 @@ class Page:
             self.refuse("")
             self._handlers[view](key, value)
         else:
-            file = edited(self.screen, name, value, self._same_load)
+            check_names([name], self._joint_inputs, "among the inputs")
+            file = self._joint_inputs[name].edit(value)
             self.refuse("")
             self.ask(file=file)
         self.channel.accept_field(name)
@@ -244,10 +244,11 @@ class Page:
     def _fields(self) -> dict[str, Field]:
         """Return every input beside the views by name."""
         angles = segments("angle", "Angles in", ANGLES, self.screen.angle)
-        sizes = segments("size", "Balls by", SIZES, self.screen.size)
+        sizes = segments("size", "Ball size as", SIZES, self.screen.size)
         units = segments("units", "Units", _UNITS, self.screen.units)
-        joint = {**fields_of(self.screen), **layer_fields(self.screen.file.joint)}
-        return {**joint, "units": units, "size": sizes, "angle": angles}
+        joint = {name: entry.field for name, entry in self._joint_inputs.items()}
+        layers = layer_fields(self.screen.file.joint)
+        return {**joint, **layers, "units": units, "size": sizes, "angle": angles}
 
     def attempt(self, action: Callable[[], None]) -> None:
         """Run an action outside a request and send its changes; a failure becomes a sentence on an idle page."""
@@ -262,14 +263,15 @@ class Page:
     def _refresh(self) -> None:
         self._put()
         self.attempt(lambda: self.view.show(self.screen))
-        self._errand.ask(*self.view.asks(self.screen))
+        self._slow_presses.ask(*self.view.asks(self.screen))
 
     def _put(self) -> None:
         """Set every input to the state of the screen."""
+        self._joint_inputs = joint_inputs(self.screen)
         self.inputs = self._fields()
         self.channel.put_fields(self.inputs)
         self.channel.put("order", list(self.inputs))
-        self.channel.put("#behind", behind(self.screen.file.joint))
+        self.channel.put("#behind", layer_list(self.screen.file.joint))
         self.channel.put("view", self.screen.view)
         self.channel.put("link", self.screen.link)
 
@@ -291,17 +293,9 @@ class Page:
             units=self.screen.reading.units,
         )
 
-    def _same_load(self, kind: str) -> dict[str, float]:
-        """Return a load of another kind that presses equally, by the model on top."""
-        comparison = pressed(self.screen.file, (self.screen.answered_by,))
-        contact = comparison.contacts.get(self.screen.answered_by)
-        value = float("nan") if contact is None else float(getattr(contact, kind))
-        defaults = {"force": 3000.0, "indentation": 0.05, "half_angle": 0.7}
-        return {kind: float(f"{value:.6g}") if value > 0 else defaults[kind]}
-
     def leave(self) -> None:
         """Stop all work of a closed page."""
-        self._errand.leave()
+        self._slow_presses.leave()
         self._printing.stop()
         for timer in self._timers:
             timer.cancel()
@@ -311,7 +305,7 @@ class Page:
 
 def _check_link(screen: Screen) -> None:
     """Raise ValueError for a screen whose link would be too long."""
-    if len(screen.link) > LONGEST_LINK:
+    if len(screen.link) > MAX_LINK_LENGTH:
         raise ValueError(
-            f"a link to this would be longer than {LONGEST_LINK} characters: shorten the names in the file"
+            f"a link to this would be longer than {MAX_LINK_LENGTH} characters: shorten the names in the file"
         )

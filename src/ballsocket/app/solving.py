@@ -18,7 +18,7 @@ from ..problem.cup import Cup
 from .jobs import Job
 from .running import Report, RunRefused
 
-LONGEST = 20.0
+PRESS_SECONDS = 20.0
 """Seconds that the presses of one joint may take."""
 
 _MAX_SOLVED = 256
@@ -96,13 +96,13 @@ def _press(file: JointFile, name: str) -> Contact | str:
     return contact
 
 
-class Errand:
+class SlowPresses:
     """Slow presses of one page, in at most one process for the present screen; `changed` is called on news."""
 
     def __init__(self, changed: Callable[[], None]) -> None:
         self._changed = changed
         self._files: tuple[JointFile, tuple[str, ...]] | None = None
-        self.job = Job(self._store_news, LONGEST)
+        self.job = Job(self._store_news, PRESS_SECONDS)
 
     def ask(self, files: Iterable[JointFile], names: tuple[str, ...]) -> None:
         """Start the presses of the first file that has unsolved models."""
@@ -122,7 +122,7 @@ class Errand:
             self._files = file, _unfinished(file, names)
         elif isinstance(news, RunRefused):
             for name in names:
-                result = solved(file, name) or f"{name} has no answer here: {news.why}"
+                result = solved(file, name) or f"{name} has no result here: {news.why}"
                 _store(file, name, SolvedPress(result, complete=True))
         self._changed()
 

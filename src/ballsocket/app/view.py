@@ -176,7 +176,7 @@ def make_file(content: ScreenContent, kind: str) -> tuple[str, bytes]:
 
 def _picture(content: ScreenContent, form: str) -> bytes:
     if content.document.picture is None:
-        raise ValueError("there is nothing to draw: no model has an answer")
+        raise ValueError("there is nothing to draw: no model has a result")
     return content.document.picture(form)
 
 

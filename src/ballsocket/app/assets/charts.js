@@ -14,7 +14,7 @@ function nearest(chart, x, y) {
     }
   return best;
 }
-function told(chart, found) {
+function tipLines(chart, found) {
   const [left, top, right, foot] = chart.dataset.box.split(" ").map(Number);
   const across = ((found.x - left) / (right - left)) * chart.dataset.x;
   const up = ((foot - found.y) / (foot - top)) * chart.dataset.y;
@@ -30,7 +30,7 @@ function over(event) {
   if (!found) return;
   const tip = part("g", { class: "tip" }), end = found.x > 240;
   tip.append(part("circle", { cx: found.x, cy: found.y, r: 3.5 }));
-  tip.append(...lines(told(chart, found), found.x + (end ? -8 : 8), Math.max(24, found.y - 34), end));
+  tip.append(...lines(tipLines(chart, found), found.x + (end ? -8 : 8), Math.max(24, found.y - 34), end));
   chart.append(tip);
 }
 document.addEventListener("pointermove", over, { passive: true });

@@ -60,7 +60,7 @@ def colour_of(line: LineStyle) -> str:
 
 
 def dash_of(line: LineStyle, width: float = THICK) -> str:
-    """Width and dashes of a line, as attributes; no dashes for one drawn through."""
+    """Return width and dashes of a line as attributes; a solid line has no dashes."""
     lengths = " ".join(f"{THICK * length:g}" for length in line.dash)
     return f'stroke-width="{width:g}"' + (f' stroke-dasharray="{lengths}"' if lengths else "")
 

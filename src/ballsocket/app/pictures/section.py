@@ -80,7 +80,7 @@ def painted(file: JointFile, contact: Contact | None, frame: DrawingFrame, highe
 
 
 def extent_of(file: JointFile) -> float:
-    """Half the width of the drawing in mm."""
+    """Return half the width of the drawing in mm."""
     return radii_of(file.joint)[-1]
 
 

@@ -56,8 +56,8 @@ MAPPED = ("max_pressure", "area", "half_angle", "indentation", "stiffness")
 AXES = tuple(name for name in PARAMETERS if PARAMETERS[name].kind is not Kind.ANGLE)
 """Parameters of the design map."""
 
-LONGEST_LINK = 8000
-MOST_LIMITS = 20
+MAX_LINK_LENGTH = 8000
+MAX_LIMITS = 20
 _TABLES = ("preset", "name", "source", "joint", "liner", "ball", "backing", "cup", "load")
 _VIEWS = ("use", "ask")
 _PREFIXES = tuple(f"beside{number}" for number in range(1, MAX_COMPARED + 1))
@@ -113,9 +113,9 @@ class Screen:
             chosen = getattr(self, name)
             check_names(chosen if isinstance(chosen, tuple) else (chosen,), known, f"as {name}")
         if len(self.beside) > MAX_COMPARED:
-            raise ValueError(f"at most {MAX_COMPARED} joints are put beside this one, got {len(self.beside)}")
-        if len(self.limits) > MOST_LIMITS:
-            raise ValueError(f"a map has at most {MOST_LIMITS} limits, got {len(self.limits)}")
+            raise ValueError(f"at most {MAX_COMPARED} designs are compared with this one, got {len(self.beside)}")
+        if len(self.limits) > MAX_LIMITS:
+            raise ValueError(f"a map has at most {MAX_LIMITS} limits, got {len(self.limits)}")
         if not self.file.load:
             raise ValueError("a load is needed: force, indentation or half_angle")
         if self.picked is not None and not all(map(isfinite, self.picked)):
@@ -172,8 +172,8 @@ def link_of(screen: Screen) -> str:
 
 def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
     """Read a link with the same strict reader as joint files and the command line."""
-    if sum(len(name) + len(value) for name, values in pairs.items() for value in values) > LONGEST_LINK:
-        raise ValueError(f"the link is longer than {LONGEST_LINK} characters")
+    if sum(len(name) + len(value) for name, values in pairs.items() for value in values) > MAX_LINK_LENGTH:
+        raise ValueError(f"the link is longer than {MAX_LINK_LENGTH} characters")
     plain = {
         name: values for name, values in pairs.items() if name.split(".")[0] not in (*_TABLES, *_PREFIXES, *_VIEWS)
     }

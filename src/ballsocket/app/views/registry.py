@@ -11,7 +11,7 @@ VIEW_CLASSES = {
     "wear": "wear.Wear",
     "map": "design_map.DesignMap",
     "compare": "compare.Compare",
-    "judge": "finite_elements.Judge",
+    "judge": "finite_elements.ElementCheck",
     "evidence": "evidence.Evidence",
 }
 """Folder and class of each view by its name in links, in the order of the page."""

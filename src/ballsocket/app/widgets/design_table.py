@@ -26,7 +26,7 @@ _VERDICTS = {True: ("yes", "✓ passes"), False: ("no", "✗ fails"), None: ("qu
 
 
 @dataclass(frozen=True, kw_only=True)
-class PressedDesign:
+class ComparedDesign:
     """Design with its contact by one model, or the reason for a missing one; `heading` is HTML below its name.
 
     `von_mises` is the stress (MPa) of its checks; None is the estimate.
@@ -59,7 +59,7 @@ class Cell:
         return f"<td class='{self.kind}'>{escape(self.text)}{small}</td>"
 
 
-Designs = Mapping[str, PressedDesign]
+Designs = Mapping[str, ComparedDesign]
 """Designs by their names, the one on the screen first."""
 
 
@@ -70,7 +70,7 @@ def press_designs(files: Mapping[str, JointFile], model: str, headings: Mapping[
         comparison = pressed(file, (model,))
         contact = successful_contacts(comparison).get(model)
         reason = comparison.missing.get(model, "no result")
-        designs[name] = PressedDesign(file=file, contact=contact, reason=reason, heading=headings.get(name, ""))
+        designs[name] = ComparedDesign(file=file, contact=contact, reason=reason, heading=headings.get(name, ""))
     return designs
 
 
@@ -121,7 +121,7 @@ def design_rows(
         unit = reading.unit(JOINT[name])
         lengths = [float(getattr(design.file.joint, name)) * unit.factor for design in listed]
         rows.append((f"{JOINT[name].title}{unit.text_in_brackets}", [Cell(text=f"{length:.5g}") for length in lengths]))
-    rows.append(("liner", [Cell(text=design.file.joint.liner.name or "own numbers") for design in listed]))
+    rows.append(("liner", [Cell(text=design.file.joint.liner.name or "custom numbers") for design in listed]))
     rows.append(("ball", [Cell(text=_ball(design.file)) for design in listed]))
     for column in reading.columns:
         if column.attribute in names:
@@ -132,10 +132,10 @@ def design_rows(
 
 
 def _ball(file: JointFile) -> str:
-    return "rigid" if file.joint.ball is None else file.joint.ball.name or "own numbers"
+    return "rigid" if file.joint.ball is None else file.joint.ball.name or "custom numbers"
 
 
-def _value(design: PressedDesign, attribute: str, factor: float) -> float:
+def _value(design: ComparedDesign, attribute: str, factor: float) -> float:
     return float("nan") if design.contact is None else float(getattr(design.contact, attribute)) * factor
 
 
@@ -147,7 +147,7 @@ def _number(name: str, values: Mapping[str, float], base: str) -> Cell:
     return Cell(text=number_text(value), difference=percent(float(relative_deviation(value, values[base])), "+"))
 
 
-def _checks(design: PressedDesign) -> Sequence[Check]:
+def _checks(design: ComparedDesign) -> Sequence[Check]:
     """List the checks of a design; none for a load that needs the real cup."""
     needs_cup = axial_limit(design.file, design.contact) is not None
     if design.contact is None or needs_cup:
@@ -155,7 +155,7 @@ def _checks(design: PressedDesign) -> Sequence[Check]:
     return checks_of(design.contact, design.file.cup, design.von_mises)
 
 
-def _verdict(design: PressedDesign, checks: Sequence[Check]) -> Cell:
+def _verdict(design: ComparedDesign, checks: Sequence[Check]) -> Cell:
     limit = axial_limit(design.file, design.contact)
     passes, sentence = verdict_of(checks) if limit is None else (None, f"{limit.reason}: see Cup")
     kind, text = _VERDICTS[passes]
@@ -169,7 +169,7 @@ def _ratio(check: Check | None) -> Cell:
     return Cell(text=f"{text[0]} {100 * check.ratio:.0f} %", kind=kind)
 
 
-def _validity(design: PressedDesign) -> Cell:
+def _validity(design: ComparedDesign) -> Cell:
     if design.contact is None:
         return Cell(text=design.reason, kind="no")
     limit = axial_limit(design.file, design.contact)

@@ -11,7 +11,7 @@ from ...core.checks import shown
 from ...core.kinds import Kind, Unit
 from ...core.quantities import Quantity
 from ...files.units import parse, split_quantity
-from .reading import Reading, behind, box_text
+from .reading import Reading, box_text, unit_suffix
 
 _THOUSANDS = re.compile(r"[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?(?=\D|$)")
 _COMMA = re.compile(r"(?<=\d),(?=\d)|^,(?=\d)|(?<=[-+]),(?=\d)")
@@ -130,7 +130,7 @@ _KEY_REFUSED = re.compile(r"[\w.]+ (?:= (?:'[^']*'|\S+) (?P<rule>is not allowed:
 
 def in_words_of(field: Field, sentence: str, text: Any) -> str:
     """Word the refusal of an edit by the label of its field instead of a key, and state the number in use."""
-    unit, label, kept = behind(field.get("unit", "")), field["label"], field.get("text")
+    unit, label, kept = unit_suffix(field.get("unit", "")), field["label"], field.get("text")
     refused = _KEY_REFUSED.fullmatch(sentence)
     if refused is not None:
         value = str(text).strip()[:_MAX_SHOWN]

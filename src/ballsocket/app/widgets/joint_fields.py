@@ -1,10 +1,10 @@
-"""Inputs of the joint and its load; each edits one entry of the tables of a joint file."""
+"""Inputs of the joint and its load, each with its field and its edit, and those of the layers behind the liner."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from functools import lru_cache
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from html import escape
 from math import degrees, inf, isinf
 from typing import Any
@@ -14,83 +14,141 @@ from ...core.quantities import LOADS, STRESS_LIMITS
 from ...files.joint_file import JointFile, joint_of, read_aim
 from ...files.joint_toml import Tables, tables_of
 from ...problem import Joint, Layer, Support
-from ...problem.cup import UP, Cup
+from ...problem.cup import UP
 from ...problem.presets import joints, materials
+from ..pressing import same_load, tilt_of
 from ..state.screen import Screen
-from .fields import Field, choice, segments, tick, words
-from .numbers import ALLOWABLE, NUMBERS, THICKNESS, TILT, Number, load_of, number_of
+from .fields import Field, Options, choice, segments, tick, words
+from .numbers import ALLOWABLE, THICKNESS, TILT, Number, load_of, number_of
 
 _CUSTOM, _RIGID, _PRESET = "own", "rigid", ""
-_OWN_NUMBERS = (_CUSTOM, "– own numbers –")
+_CUSTOM_NUMBERS = "– custom numbers –"
+_MATERIALS = ((_CUSTOM, _CUSTOM_NUMBERS), *materials)
 _CHANGED = " (changed)"
 _MAX_NAME = 80
 """Characters of a design's name."""
 
 
-def fields_of(screen: Screen) -> dict[str, Field]:
+@dataclass(frozen=True)
+class JointInput:
+    """Input of the joint on the screen: its field, and the joint file after an edit to a typed or chosen value."""
+
+    field: Field
+    edit: Callable[[Any], JointFile]
+
+
+def joint_inputs(screen: Screen) -> dict[str, JointInput]:
     """Return every input of the joint on the screen by name, in the order of the page."""
-    file, joint = screen.file, screen.file.joint
-    ((kind, _),) = file.load.items()
-    named = tables_of(file)
-    preset = joint.name if joints.get(joint.name) == joint else _PRESET
-    ball = _RIGID if joint.ball is None else _chosen(named["ball"])
+    file, tables = screen.file, tables_of(screen.file)
     listed = [
-        words("name", "Design", joint.name),
-        choice("preset", "Start from", [(_PRESET, "– choose –"), *joints], preset),
-        *_numbers(screen, named, ("ball_radius", "clearance", "liner_thickness", "outer_radius")),
-        *([] if joint.backing else [tick("massive", "Solid socket (no backing)", isinf(float(joint.liner_thickness)))]),
-        segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind),
-        load_of(kind).field("load", named["load"][kind], screen.reading),
-        TILT.field("tilt", degrees(tilt_of(file)), screen.reading),
-        choice("liner", "Liner", [_OWN_NUMBERS, *materials], _chosen(named["liner"])),
-        *_numbers(screen, named, ("liner_young", "liner_poisson")),
-        {**ALLOWABLE.field("allowable", joint.liner.allowable_pressure, screen.reading), "optional": True},
-        *(
-            _thickness_of(layer).field(f"layer{index}", float(layer.thickness), screen.reading)
-            for index, layer in enumerate(joint.backing)
-            if not isinf(float(layer.thickness))
+        JointInput(words("name", "Design", file.joint.name), partial(_with_name, file)),
+        _preset_input(file),
+        *_number_inputs(screen, tables, ("ball_radius", "clearance", "liner_thickness", "outer_radius")),
+        *_solid_inputs(file),
+        *_load_inputs(screen, tables),
+        _material_input(file, "liner", "Liner", _chosen(tables["liner"]), _MATERIALS),
+        *_number_inputs(screen, tables, ("liner_young", "liner_poisson")),
+        _allowable_input(screen),
+        *_thickness_inputs(screen),
+        _material_input(
+            file, "ball", "Ball", _chosen(tables["ball"]) if file.joint.ball else _RIGID, (_RIGID, *_MATERIALS)
         ),
-        choice("ball", "Ball", [(_RIGID, "rigid"), _OWN_NUMBERS, *materials], ball),
-        *_numbers(screen, named, ("ball_young", "ball_poisson")),
+        *_number_inputs(screen, tables, ("ball_young", "ball_poisson")),
     ]
-    return {field["name"]: field for field in listed}
+    return {entry.field["name"]: entry for entry in listed}
 
 
-def tilt_of(file: JointFile) -> float:
-    """Return the angle in rad between the load and the axis of the cup."""
-    return float(file.aim["tilt"]) if "tilt" in file.aim else _tilt_to(file.cup, tuple(file.aim.get("direction", UP)))
+def _preset_input(file: JointFile) -> JointInput:
+    name = file.joint.name
+    present = name if joints.get(name) == file.joint else _PRESET
+    options = [(_PRESET, "– choose –"), *joints]
+    return JointInput(choice("preset", "Start from", options, present), partial(_with_preset, file))
 
 
-@lru_cache(maxsize=256)
-def _tilt_to(cup: Cup, direction: tuple[float, ...]) -> float:
-    return float(cup.tilt(direction))
-
-
-def _thickness_of(layer: Layer) -> Number:
-    return replace(THICKNESS, label=f"{layer.material.name or 'Layer'} thickness")
-
-
-def behind(joint: Joint) -> str:
-    """List the layers behind the liner as HTML."""
-    layers = "".join(f"<li>{escape(str(layer))}</li>" for layer in joint.backing)
-    return f"<p>Behind the liner:</p><ul>{layers}</ul>" if layers else ""
-
-
-def _numbers(screen: Screen, named: Tables, names: tuple[str, ...]) -> list[Field]:
+def _number_inputs(screen: Screen, tables: Tables, names: Sequence[str]) -> list[JointInput]:
     """Return inputs of the finite numbers that the joint has."""
-    joint = screen.file.joint
-    tables: Tables = {"joint": {**named["joint"], "outer_radius": float(joint.outer_radius)}}
+    values = _numbers_of(screen.file.joint, tables)
+    specs = {name: number_of(name, screen.size) for name in names}
+    known = {name: (spec, values.get(spec.table, {}).get(spec.key)) for name, spec in specs.items()}
+    return [
+        _number_input(screen, name, spec, value)
+        for name, (spec, value) in known.items()
+        if value is not None and value < inf
+    ]
+
+
+def _numbers_of(joint: Joint, tables: Tables) -> Tables:
+    """Return the tables of a joint with the numbers that they only name: outer radius, and those of materials."""
+    numbers: Tables = {"joint": {**tables["joint"], "outer_radius": float(joint.outer_radius)}}
     for part in ("liner", "ball"):
         material = getattr(joint, part)
         if material is not None:
-            tables[part] = {"young": float(material.young), "poisson": float(material.poisson)}
-    specs = {name: number_of(name, screen.size) for name in names}
-    values = {name: tables.get(spec.table, {}).get(spec.key) for name, spec in specs.items()}
+            numbers[part] = {"young": float(material.young), "poisson": float(material.poisson)}
+    return numbers
+
+
+def _number_input(screen: Screen, name: str, spec: Number, value: float) -> JointInput:
+    """Return the input of one number of the tables."""
+
+    def edit(typed: Any) -> JointFile:
+        meant = spec.meant(typed, screen.reading)
+        return _changed(screen.file, lambda tables: _set_number(tables, spec, meant))
+
+    return JointInput(spec.field(name, value, screen.reading), edit)
+
+
+def _set_number(tables: Tables, spec: Number, value: float) -> None:
+    if spec.key == "outer_radius":  # in place of the thickness that it fixes
+        tables["joint"].pop("liner_thickness")
+    tables.setdefault(spec.table, {})[spec.key] = value
+
+
+def _solid_inputs(file: JointFile) -> list[JointInput]:
+    """Return the tick box of a solid socket; none with a backing."""
+    if file.joint.backing:
+        return []
+    solid = isinf(float(file.joint.liner_thickness))
+    return [JointInput(tick("massive", "Solid socket (no backing)", solid), partial(_with_solid_socket, file))]
+
+
+def _load_inputs(screen: Screen, tables: Tables) -> list[JointInput]:
+    """Return the inputs of the load: its kind, its value and its tilt."""
+    file, reading = screen.file, screen.reading
+    ((kind, _),) = file.load.items()
+    kinds = segments("kind", "Load given as", [(name, LOADS[name].title) for name in LOADS], kind)
     return [
-        specs[name].field(name, value, screen.reading)
-        for name, value in values.items()
-        if value is not None and value < inf
+        JointInput(kinds, partial(_with_kind_of_load, screen)),
+        _number_input(screen, "load", load_of(kind), tables["load"][kind]),
+        JointInput(TILT.field("tilt", degrees(tilt_of(file)), reading), partial(_with_tilt, screen)),
     ]
+
+
+def _material_input(file: JointFile, part: str, label: str, present: str, options: Options) -> JointInput:
+    return JointInput(choice(part, label, options, present), partial(_with_material, file, part))
+
+
+def _allowable_input(screen: Screen) -> JointInput:
+    field = ALLOWABLE.field("allowable", screen.file.joint.liner.allowable_pressure, screen.reading)
+    return JointInput({**field, "optional": True}, partial(_with_allowable, screen))
+
+
+def _thickness_inputs(screen: Screen) -> list[JointInput]:
+    """Return the inputs of the finite thicknesses behind the liner."""
+    return [
+        _thickness_input(screen, index, layer)
+        for index, layer in enumerate(screen.file.joint.backing)
+        if not isinf(float(layer.thickness))
+    ]
+
+
+def _thickness_input(screen: Screen, index: int, layer: Layer) -> JointInput:
+    spec = replace(THICKNESS, label=f"{layer.material.name or 'Layer'} thickness")
+
+    def edit(typed: Any) -> JointFile:
+        thickness = spec.meant(typed, screen.reading)
+        return _changed(screen.file, lambda tables: tables["backing"][index].update(thickness=thickness))
+
+    return JointInput(spec.field(f"layer{index}", float(layer.thickness), screen.reading), edit)
 
 
 def _chosen(table: Tables) -> str:
@@ -98,32 +156,10 @@ def _chosen(table: Tables) -> str:
     return str(table["material"]) if set(table) - set(STRESS_LIMITS) == {"material"} else _CUSTOM
 
 
-def edited(screen: Screen, name: str, value: Any, load_alike: Callable[[str], dict[str, float]]) -> JointFile:
-    """Return the joint after a change of one input of `fields_of`; `load_alike` converts the kind of load."""
-    file = screen.file
-    if name in NUMBERS:
-        return _with_number(screen, number_of(name, screen.size), value)
-    if name == "load":
-        ((kind, _),) = file.load.items()
-        return _with_number(screen, load_of(kind), value)
-    if name.startswith("layer") and name[5:].isdecimal() and int(name[5:]) < len(file.joint.backing):
-        return _thicker(screen, int(name[5:]), value)
-    if name == "tilt":
-        return _turned(screen, value)
-    check_names([name], _EDITS, "among the inputs")
-    if name == "kind":
-        check_names([value], LOADS, "as load")
-        return replace(file, load=load_alike(value))
-    return _EDITS[name](screen, value)
-
-
-def _with_number(screen: Screen, spec: Number, value: Any) -> JointFile:
-    def change(tables: Tables) -> None:
-        if spec.key == "outer_radius":  # in place of the thickness that it fixes
-            tables["joint"].pop("liner_thickness")
-        tables.setdefault(spec.table, {})[spec.key] = spec.meant(value, screen.reading)
-
-    return _changed(screen.file, change)
+def layer_list(joint: Joint) -> str:
+    """List the layers behind the liner as HTML."""
+    layers = "".join(f"<li>{escape(str(layer))}</li>" for layer in joint.backing)
+    return f"<p>Behind the liner:</p><ul>{layers}</ul>" if layers else ""
 
 
 def _changed(file: JointFile, change: Callable[[Tables], Any]) -> JointFile:
@@ -145,27 +181,42 @@ def _as_changed(joint: Joint) -> Joint:
     return preset if same else replace(joint, name=base + _CHANGED, source="")
 
 
-def _rename(screen: Screen, value: Any) -> JointFile:
+def _with_name(file: JointFile, value: Any) -> JointFile:
     """Change the name of the design."""
     name = " ".join(check_text("the name", value).split())
     if len(name) > _MAX_NAME:
         raise ValueError(f"the name must have at most {_MAX_NAME} characters, got {len(name)}")
-    return replace(screen.file, joint=replace(screen.file.joint, name=name))
+    return replace(file, joint=replace(file.joint, name=name))
 
 
-def _thicker(screen: Screen, index: int, value: Any) -> JointFile:
-    meant = _thickness_of(screen.file.joint.backing[index]).meant(value, screen.reading)
-    return _changed(screen.file, lambda tables: tables["backing"][index].update(thickness=meant))
+def _with_preset(file: JointFile, name: Any) -> JointFile:
+    """Replace the joint by a preset, under the same load in the same cup."""
+    if name == _PRESET:
+        return file
+    check_names([name], joints, "as preset")
+    return replace(file, joint=joints[name])
 
 
-def _turned(screen: Screen, value: Any) -> JointFile:
+def _with_solid_socket(file: JointFile, value: Any) -> JointFile:
+    """Make the liner a solid socket, or one of a third of the radius."""
+    thickness = inf if value is True else round(float(file.joint.socket_radius) / 3, 1)
+    return _changed(file, lambda tables: tables["joint"].update(liner_thickness=thickness))
+
+
+def _with_kind_of_load(screen: Screen, kind: Any) -> JointFile:
+    """State the load as force, indentation or half angle, with the same contact."""
+    check_names([kind], LOADS, "as load")
+    return replace(screen.file, load=same_load(screen.file, screen.answered_by, kind))
+
+
+def _with_tilt(screen: Screen, value: Any) -> JointFile:
     """Replace the direction of the load by another tilt."""
     tilt, file = TILT.meant(value, screen.reading), screen.file
     along = tilt == 0 and float(file.cup.tilt(UP)) == 0
     return replace(file, aim={} if along else read_aim({"tilt": tilt}))
 
 
-def _bears(screen: Screen, value: Any) -> JointFile:
+def _with_allowable(screen: Screen, value: Any) -> JointFile:
     """Change the allowable pressure of the liner; an empty box removes it."""
 
     def change(tables: Tables) -> None:
@@ -176,25 +227,10 @@ def _bears(screen: Screen, value: Any) -> JointFile:
     return _changed(screen.file, change)
 
 
-def _choose_preset(screen: Screen, name: Any) -> JointFile:
-    file = screen.file
-    if name == _PRESET:
-        return file
-    check_names([name], joints, "as preset")
-    return replace(file, joint=joints[name])
-
-
-def _massive(screen: Screen, value: Any) -> JointFile:
-    file = screen.file
-    thickness = inf if value is True else round(float(file.joint.socket_radius) / 3, 1)
-    return _changed(file, lambda tables: tables["joint"].update(liner_thickness=thickness))
-
-
-def _made_of(part: str, screen: Screen, chosen: Any) -> JointFile:
-    """Change a material; custom numbers start from those of the previous material."""
+def _with_material(file: JointFile, part: str, chosen: Any) -> JointFile:
+    """Change the material of liner or ball; custom numbers start from those of the previous material."""
     if not isinstance(chosen, str):
         raise ValueError(f"{part} = {shown(chosen)} is not a material")
-    file = screen.file
     if chosen == _RIGID and part == "ball":
         return _changed(file, lambda tables: tables.pop(part, None))
     if chosen != _CUSTOM:
@@ -206,18 +242,6 @@ def _made_of(part: str, screen: Screen, chosen: Any) -> JointFile:
     return _changed(file, lambda tables: tables.update({part: numbers}))
 
 
-_EDITS: dict[str, Callable[[Screen, Any], JointFile]] = {
-    "name": _rename,
-    "preset": _choose_preset,
-    "massive": _massive,
-    "allowable": _bears,
-    "liner": lambda screen, value: _made_of("liner", screen, value),
-    "ball": lambda screen, value: _made_of("ball", screen, value),
-    "kind": lambda screen, value: screen.file,
-}
-"""Functions that apply inputs other than numbers."""
-
-
 _NO_CHOICE, _REMOVE = "", "away"
 _NEW_THICKNESS, _MAX_LAYERS = 3.0, 20  # mm of a layer that is added; number of layers
 
@@ -227,13 +251,15 @@ def layer_fields(joint: Joint) -> dict[str, Field]:
     listed = []
     for index, layer in enumerate(joint.backing):
         named = next((name for name, material in materials.items() if material == layer.material), _CUSTOM)
-        own = [(_CUSTOM, layer.material.name or "– own numbers –")] if named == _CUSTOM else []
-        options = [*own, *materials, (_REMOVE, "– take away –")]
+        custom = [(_CUSTOM, layer.material.name or _CUSTOM_NUMBERS)] if named == _CUSTOM else []
+        options = [*custom, *materials, (_REMOVE, "– remove –")]
         listed.append(choice(f"behind.{index}", f"Layer {index + 1} behind the liner", options, named))
-    listed.append(choice("behind.add", "Add a layer behind", [(_NO_CHOICE, "– choose –"), *materials], _NO_CHOICE))
+    listed.append(
+        choice("behind.add", "Add a layer behind the liner", [(_NO_CHOICE, "– choose –"), *materials], _NO_CHOICE)
+    )
     if joint.backing:
-        held = [support.value for support in Support]
-        listed.append(segments("behind.support", "Outermost surface", held, joint.support.value))
+        supports = [support.value for support in Support]
+        listed.append(segments("behind.support", "Outermost surface", supports, joint.support.value))
     return {field["name"]: field for field in listed}
 
 

@@ -113,7 +113,7 @@ def _limit(row: Sequence[str], reading: Reading, present: Callable[[str], float]
     else:
         factor = reading.unit(quantity).factor
         end = float(f"{present(name) * factor:.{_DIGITS}g}") / factor
-        require(capital(quantity.title), end, isfinite(end), "the design has no such number: type a value")
+        require(capital(quantity.title), end, isfinite(end), "this design has no value for it: type one")
     return Limit(name=name, high=end) if sign == "<=" else Limit(name=name, low=end)
 
 

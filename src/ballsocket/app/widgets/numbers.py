@@ -10,10 +10,10 @@ from ...core.quantities import JOINT, MATERIAL, QUANTITIES, Quantity
 from ...problem.dimensions import DIAMETERS
 from ...reports.unit_systems import Units
 from .fields import Field, empty_number, number, typed
-from .reading import Reading, behind, box_text, handy_step
+from .reading import Reading, box_text, handy_step, unit_suffix
 
-_SMALL = 0.01
-"""Share of the largest number below which the smallest is hardly more than zero."""
+_NEARLY_ZERO = 0.01
+"""Share of the largest number below which the smallest is stated as zero."""
 
 
 @dataclass(frozen=True)
@@ -29,27 +29,27 @@ class Bounds:
         if self.low <= value <= self.high:
             return value
         low, high, written = (box_text(number * unit.factor, unit.text) for number in (self.low, self.high, value))
-        rule = f"{low} to {high}{behind(unit.text)} ({self.reason})"
-        if value <= 0 <= self.low < _SMALL * self.high:
+        rule = f"{low} to {high}{unit_suffix(unit.text)} ({self.reason})"
+        if value <= 0 <= self.low < _NEARLY_ZERO * self.high:
             rule = "positive" if self.low else "zero or positive"
-        raise ValueError(f"{label} must be {rule}, got {written}{behind(unit.text)}")
+        raise ValueError(f"{label} must be {rule}, got {written}{unit_suffix(unit.text)}")
 
 
 _BOUNDS = {
     "ball_radius": Bounds(1e-3, 1e4, "from a grain to the sphere of a bridge bearing"),
-    "clearance": Bounds(0.0, 1e3, "a ball with more does not conform"),
+    "clearance": Bounds(0.0, 1e3, "a ball with a larger clearance is not conformal"),
     "liner_thickness": Bounds(1e-4, 1e4, "from a coating to a block; tick the solid socket for more"),
-    "outer_radius": Bounds(1e-3, 3e4, "a ball, its liner and what is behind"),
+    "outer_radius": Bounds(1e-3, 3e4, "a ball, its liner and its backing"),
     "thickness": Bounds(1e-4, 1e4, "from a coating to a block"),
     "young": Bounds(1e-3, 1.3e6, "from a gel to diamond"),
     "poisson": Bounds(-0.999, 0.5, "the limits of an isotropic solid"),
     "allowable_pressure": Bounds(1e-3, 1e5, "from a gel to diamond"),
     "force": Bounds(0.0, 1e9, "a bridge bearing carries 1e8 N"),
-    "indentation": Bounds(0.0, 1e3, "no liner is thicker"),
+    "indentation": Bounds(0.0, 1e3, "thicker than any liner"),
     "half_angle": Bounds(0.0, 180.0, "from the pole to its opposite"),
     "body_weight": Bounds(1.0, 1e4, "at most ten times that of a heavy patient"),
     "tilt": Bounds(0.0, 180.0, "an angle to the cup's axis"),
-    "chamfer": Bounds(0.0, 1e3, "no rim is wider"),
+    "chamfer": Bounds(0.0, 1e3, "wider than any rim"),
     "arc_of_cover": Bounds(40.0, 340.0, "the ball must stay in its socket"),
     "inclination": Bounds(0.0, 90.0, "from an upright axis to a level one"),
     "anteversion": Bounds(-90.0, 90.0, "from the back to the front"),
@@ -132,7 +132,7 @@ BODY_WEIGHT = Number(
 )
 THICKNESS = _number("thickness", "backing", "thickness", (0.5, 10.0), 0.1)
 ALLOWABLE = _number("allowable_pressure", "liner", "allowable_pressure", (1.0, 100.0), 0.5)
-TILT = replace(_number("tilt", "load", "tilt", (0.0, 90.0), 1.0), label="Load from the cup's axis")
+TILT = replace(_number("tilt", "load", "tilt", (0.0, 90.0), 1.0), label="Tilt of the load")
 CUP_NUMBERS: Mapping[str, Number] = {
     "inclination": _number("inclination", "cup", "inclination", (0.0, 90.0), 1.0),
     "anteversion": _number("anteversion", "cup", "anteversion", (-30.0, 60.0), 1.0),

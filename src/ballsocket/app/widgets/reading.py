@@ -49,13 +49,13 @@ class Reading:
         return self.unit(JOINT["ball_radius"])
 
     def label(self, quantity: Quantity) -> str:
-        """Title, symbol and unit, for an axis."""
+        """Return title, symbol and unit for an axis."""
         return quantity.label(self.unit(quantity))
 
     def with_unit(self, quantity: Quantity, value: float) -> str:
         """Write a number in internal units with its chosen unit."""
         unit = self.unit(quantity)
-        return f"{number_text(value * unit.factor, unit.text)}{behind(unit.text)}"
+        return f"{number_text(value * unit.factor, unit.text)}{unit_suffix(unit.text)}"
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:
@@ -63,7 +63,7 @@ class Reading:
         return tuple(Column(quantity, self.unit(quantity)) for quantity in CONTACT.values())
 
 
-def behind(unit: str) -> str:
+def unit_suffix(unit: str) -> str:
     """Return the text of a unit as it stands behind a number."""
     return unit if unit in ("", "°") else f" {unit}"
 
@@ -71,7 +71,7 @@ def behind(unit: str) -> str:
 def number_text(value: float, unit: str = "") -> str:
     """Format a number with four digits, inches with at most four decimals; NaN and infinity in words."""
     if isnan(value):
-        return "no answer"
+        return "no result"
     if 10**_DIGITS <= abs(value) < _LARGEST_PLAIN:
         return f"{value:.0f}"
     return f"{_in_tenths(value, unit):.{_DIGITS}g}" if abs(value) < inf else "∞"

@@ -63,7 +63,8 @@ def models_table(comparison: Comparison, reading: Reading) -> str:
     """Tabulate the models with deviation from the exact result, validity and line style."""
     exact = comparison.contacts.get(reference.name)
     rows = [_row(name, contact, exact, reading) for name, contact in comparison.items()]
-    return f"{_table_of_models(rows, comparison, reading)}<p class='quiet'>Small: difference from the exact answer.</p>"
+    legend = "<p class='quiet'>In small digits: the difference from the exact solution.</p>"
+    return f"{_table_of_models(rows, comparison, reading)}{legend}"
 
 
 def axial_models_table(comparison: Comparison, reading: Reading, real: Contact | None, excluded: str) -> str:
@@ -213,4 +214,4 @@ def accuracy_sentence(contact: Contact, exact: Contact | None) -> str:
     apart = max((abs(share) for share in known if share == share), default=0.0)
     if apart == 0:
         return ""
-    return f"All within {100 * max(apart, 1e-5):.2g} % of the exact answer"
+    return f"All within {100 * max(apart, 1e-5):.2g} % of the exact solution"

@@ -27,6 +27,7 @@ from ...widgets.words import number_rows
 
 _CHOOSE = ""
 _PRESENT = "this design"
+_INPUTS = ("keep", "preset", "base", "remove")
 _EXAMPLES = ("hip-36", "hip-28")
 """Presets of which the first that differs from the design is shown beside it on an empty page."""
 
@@ -48,6 +49,7 @@ class Compare(View):
         self._cancel_stress: Callable[[], None] = lambda: None
 
     def edit(self, key: str, value: Any) -> None:
+        check_names([key], _INPUTS, f"among the inputs of {self.title}")
         screen = self.page.screen
         if key == "keep":
             self.page.ask(beside=with_compared(screen, screen.file))
@@ -58,8 +60,7 @@ class Compare(View):
             self.page.ask(base=str(value))
         elif key == "remove":
             check_names([value], list(compared_files(screen))[1:], "among the compared designs")
-            index = list(compared_files(screen)).index(value) - 1
-            self.page.ask(beside=(*screen.beside[:index], *screen.beside[index + 1 :]))
+            self.page.ask(**_without_compared(screen, list(compared_files(screen)).index(value)))
 
     def show(self, screen: Screen) -> None:
         files = compared_files(screen)
@@ -108,6 +109,12 @@ def with_compared(screen: Screen, file: JointFile) -> tuple[JointFile, ...]:
     if len(screen.beside) >= MAX_COMPARED:
         raise ValueError(f"{MAX_COMPARED} designs are compared with this one already: remove one of them first")
     return (*screen.beside, file)
+
+
+def _without_compared(screen: Screen, column: int) -> dict[str, Any]:
+    """Return the changes that remove the design of a column; the base stays the same design unless that is removed."""
+    base = int(screen.base) - (column < int(screen.base))
+    return {"beside": (*screen.beside[: column - 1], *screen.beside[column:]), "base": str(base)}
 
 
 def compared_files(screen: Screen) -> dict[str, JointFile]:

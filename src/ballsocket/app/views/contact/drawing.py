@@ -19,12 +19,13 @@ from ...widgets.reading import number_text
 
 Formatter = Callable[[float], str]
 Aim = tuple[float, Unit]
-_WIDE, _HIGH = 624.0, 486.0
+_WIDTH, _HEIGHT = 624.0, 486.0
 _MIDDLE = (300.0, 238.0)
 _REACH = 168.0  # pixels from the centre to the outermost layer
 _STEEP_TILT = radians(40.0)
 """Tilt from which the label of the load is to the left of its arrow."""
-_OFF, _SHORT, _LONG = 8.0, 26.0, 54.0  # of the load's arrow: from the ball, without load, and what is added at most
+_ARROW_GAP, _MIN_ARROW, _ARROW_GROWTH = 8.0, 26.0, 54.0
+"""Pixels of the load's arrow: gap to the ball, length without load, and the most that the load adds."""
 
 
 def first_view(
@@ -49,8 +50,8 @@ def first_view(
         *_load(_start(file, contact, frame), frame, fields, tilt),
     ]
     size = f' data-centre="{frame.x:g} {frame.y:g}" data-scale="{frame.scale:.5g}"'
-    arrow = f' data-start="{_start(file, contact, frame) + _SHORT:.1f}" data-long="{_LONG:g}"'
-    return svg.picture((_WIDE, _HIGH), "the joint in section, to scale", parts, size + arrow, "group")
+    arrow = f' data-start="{_start(file, contact, frame) + _MIN_ARROW:.1f}" data-long="{_ARROW_GROWTH:g}"'
+    return svg.picture((_WIDTH, _HEIGHT), "the joint in section, to scale", parts, size + arrow, "group")
 
 
 def frame_of(file: JointFile) -> DrawingFrame:
@@ -116,7 +117,7 @@ def _liner(file: JointFile, frame: DrawingFrame, format_length: Formatter) -> It
     if not isinf(thickness):
         yield _both_ways(*inner, *outer)
     yield _leader(*outer, 112.0, outer[1] + 14)
-    thick = "massive" if isinf(thickness) else format_length(thickness)
+    thick = "solid" if isinf(thickness) else format_length(thickness)
     yield _labelled_value(("liner", thick), 106.0, outer[1] + 10, "end")
 
 
@@ -134,7 +135,7 @@ def _shell(frame: DrawingFrame, text: str) -> Iterator[str]:
 
 
 def _names(file: JointFile, frame: DrawingFrame) -> Iterator[str]:
-    """Ball and layers by their materials."""
+    """Label ball and layers with their materials."""
     joint = file.joint
     yield svg.text(frame.x, frame.y - 44, "rigid ball" if joint.ball is None else joint.ball.name or "ball", "name")
     materials = [joint.liner, *(layer.material for layer in joint.backing)]
@@ -160,14 +161,14 @@ def _contact_edge(file: JointFile, contact: Contact | None, frame: DrawingFrame,
 def _start(file: JointFile, contact: Contact | None, frame: DrawingFrame) -> float:
     """Return the distance in pixels from the centre to the arrow's tip, just above the drawn ball."""
     gap = 2 * float(file.joint.clearance) + (0.0 if contact is None else float(contact.indentation))
-    return frame.scale * (float(file.joint.socket_radius) - gap_factor(file.joint) * gap) + _OFF
+    return frame.scale * (float(file.joint.socket_radius) - gap_factor(file.joint) * gap) + _ARROW_GAP
 
 
 def _load(start: float, frame: DrawingFrame, fields: Mapping[str, Field], tilt: float) -> Iterator[str]:
     """Draw the load's arrow to the ball; its tail is the handle of the tilt."""
     load, tilt_field = fields["load"], fields["tilt"]
     share = min(1.0, max(0.0, load["value"] / load["high"]))
-    long = start + _SHORT + _LONG * share
+    long = start + _MIN_ARROW + _ARROW_GROWTH * share
     tip, tail = ((frame.x + away * sin(tilt), frame.y - away * cos(tilt)) for away in (start, long))
     x, y = frame.x + (long + 16) * sin(tilt), frame.y - (long + 16) * cos(tilt)
     yield f"<g {_handle('load', 'arrow', load)}>{_arrow(*tail, *tip, 'load', 15.0)}</g>"
@@ -207,12 +208,12 @@ def _handle(name: str, how: str, field: Field) -> str:
     )
 
 
-def key(top: str, quantity: Quantity, instead: bool) -> str:
-    """Draw the colour scale from 0 to a value; `instead` notes that the model has no stresses."""
+def key(top: str, quantity: Quantity, note: str = "") -> str:
+    """Draw the colour scale from 0 to a value, with a note."""
     stops = ", ".join(svg.heat(share / 8) for share in range(9))
-    note = "<span>this model has no stresses inside the liner</span>" if instead else ""
+    remark = f"<span>{escape(note)}</span>" if note else ""
     return (
         f"<p class='scale'><span>{escape(quantity.title)}: 0</span>"
         f"<i style='background: linear-gradient(to right, {stops})'></i>"
-        f"<span>{escape(top)}</span>{note}</p>"
+        f"<span>{escape(top)}</span>{remark}</p>"
     )

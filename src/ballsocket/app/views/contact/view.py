@@ -23,12 +23,11 @@ from ....studies.derivatives import LocalUncertainty, local_uncertainty
 from ...long_view import LongView
 from ...pictures.chart import swatch
 from ...pictures.section import LinerStresses, liner_stresses, painted_stresses
-from ...pressing import AXIAL_TILT, AxialLimit, axial_limit, fine_curves, is_waiting, press_charts, pressed
+from ...pressing import AXIAL_TILT, AxialLimit, axial_limit, fine_curves, is_waiting, press_charts, pressed, tilt_of
 from ...running import Work
 from ...state.screen import PAINTED, Screen
 from ...view import STRESS_PAUSE, Document, Host
 from ...widgets.fields import choice, segments, several
-from ...widgets.joint_fields import tilt_of
 from ...widgets.words import alert, axial_models_table, headline, models_table, number_rows
 from ..cup.worker import bore_of, is_prepared, pressed_in_cup, set_up
 from .drawing import first_view, frame_of, key
@@ -100,7 +99,7 @@ class Press(LongView):
         self.long.leave()
         near_rim = _limit(comparison, screen) is not None
         self.long.put_button(hidden=not near_rim)
-        self.channel.put_fields(_fields(screen, real=False))
+        self.channel.put_fields(_fields(screen))
         by = comparison.contacts.get(screen.answered_by)
         if by is not None:
             exact = comparison.contacts.get(reference.name)
@@ -114,7 +113,8 @@ class Press(LongView):
 
     def show_result(self, screen: Screen, result: bool | None) -> None:
         """Show the numbers of the real cup; its bore is set up first if it is new."""
-        self.channel.put_fields(_fields(screen, real=True))
+        fields = _fields(screen)
+        self.channel.put_fields({**fields, "answered_by": {**fields["answered_by"], "hidden": True}})  # one model alone
         self.put(offer="")
         if self.long.result(screen) is None:
             self.put(numbers=self._reason(screen))
@@ -139,8 +139,8 @@ class Press(LongView):
         limit = self._needs_cup(screen, pressed(screen.file, (screen.answered_by,)))
         if limit is None:
             return ""
-        words = "By full elasticity of the ball in the real cup (<code>sphere</code>)"
-        return f"<p class='quiet'>{words}: {limit.reason}.</p>"
+        words = "Computed by the elastic model of the real cup (<code>sphere</code>)"
+        return f"<p class='quiet'>{words}, because {limit.reason}.</p>"
 
     def _draw(self, screen: Screen, contact: Contact | None) -> None:
         """Draw the joint with its pressure; stresses follow from a thread."""
@@ -157,9 +157,9 @@ class Press(LongView):
             legend = ""
         elif inside is None:
             top = screen.reading.with_unit(FIELD["pressure"], float(contact.max_pressure))
-            legend = key(top, FIELD["pressure"], screen.painted == "stress")
+            legend = key(top, FIELD["pressure"], _NO_STRESSES if screen.painted == "stress" else "")
         else:
-            legend = key(screen.reading.with_unit(BEARING["von_mises"], inside.largest), BEARING["von_mises"], False)
+            legend = key(screen.reading.with_unit(BEARING["von_mises"], inside.largest), BEARING["von_mises"])
         self.put(section=drawing + legend)
 
     def _fill(self, screen: Screen) -> None:
@@ -225,6 +225,7 @@ class Press(LongView):
         return [screen.file], tuple(dict.fromkeys((*first, *_EVERY)))
 
 
+_NO_STRESSES = "this model has no stresses inside the liner"
 _OFFER = "<p class='quiet'>The contact ends near the rim, where the real cup is softer.</p>"
 
 
@@ -248,13 +249,13 @@ def _limit(comparison: Comparison, screen: Screen) -> AxialLimit | None:
     return axial_limit(screen.file, contacts.get(screen.answered_by) or next(iter(contacts.values()), None))
 
 
-def _fields(screen: Screen, real: bool) -> dict[str, Any]:
-    """Return the inputs of the view; a load in the real cup has one model alone."""
+def _fields(screen: Screen) -> dict[str, Any]:
+    """Return the inputs of the view."""
     pieces = {name: swatch(line_of(name)) for name in _EVERY}
     return {
-        "answered_by": {**choice("answered_by", "Model", _EVERY, screen.answered_by), "hidden": real},
-        "painted": segments("painted", "Painted", [(name, _PAINTED[name]) for name in PAINTED], screen.painted),
-        "shown": several("shown", "Curves of", _EVERY, screen.shown, pieces),
+        "answered_by": choice("answered_by", "Model", _EVERY, screen.answered_by),
+        "painted": segments("painted", "Colours show", [(name, _PAINTED[name]) for name in PAINTED], screen.painted),
+        "shown": several("shown", "Curves of the models", _EVERY, screen.shown, pieces),
     }
 
 

@@ -14,13 +14,13 @@ from ...pictures import svg
 from ...pictures.bore import METRIC
 from ...pictures.contour_map import MapPlane, contour_map, outlined
 from ...widgets.reading import Reading
-from .worker import LEWINNEK, Stood
+from .worker import LEWINNEK, OrientationMap
 
 _MIN_POINTS, _FINE_POINTS = 4, 61
 """Values an axis: least for a cubic spline, and of a smooth contour."""
 
 
-def angle_map(orientations: Stood, cup: Cup, quantity: str, reading: Reading = METRIC) -> str:
+def angle_map(orientations: OrientationMap, cup: Cup, quantity: str, reading: Reading = METRIC) -> str:
     """Draw a field over inclination and anteversion, with the present cup and Lewinnek's zone."""
     held = orientations.held
     fields = [numpy.where(held, getattr(orientations, name), numpy.nan).T for name in (quantity, "edge_distance")]
@@ -69,7 +69,7 @@ def _lewinnek_zone(plane: MapPlane) -> Iterator[str]:
     yield outlined("rect", "zone", f"{position} {size}")
 
 
-def _map_description(orientations: Stood, label: str, reading: Reading) -> str:
+def _map_description(orientations: OrientationMap, label: str, reading: Reading) -> str:
     """Describe the map in a sentence for screen readers."""
     free = orientations.held & (orientations.edge_distance > 0)
     if not free.any():

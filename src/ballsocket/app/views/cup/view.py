@@ -6,7 +6,7 @@ from collections.abc import Hashable, Iterator
 from dataclasses import replace
 from functools import partial
 from html import escape
-from math import degrees, radians
+from math import radians
 from typing import Any
 
 from ....core.quantities import CONTACT, CUP, DERIVED, QUANTITIES, Quantity
@@ -28,7 +28,7 @@ from ...widgets.reading import Reading
 from ...widgets.settings import chosen
 from ...widgets.words import checked, column_of, number_cell, trust, unit_of_files, value_text
 from .charts import angle_map
-from .worker import Stood, bore_of, is_prepared, pressed_in_cup, set_up, stand_of, stood
+from .worker import OrientationMap, bore_of, is_prepared, map_orientations, orientation_key, pressed_in_cup, set_up
 
 _FIELDS = (
     *("inclination", "anteversion", "tilt", "inwards", "forwards"),
@@ -61,8 +61,8 @@ class CupView(LongView):
             page,
             "cup-stood",
             "Compute the map",
-            lambda screen: stand_of(screen.file),
-            lambda screen: partial(stood, screen.file),
+            lambda screen: orientation_key(screen.file),
+            lambda screen: partial(map_orientations, screen.file),
             self._show_map,
             automatic=True,
         )
@@ -99,14 +99,14 @@ class CupView(LongView):
         if key == "show":
             super().edit(key, value)
         elif key == "usual":
-            self._stand(**_TYPICAL)
+            self._set_angles(**_TYPICAL)
         elif key == "pick":
             angles = (round(angle, 1) for angle in read_point(value, len(_TYPICAL)))
-            self._stand(**dict(zip(_TYPICAL, angles, strict=True)))
+            self._set_angles(**dict(zip(_TYPICAL, angles, strict=True)))
         else:
             self.page.ask(file=cup_edited(self.page.screen, key, value))
 
-    def _stand(self, **angles: float) -> None:
+    def _set_angles(self, **angles: float) -> None:
         """Change angles of the cup, in degrees."""
         screen = self.page.screen
         factor = 1.0 if screen.angle == "degrees" else radians(1.0)
@@ -114,7 +114,7 @@ class CupView(LongView):
             screen = replace(screen, file=cup_edited(screen, name, angle * factor))
         self.page.ask(file=screen.file)
 
-    def _show_map(self, screen: Screen, orientations: Stood | None) -> None:
+    def _show_map(self, screen: Screen, orientations: OrientationMap | None) -> None:
         drawn = ""
         if orientations is not None:
             drawn = f"{angle_map(orientations, screen.file.cup, screen.standing, screen.reading)}{_KEY}"
@@ -124,11 +124,11 @@ class CupView(LongView):
         if not is_prepared(screen.file):
             raise ValueError("this bore is still being prepared: wait until its pressure is there")
         contact, units = pressed_in_cup(screen.file), screen.reading.units
-        orientations: Stood | None = self.orientations.result(screen)
+        orientations: OrientationMap | None = self.orientations.result(screen)
         checks = checked(checks_of(contact, contact.model.cup), screen.reading)
         sections = {
             "checks": ("Checks", checks),
-            "cup": ("In the cup", table(["quantity", "value"], list(_report_rows(contact, screen.reading)))),
+            "cup": ("Contact in the cup", table(["quantity", "value"], list(_report_rows(contact, screen.reading)))),
         }
         if orientations is not None:
             sections["orientations"] = ("Cup orientation map", picture(orientations.figure, "map"))
@@ -142,11 +142,11 @@ class CupView(LongView):
 
 
 _NO_MAP = (
-    "<p class='quiet'>A load that is aimed from the cup's axis turns with the cup: there is no map of orientations.</p>"
+    "<p class='quiet'>A load that is given from the cup's axis turns with the cup: there is no map of orientations.</p>"
 )
 _KEY = (
     "<p class='quiet'>Dotted: where the contact reaches the rim. Dashed: Lewinnek's zone (1978). Ring: this cup. "
-    "Blank: the load leaves the bore, or the rim digs in. "
+    "Blank: the load points out of the bore, or the rim presses into the ball. "
     "Click, or move the cross by arrow keys and press Enter, to select an orientation.</p>"
 )
 
@@ -165,7 +165,7 @@ _NAMED = {**QUANTITIES, "rim_distance": replace(DERIVED["edge_distance"], name="
 
 
 def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]:
-    """Plain numbers of a file, by the names of JSON, each with its unit."""
+    """Yield the numbers of a file by their names in JSON, each with its unit."""
     for name, value in contact.summary().items():
         quantity = _NAMED.get(name.removesuffix("_deg"))
         if quantity is not None and isinstance(value, float | int):
@@ -176,7 +176,7 @@ def _file_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[Any]]
 
 
 def _report_rows(contact: OffAxisContact, reading: Reading) -> Iterator[list[str]]:
-    """Titles and values of the quantities of a contact, for readers."""
+    """Yield title and value of each quantity of a contact, for readers."""
     for name, value in contact.summary().items():
         quantity = _NAMED.get(name.removesuffix("_deg"))
         if quantity is not None and isinstance(value, float | int):
@@ -191,12 +191,11 @@ _TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:
     reading = screen.reading
     angle = reading.unit(CUP["inclination"])
-    degree = angle.text if angle.text == "°" else f" {angle.text}"
-    margin = f"{float(contact.edge_margin) * angle.factor:.3g}{degree} of arc"
+    margin = f"{reading.with_unit(CUP['inclination'], float(contact.edge_margin))} of arc"
     cells = [
         _cell(DERIVED["edge_distance"], contact.edge_distance, reading, margin),
         _cell(CONTACT["max_pressure"], contact.max_pressure, reading),
-        number_cell("load from the cup's axis", float(contact.tilt) * angle.factor, angle.text),
+        number_cell("tilt of the load", float(contact.tilt) * angle.factor, angle.text),
         _cell(CONTACT["half_angle"], contact.half_angle, reading),
         _cell(CONTACT["force"], contact.force, reading),
     ]
@@ -213,17 +212,16 @@ def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> s
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
     """State in words if the contact stays on the bore."""
     apart = reading.with_unit(DERIVED["edge_distance"], float(contact.edge_distance))
-    margin = degrees(float(contact.edge_margin))
+    angle = reading.with_unit(CUP["inclination"], float(contact.edge_margin))
     if contact.edge_loaded:
         return "<p class='trust no'>✗ Rim contact (edge loading): the contact reaches the rim of the cup</p>"
-    return f"<p class='trust yes'>✓ The contact ends {apart} ({margin:.1f}°) before the rim</p>"
+    return f"<p class='trust yes'>✓ The contact ends {apart} ({angle}) before the rim</p>"
 
 
 def _hint(contact: OffAxisContact) -> str:
     """Offer the usual orientation for a cup without one."""
     if contact.model.cup.oriented:
         return ""
-    words = escape(
-        f"This cup opens straight down. Put it at {_TYPICAL['inclination']:g}° / {_TYPICAL['anteversion']:g}°"
-    )
+    angles = escape(" and ".join(f"{name} {angle:g}°" for name, angle in _TYPICAL.items()))
+    words = f"This cup opens straight down. Set {angles}"
     return f"<p><button type='button' class='plain' data-tell='cup.usual'>{words}</button></p>"

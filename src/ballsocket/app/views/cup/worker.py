@@ -21,7 +21,7 @@ from ....problem import Joint
 from ....problem.cup import Cup, Side
 from ....reports.figure_files import figure_bytes
 from ....reports.orientation_results import orientation_figure
-from ...results import RESULTS
+from ...results import RESULTS, without_name
 from ...running import Reached, Report
 
 INCLINATIONS = tuple(radians(angle) for angle in numpy.arange(20.0, 70.1, 5.0))
@@ -36,7 +36,7 @@ PREPARING = "Preparing the real cup ..."
 
 def bore_of(file: JointFile) -> tuple[Joint, Cup]:
     """Return the inputs of the bore's ring matrices: joint and cup without orientation."""
-    return file.joint, replace(file.cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT)
+    return without_name(file.joint), replace(file.cup, inclination=0.0, anteversion=0.0, side=Side.RIGHT)
 
 
 def is_prepared(file: JointFile) -> bool:
@@ -80,10 +80,10 @@ def set_up(joint: Joint, cup: Cup, report: Report) -> bool:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Stood:
+class OrientationMap:
     """Edge distances (mm) and pressures (MPa) over inclinations and anteversions (rad).
 
-    `held` is where the bore holds the ball; `summary` is that of `Orientations`, `figure` its figure as PNG.
+    `held` is True where the bore holds the ball; `figure` is the figure of `Orientations` as PNG.
     """
 
     inclination: numpy.ndarray
@@ -91,16 +91,15 @@ class Stood:
     edge_distance: numpy.ndarray
     max_pressure: numpy.ndarray
     held: numpy.ndarray
-    summary: dict[str, Any]
     figure: bytes
 
 
-def stand_of(file: JointFile) -> Hashable:
+def orientation_key(file: JointFile) -> Hashable:
     """Return a key of a map over orientations."""
     return bore_of(file), file.cup.side, tuple(file.load.items()), tuple(file.aim.items())
 
 
-def stood(file: JointFile, report: Report) -> Stood:
+def map_orientations(file: JointFile, report: Report) -> OrientationMap:
     """Press one load of the body in cups of many orientations, in a separate process."""
     if "tilt" in file.aim:
         raise ValueError("a load that is given by its tilt turns with the cup: give its direction in the body")
@@ -114,16 +113,15 @@ def stood(file: JointFile, report: Report) -> Stood:
 
     with progress_to(heard):
         orientations = orient(file.joint, model=model, inclination=INCLINATIONS, anteversion=ANTEVERSIONS, **file.load)
-    return _stood(orientations)
+    return _as_map(orientations)
 
 
-def _stood(orientations: Orientations) -> Stood:
-    return Stood(
+def _as_map(orientations: Orientations) -> OrientationMap:
+    return OrientationMap(
         inclination=orientations.inclination,
         anteversion=orientations.anteversion,
         edge_distance=orientations.edge_distance,
         max_pressure=orientations.max_pressure,
         held=orientations.held,
-        summary=orientations.summary(),
         figure=figure_bytes(orientation_figure(orientations)),
     )

@@ -45,9 +45,9 @@ _LIMITED = tuple(dict.fromkeys((*MAPPED, EDGE_DISTANCE, *JOINT, *AXES)))
 
 _FIELDS = ("across", "across_low", "across_high", "quantity", "up", "up_low", "up_high", "model")
 _ENDS = {f"{which}_{end}": (which, end) for which in ("across", "up") for end in ("low", "high")}
-_AXIS_WORDS, _END_WORDS = {"across": "Across", "up": "Upwards"}, {"low": "from", "high": "to"}
-_SIZES = {"any": "any size", "catalogue": "catalogue sizes"}
-_PRESENT, _PICKED = "this design", "at the point"
+_AXIS_LETTERS, _END_WORDS = {"across": "x", "up": "y"}, {"low": "from", "high": "to"}
+_SIZES = {"any": "any", "catalogue": "catalogue"}
+_PRESENT, _PICKED = "this design", "selected point"
 _HINT = (
     "<p class='quiet'>Click the map, or move its cross with the arrow keys and press Enter: the design at that point "
     "is shown here beside the present one, which is the white ring.</p>"
@@ -63,7 +63,7 @@ def _axis_setting(which: str) -> Setting:
 
     def field(screen: Screen) -> Field:
         axes = [(name, QUANTITIES[name].input_label(screen.reading.unit(QUANTITIES[name]))) for name in AXES]
-        return choice(which, _AXIS_WORDS[which], axes, getattr(screen, which).name)
+        return choice(which, f"{_AXIS_LETTERS[which]} axis", axes, getattr(screen, which).name)
 
     def read(screen: Screen, value: Any) -> dict[str, Any]:
         check_names([value], AXES, "among the axes of a map")
@@ -75,7 +75,7 @@ def _axis_setting(which: str) -> Setting:
 def _end_setting(key: str) -> Setting:
     """Return the box of one end of an axis."""
     which, end = _ENDS[key]
-    label = f"{_AXIS_WORDS[which]} {_END_WORDS[end]}"
+    label = f"{_AXIS_LETTERS[which]} {_END_WORDS[end]}"
 
     def field(screen: Screen) -> Field:
         axis: MapAxis = getattr(screen, which)
@@ -105,7 +105,7 @@ class DesignMap(View):
         *map(_end_setting, _ENDS),
         chosen("quantity", "Map of", MAPPED, titles=lambda name: QUANTITIES[name].title),
         chosen("map_model", "Model", models_of, key="model"),
-        chosen("sizes", "A picked point has", _SIZES, segments, _SIZES.__getitem__),
+        chosen("sizes", "Sizes at a selected point", _SIZES, segments, _SIZES.__getitem__),
     )
     body = f"""
 <div class="inputs-row map-inputs">{field_places("map", _FIELDS)}</div>

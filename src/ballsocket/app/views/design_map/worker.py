@@ -124,11 +124,13 @@ def map_summary(results: Any, screen: Screen) -> str:
     if point is not None:
         position = " and ".join(_with_title(name, value, reading) for name, value in point.items())
         smallest = reading.with_unit(QUANTITIES[screen.quantity], float(results[screen.quantity].sel(point)))
-        words.append(f"Smallest {QUANTITIES[screen.quantity].title} there: <b>{smallest}</b> at {escape(position)}.")
+        within = " within the limits" if screen.limits else ""
+        title = QUANTITIES[screen.quantity].title
+        words.append(f"Minimum of the {title}{within}: <b>{smallest}</b> at {escape(position)}.")
     if not bool(results.valid.all()):
         words.append("Crosses: the model is not valid there.")
     if not bool(fine.all()):
-        words.append("Faded: a limit is broken. Grey: no result.")
+        words.append("Faded: outside a limit. Grey: no result.")
     return f"<p class='quiet'>{' '.join(words)}</p>"
 
 
@@ -149,7 +151,7 @@ def joint_at(file: JointFile, chosen: Mapping[str, float]) -> JointFile:
     rounded = {name: float(f"{value:.4g}") for name, value in chosen.items()}
     made, load, possible = press_arguments(file.joint, rounded)
     if not bool(possible):
-        raise ValueError("these numbers make no joint: no liner or no clearance is left")
+        raise ValueError("invalid geometry: the clearance would be negative, or the liner would have no thickness")
     plain = replace(
         made,
         ball_radius=round(float(made.ball_radius), 9),

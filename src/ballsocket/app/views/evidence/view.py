@@ -41,7 +41,7 @@ class Evidence(LongView):
 
     settings = (
         text("asked.question", "Decision", 2),
-        text("asked.context", "Use of the answer, and what it is not for", 2),
+        text("asked.context", "Context: what the result is for, and not for", 2),
         chosen("asked.influence", "Influence of the model on the decision", LEVELS, segments),
         chosen("asked.consequence", "Consequence of a wrong decision", LEVELS, segments),
         text("asked.accuracy", "Allowed error of the numbers"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import replace
 from functools import partial
 from html import escape
 from typing import Any
@@ -14,6 +13,7 @@ from ....files.joint_file import JointFile
 from ....reports.pages import picture, table
 from ...long_view import LongView, long_body
 from ...pictures.section import extent_of, section
+from ...results import without_name
 from ...running import Work
 from ...state.screen import Screen
 from ...view import Document, field_places
@@ -21,7 +21,7 @@ from ...widgets.cup_fields import cup_edited, cup_fields
 from ...widgets.reading import number_text
 from ...widgets.words import distinct_columns, notes_list, percent
 from .charts import pressure_picture, section_picture
-from .worker import Judged, judged
+from .worker import ElementResult, run_finite_elements
 
 _NAME = "judge"
 _FIELDS = ("arc_of_cover", "chamfer", "interface")
@@ -32,7 +32,7 @@ _TO_COME = (
 )
 
 
-class Judge(LongView):
+class ElementCheck(LongView):
     """View that runs finite elements on request."""
 
     title = "Check by finite elements"
@@ -44,11 +44,10 @@ class Judge(LongView):
 
     def question_of(self, screen: Screen) -> Hashable:
         file, cup = screen.file, screen.file.cup
-        joint = replace(file.joint, name="", source="")
-        return joint, tuple(file.load.items()), cup.arc_of_cover, cup.chamfer, cup.interface
+        return without_name(file.joint), tuple(file.load.items()), cup.arc_of_cover, cup.chamfer, cup.interface
 
     def work(self, screen: Screen) -> Work:
-        return partial(judged, screen.file)
+        return partial(run_finite_elements, screen.file)
 
     def show_inputs(self, screen: Screen) -> None:
         fields = cup_fields(screen, self.name)
@@ -57,14 +56,14 @@ class Judge(LongView):
     def edit(self, key: str, value: Any) -> None:
         self.page.ask(file=cup_edited(self.page.screen, key, value))
 
-    def show_result(self, screen: Screen, result: Judged | None) -> None:
+    def show_result(self, screen: Screen, result: ElementResult | None) -> None:
         if result is None:
             self.put(numbers="", picture=_preview(screen.file))
         else:
             self.put(numbers=_numbers(result, screen), picture=_pictures(result, screen))
 
     def document(self, screen: Screen) -> Document:
-        result: Judged = self.result(screen)
+        result: ElementResult = self.result(screen)
         heads = ["quantity", "finite elements", "error of the mesh", "exact"]
         rows = [
             [name, result.numbers[name], result.error.get(quantity.name, ""), (result.exact or {}).get(name, "")]
@@ -86,7 +85,7 @@ def _preview(file: JointFile) -> str:
     return f"<div class='beside'><figure>{drawing}</figure><p class='quiet'>{_TO_COME}</p></div>"
 
 
-def _pictures(result: Judged, screen: Screen) -> str:
+def _pictures(result: ElementResult, screen: Screen) -> str:
     reading, joint = screen.reading, result.file.joint
     head, outside = (
         reading.with_unit(JOINT[name], getattr(joint, name)) for name in ("head_diameter", "outer_diameter")
@@ -101,7 +100,7 @@ def _pictures(result: Judged, screen: Screen) -> str:
     )
 
 
-def _numbers(result: Judged, screen: Screen) -> str:
+def _numbers(result: ElementResult, screen: Screen) -> str:
     """Tabulate the numbers with mesh errors beside the exact ones."""
     rows = []
     for column in distinct_columns(screen.reading, result.numbers[CONTACT["max_pressure_angle"].key]):
@@ -119,6 +118,6 @@ def _numbers(result: Judged, screen: Screen) -> str:
     heads = ["quantity", "finite elements", "mesh error", "exact", "difference"]
     return (
         f"<div class='narrow'>{table(heads, rows)}</div>"
-        f"<p class='quiet'>{result.elements} elements, {result.seconds:.2g} s. The exact answer is that of a complete "
-        f"shell, without a rim.</p>{notes_list(result.notes)}"
+        f"<p class='quiet'>{result.elements} elements, {result.seconds:.2g} s. The exact solution is that of a "
+        f"complete shell, without a rim.</p>{notes_list(result.notes)}"
     )

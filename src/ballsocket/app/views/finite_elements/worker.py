@@ -24,7 +24,7 @@ _LOAD_STEPS = (0.25, 0.5, 0.75, 1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Judged:
+class ElementResult:
     """Result of finite elements as for JSON, beside the exact one, with drawings for the page and for files.
 
     `pressures` are angles (rad) and pressures (MPa) by model.
@@ -43,7 +43,7 @@ class Judged:
     svg: bytes
 
 
-def judged(file: JointFile, report: Report) -> Judged:
+def run_finite_elements(file: JointFile, report: Report) -> ElementResult:
     """Press a joint in load steps by finite elements, and report progress as `Reached`."""
     start = time.perf_counter()
     model = judge.in_cup(file.cup)
@@ -59,7 +59,7 @@ def judged(file: JointFile, report: Report) -> Judged:
     report(Reached(share=0.85, words="drawing stresses"))
     figure = section_figure(contact, exact)
     contacts = {judge.name: contact, reference.name: exact}
-    return Judged(
+    return ElementResult(
         file=file,
         numbers=to_summary(contact),
         error={name: float(value) for name, value in contact.error.items()},

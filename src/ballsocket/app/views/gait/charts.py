@@ -58,7 +58,7 @@ _PRESS_CHARTS = (
     (Course("edge", DERIVED["edge_distance"].title, DERIVED["edge_distance"]),),
 )
 _FILM_CHARTS = (
-    (Course("least", "least film"), Course("central", "central film", line=_BLUE)),
+    (Course("least", "smallest film thickness"), Course("central", "central film thickness", line=_BLUE)),
     (Course("ratio", "film ratio λ", own_unit=_RATIO),),
 )
 

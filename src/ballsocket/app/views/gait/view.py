@@ -33,7 +33,7 @@ _LARGEST = 100_000  # characters of a table
 _FILM_SECONDS = 300.0
 _INPUTS = """<div data-field="gait.cycle"></div><div data-field="gait.body_weight"></div>
 <div data-field="gait.contact"></div>
-<div class="field"><label class="label" for="gait-own">Your own cycle (table: phase or time, force, angles)</label>
+<div class="field"><label class="label" for="gait-own">Custom cycle (table: phase or time, force, angles)</label>
 <input id="gait-own" type="file" accept=".csv,.txt,.dat,.mot,.sto" data-tell-file="gait.own"></div>"""
 _SHOWN = """<p class="quiet" id="gait-load"></p><div id="gait-numbers"></div>
 <div class="player"><span id="gait-at" data-at hidden></span>
@@ -161,8 +161,8 @@ def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str
     cells = [
         number_cell("largest load", float(result.force.max(initial=0.0)) * force.factor, force.text),
         number_cell("largest pressure", highest, pressure.text),
-        number_cell("nearest to the rim", least * edge.factor, edge.text, result.worst),
-        number_cell("sliding in a cycle", result.numbers["slide_mm"] * edge.factor, edge.text),
+        number_cell("smallest distance to the rim", least * edge.factor, edge.text, result.worst),
+        number_cell("sliding distance per cycle", result.numbers["slide_mm"] * edge.factor, edge.text),
         *([] if film is None else _film_cells(film)),
     ]
     notes = [*result.notes, *([] if film is None else [film.note])]
@@ -175,6 +175,9 @@ _TILES = CONTACT["force"], CONTACT["max_pressure"], DERIVED["edge_distance"]
 
 
 def _film_cells(film: GaitFilm) -> list[str]:
-    state = "by the wave, valid" if film.valid else "✗ by the wave, outside its validity"
+    state = "wave method, valid here" if film.valid else "✗ wave method, not valid here"
     least, ratio = (float(numpy.nanmin(values, initial=numpy.inf)) for values in (film.least, film.ratio))
-    return [number_cell("least film", least, "nm", state), number_cell("least film ratio λ", ratio, "", film.regime)]
+    return [
+        number_cell("smallest film thickness", least, "nm", state),
+        number_cell("smallest film ratio λ", ratio, "", film.regime),
+    ]

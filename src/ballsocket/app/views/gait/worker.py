@@ -16,6 +16,7 @@ from ....hip.cycle_registry import CYCLES
 from ....reports.check_table import Check, checks_at
 from ....reports.figure_files import figure_bytes
 from ...pictures.bore import node_directions, relative_bytes
+from ...results import without_name
 from ...running import Reached, Report
 from ...state.use import UploadedCycle, Use, hip_of
 
@@ -62,7 +63,7 @@ class GaitResult:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class GaitFilm:
-    """Film over the instants of a cycle by the wave, NaN in unloaded instants."""
+    """Film over the instants of a cycle by the wave method, NaN in unloaded instants."""
 
     least: numpy.ndarray  # nm
     central: numpy.ndarray  # nm
@@ -78,14 +79,14 @@ class GaitFilm:
 def gait_key(file: JointFile, use: Use, upload: UploadedCycle | None) -> Hashable:
     """Return a key of the inputs of a gait result."""
     weight = use.body_weight if upload is not None or CYCLES[use.cycle].per_body_weight else None
-    return file.joint, file.cup, file.cup.oriented, weight, use.contact, upload or use.cycle
+    return without_name(file.joint), file.cup, file.cup.oriented, weight, use.contact, upload or use.cycle
 
 
 def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, report: Report) -> GaitResult:
     """Compute the courses over a cycle, in a separate process; raise ValueError for an invalid hip."""
-    report(Reached(share=0.1, words="setting up the bore"))
+    report(Reached(share=0.1, words="preparing the bore"))
     hip = hip_of(file, use, upload)
-    report(Reached(share=0.3, words="pressing through the cycle"))
+    report(Reached(share=0.3, words="computing the contact at each instant"))
     unworn = hip.unworn
     report(Reached(share=0.7, words="distance to the rim"))
     edge = hip.edge(unworn)
@@ -101,7 +102,7 @@ def simulate_gait(file: JointFile, use: Use, upload: UploadedCycle | None, repor
         load=numpy.divide(hip.forces, sizes[:, None], out=numpy.zeros_like(hip.forces), where=sizes[:, None] > 0),
         frames=_frames(hip, unworn.pressure, float(unworn.pressure.max(initial=0.0))),
         reach=hip.reach,
-        worst="nothing is pressed" if worst is None else worst.location,
+        worst="no contact in this cycle" if worst is None else worst.location,
         valid=valid,
         checks=checks_in_use(hip, checks, edge.distance),
         numbers={
@@ -129,10 +130,10 @@ def checks_in_use(hip: HipSimulation, contacts: Sequence[ContactCheck], distance
 
 
 def simulate_film(file: JointFile, use: Use, upload: UploadedCycle | None, report: Report) -> GaitFilm:
-    """Carry the film over a cycle by the wave, in a separate process."""
-    report(Reached(share=0.1, words="pressing through the cycle"))
+    """Compute the film over a cycle by the wave method, in a separate process."""
+    report(Reached(share=0.1, words="computing the contact at each instant"))
     hip = hip_of(file, use, upload)
-    report(Reached(share=0.2, words="carrying the film over the cycle until it repeats"))
+    report(Reached(share=0.2, words="computing the film over cycles until it repeats"))
     film = hip.film(Lubricant(), method="wave")
     thickness = numpy.full(hip.unworn.pressure.shape, numpy.nan) if film.thickness is None else 1e6 * film.thickness
     known = thickness[numpy.isfinite(thickness)]

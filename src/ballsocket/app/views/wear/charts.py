@@ -53,10 +53,10 @@ def _final_values(worn: WearResult, reading: Reading) -> dict[str, float]:
     quantities = {
         "deepest wear": (_DEPTH, float(worn.deepest[-1])),
         "penetration": (_DEPTH, float(worn.penetration[-1])),
-        "of it by creep alone": (_DEPTH, last["penetration_of_creep"]),
+        "penetration by creep alone": (_DEPTH, last["penetration_of_creep"]),
         "largest pressure, new": (_PRESSURE, new),
         "largest pressure, worn": (_PRESSURE, last["max_pressure"]),
-        "nearest to the rim, worn": (DERIVED["edge_distance"], edge),
+        "smallest distance to the rim, worn": (DERIVED["edge_distance"], edge),
     }
     units = {name: reading.unit(quantity) for name, (quantity, _) in quantities.items()}
     numbers = {

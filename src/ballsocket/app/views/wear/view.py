@@ -93,7 +93,7 @@ class Wear(LongView):
     title, name, run_label, longest = "Wear", "wear", "Run the wear", WEAR_SECONDS
     settings = (
         *CYCLE_SETTINGS,
-        chosen("use.law", "Law of wear", CHOICES["law"]),
+        chosen("use.law", "Wear law", CHOICES["law"]),
         Setting("coefficient", _coefficient_field, _read_coefficient),
         *map(_law_setting, WEAR_INPUTS),
         amount("use.spread", "Patient-to-patient factor", (1.0, 3.0), 0.1),

@@ -17,6 +17,7 @@ from ....reports.check_table import Check, sorted_checks, wear_check
 from ....reports.figure_files import figure_bytes
 from ....reports.hip_plots import penetration_curve
 from ....studies.distributions import LogNormal
+from ...results import without_name
 from ...running import Reached, Report
 from ...state.use import Use, hip_of
 from ..gait.worker import checks_in_use
@@ -54,7 +55,7 @@ def wear_key(file: JointFile, use: Use) -> Hashable:
     weight = use.body_weight if CYCLES[use.cycle].per_body_weight else 0.0
     numbers = tuple((name, use.law_number(name)) for name in use.used_inputs)
     plain = replace(use, instant=None, law_numbers=numbers)
-    return file.joint, file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0)
+    return without_name(file.joint), file.cup, file.cup.oriented, replace(plain, body_weight=weight or 1.0)
 
 
 def simulate_designs(
@@ -100,11 +101,11 @@ def _wear_result(hip: HipSimulation, history: History, bands: Any) -> WearResult
     penetration = courses["penetration"]
     if bands is None:
         low, high = (penetration * (1 + sign * history.error.depth) for sign in (-1, 1))
-        band = f"band: what the run may be off by, {100 * history.error.depth:.2g} %"
+        band = f"band: numerical error of the run, {100 * history.error.depth:.2g} %"
     else:
         low, high = (numpy.array([0.0, *ends]) for ends in bands.band("penetration"))
         share = f"{100 * bands.level:g} % of the predictions for {bands.n_patients} patients"
-        band = f"band: {share}, for a wear coefficient known within a factor"
+        band = f"band: {share}, for the scatter of the wear coefficient"
     largest = hip.loads[hip.largest_load_index[0]]
     return WearResult(
         cycles=numpy.array([0.0, *(report.cycles / 1e6 for report in reports)]),
