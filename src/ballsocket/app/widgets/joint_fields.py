@@ -106,8 +106,9 @@ def edited(screen: Screen, name: str, value: Any, load_alike: Callable[[str], di
     if name == "load":
         ((kind, _),) = file.load.items()
         return _with_number(screen, load_of(kind), value)
-    if name.startswith("layer") and name[5:].isdecimal() and int(name[5:]) < len(file.joint.backing):
-        return _thicker(screen, int(name[5:]), value)
+    layers = [f"layer{index}" for index in range(len(file.joint.backing))]
+    if name in layers:
+        return _thicker(screen, layers.index(name), value)
     if name == "tilt":
         return _turned(screen, value)
     check_names([name], _EDITS, "among the inputs")
@@ -185,8 +186,10 @@ def _choose_preset(screen: Screen, name: Any) -> JointFile:
 
 
 def _massive(screen: Screen, value: Any) -> JointFile:
+    if not isinstance(value, bool):
+        raise ValueError(f"massive = {shown(value)} must be true or false")
     file = screen.file
-    thickness = inf if value is True else round(float(file.joint.socket_radius) / 3, 1)
+    thickness = inf if value else round(float(file.joint.socket_radius) / 3, 1)
     return _changed(file, lambda tables: tables["joint"].update(liner_thickness=thickness))
 
 

@@ -48,6 +48,7 @@ class Compare(View):
         self._cancel_stress: Callable[[], None] = lambda: None
 
     def edit(self, key: str, value: Any) -> None:
+        check_names([key], ("keep", "preset", "base", "remove"), f"among the inputs of {self.title}")
         screen = self.page.screen
         if key == "keep":
             self.page.ask(beside=with_compared(screen, screen.file))
