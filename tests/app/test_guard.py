@@ -140,6 +140,7 @@ def connect(place, origin=None):
         ("http://127.0.0.1:1", False),
         ("https://hips.example.org", False),
         ("null", False),
+        ("http://[", False),
     ],
 )
 def test_a_page_of_another_server_opens_no_socket(place, origin, let):
