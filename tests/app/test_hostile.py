@@ -138,6 +138,13 @@ def test_designs_are_counted_before_they_are_read(monkeypatch):
     assert "at most 6 joints" in trouble(page)
 
 
+def test_the_smallest_load_that_a_link_can_state_is_shown(caplog):
+    page = Page("load.force=1e-320")
+    assert trouble(page) == ""
+    assert page.channel.shown_value("#press-charts")
+    assert not caplog.records
+
+
 def memory_of(process):
     """Resident memory of a process in MB."""
     pages = int(Path(f"/proc/{process.pid}/statm").read_text().split()[1])
