@@ -57,6 +57,14 @@ def viewed(page):
     return json.loads(re.search(r"data-viewer='([^']*)'", told(page, "viewer"))[1])
 
 
+def test_a_cycle_that_presses_nothing_is_no_cycle_without_rim_contact():
+    page = opened()
+    idle = re.sub(r", (300|2000|2500),", ", 0,", OWN)
+    edits(page, "gait.own", {"name": "idle.csv", "size": len(idle), "text": idle})
+    assert "✗ No contact: this cycle never presses" in told(page, "numbers")
+    assert "∞" not in told(page, "numbers")
+
+
 def test_a_cycle_is_that_of_python():
     page = opened()
     found = simulate_gait(page.screen.file, DEFAULT_USE, None, lambda news: None)

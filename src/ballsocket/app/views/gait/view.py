@@ -26,7 +26,7 @@ from ...widgets.fields import segments
 from ...widgets.reading import Reading
 from ...widgets.settings import chosen
 from ...widgets.words import checked, doubt, notes_list, number_cell, value_text
-from .charts import courses_of, empty_charts, flat_bore, gait_charts, gait_viewer, rim_sentence
+from .charts import courses_of, empty_charts, flat_bore, gait_charts, gait_viewer, least_edge_distance, rim_sentence
 from .worker import GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
 
 _LARGEST = 100_000  # characters of a table
@@ -156,7 +156,7 @@ def _read_upload(value: Any) -> UploadedCycle:
 
 def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str:
     force, pressure, edge = (reading.unit(quantity) for quantity in _TILES)
-    least = float(numpy.nanmin(result.edge, initial=numpy.inf))
+    least = least_edge_distance(result)
     highest = float(numpy.nanmax(result.pressure, initial=0.0)) * pressure.factor
     cells = [
         number_cell("largest load", float(result.force.max(initial=0.0)) * force.factor, force.text),
