@@ -196,6 +196,7 @@ def test_a_cycle_of_ones_own_is_read_and_is_in_no_link():
         ("instant", -1, "instant = -1"),
         ("own", {"name": "walk.exe", "text": OWN}, "'walk.exe' is not a table of a cycle"),
         ("own", {"name": "walk.csv", "text": "", "size": 10**9}, "longer than 100000 characters"),
+        ("own", "walk.csv", "has a name and a text"),
         ("colour", "red", "'colour' among the inputs of Gait"),
     ],
 )

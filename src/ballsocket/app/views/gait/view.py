@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy
 
+from ....core.checks import shown
 from ....core.quantities import CONTACT, DERIVED
 from ....reports.figure_files import figure_bytes
 from ....reports.hip_plots import course_figure
@@ -149,7 +150,9 @@ def _read_upload(value: Any) -> UploadedCycle:
     """Read an uploaded table."""
     upload = value if isinstance(value, dict) else {}
     name, text, size = str(upload.get("name", "")), upload.get("text"), upload.get("size")
-    if not isinstance(text, str) or (isinstance(size, int) and size > _LARGEST) or len(text) > _LARGEST:
+    if not isinstance(text, str):
+        raise ValueError(f"{shown(value)} is not a table of a cycle, which has a name and a text")
+    if len(text) > _LARGEST or (isinstance(size, int) and size > _LARGEST):
         raise ValueError(f"the table is longer than {_LARGEST} characters: a cycle needs some hundred lines")
     return UploadedCycle(name, text)
 
