@@ -57,6 +57,14 @@ def viewed(page):
     return json.loads(re.search(r"data-viewer='([^']*)'", told(page, "viewer"))[1])
 
 
+def test_a_cycle_that_presses_nothing_is_no_cycle_without_rim_contact():
+    page = opened()
+    idle = re.sub(r", (300|2000|2500),", ", 0,", OWN)
+    edits(page, "gait.own", {"name": "idle.csv", "size": len(idle), "text": idle})
+    assert "✗ No contact: this cycle never presses" in told(page, "numbers")
+    assert "∞" not in told(page, "numbers")
+
+
 def test_a_cycle_is_that_of_python():
     page = opened()
     found = simulate_gait(page.screen.file, DEFAULT_USE, None, lambda news: None)
@@ -188,6 +196,7 @@ def test_a_cycle_of_ones_own_is_read_and_is_in_no_link():
         ("instant", -1, "instant = -1"),
         ("own", {"name": "walk.exe", "text": OWN}, "'walk.exe' is not a table of a cycle"),
         ("own", {"name": "walk.csv", "text": "", "size": 10**9}, "longer than 100000 characters"),
+        ("own", "walk.csv", "has a name and a text"),
         ("colour", "red", "'colour' among the inputs of Gait"),
     ],
 )

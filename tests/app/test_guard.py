@@ -126,6 +126,13 @@ def test_other_addresses_are_refused(place, path, method):
     assert answer(place)[0].status == 200
 
 
+async def close(connection):
+    """Close a connection, and wait until the server has closed it too."""
+    connection.close()
+    while await connection.read_message() is not None:
+        pass
+
+
 def connect(place, origin=None):
     headers = {"Origin": origin or f"http://{place.netloc}"}
     return websocket_connect(HTTPRequest(f"ws://{place.netloc}/socket", headers=headers))
@@ -140,12 +147,12 @@ def connect(place, origin=None):
         ("http://127.0.0.1:1", False),
         ("https://hips.example.org", False),
         ("null", False),
+        ("http://[", False),
     ],
 )
 def test_a_page_of_another_server_opens_no_socket(place, origin, let):
     async def tried():
-        connection = await connect(place, origin)
-        connection.close()
+        await close(await connect(place, origin))
 
     if let:
         asyncio.run(tried())
@@ -173,7 +180,7 @@ def test_an_error_that_is_sent_to_a_browser_shows_no_path(place):
             await connection.write_message(json.dumps(request))
             while not texts or json.loads(texts[-1])["n"] < request["n"]:
                 texts.append(await asyncio.wait_for(connection.read_message(), 60))
-        connection.close()
+        await close(connection)
         return texts
 
     texts = asyncio.run(answered())

@@ -11,11 +11,14 @@ from urllib.parse import quote
 import pytest
 
 from ..extent import either, some
+from .asking import edits, trouble
 from .browser import explorer_process
 from .user import User, opened_profile
 from .wire import BINARY, Wire, opened_wire
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
+from ballsocket.app import session
+from ballsocket.app.session import Page
 from ballsocket.app.state.screen import VIEWS
 
 
@@ -76,6 +79,10 @@ def test_binary_messages_do_no_harm(address):
         {"do": "edit", "name": "load", "value": {"a": 1}},
         {"do": "edit", "name": "load", "value": 1e308},
         {"do": "edit", "name": ["load"], "value": 1},
+        {"do": "edit", "name": "load", "value": "\ud800"},
+        {"do": "edit", "name": "\ud800", "value": 1},
+        {"do": "edit", "name": "layer" + "9" * 5000, "value": 1},
+        {"do": "edit", "name": "compare.x", "value": 1},
         {"do": "upload", "text": 3},
         {"do": "upload", "text": "a=" + "[" * 90_000},
         {"do": "open", "query": "x" * 100_000},
@@ -95,6 +102,47 @@ def test_unknown_actions_and_values_get_a_sentence(address, words):
         assert "Traceback" not in sentence
         wire.ask(3, "edit", name="load", value=2900)
         assert wire.answer(3)["=load"]["value"] == 2900
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "sentence"),
+    [
+        ("load", 10**400, "the integer is too large"),
+        ("tilt", -(10**400), "the integer is too large"),
+        ("map.pick", [10**400, 1], "the integer is too large"),
+        ("cup.pick", [1, 10**400], "the integer is too large"),
+        ("behind.add", ["uhmwpe"], "as material is not known"),
+        ("preset", {}, "as preset is not known"),
+        ("kind", ["force"], "as load is not known"),
+        ("massive", "yes", "must be true or false"),
+        ("layer" + "9" * 5000, 1, "among the inputs is not known"),
+        ("compare.x", 1, "among the inputs of Compare is not known"),
+        ("designs.compare", [""] * 9, "at most 6 joints"),
+    ],
+    ids=lambda value: str(value)[:12],
+)
+def test_a_value_of_another_kind_gets_one_sentence(name, value, sentence):
+    page = Page(f"view={name.partition('.')[0]}" if name.split(".")[0] in VIEWS else "")
+    link = page.screen.link
+    edits(page, name, value)
+    assert sentence in trouble(page)
+    assert page.screen.link == link
+
+
+def test_designs_are_counted_before_they_are_read(monkeypatch):
+    """Seventy thousand links took the time of all users for seconds."""
+    page, reads = Page(""), []
+    monkeypatch.setattr(session, "read_link", reads.append)
+    edits(page, "designs.compare", [""] * 70_000)
+    assert not reads
+    assert "at most 6 joints" in trouble(page)
+
+
+def test_the_smallest_load_that_a_link_can_state_is_shown(caplog):
+    page = Page("load.force=1e-320")
+    assert trouble(page) == ""
+    assert page.channel.shown_value("#press-charts")
+    assert not caplog.records
 
 
 def memory_of(process):

@@ -127,7 +127,7 @@ def test_a_changed_preset_keeps_its_name_but_not_its_source():
     assert typed("clearance", "0.3", screen_with(file=named)).joint.name == "Anna Meier"
 
 
-@pytest.mark.parametrize("name", ["x" * 81, "a\x1bb", 3, None])
+@pytest.mark.parametrize("name", ["x" * 81, "a\x1bb", "\ud800", 3, None])
 def test_a_name_is_short_text(name):
     with pytest.raises(ValueError, match="the name"):
         typed("name", name)

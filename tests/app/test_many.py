@@ -3,6 +3,7 @@
 import asyncio
 import json
 import resource
+from functools import partial
 from threading import Event
 
 import pytest
@@ -57,7 +58,15 @@ def run(served, work, timeout=100):
         return served.io_loop.run_sync(work, timeout=timeout)
     finally:
         while LINES:
-            LINES.pop().close()
+            served.io_loop.run_sync(partial(close, LINES.pop()), timeout=timeout)
+
+
+async def close(line):
+    """Close a connection, and wait until its socket is closed; one that a test has closed has no protocol."""
+    if line.protocol is not None:
+        stream = line.protocol.stream
+        line.close()
+        await until(stream.closed)
 
 
 async def until(condition):

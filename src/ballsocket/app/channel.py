@@ -18,8 +18,19 @@ def read_request(text: str | bytes) -> dict[str, Any] | None:
         words = json.loads(text) if len(text) <= MAX_REQUEST_LENGTH else None
     except (ValueError, RecursionError):
         return None
-    valid = isinstance(words, dict) and isinstance(words.get("do"), str) and isinstance(words.get("n"), int)
-    return words if valid else None
+    if not (isinstance(words, dict) and isinstance(words.get("do"), str) and isinstance(words.get("n"), int)):
+        return None
+    return _without_surrogates(words)
+
+
+def _without_surrogates(words: dict[str, Any]) -> dict[str, Any]:
+    """Replace halves of surrogate pairs, which no message can carry, by question marks."""
+    try:
+        text = json.dumps(words, ensure_ascii=False)
+        text.encode()
+    except UnicodeEncodeError:
+        return dict(json.loads(text.encode(errors="replace")))
+    return words
 
 
 class Channel:

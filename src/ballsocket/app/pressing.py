@@ -121,7 +121,7 @@ def curve(contact: Contact, largest: float) -> Contact | None:
     force, half = float(contact.force), float(contact.half_angle)
     if not (force > 0 and half > 0):
         return None
-    end = half * cbrt(max(largest / force, 1.0))
+    end = min(half * cbrt(max(largest / force, 1.0)), MAX_HALF_ANGLE)
     return _cached_curve(contact.joint, contact.model.name, min(ceil(end / _ANGLE_STEP) * _ANGLE_STEP, MAX_HALF_ANGLE))
 
 
@@ -152,9 +152,16 @@ def profile(contact: Contact) -> tuple[numpy.ndarray, numpy.ndarray]:
     return angle, numpy.asarray(contact.pressure(angle))
 
 
+_SMALLEST_AXIS = 1e-300
+"""Number below which powers of ten lose digits."""
+
+
 def rounded_up(value: float) -> float:
-    """Round up to 1, 1.5, 2, 3, 5 or 7 times a power of ten, for axes that stay while a slider moves."""
-    if not value > 0:
+    """Round up to 1, 1.5, 2, 3, 5 or 7 times a power of ten, for axes that stay while a slider moves.
+
+    Return 1 for a value that is not positive.
+    """
+    if not value > _SMALLEST_AXIS:
         return 1.0
     scale = 10.0 ** (ceil(log10(value)) - 1)
     return float(next(step * scale for step in (1, 1.5, 2, 3, 5, 7, 10, 15) if step * scale >= value * (1 - 1e-12)))

@@ -60,7 +60,10 @@ class HostNames:
 
     def trust(self, origin: str, host: str) -> bool:
         """Return True if a page of this origin may open a socket: it is from this server, or has one of the names."""
-        address = urlsplit(origin.lower())
+        try:
+            address = urlsplit(origin.lower())
+        except ValueError:  # malformed, such as "http://["
+            return False
         port = {"http": ":80", "https": ":443"}.get(address.scheme, "")
         forms = address.netloc, f"{address.netloc}{port}", address.netloc.removesuffix(port)
         return address.netloc == host.lower() or any(_fits(name, form) for name in self._names for form in forms)
@@ -157,6 +160,11 @@ class PageSocket(_Guarded, WebSocketHandler):
         self._credit, self._last, self._thread = _BURST, time.monotonic(), PageThread()
         self._sent: asyncio.Future[None] | None = None
         self.settings["sockets"].connect(self)
+
+    def prepare(self) -> None:
+        super().prepare()
+        if not self.check_origin(self.request.headers.get("Origin", f"//{self.request.host}")):
+            raise HTTPError(403)  # before Tornado reads it, which fails for a malformed origin
 
     def check_origin(self, origin: str) -> bool:
         return self.settings["names"].trust(origin, self.request.host)

@@ -19,7 +19,7 @@ from .jobs import Job, call_later, run_in_thread
 from .running import RunFinished, RunRefused
 from .solving import SlowPresses
 from .state.designs import read_upload, session_text
-from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, read_link
+from .state.screen import ANGLES, MAX_LINK_LENGTH, SIZES, START, Screen, check_compared, read_link
 from .view import ScreenContent, View, make_file, print_page
 from .views.registry import view_class
 from .widgets.fields import Field, in_words_of, segments
@@ -235,6 +235,7 @@ class Page:
         if key == "save":
             self._send_file("designs.toml", session_text(links).encode("utf-8"))
             return
+        check_compared(len(links))
         compared = (read_link(parse_qs(link, keep_blank_values=True)) for link in links)
         self.ask(beside=tuple(screen.file for screen in compared), view="compare")
 

@@ -135,7 +135,7 @@ def contract_factors(matrix: Array, *factors: Array) -> Pair:
     for axis in reversed(range(len(factors))):
         if factors[axis].shape[1] == 1:
             cube = xp.tensordot(cube, factors[axis][:, 0], axes=((axis + 1,), (0,)))
-    varying = [factor for factor in factors if factor.shape[1] > 1]
+    varying = [factor for factor in factors if factor.shape[1] != 1]
     if not varying:
         return cube[:, None], xp.ones((1, 1), dtype=matrix.dtype, device=arrays.device(matrix))
     products = varying[0]

@@ -231,7 +231,7 @@ def check_names(names: Iterable[str], known: Iterable[str], where: str) -> None:
     `where` completes the message.
     """
     for name in names:
-        if name not in known:
+        if not isinstance(name, str) or name not in known:
             raise ValueError(f"{shown(name)} {where} is not known{nearest(name, known)}")
 
 
@@ -321,11 +321,12 @@ def check_text(name: str, value: Any) -> str:
     Raises
     ------
     ValueError
-        A value of another type, a text that is too long, or one with control characters other than tabs and line ends.
+        A value of another type, a text that is too long, or one with halves of surrogate pairs or with control
+        characters other than tabs and line ends.
     """
     if not isinstance(value, str):
         raise ValueError(f"{name} = {shown(value)} must be text")
-    control = any(category(character) == "Cc" and character not in "\t\n" for character in value)
+    control = any(category(character) in ("Cc", "Cs") and character not in "\t\n" for character in value)
     if len(value) > _MAX_TEXT_LENGTH or control:
         limit = f"at most {_MAX_TEXT_LENGTH} characters with no control characters"
         raise ValueError(f"{name} = {shown(value)} must be {limit}")

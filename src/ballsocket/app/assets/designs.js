@@ -119,7 +119,11 @@ function mark() {
 listen((message, request) => {
   if ((message.fresh || request?.words.do === "open") && message["#trouble"]) current = null; // its link cannot be read
   for (const link of (message.designs || []).reverse()) { // the first is on the screen, and is added last
-    const words = new URLSearchParams(link);
+    const words = new URLSearchParams(link), same = kept().find((design) => design.link === plain(link));
+    if (same) {
+      current = same.id; // a session file that is opened again adds nothing twice
+      continue;
+    }
     if (!add(unique(words.get("name") || words.get("preset") || "design"), plain(link))) break;
   }
   if (!message.link && !message["=name"]) return;

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy
 
-from ...core.checks import shown
+from ...core.checks import check_number, shown
 from . import svg
 from .svg import Contours
 
@@ -68,7 +68,7 @@ def read_point(value: Any, count: int) -> list[float]:
     numbers = value if isinstance(value, list) else []
     if len(numbers) != count or not all(isinstance(number, int | float) for number in numbers):
         raise ValueError(f"{shown(value)} is not a point of the map")
-    return [float(number) for number in numbers]
+    return [check_number("a number of the point", number) for number in numbers]
 
 
 def outlined(shape: str, kind: str, attributes: str) -> str:

@@ -63,6 +63,12 @@ _VIEWS = ("use", "ask")
 _PREFIXES = tuple(f"beside{number}" for number in range(1, MAX_COMPARED + 1))
 
 
+def check_compared(count: int) -> None:
+    """Raise ValueError for more designs than are compared with the one on the screen."""
+    if count > MAX_COMPARED:
+        raise ValueError(f"at most {MAX_COMPARED} designs are compared with this one, got {count}")
+
+
 @dataclass(frozen=True, kw_only=True)
 class MapAxis:
     """Axis of the map: a parameter of a study from `low` to `high`, in mm, N, MPa, rad."""
@@ -112,8 +118,7 @@ class Screen:
         for name, known in _KNOWN.items():
             chosen = getattr(self, name)
             check_names(chosen if isinstance(chosen, tuple) else (chosen,), known, f"as {name}")
-        if len(self.beside) > MAX_COMPARED:
-            raise ValueError(f"at most {MAX_COMPARED} designs are compared with this one, got {len(self.beside)}")
+        check_compared(len(self.beside))
         if len(self.limits) > MAX_LIMITS:
             raise ValueError(f"a map has at most {MAX_LIMITS} limits, got {len(self.limits)}")
         if not self.file.load:
@@ -183,7 +188,7 @@ def read_link(pairs: Mapping[str, Sequence[str]]) -> Screen:
             raise ValueError(f"{shown(name)} is given {len(values)} times in the link; one is needed")
     words: dict[str, Any] = {name: pairs[name][0] for name in _KNOWN if name in pairs}
     if "shown" in words:
-        words["shown"] = tuple(dict.fromkeys(words["shown"].split(",")))
+        words["shown"] = tuple(dict.fromkeys(name for name in words["shown"].split(",") if name))
     words |= {name: _axis(pairs[name][0]) for name in ("across", "up") if name in pairs}
     if "picked" in pairs:
         words["picked"] = _point(pairs["picked"][0])

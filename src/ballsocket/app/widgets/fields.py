@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import degrees
 from typing import Any
 
-from ...core.checks import shown
+from ...core.checks import check_number, shown
 from ...core.kinds import Kind, Unit
 from ...core.quantities import Quantity
 from ...files.units import parse, split_quantity
@@ -97,7 +97,7 @@ def typed(label: str, text: Any, unit: Unit, kind: str, times: int = 1) -> float
     0.1
     """
     if isinstance(text, int | float) and not isinstance(text, bool):
-        return round(float(text) / unit.factor, 12)
+        return round(check_number(label, text) / unit.factor, 12)
     inside = f" in {'inches' if unit.text == 'in' else unit.text}" if unit.text else ""
     rule = f"{label} must be a number{inside}" + (f", or {Kind(kind).example.replace(', ', ' ')}" if unit.text else "")
     stripped = text.strip() if isinstance(text, str) else ""

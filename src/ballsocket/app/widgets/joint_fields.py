@@ -199,7 +199,9 @@ def _with_preset(file: JointFile, name: Any) -> JointFile:
 
 def _with_solid_socket(file: JointFile, value: Any) -> JointFile:
     """Make the liner a solid socket, or one of a third of the radius."""
-    thickness = inf if value is True else round(float(file.joint.socket_radius) / 3, 1)
+    if not isinstance(value, bool):
+        raise ValueError(f"massive = {shown(value)} must be true or false")
+    thickness = inf if value else round(float(file.joint.socket_radius) / 3, 1)
     return _changed(file, lambda tables: tables["joint"].update(liner_thickness=thickness))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR, Context
 from math import isfinite, nan
 from typing import Any
 
@@ -18,6 +19,9 @@ from .numbers import capital
 from .reading import Reading, box_text
 
 _SIGNS = {"<=": "at most", ">=": "at least"}
+_ROUNDINGS = {"<=": ROUND_CEILING, ">=": ROUND_FLOOR}
+"""Direction in which a number of the present design is rounded, so that the design keeps its own limit."""
+
 _DIGITS = 3
 """Digits of a limit that starts at the present design."""
 
@@ -112,9 +116,14 @@ def _limit(row: Sequence[str], reading: Reading, present: Callable[[str], float]
         require(capital(quantity.title), end, isfinite(end), "a limit is a finite number")
     else:
         factor = reading.unit(quantity).factor
-        end = float(f"{present(name) * factor:.{_DIGITS}g}") / factor
+        end = _rounded(present(name) * factor, _ROUNDINGS[sign]) / factor
         require(capital(quantity.title), end, isfinite(end), "this design has no value for it: type one")
     return Limit(name=name, high=end) if sign == "<=" else Limit(name=name, low=end)
+
+
+def _rounded(value: float, rounding: str) -> float:
+    """Round to a few digits in one direction; 12 digits remove the error of a conversion first."""
+    return float(Context(prec=_DIGITS, rounding=rounding).create_decimal(f"{value:.12g}"))
 
 
 def _rows_of(limit: Limit, reading: Reading) -> list[Row]:

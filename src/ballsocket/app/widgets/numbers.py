@@ -144,6 +144,13 @@ CUP_NUMBERS: Mapping[str, Number] = {
 }
 """Numbers of a cup and of the direction of its load by input."""
 
+_PARAMETERS = {
+    "socket_radius": NUMBERS["ball_radius"],
+    "liner_yield_stress": ALLOWABLE,
+    "ball_yield_stress": ALLOWABLE,
+}
+"""Numbers with the bounds of parameters that have no box beside the joint."""
+
 _SINGLE = {single: double for double, single in DIAMETERS.items()}
 
 
@@ -154,6 +161,13 @@ def number_of(name: str, size: str) -> Number:
         return spec
     quantity = JOINT[_SINGLE[name]]
     return replace(spec, quantity=quantity, times=2, label=capital(quantity.title))
+
+
+def of_parameter(name: str, label: str) -> Number:
+    """Return the input of a parameter of a study, with other words beside its box."""
+    quantity, single = QUANTITIES[name], DIAMETERS.get(name, name)
+    spec = _PARAMETERS.get(single) or NUMBERS.get(single) or _LOADS[single]
+    return replace(spec, quantity=quantity, times=1 + (name in DIAMETERS), label=label)
 
 
 def load_of(kind: str) -> Number:

@@ -245,8 +245,8 @@ def ray_steps(cells: CellArrays, patches: Patches, centres: Array) -> range:
     farthest = _angle(numpy.where(loaded, cosine, 1.0).min(initial=1.0)) + 3 * cells.width
     nearest = _angle(numpy.where(loaded, -1.0, cosine).max(initial=-1.0))
     to_rim = cells.reach - numpy.atan2(numpy.hypot(centres[:, 0], centres[:, 1]), centres[:, 2]).max(initial=0.0)
-    first = (min(nearest, to_rim) - 2 * cells.width) / step
-    return range(max(int(first), 1), int(min(farthest, pi) / step) + 1)
+    first = max(int((min(nearest, to_rim) - 2 * cells.width) / step), 1)
+    return range(first, max(int(min(farthest, pi) / step), first) + 1)
 
 
 def _angle(cosine: Numbers) -> float:

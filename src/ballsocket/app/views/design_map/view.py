@@ -18,8 +18,9 @@ from ...pictures.contour_map import read_point
 from ...state.screen import AXES, MAPPED, MapAxis, Screen
 from ...view import Document, Host, View, field_places
 from ...widgets.design_table import design_table, press_designs, with_drawings, with_stresses
-from ...widgets.fields import Field, choice, empty_number, segments, typed_quantity
+from ...widgets.fields import Field, choice, empty_number, segments
 from ...widgets.limit_rows import LimitRows, present_value
+from ...widgets.numbers import of_parameter
 from ...widgets.reading import Reading, box_text
 from ...widgets.settings import Setting, chosen
 from ...widgets.words import alert, column_of, unit_of_files
@@ -86,7 +87,8 @@ def _end_setting(key: str) -> Setting:
     def read(screen: Screen, value: Any) -> dict[str, Any]:
         axis: MapAxis = getattr(screen, which)
         quantity = QUANTITIES[axis.name]
-        number = typed_quantity(label, value, quantity, screen.reading)
+        spec = of_parameter(axis.name, label)
+        number = spec.times * spec.meant(value, screen.reading) / quantity.written.factor
         ends = {**vars(axis), end: number}
         low, high = (screen.reading.with_unit(quantity, ends[name]) for name in ("low", "high"))
         if not ends["low"] < ends["high"]:

@@ -132,10 +132,19 @@ def _spans(result: GaitResult) -> list[tuple[float, float]]:
     ]
 
 
+def least_edge_distance(result: GaitResult) -> float:
+    """Return the smallest distance from the contact to the rim in mm; NaN if the cycle presses nothing."""
+    known = result.edge[numpy.isfinite(result.edge)]
+    return float(known.min()) if known.size else numpy.nan
+
+
 def rim_sentence(result: GaitResult, reading: Reading) -> str:
     """State in words if the contact reaches the rim, and when."""
     if not result.rim.any():
-        least = reading.with_unit(DERIVED["edge_distance"], float(numpy.nanmin(result.edge, initial=numpy.inf)))
+        distance = least_edge_distance(result)
+        if numpy.isnan(distance):
+            return "<p class='trust no'>✗ No contact: this cycle never presses the ball into its socket</p>"
+        least = reading.with_unit(DERIVED["edge_distance"], distance)
         return f"<p class='trust yes'>✓ No rim contact: the contact ends at least {least} before the rim</p>"
     spans = ", ".join(f"{low:.0f} to {high:.0f} %" for low, high in _spans(result))
     share = f"{100 * result.rim.mean():.0f} % of the cycle"

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy
 
+from ....core.checks import shown
 from ....core.quantities import CONTACT, DERIVED
 from ....reports.figure_files import figure_bytes
 from ....reports.hip_plots import course_figure
@@ -26,7 +27,7 @@ from ...widgets.fields import segments
 from ...widgets.reading import Reading
 from ...widgets.settings import chosen
 from ...widgets.words import checked, doubt, notes_list, number_cell, value_text
-from .charts import courses_of, empty_charts, flat_bore, gait_charts, gait_viewer, rim_sentence
+from .charts import courses_of, empty_charts, flat_bore, gait_charts, gait_viewer, least_edge_distance, rim_sentence
 from .worker import GaitFilm, GaitResult, gait_key, simulate_film, simulate_gait
 
 _LARGEST = 100_000  # characters of a table
@@ -149,14 +150,16 @@ def _read_upload(value: Any) -> UploadedCycle:
     """Read an uploaded table."""
     upload = value if isinstance(value, dict) else {}
     name, text, size = str(upload.get("name", "")), upload.get("text"), upload.get("size")
-    if not isinstance(text, str) or (isinstance(size, int) and size > _LARGEST) or len(text) > _LARGEST:
+    if not isinstance(text, str):
+        raise ValueError(f"{shown(value)} is not a table of a cycle, which has a name and a text")
+    if len(text) > _LARGEST or (isinstance(size, int) and size > _LARGEST):
         raise ValueError(f"the table is longer than {_LARGEST} characters: a cycle needs some hundred lines")
     return UploadedCycle(name, text)
 
 
 def _numbers(result: GaitResult, film: GaitFilm | None, reading: Reading) -> str:
     force, pressure, edge = (reading.unit(quantity) for quantity in _TILES)
-    least = float(numpy.nanmin(result.edge, initial=numpy.inf))
+    least = least_edge_distance(result)
     highest = float(numpy.nanmax(result.pressure, initial=0.0)) * pressure.factor
     cells = [
         number_cell("largest load", float(result.force.max(initial=0.0)) * force.factor, force.text),
