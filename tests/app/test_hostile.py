@@ -117,7 +117,7 @@ def test_unknown_actions_and_values_get_a_sentence(address, words):
         ("massive", "yes", "must be true or false"),
         ("layer" + "9" * 5000, 1, "among the inputs is not known"),
         ("compare.x", 1, "among the inputs of Compare is not known"),
-        ("designs.compare", [""] * 9, "at most 6 joints"),
+        ("designs.compare", [""] * 9, "at most 6 designs"),
     ],
     ids=lambda value: str(value)[:12],
 )
@@ -135,7 +135,7 @@ def test_designs_are_counted_before_they_are_read(monkeypatch):
     monkeypatch.setattr(session, "read_link", reads.append)
     edits(page, "designs.compare", [""] * 70_000)
     assert not reads
-    assert "at most 6 joints" in trouble(page)
+    assert "at most 6 designs" in trouble(page)
 
 
 def test_the_smallest_load_that_a_link_can_state_is_shown(caplog):
