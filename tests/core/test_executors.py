@@ -377,7 +377,7 @@ def write_certificate(folder):
 
 @pytest.mark.long
 def test_tls_needs_the_certificates(tmp_path):
-    distributed = pytest.importorskip("distributed")
+    dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
     security = distributed.Security(**write_certificate(tmp_path))
     options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
     with distributed.LocalCluster(security=security, protocol="tls", processes=False, **options) as cluster:
@@ -389,6 +389,7 @@ def test_tls_needs_the_certificates(tmp_path):
         plain = address.replace("tls://", "tcp://")
         with pytest.raises(ConnectionError, match="address, scheduler and security differ in their encryption"):
             list(Distributed(address=plain, security=security).run(abs, [-1]))
+    assert dask.config.get("scheduler", None) is None, "a client that is not connected must not compute for others"
 
 
 def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable(monkeypatch):

@@ -121,7 +121,8 @@ class Distributed:
 
         if self.address is not None:
             try:
-                client = Client(self.address, timeout=_CONNECTION_TIMEOUT, security=self.security)
+                with _restore_scheduler_on_error():
+                    client = Client(self.address, timeout=_CONNECTION_TIMEOUT, security=self.security)
             except OSError as error:
                 raise ConnectionError(None, "the Dask scheduler does not respond", self.address) from error
             except TypeError as error:  # of Dask, for an encrypted address alone
@@ -135,6 +136,19 @@ class Distributed:
             return
         with local_cluster(self.workers or available_cores(), self.retries) as cluster, Client(cluster) as client:
             yield client
+
+
+@contextmanager
+def _restore_scheduler_on_error() -> Iterator[None]:
+    """Restore Dask's default scheduler after an error: a client that could not connect would remain the default."""
+    import dask
+
+    scheduler = dask.config.get("scheduler", None)
+    try:
+        yield
+    except BaseException:
+        dask.config.set(scheduler=scheduler)
+        raise
 
 
 @contextmanager
