@@ -206,7 +206,9 @@ def test_a_study_on_the_users_workers_ends_without_tracebacks_and_leaves_nothing
             while client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)) and time.time() < deadline:
                 time.sleep(0.2)
             assert client.run_on_scheduler(lambda dask_scheduler: list(dask_scheduler.tasks)) == []
-    assert "Traceback" not in (tmp_path / "worker.log").read_text("utf-8")
+    log = (tmp_path / "worker.log").read_text("utf-8")
+    assert f"{os.sep}ballsocket{os.sep}" not in log  # Dask's scheduler may report the connection of a killed client
+    assert end == "killed" or "Traceback" not in log
     assert done_blocks(tmp_path / "s.zarr") >= 2
 
 
