@@ -12,7 +12,7 @@ from typing import Any
 
 import ballsocket as bs
 
-from .gpu_inverse import jax_rates
+from .gpu_inverse import ARRAYS, jax_rates
 from .off_axis_many import jax_seconds
 from .report import Report, Rows
 from .timing import interleaved
@@ -21,7 +21,6 @@ from .wear_on_springs import patients_in_jax
 COUNT, REPEATS = 10_000_000, 5
 LOADS = (64, 512, 2048)
 PATIENTS = (128, 1024, 8192)
-ARRAYS = 7  # R1, c, L, F in; d, ε, p0 out
 
 
 def measure() -> Report | str:

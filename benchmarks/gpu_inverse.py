@@ -12,7 +12,7 @@ from typing import Any
 
 import ballsocket as bs
 
-from .inverse_of_solved import MANY, ONE, answer, joint_of
+from .inverse_of_solved import MANY, ONE, jax_press
 from .report import Rows
 from .timing import Clock, interleaved
 
@@ -43,7 +43,7 @@ def jax_rates(device: Any, count: int, clock: Clock = time.perf_counter) -> Rows
         copy = _waited(jax.jit(lambda values: values + 1.0), source)
         for model in (bs.HessForsbach(), bs.Tabulated(), bs.Refined()):
             for joints in (ONE, MANY):
-                press = _waited(_pressed(model, joints), numbers)
+                press = _waited(jax_press(model, joints), numbers)
                 first_call = _seconds(press)
                 _, seconds = interleaved(REPEATS, {"copy": copy, "press": press}, clock)
                 ours, limit = (seconds[name].per(1e-9 * count) for name in ("press", "copy"))
@@ -52,13 +52,6 @@ def jax_rates(device: Any, count: int, clock: Clock = time.perf_counter) -> Rows
                     f"{model.name}, {joints}", ours, goal, limit, f"{ours.over(limit)} copies", f"{first_call:.1f}"
                 )
     return rows
-
-
-def _pressed(model: bs.Model, joints: str) -> Callable[[Any], Any]:
-    """Compiled presses of rows of random numbers: R1, c, L and F."""
-    import jax
-
-    return jax.jit(lambda numbers: answer(model.press(joint_of(joints, numbers), force=500.0 + 3500.0 * numbers[3])))
 
 
 def _waited(work: Callable[[Any], Any], inputs: Any) -> Callable[[], object]:

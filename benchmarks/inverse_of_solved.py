@@ -55,10 +55,10 @@ def _paths(model: bs.Tabulated | bs.Refined, joints: str, numbers: numpy.ndarray
     from ballsocket.compiled import Compiled
 
     name, force = f"{model.name}, {joints}", 500.0 + 3500.0 * numbers[3]
-    joint = joint_of(joints, numbers)
+    joint = _joint_of(joints, numbers)
     paths: dict[str, Work] = {
-        f"NumPy, {name}": lambda: answer(model.press(joint, force=force)),
-        f"numba, {name}": lambda: answer(Compiled(model=model).press(joint, force=force)),
+        f"NumPy, {name}": lambda: _answer(model.press(joint, force=force)),
+        f"numba, {name}": lambda: _answer(Compiled(model=model).press(joint, force=force)),
     }
     return paths | ({f"JAX, {name}": _jax_path(model, joints, numbers)} if has_jax else {})
 
@@ -68,9 +68,7 @@ def _jax_path(model: bs.Model, joints: str, numbers: numpy.ndarray) -> Callable[
 
     with jax.enable_x64(True):
         held = jax.numpy.asarray(numbers)
-        compiled = jax.jit(
-            lambda numbers: answer(model.press(joint_of(joints, numbers), force=500.0 + 3500.0 * numbers[3]))
-        )
+        compiled = jax_press(model, joints)
 
     def press() -> object:
         with jax.enable_x64(True):
@@ -79,7 +77,14 @@ def _jax_path(model: bs.Model, joints: str, numbers: numpy.ndarray) -> Callable[
     return press
 
 
-def joint_of(joints: str, numbers: Any) -> bs.Joint:
+def jax_press(model: bs.Model, joints: str) -> Callable[[Any], Any]:
+    """Compiled presses of rows of random numbers: R1, c, L and F."""
+    import jax
+
+    return jax.jit(lambda numbers: _answer(model.press(_joint_of(joints, numbers), force=500.0 + 3500.0 * numbers[3])))
+
+
+def _joint_of(joints: str, numbers: Any) -> bs.Joint:
     if joints == ONE:
         return bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
     return bs.Joint(
@@ -90,5 +95,5 @@ def joint_of(joints: str, numbers: Any) -> bs.Joint:
     )
 
 
-def answer(contact: bs.Contact) -> tuple[Any, Any, Any]:
+def _answer(contact: bs.Contact) -> tuple[Any, Any, Any]:
     return contact.indentation, contact.half_angle, contact.max_pressure
