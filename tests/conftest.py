@@ -1,18 +1,12 @@
-"""One option: `pytest --long` runs every case, and the proofs that take half a minute each."""
+"""Settings of the suite: `pytest` runs it in few cases, `pytest --long` completely."""
 
-import os
-from tempfile import gettempdir, mkdtemp
-
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: the cores are busy with other tests
-os.environ.setdefault("BALLSOCKET_CACHE", mkdtemp(prefix="ballsocket-cache-"))  # not that of who runs them
-
-os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", f"{gettempdir()}/ballsocket-jax")  # compiled once for all workers
-os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.1")
+import signal
+from collections import Counter
 
 import pytest
 from hypothesis import settings
 
-from . import extent
+from . import environment, extent
 from .schedule import FileScheduling, start_rank
 
 settings.register_profile("quick", max_examples=15, deadline=None, derandomize=True, database=None)
@@ -27,6 +21,12 @@ def pytest_configure(config):
     config.addinivalue_line("markers", "long: a proof that takes long; it runs with --long")
     extent.whole = config.getoption("long")
     settings.load_profile("long" if extent.whole else "quick")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # fixtures end what they started
+
+
+def pytest_unconfigure():
+    if environment.workplace is not None:
+        environment.workplace.cleanup()
 
 
 @pytest.hookimpl(optionalhook=True)
@@ -34,10 +34,19 @@ def pytest_xdist_make_scheduler(config, log):
     return FileScheduling(config, log)
 
 
-def pytest_collection_modifyitems(items):
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config, items):
+    if not extent.whole:
+        long = [item for item in items if item.get_closest_marker("long")]
+        config.hook.pytest_deselected(items=long)
+        items[:] = [item for item in items if not item.get_closest_marker("long")]
     items.sort(key=lambda item: start_rank(item.nodeid))
-    if extent.whole:
-        return
-    for item in items:
-        if item.get_closest_marker("long"):
-            item.add_marker(pytest.mark.skip(reason="takes long: pytest --long"))
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Print each reason for skipped tests once, with their number."""
+    skipped = [report.longrepr for report in terminalreporter.stats.get("skipped", ())]
+    for reason, number in Counter(entry[2].removeprefix("Skipped: ") for entry in skipped).most_common():
+        terminalreporter.write_line(f"skipped {number}: {reason}")
+    if not extent.whole:
+        terminalreporter.write_line("quick form; `pytest --long` runs every case")

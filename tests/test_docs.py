@@ -4,6 +4,7 @@ import doctest
 import re
 import shlex
 import shutil
+from importlib import import_module
 from importlib.util import find_spec
 from xml.etree import ElementTree
 
@@ -63,6 +64,20 @@ def test_python_examples_of_a_page_have_the_output_shown(path, folder):
     failed, tried = doctest.DocTestRunner(optionflags=FLAGS).run(test, out=said.append)
     assert tried > 0
     assert failed == 0, "".join(said)
+
+
+MODULES = sorted(path for path in (ROOT / "src").rglob("*.py") if ">>> " in path.read_text("utf-8"))
+
+
+@pytest.mark.parametrize("path", MODULES, ids=lambda path: path.stem)
+def test_examples_of_docstrings_have_the_output_shown(path, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    name = ".".join(path.relative_to(ROOT / "src").with_suffix("").parts).removesuffix(".__init__")
+    try:
+        failed, _ = doctest.testmod(import_module(name), optionflags=doctest.NORMALIZE_WHITESPACE)
+    except ModuleNotFoundError as missing:
+        pytest.skip(f"{missing.name} is not installed")
+    assert failed == 0
 
 
 @pytest.mark.parametrize("path", quick_pages("console", "$ "), ids=lambda path: path.stem)
