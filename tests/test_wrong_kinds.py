@@ -1,8 +1,9 @@
-"""Arguments of a wrong type: each is refused by name, and no part of it is ignored."""
+"""Arguments of a wrong type, name or unit: each is refused in one sentence, and no part of it is ignored."""
 
 import io
 import struct
 import warnings
+from importlib.util import find_spec
 
 import numpy
 import pytest
@@ -16,6 +17,8 @@ from ballsocket.hip.simulator_cycles import iso_14242_1
 from ballsocket.hip.wear_laws import Archard
 
 HIP = bs.joints["hip-28"]
+NEEDS_STUDIES = pytest.mark.skipif(find_spec("xarray") is None, reason="the extra for studies is not installed")
+PRESSED = bs.HessForsbach().press(HIP, force=3000.0)
 ELEMENT = bs.ForceElement(bs.HessForsbach(), HIP)
 
 
@@ -129,3 +132,73 @@ def test_a_damaged_label_of_a_store_names_the_store(tmp_path):
         bs.studies.read(tmp_path / "store")
     again = bs.study(bs.HessForsbach(), HIP, force=[1.0, 2.0], store=tmp_path / "store")
     assert numpy.isfinite(again.indentation).all()
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (
+            lambda: bs.Exact().press("Hip 28", force=1.0),
+            r"joint must be a Joint, got 'Hip 28'; use bs.joints\['hip-28'\]",
+        ),
+        (lambda: bs.Exact().press(28.0, force=1.0), r"joint must be a Joint, got 28\.0$"),
+        (lambda: bs.PinInHole().press("hip-28", line_load=1.0), "joint must be a Joint, got 'hip-28'"),
+        (lambda: bs.Exact().press(HIP, 3000.0), r"a load needs its name: force=3000\.0 in N"),
+        (lambda: bs.PinInHole().press(HIP, 30.0), "a load needs its name: line_load in N/mm"),
+        (lambda: bs.compare(HIP, 3000.0), r"a load needs its name: force=3000\.0 in N"),
+        (lambda: bs.compare("hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
+        (lambda: bs.compare(HIP, force=1.0, models="exact"), r"models must be a list .* got 'exact'$"),
+        (lambda: bs.compare(HIP, force=1.0, models={"exact": "exact"}), r"models\['exact'\] must be a model"),
+        pytest.param(
+            lambda: bs.study("exact", HIP, force=1.0),
+            r"model must be a Model, got 'exact'; bs.catalogue\['exact'\] is",
+            marks=NEEDS_STUDIES,
+        ),
+    ],
+)
+def test_arguments_of_another_type_are_refused_in_one_sentence(ask, message):
+    with pytest.raises(TypeError, match=message):
+        ask()
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda: bs.joints["hip36"], "joint 'hip36' is not known; did you mean 'hip-36'"),
+        (lambda: bs.materials["UHMPE"], "material 'UHMPE' is not known; did you mean 'uhmwpe'"),
+        (lambda: bs.catalogue["hess"], "model 'hess' is not known; did you mean 'hess-forsbach'"),
+        (lambda: bs.compare(HIP, force=1.0)["herz"], "model 'herz' is not in this comparison; did you mean 'hertz'"),
+    ],
+)
+def test_unknown_names_are_refused_with_the_closest_name(ask, message):
+    with pytest.raises(KeyError, match=message):
+        ask()
+
+
+@pytest.mark.parametrize(
+    ("ask", "message"),
+    [
+        (lambda: PRESSED.pressure(30), "angle = 30 is not allowed: .* in radians; 30 degrees are 0.5236 radians$"),
+        (lambda: PRESSED.pressure([0.1, 30.0]), r"angle\[1\] = 30 is not allowed: .*; 30 degrees are 0.5236 radians$"),
+        (lambda: PRESSED.friction_torque(0.1, 90), "axis_angle = 90 is .* radians; 90 degrees are 1.571 radians$"),
+        (lambda: bs.Exact().press(HIP, force=1e3).stress(angle=30, depth=1.0), "angle = 30 is .* are 0.5236 radians$"),
+        (lambda: bs.Exact().press(HIP, force=1e3).displacement(30), "angle = 30 is .* 30 degrees are 0.5236 radians$"),
+        (lambda: bs.Exact().press(HIP, half_angle=40), "half_angle = 40 is .*; 40 degrees are 0.6981 radians$"),
+        (lambda: bs.Cup(arc_of_cover=160), "arc_of_cover = 160 is .*; 160 degrees are 2.793 radians$"),
+        (lambda: bs.Cup(inclination=45), "inclination = 45 is .*; 45 degrees are 0.7854 radians$"),
+        pytest.param(
+            lambda: bs.study(bs.Hertz(), HIP, half_angle=[20, 40]),
+            "half_angle.* = 20 .*; 20 degrees are 0.3491 rad",
+            marks=NEEDS_STUDIES,
+        ),
+    ],
+)
+def test_angles_that_can_only_be_degrees_get_a_hint_in_radians(ask, message):
+    with pytest.raises(ValueError, match=message):
+        ask()
+
+
+def test_angles_up_to_half_a_turn_are_accepted():
+    angles = numpy.array([0.0, 1.0, numpy.pi, -1.0, numpy.nan])
+    assert PRESSED.pressure(angles)[:3].tolist() == [PRESSED.pressure(0.0), 0.0, 0.0]
+    assert PRESSED.pressure(numpy.float32(numpy.pi)) == 0.0

@@ -63,7 +63,7 @@ class ContactPatch:
 
     @cached_property
     def _patches(self) -> Patches:
-        """This patch as the only one of a batch."""
+        """Batch of this patch alone."""
         return Patches(pressure=self.pressure[None], level=self.level[None], axis=self.axis[None])
 
     @cached_property

@@ -135,7 +135,7 @@ class ClosedShell:
 
     @property
     def isotropic(self) -> ClosedShell:
-        """This surface."""
+        """The surface itself."""
         return self
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
@@ -170,7 +170,7 @@ class Springs:
 
     @property
     def isotropic(self) -> Springs:
-        """This surface."""
+        """The surface itself."""
         return self
 
     def rings(self, joint: Joint, cup: Cup, grid: Grid) -> Numbers:
