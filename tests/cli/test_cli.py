@@ -33,7 +33,8 @@ NUMBERS += ("--young", "1GPa", "--poisson", "0.4", "--force", "3kN")
             (("press", EXAMPLE, "--model", "bartel"), "utf-8"),
             (("presets",), "utf-8"),
             (("press", "hip-29", "--force", "1"), "utf-8"),
-        ]
+        ],
+        1,
     ),
 )
 def test_a_process_prints_what_a_call_prints(words, encoding):
@@ -61,16 +62,9 @@ def test_a_full_disk_is_reported_in_one_line():
         done = subprocess.run(
             [sys.executable, "-m", "ballsocket", "presets"], stdout=out, stderr=subprocess.PIPE, encoding="utf-8"
         )
+        wrong = subprocess.run([sys.executable, "-m", "ballsocket", "pres"], stderr=out, stdout=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (2, "ballsocket: output: No space left on device\n")
-
-
-def test_the_status_of_a_wrong_command_does_not_depend_on_stderr():
-    full = Path("/dev/full")
-    if not full.exists():
-        pytest.skip("there is no such device here")
-    with full.open("w") as out:
-        done = subprocess.run([sys.executable, "-m", "ballsocket", "pres"], stderr=out, stdout=subprocess.PIPE)
-    assert (done.returncode, done.stdout) == (2, b"")
+    assert (wrong.returncode, wrong.stdout) == (2, b"")
 
 
 def test_the_table_of_an_unknown_width_is_that_of_80_columns():
@@ -100,6 +94,7 @@ def test_an_infinite_result_is_a_failure_in_one_line(monkeypatch, capsys):
     assert capsys.readouterr().out == ""
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 def test_a_terminated_process_removes_its_unfinished_files(tmp_path):
     study = "joint = 'hip-28'\n[axes]\nforce = {from = 1, to = 3000, count = 400_000}\n"
@@ -119,6 +114,7 @@ def test_a_terminated_process_removes_its_unfinished_files(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["s.toml"]
 
 
+@pytest.mark.long
 def test_control_characters_in_file_names_are_escaped(tmp_path):
     done = run("press", "a\x1b[31m.toml", folder=tmp_path)
     assert done.stderr.startswith(r"ballsocket: 'a\x1b[31m.toml' is neither a file nor a preset")
@@ -143,6 +139,7 @@ def test_an_error_message_is_one_line_below_700_characters(tmp_path):
     assert done.stderr == "ballsocket: no/where.npz: No such file or directory\n"
 
 
+@pytest.mark.long
 def test_two_samples_print_no_warning():
     """Two samples that are one have no interval; that is no warning to a user."""
     words = (
@@ -160,15 +157,7 @@ def test_two_samples_print_no_warning():
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_press_prints_the_table_of_a_file():
-    done = run("press", EXAMPLE)
-    assert done.returncode == 0
-    assert done.stderr == ""
-    for text in ("Fig. 3", "hess-forsbach", "40.73", "44.72", "11.27", "582.7", "yes", "█"):
-        assert text in done.stdout
-
-
-@pytest.mark.parametrize("columns", [40, 50, 60, 80, 100, 160])
+@pytest.mark.parametrize("columns", some([40, 50, 60, 80, 160, 100], 2))
 def test_the_table_is_not_wider_than_the_terminal(columns):
     done = run("press", EXAMPLE, "--all", columns=columns)
     lines = done.stdout.split("\n")
@@ -178,15 +167,6 @@ def test_the_table_is_not_wider_than_the_terminal(columns):
     for name in bs.catalogue:
         assert re.search(rf"^{name} .* (yes|no)", done.stdout, flags=re.MULTILINE)
     assert ("█" in done.stdout) == (columns >= 100)
-
-
-@pytest.mark.parametrize("words", [("models",), ("presets",)])
-def test_lists_are_not_wider_than_the_terminal(words):
-    for columns in (40, 80):
-        lines = run(*words, columns=columns).stdout.split("\n")
-        assert max(map(len, lines)) <= columns
-    narrow = run(*words, columns=40).stdout
-    assert ("kinematics" in narrow) or ("clearance" in narrow)
 
 
 def test_a_terminal_without_greek_letters_shows_ascii():
@@ -280,83 +260,6 @@ def test_a_joint_is_built_from_options():
 def test_a_load_option_replaces_the_load_of_the_file(load, name, value):
     done = run("press", EXAMPLE, load, "--json")
     assert json.loads(done.stdout)["results"][0][name] == pytest.approx(value, rel=1e-12)
-
-
-@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
-def test_press_writes_a_figure_in_each_format(tmp_path, ending):
-    path = tmp_path / f"press.{ending}"
-    done = run("press", EXAMPLE, "--all", "--figure", str(path))
-    assert done.returncode == 0
-    assert path.stat().st_size > 5_000
-    start = path.read_bytes()[:5]
-    assert start == {"png": b"\x89PNG\r", "svg": b"<?xml", "pdf": b"%PDF-"}[ending]
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["press"], "a joint is needed: a file, a preset's name, or --ball-radius"),
-        (["press", "nothing.toml"], "'nothing.toml' is neither a file nor a preset"),
-        (["press", "hip-29", "--force", "1"], "did you mean 'hip-"),
-        (["press", "hip-28"], "a load is needed: --force, --indentation or --half-angle"),
-        (["press", EXAMPLE, "--force", "3 kg"], "force = '3 kg' is not a force, such as '3 kN'"),
-        (["press", EXAMPLE, "--force", "-3"], "force = '-3' is not allowed: a force (N) is 0 or more and finite"),
-        (["press", EXAMPLE, "--force", "1", "--indentation", "1"], "one load is needed, got force, indentation"),
-        (
-            ["press", EXAMPLE, "--half-angle", "95"],
-            "half_angle = '95' is not allowed: a half angle (deg) is 0 or more and below 90",
-        ),
-        (["press", EXAMPLE, "--indentation=-2 um"], "indentation = '-2 um' is not allowed"),
-        (["press", *NUMBERS, "--clearance=-100um"], "clearance = '-100um' is not allowed: a radial clearance (mm) is"),
-        (["press", *NUMBERS, "--ball-young=-1GPa", "--ball-poisson=0"], "ball.young = '-1GPa' is not allowed"),
-        (["press", "", "--force", "1"], "the joint's name is empty"),
-        (["press", EXAMPLE, "--model", "herz"], "model 'herz' is not known; did you mean 'hertz'?"),
-        (["press", EXAMPLE, "--figure", "a.jpg"], "figure 'a.jpg' must end in .png, .svg, .pdf"),
-        (
-            ["press", EXAMPLE, "--figure", "/no/such/folder/a.png"],
-            "cannot write a.png: '/no/such/folder' is not a folder",
-        ),
-        (["press", "no/joint.toml"], "'no/joint.toml' does not exist: there is no folder 'no'"),
-        (["map", EXAMPLE, "--figure", "no/a.png"], "cannot write a.png: 'no' is not a folder"),
-        (["study", EXAMPLE, "--out", "no/a.csv"], "cannot write a.csv: 'no' is not a folder"),
-        (["press", EXAMPLE, "--model", "fem", "--vtk", "no/a.vtu"], "cannot write a.vtu: 'no' is not a folder"),
-        (["map", EXAMPLE, "--points", "1"], "points = 1 is not allowed: an axis has 2 values or more"),
-        (
-            ["optimise", EXAMPLE, "--vary", "clearance=0..1", "--points", "0"],
-            "points = 0 is not allowed: an axis has 2",
-        ),
-        (
-            ["map", EXAMPLE, "--limit", "area=3"],
-            "'area=3' is not a limit: it needs <= or >=, such as 'outer_radius<=26",
-        ),
-        (["press", EXAMPLE, "--liner", "uhmpe"], "liner material 'uhmpe' is not known; did you mean 'uhmwpe'?"),
-        (
-            ["press", EXAMPLE, "--ball-radius", "9", "--head-diameter", "18"],
-            "ball_radius and head_diameter are one too",
-        ),
-        (["press", "hip-36", "--outer-diameter", "30"], "outer_diameter = '30' is not allowed: it must leave a liner"),
-        (["press", EXAMPLE, "--colour"], "No such option: --colour"),
-        (["press", ".", "--force", "1"], "is a folder; a joint file is needed"),
-        (["press", *NUMBERS[:4], *NUMBERS[6:]], "liner_thickness is missing"),
-        (["press", *NUMBERS[:6], "--force", "1"], "the liner needs a material, or young and poisson"),
-        (["press", *NUMBERS[:8], "--poisson", "0.7", "--force", "1"], "liner.poisson = '0.7' is not allowed"),
-        (
-            ["press", *NUMBERS[:8], "--poisson", "0.5", "--force", "1", "--model", "bonded-layer"],
-            "bonded-layer has no answer for ν = 0.5: the modulus is unbounded",
-        ),
-        (["evidence"], "a question file is needed, or --check with the folder of a pack"),
-        (["evidence", "--check", "."], "holds no pack of evidence: checksums.txt is missing"),
-        (["pres"], "No such command 'pres'"),
-        (["cite", "herz"], "model, material or joint 'herz' is not known; did you mean 'hertz'?"),
-    ],
-)
-def test_wrong_input_is_reported_in_one_line_with_the_remedy(words, message):
-    done = run(*words)
-    assert done.returncode == 2
-    assert message in done.stderr
-    assert done.stderr.startswith("ballsocket: ")
-    assert done.stderr.count("\n") == 1
-    assert done.stdout == ""
 
 
 def pressed(*words):
@@ -474,17 +377,17 @@ def test_a_mistake_in_a_file_is_reported_with_its_name(tmp_path):
 UNREACHED = "the model does not reach this load"
 
 
-def test_a_model_without_a_result_among_others_is_a_note(tmp_path):
+def test_a_model_without_a_result_among_others_is_a_note():
     words = ["press", EXAMPLE, "--force", "1e12", "--model", "bartel", "--model", "hess-forsbach"]
-    done = run(*words, "--figure", str(tmp_path / "a.svg"))
+    done = run(*words)
     assert (done.returncode, done.stderr) == (0, "")
     assert f"bartel: {UNREACHED}" in done.stdout
     assert "hess-forsbach" in done.stdout
-    assert (tmp_path / "a.svg").stat().st_size > 5_000
     notes = {result["model"]: result["notes"] for result in json.loads(run(*words, "--json").stdout)["results"]}
     assert notes["bartel"] == [UNREACHED]
 
 
+@pytest.mark.long
 def test_all_models_solve_for_a_half_angle():
     done = run("press", "hip-28", "--half-angle", "30", "--all")
     assert (done.returncode, done.stderr) == (0, "")
@@ -522,6 +425,7 @@ def test_numbers_near_the_float_limit_are_reported_in_one_line():
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.long
 def test_a_figure_of_zero_load_prints_no_warning(tmp_path):
     done = run("press", "hip-28", "--force", "0", "--figure", str(tmp_path / "a.png"))
     assert (done.returncode, done.stderr) == (0, "")
@@ -539,36 +443,26 @@ def test_lists_references_version_and_help_are_printed():
     assert run("cite", "hertz").stdout.startswith("@article{hertz1882,")
     assert "@phdthesis{persson1964" in run("cite").stdout
     assert "@article{plank2007," in run("cite", "hip-28").stdout
-    unpublished = run("cite", "titanium")
-    assert (unpublished.returncode, unpublished.stdout) == (2, "")
-    assert "no known publication is named in the source of titanium" in unpublished.stderr
     assert run("--version").stdout == f"ballsocket {bs.__version__}\n"
     for words in ([], ["--help"], ["press", "--help"]):
         assert "Usage" in run(*words).stdout
 
 
-def test_a_closed_pipe_prints_no_traceback():
-    command = f"{sys.executable} -m ballsocket models | {sys.executable} -c pass"
-    done = subprocess.run(command, shell=True, capture_output=True, encoding="utf-8", timeout=60, check=False)
-    assert "Traceback" not in done.stderr
-
-
+@pytest.mark.long
 def test_press_by_finite_elements_shows_mesh_time_and_error_bars():
     done = run("press", EXAMPLE, "--model", "fem", columns=160)
-    assert done.returncode == 0
-    assert done.stderr == ""
-    assert re.search(r"^fem +3000 +40\.07 +42\.4", done.stdout, flags=re.MULTILINE)
-    assert re.search(
-        r"^fem: \d+ elements, [\d.]+ mm at the contact, [\d.]+ s; error of the mesh: d ±.* %, ε ±.* %, pmax ±",
-        done.stdout,
-        re.M,
-    )
+    assert (done.returncode, done.stderr) == (0, "")
+    _, _, indentation, half_angle = re.search(r"^fem .*", done.stdout, flags=re.MULTILINE)[0].split()[:4]
+    assert (float(indentation), float(half_angle)) == pytest.approx((40.07, 42.4), rel=2e-3)  # µm, degrees
+    mesh = r"^fem: \d+ elements, [\d.]+ mm at the contact, [\d.]+ s; error of the mesh: d ±.* %, ε ±.* %, pmax ±"
+    assert re.search(mesh, done.stdout, flags=re.MULTILINE)
     answer = json.loads(run("press", EXAMPLE, "--model", "fem", "--meshes", "1", "--json").stdout)["results"][0]
     assert answer["model"] == "fem"
     assert answer["error"]["indentation"] is None
     assert answer["mesh"]["elements"] > 1000
 
 
+@pytest.mark.long
 def test_cup_options_and_vtk_files_of_the_finite_elements(tmp_path):
     file = tmp_path / "cup.toml"
     file.write_text(Path(EXAMPLE).read_text(encoding="utf-8") + '\n[cup]\narc_of_cover = "100 deg"\nchamfer = "1 mm"\n')
@@ -582,41 +476,7 @@ def test_cup_options_and_vtk_files_of_the_finite_elements(tmp_path):
     assert "reaches its rim" not in wider.stdout
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (("--element-size", "1 mm"), "--element-size is for the finite elements: add --model fem"),
-        (("--vtk", "a.vtu"), "--vtk is for the finite elements: add --model fem"),
-        (("--model", "fem", "--arc-of-cover", "2 mm"), "arc_of_cover = '2 mm' is not an angle, such as '40 deg'"),
-        (
-            ("--model", "fem", "--arc-of-cover", "20 deg"),
-            "arc_of_cover = '20 deg' is not allowed: an arc of cover is 40 to",
-        ),
-        (("--model", "fem", "--interface", "glued"), "interface = 'glued' is not allowed: 'bonded' or 'sliding'"),
-        (("--model", "fem", "--element", "triangle"), "element 'triangle' is not known"),
-        (
-            ("--model", "fem", "--element-size", "9 mm"),
-            "liner_thickness = 6.75 is not allowed: a layer must have at least two elements of 9 mm",
-        ),
-        (("--model", "fem", "--element-size", "0.0005 mm"), "GiB of memory"),
-        (("--model", "fem", "--vtk", "a.txt"), "'a.txt' must end in .vtu, .vtk"),
-        (("--model", "fem", "--section", "a.txt"), "must end in .png, .svg, .pdf"),
-        (
-            (
-                "--model",
-                "fme",
-            ),
-            "model 'fme' is not known; did you mean 'fem'?",
-        ),
-    ],
-)
-def test_wrong_options_of_the_finite_elements_are_refused_in_one_sentence(words, message):
-    done = run("press", EXAMPLE, *words)
-    assert done.returncode == 2
-    assert message in done.stderr
-    assert done.stderr.count("\n") == 1
-
-
+@pytest.mark.long
 def test_deck_writes_input_files_and_expected_results(tmp_path):
     done = run("deck", EXAMPLE, "--out", str(tmp_path), "--steps", "2", "--force", "1 kN")
     assert done.returncode == 0
@@ -633,27 +493,28 @@ def test_deck_writes_input_files_and_expected_results(tmp_path):
         assert message in wrong.stderr
 
 
-def test_the_exact_result_is_first_and_deviations_follow():
-    lines = run("press", "hess-forsbach", "--force", "3 kN").stdout.splitlines()
-    names = [line.split()[0] for line in lines if line.startswith(("exact", "hess-forsbach ", "  Δ"))]
-    assert names == ["exact", "hess-forsbach", "Δ"]
-    marked = next(line.split() for line in lines if line.startswith("  Δ"))
-    assert marked == ["Δ", "%", "+2.0", "+5.4", "+0.9", "+10.5", "-3.3", "+2.6", "-1.1", "-6.7"]
-    said = " ".join(line.strip() for line in lines)
-    assert "ε half angle" in said
-    assert "Δ % from exact" in said
-
-
+@pytest.mark.long
 def test_an_invalid_exact_result_is_not_first():
     shown = run("press", str(EXAMPLES / "tilted_hip.toml")).stdout
     assert shown.index("\nsphere ") < shown.index("\nexact ")
 
 
-def test_unknown_units_are_refused_in_one_sentence():
-    done = run("press", "hip-36", "--force", "3 kN", "--units", "inch")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "Value error" not in done.stderr
-    assert "'inch' is not one of 'si', 'imperial'" in done.stderr
+def test_the_exact_result_is_first_and_deviations_follow():
+    lines = run("press", "hess-forsbach", "--force", "3 kN").stdout.splitlines()
+    rows = {line.split()[0]: line.split() for line in lines if line.startswith(("exact", "hess-forsbach ", "  Δ"))}
+    assert list(rows) == ["exact", "hess-forsbach", "Δ"]
+    exact, paper = ([float(word) for word in rows[name][2:9]] for name in ("exact", "hess-forsbach"))
+    differences = [100 * (value / reference - 1) for value, reference in zip(paper, exact, strict=True)]
+    assert [float(word) for word in rows["Δ"][2:9]] == pytest.approx(differences, abs=0.1)  # printed with 0.1 %
+
+
+@pytest.mark.parametrize("ending", some(["png", "svg", "pdf"], 1))
+def test_press_writes_a_figure_in_each_format(tmp_path, ending):
+    path = tmp_path / f"press.{ending}"
+    done = run("press", EXAMPLE, "--all", "--figure", str(path))
+    assert done.returncode == 0
+    assert path.stat().st_size > 5_000
+    assert path.read_bytes().startswith({"png": b"\x89PNG\r", "svg": b"<?xml", "pdf": b"%PDF-"}[ending])
 
 
 def test_imperial_units_show_inches_and_pounds():
@@ -662,9 +523,8 @@ def test_imperial_units_show_inches_and_pounds():
     heads, units, numbers = (line.split() for line in shown[-5:-2])
     values = dict(zip(heads, [None, *map(float, numbers[1:9])], strict=False))
     assert units == ["lbf", "mil", "°", "psi", "in²", "kip/in", "lbf", "in", "ksi/in"]
-    assert values["F"] == pytest.approx(3000 / 4.448222, rel=1e-3)
-    assert values["d"] == pytest.approx(0.03991695 / 0.0254, rel=1e-3)
-    assert values["pmax"] == pytest.approx(11.17 / 6.894757e-3, rel=1e-3)
-    assert values["dF/dd"] == pytest.approx(124.43e3 / 175.1268, rel=1e-3)
-    assert values["K"] == pytest.approx(279.8 / 0.2714471, rel=1e-3)
+    contact = bs.Exact().press(bs.joints["hess-forsbach"], force=3000.0)
+    expected = {"F": 3000 / 4.448222, "d": contact.indentation / 0.0254, "pmax": contact.max_pressure / 6.894757e-3}
+    expected |= {"dF/dd": contact.stiffness / 175.1268, "K": contact.foundation_modulus / 0.2714471}
+    assert {name: values[name] for name in expected} == pytest.approx(expected, rel=1e-3)  # four digits are printed
     assert run(*words, "--json", "--units", "imperial").stdout == run(*words, "--json").stdout

@@ -60,6 +60,7 @@ def test_areas_alone_identify_only_the_product(folder):
     assert said["products"][0]["value"] == pytest.approx(HIP.clearance * HIP.liner.young, rel=1e-2)
 
 
+@pytest.mark.long
 def test_the_command_writes_figures_and_samples(folder):
     pytest.importorskip("emcee")
     pictures = ("--figure", "fit.png", "--corner", "corner.png", "--experiment", "next.png")

@@ -73,6 +73,7 @@ def test_the_next_step_after_an_invalid_model_gives_a_valid_result():
     assert 0 < better["error"]["exact"]["max_pressure"] < 1e-6
 
 
+@pytest.mark.long
 def test_the_next_step_after_optimise_presses_the_best_joint():
     answer = said(*ASKED["optimise"])
     step = shlex.split(answer["next"][0]["command"])[1:]
@@ -103,6 +104,7 @@ def test_json_of_a_small_study_has_extremes_and_all_values(tmp_path):
     assert answer["values"]["max_pressure"][1] == answer["quantities"]["max_pressure"]["largest"]["value"]
 
 
+@pytest.mark.long
 def test_several_joints_have_an_answer_and_next_steps_each():
     names = ("hip-32", "hip-36")
     answer = said("press", *names, "--force", "3 kN")

@@ -173,15 +173,6 @@ def test_the_source_of_a_custom_model_is_cited():
         Source("doe", bibtex=entry)
 
 
-def test_cite_prints_sources_of_materials_and_joints():
-    assert "goodman1965" not in run("cite", "pom").stdout
-    assert run("cite", "pom").stdout.startswith("@")
-    assert "{plank2007," in run("cite", "hip-28").stdout
-    refused = run("cite", "titanium")
-    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
-    assert "no known publication is named in the source of titanium" in refused.stderr
-
-
 def test_compare_takes_a_list_of_models_and_names():
     answers = bs.compare(HIP, force=3000.0, models=[bs.Exact(), "hertz"])
     assert list(answers) == ["exact", "hertz"]

@@ -14,7 +14,6 @@ import typer
 import ballsocket as bs
 from ballsocket.cli.options import JointOptions
 from ballsocket.cli.root import app, load_commands
-from ballsocket.core.deprecation import MOVED
 from ballsocket.core.quantities import QUANTITIES
 
 from .command import run
@@ -135,14 +134,6 @@ def test_help_of_a_command_fits_80_columns_and_begins_with_its_purpose(name):
     assert text.split("\n\n")[1].strip() == COMMANDS[name].__doc__.partition("\n")[0]
 
 
-@pytest.mark.parametrize("name", [*ORDER, "build-tables"])
-def test_every_option_is_described_in_sentences(name):
-    for parameter in typer.main.get_command(app).commands[name].params:
-        assert re.match(r"(?:fem: |sphere: )?\w", parameter.help)
-        assert parameter.help.endswith(".") or parameter.name == "help"
-        assert not re.search(r"\b(?:asks?|told|so many|whoever|in place of|one's own)\b", parameter.help)
-
-
 JOINT_OPTIONS = {field.name for field in fields(JointOptions)}
 """Options whose default is the joint file or the preset, as the help of the argument states."""
 
@@ -161,10 +152,6 @@ def test_every_option_states_its_unit_and_its_default(name):
         elif option.name not in JOINT_OPTIONS and not (option.required or option.default is not None):
             stated = r"Default|^(fem: |sphere: )?[Ww]rite |Not with --|^Show this"
             assert re.search(stated, text), f"--{option.name} has no default: {text}"
-
-
-def test_help_uses_the_width_of_the_terminal():
-    assert 100 > max(map(len, run("press", "-h", columns=100).stdout.splitlines())) > 80
 
 
 @pytest.mark.parametrize(("words", "program"), [(("--foo",), "ballsocket"), (("press", "--qqq"), "ballsocket press")])
@@ -203,12 +190,3 @@ def test_an_unknown_command_suggests_the_nearest_ones():
 
 def test_without_a_command_the_help_is_printed():
     assert (run().returncode, run().stdout) == (0, run("--help").stdout)
-
-
-def test_a_command_runs_twice_in_one_process():
-    assert run("cite", "hertz").stdout == run("cite", "hertz").stdout != ""
-
-
-@pytest.mark.parametrize("path", [path for path in MOVED if path.startswith("ballsocket.cli.")])
-def test_old_paths_of_modules_are_importable(path):
-    assert import_module(path).__name__ == MOVED[path]

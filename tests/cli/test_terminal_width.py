@@ -44,6 +44,8 @@ TABLES = {
 }
 """Commands that print a table, with arguments that take little time."""
 
+SLOW = {"hip", "calibrate"}
+
 WITHOUT_TABLE = {
     *("app", "serve-mcp"),  # servers
     *("cite", "schema", "build-tables"),  # BibTeX, JSON
@@ -62,7 +64,9 @@ def test_every_command_is_measured_or_has_no_table():
     assert {*TABLES, *WITHOUT_TABLE} == {*load_commands()}
 
 
-@pytest.mark.parametrize("command", TABLES)
+@pytest.mark.parametrize(
+    "command", [pytest.param(name, marks=pytest.mark.long if name in SLOW else ()) for name in TABLES]
+)
 def test_tables_fit_narrow_terminals_without_cut_numbers(command, folder):
     for columns in some((60, 80), 1):
         done = run(command, *TABLES[command], columns=columns, folder=folder)
@@ -71,12 +75,14 @@ def test_tables_fit_narrow_terminals_without_cut_numbers(command, folder):
         assert "…" not in done.stdout
 
 
+@pytest.mark.long
 def test_all_numbers_of_a_wide_table_are_in_a_narrow_one(folder):
     for command in ("curve", "study", "calibrate", "identify"):
         wide, narrow = (run(command, *TABLES[command], columns=width, folder=folder).stdout for width in (200, 40))
         assert {*re.findall(r"\d\S*", wide)} <= {*re.findall(r"\d\S*", narrow)}
 
 
+@pytest.mark.long
 def test_a_narrow_press_table_names_the_columns_that_it_omits():
     symbols = {quantity.symbol for quantity in CONTACT.values()} - {"p0", "φmax"}  # same as pmax, and zero
     for columns in (80, 60, 40):

@@ -1,0 +1,120 @@
+"""Wrong input at the terminal: one line that names the mistake and the remedy, and exit status 2."""
+
+import re
+import shlex
+
+import pytest
+
+from ..places import EXAMPLES
+from .command import run
+
+ABBREVIATIONS = {
+    "{hip}": shlex.quote(str(EXAMPLES / "hip.toml")),
+    "{hip-36}": "hip-36 --force 3kN",
+    "{sizes}": "--ball-radius 16 --clearance 0.1 --liner-thickness 6",
+    "{numbers}": "{sizes} --young 1GPa --poisson 0.4 --force 3kN",
+}
+
+REFUSED = """
+press => a joint is needed: a file, a preset's name, or --ball-radius
+press nothing.toml => 'nothing.toml' is neither a file nor a preset
+press hip-29 --force 1 => did you mean 'hip-
+press hip-28 => a load is needed: --force, --indentation or --half-angle
+press {hip} --force '3 kg' => force = '3 kg' is not a force, such as '3 kN'
+press {hip} --force -3 => force = '-3' is not allowed: a force (N) is 0 or more and finite
+press {hip} --force 1 --indentation 1 => one load is needed, got force, indentation
+press {hip} --half-angle 95 => half_angle = '95' is not allowed: a half angle (deg) is 0 or more and below 90
+press {hip} '--indentation=-2 um' => indentation = '-2 um' is not allowed
+press {numbers} --clearance=-100um => clearance = '-100um' is not allowed: a radial clearance (mm) is
+press {numbers} --ball-young=-1GPa --ball-poisson=0 => ball.young = '-1GPa' is not allowed
+press '' --force 1 => the joint's name is empty
+press {hip} --model herz => model 'herz' is not known; did you mean 'hertz'?
+press {hip} --figure a.jpg => figure 'a.jpg' must end in .png, .svg, .pdf
+press {hip} --figure /no/such/folder/a.png => cannot write a.png: '/no/such/folder' is not a folder
+press no/joint.toml => 'no/joint.toml' does not exist: there is no folder 'no'
+map {hip} --figure no/a.png => cannot write a.png: 'no' is not a folder
+study {hip} --out no/a.csv => cannot write a.csv: 'no' is not a folder
+press {hip} --model fem --vtk no/a.vtu => cannot write a.vtu: 'no' is not a folder
+map {hip} --points 1 => points = 1 is not allowed: an axis has 2 values or more
+optimise {hip} --vary clearance=0..1 --points 0 => points = 0 is not allowed: an axis has 2
+map {hip} --limit area=3 => 'area=3' is not a limit: it needs <= or >=, such as 'outer_radius<=26
+press {hip} --liner uhmpe => liner material 'uhmpe' is not known; did you mean 'uhmwpe'?
+press {hip} --ball-radius 9 --head-diameter 18 => ball_radius and head_diameter are one too
+press hip-36 --outer-diameter 30 => outer_diameter = '30' is not allowed: it must leave a liner
+press {hip} --colour => No such option: --colour
+press . --force 1 => is a folder; a joint file is needed
+press --ball-radius 16 --clearance 0.1 --young 1GPa --poisson 0.4 --force 3kN => liner_thickness is missing
+press {sizes} --force 1 => the liner needs a material, or young and poisson
+press {sizes} --young 1GPa --poisson 0.7 --force 1 => liner.poisson = '0.7' is not allowed
+press {sizes} --young 1GPa --poisson 0.5 --force 1 --model bonded-layer => bonded-layer has no answer for ν = 0.5
+evidence => a question file is needed, or --check with the folder of a pack
+evidence --check . => holds no pack of evidence: checksums.txt is missing
+pres => No such command 'pres'
+press {hip} --units inch => 'inch' is not one of 'si', 'imperial'
+cite titanium => no known publication is named in the source of titanium
+cite herz => model, material or joint 'herz' is not known; did you mean 'hertz'?
+
+press {hip} --element-size '1 mm' => --element-size is for the finite elements: add --model fem
+press {hip} --vtk a.vtu => --vtk is for the finite elements: add --model fem
+press {hip} --model fem --arc-of-cover '2 mm' => arc_of_cover = '2 mm' is not an angle, such as '40 deg'
+press {hip} --model fem --arc-of-cover '20 deg' => arc_of_cover = '20 deg' is not allowed: an arc of cover is 40 to
+press {hip} --model fem --interface glued => interface = 'glued' is not allowed: 'bonded' or 'sliding'
+press {hip} --model fem --element triangle => element 'triangle' is not known
+press {hip} --model fem --element-size '9 mm' => liner_thickness = 6.75 is not allowed: a layer must have
+press {hip} --model fem --element-size '0.0005 mm' => GiB of memory
+press {hip} --model fem --vtk a.txt => 'a.txt' must end in .vtu, .vtk
+press {hip} --model fem --section a.txt => must end in .png, .svg, .pdf
+press {hip} --model fme => model 'fme' is not known; did you mean 'fem'?
+
+film {hip} --viscosity '-1 mPa s' => a viscosity (Pa s) is positive and finite
+film {hip} --spin inf => a rotation rate (rad/s) is finite
+film {hip} --spin '3 mm' => is not a rotation rate
+film {hip} --spin-axis 1,2 => spin_axis = '1,2' must be three numbers 'x,y,z'
+film {hip} --spin-axis 0,0,0 => an axis has a positive and finite length
+film {hip} --method magic => method
+film {hip} --clearance 0 => without clearance no lubricant enters
+film {hip} --interference '0.02 mm' --model sphere => interference = 0.02 mm is not allowed
+film {hip} --model refined --method reynolds => springs
+
+press {hip-36} --tilt '200 deg' => tilt = 200
+press {hip-36} --tilt steep => tilt = 'steep'
+press {hip-36} --direction 1,0 => three numbers
+press {hip-36} --direction 0,0,0 => points somewhere
+press {hip-36} --tilt 10 --direction 0,0,1 => both
+press {hip-36} --tilt 10 --model fem => use --model sphere
+press {hip-36} --tilt 10 --ring-width '20 deg' => 0.5 to 6 degrees
+press {hip-36} --ring-width '2 deg' => --ring-width is for contact on the sphere: add --model sphere
+
+press {hip-36} --vtk a.vtu => --vtk is for the finite elements: add --model fem, or sphere
+press {hip-36} --section a.png => --section is for the finite elements
+press {hip-36} --view a.png => --view is for contacts off the axis: add --model sphere
+press {hip-36} --view a.svg --tilt 20 => must end in .png
+
+orient {hip-36} --points 2 --inclination '30 to 60' => inclination = '30 to 60' is not an angle, such as '40 deg'
+orient {hip-36} --points 2 --step 5 => --step and --points are one too many: either fixes the other
+orient {hip-36} --points 2 --limit 'area<=3' => --limit of area is not possible here; possible:
+orient {hip-36} --points 2 --limit edge_distance => 'edge_distance' is not a limit, such as
+orient {hip-36} --points 2 --inclination 30..100 => inclination is 0 to 90 degrees
+orient {hip-36} --points 2 --direction 0,0,0 => points somewhere
+orient {hip-36} --points 2 --ring-width '20 deg' => 0.5 to 6 degrees
+
+press suspension-ball-joint --interference 0.03 --force 9 --pull-out => --pull-out needs the arc of cover: add
+press hip-28 --force 9 --pull-out --model exact => --pull-out is solved by the model sphere
+press hip-28 --force 9 --pull-out => a socket of 180 deg does not hold its ball
+press hip-28 --force 9 --static-friction 0.1 => --static-friction needs the coefficient of sliding
+press hip-28 --force 9 --friction 0.2 --static-friction 0.1 => static_coefficient = 0.1
+press hip-28 --force 9 --friction -1 => coefficient = -1 is not allowed
+"""
+"""Commands, and words of the message after the arrow."""
+
+
+@pytest.mark.parametrize("case", [line for line in REFUSED.splitlines() if line])
+def test_wrong_input_is_refused_in_one_line_with_the_remedy(case, tmp_path):
+    command, _, message = case.partition(" => ")
+    for short, long in reversed(ABBREVIATIONS.items()):
+        command = command.replace(short, long)
+    done = run(*shlex.split(command), folder=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert message in done.stderr
+    assert re.fullmatch("ballsocket: .*\n", done.stderr)
+    assert not list(tmp_path.iterdir())
