@@ -15,17 +15,6 @@ Newton's method on a graded grid: P is linear between its points, H is taken at 
 import itertools
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
-
-START_POINTS = np.arange(-5.0, 10.1, 0.5)
-START = np.array(
-    [
-        *(0.0775, 0.0906, 0.1069, 0.1277, 0.1541, 0.1884, 0.2328, 0.291, 0.3666, 0.4637, 0.5848, 0.7297, 0.8942),
-        *(1.0704, 1.2493, 1.4237, 1.5894, 1.7445, 1.8892, 2.0241, 2.1507, 2.2696, 2.3822, 2.4892, 2.5913, 2.6894),
-        *(2.7833, 2.8742, 2.9621, 3.0471, 3.1296),
-    ]
-)
-"""First estimate of P."""
 
 UPSTREAM, DOWNSTREAM = 200.0, 400.0
 """Ends of the grid."""
@@ -34,13 +23,8 @@ GAUSS = np.polynomial.legendre.leggauss(24)
 
 
 def estimate(points):
-    """Interpolate the first estimate, with the asymptotes on both sides."""
-    low, high = START_POINTS[[0, -1]]
-    middle = PchipInterpolator(START_POINTS, START)(np.clip(points, low, high))
-    upstream = START[0] * (low / np.minimum(points, low)) ** 2
-    beyond = np.maximum(points, high)
-    downstream = np.sqrt(beyond) + (START[-1] - np.sqrt(high)) * (high / beyond) ** 1.5
-    return np.where(points < low, upstream, np.where(points > high, downstream, middle))
+    """First estimate of P, with its powers on both sides."""
+    return np.sqrt((points + np.hypot(points, 0.69)) / 2) / (1 + (np.minimum(points, 0.0) / 1.5) ** 2)
 
 
 def make_grid(finest):

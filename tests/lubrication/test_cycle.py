@@ -15,12 +15,11 @@ from ballsocket.lubrication.mesh import graded_rings, polar_mesh, thinned_meridi
 from ballsocket.lubrication.reynolds import FilmProblem, FilmState, solve_steady
 from ballsocket.lubrication.transient import LoadStep, film_over_steps, solve_cycle
 
+from .. import extent
 from ..extent import either, some
+from .test_film import CONTACT, JOINT, LINER, SPRINGS
 
-JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.4))
 MODULUS, VISCOSITY = 276.67, 2.5e-9
-SPRINGS = bs.RadialFoundation(modulus=bs.constant(MODULUS))
-CONTACT = SPRINGS.press(JOINT, force=1500.0)
 EDGES = np.arange(0.0, radians(60.0), radians(2.0))
 MESH = polar_mesh(18.0, EDGES, thinned_meridians(EDGES, 120))
 
@@ -48,12 +47,12 @@ def rocking_motion(amplitude, tilt, count):
     return (ball[1:] * ball[:-1].inv()).as_rotvec(), load
 
 
-def rocking(joint=JOINT, modulus=MODULUS, force=1000.0, amplitude=0.35, tilt=35.0, count=20):
+def rocking(joint=JOINT, modulus=MODULUS, force=1000.0, amplitude=0.35, tilt=35.0, count=20, width=3.0):
     """Cells of the bore, and instants of a ball that rocks once a second under a constant load."""
     spins, load = rocking_motion(amplitude, tilt, count)
     contact = bs.RadialFoundation(modulus=bs.constant(modulus)).press(joint, force=force)
-    rings = np.arange(0.0, radians(86.0), radians(3.0))
-    mesh = polar_mesh(joint.socket_radius, rings, thinned_meridians(rings, 120))
+    rings = np.arange(0.0, radians(86.0), radians(width))
+    mesh = polar_mesh(joint.socket_radius, rings, thinned_meridians(rings, round(360 / width)))
     clearance = joint.clearance
     pressure = modulus * np.maximum((clearance + contact.indentation) * (mesh.direction @ load) - clearance, 0.0)
     edge = SpringEdge(slope=contact.edge_slope, modulus=modulus)
@@ -114,7 +113,7 @@ def test_a_long_swing_repeats_and_its_two_strokes_are_alike():
 
 def test_a_short_swing_about_one_axis_squeezes_the_middle():
     """As at rest, 1/h² grows with time: 26 nm after 100 s, half of it after 400 s."""
-    films = {cycles: carry_over_cycle(MESH, VISCOSITY, swing(0.1, 20), cycles) for cycles in (100, 400)}
+    films = {cycles: carry_over_cycle(MESH, VISCOSITY, swing(0.1, 10), cycles) for cycles in (100, 400)}
     assert films[100].drift == pytest.approx(0.0, abs=1e-12)
     assert films[100].refreshed_share.max() < 0.6
     assert not films[400].settled
@@ -128,13 +127,15 @@ def test_rocking_about_two_axes_turns_the_film_and_settles_its_core():
 
     It was solved in the frame of the film, where nothing slides, with an ambient pressure of 0.1 MPa.
     """
-    mesh, instants = rocking()
-    film, early = carry_over_cycle(mesh, VISCOSITY, instants), carry_over_cycle(mesh, VISCOSITY, instants, 10)
-    assert np.degrees(film.drift) == pytest.approx(5.5, abs=0.2)
-    assert film.settled
-    assert film.converged
-    assert 1e6 * film.central[-1] == pytest.approx(59.5, rel=0.03)
+    mesh, instants = rocking(width=either(5.0, 3.0))
+    early = carry_over_cycle(mesh, VISCOSITY, instants, 10)
+    assert np.degrees(early.drift) == pytest.approx(5.5, abs=0.2)
     assert 1e6 * early.central[-1] == pytest.approx(84.5, rel=0.03)
+    if extent.whole:
+        film = carry_over_cycle(mesh, VISCOSITY, instants)
+        assert film.settled
+        assert film.converged
+        assert 1e6 * film.central[-1] == pytest.approx(59.5, rel=0.03)
 
 
 @pytest.mark.long
@@ -143,7 +144,7 @@ def test_reynolds_equation_confirms_the_core_of_another_joint():
 
     Reynolds' equation has 315, 164 and 168 nm after 3, 10 and 20 cycles, and 174 nm in place of 168 on cells of 5°.
     """
-    joint = bs.Joint(ball_radius=14.0, clearance=0.06, liner_thickness=8.0, liner=JOINT.liner)
+    joint = bs.Joint(ball_radius=14.0, clearance=0.06, liner_thickness=8.0, liner=LINER)
     case = {"joint": joint, "modulus": 250.0, "force": 800.0, "amplitude": 0.45, "tilt": 45.0, "count": 20}
     mesh, instants = rocking(**case)
     judge = 1e6 * solve_in_frame_of_the_film(**case, cycles=20, viscosity=1e-8)
@@ -152,18 +153,8 @@ def test_reynolds_equation_confirms_the_core_of_another_joint():
         assert 1e6 * film.central[-1] == pytest.approx(judge[cycles - 1], rel=film.error[-1])
 
 
-REVERSING = {
-    0.0: 139.0,
-    0.025: 153.0,
-    0.05: 186.0,
-    0.1: 233.0,
-    0.15: 236.0,
-    0.25: 200.0,
-    0.35: 169.0,
-    0.4: 156.5,
-    0.45: 145.0,
-    0.475: 139.0,
-}
+REVERSING_PARTS = np.array([0.0, 0.025, 0.05, 0.1, 0.15, 0.25, 0.35, 0.4, 0.45, 0.475])
+REVERSING_FILMS = np.array([139.0, 153.0, 186.0, 233.0, 236.0, 200.0, 169.0, 156.5, 145.0, 139.0])
 """Central film in nm by the part of the cycle, by Reynolds' equation.
 
 In the second cycle, on 92 rings of 16 cells in 640 steps. It is extrapolated to many cells from rings of 12 and 24
@@ -171,7 +162,7 @@ cells, by up to 14 nm, and to short steps from 640 and 2560, by up to 7 nm. The 
 """
 
 
-@pytest.mark.parametrize(("width", "count"), some([(2.0, 40), (2.0, 160), (1.0, 160)], few=1))
+@pytest.mark.parametrize(("width", "count"), some([(2.0, 40), (1.0, 160)], 1))
 def test_the_stated_error_covers_a_cycle_that_reverses_load_and_motion(width, count):
     """The ball swings by 86° in 6 s while the load goes from 300 to 2000 N and back, twice."""
     phase = (np.arange(count) + 0.5) / count
@@ -192,13 +183,12 @@ def test_the_stated_error_covers_a_cycle_that_reverses_load_and_motion(width, co
         for pressure, slope, time in zip(pressures, contacts.edge_slope, phase, strict=True)
     ]
     film = carry_over_cycle(mesh, VISCOSITY, instants, 3)
-    parts = np.array(list(REVERSING)) + 0.5
-    central, error = (np.interp(parts, phase, values) for values in (1e6 * film.central, film.error))
-    assert (np.abs(central / list(REVERSING.values()) - 1) < error).all()
+    central, error = (np.interp(REVERSING_PARTS + 0.5, phase, values) for values in (1e6 * film.central, film.error))
+    assert (np.abs(central / REVERSING_FILMS - 1) < error).all()
 
 
 def test_a_ball_that_does_not_move_has_no_film():
-    film = carry_over_cycle(MESH, VISCOSITY, swing(0.0))
+    film = carry_over_cycle(MESH, VISCOSITY, swing(0.0, 4))
     assert film.central == pytest.approx(0.0)
 
 
@@ -238,6 +228,7 @@ def load_steps(forces, rates, duration):
     ]
 
 
+@pytest.mark.long
 def test_every_step_of_a_cycle_that_reverses_load_and_motion_is_solved():
     """From 300 to 2000 N and back, twice a second, while the ball swings by 46 degrees."""
     problem, start = springs_problem(0.8, 3.0, 12, low=300.0, high=2000.0)
@@ -279,11 +270,11 @@ def test_a_step_without_a_solution_keeps_the_last_film_and_its_status():
 
 def test_every_step_of_an_elastic_cycle_is_solved():
     """Load and motion reverse; the bodies are those of `exact`."""
-    phase = (np.arange(either(quick=3, long=12)) + 0.5) / 24
+    phase = (np.arange(either(quick=2, long=6)) + 0.5) / 12
     forces = 1150 - 850 * np.cos(4 * pi * phase)
     motion = np.outer(5.0 * np.cos(2 * pi * phase), (1.0, 0.0, 0.0))
     oil = bs.Lubricant(viscosity=1e-2)
-    film = film_over_steps(bs.Exact(), JOINT, forces=forces, spins=motion, durations=1 / 24, lubricant=oil)
+    film = film_over_steps(bs.Exact(), JOINT, forces=forces, spins=motion, durations=1 / 12, lubricant=oil)
     assert film.film.converged
     loads = film.pressure * film.case.problem.mesh.area @ film.case.problem.mesh.direction
     assert loads[:, 2] == pytest.approx(forces, rel=1e-4)
@@ -293,13 +284,12 @@ def test_every_step_of_an_elastic_cycle_is_solved():
 
 
 def test_parts_of_a_step_ramp_load_and_motion():
-    """Four parts of a step are four steps along a straight line of loads."""
+    """Two parts of a step are two steps along a straight line of loads."""
     problem, start = springs_problem(1.0, 3.0, 12, low=1000.0, high=1500.0)
-    rising, falling = np.linspace(1000.0, 1500.0, 5), np.linspace(1500.0, 1000.0, 5)
-    parts = solve_cycle(problem, start, load_steps([1000.0, 1500.0], [5.0, 5.0], 0.04), parts=4)
-    steps = load_steps([*falling[1:], *rising[1:]], np.full(8, 5.0), 0.01)
+    parts = solve_cycle(problem, start, load_steps([1000.0, 1500.0], [5.0, 5.0], 0.04), parts=2)
+    steps = load_steps([1250.0, 1000.0, 1250.0, 1500.0], np.full(4, 5.0), 0.02)
     assert parts.converged
-    assert parts.thickness == pytest.approx(solve_cycle(problem, start, steps).thickness[[3, 7]], rel=1e-6)
+    assert parts.thickness == pytest.approx(solve_cycle(problem, start, steps).thickness[[1, 3]], rel=1e-6)
 
 
 def test_steps_are_resolved_if_the_edge_moves_less_than_an_inlet_length():
@@ -325,23 +315,6 @@ def test_an_elastic_start_up_ends_at_the_steady_film():
     assert film.film.converged
     assert film.central[-1] == pytest.approx(steady.central, rel=0.01)
     assert film.minimum[-1] == pytest.approx(steady.minimum, rel=0.04)  # of first order in the cells at the edge
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ({"forces": [1500.0, -1.0]}, r"forces\[1\] = -1 is not allowed: a film needs a load"),
-        ({"durations": 0.0}, r"durations = 0 is not allowed: a step \(s\) takes time"),
-        ({"spins": [(1.5, 0.0, 0.0)]}, r"spins of shape \(1, 3\) .* are not allowed for 2 forces"),
-        ({"spins": [(0.0, 0.0, 1.5), (0.0, 0.0, 0.0)]}, "does not move across the load in any step"),
-        ({"model": bs.Hertz()}, "method = 'reynolds' is not possible for hertz"),
-        ({"forces": [10.0, 3000.0], "lubricant": bs.Lubricant(viscosity=1e-9)}, r"the edge of the contact moves by"),
-    ],
-)
-def test_steps_that_cannot_be_solved_are_refused(words, message):
-    usual = {"model": SPRINGS, "forces": [1000.0, 1500.0], "spins": [(1.5, 0.0, 0.0)] * 2, "durations": 0.05} | words
-    with pytest.raises(ValueError, match=message):
-        film_over_steps(usual.pop("model"), JOINT, **usual)
 
 
 @pytest.mark.long

@@ -1,6 +1,7 @@
 """Steady film of a pressed contact by its three methods: each is judged by the next one."""
 
 from dataclasses import replace
+from functools import cache
 from math import radians
 
 import numpy as np
@@ -8,34 +9,69 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.validity import Status
+from ballsocket.lubrication import film_problem
 from ballsocket.lubrication.dry_contact import dry_contact
 from ballsocket.lubrication.wave import FilmWave, godunov_flow
 
 from ..extent import some
 from .galerkin_film import GalerkinFilm
 
-JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.4))
+LINER = bs.Material(young=1000.0, poisson=0.4)
+JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LINER)
 SPRINGS = bs.RadialFoundation(modulus=bs.constant(276.67))
 CONTACT = SPRINGS.press(JOINT, force=1500.0)
+ELASTIC = bs.Exact().press(JOINT, force=1500.0)
+HIP_28 = replace(JOINT, ball_radius=14.0, liner_thickness=8.0)
+HIP_22 = bs.Joint(ball_radius=11.1, clearance=0.15, liner_thickness=9.0, liner=bs.Material(young=700.0, poisson=0.45))
+HIP_40 = bs.Joint(ball_radius=20.0, clearance=0.05, liner_thickness=5.0, liner=replace(LINER, young=1200.0))
+METAL_50 = bs.Joint(ball_radius=25.0, clearance=0.05, liner_thickness=10.0, liner=bs.Material(young=210e3, poisson=0.3))
+CASES = {
+    "springs": (JOINT, 276.67, 1500.0, 10.0, 2.5e-3),
+    "slow": (JOINT, 276.67, 1500.0, 0.1, 2.5e-3),
+    "metal": (METAL_50, 30000.0, 1500.0, 1.5, 2.5e-3),
+    "thin": (HIP_40, 400.0, 800.0, 4.0, 5e-3),
+    "elastic 28": (HIP_28, None, 1500.0, 1.5, 2.5e-3),
+    "elastic 36": (JOINT, None, 3000.0, 5.0, 2.5e-3),
+    "elastic 22": (HIP_22, None, 1000.0, 2.0, 2.5e-3),
+    "elastic 40": (HIP_40, None, 800.0, 2.0, 2.5e-3),
+    "elastic": (JOINT, None, 1500.0, 10.0, 2.5e-3),
+}
+"""Joint, modulus of springs in MPa/mm (else `exact`), load in N, rotation in rad/s and viscosity in Pa s.
+
+The least film of the elastic contacts was not fitted to any of them.
+"""
+
+
+@cache
+def solved_film(case, method):
+    joint, modulus, force, rate, viscosity = CASES[case]
+    model = bs.Exact() if modulus is None else bs.RadialFoundation(modulus=bs.constant(modulus))
+    words = {"spin": (rate, 0.0, 0.0), "lubricant": bs.Lubricant(viscosity=viscosity), "method": method}
+    return bs.film(model.press(joint, force=force), **words)
 
 
 @pytest.mark.parametrize(
-    ("rate", "central", "least"),
-    some([(10.0, 515.2, 433.0), (100.0, 1774.2, 1456.1)], 1),
+    ("rate", "central", "least", "meridians", "error"),
+    [
+        (10.0, 515.2, 433.0, 24, 0.016),
+        pytest.param(10.0, 515.2, 433.0, 64, 0.003, marks=pytest.mark.long),
+        pytest.param(100.0, 1774.2, 1456.1, 64, 0.003, marks=pytest.mark.long),
+    ],
 )
-def test_reynolds_on_springs(rate, central, least):
+def test_reynolds_on_springs(rate, central, least, meridians, error, monkeypatch):
     """Values of quadratic finite elements, `galerkin_film.py`; finite volumes of half the width agree to 0.2 %.
+
+    The error falls with the square of the number of meridians: the product has 64.
 
     Upwind differences of first order have 535 and 441.6 nm, and 1857 and 1490 nm, on rings of 2 degrees. On rings of
     0.24, 0.12, 0.06 and 0.03 degrees they have 523.3, 520.0, 518.0 and 517.0 nm, and 1793.0, 1782.9, 1777.7 and 1775.0.
     """
+    monkeypatch.setattr(film_problem, "_ON_SPRINGS", replace(film_problem._ON_SPRINGS, meridians=meridians))
     film = bs.film(CONTACT, spin=(rate, 0.0, 0.0), method="reynolds")
     assert film.status is Status.OK
     assert film.valid
-    assert 1e6 * film.central == pytest.approx(central, rel=0.003)
-    assert 1e6 * film.minimum == pytest.approx(least, rel=0.003)
-    load = (film.pressure * film.areas) @ film.directions
-    assert load == pytest.approx([0.0, 0.0, 1500.0], abs=1e-3)
+    assert 1e6 * film.central == pytest.approx(central, rel=error)
+    assert 1e6 * film.minimum == pytest.approx(least, rel=error)
 
 
 @pytest.mark.long
@@ -48,69 +84,26 @@ def test_finite_elements_confirm_the_finite_volumes():
     assert volumes.minimum == pytest.approx(least, rel=0.003)
 
 
-def make_joint(ball_radius, clearance, liner_thickness, young, poisson=0.4):
-    """Joint of a rigid ball."""
-    return bs.Joint(
-        ball_radius=ball_radius,
-        clearance=clearance,
-        liner_thickness=liner_thickness,
-        liner=bs.Material(young=young, poisson=poisson),
-    )
-
-
-HIP_28, HIP_22 = make_joint(14.0, 0.1, 8.0, 1000.0), make_joint(11.1, 0.15, 9.0, 700.0, 0.45)
-HIP_40, METAL_50 = make_joint(20.0, 0.05, 5.0, 1200.0), make_joint(25.0, 0.05, 10.0, 210e3, 0.3)
-ON_SPRINGS = [
-    (JOINT, 276.67, 1500, 0.1, 2.5e-3),
-    (JOINT, 276.67, 1500, 1.5, 2.5e-3),
-    (JOINT, 276.67, 1500, 10, 2.5e-3),
-    (JOINT, 276.67, 1500, 50, 2.5e-3),
-    (HIP_28, 250, 500, 1.5, 2.5e-3),
-    (HIP_28, 250, 3000, 5, 1e-2),
-    (HIP_22, 150, 200, 2, 2.5e-3),
-    (HIP_22, 150, 2500, 1, 1e-2),
-    (METAL_50, 30000, 1500, 1.5, 2.5e-3),
-    (METAL_50, 30000, 4000, 0.3, 1e-3),
-    (HIP_40, 400, 800, 4, 5e-3),
-    (HIP_40, 400, 3000, 1, 1e-3),
-]
-"""Joint, modulus of springs in MPa/mm, load in N, rotation in rad/s and viscosity in Pa s."""
-
-ELASTIC = [
-    (HIP_28, None, 1500, 1.5, 2.5e-3),
-    (HIP_28, None, 500, 5, 2.5e-3),
-    (JOINT, None, 3000, 5, 2.5e-3),
-    (JOINT, None, 400, 2, 2.5e-3),
-    (HIP_22, None, 1000, 2, 2.5e-3),
-    (HIP_22, None, 2500, 4, 1e-2),
-    (HIP_40, None, 800, 2, 2.5e-3),
-    (HIP_40, None, 2500, 10, 2.5e-3),
-    (JOINT, None, 1500, 30, 2.5e-3),
-]
-"""Contacts by `exact`; none of them was used to fit the film at the sides."""
-
-CASES = [*some(ON_SPRINGS[::2], 1), *some(ELASTIC[::2], 1)]
-
-
-@pytest.mark.parametrize(("joint", "modulus", "force", "rate", "viscosity"), CASES)
-def test_the_wave_keeps_its_stated_error(joint, modulus, force, rate, viscosity):
+@pytest.mark.parametrize("case", some(reversed(CASES), 1))
+def test_the_wave_keeps_its_stated_error(case):
     """Central and least film against Reynolds' equation, which has errors of 0.5 % on springs and 3 % elsewhere."""
-    model = bs.Exact() if modulus is None else bs.RadialFoundation(modulus=bs.constant(modulus))
-    contact, lubricant = model.press(joint, force=float(force)), bs.Lubricant(viscosity=viscosity)
-    wave, judge = (
-        bs.film(contact, spin=(float(rate), 0.0, 0.0), lubricant=lubricant, method=method)
-        for method in ("wave", "reynolds")
-    )
+    wave, judge = (solved_film(case, method) for method in ("wave", "reynolds"))
     assert judge.status is Status.OK
     assert wave.central == pytest.approx(judge.central, rel=wave.error)
     assert wave.minimum == pytest.approx(judge.minimum, rel=wave.error)
-    assert wave.valid == (wave.error <= 0.1 and contact.valid)
+    assert wave.valid == (wave.error <= 0.1 and judge.contact.valid)
+    load = (judge.pressure * judge.areas) @ judge.directions
+    assert load == pytest.approx([0.0, 0.0, CASES[case][2]], abs=0.01)
+
+
+def test_reynolds_on_elastic_bodies():
+    """Central 468 nm; with 48 meridians in place of 40 it is 467 nm."""
+    assert 1e6 * solved_film("elastic", "reynolds").central == pytest.approx(467.5, rel=0.01)
 
 
 @pytest.mark.long
 def test_the_film_pressure_tends_to_the_dry_one():
-    film = bs.film(CONTACT, spin=(0.1, 0.0, 0.0), method="reynolds")
-    assert film.pressure.max() == pytest.approx(CONTACT.max_pressure, rel=0.005)
+    assert solved_film("slow", "reynolds").pressure.max() == pytest.approx(CONTACT.max_pressure, rel=0.005)
 
 
 def test_wave_films_on_springs_scale_with_the_root_of_viscosity_and_speed():
@@ -122,26 +115,15 @@ def test_wave_films_on_springs_scale_with_the_root_of_viscosity_and_speed():
     assert 1e6 * fine.minimum == pytest.approx(131.4, rel=0.02)
 
 
-def test_the_direction_of_the_motion_turns_the_map():
-    along, across = bs.film(CONTACT, spin=(2.0, 0.0, 0.0)), bs.film(CONTACT, spin=(0.0, 2.0, 0.0))
-    assert along.central == pytest.approx(across.central, rel=0.005)
-    assert along.minimum == pytest.approx(across.minimum, rel=0.005)
-
-
-def test_reynolds_on_elastic_bodies_confirms_the_wave():
-    """Central 468 and least 285 nm; with 48 meridians in place of 40 they are 467 and 288 nm."""
-    contact = bs.Exact().press(JOINT, force=1500.0)
-    judge, wave = (bs.film(contact, spin=(10.0, 0.0, 0.0), method=method) for method in ("reynolds", "wave"))
-    assert judge.status is Status.OK
-    assert 1e6 * judge.central == pytest.approx(467.5, rel=0.01)
-    assert wave.central == pytest.approx(judge.central, rel=wave.error)
-    assert wave.minimum == pytest.approx(judge.minimum, rel=wave.error)
-    assert (judge.pressure * judge.areas) @ judge.directions == pytest.approx([0.0, 0.0, 1500.0], abs=0.01)
+@pytest.mark.parametrize(("spin", "error"), [((0.0, 2.0, 0.0), 0.005), ((-2.0, 0.0, 0.0), 1e-6)])
+def test_the_direction_of_the_motion_turns_the_map(spin, error):
+    along, turned = (bs.film(CONTACT, spin=rate) for rate in ((2.0, 0.0, 0.0), spin))
+    assert turned.central == pytest.approx(along.central, rel=error)
+    assert turned.minimum == pytest.approx(along.minimum, rel=error)
 
 
 def test_film_at_the_exact_contact_loses_little_on_its_way():
-    contact = bs.Exact().press(JOINT, force=1500.0)
-    inlet, wave = (bs.film(contact, method=method) for method in ("inlet", "wave"))
+    inlet, wave = (bs.film(ELASTIC, method=method) for method in ("inlet", "wave"))
     assert wave.central == pytest.approx(inlet.central, rel=inlet.error)
     assert wave.central < inlet.central
     assert wave.valid
@@ -149,23 +131,14 @@ def test_film_at_the_exact_contact_loses_little_on_its_way():
 
 
 @pytest.mark.parametrize(
-    "surface", [bs.Springs(modulus=bs.constant(276.67)), bs.ClosedShell()], ids=["springs", "shell"]
+    ("surface", "axial"),
+    [(bs.Springs(modulus=bs.constant(276.67)), CONTACT), (bs.ClosedShell(), ELASTIC)],
+    ids=["springs", "shell"],
 )
-def test_a_tilted_load_has_the_film_of_an_axial_one(surface):
+def test_a_tilted_load_has_the_film_of_an_axial_one(surface, axial):
     """The axis of rotation is tilted with the load: the same contact, on cells that cut its edge."""
-    tilt = 0.5
-    model = bs.Sphere(surface=surface)
-    axial = bs.film(CONTACT if surface.edge_exponent == 1 else bs.Exact().press(JOINT, force=1500.0))
-    tilted = bs.film(model.press(JOINT, force=1500.0, tilt=tilt), spin=(0.0, 1.5, 0.0))
-    assert tilted.central == pytest.approx(axial.central, rel=0.03)
-
-
-def test_a_contact_at_the_rim_says_that_its_inlet_is_starved():
-    contact = bs.Sphere().press(JOINT, force=3000.0, tilt=radians(70.0))
-    film = bs.film(contact)
-    assert contact.edge_loaded
-    assert not film.valid
-    assert any("rim cuts the contact" in note for note in film.notes)
+    contact = bs.Sphere(surface=surface).press(JOINT, force=1500.0, tilt=0.5)
+    assert bs.film(contact, spin=(0.0, 1.5, 0.0)).central == pytest.approx(bs.film(axial).central, rel=0.03)
 
 
 @pytest.mark.parametrize("method", ["inlet", "wave", "reynolds"])
@@ -211,41 +184,16 @@ def test_godunovs_flow_is_that_of_the_film_between():
 
 
 def test_a_film_that_does_not_become_steady_is_returned_with_its_status(monkeypatch):
-    from ballsocket.lubrication import film_problem as module
-
-    monkeypatch.setattr(module, "develop_film", lambda problem, start, *steps: replace(start, converged=False))
+    monkeypatch.setattr(film_problem, "develop_film", lambda problem, start, *steps: replace(start, converged=False))
     film = bs.film(CONTACT, method="reynolds")
     assert film.status is Status.NOT_CONVERGED
     assert film.central > 0
     assert not film.valid
 
 
-@pytest.mark.parametrize(
-    ("contact", "words", "message"),
-    [
-        (CONTACT, {"spin": (np.nan, 0.0, 0.0)}, r"spin\[0\] = nan is not allowed"),
-        (CONTACT, {"spin": (0.0, np.inf, 0.0)}, r"spin\[1\] = inf is not allowed"),
-        (CONTACT, {"spin": (1.0, 0.0)}, "spin"),
-        (CONTACT, {"spin": [[1.0, 0.0, 0.0]]}, "one rotation rate"),
-        (CONTACT, {"method": "magic"}, "inlet"),
-        (CONTACT, {"spin": (1e300, 0.0, 0.0)}, r"spin\[0\] = 1e\+300 is not allowed: a rotation rate"),
-        (CONTACT, {"cell_width": 2.0}, "cell_width = 2 is not allowed: a cell is 0.0035 to 0.175 rad wide"),
-        (bs.Hertz().press(JOINT, force=1.0), {"method": "reynolds"}, "springs"),
-        (SPRINGS.press(JOINT, force=np.array([1.0, 2.0])), {}, "single contact"),
-        (SPRINGS.press(JOINT, force=0.0), {}, "force = 0 N is not allowed"),
-        (SPRINGS.press(replace(JOINT, clearance=0.0), force=10.0), {}, "clearance = 0 mm is not allowed"),
-    ],
-)
-def test_bad_input_is_refused_in_one_sentence(contact, words, message):
-    with pytest.raises(ValueError, match=message) as refusal:
-        bs.film(contact, **words)
-    assert "\n" not in str(refusal.value)
-
-
-@pytest.mark.parametrize("model", [SPRINGS, bs.Exact()], ids=["springs", "elastic"])
-def test_a_film_that_circles_within_the_contact_is_not_valid(model):
+@pytest.mark.parametrize("contact", [CONTACT, ELASTIC], ids=["springs", "elastic"])
+def test_a_film_that_circles_within_the_contact_is_not_valid(contact):
     """An axis at 20° from the load passes through the contact, one at 60° does not."""
-    contact = model.press(JOINT, force=1500.0)
     near, far = (
         bs.film(contact, spin=(1.5 * np.sin(angle), 0.0, 1.5 * np.cos(angle)), cell_width=radians(4.0))
         for angle in np.radians([20.0, 60.0])
@@ -254,35 +202,6 @@ def test_a_film_that_circles_within_the_contact_is_not_valid(model):
     assert any("axis of the rotation passes through the contact" in note for note in near.notes)
     assert far.valid
     assert far.notes == contact.notes
-
-
-def test_other_objects_are_refused():
-    with pytest.raises(TypeError, match="contact must be a pressed contact"):
-        bs.film(JOINT)
-    with pytest.raises(TypeError, match="lubricant must be a Lubricant"):
-        bs.film(CONTACT, lubricant=2.5e-3)
-    with pytest.raises(TypeError, match="cell_width must be a number"):
-        bs.film(CONTACT, cell_width="2 deg")
-
-
-@pytest.mark.parametrize("name", ["viscosity", "ball_roughness", "cup_roughness", "friction"])
-@pytest.mark.parametrize("value", ["1", None, [1e-3, 2e-3]])
-def test_a_lubricant_has_single_numbers(name, value):
-    with pytest.raises(TypeError, match=f"{name} must be"):
-        bs.Lubricant(**{name: value})
-
-
-@pytest.mark.parametrize("viscosity", [np.inf, np.nan, -1e-3, 0.0])
-def test_a_viscosity_is_positive_and_finite(viscosity):
-    with pytest.raises(ValueError, match=r"viscosity = .* is not allowed: a viscosity \(Pa s\) is positive and finite"):
-        bs.Lubricant(viscosity=viscosity)
-
-
-def test_a_negative_spin_turns_the_film_round():
-    """A rotation rate may have either sign."""
-    forward, backward = (bs.film(CONTACT, spin=(rate, 0.0, 0.0)) for rate in (1.5, -1.5))
-    assert backward.central == pytest.approx(forward.central, rel=1e-6)
-    assert backward.minimum == pytest.approx(forward.minimum, rel=1e-6)
 
 
 @pytest.mark.parametrize(

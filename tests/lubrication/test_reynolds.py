@@ -5,12 +5,11 @@ import pytest
 from scipy.sparse.linalg import spsolve
 
 from ballsocket.lubrication.balance import balance_cells
-from ballsocket.lubrication.mesh import polar_mesh
+from ballsocket.lubrication.mesh import FilmMesh, polar_mesh
 from ballsocket.lubrication.reynolds import FilmProblem, FilmState, advance, solve_steady
 
 from ..extent import either
 from .rigid_fields import squeeze_pressure, wedge_pressure
-from .strip import strip_mesh
 
 RADIUS, CLEARANCE, ECCENTRICITY, VISCOSITY = 18.0, 0.1, 0.08, 2.5e-9
 CAVITY = {"radius": RADIUS, "clearance": CLEARANCE, "eccentricity": ECCENTRICITY, "viscosity": VISCOSITY}
@@ -50,6 +49,28 @@ def test_spin_about_the_eccentricity_makes_no_pressure():
     film, empty = CLEARANCE - ECCENTRICITY * mesh.direction[:, 2], np.zeros(mesh.cells)
     balance = balance_cells(mesh, np.array([0.0, 0.0, 10.0]), VISCOSITY, film, empty, empty, np.zeros(24))
     assert np.abs(balance.outflow).max() < 1e-12 * 10.0 * RADIUS * CLEARANCE * mesh.width.max()
+
+
+def strip_mesh(edges):
+    """Divide a strip of unit width along x into cells between `edges` (mm); `spin` is then the sliding velocity."""
+    centre = 0.5 * (edges[1:] + edges[:-1])
+    cells = len(centre)
+    inner = np.arange(cells - 1)
+    along = np.array([1.0, 0.0, 0.0])
+    return FilmMesh(
+        area=np.diff(edges),
+        direction=np.zeros((cells, 3)),
+        first=inner,
+        second=inner + 1,
+        width=np.ones(cells - 1),
+        first_distance=edges[1:-1] - centre[:-1],
+        second_distance=centre[1:] - edges[1:-1],
+        axis=np.tile(along, (cells - 1, 1)),
+        rim_cell=np.array([0, cells - 1]),
+        rim_width=np.ones(2),
+        rim_distance=np.array([centre[0] - edges[0], edges[-1] - centre[-1]]),
+        rim_axis=np.stack([-along, along]),
+    )
 
 
 def pocketed_slider(cells, speed):
