@@ -13,7 +13,7 @@ import ballsocket as bs
 from ballsocket.dynamics import Bristles, ContactState, Damping, Flores, Friction
 from ballsocket.dynamics.potential import CurvePotential, energy_curve
 
-from ..extent import either, some
+from ..extent import either
 from ..joints import HIP
 
 C = HIP.clearance
@@ -23,8 +23,7 @@ LOSSY = {
 }
 CUPS = {"sphere": None, "cup": bs.Cup(), "leaning cup": bs.Cup(inclination=radians(50.0), arc_of_cover=radians(150.0))}
 EVERY_CUP = pytest.mark.parametrize("cup", CUPS.values(), ids=CUPS)
-LAWS = ["hess-forsbach", "bartel", "hertz", "refined", "tabulated", "exact"]
-EVERY_LAW = pytest.mark.parametrize("model", [bs.catalogue[name] for name in LAWS], ids=LAWS)
+LAWS = ["hess-forsbach", "bartel", "hertz", "refined", "tabulated", pytest.param("exact", marks=pytest.mark.long)]
 
 
 def states(count, seed=1, deepest=0.08):
@@ -36,8 +35,9 @@ def states(count, seed=1, deepest=0.08):
     return position, random.normal(scale=100.0, size=(count, 3)), random.normal(scale=5.0, size=(count, 3))
 
 
-@EVERY_LAW
-def test_force_in_any_direction_equals_that_of_the_model(model):
+@pytest.mark.parametrize("name", LAWS)
+def test_force_in_any_direction_equals_that_of_the_model(name):
+    model = bs.catalogue[name]
     element = bs.ForceElement(model, HIP)
     position = states(40)[0]
     load = element(position)
@@ -69,22 +69,34 @@ def test_force_and_tangent_are_derivatives_of_the_energy(model, cup, smoothing):
     np.testing.assert_array_equal(load.tangent, np.swapaxes(load.tangent, -1, -2))
 
 
+def check_damping_matrix(element, position, velocity, spin, error=None):
+    """The damping matrix is symmetric and the derivative of the loads over the rates."""
+    matrix, step = element(position, velocity, spin).damping_matrix, 1e-4
+    differences, rates = np.zeros_like(matrix), np.concatenate([velocity, spin], axis=1)
+    for axis in range(6):
+        ends = [element(position, *np.hsplit(rates + sign * step * np.eye(6)[axis], 2)) for sign in (1, -1)]
+        loads = [np.concatenate([end.force, end.moment], axis=1) for end in ends]
+        differences[:, :, axis] = (loads[1] - loads[0]) / (2 * step)
+    np.testing.assert_allclose(matrix, differences, atol=error or 1e-6 * np.abs(matrix).max())
+    np.testing.assert_allclose(matrix, np.swapaxes(matrix, -1, -2), atol=1e-12 * np.abs(matrix).max())
+
+
 @EVERY_CUP
 def test_damping_matrix_is_symmetric_and_the_derivative_over_the_speeds(cup):
-    friction = Friction(coefficient=0.0, viscous=1e-4)
-    element = bs.ForceElement(bs.HessForsbach(), HIP, damping=LOSSY["damping"], cup=cup)
-    rubbing = bs.ForceElement(bs.HessForsbach(), HIP, friction=LOSSY["friction"], cup=cup)
-    for damped in (element, rubbing, bs.ForceElement(bs.HessForsbach(), HIP, friction=friction)):
-        position, velocity, spin = (np.asarray(values) for values in states(30))
-        D = damped(position, velocity, spin).damping_matrix
-        differences, rates, step = np.zeros_like(D), np.concatenate([velocity, spin], axis=1), 1e-4
-        for axis in range(6):
-            shift = step * np.eye(6)[axis]
-            up, down = (damped(position, (rates + dr)[:, :3], (rates + dr)[:, 3:]) for dr in (shift, -shift))
-            ends = [np.concatenate([end.force, end.moment], axis=1) for end in (up, down)]
-            differences[:, :, axis] = -(ends[0] - ends[1]) / (2 * step)
-        np.testing.assert_allclose(D, differences, atol=1e-6 * np.abs(D).max())
-        np.testing.assert_allclose(D, np.swapaxes(D, -1, -2), atol=1e-12 * np.abs(D).max())
+    for losses in (
+        {"damping": LOSSY["damping"], "cup": cup},
+        {"friction": LOSSY["friction"], "cup": cup},
+        {"friction": Friction(coefficient=0.0, viscous=1e-4)},
+    ):
+        check_damping_matrix(bs.ForceElement(bs.HessForsbach(), HIP, **losses), *states(30))
+
+
+def test_smoothed_damping_matrix_is_the_derivative_over_the_speeds_where_the_ball_sticks_or_leaves():
+    """The smoothed separation of the contact is differentiable at every speed."""
+    element = bs.ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.01, time=2e-4), smoothing=0.02)
+    for speed in (-200.0, -95.0, -82.0, -70.0, 0.0, 50.0):
+        position, velocity = np.array([[0.0, 0.0, C + 0.05]]), np.array([[3.0, 0.0, speed]])
+        check_damping_matrix(element, position, velocity, np.zeros((1, 3)), 2e-5)
 
 
 @EVERY_CUP
@@ -112,9 +124,8 @@ def test_dissipation_is_positive_and_balances_the_power(cup, smoothing):
             load, stored = element(position, velocity, spin), elastic(position).force
             assert (load.dissipation >= 0.0).all()
             work = np.sum((load.force - stored) * velocity + load.moment * spin, axis=1)
-            size = np.sum(
-                np.abs(load.force * velocity) + np.abs(stored * velocity) + np.abs(load.moment * spin), axis=1
-            )
+            parts = load.force * velocity, stored * velocity, load.moment * spin
+            size = np.sum(np.abs(parts), axis=(0, 2))
             assert (np.abs(work + load.dissipation) <= 1e-12 * size).all()
 
 
@@ -158,6 +169,9 @@ def test_smoothed_force_is_twice_differentiable_and_exact_beyond_the_smoothing()
     bend = np.diff(tangent, axis=1)[:, 0] / (2 * step)
     assert bend[0] == pytest.approx(0.0, abs=1e-3 * bend[2])
     assert smooth((0.0, 0.0, C - 0.0201)).force == (0.0, 0.0, 0.0)
+    widest = replace(sharp, smoothing=C)
+    assert widest((0.0, 0.0, 1e-3)).force[2] < 0
+    assert widest((0.0, 0.0, 0.0)).force == (0.0, 0.0, 0.0)
 
 
 def test_force_vanishes_over_the_rim_and_the_notes_report_it():
@@ -182,22 +196,11 @@ def test_numbers_and_arrays_of_any_library_agree():
     position, velocity, spin = states(12)
     load = element(position, velocity, spin)
     strict = element(*map(array_api_strict.asarray, (position, velocity, spin)))
-    for name in (
-        "force",
-        "moment",
-        "energy",
-        "tangent",
-        "dissipation",
-        "socket_moment",
-        "half_angle",
-        "status",
-        "film_thickness",
-    ):
+    names = "force moment energy tangent dissipation socket_moment half_angle status film_thickness"
+    for name in names.split():
         expected = getattr(load, name)
         np.testing.assert_allclose(np.asarray(getattr(strict, name)), expected, rtol=1e-13, atol=1e-12)
-        single = [
-            getattr(element(*map(tuple, state)), name) for state in np.stack([position, velocity, spin], 1).tolist()
-        ]
+        single = [getattr(element(*state), name) for state in zip(*(x.tolist() for x in states(12)), strict=True)]
         np.testing.assert_allclose(np.array(single, dtype=float), expected, rtol=1e-9, atol=1e-9)
     assert type(element((0.0, 0.0, 0.12)).tangent[0]) is tuple
 
@@ -241,44 +244,20 @@ def test_status_reports_overflow_and_nan_of_rates_and_bristles(rates, friction):
         assert bent.status is ContactState.NO_NUMBER
 
 
-@pytest.mark.parametrize(
-    ("make", "message"),
-    [
-        (lambda: Damping(hysteresis=-0.1), "hysteresis = -0.1 is not allowed: damping must be at least 0"),
-        (lambda: Damping(time=nan), "time = nan is not allowed"),
-        (lambda: Flores(restitution=1.1, impact_speed=1.0), "restitution = 1.1 is not allowed"),
-        (lambda: Flores(restitution=0.5, impact_speed=0.0), "impact_speed = 0 is not allowed"),
-        (lambda: Friction(coefficient=-0.1), "coefficient = -0.1 is not allowed: friction must be at least 0"),
-        (lambda: Friction(coefficient=0.1, static_coefficient=0.05), "static friction must be at least"),
-        (lambda: bs.ForceElement(bs.HessForsbach(), HIP, smoothing=0.2), "between 0 and the clearance"),
-        (lambda: bs.ForceElement(bs.HessForsbach(), HIP)((0.0, 1.0)), "a state must have three components"),
-    ],
-)
-def test_invalid_parameters_are_rejected(make, message):
-    with pytest.raises(ValueError, match=message):
-        make()
-    with pytest.raises(TypeError, match="damping must be a Damping, got 0.3"):
-        bs.ForceElement(bs.HessForsbach(), HIP, damping=0.3)
-
-
 def test_validity_warning_is_logged_once(caplog):
     element = bs.ForceElement(bs.Hertz(), HIP)
+    array = replace(element)
     with caplog.at_level(logging.WARNING, logger="ballsocket.dynamics"):
         element((0.0, 0.0, C + 1e-5))
+        assert element((0.0, 0.0, C + 1.01 * element.wall)).status is ContactState.THROUGH_WALL
         assert caplog.messages == []
         for depth in (0.05, 0.06):
             element((0.0, 0.0, C + depth))
             element(np.array([[0.0, 0.0, C + depth]]))
-    (message,) = caplog.messages
+        (message,) = caplog.messages
+        array(np.array([[0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05]]))
     assert message.startswith("hertz at an indentation of 0.05 mm: outside ε")
-
-
-@pytest.mark.parametrize("position", [(0.0, 0.0, C + 0.05), np.array([[0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05]])])
-def test_validity_warning_is_logged_for_numbers_and_for_arrays(position, caplog):
-    with caplog.at_level(logging.WARNING, logger="ballsocket.dynamics"):
-        bs.ForceElement(bs.Hertz(), HIP)(position)
-    (message,) = caplog.messages
-    assert message.startswith("hertz at an indentation of 0.05 mm")
+    assert caplog.messages == [message] * 2
 
 
 def test_half_angle_of_springs_has_its_cosine_down_to_a_millionth_of_the_clearance():
@@ -292,57 +271,13 @@ def test_half_angle_of_springs_has_its_cosine_down_to_a_millionth_of_the_clearan
     assert element.half_angle(np.array([-1.0, 0.0, 0.05])).tolist()[:2] == [0.0, 0.0]
 
 
-@pytest.mark.parametrize(
-    ("state", "message"),
-    [
-        ((np.zeros((5, 2)),), r"position .*x, y, z \(mm\)"),
-        ((np.zeros((5, 3)), np.zeros((5, 2))), r"velocity .*x, y, z \(mm/s\)"),
-        ((np.zeros((5, 3)), np.zeros((5, 3)), np.zeros(4)), r"spin .*x, y, z \(rad/s\)"),
-    ],
-)
-def test_arrays_without_three_components_are_rejected(state, message):
-    with pytest.raises(ValueError, match=message):
-        bs.ForceElement(bs.HessForsbach(), HIP)(*state)
-
-
-def test_contact_beyond_the_wall_is_a_status_and_no_warning(caplog):
-    element = bs.ForceElement(bs.Hertz(), HIP)
-    with caplog.at_level(logging.WARNING, logger="ballsocket.dynamics"):
-        assert element((0.0, 0.0, C + 1.01 * element.wall)).status is ContactState.THROUGH_WALL
-        assert element((0.0, 0.0, C + 0.99 * element.wall)).status is ContactState.CONTACT
-    assert len(caplog.messages) == 1
-
-
 def test_wall_is_the_liner_thickness_or_the_range_of_the_model():
     assert bs.ForceElement(bs.HessForsbach(), HIP).wall == HIP.liner_thickness
     thick = replace(HIP, liner_thickness=100.0)
     assert bs.ForceElement(bs.HessForsbach(), thick).wall == HIP.socket_radius
     tabulated = bs.ForceElement(bs.Tabulated(), HIP)
     assert tabulated.wall == min(HIP.liner_thickness, tabulated.potential.deepest)
-
-
-def test_largest_smoothing_is_the_clearance():
-    element = bs.ForceElement(bs.Hertz(), HIP, smoothing=C)
-    assert element((0.0, 0.0, 1e-3)).force[2] < 0
-    assert element((0.0, 0.0, 0.0)).force == (0.0, 0.0, 0.0)
-    with pytest.raises(ValueError, match="smoothing"):
-        bs.ForceElement(bs.Hertz(), HIP, smoothing=1.001 * C)
-
-
-def test_smoothed_damping_matrix_is_the_derivative_over_the_speeds_where_the_ball_sticks_or_leaves():
-    """The smoothed separation of the contact is differentiable at every speed."""
-    element = bs.ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.01, time=2e-4), smoothing=0.02)
-    step = 1e-4
-    for speed in (-200.0, -95.0, -82.0, -70.0, 0.0, 50.0):
-        load = element((0.0, 0.0, C + 0.05), (3.0, 0.0, speed))
-        for axis in range(3):
-            ends = []
-            for sign in (1, -1):
-                velocity = np.array([3.0, 0.0, speed])
-                velocity[axis] += sign * step
-                ends.append(element((0.0, 0.0, C + 0.05), tuple(velocity.tolist())).force)
-            slope = -np.subtract(*ends) / (2 * step)
-            np.testing.assert_allclose(load.damping_matrix[:3, axis], slope, atol=2e-6 * 0.01 * 1e3)
+    assert tabulated((0.0, 0.0, C + 0.99 * tabulated.wall)).status is ContactState.CONTACT
 
 
 def test_normal_force_of_a_leaving_ball_is_zero_and_never_tensile():
@@ -386,15 +321,10 @@ def test_curve_of_the_energy_integrates_a_power_law_from_its_first_indentation()
 
 def test_jax_derivatives_of_the_energy_equal_force_and_tangent():
     jax = pytest.importorskip("jax")
+    element = bs.ForceElement(bs.Tabulated(), HIP, cup=CUPS["leaning cup"], smoothing=0.02)
     with jax.enable_x64(True):
-        _check_jax_derivatives(jax)
-
-
-def _check_jax_derivatives(jax):
-    for model in some([bs.HessForsbach(), bs.Tabulated()], 1):
-        element = bs.ForceElement(model, HIP, cup=CUPS["leaning cup"], smoothing=0.02)
-        slope, bend = (derive(lambda r, e=element: e(r).energy) for derive in (jax.grad, jax.hessian))
-        push = jax.jit(lambda r, e=element: e(r, 10.0 * r, r).force)
+        slope, bend = (derive(lambda r: element(r).energy) for derive in (jax.grad, jax.hessian))
+        push = jax.jit(lambda r: element(r, 10.0 * r, r).force)
         for centre in ([0.01, 0.02, C], [0.0, 0.0, 0.0], [0.0, 0.0, C + 0.05], [C + 0.04, 0.0, 0.02]):
             position = jax.numpy.asarray(centre)
             load = element(position)

@@ -11,6 +11,7 @@ from scipy.sparse.linalg import splu
 import ballsocket as bs
 from ballsocket.dynamics import Bristles, ContactState, Damping, Friction, simulate
 
+from ..extent import either
 from ..joints import HIP
 from ..lubrication import rigid_fields
 
@@ -128,12 +129,11 @@ def test_a_thin_film_squeezes_as_between_spheres_of_the_reduced_radius():
 @EVERY_CUP
 @EVERY_TENSION
 def test_the_film_takes_energy_in_every_state_and_its_loss_balances_the_power(cup, tension):
-    """Check 10^5 random positions, velocities and spins."""
     element = replace(WET, cup=cup, film_tension=tension)
-    position, velocity, spin = states(10**5)
+    position, velocity, spin = states(either(10**4, 10**5))
     load, elastic = element(position, velocity, spin), replace(DRY, cup=cup)(position).force
     touched = load.status != ContactState.FREE
-    assert 10**4 < touched.sum() < 9 * 10**4
+    assert 0.1 < touched.mean() < 0.9
     power = np.sum((load.force - elastic) * velocity + load.moment * spin, axis=1)
     size = np.sum(np.abs(load.force * velocity) + np.abs(elastic * velocity) + np.abs(load.moment * spin), axis=1)
     assert (load.dissipation >= 0.0).all()
@@ -146,7 +146,7 @@ def test_the_film_takes_energy_in_every_state_and_its_loss_balances_the_power(cu
     "losses", [{}, LOSSY, {"film_tension": 0.1}], ids=["film", "film, damping and friction", "cavitating film"]
 )
 def test_the_damping_matrix_is_symmetric_and_positive_semidefinite(cup, losses):
-    position, velocity, spin = states(2000)
+    position, velocity, spin = states(either(500, 2000))
     load = replace(WET, cup=cup, **losses)(position, velocity, spin)
     D = load.damping_matrix
     np.testing.assert_array_equal(D, np.swapaxes(D, -1, -2))
@@ -226,15 +226,12 @@ def test_the_tension_of_a_ball_that_leaves_is_limited_as_by_cavitation(share, sp
 
 def test_the_damping_matrix_of_a_cavitating_film_is_the_derivative_over_the_speeds():
     position, velocity, spin = states(300)
-    element, step = replace(WET, film_tension=0.1), 1e-4 * np.eye(3)
-    D = element(position, velocity, spin).damping_matrix
-    differences = []
-    for change in step:
-        ends = (element(position, velocity + sign * change, spin) for sign in (-1, 1))
-        low, high = (np.concatenate([end.force, end.moment], axis=1) for end in ends)
-        differences.append((low - high) / 2e-4)
+    element = replace(WET, film_tension=0.1)
+    D, step = element(position, velocity, spin).damping_matrix, 1e-4 * np.eye(3)
+    ends = [[element(position, velocity + sign * change, spin) for sign in (-1, 1)] for change in step]
+    loads = np.array([[np.concatenate([end.force, end.moment], axis=1) for end in pair] for pair in ends])
     size = np.abs(D).max(axis=(1, 2), keepdims=True)
-    assert (np.abs(D[:, :, :3] - np.stack(differences, axis=-1)) <= 1e-3 * size).all()
+    assert (np.abs(D[:, :, :3] - np.moveaxis(loads[:, 0] - loads[:, 1], 0, -1) / 2e-4) <= 1e-3 * size).all()
     assert (np.abs(D[:, 2, 2] - WET(position, velocity, spin).damping_matrix[:, 2, 2]) > 0.1 * size[:, 0, 0]).any()
 
 
@@ -343,42 +340,3 @@ def test_a_free_ball_in_a_film_has_no_contact_but_a_load():
     assert load.force[2] < 0.0
     assert np.isnan(WET((0.0, 0.0, 0.05), (0.0, nan, 10.0)).force).any()
     assert "lubricant Lubricant" in str(WET)
-
-
-@pytest.mark.parametrize(
-    ("joint", "lubricant", "message"),
-    [
-        ({"clearance": 0.0}, {}, "clearance = 0 is not allowed: a lubricant needs a film"),
-        ({"clearance": 1e-3}, {}, "at most half of the clearance: 0.0005"),
-        ({}, {"ball_roughness": 0.0, "cup_roughness": 0.0}, "roughness = 0 is not allowed"),
-        ({}, {"viscosity": 0.0}, "viscosity = 0 is not allowed"),
-        ({}, {"viscosity": -1.0}, "viscosity = -1 is not allowed"),
-        ({}, {"viscosity": inf}, "viscosity = inf is not allowed"),
-        ({}, {"viscosity": nan}, "viscosity = nan is not allowed"),
-        ({}, {"viscosity": 1e308}, "the damping of its film must be a finite number"),
-    ],
-)
-def test_a_film_that_cannot_be_is_refused(joint, lubricant, message):
-    with pytest.raises(ValueError, match=message):
-        bs.ForceElement(bs.HessForsbach(), replace(HIP, **joint), lubricant=bs.Lubricant(**lubricant))
-
-
-def test_a_tension_that_cannot_be_is_refused():
-    for tension in (0.0, -0.1, nan):
-        with pytest.raises(ValueError, match="is not allowed: a tension"):
-            replace(WET, film_tension=tension)
-    with pytest.raises(ValueError, match=r"film_tension = 0\.1 needs a lubricant"):
-        replace(DRY, film_tension=0.1)
-
-
-def test_a_preloaded_joint_with_a_lubricant_is_refused():
-    joint = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
-    with pytest.raises(ValueError, match="a preloaded joint needs a PreloadedElement"):
-        bs.ForceElement(bs.HessForsbach(), joint, lubricant=OIL)
-
-
-def test_a_lubricant_of_another_kind_or_with_adhesion_is_refused():
-    with pytest.raises(TypeError, match=r"lubricant must be a Lubricant, got 0\.0025"):
-        bs.ForceElement(bs.HessForsbach(), HIP, lubricant=0.0025)
-    with pytest.raises(TypeError, match="lubricant are not supported with AdhesiveSocket"):
-        bs.ForceElement(bs.AdhesiveSocket(work_of_adhesion=1e-3), HIP, lubricant=OIL)

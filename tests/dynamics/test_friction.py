@@ -215,17 +215,10 @@ def test_deflections_decay_without_contact():
     assert away.force == (0.0, 0.0, 0.0)
 
 
-def test_invalid_bristles_are_rejected():
-    with pytest.raises(ValueError, match="damping = -1 is not allowed"):
-        Bristles(coefficient=0.1, damping=-1.0)
-    with pytest.raises(ValueError, match="four deflections"):
-        HELD(DEEP, deflection=(0.0, 0.0))
-
-
 def test_bristles_hold_a_ball_below_the_limit_of_friction():
     """The ball comes to rest on bristles, energy is balanced, and a motion that ends early names its state."""
     normal, side = 700.0, 30.0
-    thrown = {"mass": 1.0, "position": (0.0, 0.0, HIP.clearance + 0.019), "duration": 0.02, "step": 1e-4}
+    thrown = {"mass": 1.0, "position": (0.0, 0.0, HIP.clearance + 0.019), "duration": either(0.01, 0.02), "step": 1e-4}
     element = replace(HELD, friction=replace(HELD.friction, viscous=1e-3), damping=Damping(time=2e-4))
     held = simulate(element, pull=(side, 0.0, normal), inertia=1e9, **thrown)  # too slow to roll
     assert held.drift < 1e-7

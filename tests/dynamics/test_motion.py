@@ -77,7 +77,7 @@ def test_orbit_in_a_cup_conserves_angular_momentum_about_the_dome_axis():
     position = 0.1 * (np.cos(1.3) * dome + np.sin(1.3) * tangent)
     velocity = 60.0 * np.cross(dome, tangent) + 3.0 * tangent + 10.0 * dome
     thrown = {"mass": 0.35, "position": tuple(position), "velocity": tuple(velocity), "pull": tuple(30.0 * dome)}
-    motion = simulate(replace(FREE, cup=cup), duration=either(0.006, 0.02), step=2e-5, **thrown)
+    motion = simulate(replace(FREE, cup=cup), duration=either(0.004, 0.02), step=2e-5, **thrown)
     assert motion.end_reason == ""
     assert (np.asarray(motion.load.status) == ContactState.AT_RIM).sum() > 50
     assert motion.drift < 1e-12
@@ -97,12 +97,6 @@ def test_drifts_are_relative_to_the_largest_energy_and_angular_momentum():
     assert wrong.angular_drift == pytest.approx(0.05 * np.sqrt(2) * 2.0 / reach, rel=1e-9)
     still = replace(motion, velocity=0 * motion.velocity)
     assert still.angular_drift == 0.0
-
-
-def test_angular_drift_is_none_with_friction():
-    assert simulate(LOSSY, duration=1e-3, **THROW).angular_drift is None
-    bristles = replace(FREE, friction=Bristles(coefficient=0.1))
-    assert simulate(bristles, duration=1e-4, **THROW).angular_drift is None
 
 
 @pytest.mark.long
@@ -125,13 +119,16 @@ def test_dissipated_energy_grows_and_balances():
     assert motion.drift < 1e-12
     assert (np.diff(motion.dissipated_energy) >= 0).all()
     assert motion.dissipated_energy[-1] > 0.1 * motion.kinetic_energy[0]
+    assert motion.angular_drift is None
+    bristles = replace(FREE, friction=Bristles(coefficient=0.1))
+    assert simulate(bristles, duration=1e-4, **THROW).angular_drift is None
 
 
 def test_energy_balances_the_work_of_the_pull():
-    motion = simulate(FREE, duration=0.02, pull=(0.0, 0.0, 500.0), **THROW)
+    motion = simulate(FREE, duration=0.01, pull=(0.0, 0.0, 500.0), **THROW)
     assert motion.drift < 1e-12
     assert motion.work[-1] == pytest.approx(500.0 * (motion.position[-1, 2] - motion.position[0, 2]))
-    shaken = simulate(LOSSY, duration=0.02, pull=lambda t: (0.0, 0.0, 500.0 * np.sin(300.0 * t)), **THROW)
+    shaken = simulate(LOSSY, duration=0.01, pull=lambda t: (0.0, 0.0, 500.0 * np.sin(300.0 * t)), **THROW)
     assert shaken.drift < 1e-11
 
 
@@ -204,28 +201,20 @@ def test_exact_relation_satisfies_its_equation():
     for h in (1e-6, 0.99e-4, 1.01e-4, 1e-2, 1.0, 3.0):
         e = restitution_of(h)
         assert h * (1 + e) == pytest.approx(log1p(h) - log1p(-h * e), rel=1e-12)
-
-
-def test_series_of_a_small_damping_continues_the_exact_relation():
     below, above = restitution_of(0.9999999e-4), restitution_of(1.0000001e-4)
-    assert below - above == pytest.approx(2 / 3 * 2e-11, abs=3e-12)
+    assert below - above == pytest.approx(2 / 3 * 2e-11, abs=3e-12)  # the series of a small damping
+    damping = Flores(restitution=0.8, impact_speed=100.0)
+    assert damping.restitution(50.0) > damping.restitution(100.0) > damping.restitution(200.0)
 
 
-def test_perfect_rebound_needs_no_damping():
+def test_published_relations_have_their_numbers_at_one_half_and_no_damping_at_one():
+    expected = {"Hunt & Crossley": 0.75, "Lankarani & Nikravesh": 0.5625, "Gonthier": 1.5, "Flores": 1.6}
+    assert expected.items() <= {relation.name: relation.damping(0.5) for relation in relations.relations}.items()
+    assert damping_from_restitution(relations.flores, 0.5, 200.0).hysteresis == pytest.approx(0.008)
     for relation in relations.relations:
         assert relation.damping(1.0) == 0.0
         assert damping_from_restitution(relation, 1.0, 1e-3) == Damping(sources=relation.sources)
     assert restitution_of(0.0) == 1.0
-    for number in (-1e-9, np.inf):
-        with pytest.raises(ValueError, match="damping = .* is not allowed"):
-            restitution_of(number)
-
-
-def test_published_relations_have_their_numbers_at_one_half():
-    expected = {"Hunt & Crossley": 0.75, "Lankarani & Nikravesh": 0.5625, "Gonthier": 1.5, "Flores": 1.6}
-    numbers = {relation.name: relation.damping(0.5) for relation in relations.relations}
-    assert expected.items() <= numbers.items()
-    assert damping_from_restitution(relations.flores, 0.5, 200.0).hysteresis == pytest.approx(0.008)
 
 
 @pytest.mark.parametrize("step", [2e-5, 2e-6, 2e-7])
@@ -248,24 +237,6 @@ def test_motion_ends_with_a_note_at_a_state_without_a_result():
     nan_motion = simulate(FREE, mass=1.0, position=(nan, 0.0, 0.0), duration=1e-3, step=1e-5)
     assert "not finite" in nan_motion.end_reason
     assert "r = (0, 0, 20) mm" in simulate(FREE, **{**THROW, "position": (0.0, 0.0, 20.0)}, duration=1e-3).end_reason
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"mass": -1.0}, "mass = -1 is not allowed"),
-        ({"mass": 1e-200}, "mass = 1e-200 is not allowed: mass must be between 1e-100 and 1e.100"),
-        ({"inertia": float("nan")}, "inertia = nan is not allowed: inertia must be between"),
-        ({"duration": 1e300}, "the number of steps = 5e.304 is not allowed"),
-        ({"pull": (0.0, 1.0)}, "a pull must have three components"),
-        ({"position": (0.0, 1.0)}, "a state must have three components"),
-    ],
-)
-def test_invalid_arguments_are_rejected(arguments, message):
-    with pytest.raises(ValueError, match=message):
-        simulate(FREE, **{**THROW, "duration": 1e-3, **arguments})
-    with pytest.raises(TypeError, match="element must be a ForceElement, got 3"):
-        simulate(3, duration=1e-3, **THROW)
 
 
 @pytest.mark.parametrize("friction", [Friction(coefficient=0.1), Bristles(coefficient=0.1)])
@@ -354,8 +325,3 @@ def test_friction_at_the_pole_turns_a_sliding_ball_until_it_rolls():
     assert impulse == pytest.approx(0.2 * 900.0 * 2e-6 * 1e3, rel=0.03)
     assert motion.inertia * (motion.spin[1, 0] - 0.5) == pytest.approx(-HIP.ball_radius * impulse, rel=5e-3)
     assert motion.velocity[-1, 1] == pytest.approx(HIP.ball_radius * motion.spin[-1, 0], rel=5e-3)
-
-
-def test_restitution_decreases_with_the_impact_speed():
-    damping = Flores(restitution=0.8, impact_speed=100.0)
-    assert damping.restitution(50.0) > damping.restitution(100.0) > damping.restitution(200.0)

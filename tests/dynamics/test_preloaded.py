@@ -7,10 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import ballsocket as bs
-from ballsocket.dynamics import Bristles, Damping, Friction, PreloadedElement
+from ballsocket.dynamics import Damping, Friction, PreloadedElement
 from ballsocket.dynamics.load import ContactState
-
-from ..joints import HIP
 
 TIGHT = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM, ball=bs.STEEL)
 CUP = bs.Cup(arc_of_cover=radians(220.0), inclination=0.3, anteversion=0.2)
@@ -98,18 +96,3 @@ def test_states_beyond_the_table_have_a_status_and_no_load(element):
     assert repr(far) == "<PreloadedLoad force (nan, nan, nan) N, moment (nan, nan, nan) N mm, energy nan N mm>"
     assert repr(element).startswith("<PreloadedElement sphere on R1 13.5 mm, ")
     assert far.notes[0].endswith(f"the limit is {element.wall:.4g} mm from equilibrium")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "error", "said"),
-    [
-        ({"joint": HIP}, ValueError, "interference = .* is not allowed"),
-        ({"model": bs.Sphere()}, ValueError, "arc_of_cover = 3.14159 is not allowed: a preloaded socket"),
-        ({"model": bs.Exact()}, TypeError, "model must be Sphere"),
-        ({"friction": Bristles(coefficient=0.1, stiffness=1e3)}, TypeError, "bristles are not supported"),
-        ({"damping": 0.1}, TypeError, "damping must be Damping"),
-    ],
-)
-def test_impossible_elements_are_refused(arguments, error, said):
-    with pytest.raises(error, match=said):
-        PreloadedElement(**{"model": MODEL, "joint": TIGHT, **arguments})

@@ -133,33 +133,6 @@ def test_springs_follow_repeated_loading():
     springs = LINER.spring_force(time, again)
     assert springs[600] < springs[200]  # the liner has not recovered
     assert (springs >= 0).all()
-    with pytest.raises(ValueError, match="it must rise once and then fall; use `spring_force`"):
-        LINER.cycle_force(time, again)
-
-
-@pytest.mark.parametrize(
-    ("terms", "message"),
-    [
-        ((), "the number of terms = 0 is not allowed"),
-        (((-0.1, 1.0),), "a share = -0.1 is not allowed"),
-        (((0.1, 0.0),), "a time = 0 is not allowed"),
-        (((0.5, 1.0), (0.6, 2.0)), "the sum of the shares = 1.1 is not allowed"),
-    ],
-)
-def test_invalid_terms_are_rejected(terms, message):
-    with pytest.raises(ValueError, match=message):
-        Prony(terms=terms)
-
-
-def test_invalid_histories_are_rejected():
-    with pytest.raises(ValueError, match="times must increase"):
-        LINER.cycle_force([0.0, 1.0, 1.0], [0.0, 0.1, 0.0])
-    with pytest.raises(ValueError, match="rows of equal length"):
-        LINER.cycle_force([0.0, 1.0], [0.0])
-    with pytest.raises(ValueError, match="must begin without contact"):
-        LINER.cycle_force([0.0, 1.0], [0.1, 0.0])
-    with pytest.raises(TypeError, match="the model must be radial springs"):
-        Viscoelastic(bs.Hertz(), HIP, PE).spring_force(TIME, PUSH)
 
 
 def test_old_names_of_forces_and_moduli_warn():
