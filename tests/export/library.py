@@ -1,6 +1,8 @@
 """An exported element, compiled and called."""
 
 import ctypes
+import sys
+from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -11,19 +13,33 @@ from ballsocket.export import CElement
 from ballsocket.export.compiler import LIBRARY_ENDING, NoCompiler, shared_library
 
 
-def _missing():
-    """Return the reason why no library can be compiled and loaded, empty if one can."""
+def _compiles():
+    """Whether a library can be compiled and loaded."""
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         Path(folder, "one.c").write_text("int one(void) { return 1; }\n")
         try:
             ctypes.CDLL(str(shared_library(["one.c"], Path(folder, f"one{LIBRARY_ENDING}"), Path(folder))))
-        except (NoCompiler, OSError) as missing:
-            return str(missing)
-    return ""
+        except (NoCompiler, OSError):
+            return False
+    return True
 
 
-MISSING = _missing()
-needs_compiler = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+needs_compiler = pytest.mark.skipif(not _compiles(), reason="no C compiler")
+needs_scripts = pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+
+
+def skip_without(package):
+    """Skip a test of a program that is not installed."""
+    if find_spec(package) is None:
+        pytest.skip(f"{package} is not installed")
+
+
+def set_compiler(monkeypatch, folder, lines):
+    """Write a script of Python that `CC` names as the compiler."""
+    script = folder / "script-gcc"
+    script.write_text("\n".join([f"#!{sys.executable}", "import sys", *lines]), encoding="utf-8")
+    script.chmod(0o755)
+    monkeypatch.setenv("CC", str(script))
 
 
 class Library:

@@ -15,7 +15,7 @@ from ballsocket.export.fmu import Fmu
 
 from ..cli.command import run
 from ..joints import HIP
-from .library import needs_compiler
+from .library import needs_compiler, needs_scripts, set_compiler
 
 ELEMENT = ForceElement(bs.HessForsbach(), HIP)
 MINGW = "x86_64-w64-mingw32-gcc"
@@ -23,43 +23,45 @@ WINDOWS_HEADER = b"MZ".ljust(0x3C, b"\0") + (0x80).to_bytes(4, "little")
 WINDOWS_HEADER = WINDOWS_HEADER.ljust(0x80, b"\0") + b"PE\0\0" + (0x8664).to_bytes(2, "little")
 
 
+FAR_HEADER = b"MZ".ljust(0x3C, b"\xff") + (0x1F0).to_bytes(4, "little")
+FAR_HEADER = FAR_HEADER.ljust(0x1F0, b"\xff") + b"PE\0\0\x4c\x01\xff\xff"
+
+
 def elf(machine):
     return b"\x7fELF".ljust(18, b"\x02") + machine.to_bytes(2, "little")
 
 
 @pytest.mark.parametrize(
-    ("header", "name", "ending"),
+    ("header", "name", "ending", "bits"),
     [
-        (elf(0x3E), "x86_64-linux", ".so"),
-        (elf(0xB7), "aarch64-linux", ".so"),
-        (WINDOWS_HEADER, "x86_64-windows", ".dll"),
-        (b"\xcf\xfa\xed\xfe" + (0x0100000C).to_bytes(4, "little"), "aarch64-darwin", ".dylib"),
+        (elf(0x3E), "x86_64-linux", ".so", 64),
+        (elf(0xB7), "aarch64-linux", ".so", 64),
+        (elf(0x03), "x86-linux", ".so", 32),
+        (b"\x7fELF" + bytes(14) + b"\xb7\x00" + b"\xff" * 9, "aarch64-linux", ".so", 64),
+        (WINDOWS_HEADER, "x86_64-windows", ".dll", 64),
+        (FAR_HEADER, "x86-windows", ".dll", 32),
+        (b"\xcf\xfa\xed\xfe" + (0x0100000C).to_bytes(4, "little"), "aarch64-darwin", ".dylib", 64),
+        (b"\xcf\xfa\xed\xfe\x07\x00\x00\x01" + b"\xff" * 9, "x86_64-darwin", ".dylib", 64),
     ],
 )
-def test_the_platform_of_a_library_is_read_from_its_header(header, name, ending):
-    platform = library_platform(header)
-    assert (str(platform), platform.library_ending, platform.bits) == (name, ending, 64)
-
-
-@pytest.mark.parametrize(("processor", "bits"), [("x86", 32), ("x86_64", 64), ("aarch64", 64), ("riscv", 64)])
-def test_the_bits_of_a_platform_are_those_of_its_processor(processor, bits):
-    assert Platform(system="linux", processor=processor).bits == bits
-    assert library_platform(elf(0x03)).bits == 32
-
-
-def test_numbers_in_headers_are_little_endian_and_at_their_places():
+def test_the_platform_of_a_library_is_read_from_its_header(header, name, ending, bits):
     """e_machine of ELF has byte 18, cputype of Mach-O byte 4, Machine of PE the fourth byte after its start."""
-    assert str(library_platform(b"\x7fELF" + bytes(14) + b"\xb7\x00" + b"\xff" * 9)) == "aarch64-linux"
-    mach_o = b"\xcf\xfa\xed\xfe\x07\x00\x00\x01" + b"\xff" * 9
-    assert str(library_platform(mach_o)) == "x86_64-darwin"
-    far = b"MZ".ljust(0x3C, b"\xff") + (0x1F0).to_bytes(4, "little")
-    far = far.ljust(0x1F0, b"\xff") + b"PE\0\0\x4c\x01\xff\xff"
-    assert str(library_platform(far)) == "x86-windows"
-    with pytest.raises(ValueError, match="its first bytes are 7f454c47, not those"):
-        library_platform(b"\x7fELG" + bytes(99))
+    platform = library_platform(header)
+    assert (str(platform), platform.library_ending, platform.bits) == (name, ending, bits)
 
 
-@pytest.mark.parametrize(("header", "message"), [(b"#!/b", "not those of ELF"), (elf(0x1234), "number 0x1234")])
+def test_an_unlisted_processor_of_64_bits_has_them():
+    assert Platform(system="linux", processor="riscv").bits == 64
+
+
+@pytest.mark.parametrize(
+    ("header", "message"),
+    [
+        (b"#!/b", "not those of ELF"),
+        (elf(0x1234), "number 0x1234"),
+        (b"\x7fELG" + bytes(99), "its first bytes are 7f454c47, not those"),
+    ],
+)
 def test_a_file_of_another_format_is_refused(header, message):
     with pytest.raises(ValueError, match=message):
         library_platform(header)
@@ -73,15 +75,10 @@ def test_this_python_runs_on_the_platform_that_its_own_header_states():
 @pytest.fixture
 def cross_compiler(tmp_path, monkeypatch):
     """A compiler that writes the header of a Windows library."""
-    script = tmp_path / "cross-gcc"
-    script.write_text(
-        f"#!{sys.executable}\nimport sys\nopen(sys.argv[sys.argv.index('-o') + 1], 'wb').write({WINDOWS_HEADER!r})\n"
-    )
-    script.chmod(0o755)
-    monkeypatch.setenv("CC", str(script))
+    set_compiler(monkeypatch, tmp_path, [f"open(sys.argv[sys.argv.index('-o') + 1], 'wb').write({WINDOWS_HEADER!r})"])
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+@needs_scripts
 @pytest.mark.parametrize(("version", "folder"), [(2, "win64"), (3, "x86_64-windows")])
 def test_an_fmu_files_the_binary_of_a_cross_compiler_under_its_platform(version, folder, cross_compiler, tmp_path):
     written = Fmu(element=ELEMENT, name="hip", version=version).write(tmp_path / "hip.fmu")
@@ -93,7 +90,7 @@ def test_an_fmu_files_the_binary_of_a_cross_compiler_under_its_platform(version,
     )
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+@needs_scripts
 def test_a_library_for_another_platform_is_not_left_for_a_program_of_this_machine(cross_compiler, tmp_path):
     job = ExportJob(element=ELEMENT, name="hip", depth=0.05)
     _, missing = TARGETS["drake"].write(job, tmp_path / "hip")
@@ -101,35 +98,22 @@ def test_a_library_for_another_platform_is_not_left_for_a_program_of_this_machin
     assert not (tmp_path / "hip" / job.template_context["library"]).exists()
 
 
-@pytest.fixture
-def failing_compiler(tmp_path, monkeypatch):
-    """A function that sets a compiler that prints lines and fails."""
-
-    def set_compiler(*lines):
-        script = tmp_path / "failing-gcc"
-        script.write_text("\n".join(["#!/bin/sh", *(f"echo '{line}' >&2" for line in lines), "exit 3"]))
-        script.chmod(0o755)
-        monkeypatch.setenv("CC", str(script))
-
-    return set_compiler
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+@needs_scripts
 @pytest.mark.parametrize(
     ("lines", "message"),
     [
-        ((), "failing-gcc ended with 3: it printed no message"),
-        (("note: first", "note: second"), "failing-gcc ended with 3: note: first"),
-        (("note: first", "one.c: error: second", "error: third"), "failing-gcc ended with 3: one.c: error: second"),
+        ((), "script-gcc ended with 3: it printed no message"),
+        (("note: first", "note: second"), "script-gcc ended with 3: note: first"),
+        (("note: first", "one.c: error: second", "error: third"), "script-gcc ended with 3: one.c: error: second"),
     ],
 )
-def test_the_first_error_of_a_failing_compiler_is_reported(lines, message, failing_compiler, tmp_path):
-    failing_compiler(*lines)
+def test_the_first_error_of_a_failing_compiler_is_reported(lines, message, tmp_path, monkeypatch):
+    set_compiler(monkeypatch, tmp_path, [*(f"print({line!r}, file=sys.stderr)" for line in lines), "sys.exit(3)"])
     with pytest.raises(NoCompiler, match=message):
         compile_library(["one.c"], tmp_path / "one.so", tmp_path)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows does not run scripts as programs")
+@needs_scripts
 def test_a_compiler_that_cannot_be_run_is_named(tmp_path, monkeypatch):
     file = tmp_path / "no-program"
     file.write_bytes(b"\x7fELF, but nothing else")

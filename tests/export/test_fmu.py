@@ -76,10 +76,8 @@ def test_a_missing_compiler_is_reported_and_the_sources_are_written(version, tmp
     monkeypatch.setenv("CC", "no-such-compiler")
     done = run("fmu", str(EXAMPLES / "hip.toml"), "--out", str(tmp_path / "my-hip.fmu"), "--fmi", str(version))
     assert done.returncode == 0
-    assert (
-        "CC is 'no-such-compiler', which is not installed; the archive contains the sources without a binary"
-        in done.stderr
-    )
+    message = "CC is 'no-such-compiler', which is not installed; the archive contains the sources without a binary"
+    assert message in done.stderr
     with zipfile.ZipFile(tmp_path / "my-hip.fmu") as archive:
         assert "sources/my_hip.c" in archive.namelist()
         assert not any(name.startswith("binaries") for name in archive.namelist())
@@ -89,30 +87,21 @@ def test_variables_have_units_and_parameters_can_be_tuned(folder):
     for version, tag in ((2, "ScalarVariable"), (3, "Float64")):
         variables = {each.get("name"): each for each in description(folder / f"hip{version}.fmu").iter(tag)}
         units = {name: (each.find("Real") if version == 2 else each).get("unit") for name, each in variables.items()}
-        assert {
-            "position[3]": "m",
-            "spin[1]": "rad/s",
-            "moment[2]": "N.m",
-            "max_pressure": "Pa",
-        }.items() <= units.items()
+        expected = {"position[3]": "m", "spin[1]": "rad/s", "moment[2]": "N.m", "max_pressure": "Pa"}
+        assert expected.items() <= units.items()
         friction = variables["friction_coefficient"]
         assert (friction.get("causality"), friction.get("variability")) == ("parameter", "tunable")
 
 
-def test_both_kinds_of_an_fmu_of_version_2_list_their_sources(folder):
+def test_both_versions_list_their_sources(folder):
     root = description(folder / "hip2.fmu")
     for kind in ("ModelExchange", "CoSimulation"):
         (sources,) = root.find(kind).iter("SourceFiles")
         assert {each.get("name") for each in sources} == {"hip.c", "fmi2.c"}
         assert root.find(kind).get("modelIdentifier") == "hip"
-
-
-def test_the_build_description_of_version_3_lists_the_sources(folder):
     with zipfile.ZipFile(folder / "hip3.fmu") as archive:
-        root = fromstring(archive.read("sources/buildDescription.xml"))
-    assert {each.get("name") for each in root.iter("SourceFile")} == {"hip.c", "fmi3.c"}
-    with zipfile.ZipFile(folder / "hip2.fmu") as archive:
-        assert "sources/buildDescription.xml" not in archive.namelist()
+        build = fromstring(archive.read("sources/buildDescription.xml"))
+    assert {each.get("name") for each in build.iter("SourceFile")} == {"hip.c", "fmi3.c"}
 
 
 @pytest.mark.parametrize(("version", "tag", "key"), [(2, "Unknown", "index"), (3, "Output", "valueReference")])
@@ -160,6 +149,9 @@ def test_the_trajectory_reaches_from_one_hundredth_of_the_clearance_apart_to_thr
     assert_allclose(np.arctan2(state[:, 0], state[:, 2]).max(), 0.3, rtol=1e-9)
     assert_allclose(state[:, 8], 1.0)
     assert_allclose(state[25, 6:], (0.0, 2.0, 1.0), atol=1e-12)
+    time = np.linspace(0, 0.1, 2001)
+    state = trajectory(ELEMENT, time)
+    assert_allclose(np.gradient(state[:, :3], time, axis=0)[1:-1], state[1:-1, 3:6], atol=1e-3)
 
 
 def test_the_cross_check_covers_the_suggested_experiment(folder):
@@ -168,11 +160,9 @@ def test_the_cross_check_covers_the_suggested_experiment(folder):
         time = table(folder / f"hip{version}_in.csv")["time"]
         assert float(experiment.get("stopTime")) == time[-1] == 0.1
         assert_allclose(np.diff(time), float(experiment.get("stepSize")), rtol=1e-9)
-        assert (folder / f"hip{version}_ref.opt").read_text().splitlines()[:3] == [
-            "StartTime, 0",
-            "StopTime, 0.1",
-            "StepSize, 0.001",
-        ]
+        options = (folder / f"hip{version}_ref.opt").read_text().splitlines()
+        assert options[:3] == ["StartTime, 0", "StopTime, 0.1", "StepSize, 0.001"]
+        assert [line.split(",")[0] for line in options[3:]] == ["RelTol"]
 
 
 def test_the_files_of_the_cross_check_have_the_loads_of_the_element(folder):
@@ -182,8 +172,6 @@ def test_the_files_of_the_cross_check_have_the_loads_of_the_element(folder):
     assert_array_equal(given["velocity[3]"], states_in_si(state)[:, 5])
     assert_array_equal(reference["max_pressure"], reference_loads(ELEMENT, state)[:, 8])
     assert 0 < np.count_nonzero(reference["energy"]) < len(reference)  # it touches and leaves
-    options = (folder / "hip3_ref.opt").read_text()
-    assert [line.split(",")[0] for line in options.splitlines()] == ["StartTime", "StopTime", "StepSize", "RelTol"]
 
 
 def test_reference_loads_are_in_si_units():
@@ -192,35 +180,6 @@ def test_reference_loads_are_in_si_units():
     wanted = [*load.force, *(part / 1e3 for part in load.moment), load.energy / 1e3, load.half_angle]
     assert_allclose(reference_loads(ELEMENT, state)[0], [*wanted, 1e6 * load.max_pressure], rtol=1e-12)
     assert_allclose(states_in_si(state)[0], [0.0, 1e-5, 1.2e-4, 1e-3, 0.0, 0.02, 0.0, 1.0, 2.0])
-
-
-def test_the_velocity_of_the_trajectory_is_that_of_its_position():
-    time = np.linspace(0, 0.1, 2001)
-    state = trajectory(ELEMENT, time)
-    assert_allclose(np.gradient(state[:, :3], time, axis=0)[1:-1], state[1:-1, 3:6], atol=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("words", "said"),
-    [
-        (("--out", "hip.zip"), "out 'hip.zip' must end in .fmu"),
-        (("--out", "nowhere/hip.fmu"), "cannot write hip.fmu: 'nowhere' is not a folder"),
-        (("--out", "hip.fmu", "--fmi", "4"), "FMI version = 4 is not allowed: 2 or 3"),
-        (("--out", "hip.fmu", "--model", "fem"), "finite elements are too noisy for a law"),
-        (("--out", "hip.fmu", "--hysteresis", "-1"), "hysteresis"),
-        (("--out", "hip.fmu", "--restitution", "0.5"), "a restitution and the speed of its impact belong together"),
-        (("--out", "hip.fmu", "--friction", "-0.1"), "coefficient"),
-        (("--out", "hip.fmu", "--viscosity", "2.5 mm"), "viscosity must be a number of Pa s, or such as '2.5 mPa s'"),
-        (("--out", "hip.fmu", "--viscosity", "0 Pa s"), "viscosity = 0 is not allowed"),
-        (("--out", "hip.fmu", "--roughness", "1 um"), "add --viscosity"),
-    ],
-)
-def test_invalid_options_are_refused_in_one_line(words, said, tmp_path):
-    done = run("fmu", "hip-28", *words, folder=tmp_path)
-    assert done.returncode == 2
-    assert said in done.stderr
-    assert done.stderr.count("\n") == 1
-    assert not list(tmp_path.iterdir())
 
 
 @pytest.fixture(scope="module")
@@ -322,6 +281,12 @@ def test_a_parameter_is_tuned_during_a_simulation(host):
 
 
 @needs_compiler
+def test_outputs_cannot_be_set(host):
+    assert host.set(energy=1.0) == ERROR
+    assert "value reference" in host.messages[0][1]
+
+
+@needs_compiler
 def test_a_state_of_nan_has_a_status_and_one_message(host):
     host.set(position=(np.nan, 0.0, 0.0))
     for _ in range(3):
@@ -344,9 +309,3 @@ def test_a_step_through_the_wall_is_discarded_and_invalidity_is_reported_once(ho
         host.set(position=(0.0, 0.0, depth))
         assert host.get("energy")[0] == GOOD
     assert [text.partition(" beyond")[0] for _, text in host.messages] == ["hess-forsbach is not valid"]
-
-
-@needs_compiler
-def test_outputs_cannot_be_set(host):
-    assert host.set(energy=1.0) == ERROR
-    assert "value reference" in host.messages[0][1]

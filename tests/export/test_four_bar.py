@@ -1,7 +1,6 @@
 """Four-bar linkage of the gallery: its energy balance, and its motion in Exudyn with the exported joint."""
 
 from importlib import import_module
-from importlib.util import find_spec
 from runpy import run_path
 from types import SimpleNamespace
 
@@ -10,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from ..places import EXAMPLES, ROOT
-from .library import needs_compiler
+from .library import needs_compiler, skip_without
 
 
 @pytest.fixture(scope="module")
@@ -45,8 +44,7 @@ def test_energy_loss_of_the_mechanism_equals_the_dissipation_of_its_joint(bar, m
 @needs_compiler
 @pytest.mark.parametrize("name", ["law", "sphere"])
 def test_exudyn_reproduces_the_stored_motion_and_that_of_the_element(name, bar, monkeypatch):
-    if find_spec("exudyn") is None:
-        pytest.skip("exudyn is not installed")
+    skip_without("exudyn")
     monkeypatch.syspath_prepend(str(ROOT))
     found = import_module("benchmarks.four_bar").in_exudyn(name, 0.05, 2e-5, 11)
     kept = np.genfromtxt(EXAMPLES / "four_bar_in_exudyn.csv", delimiter=",", names=True)[:11]

@@ -4,7 +4,6 @@ import os
 import re
 import subprocess
 import sys
-from importlib.util import find_spec
 
 import pytest
 
@@ -12,7 +11,7 @@ from ballsocket.export.compiler import compiler
 
 from ..cli.command import run
 from ..places import EXAMPLES, ROOT
-from .library import needs_compiler
+from .library import needs_compiler, skip_without
 
 PAGE = (ROOT / "docs" / "how-to" / "export.md").read_text(encoding="utf-8")
 PROGRAMS = dict(re.findall(r"```\{code-block\} python\n# (\w+)(.*?)```", PAGE, re.DOTALL))
@@ -28,8 +27,7 @@ def test_the_page_has_a_program_for_every_host_and_no_other_python_block():
 @needs_compiler
 @pytest.mark.parametrize("host", PACKAGES)
 def test_a_program_of_the_page_runs_in_its_host(host, tmp_path):
-    if find_spec(PACKAGES[host]) is None:
-        pytest.skip(f"{PACKAGES[host]} is not installed")
+    skip_without(PACKAGES[host])
     joint, folder = str(EXAMPLES / "hip.toml"), tmp_path
     if host == "FMU":
         exported = run("fmu", joint, "--out", "hip.fmu", "--friction", "0.05", folder=tmp_path)

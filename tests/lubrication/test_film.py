@@ -79,9 +79,9 @@ def test_finite_elements_confirm_the_finite_volumes():
     """Another discretisation, without upwinding, at another speed than those above."""
     rate = 30.0
     volumes = bs.film(CONTACT, spin=(rate, 0.0, 0.0), method="reynolds")
-    central, least = GalerkinFilm(rate, 0.05 * np.sqrt(rate), 1.5, 16, 1.25).solve()
+    central, least = GalerkinFilm(rate, 0.07 * np.sqrt(rate), 2.0, 12, 1.3).solve()
     assert volumes.central == pytest.approx(central, rel=0.003)
-    assert volumes.minimum == pytest.approx(least, rel=0.003)
+    assert volumes.minimum == pytest.approx(least, rel=0.005)  # 0.4 % by 12 meridians
 
 
 @pytest.mark.parametrize("case", some(reversed(CASES), 1))
