@@ -69,7 +69,7 @@ def solve_in_frame_of_the_film(joint, modulus, force, amplitude, tilt, count, cy
     """
     spins, load = rocking_motion(amplitude, tilt, count)
     clearance, radius = joint.clearance, joint.socket_radius
-    mesh = polar_mesh(radius, np.linspace(0.0, pi / 2, 31), 40)
+    mesh = polar_mesh(radius, np.linspace(0.0, pi / 2, 22), 32)
     depth = clearance + bs.RadialFoundation(modulus=bs.constant(modulus)).press(joint, force=force).indentation
     turned, films = Rotation.identity(), []
     state = FilmState(
@@ -83,7 +83,7 @@ def solve_in_frame_of_the_film(joint, modulus, force, amplitude, tilt, count, cy
         spin=np.zeros(3),
         gap=np.full(mesh.cells, clearance - ambient / modulus),
         compliance=np.full(mesh.cells, 1 / modulus),
-        rim_pressure=np.full(40, ambient),
+        rim_pressure=np.full(32, ambient),
         force=np.zeros(3),
     )
     for _ in range(cycles):
@@ -142,7 +142,7 @@ def test_rocking_about_two_axes_turns_the_film_and_settles_its_core():
 def test_reynolds_equation_confirms_the_core_of_another_joint():
     """A head of 28 mm, clearance 0.06 mm, another load, viscosity and rocking. Without drift 20 cycles leave 121 nm.
 
-    Reynolds' equation has 315, 164 and 168 nm after 3, 10 and 20 cycles, and 174 nm in place of 168 on cells of 5°.
+    Reynolds' equation has 315, 164 and 168 nm after 3, 10 and 20 cycles on cells of 3°, and 315, 168 and 169 nm here.
     """
     joint = bs.Joint(ball_radius=14.0, clearance=0.06, liner_thickness=8.0, liner=LINER)
     case = {"joint": joint, "modulus": 250.0, "force": 800.0, "amplitude": 0.45, "tilt": 45.0, "count": 20}

@@ -13,6 +13,7 @@ from ballsocket.lubrication import film_problem
 from ballsocket.lubrication.dry_contact import dry_contact
 from ballsocket.lubrication.wave import FilmWave, godunov_flow
 
+from .. import extent
 from ..extent import some
 from .galerkin_film import GalerkinFilm
 
@@ -21,7 +22,6 @@ JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LI
 SPRINGS = bs.RadialFoundation(modulus=bs.constant(276.67))
 CONTACT = SPRINGS.press(JOINT, force=1500.0)
 ELASTIC = bs.Exact().press(JOINT, force=1500.0)
-HIP_28 = replace(JOINT, ball_radius=14.0, liner_thickness=8.0)
 HIP_22 = bs.Joint(ball_radius=11.1, clearance=0.15, liner_thickness=9.0, liner=bs.Material(young=700.0, poisson=0.45))
 HIP_40 = bs.Joint(ball_radius=20.0, clearance=0.05, liner_thickness=5.0, liner=replace(LINER, young=1200.0))
 METAL_50 = bs.Joint(ball_radius=25.0, clearance=0.05, liner_thickness=10.0, liner=bs.Material(young=210e3, poisson=0.3))
@@ -30,7 +30,6 @@ CASES = {
     "slow": (JOINT, 276.67, 1500.0, 0.1, 2.5e-3),
     "metal": (METAL_50, 30000.0, 1500.0, 1.5, 2.5e-3),
     "thin": (HIP_40, 400.0, 800.0, 4.0, 5e-3),
-    "elastic 28": (HIP_28, None, 1500.0, 1.5, 2.5e-3),
     "elastic 36": (JOINT, None, 3000.0, 5.0, 2.5e-3),
     "elastic 22": (HIP_22, None, 1000.0, 2.0, 2.5e-3),
     "elastic 40": (HIP_40, None, 800.0, 2.0, 2.5e-3),
@@ -54,7 +53,6 @@ def solved_film(case, method):
     ("rate", "central", "least", "meridians", "error"),
     [
         (10.0, 515.2, 433.0, 24, 0.016),
-        pytest.param(10.0, 515.2, 433.0, 64, 0.003, marks=pytest.mark.long),
         pytest.param(100.0, 1774.2, 1456.1, 64, 0.003, marks=pytest.mark.long),
     ],
 )
@@ -70,6 +68,7 @@ def test_reynolds_on_springs(rate, central, least, meridians, error, monkeypatch
     film = bs.film(CONTACT, spin=(rate, 0.0, 0.0), method="reynolds")
     assert film.status is Status.OK
     assert film.valid
+    assert (film.pressure * film.areas) @ film.directions == pytest.approx([0.0, 0.0, 1500.0], abs=1e-3)
     assert 1e6 * film.central == pytest.approx(central, rel=error)
     assert 1e6 * film.minimum == pytest.approx(least, rel=error)
 
@@ -79,9 +78,9 @@ def test_finite_elements_confirm_the_finite_volumes():
     """Another discretisation, without upwinding, at another speed than those above."""
     rate = 30.0
     volumes = bs.film(CONTACT, spin=(rate, 0.0, 0.0), method="reynolds")
-    central, least = GalerkinFilm(rate, 0.07 * np.sqrt(rate), 2.0, 12, 1.3).solve()
+    central, least = GalerkinFilm(rate, 0.05 * np.sqrt(rate), 1.5, 16, 1.25).solve()
     assert volumes.central == pytest.approx(central, rel=0.003)
-    assert volumes.minimum == pytest.approx(least, rel=0.005)  # 0.4 % by 12 meridians
+    assert volumes.minimum == pytest.approx(least, rel=0.003)
 
 
 @pytest.mark.parametrize("case", some(reversed(CASES), 1))
@@ -96,9 +95,13 @@ def test_the_wave_keeps_its_stated_error(case):
     assert load == pytest.approx([0.0, 0.0, CASES[case][2]], abs=0.01)
 
 
-def test_reynolds_on_elastic_bodies():
-    """Central 468 nm; with 48 meridians in place of 40 it is 467 nm."""
+def test_films_of_shared_cases_have_the_values_of_other_meshes():
+    """Elastic bodies: central 468 nm, and 467 nm with 48 meridians in place of 40. Springs: as above."""
     assert 1e6 * solved_film("elastic", "reynolds").central == pytest.approx(467.5, rel=0.01)
+    if extent.whole:
+        springs = solved_film("springs", "reynolds")
+        assert springs.valid
+        assert 1e6 * np.array([springs.central, springs.minimum]) == pytest.approx([515.2, 433.0], rel=0.003)
 
 
 @pytest.mark.long
