@@ -1,6 +1,7 @@
 """An exported element, compiled and called."""
 
 import ctypes
+import shlex
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -39,7 +40,15 @@ def set_compiler(monkeypatch, folder, lines):
     script = folder / "script-gcc"
     script.write_text("\n".join([f"#!{sys.executable}", "import sys", *lines]), encoding="utf-8")
     script.chmod(0o755)
-    monkeypatch.setenv("CC", str(script))
+    monkeypatch.setenv("CC", shlex.quote(str(script)))
+
+
+def python_header():
+    """First bytes of the program of this Python; that of a universal one of macOS has no single platform."""
+    header = Path(sys.executable).resolve().read_bytes()[:4096]
+    if header[:4] == b"\xca\xfe\xba\xbe":
+        pytest.skip("this Python is built for several processors")
+    return header
 
 
 class Library:

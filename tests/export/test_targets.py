@@ -24,7 +24,7 @@ from ballsocket.files.joint_file import JointFile
 from ..cli.command import run
 from ..joints import HIP
 from ..places import EXAMPLES, ROOT
-from .library import needs_compiler, needs_scripts, set_compiler, skip_without
+from .library import needs_compiler, needs_scripts, python_header, set_compiler, skip_without
 
 PLAIN = ForceElement(bs.HessForsbach(), HIP)
 DAMPED = ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.004))
@@ -208,9 +208,10 @@ def test_the_command_exports_a_lubricated_hemisphere(tmp_path):
 def recording_compiler(tmp_path, monkeypatch):
     """A compiler that writes the header of this Python as a library, and a file with its arguments."""
     log = tmp_path / "arguments.txt"
+    header = python_header()
     lines = (
         f"open({str(log)!r}, 'a').write(' '.join(sys.argv[1:]) + '\\n')",
-        "open(sys.argv[sys.argv.index('-o') + 1], 'wb').write(open(sys.executable, 'rb').read(4096))",
+        f"open(sys.argv[sys.argv.index('-o') + 1], 'wb').write({header!r})",
     )
     set_compiler(monkeypatch, tmp_path, lines)
     return log

@@ -20,6 +20,7 @@ from ..extent import either, some
 from .test_film import CONTACT, JOINT, LINER, SPRINGS
 
 MODULUS, VISCOSITY = 276.67, 2.5e-9
+AXIS = np.array([0.0, 0.0, 1.0])
 EDGES = np.arange(0.0, radians(60.0), radians(2.0))
 MESH = polar_mesh(18.0, EDGES, thinned_meridians(EDGES, 120))
 
@@ -31,12 +32,8 @@ def swing(amplitude, count=40):
     height = MESH.direction[:, 2]
     pressure = MODULUS * np.maximum((0.1 + CONTACT.indentation) * height - 0.1, 0.0)
     edge = SpringEdge(slope=CONTACT.edge_slope, modulus=MODULUS)
-    return [
-        CycleInstant(
-            pressure=pressure, axis=np.array([0.0, 0.0, 1.0]), edge=edge, spin=np.array([w, 0, 0]), duration=1 / count
-        )
-        for w in rate
-    ]
+    still = CycleInstant(pressure=pressure, axis=AXIS, edge=edge, spin=np.zeros(3), duration=1 / count)
+    return [replace(still, spin=np.array([w, 0.0, 0.0])) for w in rate]
 
 
 def rocking_motion(amplitude, tilt, count):
@@ -56,9 +53,8 @@ def rocking(joint=JOINT, modulus=MODULUS, force=1000.0, amplitude=0.35, tilt=35.
     clearance = joint.clearance
     pressure = modulus * np.maximum((clearance + contact.indentation) * (mesh.direction @ load) - clearance, 0.0)
     edge = SpringEdge(slope=contact.edge_slope, modulus=modulus)
-    return mesh, [
-        CycleInstant(pressure=pressure, axis=load, edge=edge, spin=spin * count, duration=1 / count) for spin in spins
-    ]
+    still = CycleInstant(pressure=pressure, axis=load, edge=edge, spin=np.zeros(3), duration=1 / count)
+    return mesh, [replace(still, spin=spin * count) for spin in spins]
 
 
 def solve_in_frame_of_the_film(joint, modulus, force, amplitude, tilt, count, cycles, viscosity, ambient=0.1):
@@ -90,10 +86,8 @@ def solve_in_frame_of_the_film(joint, modulus, force, amplitude, tilt, count, cy
         steps = []
         for spin in spins:
             turned = Rotation.from_rotvec(spin / 2) * turned
-            around = np.array([0.0, 0.0, ambient * pi * radius**2])
-            steps.append(
-                LoadStep(force=force * turned.inv().apply(load) + around, spin=np.zeros(3), duration=1 / count)
-            )
+            push = force * turned.inv().apply(load) + ambient * pi * radius**2 * AXIS
+            steps.append(LoadStep(force=push, spin=np.zeros(3), duration=1 / count))
         film = solve_cycle(problem, state, steps)
         assert film.converged
         state = film.states[-1]
@@ -175,7 +169,7 @@ def test_the_stated_error_covers_a_cycle_that_reverses_load_and_motion(width, co
         CycleInstant(
             pressure=np.maximum(pressure, 0.0),
             continuation=pressure,
-            axis=np.array([0.0, 0.0, 1.0]),
+            axis=AXIS,
             edge=SpringEdge(slope=slope, modulus=MODULUS),
             spin=np.array([pi / 2 * np.cos(2 * pi * time), 0.0, 0.0]),
             duration=6.0 / count,
@@ -195,18 +189,14 @@ def test_a_ball_that_does_not_move_has_no_film():
 def springs_problem(finest, coarsest, meridians, low=1500.0, high=1500.0):
     """Reynolds' equation on springs, and its start: the dry contact with the ball lifted by 500 nm."""
     contacts = [SPRINGS.press(JOINT, force=force) for force in (low, high)]
-    rings = graded_rings(
-        contacts[0].half_angle,
-        finest=radians(finest),
-        coarsest=radians(coarsest),
-        last_edge=contacts[1].half_angle,
-    )
+    widths = {"finest": radians(finest), "coarsest": radians(coarsest)}
+    rings = graded_rings(contacts[0].half_angle, last_edge=contacts[1].half_angle, **widths)
     mesh = polar_mesh(18.0, rings, meridians)
     depth = 0.1 + contacts[0].indentation
     start = FilmState(
         pressure=MODULUS * np.maximum(depth * mesh.direction[:, 2] - 0.1, 0.0),
         void=np.zeros(mesh.cells),
-        eccentricity=np.array([0.0, 0.0, depth - 5e-4]),
+        eccentricity=(depth - 5e-4) * AXIS,
     )
     problem = FilmProblem(
         mesh=mesh,
@@ -215,7 +205,7 @@ def springs_problem(finest, coarsest, meridians, low=1500.0, high=1500.0):
         gap=np.full(mesh.cells, 0.1),
         compliance=np.full(mesh.cells, 1 / MODULUS),
         rim_pressure=np.zeros(meridians),
-        force=np.array([0.0, 0.0, low]),
+        force=low * AXIS,
     )
     return problem, start
 
@@ -223,7 +213,7 @@ def springs_problem(finest, coarsest, meridians, low=1500.0, high=1500.0):
 def load_steps(forces, rates, duration):
     """Steps of axial loads in N and rotations about x in rad/s."""
     return [
-        LoadStep(force=np.array([0.0, 0.0, force]), spin=np.array([rate, 0.0, 0.0]), duration=duration)
+        LoadStep(force=force * AXIS, spin=np.array([rate, 0.0, 0.0]), duration=duration)
         for force, rate in zip(forces, rates, strict=True)
     ]
 
