@@ -29,11 +29,6 @@ PRELOADED = ("--ball-radius", "13.5", "--interference", "0.03", "--liner-thickne
         ((*FMU, "--viscosity", "2.5 mm"), "viscosity must be a number of Pa s, or such as '2.5 mPa s'"),
         ((*FMU, "--viscosity", "0 Pa s"), "viscosity = 0 is not allowed"),
         ((*FMU, "--roughness", "1 um"), "add --viscosity"),
-        pytest.param(
-            ("export", "table", *PRELOADED, "--arc-of-cover", "240", "--out", "rod"),
-            "export c, drake, modelica or mujoco",
-            marks=pytest.mark.long,
-        ),
         (("export", "c", *PRELOADED, "--arc-of-cover", "180", "--out", "rod"), "above 180 deg"),
         (
             ("fmu", *PRELOADED, "--model", "exact", "--out", "rod.fmu"),
