@@ -20,7 +20,7 @@ from ballsocket.dynamics import (
 )
 from ballsocket.dynamics.restitution import restitution_of
 
-from ..extent import either
+from ..extent import either, some
 from ..joints import HIP
 
 FREE = bs.ForceElement(bs.HessForsbach(), HIP)
@@ -217,7 +217,7 @@ def test_published_relations_have_their_numbers_at_one_half_and_no_damping_at_on
     assert restitution_of(0.0) == 1.0
 
 
-@pytest.mark.parametrize("step", [2e-5, 2e-6, 2e-7])
+@pytest.mark.parametrize("step", some([2e-5, 2e-6, 2e-7], 2))
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated()], ids=lambda model: model.name)
 def test_resting_ball_conserves_energy_at_short_steps(model, step):
     """Over short paths the difference of the energy is dominated by rounding."""

@@ -83,16 +83,6 @@ def test_a_missing_compiler_is_reported_and_the_sources_are_written(version, tmp
         assert not any(name.startswith("binaries") for name in archive.namelist())
 
 
-def test_variables_have_units_and_parameters_can_be_tuned(folder):
-    for version, tag in ((2, "ScalarVariable"), (3, "Float64")):
-        variables = {each.get("name"): each for each in description(folder / f"hip{version}.fmu").iter(tag)}
-        units = {name: (each.find("Real") if version == 2 else each).get("unit") for name, each in variables.items()}
-        expected = {"position[3]": "m", "spin[1]": "rad/s", "moment[2]": "N.m", "max_pressure": "Pa"}
-        assert expected.items() <= units.items()
-        friction = variables["friction_coefficient"]
-        assert (friction.get("causality"), friction.get("variability")) == ("parameter", "tunable")
-
-
 def test_both_versions_list_their_sources(folder):
     root = description(folder / "hip2.fmu")
     for kind in ("ModelExchange", "CoSimulation"):
@@ -126,6 +116,13 @@ def test_loads_depend_on_the_state_and_the_contact_on_the_position(version, tag,
 
 def test_units_are_powers_of_the_base_units_and_starts_are_in_si(folder):
     """1 N = kg m/s², 1 Pa = kg/(m s²), 1 J = kg m²/s²; a hysteresis of 0.004 s/mm is 4 s/m."""
+    for version, tag in ((2, "ScalarVariable"), (3, "Float64")):
+        variables = {each.get("name"): each for each in description(folder / f"hip{version}.fmu").iter(tag)}
+        units = {name: (each.find("Real") if version == 2 else each).get("unit") for name, each in variables.items()}
+        expected = {"position[3]": "m", "spin[1]": "rad/s", "moment[2]": "N.m", "max_pressure": "Pa"}
+        assert expected.items() <= units.items()
+        friction = variables["friction_coefficient"]
+        assert (friction.get("causality"), friction.get("variability")) == ("parameter", "tunable")
     root = description(folder / "hip3.fmu")
     units = {each.get("name"): each.find("BaseUnit").attrib for each in root.find("UnitDefinitions")}
     assert units["N"] == {"kg": "1", "m": "1", "s": "-2"}
@@ -172,12 +169,9 @@ def test_the_files_of_the_cross_check_have_the_loads_of_the_element(folder):
     assert_array_equal(given["velocity[3]"], states_in_si(state)[:, 5])
     assert_array_equal(reference["max_pressure"], reference_loads(ELEMENT, state)[:, 8])
     assert 0 < np.count_nonzero(reference["energy"]) < len(reference)  # it touches and leaves
-
-
-def test_reference_loads_are_in_si_units():
-    state = np.array([[0.0, 0.01, 0.12, 1.0, 0.0, 20.0, 0.0, 1.0, 2.0]])
     load = ELEMENT((0.0, 0.01, 0.12), (1.0, 0.0, 20.0), (0.0, 1.0, 2.0))
     wanted = [*load.force, *(part / 1e3 for part in load.moment), load.energy / 1e3, load.half_angle]
+    state = np.array([[0.0, 0.01, 0.12, 1.0, 0.0, 20.0, 0.0, 1.0, 2.0]])
     assert_allclose(reference_loads(ELEMENT, state)[0], [*wanted, 1e6 * load.max_pressure], rtol=1e-12)
     assert_allclose(states_in_si(state)[0], [0.0, 1e-5, 1.2e-4, 1e-3, 0.0, 0.02, 0.0, 1.0, 2.0])
 

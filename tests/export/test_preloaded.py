@@ -105,6 +105,7 @@ def test_fmpy_validates_and_simulates_the_unit(element, tmp_path):
     assert_allclose(loads["force[3]"], reference["force[3]"], rtol=1e-10, atol=1e-6)
 
 
+@pytest.mark.long
 def test_the_commands_export_an_interference(tmp_path):
     finished = run("export", "c", *PRELOADED, "--out", "rod", folder=tmp_path)
     assert finished.returncode == 0, finished.stderr

@@ -135,13 +135,17 @@ def test_the_terminal_and_the_file_state_the_range_of_an_expression(tmp_path):
     assert note in (tmp_path / "hip" / "hip.osim").read_text()
 
 
+def check_text(text, element, near):
+    """The text of a law in m and m/s has the damped force of an element, and none apart."""
+    formula, words = text.replace("^", "**"), {"max": max, "min": min, "sqrt": sqrt, "exp": exp, "ddot": 0.02}
+    force = -element((0.0, 0.0, 0.13), (0.0, 0.0, 20.0)).force[2]
+    assert_allclose(eval(formula, words | {"d": 1.3e-4}), force, rtol=near)
+    assert eval(formula, words | {"d": 5e-5}) == 0.0
+
+
 @pytest.mark.parametrize(("element", "near"), [(DAMPED, 1e-12), (TABULATED, 1e-5)])
 def test_the_text_of_an_expression_is_the_law_with_its_damping(element, near):
-    text = expression_fit(element, 0.05).text("d", "ddot", 4.0)
-    words = {"max": max, "min": min, "sqrt": sqrt, "exp": exp, "d": 1.3e-4, "ddot": 0.02}
-    force = eval(text.replace("^", "**"), words)
-    assert_allclose(force, -element((0.0, 0.0, 0.13), (0.0, 0.0, 20.0)).force[2], rtol=near)
-    assert eval(text.replace("^", "**"), words | {"d": 5e-5}) == 0.0
+    check_text(expression_fit(element, 0.05).text("d", "ddot", 4.0), element, near)
 
 
 def test_the_best_power_law_is_balanced_and_no_other_is_better():
@@ -254,7 +258,7 @@ def test_features_that_a_target_cannot_represent_are_reported(tmp_path):
     assert written("opensim", DAMPED, tmp_path)[1] == written("table", PLAIN, tmp_path)[1] == ""
 
 
-def test_files_of_other_programs_have_the_radii_in_metres_and_the_inertia_of_a_solid_ball(tmp_path):
+def test_files_of_other_programs_have_the_law_and_the_radii_in_metres_and_the_inertia_of_a_solid_ball(tmp_path):
     """A ball of 17.9 mm and 1 kg has 0.4 m R² = 1.28e-4 kg m²."""
     for target in ("mujoco", "opensim", "exudyn"):
         folder = tmp_path / target
@@ -264,6 +268,11 @@ def test_files_of_other_programs_have_the_radii_in_metres_and_the_inertia_of_a_s
     scene = fromstring((tmp_path / "mujoco" / "hip.xml").read_bytes())
     assert float(scene.find(".//geom").get("size")) == pytest.approx(0.0179)
     model = fromstring((tmp_path / "opensim" / "hip.osim").read_bytes())
+    text = (tmp_path / "opensim" / "hip.osim").read_text()
+    check_text(model.find(".//expression").text, DAMPED, 1e-12)
+    assert float(re.search(r"Accuracy: within (\S+) % of the law", text)[1]) <= 1e-10
+    plain = TARGETS["opensim"].texts(ExportJob(element=PLAIN, name="hip", depth=0.05))["hip.osim"]
+    assert "ddot" not in plain
     inertia = [float(number) for number in model.find(".//inertia").text.split()]
     assert inertia == pytest.approx([0.4 * 0.0179**2] * 3 + [0.0] * 3)
     assert float(model.find(".//mass").text) == 1.0
@@ -283,17 +292,6 @@ def test_the_power_law_of_exudyn_is_the_law_in_newtons_and_metres():
     depth, error = re.search(r"indentation of (\S+) m: at most (\S+) % of the force", program).groups()
     assert float(depth) == 5e-5
     assert float(error) == pytest.approx(100 * job.fitted_power_law.error, rel=0.05)
-
-
-def test_the_expression_of_opensim_is_the_damped_law_in_metres():
-    text = TARGETS["opensim"].texts(ExportJob(element=DAMPED, name="hip", depth=0.05))["hip.osim"]
-    expression = fromstring(text.encode()).find(".//expression").text
-    force = eval(expression.replace("^", "**"), {"max": max, "min": min, "d": 1.3e-4, "ddot": 0.02})
-    assert_allclose(force, -DAMPED((0.0, 0.0, 0.13), (0.0, 0.0, 20.0)).force[2], rtol=1e-12)
-    accuracy = float(re.search(r"Accuracy: within (\S+) % of the law", text)[1])
-    assert accuracy <= 1e-10
-    plain = TARGETS["opensim"].texts(ExportJob(element=PLAIN, name="hip", depth=0.05))["hip.osim"]
-    assert "ddot" not in plain
 
 
 def test_the_text_of_a_power_law_has_its_numbers_for_every_program():
