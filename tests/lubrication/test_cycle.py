@@ -232,9 +232,10 @@ def test_every_step_of_a_cycle_that_reverses_load_and_motion_is_solved():
     assert np.abs(loads[:, :2]).max() < 0.1
 
 
+@pytest.mark.long
 def test_start_up_ends_at_the_steady_film_and_rest_squeezes_it_out():
     problem, start = springs_problem(0.5, 2.5, 16)
-    moving = load_steps(np.full(30, 1500.0), np.full(30, 10.0), 0.03)
+    moving = load_steps(np.full(20, 1500.0), np.full(20, 10.0), 0.045)
     film = solve_cycle(problem, start, moving)
     steady = solve_steady(replace(problem, spin=moving[0].spin), film.states[-1])
     assert steady.converged
@@ -258,9 +259,10 @@ def test_a_step_without_a_solution_keeps_the_last_film_and_its_status():
     assert np.isfinite(film.thickness).all()
 
 
+@pytest.mark.long
 def test_every_step_of_an_elastic_cycle_is_solved():
     """Load and motion reverse; the bodies are those of `exact`."""
-    phase = (np.arange(either(quick=2, long=6)) + 0.5) / 12
+    phase = (np.arange(6) + 0.5) / 12
     forces = 1150 - 850 * np.cos(4 * pi * phase)
     motion = np.outer(5.0 * np.cos(2 * pi * phase), (1.0, 0.0, 0.0))
     oil = bs.Lubricant(viscosity=1e-2)
