@@ -73,11 +73,15 @@ class NoCompiler(RuntimeError):  # noqa: N818 - a sentence for people
 def compiler() -> list[str]:
     """Return the command of the C compiler: the environment variable CC, else the first of cc, gcc and clang.
 
+    CC is the path of a program, which may contain blanks, or a program with arguments.
+
     Raises
     ------
     NoCompiler
         No compiler is installed.
     """
+    if (stated_program := shutil.which(os.environ.get("CC", ""))) is not None:
+        return [stated_program]
     stated_command = _split_environment_variable("CC")
     if stated_command and shutil.which(stated_command[0]):
         return stated_command
