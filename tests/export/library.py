@@ -1,7 +1,6 @@
 """An exported element, compiled and called."""
 
 import ctypes
-import shlex
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -37,10 +36,10 @@ def skip_without(package):
 
 def set_compiler(monkeypatch, folder, lines):
     """Write a script of Python that `CC` names as the compiler."""
-    script = folder / "script-gcc"
+    script = folder / "script gcc"
     script.write_text("\n".join([f"#!{sys.executable}", "import sys", *lines]), encoding="utf-8")
     script.chmod(0o755)
-    monkeypatch.setenv("CC", shlex.quote(str(script)))
+    monkeypatch.setenv("CC", str(script))
 
 
 def python_header():
