@@ -110,12 +110,23 @@ def test_concentric_limits_are_those_of_stokes_flow_between_spheres():
     assert load.moment[0] == pytest.approx(-torque, rel=2 * (C / R1) ** 2)
 
 
-def test_the_squeeze_pressure_is_that_of_the_exact_field_and_zero_without_a_lubricant():
+def test_a_free_ball_in_a_film_has_no_contact_but_a_load_and_the_squeeze_pressure_of_the_exact_field():
     state = (0.0, 0.0, 0.95 * C), (1.0, 2.0, -3.0)
-    tension = squeeze(0.0, 0.0, 0.95 * C, -3.0, 0.0)
-    assert WET(*state).squeeze_pressure == pytest.approx(tension, rel=1e-9)
+    tension, load = squeeze(0.0, 0.0, 0.95 * C, -3.0, 0.0), WET(*state)
+    assert load.squeeze_pressure == pytest.approx(tension, rel=1e-9)
     assert WET(*map(np.array, state)).squeeze_pressure == pytest.approx(tension, rel=1e-9)
     assert DRY(*state).squeeze_pressure == DRY((0.0, 0.0, C + 0.1), state[1]).squeeze_pressure == 0.0
+    assert (load.status, load.energy) == (ContactState.FREE, 0.0)
+    assert load.force[2] > 0.0
+    assert np.isnan(WET((0.0, 0.0, 0.05), (0.0, nan, 10.0)).force).any()
+    assert "lubricant Lubricant" in str(WET)
+
+
+def test_a_ball_that_orbits_at_half_its_spin_meets_no_resistance_of_the_pressure():
+    """The film moves with the mean of both surfaces: half-speed whirl."""
+    position, spin = np.array([0.03, 0.0, 0.06]), np.array([0.0, 8.0, 0.0])
+    load, still = WET(position, np.cross(spin / 2, position), spin), WET(position, spin=spin)
+    assert np.abs(load.force).max() <= 1e-12 * np.abs(still.force).max()
 
 
 def test_a_thin_film_squeezes_as_between_spheres_of_the_reduced_radius():
@@ -235,14 +246,6 @@ def test_the_damping_matrix_of_a_cavitating_film_is_the_derivative_over_the_spee
     assert (np.abs(D[:, 2, 2] - WET(position, velocity, spin).damping_matrix[:, 2, 2]) > 0.1 * size[:, 0, 0]).any()
 
 
-def test_a_ball_that_orbits_at_half_its_spin_meets_no_resistance_of_the_pressure():
-    """The film moves with the mean of both surfaces: half-speed whirl."""
-    position, spin = np.array([0.03, 0.0, 0.06]), np.array([0.0, 8.0, 0.0])
-    load = WET(position, np.cross(spin / 2, position), spin)
-    still = WET(position, spin=spin)
-    assert np.abs(load.force).max() <= 1e-12 * np.abs(still.force).max()
-
-
 def reynolds_damping(kappa, direction, rim, rings=50, columns=60):
     """Damping tensor (3, 3) of a film on a cap about z with pressure 0 at its rim, by finite volumes; η = R = c = 1."""
     dt, df = rim / rings, 2 * pi / columns
@@ -332,11 +335,3 @@ def test_derivatives_by_jax_are_finite_and_right_at_the_centre():
         step = 1e-5 * np.eye(3)
         ends = [element(sign * step, np.ones((3, 3)), np.tile(spin, (3, 1))).force for sign in (1, -1)]
         np.testing.assert_allclose(slope, (ends[0] - ends[1]).T / 2e-5, rtol=1e-5)
-
-
-def test_a_free_ball_in_a_film_has_no_contact_but_a_load():
-    load = WET((0.0, 0.0, 0.05), (0.0, 0.0, 10.0))
-    assert (load.status, load.energy) == (ContactState.FREE, 0.0)
-    assert load.force[2] < 0.0
-    assert np.isnan(WET((0.0, 0.0, 0.05), (0.0, nan, 10.0)).force).any()
-    assert "lubricant Lubricant" in str(WET)

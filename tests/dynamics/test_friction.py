@@ -140,16 +140,21 @@ def test_friction_potential_is_convex():
         assert (values[:, 0] >= -1e-9 * values[:, -1]).all()
 
 
-def test_spin_reduces_the_friction_across_the_load():
+def test_spin_reduces_the_friction_across_the_load_and_stiction_exceeds_sliding():
     still = SMOOTH(DEEP, velocity=(1.0, 0.0, 0.0)).force[0]
     spinning = SMOOTH(DEEP, velocity=(1.0, 0.0, 0.0), spin=(0.0, 0.0, 10.0)).force[0]
     assert abs(spinning) < 0.1 * abs(still)
-
-
-def test_static_friction_exceeds_sliding_friction():
-    element = replace(SMOOTH, friction=Friction(coefficient=0.1, transition_speed=1e-3, static_coefficient=0.2))
+    element = replace(SMOOTH, friction=replace(SMOOTH.friction, static_coefficient=0.2))
     slow, fast = (abs(element(DEEP, velocity=(speed, 0.0, 0.0)).force[0]) for speed in (0.1, 100.0))
     assert slow == pytest.approx(2 * fast, rel=1e-3)
+
+
+def test_deflections_decay_without_contact():
+    away = HELD((0.0, 0.0, 0.0), deflection=(1e-3, 0.0, 0.0, 0.0))
+    assert away.deflection_rate[0] == pytest.approx(-1.0)
+    assert away.force == (0.0, 0.0, 0.0)
+    with pytest.warns(DeprecationWarning, match="use bristle_dissipation"):
+        assert away.rubbed == away.bristle_dissipation
 
 
 def steady_slip(element, duration, **state):
@@ -202,12 +207,6 @@ def test_bristles_dissipate_and_balance_the_power():
         np.testing.assert_allclose(power, stored + load.bristle_dissipation, atol=1e-9 * np.abs(power).max())
 
 
-def test_deflections_decay_without_contact():
-    away = HELD((0.0, 0.0, 0.0), deflection=(1e-3, 0.0, 0.0, 0.0))
-    assert away.deflection_rate[0] == pytest.approx(-1.0)
-    assert away.force == (0.0, 0.0, 0.0)
-
-
 def test_bristles_hold_a_ball_below_the_limit_of_friction():
     """The ball comes to rest on bristles, energy is balanced, and a motion that ends early names its state."""
     normal, side = 700.0, 30.0
@@ -225,9 +224,3 @@ def test_bristles_hold_a_ball_below_the_limit_of_friction():
     assert "after 0 s: the state is not finite" in ended.end_reason
     fast = simulate(element, velocity=(0.0, 0.0, 1e7), **thrown)
     assert "exceeds the wall thickness" in fast.end_reason
-
-
-def test_old_name_of_the_dissipation_of_bristles_warns():
-    load = HELD(DEEP, velocity=(1.0, 0.0, 0.0), deflection=(1e-3, 0.0, 0.0, 0.0))
-    with pytest.warns(DeprecationWarning, match="use bristle_dissipation"):
-        assert load.rubbed == load.bristle_dissipation

@@ -44,20 +44,15 @@ def test_product_relaxes_from_first_touch():
     depth = np.array([-0.02, -0.01, 0.0, 0.05, 0.05])
     force = LINER.separable_force(time, depth)
     elastic = float(LINER.instantaneous_force(np.array([0.05]))[0])
-    assert force[:3].tolist() == [0.0, 0.0, 0.0]
+    for before in (LINER.separable_force, LINER.hereditary_force, LINER.cycle_force, LINER.spring_force):
+        assert before(time[:4], depth[:4])[:3].tolist() == [0.0, 0.0, 0.0]
+        assert before(time[:4], depth[:4])[3] > 0
     assert force[3] == pytest.approx(elastic)
     assert force[4] == pytest.approx((0.5 + 0.3 * np.exp(-99.0) + 0.2 * np.exp(-0.99)) * elastic, rel=1e-12)
 
 
-def test_all_forces_are_zero_before_contact():
-    time, depth = np.array([0.0, 1.0, 2.0, 3.0]), np.array([-0.03, -0.02, 0.0, 0.05])
-    for force in (LINER.separable_force, LINER.hereditary_force, LINER.cycle_force, LINER.spring_force):
-        assert force(time, depth)[:3].tolist() == [0.0, 0.0, 0.0]
-        assert force(time, depth)[3] > 0
-
-
-def test_complex_modulus_has_its_limits_and_its_loss_at_the_relaxation_time():
-    """A single term loses most at ω τ = 1: g/2 is the imaginary part, 1 - g/2 the real one."""
+def test_a_single_term_is_the_standard_linear_solid():
+    """It loses most at ω τ = 1. g = 1 - g1 + g1 exp(-t/τ) has J = 1/g∞ - g1/g∞ exp(-g∞ t/τ)."""
     one = Prony(terms=((0.4, 0.1),))
     assert one.complex_modulus(1 / (2 * np.pi * 0.1)) == pytest.approx(0.8 + 0.2j)
     assert abs(one.complex_modulus(1e9) - 1.0) < 1e-6
@@ -65,20 +60,15 @@ def test_complex_modulus_has_its_limits_and_its_loss_at_the_relaxation_time():
     losses = one.complex_modulus(np.array([0.5, 1.0, 2.0]) / (2 * np.pi * 0.1)).imag
     assert losses[0] == pytest.approx(losses[2])
     assert losses[1] > losses[0]
+    time = np.array([0.0, 0.05, 0.3])
+    expected = 1 / 0.6 - 0.4 / 0.6 * np.exp(-0.6 * time / 0.1)
+    np.testing.assert_allclose(one.creep_compliance(time), expected, rtol=1e-12)
 
 
 def test_mean_of_the_modulus_is_its_average_over_an_interval():
     time = np.linspace(0.05, 0.4, 20_001)
     average = np.trapezoid(PE.relaxation(time), time) / 0.35
     assert PE.mean(np.array(0.05), np.array(0.4)) == pytest.approx(average, rel=1e-9)
-
-
-def test_creep_compliance_of_a_single_term_is_that_of_the_standard_linear_solid():
-    """g = 1 - g1 + g1 exp(-t/τ) has J = 1/g∞ - g1/g∞ exp(-g∞ t/τ)."""
-    one = Prony(terms=((0.4, 0.1),))
-    time = np.array([0.0, 0.05, 0.3])
-    expected = 1 / 0.6 - 0.4 / 0.6 * np.exp(-0.6 * time / 0.1)
-    np.testing.assert_allclose(one.creep_compliance(time), expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize(("seconds", "share"), [(1e-6, 1.0), (1e6, PE.long_term_share)])
