@@ -118,6 +118,7 @@ def test_a_free_ball_in_a_film_has_no_contact_but_a_load_and_the_squeeze_pressur
     assert DRY(*state).squeeze_pressure == DRY((0.0, 0.0, C + 0.1), state[1]).squeeze_pressure == 0.0
     assert (load.status, load.energy) == (ContactState.FREE, 0.0)
     assert load.force[2] > 0.0
+    assert WET((0.0, 0.0, 0.05), (0.0, 0.0, 10.0)).force[2] < 0.0
     assert np.isnan(WET((0.0, 0.0, 0.05), (0.0, nan, 10.0)).force).any()
     assert "lubricant Lubricant" in str(WET)
 

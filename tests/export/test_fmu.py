@@ -92,6 +92,8 @@ def test_both_versions_list_their_sources(folder):
     with zipfile.ZipFile(folder / "hip3.fmu") as archive:
         build = fromstring(archive.read("sources/buildDescription.xml"))
     assert {each.get("name") for each in build.iter("SourceFile")} == {"hip.c", "fmi3.c"}
+    with zipfile.ZipFile(folder / "hip2.fmu") as archive:
+        assert "sources/buildDescription.xml" not in archive.namelist()
 
 
 @pytest.mark.parametrize(("version", "tag", "key"), [(2, "Unknown", "index"), (3, "Output", "valueReference")])
