@@ -15,7 +15,7 @@ SLOW = pytest.param("plane-layer", marks=pytest.mark.long)
 SIZES = {"plane-layer": 120, "cosine-limit": either(30_000, 60_000)}
 
 
-@pytest.mark.parametrize("name", sorted(PROMISING.keys() - {"plane-layer"}) + [SLOW])
+@pytest.mark.parametrize("name", [*sorted(PROMISING.keys() - {"plane-layer"}), SLOW])
 def test_valid_results_are_within_the_promise(name):
     measured = measure(PROMISING[name], size=SIZES.get(name, 12_000), seed=7)
     assert 10 < measured.valid <= measured.contacts
