@@ -8,7 +8,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.paper import claims, curves
 from ballsocket.paper.plan import quick_plan
-from ballsocket.reports import accuracy_results
+from ballsocket.reports import accuracy_results, paper_report
 from ballsocket.reports.paper_report import write_report
 
 from ..places import DATA
@@ -40,7 +40,8 @@ def check_page(path, *texts):
         assert text in page
 
 
-def test_the_report_stands_alone_and_beside_it_lie_its_numbers(tmp_path):
+def test_the_report_stands_alone_and_beside_it_lie_its_numbers(tmp_path, monkeypatch):
+    monkeypatch.setattr(paper_report, "_write_picture", lambda *words: b"picture")  # drawn in the long form
     check_page(write_report(JUDGED, tmp_path), "does not hold", "holds", "Table 1")
     worst = max(read_table(tmp_path / "accuracy.csv"), key=lambda row: float(row["worst"]))
     assert worst["model"] == "cosine-limit"
