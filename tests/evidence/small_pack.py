@@ -35,12 +35,26 @@ coefficient = 0.06
 """
 
 
+def question_text(*replacements):
+    """Return the text of the question with parts of it replaced."""
+    text = QUESTION_TEXT
+    for old, new in replacements:
+        assert old in text, old
+        text = text.replace(old, new)
+    return text
+
+
+def question_of(folder, *replacements):
+    """Write the question with parts of it replaced, and read it."""
+    (folder / "asked.toml").write_text(question_text(*replacements), encoding="utf-8")
+    return read_question(folder / "asked.toml")
+
+
 @cache
 def small_pack():
     """Return the question, its record, and a folder with the pack in `out` and its stored results in `data`."""
     folder = Path(mkdtemp(prefix="ballsocket-test-"))
-    (folder / "asked.toml").write_text(QUESTION_TEXT, encoding="utf-8")
-    question = read_question(folder / "asked.toml")
+    question = question_of(folder)
     record = gather_evidence(question, folder / "data")
     write(question, record, page, folder / "out")
     return question, record, folder

@@ -8,7 +8,6 @@ import shutil
 import subprocess
 from base64 import b64decode, b64encode
 from datetime import date, timedelta
-from hashlib import sha256
 from importlib import import_module
 from pathlib import Path
 
@@ -30,9 +29,10 @@ from ballsocket.evidence.folder import (
     record_bytes,
     sign_pack,
     signature_of,
+    sums_bytes,
 )
 
-from ..extent import some
+from ..places import symlink_or_skip
 from .small_pack import page
 
 FIGURE = re.compile(rb"(?<=data:image/svg\+xml;base64,)[A-Za-z0-9+/=]+")
@@ -49,22 +49,30 @@ def record_of(out):
     return json.loads((out / RECORD).read_bytes())
 
 
-def seal(out, *more):
+def seal(out):
     """Rewrite the checksums."""
-    names = sorted([QUESTION, RECORD, PAGE, *more])
-    lines = [f"{sha256((out / name).read_bytes()).hexdigest()}  {name}\n" for name in names if (out / name).exists()]
-    (out / SUMS).write_bytes("".join(lines).encode())
+    names = [name for name in (QUESTION, RECORD, PAGE, "addendum.html") if (out / name).exists()]
+    (out / SUMS).write_bytes(sums_bytes({name: (out / name).read_bytes() for name in names}))
 
 
 def plain_page(record, digest):
-    """Make a page without figures, which is fast."""
-    return f"{digest} {json.dumps(record)}"
+    """Make a page with two small figures, which is fast."""
+    pressures = [row["numbers"]["max_pressure"] for row in record["matrix"]]
+    figures = [b64encode(f"<svg fill='#000000'>{content}</svg>".encode()).decode() for content in ("joint", pressures)]
+    images = "".join(f"<img src='data:image/svg+xml;base64,{figure}'>" for figure in figures)
+    return f"<html lang='en'>{digest}{images}{json.dumps(record)}</html>\n"
 
 
-def redraw(out, record, maker=plain_page):
+def redraw(out, record):
     """Write a record and its page."""
     (out / RECORD).write_bytes(record_bytes(record))
-    (out / PAGE).write_text(maker(record, digest({n: (out / n).read_bytes() for n in (QUESTION, RECORD)})), "utf-8")
+    (out / PAGE).write_text(
+        plain_page(record, digest({n: (out / n).read_bytes() for n in (QUESTION, RECORD)})), "utf-8"
+    )
+
+
+def replace_bytes(name, change):
+    return lambda out: (out / name).write_bytes(change((out / name).read_bytes()))
 
 
 def in_page(old, new):
@@ -87,67 +95,66 @@ def in_record(change, judged_again=False):
     return forge
 
 
-def swap_figure(out):
-    false = b64encode(b"<svg xmlns='http://www.w3.org/2000/svg'><text y='20'>All limits kept, 3 MPa</text></svg>")
-    (out / PAGE).write_bytes(FIGURE.sub(false, (out / PAGE).read_bytes(), count=1))
+def updated(*path, **entries):
+    """Replace entries of a part of the record."""
+
+    def change(record):
+        part = record
+        for key in path:
+            part = part[key]
+        part.update(entries)
+
+    return in_record(change)
+
+
+swap_figure = replace_bytes(
+    PAGE, lambda text: FIGURE.sub(b64encode(b"<svg>All limits kept, 3 MPa</svg>"), text, count=1)
+)
 
 
 def figure_of_another_pack(out):
     record = record_of(out)
     for row in record["matrix"]:
         row["numbers"]["max_pressure"] *= 0.5
-    theirs = FIGURE.findall(page(record, digest_of(out)).encode())
+    theirs = FIGURE.findall(plain_page(record, digest_of(out)).encode())
     ours = FIGURE.findall((out / PAGE).read_bytes())
-    assert theirs[1] != ours[1]
-    (out / PAGE).write_bytes((out / PAGE).read_bytes().replace(ours[1], theirs[1]))
+    in_page(ours[1], theirs[1])(out)
 
 
 def change_a_letter_of_a_figure(out):
     (figure, *_) = FIGURE.findall((out / PAGE).read_bytes())
-    svg = b64decode(figure)
-    (out / PAGE).write_bytes(
-        (out / PAGE).read_bytes().replace(figure, b64encode(svg.replace(b"#000000", b"#000001", 1)))
-    )
+    in_page(figure, b64encode(b64decode(figure).replace(b"#000000", b"#000001", 1)))(out)
 
 
-HIDDEN = b"data:image/><style>main,body>*{display:none}</style><h1 style=display:block>All limits are kept</h1>"
-
-
-def add(name, content=b"<h1>All limits are kept</h1>"):
+def add(name):
     def forge(out):
+        if (out / name).exists():
+            pytest.skip("the file system ignores case")
         (out / name).parent.mkdir(exist_ok=True)
-        (out / name).write_bytes(content)
+        (out / name).write_bytes(b"<h1>All limits are kept</h1>")
 
     return forge
 
 
 def of_another_version(out):
-    record = record_of(out)
-    record["version"] = "1.0.0+deadbeef"
-    (out / RECORD).write_bytes(record_bytes(record))
+    (out / RECORD).write_bytes(record_bytes({**record_of(out), "version": "1.0.0+deadbeef"}))
     in_page(b"not kept", b"kept")(out)
 
 
 def drawn_by_another_library(out):
-    record = record_of(out)
-    record["made_with"]["matplotlib"] = "3.4.1"
-    redraw(out, record, page)
+    updated("made_with", matplotlib="3.4.1")(out)
     swap_figure(out)
 
 
 def link_the_page(out):
     target = out.parent / "elsewhere.html"
     (out / PAGE).rename(target)
-    (out / PAGE).symlink_to(target)
+    symlink_or_skip(out / PAGE, target)
 
 
 def twice_in_the_json(out):
     text = (out / RECORD).read_text("utf-8").rstrip().removesuffix("}")
-    (out / RECORD).write_text(f'{{"approved": "yes", "approved": null,{text[1:]}}}\n', "utf-8")
-
-
-def replace_bytes(name, change):
-    return lambda out: (out / name).write_bytes(change((out / name).read_bytes()))
+    (out / RECORD).write_bytes(f'{{"approved": "yes", "approved": null,{text[1:]}}}\n'.encode())
 
 
 def reorder(record):
@@ -158,21 +165,13 @@ def verdict(record):
     record["limits"][0]["verdict"] = "kept"
 
 
-def change_slightly(record):
-    record["matrix"][3]["numbers"]["max_pressure"] *= 1 - 1e-7
-
-
-def style(record):
-    record["context_of_use"] = "</p><style>body>*{display:none}</style><p>\u200bAll limits are kept"
-
-
-def observed(record):
-    record["code_verification"][0]["observed"] *= 1e4
-
-
 def without_gaps(record):
     record["requirements"] = [row for row in record["requirements"] if row["status"] == "met"]
 
+
+HIDDEN = b"data:image/><style>main,body>*{display:none}</style><h1 style=display:block>All limits are kept</h1>"
+STYLE = "</p><style>body>*{display:none}</style><p>\u200bAll limits are kept"
+NOT_CANONICAL = "evidence.json: differs from the canonical form"
 
 FORGERIES = {
     "a figure that was swapped": (swap_figure, "figure 1 of the page differs from the figure made from evidence.json"),
@@ -184,10 +183,7 @@ FORGERIES = {
     "bytes after the page": (replace_bytes(PAGE, lambda text: text + b"<h1>kept</h1>"), "instead of"),
     "a mark before the page": (replace_bytes(PAGE, lambda text: b"\xef\xbb\xbf" + text), "instead of"),
     "line ends of the page": (replace_bytes(PAGE, lambda text: text.replace(b"\n", b"\r\n")), "instead of"),
-    "another digest on the page": (
-        lambda out: in_page(digest_of(out).encode(), b"0" * 64)(out),
-        "instead of",
-    ),
+    "another digest on the page": (lambda out: in_page(digest_of(out).encode(), b"0" * 64)(out), "instead of"),
     "another version": (of_another_version, r"version: cannot be verified by this version of ballsocket, .*deadbeef"),
     "another library of figures": (
         drawn_by_another_library,
@@ -199,73 +195,50 @@ FORGERIES = {
     "pieces of a run": (add("data/first.json"), "data/first.json: does not belong to the pack"),
     "an empty folder": (lambda out: (out / "more").mkdir(), "more: does not belong to the pack"),
     "a link": (link_the_page, "evidence.html: is a symbolic link"),
-    "a link to a folder": (lambda out: (out / "more").symlink_to(out.parent), "more: is a symbolic link"),
+    "a link to a folder": (lambda out: symlink_or_skip(out / "more", out.parent), "more: is a symbolic link"),
     "no page": (lambda out: (out / PAGE).unlink(), "evidence.html: written 'not listed', now 'missing'"),
-}
-
-FORGED_RECORDS = {
     "a verdict in both": (in_record(verdict), r"limits\[0\].verdict: written 'kept', now 'not kept'"),
     "a verdict in both, judged again": (in_record(verdict, True), r"limits\[0\].verdict: written 'kept'"),
-    "a number by a ten-millionth": (in_record(change_slightly), r"matrix\[3\].numbers.max_pressure: written 15.5"),
-    "styles in the words": (in_record(style), "context_of_use: written '</p><style>"),
-    "an error that was observed": (in_record(observed), r"code_verification\[0\].observed"),
+    "styles in the words": (updated(context_of_use=STYLE), "context_of_use: written '</p><style>"),
     "a level of a factor": (
-        in_record(lambda record: record["credibility"][7].update(reached="d", adequate=True)),
+        updated("credibility", 7, reached="d", adequate=True),
         r"credibility\[7\].reached: written 'd', now 'a'",
     ),
     "gaps that were left out": (in_record(without_gaps), "requirements: written"),
-    "an empty word more": (
-        in_record(lambda record: record.update(approved=None)),
-        "approved: written None, now 'absent'",
-    ),
+    "an empty word more": (updated(approved=None), "approved: written None, now 'absent'"),
     "a word less": (in_record(lambda record: record.pop("recentred")), "recentred: written 'absent'"),
     "another order": (in_record(reorder), "worst: has its keys in another order"),
-    "a number as text": (
-        in_record(lambda record: record["limits"][0].update(beyond="1")),
-        r"limits\[0\].beyond: written '1', now 1",
-    ),
-    "words behind the date": (
-        in_record(lambda record: record.update(made_on="2026-01-01, approved")),
-        "made_on: must be",
-    ),
+    "a number as text": (updated("limits", 0, beyond="1"), r"limits\[0\].beyond: written '1', now 1"),
+    "words behind the date": (updated(made_on="2026-01-01, approved"), "made_on: must be"),
     "a date to come": (
-        in_record(lambda record: record.update(made_on=str(date.today() + timedelta(days=9)))),
+        updated(made_on=str(date.today() + timedelta(days=9))),
         "made_on: must be a date that is not in the future",
     ),
     "words among the libraries": (
-        in_record(lambda record: record["made_with"].update(numpy="2.4.6 and approved by the authority")),
+        updated("made_with", numpy="2.4.6 and approved by the authority"),
         "made_with: holds more than the names and versions",
     ),
-    "another library": (in_record(lambda record: record["made_with"].update(approved="yes")), "made_with: holds more"),
-    "a key twice": (twice_in_the_json, "evidence.json: differs from the canonical form"),
-    "line ends of the record": (
-        replace_bytes(RECORD, lambda text: text.replace(b"\n", b"\r\n")),
-        "evidence.json: differs from the canonical form",
-    ),
-    "bytes after the record": (
-        replace_bytes(RECORD, lambda text: text + b" \n"),
-        "evidence.json: differs from the canonical form",
-    ),
+    "another library": (updated("made_with", approved="yes"), "made_with: holds more"),
+    "a key twice": (twice_in_the_json, NOT_CANONICAL),
+    "line ends of the record": (replace_bytes(RECORD, lambda text: text.replace(b"\n", b"\r\n")), NOT_CANONICAL),
+    "bytes after the record": (replace_bytes(RECORD, lambda text: text + b" \n"), NOT_CANONICAL),
     "a comment in the question": (
         replace_bytes(QUESTION, lambda text: text + b"# approved\n"),
         "the page differs from the page made from evidence.json",  # it shows the digest
     ),
 }
-"""Forged records with matching pages."""
 
 
-@pytest.mark.parametrize("name", some([*FORGERIES, *FORGED_RECORDS], 15))
+@pytest.mark.parametrize("name", FORGERIES)
 def test_a_forged_pack_is_reported_with_the_reason(name, out):
-    forge, sentence = (FORGERIES | FORGED_RECORDS)[name]
-    maker = plain_page if name in FORGED_RECORDS else page
-    redraw(out, record_of(out), maker)
+    forge, sentence = FORGERIES[name]
+    redraw(out, record_of(out))
+    seal(out)
     forge(out)
-    seal(out, *(["addendum.html"] if (out / "addendum.html").exists() else []))
-    comparison = compare(out, maker)
-    assert any(re.search(sentence, str(difference)) for difference in comparison.differences), [
-        str(difference) for difference in comparison.differences
-    ]
-    assert all(difference.summary() for difference in comparison.differences)
+    seal(out)
+    differences = compare(out, plain_page).differences
+    assert any(re.search(sentence, str(difference)) for difference in differences), list(map(str, differences))
+    assert all(difference.summary() for difference in differences)
 
 
 def test_a_record_without_a_possible_page_is_reported(out):
@@ -276,50 +249,35 @@ def test_a_record_without_a_possible_page_is_reported(out):
 
 
 def test_an_unchanged_pack_passes(out):
-    comparison = compare(out, page)
-    assert comparison.differences == ()
-    assert comparison.digest == digest_of(out)
-    assert comparison.digest in (out / PAGE).read_text("utf-8")
+    result = compare(out, page)
+    assert result.differences == ()
+    assert result.digest == digest_of(out)
+    assert result.digest in (out / PAGE).read_text("utf-8")
+
+
+def test_only_the_canonical_form_of_checksums_passes(out):
+    text = (out / SUMS).read_bytes()
+    lines = text.splitlines(keepends=True)
+    forms = [text.replace(b"\n", b"\r\n"), b"\xef\xbb\xbf" + text, b"".join(reversed(lines)), text + text]
+    for form in [*forms, text.upper(), text.rstrip()]:
+        (out / SUMS).write_bytes(form)
+        assert compare(out, page).differences, form
 
 
 @pytest.mark.parametrize(
-    "change",
+    ("factor", "added", "equal"),
     [
-        lambda text: text.replace(b"\n", b"\r\n"),
-        lambda text: b"\xef\xbb\xbf" + text,
-        lambda text: b"".join(reversed(text.splitlines(keepends=True))),
-        lambda text: text + text,
-        lambda text: text.upper(),
-        lambda text: text.rstrip(),
+        (1 + 9e-10, 0.0, True),
+        (1 + 1.1e-9, 0.0, False),
+        (1.0, 9e-17, True),  # a thousandth of the allowed error is 1e-16
+        (1.0, 1.1e-16, False),
     ],
 )
-def test_only_the_canonical_form_of_checksums_passes(out, change):
-    (out / SUMS).write_bytes(change((out / SUMS).read_bytes()))
-    assert compare(out, page).differences
+def test_numbers_of_another_machine_may_differ_within_a_tolerance(out, factor, added, equal):
+    def change(record):
+        record["matrix"][3]["numbers"]["max_pressure"] *= factor
+        record["code_verification"][0]["observed"] += added
 
-
-def scale_pressure(factor):
-    return lambda record: record["matrix"][3]["numbers"].update(
-        max_pressure=record["matrix"][3]["numbers"]["max_pressure"] * factor
-    )
-
-
-def add_to_observed(error):
-    return lambda record: record["code_verification"][0].update(
-        observed=record["code_verification"][0]["observed"] + error
-    )
-
-
-@pytest.mark.parametrize(
-    ("change", "equal"),
-    [
-        (scale_pressure(1 + 9e-10), True),
-        (scale_pressure(1 + 1.1e-9), False),
-        (add_to_observed(9e-17), True),  # a thousandth of the allowed error is 1e-16
-        (add_to_observed(1.1e-16), False),
-    ],
-)
-def test_numbers_of_another_machine_may_differ_within_a_tolerance(out, change, equal):
     in_record(change, judged_again=True)(out)
     seal(out)
     where = {difference.where for difference in compare(out, plain_page).differences}
@@ -327,7 +285,7 @@ def test_numbers_of_another_machine_may_differ_within_a_tolerance(out, change, e
     assert (not where) == equal
 
 
-@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="a system without pipes that have names")
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes")
 def test_a_pipe_is_reported_and_not_opened(out):
     os.mkfifo(out / "wait")
     assert "wait: does not belong to the pack" in map(str, compare(out, page).differences)
@@ -354,17 +312,13 @@ def keys():
 
 
 def public(key):
-    from ballsocket.evidence.signature import public_key_of
-
-    return public_key_of(key)
+    return import_module("ballsocket.evidence.signature").public_key_of(key)
 
 
 def test_a_signature_is_verified_by_its_key(out, keys):
     sign_pack(out, keys[0])
-    assert signature_of(out, public(keys[0])).summary() == {
-        "fingerprint": public(keys[0]).fingerprint,
-        "verified": True,
-    }
+    fingerprint = public(keys[0]).fingerprint
+    assert signature_of(out, public(keys[0])).summary() == {"fingerprint": fingerprint, "verified": True}
     assert signature_of(out).expected is None
     assert compare(out, page).differences == ()
 
@@ -376,16 +330,15 @@ def of_another_pack(out):
     (out / SIGNATURE).write_bytes(signature)
 
 
-def another_purpose(out):
-    text = (out / SIGNATURE).read_text("ascii").splitlines()
-    blob = b64decode("".join(text[1:-1])).replace(b"ballsocket", b"softballet")
-    (out / SIGNATURE).write_text("\n".join([text[0], b64encode(blob).decode(), text[-1], ""]))
+def in_signature(change):
+    """Change the bytes that the lines of a signature encode."""
 
+    def forge(out):
+        first, *lines, last = (out / SIGNATURE).read_text("ascii").splitlines()
+        blob = change(b64decode("".join(lines)))
+        (out / SIGNATURE).write_bytes("\n".join([first, b64encode(blob).decode(), last, ""]).encode())
 
-def with_tail(out):
-    text = (out / SIGNATURE).read_text("ascii").splitlines()
-    blob = b64decode("".join(text[1:-1])) + b"\0"
-    (out / SIGNATURE).write_text("\n".join([text[0], b64encode(blob).decode(), text[-1], ""]))
+    return forge
 
 
 @pytest.mark.parametrize(
@@ -394,8 +347,11 @@ def with_tail(out):
         (replace_bytes(SIGNATURE, lambda text: text[:-60]), "the signature is damaged: its file is cut off"),
         (replace_bytes(SIGNATURE, lambda text: b""), "the signature is damaged"),
         (replace_bytes(SIGNATURE, lambda text: text.replace(b"A", b"B")), "the signature is"),
-        (with_tail, "bytes follow its end"),
-        (another_purpose, "is for the purpose b'softballet', not for 'ballsocket'"),
+        (in_signature(lambda blob: blob + b"\0"), "bytes follow its end"),
+        (
+            in_signature(lambda blob: blob.replace(b"ballsocket", b"softballet")),
+            "is for the purpose b'softballet', not for 'ballsocket'",
+        ),
         (of_another_pack, "is of other checksums: the pack was changed after it was signed"),
         (replace_bytes(SUMS, lambda text: text + b"\n"), "is of other checksums"),
         (lambda out: (out / SIGNATURE).unlink(), "checksums.txt.sig is missing: the pack is not signed"),

@@ -9,11 +9,10 @@ import ballsocket as bs
 from ballsocket.core.arrays import to_numpy
 from ballsocket.evidence import matrix
 from ballsocket.evidence.matrix import Row, check_limit, input_title, limit_text, list_cases, number, title_of
-from ballsocket.evidence.question import read_question
 from ballsocket.problem.cup import UP
 from ballsocket.studies.expressions import parse_limit
 
-from .small_pack import QUESTION_TEXT
+from .small_pack import question_of
 
 
 def row(**numbers):
@@ -29,12 +28,8 @@ def test_a_limit_counts_violations_missing_results_and_marginal_cases():
     check = check_limit(LIMIT, rows, accuracy=0.05)
     assert (check.beyond, check.unknown, check.marginal) == (1, 1, 1)
     assert check.row is rows[2]
-    assert (check_limit(LIMIT, rows, accuracy=0.02).marginal, check_limit(LIMIT, rows, accuracy=0.03).marginal) == (
-        0,
-        1,
-    )
-    assert check.summary()["high"] == 20.0
-    assert check.summary()["low"] is None
+    assert [check_limit(LIMIT, rows, accuracy=accuracy).marginal for accuracy in (0.02, 0.03)] == [0, 1]
+    assert (check.summary()["low"], check.summary()["high"]) == (None, 20.0)
     with pytest.warns(DeprecationWarning, match="marginal"):
         assert check.near == 1
 
@@ -90,21 +85,15 @@ def test_edge_distance_is_that_of_the_cup_and_errors_are_those_of_the_solver(pac
 
 
 def test_impossible_joints_have_a_status_and_no_numbers(tmp_path):
-    path = tmp_path / "asked.toml"
-    text = QUESTION_TEXT.replace('clearance = ["0.05 mm", "0.15 mm"]', 'outer_diameter = ["36.1 mm", "48 mm"]')
-    path.write_text(text, encoding="utf-8")
-    question = read_question(path)
+    question = question_of(tmp_path, ('clearance = ["0.05 mm", "0.15 mm"]', 'outer_diameter = ["36.1 mm", "48 mm"]'))
     rows = matrix.compute_rows(question, list_cases(question))
-    assert [r.status for r in rows] == ["NO_JOINT", "NO_JOINT", "OK", "OK"]
-    assert [r.valid for r in rows] == [False, False, True, True]
+    assert [(row.status, row.valid) for row in rows] == [("NO_JOINT", False)] * 2 + [("OK", True)] * 2
     assert rows[0].summary()["numbers"]["max_pressure"] is None
 
 
 def test_off_axis_friction_torque_is_an_upper_bound(tmp_path):
-    path = tmp_path / "asked.toml"
-    text = QUESTION_TEXT.replace('clearance = ["0.05 mm", "0.15 mm"]', 'inclination = "40 deg"')
-    path.write_text(text.replace('force = ["2 kN", "4 kN"]', 'force = "4 kN"'), encoding="utf-8")
-    question = read_question(path)
+    tilt = ('clearance = ["0.05 mm", "0.15 mm"]', 'inclination = "40 deg"')
+    question = question_of(tmp_path, tilt, ('force = ["2 kN", "4 kN"]', 'force = "4 kN"'))
     (tilted,) = matrix.compute_rows(question, list_cases(question))
     joint = bs.joints["hip-36"]
     aligned = bs.Exact().press(joint, force=4000.0).friction_torque(0.06)
@@ -113,56 +102,32 @@ def test_off_axis_friction_torque_is_an_upper_bound(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("value", "text"),
+    ("write", "value", "text"),
     [
-        (None, "–"),
-        ("", "–"),
-        ("inf", "inf"),
-        (12345.678, "12346"),
-        (0.123456, "0.12346"),
-        (1.5e-7, "1.5e-07"),
-        (123456789.0, "123460000"),
-        (1.2e9, "1.2e+09"),
-        (-2.5e6, "-2500000"),
-        (2.0, "2"),
+        *((number, value, "–") for value in (None, "")),
+        (number, "inf", "inf"),
+        (number, 12345.678, "12346"),
+        (number, 0.123456, "0.12346"),
+        (number, 1.5e-7, "1.5e-07"),
+        (number, 123456789.0, "123460000"),
+        (number, 1.2e9, "1.2e+09"),
+        (number, -2.5e6, "-2500000"),
+        (number, 2.0, "2"),
+        (limit_text, ("max_pressure", None, 15.0), "largest pressure at most 15 MPa"),
+        (limit_text, ("edge_distance", 1.0, None), "edge distance at least 1 mm"),
+        (limit_text, ("max_pressure", 1.0, 15.0), "largest pressure at least 1 MPa and at most 15 MPa"),
+        (limit_text, ("utilisation", None, 0.5), "utilisation (von Mises stress over yield stress) at most 0.5"),
+        (input_title, "liner_young", "Young's modulus of the liner"),
+        (input_title, "ball_poisson", "Poisson's ratio of the ball"),
+        (input_title, "liner_yield_stress", "yield stress of the liner"),
+        (input_title, "backing[0].thickness", "thickness of layer 1 behind the liner"),
+        (input_title, "backing[2].young", "Young's modulus of layer 3 behind the liner"),
+        (input_title, "friction.coefficient", "coefficient of friction"),
+        (input_title, "ball_radius", "ball radius"),
+        (title_of, "max_pressure", "largest pressure"),
+        (title_of, "wear_rate", "wear of a new bore, mm³ a million cycles"),
     ],
 )
-def test_numbers_are_written_with_five_digits(value, text):
-    assert number(value) == text
-
-
-@pytest.mark.parametrize(
-    ("limit", "text"),
-    [
-        ({"name": "max_pressure", "low": None, "high": 15.0}, "largest pressure at most 15 MPa"),
-        ({"name": "edge_distance", "low": 1.0, "high": None}, "edge distance at least 1 mm"),
-        ({"name": "max_pressure", "low": 1.0, "high": 15.0}, "largest pressure at least 1 MPa and at most 15 MPa"),
-        (
-            {"name": "utilisation", "low": None, "high": 0.5},
-            "utilisation (von Mises stress over yield stress) at most 0.5",
-        ),
-    ],
-)
-def test_limits_are_written_with_title_and_unit(limit, text):
-    assert limit_text(limit) == text
-
-
-@pytest.mark.parametrize(
-    ("name", "title"),
-    [
-        ("liner_young", "Young's modulus of the liner"),
-        ("ball_poisson", "Poisson's ratio of the ball"),
-        ("liner_yield_stress", "yield stress of the liner"),
-        ("backing[0].thickness", "thickness of layer 1 behind the liner"),
-        ("backing[2].young", "Young's modulus of layer 3 behind the liner"),
-        ("friction.coefficient", "coefficient of friction"),
-        ("ball_radius", "ball radius"),
-    ],
-)
-def test_inputs_have_titles(name, title):
-    assert input_title(name) == title
-
-
-def test_titles_are_those_of_the_quantities():
-    assert title_of("max_pressure") == "largest pressure"
-    assert title_of("wear_rate") == "wear of a new bore, mm³ a million cycles"
+def test_numbers_limits_and_titles_are_written_in_words(write, value, text):
+    value = dict(zip(("name", "low", "high"), value, strict=True)) if write is limit_text else value
+    assert write(value) == text

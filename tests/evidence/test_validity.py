@@ -8,11 +8,14 @@ import pytest
 import ballsocket as bs
 from ballsocket.evidence.validity import EXCESS, SHARE, TRUTH, measure, models_with_promise, population
 
+from ..extent import either
+
 PROMISING = {model.name: model for model in models_with_promise()}
-SIZES = {"plane-layer": 120, "cosine-limit": 60_000}
+SLOW = pytest.param("plane-layer", marks=pytest.mark.long)
+SIZES = {"plane-layer": 120, "cosine-limit": either(30_000, 60_000)}
 
 
-@pytest.mark.parametrize("name", PROMISING)
+@pytest.mark.parametrize("name", [*sorted(PROMISING.keys() - {"plane-layer"}), SLOW])
 def test_valid_results_are_within_the_promise(name):
     measured = measure(PROMISING[name], size=SIZES.get(name, 12_000), seed=7)
     assert 10 < measured.valid <= measured.contacts
@@ -51,25 +54,19 @@ def test_reference_agrees_with_the_exact_solution():
 
 def test_hip_of_the_paper_is_valid_and_thin_stiff_liners_are_not():
     hip = bs.joints["hess-forsbach"]
-    assert bs.HessForsbach().press(hip, force=3000.0).valid
     soft = replace(hip, liner=bs.Material(young=1000.0, poisson=0.45))
-    assert bs.HessForsbach().press(soft, force=3000.0).valid
-    thin = bs.Joint(
-        ball_radius=17.0, clearance=0.036, liner_thickness=3.2, liner=bs.Material(young=1000.0, poisson=0.487)
-    )
+    assert all(bs.HessForsbach().press(joint, force=3000.0).valid for joint in (hip, soft))
+    liner = bs.Material(young=1000.0, poisson=0.487)
+    thin = bs.Joint(ball_radius=17.0, clearance=0.036, liner_thickness=3.2, liner=liner)
     contact = bs.HessForsbach().press(thin, force=30_000.0)
     assert not contact.valid
     assert any("nearly incompressible" in note for note in contact.notes)
 
 
 def test_plane_layer_is_not_valid_for_liners_thicker_than_twice_the_radius():
-    thick, thin = (
-        bs.Joint(
-            ball_radius=14.0, clearance=0.1, liner_thickness=14.1 / ratio, liner=bs.Material(young=1e3, poisson=0.0)
-        )
-        for ratio in (0.4, 0.6)
-    )
-    for joint, valid in ((thick, False), (thin, True)):
+    liner = bs.Material(young=1e3, poisson=0.0)
+    for ratio, valid in ((0.4, False), (0.6, True)):
+        joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=14.1 / ratio, liner=liner)
         contact = bs.PlaneLayer().press(joint, half_angle=np.radians(13.0))
         assert contact.valid == valid
         assert any("R2/L" in note for note in contact.notes) == (not valid)

@@ -2,6 +2,7 @@
 
 from importlib.util import find_spec
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -9,24 +10,15 @@ import pytest
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
 import ballsocket as bs
 from ballsocket.evidence import worst_case
-from ballsocket.evidence.question import read_question
+from ballsocket.evidence.question import Question
 from ballsocket.evidence.worst_case import compare_methods, largest_deviation, propagate_tolerances, solve_with_calculix
 from ballsocket.studies.sensitivity import sensitivity
 
 from ..places import EXAMPLES
-from .small_pack import QUESTION_TEXT
+from .small_pack import question_of
 
 CASE = {"clearance": 0.15, "force": 4000.0}
-
-
-def question_of(tmp_path, *replacements):
-    path = tmp_path / "asked.toml"
-    text = QUESTION_TEXT
-    for old, new in replacements:
-        assert old in text
-        text = text.replace(old, new)
-    path.write_text(text, encoding="utf-8")
-    return read_question(path)
+JOINT = bs.joints["hip-36"].replace(clearance=0.15)
 
 
 def method(numbers, valid=True, aligned=True):
@@ -46,7 +38,7 @@ def test_largest_deviation_is_relative_to_the_first_method():
 def test_an_aligned_case_is_solved_by_three_methods(pack):
     methods = compare_methods(pack[0], CASE)
     assert [m.name for m in methods] == ["exact", "tabulated", "sphere (along the axis)"]
-    exact = bs.Exact().press(bs.joints["hip-36"].replace(clearance=0.15), force=4000.0)
+    exact = bs.Exact().press(JOINT, force=4000.0)
     summary = methods[0].summary()
     assert summary["numbers"]["half_angle_deg"] == pytest.approx(np.degrees(exact.half_angle))
     assert summary["numbers"]["area"] == pytest.approx(exact.area)
@@ -55,7 +47,9 @@ def test_an_aligned_case_is_solved_by_three_methods(pack):
     assert summary["aligned"]
 
 
-def test_a_tilted_case_is_also_solved_on_rings_of_half_the_width(tmp_path):
+def test_a_tilted_case_is_also_solved_on_rings_of_half_the_width(tmp_path, monkeypatch):
+    wide = property(lambda question: bs.Sphere(cup=question.file.cup, ring_width=np.radians(4.0)))
+    monkeypatch.setattr(Question, "model", wide)  # for speed
     question = question_of(
         tmp_path,
         ('clearance = ["0.05 mm", "0.15 mm"]', 'inclination = "40 deg"'),
@@ -76,14 +70,13 @@ def test_a_tilted_case_is_also_solved_on_rings_of_half_the_width(tmp_path):
     assert tilted != aligned
 
 
-def test_a_band_contains_the_percentiles_of_the_tolerance(pack):
+def test_a_band_has_the_percentiles_of_the_tolerance_and_the_sobol_indices_of_the_study(pack):
     """The largest pressure falls with the modulus as it does in single contacts at the percentiles."""
     result = propagate_tolerances(pack[0], CASE)
     band = result["bands"]["max_pressure"]
-    joint = bs.joints["hip-36"].replace(clearance=0.15)
     spread = pack[0].tolerances["liner_young"].frozen
     ends = [
-        bs.Exact().press(joint.replace(liner=bs.Material(young=young, poisson=0.4)), force=4000.0).max_pressure
+        bs.Exact().press(JOINT.replace(liner=bs.Material(young=young, poisson=0.4)), force=4000.0).max_pressure
         for young in spread.ppf([0.025, 0.5, 0.975])
     ]
     assert [band["low"], band["median"], band["high"]] == pytest.approx(sorted(map(float, ends)), rel=2e-3)
@@ -91,22 +84,10 @@ def test_a_band_contains_the_percentiles_of_the_tolerance(pack):
     assert (result["model"], result["aligned"]) == ("tabulated", False)
     half_angle = result["bands"]["half_angle_deg"]
     assert 40 < half_angle["low"] < half_angle["median"] < half_angle["high"] < 44
-
-
-def test_sobol_indices_are_those_of_the_study(pack):
-    question = pack[0]
-    result = propagate_tolerances(question, CASE)["sobol"]
-    joint = bs.joints["hip-36"].replace(clearance=0.15)
-    expected = sensitivity(
-        worst_case.Tabulated(),
-        joint,
-        question.tolerances,
-        quantities=("max_pressure", "half_angle"),
-        count=256,
-        load={"force": 4e3},
-    )
-    index = float(expected.total_order.sel(quantity="max_pressure", parameter="liner_young"))
-    assert result["max_pressure"] == {"liner_young": pytest.approx(index)}
+    study = {"quantities": ("max_pressure", "half_angle"), "count": 256, "load": {"force": 4e3}}
+    expected = sensitivity(bs.Tabulated(), JOINT, pack[0].tolerances, **study).total_order
+    index = float(expected.sel(quantity="max_pressure", parameter="liner_young"))
+    assert result["sobol"]["max_pressure"] == {"liner_young": pytest.approx(index)}
 
 
 def test_bands_outside_the_tables_are_solved_exactly(tmp_path):
@@ -146,10 +127,7 @@ def test_calculix_is_run_on_the_deck_of_the_case(pack, monkeypatch, tmp_path):
     assert result.numbers == {"indentation": 7.0, "force": 7.0, "half_angle": 7.0, "max_pressure": 9.0}
     assert ".inp" in decks[0]
 
-    def fail(folder):
-        raise RuntimeError("ccx failed")
-
-    monkeypatch.setattr(calculix, "run", fail)
+    monkeypatch.setattr(calculix, "run", Mock(side_effect=RuntimeError("ccx failed")))
     (result,) = solve_with_calculix(question, CASE)
     assert (result.valid, result.notes) == (False, ("ccx failed",))
     monkeypatch.setattr(worst_case.shutil, "which", lambda name: None)

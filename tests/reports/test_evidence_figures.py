@@ -36,11 +36,7 @@ RECORD = {
     "worst": {"max_pressure": ROWS[-1]},
     "limits": [{"name": "max_pressure", "low": None, "high": 15.0}],
     "required": {"accuracy": 0.05},
-    "drawn": {
-        "joint": presets.joints["hip-36"].summary(),
-        "arc_of_cover_deg": 160.0,
-        "half_angle_deg": 40.0,
-    },
+    "drawn": {"joint": presets.joints["hip-36"].summary(), "arc_of_cover_deg": 160.0, "half_angle_deg": 40.0},
     "calculation": [{"methods": METHODS, "deviation": {"max_pressure": 0.02, "area": 0.02}}],
     "uncertainty": {
         "bands": {"max_pressure": {"low": 9.0, "median": 10.0, "high": 12.0}},
@@ -54,10 +50,10 @@ RECORD = {
 
 
 def texts(axes):
-    return [each.get_text() for each in axes.texts]
+    return [text.get_text() for text in axes.texts]
 
 
-def test_each_cell_of_the_matrix_has_its_number_the_worst_its_frame_and_what_is_beyond_a_limit_its_cross():
+def test_the_matrix_marks_the_worst_cell_and_what_is_beyond_a_limit():
     axes = figures.matrix_figure(RECORD).axes[0]
     assert sorted(map(float, texts(axes))) == pytest.approx(
         sorted(r["numbers"]["max_pressure"] for r in ROWS), abs=0.05
@@ -71,57 +67,43 @@ def test_each_cell_of_the_matrix_has_its_number_the_worst_its_frame_and_what_is_
     assert axes.get_xlabel() == "radial clearance [mm] | normal force [N]"
 
 
-def test_a_matrix_without_an_answer_in_a_case_is_drawn():
+def test_a_matrix_without_a_result_in_a_case_and_of_any_number_is_drawn():
     gone = {**ROWS[0], "numbers": {**ROWS[0]["numbers"], "max_pressure": None}}
     axes = figures.matrix_figure({**RECORD, "matrix": [gone, *ROWS[1:]]}).axes[0]
     assert numpy.isnan(axes.images[0].get_array().filled(numpy.nan)).sum() == 1
+    wear = figures.matrix_figure({**RECORD, "worst": {WEAR.name: ROWS[-1]}}, WEAR.name)
+    assert wear.axes[1].get_ylabel() == "[mm³/10⁶]"
+    assert NAMES[WEAR.name] is WEAR
 
 
-def test_the_joint_is_drawn_with_its_contact():
+def test_the_joint_is_drawn_with_a_contact_about_its_axis():
     axes = figures.joint_figure(RECORD).axes[0]
     contact = axes.lines[-1].get_xydata()
     assert numpy.hypot(*contact.T) == pytest.approx(18.1)
     assert numpy.degrees(numpy.arctan2(contact[-1, 0], -contact[-1, 1])) == pytest.approx(40.0)
     assert {"cross-linked PE, 5 mm", "contact to 40°"} <= set(texts(axes))
-
-
-def test_a_contact_off_the_axis_is_not_drawn_about_it():
-    axes = figures.joint_figure({**RECORD, "drawn": {**RECORD["drawn"], "half_angle_deg": None}}).axes[0]
-    assert not any("contact" in text for text in texts(axes))
+    off_axis = figures.joint_figure({**RECORD, "drawn": {**RECORD["drawn"], "half_angle_deg": None}})
+    assert not any("contact" in text for text in texts(off_axis.axes[0]))
 
 
 @pytest.mark.parametrize("name", ["metal_backed_hip.toml", "hip.toml"])
-def test_a_joint_is_the_one_that_its_summary_tells_of(name):
+def test_a_joint_is_restored_from_its_summary(name):
     joint = read_joint(EXAMPLES / name).joint
     drawn = {**RECORD["drawn"], "joint": json.loads(json.dumps(joint.summary()))}
     assert figures._joint(drawn["joint"]).summary() == joint.summary()
     assert figures.joint_figure({**RECORD, "drawn": drawn}).axes
 
 
-def test_methods_are_as_far_apart_as_they_are():
-    axes = figures.methods_figure(RECORD).axes[0]
-    found = {line.get_label(): line.get_xdata() for line in axes.lines if line.get_marker() in "os"}
-    assert found["sphere"] == pytest.approx([1.0, 1.0])
-    assert found["finite elements"] == pytest.approx([-2.0, -2.0])
-
-
-def test_bands_reach_from_end_to_end_and_shares_are_sobols():
+def test_methods_bands_and_wear_are_drawn_at_their_numbers():
+    methods = figures.methods_figure(RECORD).axes[0]
+    deviations = {line.get_label(): line.get_xdata() for line in methods.lines if line.get_marker() in "os"}
+    assert deviations["sphere"] == pytest.approx([1.0, 1.0])
+    assert deviations["finite elements"] == pytest.approx([-2.0, -2.0])
     left, right = figures.bands_figure(RECORD).axes
-    assert [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in left.patches] == [
-        (pytest.approx(-10.0), pytest.approx(20.0))
-    ]
+    (bar,) = left.patches
+    assert (bar.get_x(), bar.get_x() + bar.get_width()) == pytest.approx((-10.0, 20.0))
     assert [bar.get_width() for bar in right.patches] == [0.8, 0.2]
-
-
-def test_wear_has_its_band():
-    axes = figures.wear_figure(RECORD).axes[0]
-    assert axes.lines[0].get_ydata()[-1] == 61.0
-    assert axes.collections[0].get_paths()[0].vertices[:, 1].max() == 100.0
+    wear = figures.wear_figure(RECORD).axes[0]
+    assert wear.lines[0].get_ydata()[-1] == 61.0
+    assert wear.collections[0].get_paths()[0].vertices[:, 1].max() == 100.0
     assert figures.wear_figure({"wear": {"history": RECORD["wear"]["history"]}}).axes[0].collections[:] == []
-
-
-def test_any_number_of_the_matrix_can_be_mapped():
-    worst = {WEAR.name: ROWS[-1]}
-    axes = figures.matrix_figure({**RECORD, "worst": worst}, WEAR.name).axes
-    assert axes[1].get_ylabel() == "[mm³/10⁶]"
-    assert NAMES[WEAR.name] is WEAR

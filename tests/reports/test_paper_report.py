@@ -8,7 +8,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.paper import claims, curves
 from ballsocket.paper.plan import quick_plan
-from ballsocket.reports import accuracy_results
+from ballsocket.reports import accuracy_results, paper_report
 from ballsocket.reports.paper_report import write_report
 
 from ..places import DATA
@@ -18,38 +18,46 @@ EXACT = bs.Exact(tolerance=1e-4)
 FEW = {name: bs.catalogue[name] for name in ("hess-forsbach", "exact")}
 
 
-@pytest.fixture(scope="module")
-def report(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("report")
+JUDGED = {
+    "about": ["By the exact solution."],
+    "claims": [claims.judge(claim, EXACT).summary() for claim in claims.CLAIMS[:6]],
+    "elsewhere": [],
+    "table_3": [],
+    "accuracy": [ACCURACY],
+}
+
+
+def read_table(path):
+    with path.open(encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+def check_page(path, *texts):
+    page = path.read_text(encoding="utf-8")
+    assert "<script" not in page
+    assert "src='http" not in page
+    for text in ("src='data:image/png;base64,", *texts):
+        assert text in page
+
+
+def test_the_report_stands_alone_and_beside_it_lie_its_numbers(tmp_path, monkeypatch):
+    monkeypatch.setattr(paper_report, "_write_picture", lambda *words: b"picture")  # drawn in the long form
+    check_page(write_report(JUDGED, tmp_path), "does not hold", "holds", "Table 1")
+    worst = max(read_table(tmp_path / "accuracy.csv"), key=lambda row: float(row["worst"]))
+    assert worst["model"] == "cosine-limit"
+    assert json.loads((tmp_path / "accuracy.json").read_text(encoding="utf-8")) == ACCURACY
+    assert (tmp_path / "accuracy.md").read_text(encoding="utf-8") == accuracy_results.markdown(ACCURACY)
+
+
+@pytest.mark.long
+def test_the_figures_and_tables_of_the_paper_are_in_the_report(tmp_path):
     pieces = quick_plan().parts
-    results = {
-        "about": ["By the exact solution."],
-        "claims": [claims.judge(claim, EXACT).summary() for claim in claims.CLAIMS[:6]],
+    computed = {
         "elsewhere": [pieces["elsewhere"]["half_angles_of_jin"]()],
         "table_3": [pieces["table_3"]["exact 0.4"]()],
         "figure_3": [curves.figure_3_or_4(3, {name: model}).summary() for name, model in FEW.items()],
         "figure_6": [curves.figure_6("hess-forsbach", bs.HessForsbach(), points=7).summary()],
-        "accuracy": [ACCURACY],
     }
-    return write_report(results, folder)
-
-
-def test_the_report_stands_alone(report):
-    page = report.read_text(encoding="utf-8")
-    assert "src='data:image/png;base64," in page
-    assert "<script" not in page
-    assert "src='http" not in page
-    for text in ("does not hold", "holds", "Figure 3", "Table 1", "Table 3", "hess-forsbach", "Jin"):
-        assert text in page
-
-
-def test_beside_the_report_lie_its_numbers(report):
-    with (report.parent / "figure_3.csv").open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    assert {row["model"] for row in rows} == set(FEW)
-    assert (report.parent / "figure_6.svg").stat().st_size > 5000
-    with (report.parent / "accuracy.csv").open(encoding="utf-8") as stream:
-        worst = max(csv.DictReader(stream), key=lambda row: float(row["worst"]))
-    assert worst["model"] == "cosine-limit"
-    assert json.loads((report.parent / "accuracy.json").read_text(encoding="utf-8")) == ACCURACY
-    assert (report.parent / "accuracy.md").read_text(encoding="utf-8") == accuracy_results.markdown(ACCURACY)
+    check_page(write_report({**JUDGED, **computed}, tmp_path), "Figure 3", "Table 3", "hess-forsbach", "Jin")
+    assert {row["model"] for row in read_table(tmp_path / "figure_3.csv")} == set(FEW)
+    assert (tmp_path / "figure_6.svg").stat().st_size > 5000

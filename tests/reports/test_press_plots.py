@@ -17,40 +17,41 @@ def test_the_figure_of_a_massive_socket_says_so():
     assert "inf" not in title
 
 
-def test_figure_draws_the_result():
-    answers = bs.compare(HIP, force=3000.0)
-    curves = {name: bs.catalogue[name].press(HIP, indentation=np.linspace(0.0, 0.06, 30)) for name in answers}
-    figure = press_figure(answers, curves)
+@pytest.fixture(scope="module")
+def comparison():
+    return bs.compare(HIP, force=3000.0)
+
+
+def test_figure_draws_the_result(comparison):
+    curves = {name: bs.catalogue[name].press(HIP, indentation=np.linspace(0.0, 0.06, 30)) for name in comparison}
+    figure = press_figure(comparison, curves)
     left, right = figure.axes
     drawn = {line.get_label(): line for line in left.lines}
-    assert set(drawn) == set(answers)
+    assert set(drawn) == set(comparison)
     for name, line in drawn.items():
-        assert line.get_ydata().max() == pytest.approx(
-            answers[name].pressure(np.linspace(0.0, 1.4, 2000)).max(), rel=5e-3
-        )
-        assert line.get_linewidth() == (2.0 if answers[name].valid else 1.0)
-    assert len(right.lines) == 2 * len(answers)
+        largest = comparison[name].pressure(np.linspace(0.0, 1.4, 2000)).max()
+        assert line.get_ydata().max() == pytest.approx(largest, rel=5e-3)
+        assert line.get_linewidth() == (2.0 if comparison[name].valid else 1.0)
+    assert len(right.lines) == 2 * len(comparison)
     assert "MPa" in left.get_ylabel()
     assert "kN" in right.get_ylabel()
     assert "17.9 mm" in figure.get_suptitle()
 
 
-def test_of_many_models_those_that_matter_are_drawn_and_the_others_named():
-    answers = bs.compare(HIP, force=3000.0)
-    figure = answers.plot()
-    left = figure.axes[0]
-    drawn = [line.get_label() for line in left.lines]
+def test_of_many_models_those_that_matter_are_drawn_and_the_others_named(comparison):
+    figure = comparison.plot()
+    drawn = [line.get_label() for line in figure.axes[0].lines]
     assert len(drawn) == 7
     assert "exact" in drawn
     assert "tabulated" not in drawn  # lies on the exact one
-    assert all(name in drawn for name, contact in answers.items() if contact.valid and name != "tabulated")
-    said = figure.legends[0].get_title().get_text()
-    assert said == f"not drawn: {', '.join(name for name in answers if name not in drawn)}"
-    few = {name: bs.catalogue[name] for name in ("bartel", "tabulated", "exact")}
-    assert len(bs.compare(HIP, force=3000.0, models=few).plot().axes[0].lines) == 3
+    assert all(name in drawn for name, contact in comparison.items() if contact.valid and name != "tabulated")
+    title = figure.legends[0].get_title().get_text()
+    assert title == f"not drawn: {', '.join(name for name in comparison if name not in drawn)}"
 
 
-def test_the_reference_lies_under_what_is_judged():
-    answers = bs.compare(HIP, force=3000.0, models={name: bs.catalogue[name] for name in ("hess-forsbach", "exact")})
-    order = {line.get_label(): line.get_zorder() for line in answers.plot().axes[0].lines}
+def test_few_models_are_all_drawn_with_the_reference_below_what_is_judged():
+    few = {name: bs.catalogue[name] for name in ("hess-forsbach", "tabulated", "exact")}
+    lines = bs.compare(HIP, force=3000.0, models=few).plot().axes[0].lines
+    order = {line.get_label(): line.get_zorder() for line in lines}
+    assert set(order) == set(few)
     assert order["exact"] < order["hess-forsbach"]

@@ -9,24 +9,22 @@ from ballsocket.studies.distributions import tolerance
 from ballsocket.studies.limits import Limit
 
 HIP = bs.joints["hess-forsbach"]
-SHELL = (Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0))
 
 
-def test_pictures_show_what_was_asked():
+def test_a_map_says_what_it_shows_and_names_its_limits():
     space = bs.study(
         bs.HessForsbach(), HIP, ball_radius=Span(11.0, 23.0, 9), liner_thickness=Span(3.0, 15.0, 9), force=3000.0
     )
-    figure = study_plots.design_map(space, SHELL, best={"ball_radius": 19.6, "liner_thickness": 6.3})
-    assert [axes.get_title() for axes in figure.axes] == [
-        "largest pressure pmax [MPa]",
-        "contact area A [mm²]",
-        "half angle ε [°]",
-    ]
-    scattered = sample(64, clearance=tolerance(0.1, 0.05)) * grid(force=Span(500.0, 3000.0, 5))
-    bands = bs.study(bs.HessForsbach(), HIP, scattered)
-    assert "median" in study_plots.band_figure(bands).axes[0].get_legend_handles_labels()[1]
-    with pytest.raises(ValueError, match="a map needs two axes"):
-        study_plots.design_map(bands.isel(force=0))
+    limits = (Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0, high=12.0))
+    figure = study_plots.design_map(space, limits, best={"ball_radius": 19.6, "liner_thickness": 6.3})
+    titles = ["largest pressure pmax [MPa]", "contact area A [mm²]", "half angle ε [°]"]
+    assert [axes.get_title() for axes in figure.axes] == titles
+    assert figure.get_suptitle() == "hess-forsbach; normal force = 3000 N; model hess-forsbach"
+    shown = {text.get_text() for text in figure.axes[0].texts}
+    assert {"outer radius ≤ 26 mm", "liner thickness ≥ 4 mm", "liner thickness ≤ 12 mm"} <= shown
+    assert all(text.get_path_effects() for text in figure.axes[0].texts)
+    (alone,) = study_plots.design_map(space, limits, ["max_pressure"]).axes
+    assert alone.get_title() == titles[0]
     with pytest.raises(ValueError, match="bands need samples"):
         study_plots.band_figure(space)
 
@@ -41,18 +39,10 @@ def test_axes_are_drawn_in_the_unit_that_they_name():
         assert axes.get_ylim() == pytest.approx((20.0, 60.0))
         assert axes.lines[0].get_xydata()[0] == pytest.approx((16.0, 40.0))
     scattered = sample(64, clearance=tolerance(0.1, 0.05)) * grid(indentation=Span(0.02, 0.06, 5))
-    bands = study_plots.band_figure(bs.study(bs.HessForsbach(), HIP, scattered))
-    assert bands.axes[0].get_xlabel() == "indentation d [µm]"
-    assert bands.axes[0].lines[0].get_xdata()[-1] == pytest.approx(60.0)
-
-
-def test_a_map_says_what_it_shows_and_names_its_limits():
-    space = bs.study(
-        bs.HessForsbach(), HIP, ball_radius=Span(11.0, 23.0, 9), liner_thickness=Span(3.0, 15.0, 9), force=3000.0
-    )
-    limits = (Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0, high=12.0))
-    figure = study_plots.design_map(space, limits, ["max_pressure"])
-    assert figure.get_suptitle() == "hess-forsbach; normal force = 3000 N; model hess-forsbach"
-    said = {text.get_text() for text in figure.axes[0].texts}
-    assert {"outer radius ≤ 26 mm", "liner thickness ≥ 4 mm", "liner thickness ≤ 12 mm"} <= said
-    assert all(text.get_path_effects() for text in figure.axes[0].texts)
+    study = bs.study(bs.HessForsbach(), HIP, scattered)
+    bands = study_plots.band_figure(study).axes[0]
+    assert bands.get_xlabel() == "indentation d [µm]"
+    assert bands.lines[0].get_xdata()[-1] == pytest.approx(60.0)
+    assert "median" in bands.get_legend_handles_labels()[1]
+    with pytest.raises(ValueError, match="a map needs two axes"):
+        study_plots.design_map(study.isel(indentation=0))
