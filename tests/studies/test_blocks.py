@@ -139,12 +139,6 @@ def test_samples_outside_the_range_of_a_parameter_are_named_by_their_index(small
         bs.study(bs.HessForsbach(), HIP, design, force=1e3)
 
 
-def test_more_points_than_sobols_sequence_has_are_refused():
-    with pytest.raises(ValueError, match="count = 1073741825 is not allowed: Sobol's sequence has 2.30 points"):
-        sample(2**30 + 1, **SCATTER)
-    assert sample(2**30 + 1, method=Method.LATIN_HYPERCUBE, **SCATTER).size == 2**30 + 1
-
-
 @pytest.mark.parametrize("method", Method)
 def test_samples_in_chunks_are_the_same_in_a_store_and_for_other_processes(method, tmp_path, monkeypatch):
     monkeypatch.setattr(run, "points_per_block", lambda model: 30_000)

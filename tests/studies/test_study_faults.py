@@ -18,6 +18,8 @@ from ballsocket.studies import store as store_module
 from ballsocket.studies.run import _create_task, read
 from ballsocket.studies.store import CHECKSUM, NOT_COMPUTED, StudyStore
 
+from ..cli.command import run
+
 HIP = bs.joints["hess-forsbach"]
 AXES = {"clearance": np.linspace(0.05, 0.2, 12).tolist(), "force": [500.0, 1500.0, 3000.0, 4000.0]}
 ASKED = {"model": bs.HessForsbach(), "joint": HIP, "quantities": ["max_pressure"], **AXES}
@@ -216,6 +218,28 @@ def test_a_full_disk_stops_with_one_sentence_and_keeps_the_stored_blocks(tmp_pat
     found, blocks = presses(tmp_path / "s.zarr")
     assert blocks == 3
     assert np.array_equal(found.max_pressure.values, finished[1].max_pressure.values)
+
+
+def test_control_c_keeps_the_stored_blocks_and_the_command_resumes(tmp_path, finished, monkeypatch):
+    (tmp_path / "s.toml").write_text(
+        'joint = "hess-forsbach"\nmodel = "hess-forsbach"\nstore = "s.zarr"\nquantities = ["max_pressure"]\n'
+        f"[axes]\nclearance = {{from = 0.05, to = 0.2, count = 12}}\nforce = {AXES['force']}\n"
+    )
+    write = StudyStore.write
+
+    def interrupted(self, task, number, answers):
+        if number == 2:
+            raise KeyboardInterrupt
+        write(self, task, number, answers)
+
+    monkeypatch.setattr(StudyStore, "write", interrupted)
+    stopped = run("study", "s.toml", folder=tmp_path)
+    assert stopped.returncode == 130
+    assert "points are stored in s.zarr: run the command again to resume" in " ".join(stopped.stderr.split())
+    monkeypatch.setattr(StudyStore, "write", write)
+    assert (read(tmp_path / "s.zarr").status.values != NOT_COMPUTED).sum() == 16
+    assert run("study", "s.toml", folder=tmp_path).returncode == 0
+    assert np.array_equal(read(tmp_path / "s.zarr").max_pressure.values, finished[1].max_pressure.values)
 
 
 @contextmanager
