@@ -92,16 +92,15 @@ def test_diameters_are_axes():
 LINERS = [bs.UHMWPE, bs.CROSSLINKED_PE, bs.POM]
 
 
-@pytest.mark.parametrize("store", [None, "kept"])
-def test_materials_are_an_axis_or_fixed(store, tmp_path):
-    folder = None if store is None else tmp_path / store
-    found = bs.study(bs.HessForsbach(), HIP, force=[1000.0, 3000.0], liner=LINERS, store=folder)
-    assert found.max_pressure.dims == ("force", "liner")
-    assert found.liner.values.tolist() == ["UHMWPE", "cross-linked PE", "POM"]
-    for liner in LINERS:
-        pressed = bs.HessForsbach().press(HIP.replace(liner=liner), force=np.array([1000.0, 3000.0]))
-        np.testing.assert_array_equal(found.max_pressure.sel(liner=liner.name), pressed.max_pressure)
-        assert found.liner_young.sel(liner=liner.name).item() == liner.young
+def test_materials_are_an_axis_or_fixed(tmp_path):
+    for store in (None, tmp_path / "kept"):
+        found = bs.study(bs.HessForsbach(), HIP, force=[1000.0, 3000.0], liner=LINERS, store=store)
+        assert found.max_pressure.dims == ("force", "liner")
+        assert found.liner.values.tolist() == ["UHMWPE", "cross-linked PE", "POM"]
+        for liner in LINERS:
+            pressed = bs.HessForsbach().press(HIP.replace(liner=liner), force=np.array([1000.0, 3000.0]))
+            np.testing.assert_allclose(found.max_pressure.sel(liner=liner.name), pressed.max_pressure, rtol=1e-12)
+            assert found.liner_young.sel(liner=liner.name).item() == liner.young
     for ending in ("csv", "nc"):
         export(found, tmp_path / f"study.{ending}")
     rows = list(csv.DictReader((tmp_path / "study.csv").read_text(encoding="utf-8").splitlines()))
@@ -125,20 +124,19 @@ force = 3000
 """
 
 
-def test_a_study_has_one_order_wherever_it_is_kept_and_by_whom_it_is_computed(tmp_path):
+def test_a_study_has_one_order_in_memory_in_a_store_and_from_other_processes(tmp_path):
     (tmp_path / "study.toml").write_text(ORDERED, encoding="utf-8")
     given = read_study(tmp_path / "study.toml")
     heads = "ball_radius_mm,outer_radius_mm,liner,liner_young_MPa,liner_poisson,liner_yield_stress_MPa,"
-    heads += "clearance_mm,force_N,"
-    texts = []
-    for name, engine in (("here", Serial()), ("there", Processes(workers=2))):
-        for store in (None, tmp_path / name):
-            found = bs.study(given.model, given.joint, given.design, store=store, engine=engine)
-            assert list(found.sizes) == ["ball_radius", "outer_radius", "liner", "clearance"]
-            export(found, tmp_path / "study.csv")
-            texts.append((tmp_path / "study.csv").read_text(encoding="utf-8"))
-    assert texts[0].startswith(f"{heads}indentation_mm,half_angle_deg,max_pressure_MPa,area_mm2,status,valid")
-    assert len(set(texts)) == 1
+    heads += "clearance_mm,force_N,indentation_mm,half_angle_deg,max_pressure_MPa,area_mm2,status,valid"
+    texts = set()
+    for store, engine in ((None, Serial()), (tmp_path / "here", Serial()), (tmp_path / "there", Processes(workers=2))):
+        found = bs.study(given.model, given.joint, given.design, store=store, engine=engine)
+        assert list(found.sizes) == ["ball_radius", "outer_radius", "liner", "clearance"]
+        export(found, tmp_path / "study.csv")
+        texts.add((tmp_path / "study.csv").read_text(encoding="utf-8"))
+    (text,) = texts
+    assert text.startswith(heads)
 
 
 def test_an_outer_radius_is_that_of_the_shell():
@@ -165,8 +163,8 @@ def test_a_block_outside_the_domain_is_a_status():
 
 
 @given(
-    shape=st.lists(st.integers(1, 25), min_size=0, max_size=3).map(tuple),
-    most=st.integers(1, 2000),
+    shape=st.lists(st.integers(1, 9), min_size=0, max_size=3).map(tuple),
+    most=st.integers(1, 200),
 )
 def test_blocks_cover_every_point_once(shape, most):
     blocks = Blocks.divide(shape, most)
@@ -255,6 +253,7 @@ def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
             assert list(stored.data_vars) == [name for name in stored.data_vars if name in here.data_vars]
 
 
+@pytest.mark.long
 def test_a_scheduler_is_asked_by_its_address():
     from distributed import LocalCluster
 
