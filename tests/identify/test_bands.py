@@ -179,11 +179,6 @@ def test_a_known_drift_is_subtracted_from_indentations_that_are_the_load():
     assert fit.point == pytest.approx(VALUES, rel=1e-4)
 
 
-def test_the_order_of_readings_is_checked():
-    with pytest.raises(ValueError, match="order must have 1 or 12 numbers, got 3"):
-        indentations(order=[1, 2, 3])
-
-
 def test_a_distribution_makes_an_unknown_identifiable():
     free = {**FREE, "clearance": Normal(mean=0.12, deviation=0.01)}
     fit = identified(*angles_and_pressures(1021), free=free)
@@ -200,12 +195,3 @@ def test_json_has_the_earlier_keys():
     pressed = identified(indentations()).summary()
     assert [error["error"] for error in pressed["sensitivity"]] == ["offset", "compliance", "drift"]
     assert set(pressed["sensitivity"][0]["shifts"]) == set(VALUES)
-
-
-def test_measurements_of_the_wrong_kind_are_refused():
-    row = {"quantity": "indentation", "force": [500.0, 1000.0], "uncertainty": 1e-3}
-    with pytest.raises(TypeError, match="machine must be a Machine, got 'press'"):
-        Measured(**row, values=[0.02, 0.03], machine="press")
-    for values in (np.array([0.02 + 1j, 0.03]), [10**400, 0.03]):
-        with pytest.raises(ValueError, match=r"indentation.* must be numbers"):
-            Measured(**row, values=values)

@@ -14,9 +14,8 @@ from ballsocket.identify.unknowns import ParameterTransform, collect_unknowns, l
 from ballsocket.studies import Normal
 
 from .linear_problem import MATRIX, NAMES, TRUTH, linear_misfit, unknown
+from .rigid import JOINT, MODEL
 
-JOINT = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
-MODEL = bs.HessForsbach()
 FORCE = np.array([300.0, 1200.0, 2500.0])
 VALUES = np.array([[0.08, 900.0], [0.12, 1100.0]])
 JOINTS = [

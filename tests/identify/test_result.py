@@ -11,8 +11,8 @@ from ballsocket.identify import Estimate, Machine, Measured
 from ballsocket.identify.sensitivity import Sensitivity
 from ballsocket.studies import Normal
 
-JOINT = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
-MODEL = bs.HessForsbach()
+from .rigid import JOINT, MODEL
+
 FORCE = np.array([2000.0, 400.0, 3000.0, 1000.0, 2500.0, 1500.0])
 CONTACT = MODEL.press(JOINT, force=FORCE)
 FREE = {"clearance": (0.02, 0.4)}
@@ -217,35 +217,3 @@ def test_each_machine_has_its_own_sensitivities():
     result = identified(measured(machine=first), measured(machine=second), measured("area", uncertainty=4.0))
     cases = [(error.machine, error.part) for error in result.sensitivity]
     assert cases == [("a", "offset"), ("a", "compliance"), ("a", "drift"), ("b", "compliance"), ("b", "drift")]
-
-
-def test_earlier_names_warn():
-    result = identified(measured())
-    with pytest.warns(DeprecationWarning, match=r"IdentificationResult.told is deprecated: use identifiable"):
-        assert result.told is True
-    with pytest.warns(DeprecationWarning, match=r"FittedModel.scales|IdentificationResult.scales"):
-        assert result.scales is result.transform
-    with pytest.warns(DeprecationWarning, match=r"FitResult.places is deprecated: use theta"):
-        assert result.best.places is result.best.theta
-    with pytest.warns(DeprecationWarning, match=r"Information.untold is deprecated: use unidentifiable"):
-        assert result.information.untold == ()
-    with pytest.warns(DeprecationWarning, match=r"Estimate.left is deprecated: use width_ratio"):
-        assert result["clearance"].left == result["clearance"].width_ratio
-    with pytest.warns(DeprecationWarning, match="'place'.*'index'"):
-        result.curve(place=0)
-    with pytest.warns(DeprecationWarning, match="each_quantity"):
-        assert result.next.each_quantity == result.next.best_by_quantity
-
-
-def test_earlier_modules_have_their_names():
-    from ballsocket.identify.oscillation import oscillation
-    from ballsocket.identify.tracing import by_tracing
-
-    from ballsocket.identify import IdentificationResult, Identified, Own, observables, parameters
-
-    assert Identified is IdentificationResult
-    assert Own is observables.CustomObservable
-    assert oscillation is observables.oscillation
-    assert by_tracing.__module__ == "ballsocket.identify.misfit"
-    with pytest.warns(DeprecationWarning, match="Identified is deprecated"):
-        assert parameters.Identified is IdentificationResult

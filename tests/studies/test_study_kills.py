@@ -20,8 +20,8 @@ from ballsocket.studies.store import CHECKSUM
 
 from .servers import server
 
-COUNTS = {"clearances": 40, "radii": 25, "model": "exact"}
-"""Blocks of half a second: four."""
+COUNTS = {"clearances": 32, "radii": 25, "model": "exact"}
+"""Four blocks of a little less than half a second."""
 
 KILLS = min(5, int(os.environ.get("BALLSOCKET_KILLS", "2")))
 TIMES = {"serial": KILLS, "processes": KILLS, "dask": 1}
