@@ -149,6 +149,8 @@ def changed(points=POINTS, **rows):
     [
         (NAMES[1:], POINTS[1:], r"the landmarks lack the right ASIS; the points are left ASIS, pubic symphysis, rim-1"),
         (["a", "b", "c"], POINTS[:3], "lack the right ASIS, the left ASIS, the pubic symphysis or both pubic tub"),
+        (["RASIS", "LASIS", "left tubercle", *NAMES[3:]], POINTS, "lack the pubic symphysis or both pubic tubercles"),
+        (["RASIS", "LASIS", "right tubercle", *NAMES[3:]], POINTS, "lack the pubic symphysis or both pubic tubercles"),
         (NAMES[:5], POINTS[:5], "lack the cup's rim: 2 of at least 3 points with names like rim-1"),
         ([NAMES[1], NAMES[0], *NAMES[2:]], POINTS, "the right ASIS lies to the left of the left one"),
         (NAMES, POINTS * [-1.0, -1.0, 1.0], "mirrored, or the file is in LPS coordinates where it"),
