@@ -8,7 +8,6 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.identify import Measured, sliding_torque
-from ballsocket.identify.file import read_identify
 from ballsocket.identify.misfit import by_differences
 from ballsocket.identify.synthetic import trials
 from ballsocket.studies import Normal
@@ -17,7 +16,7 @@ from ..cli.command import run
 from ..extent import some
 
 JOINT, MODEL = bs.joints["hess-forsbach"], bs.HessForsbach()
-FORCE = np.linspace(300.0, 3000.0, 10)
+FORCE = np.linspace(300.0, 3000.0, 5)
 CONTACT = MODEL.press(JOINT, force=FORCE)
 RANGE = {"friction_coefficient": (0.0, 0.3)}
 SIGMA = 20.0
@@ -42,7 +41,7 @@ def test_the_coefficient_of_friction_is_recovered_from_torques_about_any_axis(ax
 
 def test_estimate_and_band_are_those_of_weighted_linear_regression():
     """The torque is μ f(F), so that μ = Σ f T/Σ f² with the standard uncertainty σ/sqrt(Σ f²)."""
-    noise = SIGMA * np.array([0.5, -1.0, 1.2, 0.3, -0.8, 0.1, 0.9, -0.4, -0.6, 0.7])
+    noise = SIGMA * np.array([0.5, -1.0, 1.2, 0.3, -0.8])
     lever = np.asarray(CONTACT.friction_torque(1.0))
     values = 0.06 * lever + noise
     estimate = bs.identify(MODEL, JOINT, torques(values), RANGE)["friction_coefficient"]
@@ -65,6 +64,7 @@ def test_friction_and_clearance_are_identified_from_torques_and_indentations():
     assert result.identifiable
 
 
+@pytest.mark.long
 def test_a_prior_distribution_of_the_coefficient_counts_as_knowledge():
     prior = Normal(mean=0.08, deviation=1e-6)
     result = bs.identify(MODEL, JOINT, torques(), {"friction_coefficient": prior})
@@ -95,8 +95,6 @@ def test_file_and_command_identify_the_coefficient(tmp_path, axis, angle):
         f'uncertainty = "2 %"\n{axis}\n',
         "utf-8",
     )
-    result = read_identify(tmp_path / "friction.toml").identify_unknowns()
-    assert result.point["friction_coefficient"] == pytest.approx(0.06, rel=1e-6)
     shown = run("identify", "friction.toml", "--json", folder=tmp_path)
     assert shown.returncode == 0, shown.stderr
     (estimate,) = json.loads(shown.stdout)["estimates"]

@@ -60,8 +60,6 @@ def test_each_data_set_has_its_own_noise():
 
 @pytest.mark.long
 def test_bands_of_estimated_noise_hold_the_truth():
-    held = 0
-    for seed in range(100):
-        estimate = identify(Measured(quantity="indentation", values=indentations(seed), force=FORCE))["clearance"]
-        held += estimate.low < 0.1 < estimate.high
-    assert held >= 89
+    data = [Measured(quantity="indentation", values=indentations(seed), force=FORCE) for seed in range(100)]
+    estimates = [identify(measured)["clearance"] for measured in data]
+    assert sum(estimate.low < 0.1 < estimate.high for estimate in estimates) >= 89
