@@ -8,8 +8,6 @@ from ballsocket.identify import MACHINE_ERRORS, HeavyTailed, Machine, Measured
 from ballsocket.identify.experiment import standard_candidates
 from ballsocket.studies import Normal
 
-from ..extent import some
-
 TRUTH = bs.Joint(ball_radius=15.3, clearance=0.12, liner_thickness=7.4, liner=bs.Material(young=780.0, poisson=0.42))
 VALUES = {"clearance": 0.12, "liner_young": 780.0}
 FREE = {"clearance": (0.02, 0.4), "liner.young": (300.0, 2500.0)}
@@ -63,12 +61,6 @@ def test_an_unknown_is_identifiable_by_its_prior_or_beside_one_that_is_not():
     assert (fit.information.unidentifiable, fit.information.rank) == (("liner_poisson",), 2)
 
 
-def test_the_rank_is_full_if_every_unknown_is_identifiable():
-    for seed in some(range(1000, 1012), 3):
-        information = identified(*angles_and_pressures(seed)).information
-        assert (information.rank == 2) == (not information.unidentifiable)
-
-
 def test_an_end_of_a_profile_is_a_constrained_minimum_at_the_limit_of_the_rise():
     fit = identified(indentations(), *angles_and_pressures(3))
     for index, interval in enumerate(fit.information.intervals):
@@ -98,7 +90,7 @@ def test_a_band_may_end_at_a_physical_limit():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("factor", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("factor", [1.0, 2.0])
 @pytest.mark.parametrize("scatter", [None, HeavyTailed()], ids=["normal", "heavy-tailed"])
 def test_bands_widen_with_the_scatter(factor, scatter):
     """40 sets: fewer than 33 of 40 would be a chance of one in ten thousand for a coverage of 95 %."""
@@ -164,21 +156,3 @@ def test_drift_is_an_unknown_of_the_machine(order):
         assert fit[name].low < value < fit[name].high
     following = next(candidate for candidate in standard_candidates(fit) if candidate.quantity == "indentation")
     assert following.order == 12.0
-
-
-def test_a_known_drift_is_subtracted_from_indentations_that_are_the_load():
-    machine = Machine(drift=3e-4, offset=1e-3)
-    read = DEPTH + 1e-3 + 3e-4 * np.arange(12.0)
-    fit = identified(Measured(quantity="force", values=PRESS, uncertainty=10.0, indentation=read, machine=machine))
-    assert fit.point == pytest.approx(VALUES, rel=1e-4)
-
-
-def test_json_has_the_earlier_keys():
-    summary = identified(*angles_and_pressures(1021)).summary()
-    assert summary["information"]["unidentifiable"] == ["clearance", "liner_young"]
-    for estimate in summary["estimates"]:
-        assert estimate["told"] is estimate["identifiable"] is False
-        assert estimate["value"] is None
-    pressed = identified(indentations()).summary()
-    assert [error["error"] for error in pressed["sensitivity"]] == ["offset", "compliance", "drift"]
-    assert set(pressed["sensitivity"][0]["shifts"]) == set(VALUES)

@@ -10,7 +10,6 @@ import ballsocket as bs
 from ballsocket.identify import Measured, sliding_torque
 from ballsocket.identify.misfit import by_differences
 from ballsocket.identify.synthetic import trials
-from ballsocket.studies import Normal
 
 from ..cli.command import run
 from ..extent import some
@@ -62,13 +61,6 @@ def test_friction_and_clearance_are_identified_from_torques_and_indentations():
     result = bs.identify(MODEL, JOINT, [press, torques()], {"clearance": (0.02, 0.3), **RANGE})
     assert result.point == pytest.approx({"clearance": JOINT.clearance, "friction_coefficient": 0.06}, rel=1e-4)
     assert result.identifiable
-
-
-@pytest.mark.long
-def test_a_prior_distribution_of_the_coefficient_counts_as_knowledge():
-    prior = Normal(mean=0.08, deviation=1e-6)
-    result = bs.identify(MODEL, JOINT, torques(), {"friction_coefficient": prior})
-    assert result.point["friction_coefficient"] == pytest.approx(0.08, rel=1e-3)
 
 
 def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
