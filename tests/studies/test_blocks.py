@@ -34,16 +34,14 @@ def test_a_large_study_has_at_most_ten_thousand_blocks(shape):
     assert blocks.n_points(0) * len(blocks) < 1.3 * np.prod([float(length) for length in shape])
 
 
-@pytest.mark.parametrize("shape", [(10**6,), (100, 100, 100), (500,)])
-def test_a_small_study_has_blocks_of_half_a_second(shape):
+def test_a_small_study_has_blocks_of_half_a_second_and_closed_forms_of_a_million_points():
     """The blocks are those of earlier versions, so that several workers share them."""
     points = points_per_block(bs.Exact())
-    assert divide_study(shape, points) == Blocks.divide(shape, points)
-
-
-def test_blocks_of_closed_forms_have_at_most_a_million_points():
-    blocks = divide_study((10**11,), points_per_block(bs.HessForsbach()))
-    assert blocks.n_points(0) <= 1 << 20
+    for shape in ((10**6,), (100, 100, 100), (500,)):
+        assert divide_study(shape, points) == Blocks.divide(shape, points)
+    assert divide_study((10**11,), points_per_block(bs.HessForsbach())).n_points(0) <= 1 << 20
+    for most, size in ((0, (1, 1)), (1, (1, 1)), (4, (1, 4)), (8, (2, 4))):
+        assert Blocks.divide((3, 4), most).size == size
 
 
 def test_an_enlarged_block_has_the_results_of_small_ones(monkeypatch):
@@ -79,22 +77,17 @@ def test_any_section_of_samples_is_that_of_all_samples(method, small_chunks):
             np.testing.assert_array_equal(part[name], values[start:stop])
 
 
-def test_sobol_samples_are_those_of_scipy_for_a_seed(small_chunks):
-    from scipy.stats.qmc import Sobol
+def test_sobol_samples_and_small_hypercubes_are_those_of_scipy_for_a_seed(small_chunks, monkeypatch):
+    from scipy.stats.qmc import LatinHypercube, Sobol
 
+    monkeypatch.setattr(sampling, "_MAX_SCIPY_COUNT", 2000)
+    cubes = sample(1050, seed=7, method=Method.LATIN_HYPERCUBE, liner_poisson=SCATTER["liner_poisson"])
+    expected = SCATTER["liner_poisson"].frozen.ppf(LatinHypercube(1, rng=7).random(1050)[:, 0])
+    np.testing.assert_array_equal(cubes.values_in(EVERYTHING)["liner_poisson"], expected)
     design = sample(1024, seed=7, **SCATTER)
     points = Sobol(2, rng=7).random(1024)
     for column, (name, distribution) in zip(points.T, SCATTER.items(), strict=True):
         np.testing.assert_array_equal(design.values_in(EVERYTHING)[name], distribution.frozen.ppf(column))
-
-
-def test_small_hypercubes_are_those_of_scipy_for_a_seed():
-    from scipy.stats.qmc import LatinHypercube
-
-    design = sample(CHUNK_SIZE + 50, seed=7, method=Method.LATIN_HYPERCUBE, liner_poisson=SCATTER["liner_poisson"])
-    points = LatinHypercube(1, rng=7).random(CHUNK_SIZE + 50)[:, 0]
-    expected = SCATTER["liner_poisson"].frozen.ppf(points)
-    np.testing.assert_array_equal(design.values_in(EVERYTHING)["liner_poisson"], expected)
 
 
 def test_large_hypercubes_have_one_sample_in_each_stratum(small_chunks):
