@@ -147,6 +147,7 @@ def test_commands_refuse_addresses_that_they_cannot_use(tmp_path, words):
     assert sorted(path.name for path in tmp_path.iterdir()) == files
 
 
+@pytest.mark.long
 def test_a_cohort_at_an_address_resumes(bucket):
     one = quick_variability()
     cohort = CohortRun(variability=one, counts=(FEW_CYCLES,), values=sample_patients(one, 2, 0))
