@@ -79,13 +79,13 @@ def test_a_front_is_beaten_by_nothing_and_misses_nothing(design_space):
     front = pareto(design_space, limits=SHELL)
     good = allowed(design_space, SHELL).values.ravel()
     area, pressure = (design_space[name].values.ravel()[good] for name in ("area", "max_pressure"))
-    for a, p in zip(front.area.values, front.max_pressure.values, strict=True):
-        assert not ((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any()
-    beaten = [
-        ((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any()
-        for a, p in zip(area, pressure, strict=True)
-    ]
-    assert front.sizes["point"] == len(beaten) - sum(beaten)
+
+    def beaten(areas, pressures):
+        pairs = zip(areas, pressures, strict=True)
+        return [((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any() for a, p in pairs]
+
+    assert not any(beaten(front.area.values, front.max_pressure.values))
+    assert front.sizes["point"] == beaten(area, pressure).count(False)
     with pytest.raises(ValueError, match="no point is allowed by outer_radius ≤ 1"):
         pareto(design_space, limits=[TINY])
 
@@ -99,9 +99,8 @@ def test_an_optimum_is_better_than_every_point_of_a_fine_grid(model):
     assert best.value <= least * (1 + 1e-9)
     assert best.value == pytest.approx(least, rel=2e-3)
     assert best.active == ("outer_radius ≤ 26",)
-    assert best.slopes["ball_radius"] == pytest.approx(
-        best.slopes["liner_thickness"], rel=1e-2
-    )  # no gain along the limit
+    along_limit = best.slopes["ball_radius"] - best.slopes["liner_thickness"]
+    assert along_limit == pytest.approx(0.0, abs=1e-2 * abs(best.slopes["ball_radius"]))
     assert model.press(best.joint, force=3000.0).max_pressure == pytest.approx(best.value, rel=1e-9)
 
 
@@ -115,9 +114,8 @@ def test_an_optimum_without_limits_lies_at_an_end():
 
 def test_slopes_by_differences_are_those_of_scaling():
     """Lengths times a and moduli times b: F a²b, so the elasticities add up."""
-    found = elasticities(
-        bs.Exact(), HIP, ("max_pressure", "indentation"), {**AT, "liner_young": 1000.0, "ball_young": 2.3e5}
-    )
+    at = {**AT, "liner_young": 1000.0, "ball_young": 2.3e5}
+    found = elasticities(bs.Exact(), HIP, ("max_pressure", "indentation"), at)
     for quantity, lengths, moduli in (("max_pressure", 0.0, 1.0), ("indentation", 1.0, 0.0)):
         each = found[quantity]
         size = each["ball_radius"] + each["clearance"] + each["liner_thickness"] + 2 * each["force"]
@@ -156,19 +154,18 @@ def test_slopes_by_jax_are_those_of_differences(model):
     with pytest.raises(ValueError, match="exact cannot be traced"):
         jax_derivatives(bs.Exact(), HIP, ("area",), AT)
     ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
-    by_jax = optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL, derive=jax_derivatives)
-    assert by_jax.value == pytest.approx(
-        optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL).value, rel=1e-6
+    by_jax, by_differences = (
+        optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL, derive=derive).value
+        for derive in (jax_derivatives, finite_differences)
     )
+    assert by_jax == pytest.approx(by_differences, rel=1e-6)
 
 
 @pytest.mark.long
 def test_slopes_of_finite_elements_are_near_the_exact_ones():
     at = {"force": 3000.0, "clearance": 0.1}
-    near, true = (
-        elasticities(model, HIP, ("max_pressure", "half_angle"), at)
-        for model in (bs.FiniteElement(meshes=1), bs.Exact())
-    )
+    models = (bs.FiniteElement(meshes=1), bs.Exact())
+    near, true = (elasticities(model, HIP, ("max_pressure", "half_angle"), at) for model in models)
     for quantity, each in true.items():
         for name, value in each.items():
             assert near[quantity][name] == pytest.approx(value, abs=0.02)
@@ -236,22 +233,19 @@ def test_a_preset_of_questions_is_varied_and_the_next_command_runs(tmp_path):
 
 def test_phrases_of_the_shell():
     assert parse_range("ball_radius = 11..23 mm") == ("ball_radius", 11.0, 23.0)
-    assert parse_range("force=1 kN .. 3 kN") == ("force", 1000.0, 3000.0)
-    assert parse_range("force=1..3 kN") == ("force", 1000.0, 3000.0)
+    assert parse_range("force=1 kN .. 3 kN") == parse_range("force=1..3 kN") == ("force", 1000.0, 3000.0)
     assert parse_distribution("clearance=100+-50 um") == ("clearance", tolerance(0.1, 0.05))
     assert parse_distribution("liner_poisson=0.38..0.46") == ("liner_poisson", Rectangular(low=0.38, high=0.46))
-    assert parse_limit("outer_radius <= 2.6 cm") == Limit(name="outer_radius", high=26.0)
-    assert parse_limit("outer_radius < 26") == Limit(name="outer_radius", high=26.0)
-    assert parse_limit("max_pressure>5 MPa") == Limit(name="max_pressure", low=5.0)
-    assert parse_limit("half_angle<=60").high == pytest.approx(pi / 3)
-    assert (
-        parse_limit("area<=800 mm²")
-        == parse_limit("area<=800 mm2")
-        == parse_limit("area<=800")
-        == parse_limit("area<=8 cm^2")
-    )
-    assert parse_limit("stiffness>=60 kN/mm") == Limit(name="stiffness", low=60e3)
-    assert parse_limit("energy<=50 N mm").high == parse_limit("energy<=50 mJ").high == 50.0
+    for phrase, name, end, value in (
+        *((phrase, "outer_radius", "high", 26.0) for phrase in ("outer_radius <= 2.6 cm", "outer_radius < 26")),
+        ("max_pressure>5 MPa", "max_pressure", "low", 5.0),
+        ("half_angle<=60", "half_angle", "high", pi / 3),
+        *((f"area<={size}", "area", "high", 800.0) for size in ("800 mm²", "800 mm2", "800", "8 cm^2")),
+        ("stiffness>=60 kN/mm", "stiffness", "low", 60e3),
+        *((f"energy<={size}", "energy", "high", 50.0) for size in ("50 N mm", "50 mJ")),
+    ):
+        limit = parse_limit(phrase)
+        assert (limit.name, getattr(limit, end)) == (name, pytest.approx(value, rel=1e-12))
     for phrase in ("ball_radius", "ball_radius=11", "outer_radius=26", "ball_radios=11..23"):
         with pytest.raises(ValueError, match=r"is not a|did you mean|is not known"):
             (parse_limit if "<" in phrase else parse_range)(phrase)
