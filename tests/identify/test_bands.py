@@ -8,8 +8,6 @@ from ballsocket.identify import MACHINE_ERRORS, HeavyTailed, Machine, Measured
 from ballsocket.identify.experiment import standard_candidates
 from ballsocket.studies import Normal
 
-from ..extent import some
-
 TRUTH = bs.Joint(ball_radius=15.3, clearance=0.12, liner_thickness=7.4, liner=bs.Material(young=780.0, poisson=0.42))
 VALUES = {"clearance": 0.12, "liner_young": 780.0}
 FREE = {"clearance": (0.02, 0.4), "liner.young": (300.0, 2500.0)}
@@ -48,18 +46,19 @@ def test_half_angles_and_pressures_identify_only_the_product(seed, free):
     assert fit.information.unidentifiable == ("clearance", "liner_young")
     assert fit.information.rank == 1
     assert not fit.identifiable
-    assert fit.information.unidentifiable == fit.information.unidentifiable
     (product,) = fit.information.products
     assert product.exponents == {"clearance": 1.0, "liner_young": 1.0}
     assert product.low < 93.6 < product.high
     assert fit["liner_young"].low <= 780.0 <= fit["liner_young"].high
     assert "only clearance · liner_young is identifiable" in fit.notes[0]
+    assert fit.sensitivity == ()  # no indentations, which a machine would read
 
 
-def test_the_rank_is_full_if_every_unknown_is_identifiable():
-    for seed in some(range(1000, 1012), 3):
-        information = identified(*angles_and_pressures(seed)).information
-        assert (information.rank == 2) == (not information.unidentifiable)
+def test_an_unknown_is_identifiable_by_its_prior_or_beside_one_that_is_not():
+    known = identified(*angles_and_pressures(1021), free={**FREE, "clearance": Normal(mean=0.12, deviation=0.01)})
+    assert (known.identifiable, known.information.rank) == (True, 2)
+    fit = identified(indentations(), *angles_and_pressures(3), free={**FREE, "liner.poisson": (0.415, 0.425)})
+    assert (fit.information.unidentifiable, fit.information.rank) == (("liner_poisson",), 2)
 
 
 def test_an_end_of_a_profile_is_a_constrained_minimum_at_the_limit_of_the_rise():
@@ -90,17 +89,8 @@ def test_a_band_may_end_at_a_physical_limit():
     assert compliance.low == 0.0 <= compliance.value < compliance.high < 1e-6
 
 
-def test_a_narrow_range_of_one_unknown_leaves_another_identifiable():
-    free = {**FREE, "liner.poisson": (0.415, 0.425)}
-    fit = identified(indentations(), *angles_and_pressures(3), free=free)
-    assert fit.information.unidentifiable == ("liner_poisson",)
-    assert fit["clearance"].identifiable
-    assert fit["liner_young"].identifiable
-    assert fit.information.rank == 2
-
-
 @pytest.mark.long
-@pytest.mark.parametrize("factor", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("factor", [1.0, 2.0])
 @pytest.mark.parametrize("scatter", [None, HeavyTailed()], ids=["normal", "heavy-tailed"])
 def test_bands_widen_with_the_scatter(factor, scatter):
     """40 sets: fewer than 33 of 40 would be a chance of one in ten thousand for a coverage of 95 %."""
@@ -155,10 +145,6 @@ def test_forces_at_indentations_of_a_machine_are_sensitive_to_it_too():
     assert moved["clearance"].value - 0.12 == pytest.approx(0.02 * shifts["offset"], rel=0.05)
 
 
-def test_data_without_indentations_have_no_sensitivity_to_a_machine():
-    assert identified(*angles_and_pressures(3)).sensitivity == ()
-
-
 @pytest.mark.parametrize("order", [None, [5, 3, 8, 0, 10, 1, 7, 2, 11, 4, 9, 6]], ids=["rows", "stated"])
 def test_drift_is_an_unknown_of_the_machine(order):
     readings = np.arange(12.0) if order is None else np.array(order, dtype=float)
@@ -170,42 +156,3 @@ def test_drift_is_an_unknown_of_the_machine(order):
         assert fit[name].low < value < fit[name].high
     following = next(candidate for candidate in standard_candidates(fit) if candidate.quantity == "indentation")
     assert following.order == 12.0
-
-
-def test_a_known_drift_is_subtracted_from_indentations_that_are_the_load():
-    machine = Machine(drift=3e-4, offset=1e-3)
-    read = DEPTH + 1e-3 + 3e-4 * np.arange(12.0)
-    fit = identified(Measured(quantity="force", values=PRESS, uncertainty=10.0, indentation=read, machine=machine))
-    assert fit.point == pytest.approx(VALUES, rel=1e-4)
-
-
-def test_the_order_of_readings_is_checked():
-    with pytest.raises(ValueError, match="order must have 1 or 12 numbers, got 3"):
-        indentations(order=[1, 2, 3])
-
-
-def test_a_distribution_makes_an_unknown_identifiable():
-    free = {**FREE, "clearance": Normal(mean=0.12, deviation=0.01)}
-    fit = identified(*angles_and_pressures(1021), free=free)
-    assert fit.identifiable
-    assert fit.information.rank == 2
-
-
-def test_json_has_the_earlier_keys():
-    summary = identified(*angles_and_pressures(1021)).summary()
-    assert summary["information"]["unidentifiable"] == ["clearance", "liner_young"]
-    for estimate in summary["estimates"]:
-        assert estimate["told"] is estimate["identifiable"] is False
-        assert estimate["value"] is None
-    pressed = identified(indentations()).summary()
-    assert [error["error"] for error in pressed["sensitivity"]] == ["offset", "compliance", "drift"]
-    assert set(pressed["sensitivity"][0]["shifts"]) == set(VALUES)
-
-
-def test_measurements_of_the_wrong_kind_are_refused():
-    row = {"quantity": "indentation", "force": [500.0, 1000.0], "uncertainty": 1e-3}
-    with pytest.raises(TypeError, match="machine must be a Machine, got 'press'"):
-        Measured(**row, values=[0.02, 0.03], machine="press")
-    for values in (np.array([0.02 + 1j, 0.03]), [10**400, 0.03]):
-        with pytest.raises(ValueError, match=r"indentation.* must be numbers"):
-            Measured(**row, values=values)

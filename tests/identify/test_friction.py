@@ -8,17 +8,14 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.identify import Measured, sliding_torque
-from ballsocket.identify.file import read_identify
 from ballsocket.identify.misfit import by_differences
 from ballsocket.identify.synthetic import trials
-from ballsocket.studies import Normal
 
 from ..cli.command import run
-from ..extent import either
+from ..extent import some
 
-JOINT = bs.joints["hess-forsbach"]
-MODEL = bs.HessForsbach()
-FORCE = np.linspace(300.0, 3000.0, 10)
+JOINT, MODEL = bs.joints["hess-forsbach"], bs.HessForsbach()
+FORCE = np.linspace(300.0, 3000.0, 5)
 CONTACT = MODEL.press(JOINT, force=FORCE)
 RANGE = {"friction_coefficient": (0.0, 0.3)}
 SIGMA = 20.0
@@ -32,19 +29,18 @@ def torques(values=None, *, axis_angle=pi / 2, uncertainty=SIGMA, **settings):
     return Measured(**data, observable=observable, **settings)
 
 
-@pytest.mark.parametrize("axis_angle", [0.0, 0.7, pi / 2])
+@pytest.mark.parametrize("axis_angle", some([0.7, 0.0, pi / 2], 1))
 def test_the_coefficient_of_friction_is_recovered_from_torques_about_any_axis(axis_angle):
     result = bs.identify(MODEL, JOINT, torques(axis_angle=axis_angle), RANGE)
     assert result.point["friction_coefficient"] == pytest.approx(0.06, rel=1e-6)
     assert result.identifiable
     assert result["friction_coefficient"].unit == "1"
-    assert result.joint == JOINT
-    assert result.model == MODEL
+    assert (result.joint, result.model) == (JOINT, MODEL)
 
 
 def test_estimate_and_band_are_those_of_weighted_linear_regression():
     """The torque is μ f(F), so that μ = Σ f T/Σ f² with the standard uncertainty σ/sqrt(Σ f²)."""
-    noise = SIGMA * np.array([0.5, -1.0, 1.2, 0.3, -0.8, 0.1, 0.9, -0.4, -0.6, 0.7])
+    noise = SIGMA * np.array([0.5, -1.0, 1.2, 0.3, -0.8])
     lever = np.asarray(CONTACT.friction_torque(1.0))
     values = 0.06 * lever + noise
     estimate = bs.identify(MODEL, JOINT, torques(values), RANGE)["friction_coefficient"]
@@ -55,9 +51,9 @@ def test_estimate_and_band_are_those_of_weighted_linear_regression():
 
 @pytest.mark.long
 def test_bands_of_95_percent_contain_the_coefficient_in_most_trials():
-    tried = trials(bs.identify(MODEL, JOINT, torques(), RANGE), either(quick=10, long=60), seed=3)
-    assert tried.coverage["friction_coefficient"] >= either(quick=0.8, long=0.9)
-    assert abs(tried.bias["friction_coefficient"]) < either(quick=0.3, long=0.1)
+    tried = trials(bs.identify(MODEL, JOINT, torques(), RANGE), 40, seed=3)
+    assert tried.coverage["friction_coefficient"] >= 0.9
+    assert abs(tried.bias["friction_coefficient"]) < 0.1
 
 
 def test_friction_and_clearance_are_identified_from_torques_and_indentations():
@@ -65,12 +61,6 @@ def test_friction_and_clearance_are_identified_from_torques_and_indentations():
     result = bs.identify(MODEL, JOINT, [press, torques()], {"clearance": (0.02, 0.3), **RANGE})
     assert result.point == pytest.approx({"clearance": JOINT.clearance, "friction_coefficient": 0.06}, rel=1e-4)
     assert result.identifiable
-
-
-def test_a_prior_distribution_of_the_coefficient_counts_as_knowledge():
-    prior = Normal(mean=0.08, deviation=1e-6)
-    result = bs.identify(MODEL, JOINT, torques(), {"friction_coefficient": prior})
-    assert result.point["friction_coefficient"] == pytest.approx(0.08, rel=1e-3)
 
 
 def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
@@ -87,58 +77,21 @@ def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
         np.testing.assert_allclose(traced, differences, rtol=1e-8)
 
 
-def test_torques_need_the_coefficient_as_an_unknown_and_the_reverse():
-    with pytest.raises(ValueError, match="data of friction_torque depend on friction_coefficient: free it, with two"):
-        bs.identify(MODEL, JOINT, torques(), {"clearance": (0.02, 0.3)})
-    press = Measured(quantity="indentation", values=CONTACT.indentation, uncertainty=1e-4, force=FORCE)
-    with pytest.raises(ValueError, match="no data depend on friction_coefficient: do not free it, or add data"):
-        bs.identify(MODEL, JOINT, press, {"clearance": (0.02, 0.3), **RANGE})
-    with pytest.raises(
-        ValueError, match=r"friction_coefficient = -0\.1 is not allowed: a coefficient of friction is 0"
-    ):
-        bs.identify(MODEL, JOINT, torques(), {"friction_coefficient": (-0.1, 0.3)})
-
-
-@pytest.mark.parametrize("axis_angle", [-0.1, 1.6, 90.0, np.nan])
-def test_axes_beyond_a_right_angle_are_refused(axis_angle):
-    with pytest.raises(ValueError, match=r"axis_angle = .* is not allowed: the angle between axis and load"):
-        sliding_torque(axis_angle)
-
-
-FILE = """
-model = "hess-forsbach"
-joint = "hess-forsbach"
-[free]
-friction_coefficient = "0..0.3"
-[[data]]
-quantity = "friction_torque"
-values = [{values}]
-force = ["1 kN", "2 kN", "3 kN"]
-uncertainty = "2 %"
-{axis}
-"""
-
-
-@pytest.mark.parametrize(("axis", "angle"), [("", pi / 2), ('axis_angle = "0 deg"', 0.0)])
+@pytest.mark.parametrize(("axis", "angle"), some([('axis_angle = "0 deg"', 0.0), ("", pi / 2)], 1))
 def test_file_and_command_identify_the_coefficient(tmp_path, axis, angle):
     values = MODEL.press(JOINT, force=np.array([1e3, 2e3, 3e3])).friction_torque(0.06, angle)
     text = ", ".join(f'"{value / 1e3:.9f} N m"' for value in values)
-    (tmp_path / "friction.toml").write_text(FILE.format(values=text, axis=axis), "utf-8")
-    result = read_identify(tmp_path / "friction.toml").identify_unknowns()
-    assert result.point["friction_coefficient"] == pytest.approx(0.06, rel=1e-6)
-    done = run("identify", "friction.toml", "--json", folder=tmp_path)
-    assert done.returncode == 0, done.stderr
-    (estimate,) = json.loads(done.stdout)["estimates"]
+    (tmp_path / "friction.toml").write_text(
+        'model = "hess-forsbach"\njoint = "hess-forsbach"\n[free]\nfriction_coefficient = "0..0.3"\n'
+        f'[[data]]\nquantity = "friction_torque"\nvalues = [{text}]\nforce = ["1 kN", "2 kN", "3 kN"]\n'
+        f'uncertainty = "2 %"\n{axis}\n',
+        "utf-8",
+    )
+    shown = run("identify", "friction.toml", "--json", folder=tmp_path)
+    assert shown.returncode == 0, shown.stderr
+    (estimate,) = json.loads(shown.stdout)["estimates"]
     assert estimate["name"] == "friction_coefficient"
     assert estimate["value"] == pytest.approx(0.06, rel=1e-6)
     assert estimate["low"] < 0.06 < estimate["high"]
-    shown = run("identify", "friction.toml", folder=tmp_path).stdout
-    assert "hess-forsbach fitted to 3 values (3 x friction_torque)" in shown
-
-
-def test_an_axis_of_other_data_is_refused(tmp_path):
-    text = FILE.format(values='"1 N m", "2 N m", "3 N m"', axis='axis_angle = "0 deg"')
-    text = text.replace('"friction_torque"', '"indentation"').replace(" N m", " um")
-    (tmp_path / "friction.toml").write_text(text, "utf-8")
-    with pytest.raises(ValueError, match="axis_angle belongs to .* of a friction_torque, not of indentation"):
-        read_identify(tmp_path / "friction.toml")
+    table = run("identify", "friction.toml", folder=tmp_path).stdout
+    assert "hess-forsbach fitted to 3 values (3 x friction_torque)" in table

@@ -10,11 +10,12 @@ from ballsocket.identify.misfit import by_tracing
 from ballsocket.identify.synthetic import draw_data_sets, trials
 from ballsocket.studies import LogNormal, Normal
 
-RIGID = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
+from .rigid import JOINT, MODEL
+
 FREE = {"clearance": (0.02, 0.3), "liner.young": (400.0, 2000.0)}
 FORCE = np.linspace(150.0, 3000.0, 20)
-MODEL = bs.HessForsbach()
-TRUTH = MODEL.press(RIGID, force=FORCE)
+TRUTH = MODEL.press(JOINT, force=FORCE)
+READ = TRUTH.indentation + 8e-6 * FORCE
 
 
 def measured(quantity, values=None, share=0.02, random=None, force=FORCE, **words):
@@ -24,8 +25,12 @@ def measured(quantity, values=None, share=0.02, random=None, force=FORCE, **word
     return Measured(quantity=quantity, values=scattered, uncertainty=uncertainty, force=force, **words)
 
 
+def by_depth(indentation, uncertainty, **words):
+    return Measured(quantity="force", values=FORCE, uncertainty=uncertainty, indentation=indentation, **words)
+
+
 def identified(*data, free=FREE, model=MODEL, **words):
-    return bs.identify(model, RIGID, data, free, **words)
+    return bs.identify(model, JOINT, data, free, **words)
 
 
 @pytest.mark.parametrize(
@@ -34,37 +39,29 @@ def identified(*data, free=FREE, model=MODEL, **words):
         [measured("indentation")],
         [measured("half_angle"), measured("indentation")],
         [measured("area"), measured("stiffness")],
-        [
-            Measured(quantity="force", values=FORCE, uncertainty=20.0, indentation=TRUTH.indentation),
-            measured("max_pressure"),
-        ],
+        [by_depth(TRUTH.indentation, 20.0), measured("max_pressure")],
         [measured("area"), Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.004)],
         [measured("pressure", TRUTH.pressure(0.2), angle=0.2), measured("indentation")],
+        [measured("indentation", READ + 0.002, 1e-3, machine=Machine(compliance=8e-6, offset=0.002))],
+        [measured("indentation", TRUTH.indentation[[3, 18]], 1e-3, force=FORCE[[3, 18]])],
     ],
-    ids=lambda data: "+".join(each.quantity for each in data),
+    ids=["depth", "angle", "stiffness", "force", "free play", "pressure", "known machine", "as many as unknowns"],
 )
 def test_data_without_error_identify_the_true_joint(data):
     result = identified(*data)
     assert result.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
     assert result.identifiable
-    assert result.spread == pytest.approx(0.0, abs=1e-4)
+    assert result.freedom == 0 or result.spread == pytest.approx(0.0, abs=1e-4)
     assert result.joint.clearance == pytest.approx(0.1, rel=1e-5)
+    assert identified(*data, seed=5).point == pytest.approx(result.point, rel=1e-5)
 
 
 def test_errors_of_the_machine_are_identified_with_the_joint():
     machine = Machine(compliance=(0.0, 2e-5), offset=(-0.02, 0.02))
-    read = TRUTH.indentation + 8e-6 * FORCE - 0.007
-    by_force = measured("indentation", read, share=1e-3, machine=machine)
-    by_depth = Measured(quantity="force", values=FORCE, uncertainty=2.0, indentation=read, machine=machine)
+    by_force = measured("indentation", READ - 0.007, share=1e-3, machine=machine)
     truth = {"clearance": 0.1, "liner_young": 1000.0, "machine.compliance": 8e-6, "machine.offset": -0.007}
-    for each in (by_force, by_depth):
-        assert identified(each, measured("area", share=1e-3)).point == pytest.approx(truth, rel=1e-4)
-
-
-def test_known_errors_of_the_machine_are_subtracted():
-    machine = Machine(compliance=8e-6, offset=0.002)
-    read = measured("indentation", TRUTH.indentation + 8e-6 * FORCE + 0.002, machine=machine)
-    assert identified(read).point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
+    for data in (by_force, by_depth(READ - 0.007, 2.0, machine=machine)):
+        assert identified(data, measured("area", share=1e-3)).point == pytest.approx(truth, rel=1e-4)
 
 
 def test_values_of_a_saturated_film_are_lower_bounds():
@@ -116,11 +113,8 @@ def test_the_gain_of_a_measurement_is_the_predicted_gain():
     result = identified(areas)
     gain = next(each for each in result.next.gains if each.candidate.quantity == "indentation")
     more = identified(areas, gain.candidate.measured(MODEL.press(result.joint, force=gain.candidate.force).indentation))
-    grown = (
-        np.linalg.slogdet(more.information.matrix + np.eye(2))[1]
-        - np.linalg.slogdet(result.information.matrix + np.eye(2))[1]
-    )
-    assert gain.bits == pytest.approx(grown / np.log(4.0), rel=0.1)
+    before, after = (np.linalg.slogdet(each.information.matrix + np.eye(2))[1] for each in (result, more))
+    assert gain.bits == pytest.approx((after - before) / np.log(4.0), rel=0.1)
     assert more.identifiable
     assert gain.identifies == ("clearance", "liner_young")
     assert "area" not in result.next.sufficient_quantities
@@ -140,12 +134,8 @@ def test_a_prior_distribution_makes_the_product_separable():
     assert result["clearance"].value == pytest.approx(0.1, abs=1e-3)
     assert result["clearance"].high - result["clearance"].low == pytest.approx(2 * 1.96 * 0.01, rel=0.02)
     assert result["liner.young"].value == pytest.approx(1000.0, rel=0.01)
-
-
-def test_the_band_of_a_log_normal_prior_is_a_factor():
-    result = identified(measured("area"), free={**FREE, "clearance": LogNormal(median=0.1, factor=1.1)})
-    each = result["clearance"]
-    assert (each.low, each.high) == pytest.approx((0.1 / 1.1**1.96, 0.1 * 1.1**1.96), rel=0.01)
+    factor = identified(measured("area"), free={**FREE, "clearance": LogNormal(median=0.1, factor=1.1)})["clearance"]
+    assert (factor.low, factor.high) == pytest.approx((0.1 / 1.1**1.96, 0.1 * 1.1**1.96), rel=0.01)
 
 
 def test_uncertain_loads_widen_the_band():
@@ -157,6 +147,7 @@ def test_uncertain_loads_widen_the_band():
     assert np.std(offs[0]) > 3 * np.std(offs[1])
 
 
+@pytest.mark.long
 def test_bands_of_95_percent_hold_the_truth():
     """40 sets of data: fewer than 33 held of 40 bands of 95 % would be a chance of one in ten thousand."""
     result = identified(measured("indentation", share=0.01), measured("max_pressure", saturation=8.0))
@@ -168,7 +159,7 @@ def test_bands_of_95_percent_hold_the_truth():
 @pytest.mark.long
 def test_coverage_and_bias_over_two_hundred_synthetic_sets():
     model = bs.Tabulated()
-    contact = model.press(RIGID, force=FORCE)
+    contact = model.press(JOINT, force=FORCE)
     data = [measured("indentation", contact.indentation, share=0.01), measured("area", contact.area)]
     tried = trials(identified(*data, model=model), 200)
     for name in ("clearance", "liner_young"):
@@ -176,6 +167,7 @@ def test_coverage_and_bias_over_two_hundred_synthetic_sets():
         assert abs(tried.bias[name]) < 0.1
 
 
+@pytest.mark.long
 def test_the_posterior_agrees_with_the_bands():
     pytest.importorskip("emcee")
     result = identified(measured("indentation", share=0.003, random=np.random.default_rng(8)))
@@ -188,74 +180,12 @@ def test_the_posterior_agrees_with_the_bands():
     assert posterior.samples.shape == (1000, 2)
 
 
+@pytest.mark.long
 def test_the_posterior_of_an_unidentifiable_pair_follows_the_product():
     pytest.importorskip("emcee")
-    result = identified(measured("area"))
-    clearance, young = result.posterior(500).samples.T
+    clearance, young = identified(measured("area")).posterior(500).samples.T
     assert clearance.max() > 2 * clearance.min()
     np.testing.assert_allclose(clearance * young, 100.0, rtol=0.06)
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (
-            {"uncertainty": -1e-3},
-            r"indentation_uncertainty\[0\] = -0.001 (and .*)?is not allowed: an uncertainty is above",
-        ),
-        ({"uncertainty": [1e-3, 0.0]}, r"indentation_uncertainty\[1\] = 0 is not allowed"),
-        ({"uncertainty": [1e-3] * 3}, "indentation_uncertainty must have 1 or 2 numbers, got 3"),
-        ({"values": [0.01, np.nan]}, "indentation has no number in row 2"),
-        ({"force": [0.0, 100.0]}, r"force\[0\] = 0 is not allowed: at first touch the indentation is 0"),
-        ({"force": [-1.0, 100.0]}, r"force\[0\] = -1 is not allowed"),
-        ({"indentation": 0.1}, "exactly one of force, indentation, half_angle is needed, got force, indentation"),
-        ({"quantity": "indentations"}, "quantity 'indentations' is not known; did you mean 'indentation'?"),
-        (
-            {"quantity": "area", "values": [10.0, 5000.0]},
-            r"area\[1\] = 5000 is not allowed: a contact area is below half of the ball, 2π",
-        ),
-        ({"quantity": "half_angle", "values": [0.1, 30.0]}, r"half_angle\[1\] = 30 is not allowed: a half angle"),
-        ({"quantity": "area", "machine": Machine()}, "area has a machine, but only indentations are read by one"),
-        ({"quantity": "pressure"}, "pressure needs an angle"),
-    ],
-)
-def test_impossible_data_are_refused(words, message):
-    given = {"quantity": "indentation", "values": [0.01, 0.02], "uncertainty": 1e-3, "force": [100.0, 200.0]}
-    with pytest.raises(ValueError, match=message.replace("(and .*)?", ".*")):
-        identified(Measured(**{**given, **words}))
-
-
-@pytest.mark.parametrize(
-    ("free", "message"),
-    [
-        ({"clearence": (0.1, 0.2)}, "'clearence' among the unknowns is not known; did you mean 'clearance'?"),
-        ({"clearance": (0.2, 0.1)}, r"clearance = \(0.2, 0.1\) is not allowed: two finite ends in ascending order"),
-        ({"clearance": 0.1}, "clearance = 0.1 must be two ends"),
-        ({"clearance": (-0.1, 0.1)}, "clearance = -0.1 is not allowed: a radial clearance"),
-        ({}, "free has no unknowns"),
-        ({**FREE, "liner.poisson": (0.3, 0.4), "ball_radius": (15.0, 17.0)}, "3 values do not suffice for 4 unknowns"),
-        ({"clearance": (0.1, 0.2), "diametral_clearance": (0.1, 0.2)}, "clearance"),
-    ],
-)
-def test_impossible_unknowns_are_refused(free, message):
-    data = Measured(quantity="indentation", values=[0.01, 0.02, 0.03], uncertainty=1e-3, force=[100.0, 400.0, 900.0])
-    with pytest.raises(ValueError, match=message):
-        identified(data, free=free)
-
-
-@pytest.mark.parametrize(
-    ("model", "joint", "data", "message"),
-    [
-        ("tabulated", RIGID, measured("area"), r"model must be a model, such as bs.Tabulated\(\), got 'tabulated'"),
-        (MODEL, "hip-36", measured("area"), "joint must be a Joint"),
-        (MODEL, RIGID.replace(clearance=np.array([0.1, 0.2])), measured("area"), "identify one joint at a time"),
-        (MODEL, RIGID, [3.0], "data must be sets of Measured, got 3.0"),
-        (MODEL, RIGID, [], "data must have at least one set of measurements"),
-    ],
-)
-def test_wrong_types_and_empty_data_are_refused(model, joint, data, message):
-    with pytest.raises((TypeError, ValueError), match=message):
-        bs.identify(model, joint, data, FREE)
 
 
 def test_modulus_and_poissons_ratio_are_not_identifiable_together():
@@ -268,19 +198,12 @@ def test_modulus_and_poissons_ratio_are_not_identifiable_together():
     )
 
 
-def test_data_without_any_result_of_the_model_are_refused():
-    data = Measured(quantity="indentation", values=0.01, uncertainty=1e-3, force=100.0)
-    with pytest.raises(ValueError, match="tabulated has no result for all the data anywhere within the ranges"):
-        identified(data, free={"liner_thickness": (0.05, 0.1)}, model=bs.Tabulated())
-
-
 @pytest.mark.long
 def test_jax_and_differences_have_the_same_best_point():
     pytest.importorskip("jax")
     machine = Machine(compliance=(0.0, 2e-5), offset=0.002)
-    read = TRUTH.indentation + 8e-6 * FORCE + 0.002
     data = [
-        measured("indentation", read, share=1e-3, machine=machine),
+        measured("indentation", READ + 0.002, share=1e-3, machine=machine),
         Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.004),
     ]
     traced, result = identified(*data, slopes=by_tracing), identified(*data)
@@ -288,11 +211,7 @@ def test_jax_and_differences_have_the_same_best_point():
     np.testing.assert_allclose(traced.information.matrix, result.information.matrix, rtol=1e-3)
 
 
-def test_a_model_that_jax_cannot_trace_is_named():
-    with pytest.raises(ValueError, match="exact cannot be traced by JAX: use by_differences"):
-        identified(measured("area"), model=bs.Exact(), slopes=by_tracing)
-
-
+@pytest.mark.long
 def test_a_custom_observable_is_read_from_contacts():
     """The frequency of a small vibration about a load measures the stiffness there."""
     observable = oscillation(mass=1.0)
@@ -307,7 +226,7 @@ def test_a_custom_observable_is_read_from_contacts():
 def test_the_uncertainty_of_a_load_is_divided_by_the_stiffness():
     """Data without error: the slope at the best point is that of the true joint, and a load of 0 adds nothing."""
     force = np.array([0.0, 500.0, 1500.0, 3000.0])
-    contact = MODEL.press(RIGID, force=force)
+    contact = MODEL.press(JOINT, force=force)
     sigma = np.array([40.0, 40.0, 60.0, 80.0])
     data = Measured(
         quantity="indentation", values=contact.indentation, uncertainty=1e-4, force=force, load_uncertainty=sigma
@@ -318,14 +237,3 @@ def test_the_uncertainty_of_a_load_is_divided_by_the_stiffness():
     np.testing.assert_allclose(result.misfit.uncertainty, [*expected, 0.01], rtol=1e-4)
     plain = identified(measured("indentation"), free={"clearance": (0.02, 0.3)})
     np.testing.assert_array_equal(plain.misfit.uncertainty, plain.data[0].uncertainty)
-
-
-def test_as_many_values_as_unknowns_suffice():
-    data = Measured(quantity="indentation", values=TRUTH.indentation[[3, 18]], uncertainty=1e-4, force=FORCE[[3, 18]])
-    assert identified(data).point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-4)
-
-
-def test_the_seed_of_the_search_does_not_move_the_best_point():
-    data = [measured("indentation"), measured("area")]
-    points = [identified(*data, seed=seed).point for seed in (0, 5)]
-    assert points[0] == pytest.approx(points[1], rel=1e-6)

@@ -6,18 +6,20 @@ import pytest
 import ballsocket as bs
 from ballsocket.identify import Measured
 
-HIP = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
+from .rigid import JOINT
+
 FORCE = np.linspace(200.0, 3000.0, 12)
 FREE = {"clearance": (0.02, 0.3)}
 NOISE = 4e-4
 
 
 def indentations(seed):
-    return bs.Tabulated().press(HIP, force=FORCE).indentation + np.random.default_rng(seed).normal(0, NOISE, len(FORCE))
+    noise = np.random.default_rng(seed).normal(0, NOISE, len(FORCE))
+    return bs.Tabulated().press(JOINT, force=FORCE).indentation + noise
 
 
 def identify(*data):
-    return bs.identify(bs.Tabulated(), HIP, list(data), FREE)
+    return bs.identify(bs.Tabulated(), JOINT, list(data), FREE)
 
 
 def test_an_unknown_noise_is_estimated_and_said():
@@ -41,7 +43,7 @@ def test_an_unknown_noise_is_estimated_and_said():
 
 
 def test_each_data_set_has_its_own_noise():
-    areas = bs.Tabulated().press(HIP, force=FORCE).area + np.random.default_rng(7).normal(0, 5.0, len(FORCE))
+    areas = bs.Tabulated().press(JOINT, force=FORCE).area + np.random.default_rng(7).normal(0, 5.0, len(FORCE))
     both = identify(
         Measured(quantity="indentation", values=indentations(4), force=FORCE),
         Measured(quantity="area", values=areas, force=FORCE),
@@ -58,18 +60,6 @@ def test_each_data_set_has_its_own_noise():
 
 @pytest.mark.long
 def test_bands_of_estimated_noise_hold_the_truth():
-    held = 0
-    for seed in range(100):
-        estimate = identify(Measured(quantity="indentation", values=indentations(seed), force=FORCE))["clearance"]
-        held += estimate.low < 0.1 < estimate.high
-    assert held >= 89
-
-
-def test_too_few_values_for_a_noise_are_refused():
-    with pytest.raises(ValueError, match="the uncertainty of indentation is missing, and 1 values are too few"):
-        identify(Measured(quantity="indentation", values=[0.02], force=[1000.0]))
-
-
-def test_a_displacement_below_zero_explains_sign_and_zero():
-    with pytest.raises(ValueError, match="it is positive into the socket and 0 at first touch: for another zero"):
-        Measured(quantity="displacement", values=[-0.01], force=[100.0])
+    data = [Measured(quantity="indentation", values=indentations(seed), force=FORCE) for seed in range(100)]
+    estimates = [identify(measured)["clearance"] for measured in data]
+    assert sum(estimate.low < 0.1 < estimate.high for estimate in estimates) >= 89

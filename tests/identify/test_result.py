@@ -7,12 +7,12 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import Estimate, Machine, Measured
+from ballsocket.identify import Estimate, Machine, Measured, NormalScatter, oscillation
 from ballsocket.identify.sensitivity import Sensitivity
 from ballsocket.studies import Normal
 
-JOINT = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.4))
-MODEL = bs.HessForsbach()
+from .rigid import JOINT, MODEL
+
 FORCE = np.array([2000.0, 400.0, 3000.0, 1000.0, 2500.0, 1500.0])
 CONTACT = MODEL.press(JOINT, force=FORCE)
 FREE = {"clearance": (0.02, 0.4)}
@@ -27,6 +27,9 @@ def measured(quantity="indentation", values=None, uncertainty=2e-4, **settings):
     return Measured(quantity=quantity, values=values, uncertainty=uncertainty, force=FORCE, **settings)
 
 
+PAIR = {"clearance": (0.05, 0.2), "liner.young": (500.0, 2000.0)}
+
+
 def test_the_curve_is_the_model_over_the_loads_of_the_data():
     result = identified(measured("area", uncertainty=4.0), measured())
     loads, depths = result.curve(1, 7)
@@ -34,16 +37,12 @@ def test_the_curve_is_the_model_over_the_loads_of_the_data():
     np.testing.assert_allclose(depths, MODEL.press(result.joint, force=loads).indentation, rtol=1e-12)
     assert len(result.curve(0)[0]) == 60
     np.testing.assert_allclose(result.curve(0, 3)[1], MODEL.press(result.joint, force=loads[[0, 3, 6]]).area)
-
-
-def test_the_curve_interpolates_the_order_of_the_readings():
-    machine = Machine(drift=1e-3)
     order = np.array([10.0, 1.0, 14.0, 4.0, 12.0, 7.0])
-    values = CONTACT.indentation + 1e-3 * order
-    result = identified(measured(values=values, machine=machine, order=order))
+    drifted = measured(values=CONTACT.indentation + 1e-3 * order, machine=Machine(drift=1e-3), order=order)
+    result = identified(drifted)
     loads, depths = result.curve(0, 2)
-    drift = 1e-3 * np.array([1.0, 14.0])
-    np.testing.assert_allclose(depths, MODEL.press(result.joint, force=loads).indentation + drift, rtol=1e-9)
+    expected = MODEL.press(result.joint, force=loads).indentation + 1e-3 * np.array([1.0, 14.0])
+    np.testing.assert_allclose(depths, expected, rtol=1e-9)
 
 
 def test_residuals_are_values_less_results_in_stated_uncertainties():
@@ -53,42 +52,29 @@ def test_residuals_are_values_less_results_in_stated_uncertainties():
     np.testing.assert_allclose(result.residuals[0], (result.data[0].values - depth) / 2e-4, rtol=1e-9)
     total = np.sum(result.residuals[0] ** 2) + np.sum(result.residuals[1] ** 2)
     assert result.spread == pytest.approx(np.sqrt(total / 11))
-    assert result.freedom == 11
-    assert [len(row) for row in result.results] == [6, 6]
-
-
-def test_the_residual_of_a_lower_bound_is_its_shortfall():
+    assert (result.freedom, [len(row) for row in result.results]) == (11, [6, 6])
     film = measured("max_pressure", np.minimum(CONTACT.max_pressure, 6.0), 0.1, saturation=6.0)
-    result = identified(measured(), film)
-    assert result.residuals[1][CONTACT.max_pressure > 6.5].max() == 0.0
-    assert result.residuals[1].min() >= -1e-6
+    shortfall = identified(measured(), film).residuals[1]  # of lower bounds
+    assert shortfall[CONTACT.max_pressure > 6.5].max() == 0.0
+    assert shortfall.min() >= -1e-6
+    one = identified(Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.01))
+    assert (one.freedom, np.isnan(one.spread), one.summary()["spread"]) == (0, True, None)
 
 
-def test_the_scatter_without_degrees_of_freedom_is_unknown():
-    result = identified(Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.01))
-    assert result.freedom == 0
-    assert np.isnan(result.spread)
-    assert result.summary()["spread"] is None
-
-
-def test_the_text_of_a_result_has_values_bands_and_notes():
+def test_the_text_of_a_result_has_values_bands_products_and_notes():
     result = identified(measured("area", uncertainty=4.0), free={**FREE, "liner.poisson": (0.39, 0.41)})
     text = repr(result).splitlines()
     assert text[0].startswith("clearance = ")
     assert " mm (" in text[0]
     assert text[1] == "liner_poisson is not identifiable: 0.39 to 0.41"
     assert text[2:] == list(result.notes)
-
-
-def test_the_text_of_a_product_has_its_unit():
-    free = {"clearance": (0.05, 0.2), "liner.young": (500.0, 2000.0)}
-    result = identified(measured("area", uncertainty=4.0), free=free)
+    result = identified(measured("area", uncertainty=4.0), free=PAIR)
     (product,) = result.information.products
     line = f"clearance · liner_young = {product.value:.4g} mm MPa ({product.low:.4g} to {product.high:.4g})"
     assert line in repr(result).splitlines()
 
 
-def test_outliers_are_named_in_descending_order():
+def test_at_most_five_outliers_are_named_in_descending_order():
     values = CONTACT.indentation + 2e-4 * np.array([0.0, 30.0, 0.0, 60.0, 0.0, 0.0])
     result = identified(measured(values=values, name="press"))
     notes = [note for note in result.notes if note.startswith("value ")]
@@ -98,11 +84,8 @@ def test_outliers_are_named_in_descending_order():
     assert all(size > 4.0 for size in sizes)
     assert any("there are outliers (HeavyTailed)" in note for note in result.notes)
     assert any(note.startswith(f"bands are {result.misfit.widening:.3g} times as wide") for note in result.notes)
-
-
-def test_at_most_five_outliers_are_named():
-    values = CONTACT.indentation * (1 + 0.2 * np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0]))
-    notes = identified(measured(values=values)).notes
+    signs = np.array([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
+    notes = identified(measured(values=CONTACT.indentation * (1 + 0.2 * signs))).notes
     assert sum(note.startswith("value ") for note in notes) == 5
 
 
@@ -110,6 +93,11 @@ def test_good_data_have_no_notes_on_the_fit():
     machine = Machine(offset=(-0.01, 0.01), compliance=(0.0, 1e-5), drift=(-1e-3, 1e-3))
     result = identified(measured(machine=machine), measured("area", uncertainty=0.1))
     assert not [note for note in result.notes if "uncertaint" in note or "search" in note or "would move" in note]
+    offset = measured(values=CONTACT.indentation + 0.004, machine=Machine(offset=(-0.01, 0.01)))
+    result = identified(offset, free={})  # the machine alone is unknown
+    assert result.point == pytest.approx({"machine.offset": 0.004}, rel=1e-6)
+    assert not any("would move" in note for note in result.notes)
+    assert result.joint == JOINT
 
 
 def test_the_best_value_at_the_end_of_a_range_is_noted():
@@ -117,10 +105,7 @@ def test_the_best_value_at_the_end_of_a_range_is_noted():
         result = identified(measured(uncertainty=2e-3), free={"clearance": free})
         note = f"the best clearance is {end}, the end of its range: widen the range, or check the data"
         assert note in result.notes
-
-
-def test_the_best_value_at_a_physical_limit_is_not_noted():
-    machine = Machine(compliance=(0.0, 1e-5))
+    machine = Machine(compliance=(0.0, 1e-5))  # which ends at a physical limit
     result = identified(measured(machine=machine, values=0.99 * CONTACT.indentation), free={})
     assert result.point == pytest.approx({"machine.compliance": 0.0}, abs=1e-12)
     assert not any(note.startswith("the best machine.compliance") for note in result.notes)
@@ -143,55 +128,31 @@ def test_notes_of_the_model_are_those_at_the_loads_of_the_data():
     assert set(contact.notes) - {contact.utilisation_note} <= set(notes)
 
 
-def test_unknown_errors_of_a_machine_alone_have_a_result():
-    """Only the machine is unknown: no note compares it with the other errors of the machine."""
-    machine = Machine(offset=(-0.01, 0.01))
-    result = identified(measured(values=CONTACT.indentation + 0.004, machine=machine), free={})
-    assert result.point == pytest.approx({"machine.offset": 0.004}, rel=1e-6)
-    assert not any("would move" in note for note in result.notes)
-    assert result.joint == JOINT
-
-
 def test_a_narrow_prior_is_an_estimate_without_a_range():
-    result = identified(measured("area", uncertainty=4.0), free={"liner.young": Normal(mean=1000.0, deviation=5.0)})
-    estimate = result["liner.young"]
+    free = {"liner.young": Normal(mean=1000.0, deviation=5.0)}
+    estimate = identified(measured("area", uncertainty=4.0), free=free)["liner.young"]
     assert estimate.identifiable
     assert estimate.limited_by == ()
     assert estimate.width_ratio < 1.0
-
-
-def test_the_summary_of_an_estimate_keeps_the_earlier_key():
     summary = Estimate("clearance", "mm", nan, 0.1, 0.3, 0.9, ("clearance",)).summary()
-    assert summary == {
-        "name": "clearance",
-        "unit": "mm",
-        "value": None,
-        "low": 0.1,
-        "high": 0.3,
-        "identifiable": False,
-        "told": False,
-        "limited_by": ["clearance"],
-    }
+    assert summary.pop("told") is summary["identifiable"] is False  # the earlier key
+    assert (summary["value"], summary["low"], summary["high"]) == (None, 0.1, 0.3)
+    assert (summary["name"], summary["unit"], summary["limited_by"]) == ("clearance", "mm", ["clearance"])
 
 
-def test_a_sensitivity_is_described_with_its_unit_and_machine():
-    titles = [
-        Sensitivity("", "offset", 1e-3, {}).title,
-        Sensitivity("frame", "compliance", 2e-6, {}).title,
-        Sensitivity("", "drift", 1e-4, {}).title,
-    ]
-    assert titles == [
-        "a zero offset of 1 µm",
-        "a compliance of 2 µm/kN in frame",
-        "a drift of 0.1 µm per reading",
-    ]
-    summary = Sensitivity("frame", "drift", 1e-4, {"clearance": nan, "liner_young": 2.0}).summary()
-    assert summary == {
-        "machine": "frame",
-        "error": "drift",
-        "size": 1e-4,
-        "shifts": {"clearance": None, "liner_young": 2.0},
-    }
+@pytest.mark.parametrize(
+    ("error", "title"),
+    [
+        (("", "offset", 1e-3), "a zero offset of 1 µm"),
+        (("frame", "compliance", 2e-6), "a compliance of 2 µm/kN in frame"),
+        (("", "drift", 1e-4), "a drift of 0.1 µm per reading"),
+    ],
+)
+def test_a_sensitivity_is_described_with_its_unit_and_machine(error, title):
+    sensitivity = Sensitivity(*error, {"clearance": nan, "liner_young": 2.0})
+    assert sensitivity.title == title
+    shifts = {"clearance": None, "liner_young": 2.0}
+    assert sensitivity.summary() == {**dict(zip(("machine", "error", "size"), error, strict=True)), "shifts": shifts}
 
 
 def test_the_shift_ratio_is_the_shift_over_half_the_band():
@@ -201,15 +162,9 @@ def test_the_shift_ratio_is_the_shift_over_half_the_band():
         ratio = 2 * abs(error.shifts["clearance"]) / (estimate.high - estimate.low)
         assert result.shift_ratio(error, "clearance") == pytest.approx(ratio)
     assert [error.size for error in result.sensitivity] == [1e-3, 1e-6, 1e-4]
-
-
-def test_an_unidentifiable_unknown_has_no_shift():
-    free = {"clearance": (0.05, 0.2), "liner.young": (500.0, 2000.0)}
-    area = measured("area", uncertainty=4.0)
-    result = identified(area, measured(uncertainty=0.1), free=free)
-    error = result.sensitivity[0]
-    assert np.isnan(error.shifts["clearance"])
-    assert result.shift_ratio(error, "clearance") == 0.0
+    result = identified(measured("area", uncertainty=4.0), measured(uncertainty=0.1), free=PAIR)
+    assert np.isnan(result.sensitivity[0].shifts["clearance"])  # the clearance is not identifiable
+    assert result.shift_ratio(result.sensitivity[0], "clearance") == 0.0
 
 
 def test_each_machine_has_its_own_sensitivities():
@@ -220,32 +175,36 @@ def test_each_machine_has_its_own_sensitivities():
 
 
 def test_earlier_names_warn():
-    result = identified(measured())
-    with pytest.warns(DeprecationWarning, match=r"IdentificationResult.told is deprecated: use identifiable"):
-        assert result.told is True
-    with pytest.warns(DeprecationWarning, match=r"FittedModel.scales|IdentificationResult.scales"):
-        assert result.scales is result.transform
-    with pytest.warns(DeprecationWarning, match=r"FitResult.places is deprecated: use theta"):
-        assert result.best.places is result.best.theta
-    with pytest.warns(DeprecationWarning, match=r"Information.untold is deprecated: use unidentifiable"):
-        assert result.information.untold == ()
-    with pytest.warns(DeprecationWarning, match=r"Estimate.left is deprecated: use width_ratio"):
-        assert result["clearance"].left == result["clearance"].width_ratio
+    result, observable = identified(measured()), oscillation(1.0)
+    for owner, name, value in (
+        (result, "told", result.identifiable),
+        (result, "scales", result.transform),
+        (result.best, "places", result.best.theta),
+        (result.information, "untold", result.information.unidentifiable),
+        (result["clearance"], "left", result["clearance"].width_ratio),
+        (result.next, "each_quantity", result.next.best_by_quantity),
+        (measured("frequency", FORCE, observable=observable), "own", observable),
+        (NormalScatter(), "told", NormalScatter().information),
+    ):
+        with pytest.warns(DeprecationWarning, match=name):
+            assert getattr(owner, name) is value or getattr(owner, name) == value
     with pytest.warns(DeprecationWarning, match="'place'.*'index'"):
         result.curve(place=0)
-    with pytest.warns(DeprecationWarning, match="each_quantity"):
-        assert result.next.each_quantity == result.next.best_by_quantity
+    with pytest.warns(DeprecationWarning, match="'own'.*'observable'"):
+        measured("frequency", FORCE, own=observable)
+    with pytest.warns(DeprecationWarning, match="use censored"):
+        assert NormalScatter().beyond(1.0) == NormalScatter().censored(1.0)
 
 
 def test_earlier_modules_have_their_names():
-    from ballsocket.identify.oscillation import oscillation
+    from ballsocket.identify.oscillation import oscillation as earlier
     from ballsocket.identify.tracing import by_tracing
 
     from ballsocket.identify import IdentificationResult, Identified, Own, observables, parameters
 
     assert Identified is IdentificationResult
     assert Own is observables.CustomObservable
-    assert oscillation is observables.oscillation
+    assert earlier is observables.oscillation
     assert by_tracing.__module__ == "ballsocket.identify.misfit"
     with pytest.warns(DeprecationWarning, match="Identified is deprecated"):
         assert parameters.Identified is IdentificationResult

@@ -19,28 +19,24 @@ from ballsocket.mcp.call import run as run_tool
 from ballsocket.mcp.tools import TOOLS, schema
 
 from ..cli.command import run
-from ..places import EXAMPLES
+from ..extent import some
+from ..places import EXAMPLES, symlink_or_skip
 
 COMMANDS = load_commands()
 PRESS = {"joint": "hip-36", "force": "3 kN"}
 
 
 def command_line(name, arguments, folder):
-    """Return the command line of a call with the commands of the program."""
     return call.command_line(name, arguments, folder, COMMANDS)
 
 
 @pytest.mark.parametrize("name", TOOLS)
-def test_a_tool_describes_its_arguments_and_offers_no_file_to_write(name):
+def test_a_tool_describes_its_arguments_with_units_and_offers_no_file_to_write(name):
     properties = schema(TOOLS[name], COMMANDS)["properties"]
     assert all(each["description"] for each in properties.values())
     assert not {"figure", "out", "store", "section", "view", "vtk", "report", "scheduler"} & set(properties)
-
-
-def test_descriptions_of_numbers_state_units():
-    properties = schema(TOOLS["press"], COMMANDS)["properties"]
     units = {"ball_radius": "[mm]", "force": "[N]", "young": "[MPa]", "half_angle": "[°]"}
-    assert all(unit in properties[name]["description"] for name, unit in units.items())
+    assert name != "press" or all(unit in properties[number]["description"] for number, unit in units.items())
 
 
 @pytest.mark.parametrize(
@@ -74,21 +70,13 @@ def test_a_wrong_call_is_refused_with_the_reason(name, arguments, message, tmp_p
         command_line(name, arguments, tmp_path)
 
 
-def test_a_link_to_a_file_outside_the_folder_is_refused(tmp_path):
-    (tmp_path / "room").mkdir()
-    (tmp_path / "joint.toml").write_text("[joint]", encoding="utf-8")
-    try:
-        (tmp_path / "room" / "joint.toml").symlink_to(tmp_path / "joint.toml")
-    except OSError:
-        pytest.skip("no links here")
-    with pytest.raises(ValueError, match="lies outside the folder"):
-        command_line("press", {"joint": "joint.toml", "force": 1}, tmp_path / "room")
-
-
 def test_the_command_line_of_a_call_is_that_of_a_shell(tmp_path):
     words = command_line("press", {**PRESS, "force": 3000.0, "model": ["hertz", "exact"]}, tmp_path)
     assert words == ["press", "hip-36", "--force=3000", "--model=hertz", "--model=exact", "--json"]
     assert command_line("press", {"joint": "--help"}, tmp_path)[1] == "./--help"
+    (tmp_path / "--help.toml").write_text('joint = "hip-28"\n[axes]\nforce = 1000\n', encoding="utf-8")
+    assert command_line("study", {"file": "--help.toml"}, tmp_path)[1] == "./--help.toml"
+    (tmp_path / "--help.toml").unlink()
     question = command_line("evidence", {"content": "question = 'q'"}, tmp_path)
     assert question[1].endswith(".toml")
     assert question[2] == f"--out={question[1].removesuffix('.toml')}-pack"
@@ -96,12 +84,13 @@ def test_the_command_line_of_a_call_is_that_of_a_shell(tmp_path):
 
 
 PADDING = "./" * 110
+FILE_OF_WEAR = '\n[wear]\nfile = "x.txt"\n'
 OUTSIDE = {
     "table": ("study", 'joint = "hip-28"\nmodel = "hertz"\n[table]\npath = "{}/points.csv"\n'),
     "joint": ("study", 'joint = "{}/joint.toml"\n[axes]\nforce = 1000\n'),
     "cycle": ("wear", 'joint = "hip-28"\n[cycle]\nfile = "{}/cycle.csv"\n[wear]\ncoefficient = 1e-6\n'),
     "data": ("identify", 'joint = "hip-28"\n[free]\nclearance = "0.02..0.3 mm"\n[[data]]\nfile = "{}/points.csv"\n'),
-    "chain": ("study", 'joint = "hip-28"\n[table]\npath = "link/points.csv"\n# {}'),
+    "file of a file": ("evidence", (EXAMPLES / "evidence.toml").read_text("utf-8").split("[wear]")[0] + FILE_OF_WEAR),
 }
 
 
@@ -117,51 +106,54 @@ def secret(tmp_path):
 
 
 @pytest.fixture
-def room(tmp_path, secret, monkeypatch):
+def room(tmp_path, monkeypatch):
     """Make the folder of a server, and restrict this process to it like the processes of calls."""
     folder = tmp_path / "room"
     folder.mkdir()
-    (folder / "link").symlink_to(secret)
     for name, value in restriction_variables((folder, Path(os.environ["BALLSOCKET_CACHE"]))).items():
         monkeypatch.setenv(name, value)
     return folder
 
 
-@pytest.mark.parametrize("kind", OUTSIDE)
+def is_refused(refused):
+    """Check that the answer of a call has the reason and nothing of the secret files."""
+    secrets = ("777", "0.123", "12.3456", "secret head")
+    return "lies outside the folder of this server" in refused and not any(word in refused for word in secrets)
+
+
+@pytest.mark.parametrize("kind", [*list(OUTSIDE)[:-1], pytest.param("file of a file", marks=pytest.mark.long)])
 @pytest.mark.parametrize("form", ["padded", "absolute"])
 def test_files_named_by_files_stay_inside_the_folder(kind, form, room, secret):
     name, content = OUTSIDE[kind]
-    path = f"{PADDING}../secret" if form == "padded" else f"/{PADDING}{str(secret)[1:]}"
-    done = run(*command_line(name, {"content": content.format(path)}, room), folder=room)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "lies outside the folder of this server" in done.stderr
-    assert not any(word in done.stderr for word in ("777", "0.123", "12.3456", "secret head"))
+    root = Path(secret.anchor)
+    path = f"{PADDING}../secret"
+    if form == "absolute":
+        path = f"{root.as_posix()}{PADDING}{secret.relative_to(root).as_posix()}"
+    (room / "x.txt").write_text(OUTSIDE["cycle"][1].format(path), encoding="utf-8")
+    refused = run(*command_line(name, {"content": content.replace("{}", path)}, room), folder=room)
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert is_refused(refused.stderr)
 
 
-def test_a_path_outside_the_folder_in_other_files_is_refused(room):
-    (room / "x.txt").write_text(OUTSIDE["cycle"][1].format("../secret"), encoding="utf-8")
-    question = (EXAMPLES / "evidence.toml").read_text(encoding="utf-8").split("[wear]")[0]
-    content = f'{question}\n[wear]\nfile = "x.txt"\n'
-    done = run(*command_line("evidence", {"content": content}, room), folder=room)
-    assert "lies outside the folder of this server" in done.stderr
-
-
-def test_a_process_of_a_call_is_restricted(tmp_path, secret):
-    room = tmp_path / "room"
-    room.mkdir()
+def test_a_link_to_a_file_outside_the_folder_is_refused(room, secret):
+    symlink_or_skip(room / "link", secret)
     name, content = OUTSIDE["table"]
-    words = command_line(name, {"content": content.format(f"{PADDING}../secret")}, room)
-    told = asyncio.run(run_tool([*LIMITED_PROGRAM, *words], room, 60.0))
-    assert told.answer is None
-    assert "lies outside the folder of this server" in told.refusal
+    assert is_refused(run(*command_line(name, {"content": content.format("link")}, room), folder=room).stderr)
+    with pytest.raises(ValueError, match="lies outside the folder"):
+        command_line("press", {"joint": "link/joint.toml", "force": 1}, room)
 
 
-def test_a_file_named_like_an_option_is_read_as_a_file(tmp_path):
-    (tmp_path / "--help.toml").write_text('joint = "hip-28"\n[axes]\nforce = 1000\n', encoding="utf-8")
-    words = command_line("study", {"file": "--help.toml"}, tmp_path)
-    assert words[1] == "./--help.toml"
+@pytest.mark.usefixtures("secret")
+def test_a_process_of_a_call_is_restricted(tmp_path):
+    name, content = OUTSIDE["table"]
+    (tmp_path / "room").mkdir()
+    words = command_line(name, {"content": content.format(f"{PADDING}../secret")}, tmp_path / "room")
+    result = asyncio.run(run_tool([*LIMITED_PROGRAM, *words], tmp_path / "room", 600.0))
+    assert result.answer is None
+    assert is_refused(result.refusal)
 
 
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="no processes in /proc")
 def test_a_busy_process_ends_with_its_parent(tmp_path):
     """The child is inside one instruction of Python, which lets no thread run, for hours."""
     busy = (
@@ -178,10 +170,9 @@ def test_a_busy_process_ends_with_its_parent(tmp_path):
             assert server.poll() is None
             time.sleep(0.05)
         child = int(note.read_text(encoding="ascii"))
-        time.sleep(0.1)
         assert is_running(child)
         server.kill()
-    deadline = time.monotonic() + 10
+    deadline = time.monotonic() + 600
     while is_running(child) and time.monotonic() < deadline:
         time.sleep(0.05)
     assert not is_running(child)
@@ -189,14 +180,15 @@ def test_a_busy_process_ends_with_its_parent(tmp_path):
 
 def is_running(process):
     """Check if a process runs; a zombie does not count."""
-    status = Path(f"/proc/{process}/status")
-    return status.exists() and "State:\tZ" not in status.read_text(encoding="ascii")
+    try:
+        return "State:\tZ" not in Path(f"/proc/{process}/status").read_text(encoding="ascii")
+    except (FileNotFoundError, ProcessLookupError):
+        return False
 
 
 def test_a_call_beyond_the_time_limit_is_stopped(tmp_path):
-    long = command_line("sensitivity", {**PRESS, "model": "fem", "spread": ["clearance=0.05..0.15 mm"]}, tmp_path)
-    told = asyncio.run(run_tool([*LIMITED_PROGRAM, *long], tmp_path, 0.5))
-    assert (told.answer, told.refusal[:19]) == (None, "stopped after 0.5 s")
+    result = asyncio.run(run_tool(["-c", "import time; time.sleep(3600)"], tmp_path, 0.5))
+    assert (result.answer, result.refusal[:19]) == (None, "stopped after 0.5 s")
 
 
 def test_a_tool_returns_what_the_command_prints(tmp_path):
@@ -204,7 +196,7 @@ def test_a_tool_returns_what_the_command_prints(tmp_path):
     from ballsocket.mcp import make_server
 
     async def asked():
-        async with mcp.Client(make_server(tmp_path, 60.0, COMMANDS, LIMITED_PROGRAM)) as client:
+        async with mcp.Client(make_server(tmp_path, 600.0, COMMANDS, LIMITED_PROGRAM)) as client:
             listed = await client.list_tools()
             half = await client.call_tool("press", {"joint": "hip-36", "force": 1e12, "model": ["bartel"]})
             refusal = await client.call_tool("press", {"forces": 1})
@@ -221,7 +213,7 @@ def test_a_tool_returns_what_the_command_prints(tmp_path):
 
 def test_content_may_be_an_object_that_follows_the_schema_of_the_file(tmp_path):
     validator = pytest.importorskip("jsonschema").Draft202012Validator
-    for tool in TOOLS.values():
+    for tool in some(TOOLS.values(), 1):
         validator.check_schema(schema(tool, COMMANDS))
     content = {"joint": "hip-28", "axes": {"force": ["1 kN", 2000], "liner": "uhmwpe"}}
     study = validator(schema(TOOLS["study"], COMMANDS))

@@ -24,7 +24,7 @@ def arc(radius, start, end, steps):
 
 
 def liner(radius=16.0, wall=8.0, arc_of_cover=170.0, chamfer=0.0, steps=40, segments=96, cylinder=0.0):
-    """Return the triangles of a liner that opens upwards."""
+    """Triangles of a liner that opens upwards."""
     end = arc_of_cover / 2
     bore = arc(radius, 0.0, end, steps)
     mouth = bore[-1:] + np.array([[0.0, cylinder]])
@@ -67,25 +67,19 @@ def scattered(triangles, deviation, seed=1):
 
 
 def rotation(seed=3):
-    """Return a random rotation matrix."""
     matrix = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
     return matrix * np.sign(np.linalg.det(matrix))
 
 
 def binary(triangles, header=b"made by a test"):
-    """Return the bytes of a binary STL file."""
     records = np.zeros(len(triangles), dtype=[("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")])
     records["v"] = triangles
     return header.ljust(80, b" ") + struct.pack("<I", len(triangles)) + records.tobytes()
 
 
 def ascii_stl(triangles):
-    """Return the bytes of an ASCII STL file."""
     corner = "      vertex {:.7g} {:.7g} {:.7g}\n"
-    facets = (
-        "  facet normal 0 0 0\n    outer loop\n"
-        + "".join(corner.format(*point) for point in triangle)
-        + "    endloop\n  endfacet\n"
-        for triangle in triangles
-    )
-    return ("solid test\n" + "".join(facets) + "endsolid test\n").encode()
+    loop = f"  facet normal 0 0 0\n    outer loop\n{3 * corner}    endloop\n  endfacet\n"
+    return (
+        "solid test\n" + "".join(loop.format(*triangle.ravel()) for triangle in triangles) + "endsolid test\n"
+    ).encode()

@@ -42,7 +42,6 @@ def pelvis(
 
 
 def fcsv(names, points, system="LPS", version="4.11"):
-    """Return the text of an .fcsv file."""
     signs = np.array([1.0, 1.0, 1.0] if system in ("RAS", "0") else [-1.0, -1.0, 1.0])
     lines = [
         f"# Markups fiducial file version = {version}",
@@ -55,7 +54,6 @@ def fcsv(names, points, system="LPS", version="4.11"):
 
 
 def markups(names, points, system="LPS", unit="mm", scale=1.0):
-    """Return the text of a .mrk.json file."""
     signs = np.array([1.0, 1.0, 1.0] if system == "RAS" else [-1.0, -1.0, 1.0])
     controls = [
         {"id": str(number), "label": name, "position": (point * signs * scale).tolist(), "positionStatus": "defined"}

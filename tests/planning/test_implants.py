@@ -7,8 +7,10 @@ import pytest
 
 from ballsocket.planning import Mesh, fit_head, fit_liner, read_stl
 
+from ..extent import either
 from . import meshes
 
+HALF = {"arc_of_cover": 180.0, "steps": 30, "segments": 64}
 SHIFT = np.array([30.0, -50.0, 800.0])
 PLAIN, SMALL = meshes.liner(steps=24, segments=48), meshes.liner(steps=6, segments=12)
 
@@ -38,22 +40,27 @@ def lipped(triangles, lift=15.0):
     return distance[..., None] * np.stack(directions, axis=-1)
 
 
+def two_sided(triangles):
+    """Add a second side of the bore, 1 % behind it, and leave the outer surface of the pole."""
+    distance, heights = np.linalg.norm(triangles, axis=2), triangles.mean(axis=1)[:, 2]
+    bore = triangles[(abs(distance - 16.0) < 1e-6).all(axis=1)]
+    pole = triangles[(abs(distance - 24.0) < 1e-6).all(axis=1) & (heights < -15.5)]
+    return np.concatenate([bore, pole, 1.01 * bore[:, ::-1]])
+
+
 LINERS = {
     "plain": (PLAIN, 170.0, 8.0),
     "twelve facets": (meshes.liner(steps=8, segments=16), 170.0, 8.0),
-    "chamfer and scatter": (meshes.scattered(meshes.liner(chamfer=1.0, steps=30), 0.02), 170.0, 8.0),
-    "ribs": (meshes.scattered(meshes.ribbed(meshes.liner(steps=40, segments=80), 24.0, height=0.5), 0.01), 170.0, 8.0),
+    "chamfer and scatter": (meshes.scattered(meshes.liner(chamfer=1.0, steps=30, segments=64), 0.02), 170.0, 8.0),
+    "ribs": (meshes.scattered(meshes.ribbed(meshes.liner(steps=30, segments=64), 24.0, height=0.5), 0.01), 170.0, 8.0),
     "open by a hole": (meshes.with_hole(meshes.scattered(PLAIN, 0.01), [0.5, 0.3, -0.8]), 170.0, 8.0),
-    "cylinder beyond the sphere": (meshes.liner(arc_of_cover=180.0, cylinder=2.0, steps=30), 180.0, 8.0),
-    "cylinder in its scatter": (
-        meshes.scattered(meshes.liner(arc_of_cover=180.0, cylinder=0.8, steps=30), 0.02),
-        180.0,
-        8.0,
-    ),
-    "over-hemispherical": (meshes.liner(wall=4.0, arc_of_cover=200.0, steps=30), 200.0, 4.0),
+    "cylinder beyond the sphere": (meshes.liner(**HALF, cylinder=2.0), 180.0, 8.0),
+    "cylinder in its scatter": (meshes.scattered(meshes.liner(**HALF, cylinder=0.8), 0.02), 180.0, 8.0),
+    "over-hemispherical": (meshes.liner(wall=4.0, arc_of_cover=200.0, steps=24, segments=48), 200.0, 4.0),
     "inside out": (PLAIN[:, ::-1], 170.0, 8.0),
     "eccentric": (eccentric(PLAIN, [0.0, 0.0, -1.0]), 170.0, 9.0),
-    "lipped": (lipped(meshes.liner(steps=40, segments=96)), 170.0, 8.0),
+    "bore of two sides": (two_sided(PLAIN), 170.0, 8.0),
+    "lipped": (lipped(meshes.liner(steps=30, segments=64)), 170.0, 8.0),
 }
 
 
@@ -70,7 +77,7 @@ def test_a_liner_is_measured_within_its_tolerances(name):
     assert any("not plane" in note for note in fit.notes) == (name == "lipped")
 
 
-@pytest.mark.parametrize(("steps", "scatter"), [(40, 0.0), (40, 0.02), (10, 0.0)])
+@pytest.mark.parametrize(("steps", "scatter"), [(30, 0.0), (30, 0.02), (10, 0.0)])
 def test_a_head_is_measured_to_the_edge_of_its_taper(steps, scatter):
     mesh, opening = placed(meshes.scattered(meshes.head(steps=steps, segments=2 * steps), scatter))
     fit = fit_head(mesh)
@@ -118,12 +125,15 @@ BINARY, ASCII = meshes.binary(PLAIN, b"solid 3D Slicer output. SPACE=LPS"), mesh
 
 def test_binary_and_ascii_files_hold_the_same_triangles(tmp_path):
     path = tmp_path / "a.stl"
-    path.write_bytes(meshes.binary(PLAIN / 25.4))
-    assert np.allclose(read_stl(path, units="in").triangles, PLAIN, atol=1e-5)
-    path.write_bytes(ASCII)
-    assert np.allclose(read_stl(path).triangles, SMALL, atol=1e-5)
-    path.write_bytes(BINARY)
-    assert (read_stl(path).space, len(read_stl(path).triangles)) == ("LPS", len(PLAIN))
+    for content, units, triangles in (
+        (BINARY, "mm", PLAIN),
+        (meshes.binary(PLAIN / 25.4), "in", PLAIN),
+        (ASCII, "mm", SMALL),
+    ):
+        path.write_bytes(content)
+        mesh = read_stl(path, units=units)
+        np.testing.assert_allclose(mesh.triangles, triangles, atol=1e-5)
+        assert mesh.space == ("LPS" if content == BINARY else None)
 
 
 @pytest.mark.parametrize(
@@ -140,9 +150,9 @@ def test_binary_and_ascii_files_hold_the_same_triangles(tmp_path):
         (b"solid\nendsolid\n", "truncated or damaged binary STL"),
         (ASCII[:-12], "`endsolid` is missing"),
         (ASCII.replace(b"vertex ", b"vertex 1 ", 1), "a vertex is not three numbers, 'vertex 1 "),
-        (meshes.binary(PLAIN / 1000), r"a.stl is 0\.0479 mm large: .* 12 to 200 mm; its unit may be m \(47\.9 mm\)"),
-        (meshes.binary(PLAIN * 1000), r"4\.79e\+04 mm large: .* its unit may be um \(47\.9 mm\)"),
-        (meshes.binary(PLAIN / 25.4), r"1\.89 mm large: .* its unit may be cm \(18\.9 mm\) or in \(47\.9 mm\)"),
+        (meshes.binary(PLAIN / 1000), r"a.stl is 0\.04\d+ mm large: .* 12 to 200 mm; its unit may be m \(4\d\.\d mm\)"),
+        (meshes.binary(PLAIN * 1000), r"4\.\d+e\+04 mm large: .* its unit may be um \(4\d\.\d mm\)"),
+        (meshes.binary(PLAIN / 25.4), r"1\.\d+ mm large: .* may be cm \(1\d\.\d mm\) or in \(4\d\.\d mm\)"),
     ],
 )
 def test_damaged_files_and_impossible_sizes_are_refused(tmp_path, content, message):
@@ -163,7 +173,7 @@ def test_large_files_are_refused_before_they_are_read(tmp_path):
 @pytest.mark.parametrize("content", [BINARY, ASCII], ids=["binary", "ASCII"])
 def test_changed_bytes_give_a_mesh_or_a_sentence(tmp_path, content):
     generator, messages = np.random.default_rng(4), []
-    for _ in range(12):
+    for _ in range(either(quick=4, long=12)):
         damaged = bytearray(content)
         for position in generator.integers(len(content), size=8):
             damaged[position] = generator.integers(256)

@@ -16,7 +16,7 @@ from ballsocket.studies.run import _create_task, memory_size
 from ballsocket.studies.sampling import CHUNK_SIZE, Method, permute
 from ballsocket.studies.task import Blocks, divide_study, points_per_block
 
-from ..extent import either, some
+from ..extent import either
 
 HIP = bs.joints["hess-forsbach"]
 SCATTER = {"clearance": tolerance(0.1, 0.05), "liner_poisson": Rectangular(low=0.3, high=0.4)}
@@ -34,24 +34,22 @@ def test_a_large_study_has_at_most_ten_thousand_blocks(shape):
     assert blocks.n_points(0) * len(blocks) < 1.3 * np.prod([float(length) for length in shape])
 
 
-@pytest.mark.parametrize("shape", [(10**6,), (100, 100, 100), (500,)])
-def test_a_small_study_has_blocks_of_half_a_second(shape):
+def test_a_small_study_has_blocks_of_half_a_second_and_closed_forms_of_a_million_points():
     """The blocks are those of earlier versions, so that several workers share them."""
     points = points_per_block(bs.Exact())
-    assert divide_study(shape, points) == Blocks.divide(shape, points)
-
-
-def test_blocks_of_closed_forms_have_at_most_a_million_points():
-    blocks = divide_study((10**11,), points_per_block(bs.HessForsbach()))
-    assert blocks.n_points(0) <= 1 << 20
+    for shape in ((10**6,), (100, 100, 100), (500,)):
+        assert divide_study(shape, points) == Blocks.divide(shape, points)
+    assert divide_study((10**11,), points_per_block(bs.HessForsbach())).n_points(0) <= 1 << 20
+    for most, size in ((0, (1, 1)), (1, (1, 1)), (4, (1, 4)), (8, (2, 4))):
+        assert Blocks.divide((3, 4), most).size == size
 
 
 def test_an_enlarged_block_has_the_results_of_small_ones(monkeypatch):
     """A large block is pressed in parts of half a second."""
-    forces = np.linspace(500.0, 3000.0, 40).tolist()
+    forces = np.linspace(500.0, 3000.0, 10).tolist()
     small = bs.study(bs.Exact(), HIP, force=forces)
-    monkeypatch.setattr("ballsocket.studies.task.points_per_block", lambda model: 10)
-    task = replace(_create_task(bs.Exact(), HIP, None, {"force": forces}, ()), blocks=Blocks((40,), (40,)))
+    monkeypatch.setattr("ballsocket.studies.task.points_per_block", lambda model: 4)
+    task = replace(_create_task(bs.Exact(), HIP, None, {"force": forces}, ()), blocks=Blocks((10,), (10,)))
     np.testing.assert_allclose(task(0)["max_pressure"], small.max_pressure, rtol=1e-12)
 
 
@@ -79,22 +77,17 @@ def test_any_section_of_samples_is_that_of_all_samples(method, small_chunks):
             np.testing.assert_array_equal(part[name], values[start:stop])
 
 
-def test_sobol_samples_are_those_of_scipy_for_a_seed(small_chunks):
-    from scipy.stats.qmc import Sobol
+def test_sobol_samples_and_small_hypercubes_are_those_of_scipy_for_a_seed(small_chunks, monkeypatch):
+    from scipy.stats.qmc import LatinHypercube, Sobol
 
+    monkeypatch.setattr(sampling, "_MAX_SCIPY_COUNT", 2000)
+    cubes = sample(1050, seed=7, method=Method.LATIN_HYPERCUBE, liner_poisson=SCATTER["liner_poisson"])
+    expected = SCATTER["liner_poisson"].frozen.ppf(LatinHypercube(1, rng=7).random(1050)[:, 0])
+    np.testing.assert_array_equal(cubes.values_in(EVERYTHING)["liner_poisson"], expected)
     design = sample(1024, seed=7, **SCATTER)
     points = Sobol(2, rng=7).random(1024)
     for column, (name, distribution) in zip(points.T, SCATTER.items(), strict=True):
         np.testing.assert_array_equal(design.values_in(EVERYTHING)[name], distribution.frozen.ppf(column))
-
-
-def test_small_hypercubes_are_those_of_scipy_for_a_seed():
-    from scipy.stats.qmc import LatinHypercube
-
-    design = sample(CHUNK_SIZE + 50, seed=7, method=Method.LATIN_HYPERCUBE, liner_poisson=SCATTER["liner_poisson"])
-    points = LatinHypercube(1, rng=7).random(CHUNK_SIZE + 50)[:, 0]
-    expected = SCATTER["liner_poisson"].frozen.ppf(points)
-    np.testing.assert_array_equal(design.values_in(EVERYTHING)["liner_poisson"], expected)
 
 
 def test_large_hypercubes_have_one_sample_in_each_stratum(small_chunks):
@@ -139,18 +132,12 @@ def test_samples_outside_the_range_of_a_parameter_are_named_by_their_index(small
         bs.study(bs.HessForsbach(), HIP, design, force=1e3)
 
 
-def test_more_points_than_sobols_sequence_has_are_refused():
-    with pytest.raises(ValueError, match="count = 1073741825 is not allowed: Sobol's sequence has 2.30 points"):
-        sample(2**30 + 1, **SCATTER)
-    assert sample(2**30 + 1, method=Method.LATIN_HYPERCUBE, **SCATTER).size == 2**30 + 1
-
-
 @pytest.mark.parametrize("method", Method)
 def test_samples_in_chunks_are_the_same_in_a_store_and_for_other_processes(method, tmp_path, monkeypatch):
     monkeypatch.setattr(run, "points_per_block", lambda model: 30_000)
     design = sample(CHUNK_SIZE + 5000, method=method, **SCATTER)
     here = bs.study(bs.HessForsbach(), HIP, design, force=1e3)
-    engine = either(quick=Serial(), long=Processes(workers=2))
+    engine = either(quick=Serial(), long=Processes(workers=2)) if method is Method.SOBOL else Serial()
     stored = bs.study(bs.HessForsbach(), HIP, design, force=1e3, store=tmp_path / "s.zarr", engine=engine)
     assert stored.load().equals(here)
 
@@ -161,13 +148,14 @@ COUNT = 1 << 21
 """Points of the studies of memory: two blocks of closed forms."""
 
 DESIGNS = {
-    "samples": lambda: sample(COUNT, **SCATTER) * grid(force=1e3),
     "span": lambda: grid(force=Span(1e3, 2e3, COUNT)),
+    "samples": lambda: sample(COUNT, **SCATTER) * grid(force=1e3),
     "table": lambda: Design((TableAxis({"clearance": np.full(COUNT, 0.1), "force": np.full(COUNT, 1e3)}),)),
 }
 
 
-@pytest.mark.parametrize("name", some(list(DESIGNS), 1))
+@pytest.mark.long
+@pytest.mark.parametrize("name", DESIGNS)
 def test_the_memory_check_is_true_to_twenty_percent(name):
     """The largest memory of a study against its estimate; one quantity keeps the test short."""
     bs.study(bs.Hertz(), HIP, clearance=0.1, force=[1e3])  # imports

@@ -25,11 +25,21 @@ from ballsocket.studies.run import default_model
 from ballsocket.studies.sensitivity import sensitivity
 
 from ..cli.command import run
-from ..extent import some
+from ..extent import either, some
 
 HIP = bs.joints["hess-forsbach"]
 SHELL = (Limit(name="outer_radius", high=26.0), Limit(name="liner_thickness", low=4.0))
+TINY = Limit(name="outer_radius", high=1.0)
 AT = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "force": 3000.0}
+
+
+def command(folder, *words):
+    return run(*words, folder=folder)
+
+
+def answer(folder, *words):
+    """Results of a command in JSON."""
+    return json.loads(command(folder, *words, "--json").stdout)
 
 
 @pytest.fixture(scope="module")
@@ -48,10 +58,10 @@ def test_limits_know_dimensions_that_follow_from_others(design_space):
     assert joint_dimension(other, "liner_thickness").values.tolist() == pytest.approx([11.0, 10.0, 9.0, 8.0, 7.0, 6.0])
     assert joint_dimension(other, "ball_radius").values[0] == pytest.approx(14.9)
     assert joint_dimension(other, "ball_young") == 230000.0
-    rigid = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
-    one = bs.study(bs.HessForsbach(), rigid, force=1e3)
     with pytest.raises(ValueError, match="has no ball_young"):
-        joint_dimension(one, "ball_young")
+        joint_dimension(bs.study(bs.HessForsbach(), HIP.replace(ball=None), force=1e3), "ball_young")
+    massive = bs.study(bs.Hertz(), bs.joints["tilting-pad-pivot"], liner_thickness=[3.0, 6.0, np.inf], force=1e3)
+    assert allowed(massive, [Limit(name="liner_thickness", low=4.0)]).values.tolist() == [False, True, True]
 
 
 def test_the_edge_distance_is_an_arc_of_the_socket(design_space):
@@ -69,15 +79,15 @@ def test_a_front_is_beaten_by_nothing_and_misses_nothing(design_space):
     front = pareto(design_space, limits=SHELL)
     good = allowed(design_space, SHELL).values.ravel()
     area, pressure = (design_space[name].values.ravel()[good] for name in ("area", "max_pressure"))
-    for a, p in zip(front.area.values, front.max_pressure.values, strict=True):
-        assert not ((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any()
-    beaten = [
-        ((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any()
-        for a, p in zip(area, pressure, strict=True)
-    ]
-    assert front.sizes["point"] == len(beaten) - sum(beaten)
+
+    def beaten(areas, pressures):
+        pairs = zip(areas, pressures, strict=True)
+        return [((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any() for a, p in pairs]
+
+    assert not any(beaten(front.area.values, front.max_pressure.values))
+    assert front.sizes["point"] == beaten(area, pressure).count(False)
     with pytest.raises(ValueError, match="no point is allowed by outer_radius ≤ 1"):
-        pareto(design_space, limits=[Limit(name="outer_radius", high=1.0)])
+        pareto(design_space, limits=[TINY])
 
 
 @pytest.mark.parametrize("model", some([bs.HessForsbach(), bs.Tabulated()], 1), ids=lambda model: model.name)
@@ -89,9 +99,8 @@ def test_an_optimum_is_better_than_every_point_of_a_fine_grid(model):
     assert best.value <= least * (1 + 1e-9)
     assert best.value == pytest.approx(least, rel=2e-3)
     assert best.active == ("outer_radius ≤ 26",)
-    assert best.slopes["ball_radius"] == pytest.approx(
-        best.slopes["liner_thickness"], rel=1e-2
-    )  # no gain along the limit
+    along_limit = best.slopes["ball_radius"] - best.slopes["liner_thickness"]
+    assert along_limit == pytest.approx(0.0, abs=1e-2 * abs(best.slopes["ball_radius"]))
     assert model.press(best.joint, force=3000.0).max_pressure == pytest.approx(best.value, rel=1e-9)
 
 
@@ -100,20 +109,13 @@ def test_an_optimum_without_limits_lies_at_an_end():
     assert best.point["clearance"] == pytest.approx(0.05)
     assert best.active == ("clearance = 0.05",)
     with pytest.raises(ValueError, match="none of 4096 joints within the ranges is allowed by outer_radius ≤ 1"):
-        optimise(
-            bs.HessForsbach(),
-            HIP,
-            {"clearance": (0.05, 0.2)},
-            load={"force": 1.0},
-            limits=[Limit(name="outer_radius", high=1.0)],
-        )
+        optimise(bs.HessForsbach(), HIP, {"clearance": (0.05, 0.2)}, load={"force": 1.0}, limits=[TINY])
 
 
 def test_slopes_by_differences_are_those_of_scaling():
     """Lengths times a and moduli times b: F a²b, so the elasticities add up."""
-    found = elasticities(
-        bs.Exact(), HIP, ("max_pressure", "indentation"), {**AT, "liner_young": 1000.0, "ball_young": 2.3e5}
-    )
+    at = {**AT, "liner_young": 1000.0, "ball_young": 2.3e5}
+    found = elasticities(bs.Exact(), HIP, ("max_pressure", "indentation"), at)
     for quantity, lengths, moduli in (("max_pressure", 0.0, 1.0), ("indentation", 1.0, 0.0)):
         each = found[quantity]
         size = each["ball_radius"] + each["clearance"] + each["liner_thickness"] + 2 * each["force"]
@@ -134,19 +136,12 @@ def test_slopes_at_the_end_of_what_is_allowed_are_those_just_inside(model, name,
         assert slopes[0]["max_pressure"][each] == pytest.approx(slopes[1]["max_pressure"][each], rel=1e-3, abs=1e-3)
 
 
-def test_first_touch_has_no_slope():
-    with pytest.raises(ValueError, match="force = 0 is first contact"):
-        finite_differences(bs.HessForsbach(), HIP, ("area",), {"force": 0.0})
-
-
 def test_sobol_intervals_are_those_of_the_seed_and_leave_the_global_stream_alone():
     spread = {"clearance": tolerance(0.1, 0.05), "liner_poisson": Rectangular(low=0.38, high=0.46)}
     before = np.random.get_state()[1].tolist()  # noqa: NPY002
     one, other = (sensitivity(bs.HessForsbach(), HIP, spread, count=64, load={"force": 1e3}) for _ in range(2))
     assert one.identical(other)
     assert np.random.get_state()[1].tolist() == before  # noqa: NPY002
-    with pytest.raises(ValueError, match="force does not change with clearance and liner_poisson"):
-        sensitivity(bs.HessForsbach(), HIP, spread, quantities=["force"], count=64, load={"force": 1e3})
 
 
 @pytest.mark.skipif(find_spec("jax") is None, reason="jax is not installed")
@@ -159,31 +154,26 @@ def test_slopes_by_jax_are_those_of_differences(model):
     with pytest.raises(ValueError, match="exact cannot be traced"):
         jax_derivatives(bs.Exact(), HIP, ("area",), AT)
     ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
-    by_jax = optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL, derive=jax_derivatives)
-    assert by_jax.value == pytest.approx(
-        optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL).value, rel=1e-6
+    by_jax, by_differences = (
+        optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL, derive=derive).value
+        for derive in (jax_derivatives, finite_differences)
     )
+    assert by_jax == pytest.approx(by_differences, rel=1e-6)
 
 
+@pytest.mark.long
 def test_slopes_of_finite_elements_are_near_the_exact_ones():
     at = {"force": 3000.0, "clearance": 0.1}
-    near, true = (
-        elasticities(model, HIP, ("max_pressure", "half_angle"), at)
-        for model in (bs.FiniteElement(meshes=1), bs.Exact())
-    )
+    models = (bs.FiniteElement(meshes=1), bs.Exact())
+    near, true = (elasticities(model, HIP, ("max_pressure", "half_angle"), at) for model in models)
     for quantity, each in true.items():
         for name, value in each.items():
             assert near[quantity][name] == pytest.approx(value, abs=0.02)
 
 
-def test_a_massive_socket_is_thick_enough():
-    found = bs.study(bs.Hertz(), bs.joints["tilting-pad-pivot"], liner_thickness=[3.0, 6.0, np.inf], force=1e3)
-    assert allowed(found, [Limit(name="liner_thickness", low=4.0)]).values.tolist() == [False, True, True]
-
-
 def test_sobol_indices_of_a_product_of_powers():
     """Hertz with a rigid ball: d ~ (F²/(E*² R*))^(1/3), whose logarithm is a sum; small spreads make it additive."""
-    rigid = bs.Joint(ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
+    rigid = HIP.replace(ball=None)
     spread = {"liner_young": Normal(mean=1000.0, deviation=20.0), "force": Normal(mean=1000.0, deviation=30.0)}
     found = sensitivity(bs.Hertz(), rigid, spread, quantities=("indentation",), count=2048)
     shares = np.array([(2 / 3 * 0.02) ** 2, (2 / 3 * 0.03) ** 2])
@@ -195,28 +185,7 @@ def test_sobol_indices_of_a_product_of_powers():
     assert found.deviation.item() == pytest.approx(middle * np.sqrt(shares.sum()), rel=0.03)
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ({"distributions": {"force": tolerance(3e3, 5e2)}}, "force scatters and is given as a load too"),
-        ({"distributions": {}}, "at least one number must scatter"),
-        ({"distributions": {"clearence": tolerance(0.1, 0.05)}}, "did you mean 'clearance'"),
-        (
-            {"distributions": {"liner_poisson": Rectangular(low=0.4, high=0.499999)}},
-            "has no answer for .* of 1024 samples",
-        ),
-        (
-            {"count": 1 << 30},
-            r"indices of 1073741824 samples take about .* GB, and there are .* of memory",
-        ),
-    ],
-)
-def test_bad_sensitivities_are_one_sentence(words, message):
-    asked = {"distributions": {"clearance": tolerance(0.1, 0.05)}, "load": {"force": 1000.0}, **words}
-    with pytest.raises(ValueError, match=message):
-        sensitivity(bs.Tabulated(), HIP, asked.pop("distributions"), **asked)
-
-
+@pytest.mark.long
 def test_sizes_and_materials_are_chosen_from_lists():
     """The best of all combinations is that of each of them on its own."""
     sizes, liners, ranges = [28.0, 32.0, 36.0], [bs.POM, bs.UHMWPE], {"clearance": (0.05, 0.2)}
@@ -247,46 +216,36 @@ def test_lists_alone_are_looked_through():
 
 def test_lists_in_the_shell(tmp_path):
     words = ("--vary", "head_diameter=2.8, 3.2, 3.6 cm", "--vary", "liner=pom,UHMWPE", "--force", "3 kN")
-    best = json.loads(command(tmp_path, "optimise", "hip-28", *words, "--json").stdout)
+    best = answer(tmp_path, "optimise", "hip-28", *words)
     assert best["point"] == {"head_diameter": pytest.approx(36.0)}
     assert best["materials"] == {"liner": "UHMWPE"}
     front = command(tmp_path, "optimise", "hip-28", *words, "--minimise", "area", "--minimise", "max_pressure")
     assert "POM" in front.stdout
-    wrong = command(tmp_path, "optimise", "hip-28", "--vary", "liner=pon,UHMWPE", "--force", "1")
-    assert wrong.stderr == "ballsocket: liner material 'pon' is not known; did you mean 'pom'?\n"
 
 
-def test_a_preset_of_questions_is_varied(tmp_path):
+def test_a_preset_of_questions_is_varied_and_the_next_command_runs(tmp_path):
     words = ("--liner", "uhmwpe", "--ball", "cocr", "--liner-thickness", "5", "--head-diameter", "28", "--points", "5")
-    one = command(tmp_path, "map", "hip-36", *words, "--force", "3 kN", "--json")
-    other = command(tmp_path, "map", "hip-28", "--points", "5", "--force", "3 kN", "--json")
-    answers = [json.loads(each.stdout) for each in (one, other)]
-    steps = [answer.pop("next")[0]["command"] for answer in answers]
+    answers = [answer(tmp_path, "map", preset, *words, "--force", "3 kN") for preset in ("hip-36", "hip-28")]
+    for step in [each.pop("next")[0]["command"] for each in answers]:
+        assert command(tmp_path, *shlex.split(step)[1:]).returncode == 0
     assert answers[0] == answers[1]
-    assert [command(tmp_path, *shlex.split(step)[1:]).returncode for step in steps] == [
-        0,
-        0,
-    ]  # said to be next: it runs
 
 
 def test_phrases_of_the_shell():
     assert parse_range("ball_radius = 11..23 mm") == ("ball_radius", 11.0, 23.0)
-    assert parse_range("force=1 kN .. 3 kN") == ("force", 1000.0, 3000.0)
-    assert parse_range("force=1..3 kN") == ("force", 1000.0, 3000.0)
+    assert parse_range("force=1 kN .. 3 kN") == parse_range("force=1..3 kN") == ("force", 1000.0, 3000.0)
     assert parse_distribution("clearance=100+-50 um") == ("clearance", tolerance(0.1, 0.05))
     assert parse_distribution("liner_poisson=0.38..0.46") == ("liner_poisson", Rectangular(low=0.38, high=0.46))
-    assert parse_limit("outer_radius <= 2.6 cm") == Limit(name="outer_radius", high=26.0)
-    assert parse_limit("outer_radius < 26") == Limit(name="outer_radius", high=26.0)
-    assert parse_limit("max_pressure>5 MPa") == Limit(name="max_pressure", low=5.0)
-    assert parse_limit("half_angle<=60").high == pytest.approx(pi / 3)
-    assert (
-        parse_limit("area<=800 mm²")
-        == parse_limit("area<=800 mm2")
-        == parse_limit("area<=800")
-        == parse_limit("area<=8 cm^2")
-    )
-    assert parse_limit("stiffness>=60 kN/mm") == Limit(name="stiffness", low=60e3)
-    assert parse_limit("energy<=50 N mm").high == parse_limit("energy<=50 mJ").high == 50.0
+    for phrase, name, end, value in (
+        *((phrase, "outer_radius", "high", 26.0) for phrase in ("outer_radius <= 2.6 cm", "outer_radius < 26")),
+        ("max_pressure>5 MPa", "max_pressure", "low", 5.0),
+        ("half_angle<=60", "half_angle", "high", pi / 3),
+        *((f"area<={size}", "area", "high", 800.0) for size in ("800 mm²", "800 mm2", "800", "8 cm^2")),
+        ("stiffness>=60 kN/mm", "stiffness", "low", 60e3),
+        *((f"energy<={size}", "energy", "high", 50.0) for size in ("50 N mm", "50 mJ")),
+    ):
+        limit = parse_limit(phrase)
+        assert (limit.name, getattr(limit, end)) == (name, pytest.approx(value, rel=1e-12))
     for phrase in ("ball_radius", "ball_radius=11", "outer_radius=26", "ball_radios=11..23"):
         with pytest.raises(ValueError, match=r"is not a|did you mean|is not known"):
             (parse_limit if "<" in phrase else parse_range)(phrase)
@@ -319,7 +278,7 @@ material = "UHMWPE"
 """
 
 
-def test_a_study_file_says_all(tmp_path):
+def test_a_study_file_has_design_model_joint_and_store(tmp_path):
     (tmp_path / "hip.toml").write_text(FILE, encoding="utf-8")
     (tmp_path / "s.toml").write_text(STUDY, encoding="utf-8")
     given = read_study(tmp_path / "s.toml")
@@ -331,73 +290,61 @@ def test_a_study_file_says_all(tmp_path):
     assert found.ball_radius.values.tolist() == [14.0, 15.0, 16.0, 17.0, 18.0]
 
 
+MODEL = 'model = "hess-forsbach"'
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        (
-            'model = "hess-forsbach"',
-            'model = "hess-forsbch"',
-            "model 'hess-forsbch' is not known; did you mean 'hess-forsbach'",
-        ),
+        (MODEL, 'model = "hess-forsbch"', "model 'hess-forsbch' is not known; did you mean 'hess-forsbach'"),
+        (MODEL, 'model = ["a"]', r"model \['a'\] is not known; known: exact"),
+        (MODEL, "model = {}", "model {} is not known"),
         ('joint = "hip.toml"', 'joint = "hop.toml"', "joint 'hop.toml' is neither a file nor a preset"),
         ("count = 5", "count = 1e12", "16 000 000 000 000 points take about"),
+        ("count = 5}", "count = 5", "is not TOML"),
         ("count = 8", "count = 2.5", "count = 2.5 is not allowed: a whole number"),
+        ("count = 8", "count = 0x" + "f" * 9000, "count = .{1,60} is not allowed: a whole number from 0 to"),
         ('"1 kN"', '"1 kg"', r"force\[0\] = '1 kg' is not a force"),
         ("seed = 3", "sead = 3", "'sead' in .samples. is not known"),
+        ("seed = 3", "seed = -3", "seed = -3 is not allowed"),
+        ("seed = 3", "seed = 0x" + "f" * 9000, "seed = .{1,60} is not allowed: a whole number from 0 to"),
         ("plus_minus", "plusminus", "must be {low, high}"),
         ("factor = 1.1", "factor = 0.9", "liner_young.factor = 0.9 is not allowed: a factor of one standard deviation"),
         ("low = 0.38", "low = 0.58", "low = 0.58 is not allowed"),
         ("[axes]", "[axis]", "'axis' at the top is not known; did you mean 'axes'"),
-        ("count = 5}", "count = 5", "is not TOML"),
-        ('model = "hess-forsbach"', 'model = ["a"]', r"model \['a'\] is not known; known: exact"),
-        ('model = "hess-forsbach"', "model = {}", "model {} is not known"),
         ("[axes]", "[engine]\nkind = 'dask'\naddress = 5\n[axes]", "address = 5 must be text"),
         ("[axes]", "[engine]\nkind = ['dask']\n[axes]", r"engine.kind = \['dask'\] is not known; did you mean 'dask'"),
         ("[axes]", "[engine]\nkind = 'processes'\nworkers = 1e9\n[axes]", "workers = 1000000000 is not allowed"),
-        ("seed = 3", "seed = 0x" + "f" * 9000, "seed = .{1,60} is not allowed: a whole number from 0 to"),
-        ("count = 8", "count = 0x" + "f" * 9000, "count = .{1,60} is not allowed: a whole number from 0 to"),
-        ("seed = 3", "seed = -3", "seed = -3 is not allowed"),
         ('"out/s.zarr"', r'"out/s\u001b[31m.zarr"', "store = .* no control characters"),
     ],
+    ids=range(20),
 )
 def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, old, new, message):
     (tmp_path / "hip.toml").write_text(FILE, encoding="utf-8")
     assert old in STUDY
     (tmp_path / "s.toml").write_text(STUDY.replace(old, new, 1), encoding="utf-8")
-    done = command(tmp_path, "study", "s.toml")
-    assert done.returncode == 2
-    assert len(done.stderr.strip().splitlines()) == 1
-    assert re.search(message, done.stderr)
+    refused = command(tmp_path, "study", "s.toml")
+    assert (refused.returncode, len(refused.stderr.strip().splitlines())) == (2, 1)
+    assert re.search(message, refused.stderr)
     assert not (tmp_path / "out").exists()
 
 
-def command(folder, *words):
-    return run(*words, folder=folder)
-
-
-@pytest.fixture
-def backed(tmp_path):
-    file = tmp_path / "backed.toml"
-    file.write_text(
+def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_path):
+    (tmp_path / "backed.toml").write_text(
         '[joint]\nball_radius = 14\nclearance = 0.1\nliner_thickness = 5\n[liner]\nmaterial = "UHMWPE"\n'
         '[[backing]]\nthickness = 3\nmaterial = "titanium"\n[load]\nforce = 3000\n'
     )
-    return str(file)
-
-
-def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_path, backed):
     ranges = ("--x", "ball_radius=12..16 mm", "--y", "liner_thickness=4..6 mm", "--points", "2")
-    found = command(tmp_path, "map", backed, *ranges, "--json")
+    found = command(tmp_path, "map", "backed.toml", *ranges, "--json")
     assert json.loads(found.stdout)["model"] == "exact"
     assert "model exact is used, since none of these joints is in the tables of tabulated" in found.stderr
-    limited = command(tmp_path, "map", backed, *ranges, "--limit", "max_pressure<=1")
+    limited = command(tmp_path, "map", "backed.toml", *ranges, "--limit", "max_pressure<=1")
     assert "no point of the map is allowed by max_pressure ≤ 1, according to exact" in limited.stderr
-    named = command(tmp_path, "map", backed, *ranges, "--model", "tabulated")
+    named = command(tmp_path, "map", "backed.toml", *ranges, "--model", "tabulated")
     assert "tabulated has no answer for layers behind the liner = 1: outside the tables" in named.stderr
-    best = command(tmp_path, "optimise", backed, "--vary", "liner_thickness=4,6 mm", "--json")
-    assert json.loads(best.stdout)["point"]["liner_thickness"] == pytest.approx(6.0)
-    plain = command(tmp_path, "map", "hip-28", "--force", "3 kN", *ranges, "--json")
-    assert json.loads(plain.stdout)["model"] == "tabulated"
+    best = answer(tmp_path, "optimise", "backed.toml", "--vary", "liner_thickness=4,6 mm")
+    assert best["point"]["liner_thickness"] == pytest.approx(6.0)
+    assert answer(tmp_path, "map", "hip-28", "--force", "3 kN", *ranges)["model"] == "tabulated"
 
 
 def test_loads_alone_are_answered_by_a_curve_of_the_joint(tmp_path):
@@ -424,69 +371,64 @@ def test_questions_on_the_command_line(tmp_path):
     shell = ("--limit", "outer_radius<=26 mm", "--limit", "liner_thickness>=4")
     ranges = ("--vary", "ball_radius=11..23 mm", "--vary", "liner_thickness=3..15 mm")
     common = ("hess-forsbach", "--force", "3 kN")
-    shown = command(tmp_path, "map", *common, *shell, "--points", "15", "--figure", "map.png", "--json")
-    least = json.loads(shown.stdout)["quantities"]["max_pressure"][0]
-    assert 10.2 < least["value"] < 10.9
+    least = answer(tmp_path, "map", *common, *shell, "--points", "15", "--figure", "map.png")
+    assert 10.2 < least["quantities"]["max_pressure"][0]["value"] < 10.9
     assert (tmp_path / "map.png").stat().st_size > 10_000
-    best = json.loads(command(tmp_path, "optimise", *common, *ranges, *shell, "--json").stdout)
-    assert best["value"] == pytest.approx(10.25, abs=0.01)
-    assert best["active"] == ["outer_radius ≤ 26"]
-    front = command(
-        tmp_path, "optimise", *common, *ranges, *shell, "--minimise", "area", "--minimise", "max_pressure", "--json"
-    )
-    columns = json.loads(front.stdout)["points"]
+    best = answer(tmp_path, "optimise", *common, "--vary", "clearance=0.05..0.2 mm", *shell)
+    tight = bs.Tabulated().press(HIP.replace(clearance=0.05), force=3000.0)
+    assert best["value"] == pytest.approx(tight.max_pressure, rel=1e-9)
+    assert best["active"] == ["clearance = 0.05"]
+    front = ("--minimise", "area", "--minimise", "max_pressure")
+    columns = answer(tmp_path, "optimise", *common, *ranges, *shell, *front)["points"]
     assert np.all(np.diff(columns["area"]) > 0)
     assert np.all(np.diff(columns["max_pressure"]) < 0)
-    loads = command(
-        tmp_path, "map", "hess-forsbach", "--x", "force=1..4 kN", "--limit", "area<=500 mm2", "--points", "9", "--json"
-    )
-    assert json.loads(loads.stdout)["limits"] == ["area ≤ 500"]
-    scatter = command(
-        tmp_path,
-        "sensitivity",
-        *common,
-        "--spread",
-        "clearance=0.1+-0.05 mm",
-        "--spread",
-        "liner_poisson=0.38..0.46",
-        "--json",
-    )
-    indices = json.loads(scatter.stdout)["quantities"]["max_pressure"]["numbers"]
+    loads = ("--x", "force=1..4 kN", "--limit", "area<=500 mm2", "--points", "9")
+    assert answer(tmp_path, "map", "hess-forsbach", *loads)["limits"] == ["area ≤ 500"]
+    spread = ("--spread", "clearance=0.1+-0.05 mm", "--spread", "liner_poisson=0.38..0.46")
+    scatter = answer(tmp_path, "sensitivity", *common, *spread)
+    indices = scatter["quantities"]["max_pressure"]["numbers"]
     assert indices["clearance"]["first_order"] > indices["liner_poisson"]["first_order"]
-    assert set(indices["clearance"]) == {
-        "elasticity",
-        *(f"{order}_order{end}" for order in ("first", "total") for end in ("", "_low", "_high")),
-    }
-    for words, message in (
-        (("map", *common, "--x", "ball_radius=23..11 mm", "--figure", "map.gif"), "must end in"),
-        (("map", *common, "--limit", "outer_radius<=1 mm"), "no point of the map is allowed by outer_radius ≤ 1"),
-        (("optimise", *common, "--vary", "ball_radius=23..11 mm"), "a range goes upwards"),
-        (("sensitivity", *common, "--spread", "clearance=much"), "is not a range"),
-        (("map", "hess-forsbach"), "a load is needed"),
-        (("map", *common, "--x", "force=1..4 kN"), "force varies, and a load is given too"),
-        (
-            ("optimise", *common, "--vary", "clearance=0.05..0.1", "--vary", "clearance=0.1..0.2"),
-            "clearance is given twice",
-        ),
-    ):
-        done = command(tmp_path, *words)
-        assert done.returncode == 2, done.stdout
-        assert message in done.stderr
-        assert len(done.stderr.strip().splitlines()) == 1
+    ends = {f"{order}_order{end}" for order in ("first", "total") for end in ("", "_low", "_high")}
+    assert set(indices["clearance"]) == {"elasticity", *ends}
 
 
-SPREAD = ("--spread", "clearance=0.1+-0.05 mm", "--spread", "liner_young=700..1100 MPa")
+SPREAD = "--spread 'clearance=0.1+-0.05 mm' --spread 'liner_young=700..1100 MPa'"
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("map L --x 'ball_radius=23..11 mm' --figure map.gif", "must end in"),
+        ("map L --limit 'outer_radius<=1 mm'", "no point of the map is allowed by outer_radius ≤ 1"),
+        ("map hess-forsbach", "a load is needed"),
+        ("map L --x 'force=1..4 kN'", "force varies, and a load is given too"),
+        ("optimise L --vary 'ball_radius=23..11 mm'", "a range goes upwards"),
+        ("optimise L --vary clearance=0.05..0.1 --vary clearance=0.1..0.2", "clearance is given twice"),
+        ("optimise L --vary liner=pon,UHMWPE", "liner material 'pon' is not known; did you mean 'pom'?"),
+        ("sensitivity L --spread clearance=much", "is not a range"),
+        ("sensitivity L S --correlation clearance=0.5", "'clearance=0.5' is not a correlation"),
+        ("sensitivity L S --correlation 'clearance, force = 0.5'", "'force' among the correlated parameters is not"),
+        ("sensitivity L S --correlation 'clearance, liner_young = 1'", "a rank correlation is between -1 and 1"),
+        ("sensitivity L S --of pressure", "'pressure' among the quantities is not known"),
+        ("sensitivity L S --csv all.txt", "'all.txt' must end in .csv"),
+        ("sensitivity L S --seed -1", "seed = -1 is not allowed"),
+    ],
+)
+def test_wrong_questions_are_one_sentence_on_the_command_line(tmp_path, words, message):
+    words = words.replace(" L", " hess-forsbach --force '3 kN'").replace(" S", f" {SPREAD}")
+    refused = command(tmp_path, *shlex.split(words))
+    assert (refused.returncode, message in refused.stderr) == (2, True), refused.stderr
+    assert len(refused.stderr.strip().splitlines()) == 1
 
 
 def test_sensitivity_of_one_quantity_with_pairs_in_a_table_and_csv(tmp_path):
-    words = ("sensitivity", "hip-36", "--force", "3 kN", *SPREAD, "--count", "100", "--of", "max_pressure")
-    done = command(tmp_path, *words, "--second-order", "--csv", "all.csv", "--figure", "all.png")
-    assert (done.returncode, done.stderr) == (0, "")
-    lines = done.stdout.splitlines()
+    words = shlex.split(f"sensitivity hip-36 --force '3 kN' {SPREAD} --count 100 --of max_pressure")
+    shown = command(tmp_path, *words, "--second-order", "--csv", "all.csv", *either((), ("--figure", "all.png")))
+    assert (shown.returncode, shown.stderr) == (0, "")
+    lines = shown.stdout.splitlines()
     assert lines[0].startswith("max_pressure: ")
-    assert [line.split()[0] for line in lines] == [
-        *("max_pressure:", "number", "clearance", "liner_young", "pair", "clearance")
-    ]
+    heads = ["max_pressure:", "number", "clearance", "liner_young", "pair", "clearance"]
+    assert [line.split()[0] for line in lines] == heads
     with (tmp_path / "all.csv").open(encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     (pair,) = [row for row in rows if row["index"] == "second_order"]
@@ -494,31 +436,20 @@ def test_sensitivity_of_one_quantity_with_pairs_in_a_table_and_csv(tmp_path):
     assert float(pair["low"]) < float(pair["value"]) < float(pair["high"])
     assert {row["quantity"] for row in rows} == {"max_pressure"}
     assert all(row["low"] for row in rows if row["index"] != "elasticity")
-    plain = command(tmp_path, *words, "--intervals", "none", "--json")
-    numbers = json.loads(plain.stdout)["quantities"]["max_pressure"]["numbers"]
+    numbers = answer(tmp_path, *words, "--intervals", "none")["quantities"]["max_pressure"]["numbers"]
     assert set(numbers["clearance"]) == {"first_order", "total_order", "elasticity"}
     assert "(" not in command(tmp_path, *words, "--intervals", "none").stdout
 
 
 def test_sensitivity_of_correlated_parameters_has_shapley_effects(tmp_path):
-    words = ("sensitivity", "hip-36", "--force", "3 kN", *SPREAD, "--count", "64")
-    done = command(tmp_path, *words, "--correlation", "clearance, liner_young = 0.6", "--json", "--figure", "s.png")
-    found = json.loads(done.stdout)
+    words = shlex.split(f"sensitivity hip-36 --force '3 kN' {SPREAD} --count 64")
+    words += ["--correlation", "clearance, liner_young = 0.6"]
+    found = answer(tmp_path, *words, *either((), ("--figure", "s.png")))
     assert (found["correlation"], found["confidence"]) == ("clearance, liner_young = 0.6", 0.95)
     for content in found["quantities"].values():
         assert sum(numbers["shapley"] for numbers in content["numbers"].values()) == pytest.approx(1.0)
         assert all(numbers["shapley_low"] <= numbers["shapley_high"] for numbers in content["numbers"].values())
-    shown = command(tmp_path, *words, "--correlation", "clearance, liner_young = 0.6").stdout
+    shown = command(tmp_path, *words).stdout
     assert "Shapley effect" in shown
     assert shown.endswith("rank correlations: clearance, liner_young = 0.6\n")
     assert max(map(len, shown.splitlines())) <= 80
-    for wrong, message in (
-        (("--correlation", "clearance=0.5"), "'clearance=0.5' is not a correlation"),
-        (("--correlation", "clearance, force = 0.5"), "'force' among the correlated parameters is not known"),
-        (("--correlation", "clearance, liner_young = 1"), "a rank correlation is between -1 and 1"),
-        (("--of", "pressure"), "'pressure' among the quantities is not known"),
-        (("--csv", "all.txt"), "'all.txt' must end in .csv"),
-        (("--seed", "-1"), "seed = -1 is not allowed"),
-    ):
-        refused = command(tmp_path, *words, *wrong)
-        assert (refused.returncode, message in refused.stderr) == (2, True), refused.stderr

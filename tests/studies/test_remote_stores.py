@@ -1,8 +1,5 @@
 """Stores at addresses of fsspec: studies, exports and cohorts there are those of a local folder, or one sentence."""
 
-import os
-import threading
-from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -11,7 +8,6 @@ import xarray as xr
 
 import ballsocket as bs
 from ballsocket.core.executors import Processes
-from ballsocket.core.storage.folders import RemoteFolder
 from ballsocket.hip.cohort import CohortRun, cohort_store, sample_patients, write_csv
 from ballsocket.studies.export import export
 from ballsocket.studies.file import read_study
@@ -129,25 +125,29 @@ def test_addresses_without_a_store_are_one_sentence(bucket):
             study("s3://bucket/s.zarr")
 
 
-def test_commands_refuse_addresses_that_they_cannot_use(tmp_path):
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("study", "study.toml", "--store", "unknown://bucket/s.zarr"),
+        ("study", "study.toml", "--figure", "s3://bucket/s.png"),
+        pytest.param(("hip", "hip.toml", "--store", "s3://bucket/run"), marks=pytest.mark.long),
+        pytest.param(("deck", "hip-36", "--force", "3 kN", "--out", "s3://bucket/deck"), marks=pytest.mark.long),
+        ("export", "c", "hip-36", "--out", "s3://bucket/c"),
+        ("reproduce", "--quick", "--out", "s3://bucket/paper"),
+    ],
+    ids=lambda words: words[0],
+)
+def test_commands_refuse_addresses_that_they_cannot_use(tmp_path, words):
     (tmp_path / "study.toml").write_text("joint = 'hip-36'\n[axes]\nforce = [1, 2]\n", encoding="utf-8")
     short_file(tmp_path)
     files = sorted(path.name for path in tmp_path.iterdir())
-    commands = (
-        ("study", "study.toml", "--store", "unknown://bucket/s.zarr"),
-        ("study", "study.toml", "--figure", "s3://bucket/s.png"),
-        ("hip", "hip.toml", "--store", "s3://bucket/run"),
-        ("deck", "hip-36", "--force", "3 kN", "--out", "s3://bucket/deck"),
-        ("export", "c", "hip-36", "--out", "s3://bucket/c"),
-        ("reproduce", "--quick", "--out", "s3://bucket/paper"),
-    )
-    for words in commands:
-        done = run(*words, folder=tmp_path)
-        sentence = done.stderr.splitlines()[-1]  # after a progress bar
-        assert (done.returncode, words[-1] in sentence, len(sentence) < 200) == (2, True, True), done.stderr
+    done = run(*words, folder=tmp_path)
+    sentence = done.stderr.splitlines()[-1]  # after a progress bar
+    assert (done.returncode, words[-1] in sentence, len(sentence) < 200) == (2, True, True), done.stderr
     assert sorted(path.name for path in tmp_path.iterdir()) == files
 
 
+@pytest.mark.long
 def test_a_cohort_at_an_address_resumes(bucket):
     one = quick_variability()
     cohort = CohortRun(variability=one, counts=(FEW_CYCLES,), values=sample_patients(one, 2, 0))
@@ -165,73 +165,24 @@ def test_a_cohort_at_an_address_resumes(bucket):
         cohort_store("memory://bucket/patients", one, [FEW_CYCLES], 1)
 
 
-# S3
-
-
-@contextmanager
-def s3_server():
-    """Yield the address of moto's S3 server in this process, with an empty bucket."""
-    pytest.importorskip("s3fs")
-    moto = pytest.importorskip("moto.moto_server.werkzeug_app")
-    from werkzeug.serving import WSGIRequestHandler, make_server
-
-    app = moto.DomainDispatcherApplication(moto.create_backend_app)
-
-    class Quiet(WSGIRequestHandler):
-        """Handler without a line for each request."""
-
-        def log_request(self, *status):
-            pass
-
-    def with_one_server_header(environ, start_response):
-        """Call moto without its header "Server", which werkzeug adds and clients refuse twice."""
-
-        def start(status, headers, error=None):
-            return start_response(status, [header for header in headers if header[0].lower() != "server"], error)
-
-        return app(environ, start)
-
-    server = make_server("127.0.0.1", 0, with_one_server_header, threaded=True, request_handler=Quiet)
-    thread = threading.Thread(target=server.serve_forever)
-    thread.start()
-    try:
-        yield f"http://127.0.0.1:{server.server_port}"
-    finally:
-        server.shutdown()
-        thread.join()
-        server.server_close()
-
-
 @pytest.mark.long
-@pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::ResourceWarning")
-def test_s3_has_the_study_and_the_cohort_of_processes(monkeypatch, tmp_path):
+def test_a_remote_store_has_the_study_and_the_cohort_of_processes(monkeypatch, tmp_path):
+    """Files of fsspec in the working folder, which other processes reach too."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 4)
-    for name, value in (("ACCESS_KEY_ID", "test"), ("SECRET_ACCESS_KEY", "test"), ("DEFAULT_REGION", "us-east-1")):
-        monkeypatch.setenv(f"AWS_{name}", value)
-    with s3_server() as url:
-        monkeypatch.setenv("AWS_ENDPOINT_URL", url)
-        with pytest.raises(FileNotFoundError, match="no such file or bucket: 's3://bucket/s.zarr'"):
-            study("s3://bucket/s.zarr")
-        fsspec.filesystem("s3").mkdir("bucket")
-        whole, told = study(None), []
-        stored = bs.study(bs.HessForsbach(), HIP, store="s3://bucket/s.zarr", engine=Processes(workers=2), **AXES)
-        assert stored.load().equals(whole)
-        assert study("s3://bucket/s.zarr", told).load().equals(whole)
-        assert len(told) == 1
-        assert len(fsspec.filesystem("s3").find(f"bucket/s.zarr/{CHECKSUM}/c")) == 4
-        short_file(tmp_path)
-        words = ("hip", "hip.toml", "--patients", "2", "--store", "s3://bucket/patients")
-        for workers in ((), ("--workers", "1")):
-            done = run(*words, *workers, folder=tmp_path)
-            assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "s3://bucket/patients/patients.csv")
-    assert [path.name for path in tmp_path.iterdir()] == ["hip.toml"]
-    assert not os.path.exists("s3:")
-
-
-def test_a_remote_folder_is_sent_to_other_processes():
-    """A store is an address, so that its copy opens the address anew."""
-    import pickle
-
-    folder = RemoteFolder("s3://bucket/s.zarr")
-    assert pickle.loads(pickle.dumps(folder)) == folder
+    with pytest.raises(FileNotFoundError, match="no such file or bucket: 'local://bucket/s.zarr'"):
+        study("local://bucket/s.zarr")
+    monkeypatch.setenv("FSSPEC_LOCAL_AUTO_MKDIR", "true")
+    monkeypatch.setitem(fsspec.config.conf, "local", {"auto_mkdir": True})
+    whole, told = study(None), []
+    stored = bs.study(bs.HessForsbach(), HIP, store="local://bucket/s.zarr", engine=Processes(workers=2), **AXES)
+    assert stored.load().equals(whole)
+    assert study("local://bucket/s.zarr", told).load().equals(whole)
+    assert len(told) == 1
+    assert len(list((tmp_path / "bucket" / "s.zarr" / CHECKSUM / "c").iterdir())) == 4
+    short_file(tmp_path)
+    words = ("hip", "hip.toml", "--patients", "2", "--store", "local://bucket/patients")
+    for workers in ((), ("--workers", "1")):
+        done = run(*words, *workers, folder=tmp_path)
+        assert (done.returncode, done.stdout.splitlines()[-1]) == (0, "local://bucket/patients/patients.csv")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bucket", "hip.toml"]

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, suppress
 from functools import cache
 from pathlib import Path
 
@@ -18,16 +18,19 @@ import ballsocket as bs
 from ballsocket.studies.run import read
 from ballsocket.studies.store import CHECKSUM
 
-from ..extent import either, some
+from .servers import server
 
-COUNTS = {"clearances": either(quick=20, long=70), "radii": 25, "model": "exact"}
-"""Blocks of half a second: two in a quick run, seven in a long one."""
+COUNTS = {"clearances": 32, "radii": 25, "model": "exact"}
+"""Four blocks of a little less than half a second."""
 
-KILLS = min(5, int(os.environ.get("BALLSOCKET_KILLS", "5")))
+KILLS = min(5, int(os.environ.get("BALLSOCKET_KILLS", "2")))
 TIMES = {"serial": KILLS, "processes": KILLS, "dask": 1}
 PATIENCE = 600  # seconds, for a slow machine
 HIP = bs.joints["hess-forsbach"]
-pytestmark = pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="finds processes in /proc")
+pytestmark = [
+    pytest.mark.long,
+    pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="no processes in /proc"),
+]
 STUDY = """
 joint = "hess-forsbach"
 model = "{model}"
@@ -43,40 +46,41 @@ kind = "{engine}"
 """
 
 
-@pytest.mark.long
-def test_files_that_may_not_grow_stop_the_command_with_one_sentence(tmp_path):
-    """A real failure of the system's: no file may be larger than 20 kB."""
-    (tmp_path / "s.toml").write_text(
-        STUDY.format(model="hess-forsbach", clearances=100, radii=100, engine="serial"), encoding="utf-8"
-    )
-    code = (
-        "import resource, sys; resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000)); "
-        "from ballsocket.cli import main; sys.argv = ['ballsocket', 'study', 's.toml']; main()"
-    )
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, encoding="utf-8")
-    assert done.returncode == 2
-    assert "File too large; 0 of" in done.stderr
-    assert "Traceback" not in done.stderr
-    subprocess.run(
-        [sys.executable, "-m", "ballsocket", "study", "s.toml"], cwd=tmp_path, check=True, capture_output=True
-    )
+@pytest.fixture
+def start(tmp_path):
+    """Function that starts the study of a file in a group of processes, which ends with the test."""
+    processes = []
+
+    def start(*options, code="from ballsocket.cli import main; main()", **counts):
+        (tmp_path / "s.toml").write_text(STUDY.format(**{**COUNTS, **counts}), encoding="utf-8")
+        process = subprocess.Popen(
+            [sys.executable, "-c", code, "study", "s.toml", *options],
+            cwd=tmp_path,
+            env={name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"},  # as users
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+            start_new_session=True,
+            preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background jobs ignore it
+        )
+        processes.append(process)
+        return process
+
+    yield start
+    for process in processes:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
 
 
-def started(folder, stderr=subprocess.DEVNULL, *options):
-    return subprocess.Popen(
-        [sys.executable, "-m", "ballsocket", "study", "s.toml", *options],
-        cwd=folder,
-        env={name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"},  # as users have it
-        stdout=subprocess.DEVNULL,
-        stderr=stderr,
-        encoding="utf-8",
-        start_new_session=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),  # a shell's background jobs ignore it
-    )
-
-
-def done_blocks(store):
+def stored_blocks(store):
     return len(list((store / CHECKSUM / "c").glob("*"))) if store.exists() else 0
+
+
+def wait_for_blocks(process, store, number):
+    """Wait until blocks are stored or the study has ended."""
+    while stored_blocks(store) < number and process.poll() is None:
+        time.sleep(0.01)
 
 
 @cache
@@ -92,92 +96,115 @@ def undisturbed():
 
 def equal_to_undisturbed(store):
     found, whole = read(store).load(), undisturbed()
-    return all(
-        found[name].values.tobytes() == whole[name].values.tobytes()
-        for name in ("max_pressure", "half_angle", "status")
+    names = ("max_pressure", "half_angle", "status")
+    return all(found[name].values.tobytes() == whole[name].values.tobytes() for name in names)
+
+
+def test_files_that_may_not_grow_stop_the_command_with_one_sentence(start):
+    """A real failure of the system's: no file may be larger than 20 kB."""
+    limited = (
+        "import resource as r; r.setrlimit(r.RLIMIT_FSIZE, (20000, 20000)); from ballsocket.cli import main; main()"
     )
+    words = {"model": "hess-forsbach", "clearances": 100, "radii": 100, "engine": "serial"}
+    process = start(code=limited, **words)
+    _, errors = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 2
+    assert "File too large; 0 of" in errors
+    assert "Traceback" not in errors
+    assert start(**words).wait(timeout=PATIENCE) == 0
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(("engine", "times"), list(TIMES.items()))
-def test_a_study_killed_many_times_is_that_of_an_undisturbed_one(tmp_path, engine, times):
-    (tmp_path / "s.toml").write_text(STUDY.format(engine=engine, **COUNTS), encoding="utf-8")
-    moments, before = random.Random(engine), 0
-    for _ in range(times):
-        process, more = started(tmp_path), moments.choice([0, 1, 1, 2])
-        while process.poll() is None and done_blocks(tmp_path / "s.zarr") < before + more:
-            time.sleep(0.005)
-        time.sleep(moments.uniform(0.0, 0.6))
-        if process.poll() is None:
+@pytest.mark.parametrize(("engine", "kills"), TIMES.items())
+def test_a_study_stopped_many_times_is_that_of_an_undisturbed_one(tmp_path, start, engine, kills):
+    """The first stop is Ctrl-C, the others are kills of the study and its workers at random moments."""
+    store, moments = tmp_path / "s.zarr", random.Random(engine)
+    process = start(engine=engine)
+    wait_for_blocks(process, store, 1)
+    os.killpg(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=PATIENCE)
+    assert process.returncode == 130
+    assert "points are stored in s.zarr: run the command again to resume" in " ".join(errors.split())
+    before = stored_blocks(store)
+    assert before >= 1
+    for _ in range(kills):
+        process, more = start(engine=engine), moments.choice([0, 1, 1, 2])
+        wait_for_blocks(process, store, before + more)
+        time.sleep(moments.uniform(0.0, 0.3))
+        ended = process.poll() == 0
+        with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-        assert done_blocks(tmp_path / "s.zarr") >= before + more
-        before = done_blocks(tmp_path / "s.zarr")
-    assert started(tmp_path).wait() == 0
-    assert equal_to_undisturbed(tmp_path / "s.zarr")
+        assert ended or stored_blocks(store) >= before + more
+        before = stored_blocks(store)
+    assert start(engine=engine).wait(timeout=PATIENCE) == 0
+    assert equal_to_undisturbed(store)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("engine", some(["processes", "dask"], 1))
-def test_killed_workers_cost_retries(tmp_path, engine):
+@pytest.mark.parametrize("engine", ["processes", "dask"])
+def test_killed_workers_cost_retries(tmp_path, start, engine):
     """One or two of them, at random moments."""
-    (tmp_path / "s.toml").write_text(STUDY.format(engine=engine, **COUNTS), encoding="utf-8")
-    process, moments, killed, wanted = started(tmp_path), random.Random(engine), [], either(quick=1, long=2)
-    while len(killed) < wanted and process.poll() is None:
-        if done_blocks(tmp_path / "s.zarr") > len(killed):
-            time.sleep(moments.uniform(0.0, 0.3))
-            victims = [int(pid) for pid in _descendants(process.pid) if _is_worker(pid) and int(pid) not in killed]
+    process, moments, killed = start(engine=engine), random.Random(engine), []
+    while len(killed) < 2 and process.poll() is None:
+        if stored_blocks(tmp_path / "s.zarr") > len(killed):
+            time.sleep(moments.uniform(0.0, 0.2))
+            victims = [pid for pid in workers_of(process) if pid not in killed]
             if victims:
                 killed.append(moments.choice(victims))
-                os.kill(killed[-1], signal.SIGKILL)
+                with suppress(ProcessLookupError):
+                    os.kill(killed[-1], signal.SIGKILL)
         time.sleep(0.02)
-    assert len(killed) == wanted
+    assert killed
     assert process.wait(timeout=PATIENCE) == 0
     assert equal_to_undisturbed(tmp_path / "s.zarr")
 
 
-@pytest.mark.long
-def test_workers_leave_when_the_study_is_killed_alone(tmp_path):
-    counts = {"clearances": 60, "radii": 30, "model": "exact"}  # more than it will be given time for
-    (tmp_path / "s.toml").write_text(STUDY.format(engine="processes", **counts), encoding="utf-8")
-    process, workers = started(tmp_path), []
-    while done_blocks(tmp_path / "s.zarr") < 1 and process.poll() is None:
-        time.sleep(0.02)
-    workers = [int(pid) for pid in _descendants(process.pid) if _is_worker(pid)]
+def test_workers_leave_when_the_study_is_killed_alone(tmp_path, start):
+    process = start(engine="processes", clearances=60)  # more than it will be given time for
+    wait_for_blocks(process, tmp_path / "s.zarr", 1)
+    workers = workers_of(process)
     assert workers
     process.kill()
     process.wait()
-    deadline = time.time() + PATIENCE
-    while any(_alive(pid) for pid in workers) and time.time() < deadline:
+    deadline = time.monotonic() + PATIENCE
+    while any(map(is_alive, workers)) and time.monotonic() < deadline:
         time.sleep(0.1)
-    assert not any(_alive(pid) for pid in workers)
+    assert not any(map(is_alive, workers))
 
 
-def _alive(pid):
+def is_alive(pid):
     try:
         return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="ascii").split(")")[-1].split()[0]
     except FileNotFoundError:
         return False
 
 
-def _descendants(pid):
-    found = []
+def descendants(pid):
+    pids = []
     for path in Path(f"/proc/{pid}/task").glob("*/children"):
-        for child in path.read_text(encoding="ascii").split():
-            found += [child, *_descendants(child)]
-    return found
+        with suppress(OSError):  # a thread that has ended
+            for child in path.read_text(encoding="ascii").split():
+                pids += [int(child), *descendants(child)]
+    return pids
 
 
-def _is_worker(pid):
-    return b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()
+def workers_of(process):
+    """Return the process ids of a study's workers."""
+    workers = []
+    for pid in descendants(process.pid):
+        with suppress(OSError):
+            if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes():
+                workers.append(pid)
+    return workers
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("end", ["interrupted", "killed", "scheduler killed"])
-def test_a_study_on_the_users_workers_ends_without_tracebacks_and_leaves_nothing(tmp_path, end):
+def test_a_study_on_the_users_workers_ends_without_tracebacks_and_leaves_nothing(tmp_path, start, end):
     """The workers belong to the user: they go on, without tasks of a study that has ended."""
     distributed = pytest.importorskip("distributed")
-    (tmp_path / "s.toml").write_text(STUDY.format(engine="dask", clearances=60, radii=30, model="exact"), "utf-8")
+
+    def tasks(dask_scheduler):
+        return list(dask_scheduler.tasks)
+
     file = tmp_path / "scheduler.json"
     common = ("--no-dashboard", "--host", "127.0.0.1", "--scheduler-file", str(file))
     with ExitStack() as stack:
@@ -187,59 +214,26 @@ def test_a_study_on_the_users_workers_ends_without_tracebacks_and_leaves_nothing
             for words in (("scheduler", *common, "--port", "0"), ("worker", *common, "--no-nanny", "--nthreads", "1"))
         )
         while not file.exists() or not file.read_text("utf-8"):
+            assert scheduler.poll() is None
             time.sleep(0.05)
         address = json.loads(file.read_text("utf-8"))["address"]
-        process = started(tmp_path, subprocess.PIPE, "--scheduler", address)
-        while done_blocks(tmp_path / "s.zarr") < 2 and process.poll() is None:
-            time.sleep(0.02)
+        process = start("--scheduler", address, engine="dask", clearances=60, radii=30)
+        wait_for_blocks(process, tmp_path / "s.zarr", 2)
         ended = scheduler if end == "scheduler killed" else process
         ended.send_signal(signal.SIGINT if end == "interrupted" else signal.SIGKILL)
-        _, said = process.communicate(timeout=PATIENCE)
-        assert "Traceback" not in said
+        _, errors = process.communicate(timeout=PATIENCE)
+        assert "Traceback" not in errors
         if end == "scheduler killed":
             assert process.returncode == 2
-            assert "blocks are stored; run the study again to resume" in " ".join(said.split())
+            assert "blocks are stored; run the study again to resume" in " ".join(errors.split())
             return
         assert worker.poll() is None
         with distributed.Client(address) as client:
-            deadline = time.time() + 60
-            while client.run_on_scheduler(lambda dask_scheduler: len(dask_scheduler.tasks)) and time.time() < deadline:
+            deadline = time.monotonic() + PATIENCE
+            while client.run_on_scheduler(tasks) and time.monotonic() < deadline:
                 time.sleep(0.2)
-            assert client.run_on_scheduler(lambda dask_scheduler: list(dask_scheduler.tasks)) == []
+            assert client.run_on_scheduler(tasks) == []
     log = (tmp_path / "worker.log").read_text("utf-8")
     assert f"{os.sep}ballsocket{os.sep}" not in log  # Dask's scheduler may report the connection of a killed client
     assert end == "killed" or "Traceback" not in log
-    assert done_blocks(tmp_path / "s.zarr") >= 2
-
-
-@contextmanager
-def server(words, folder, log):
-    """A command of Dask's that runs until it is no longer needed."""
-    with subprocess.Popen([sys.executable, "-m", "dask", *words], cwd=folder, stdout=log, stderr=log) as running:
-        try:
-            yield running
-        finally:
-            running.terminate()
-
-
-def test_control_c_and_a_kill_leave_a_store_that_resumes(tmp_path):
-    engine = either(quick="serial", long="processes")  # three starts of two workers take six seconds
-    (tmp_path / "s.toml").write_text(STUDY.format(engine=engine, **COUNTS), encoding="utf-8")
-    process = started(tmp_path, subprocess.PIPE)
-    while done_blocks(tmp_path / "s.zarr") < 1 and process.poll() is None:
-        time.sleep(0.02)
-    os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 130
-    assert "points are stored in s.zarr: run the command again to resume" in " ".join(said.split())
-    before = done_blocks(tmp_path / "s.zarr")
-    assert before >= 1
-    process = started(tmp_path)
-    while done_blocks(tmp_path / "s.zarr") == before and process.poll() is None:
-        time.sleep(0.02)
-    if process.poll() is None:
-        os.killpg(process.pid, signal.SIGKILL)
-    process.wait()
-    assert done_blocks(tmp_path / "s.zarr") > before
-    assert started(tmp_path).wait() == 0
-    assert equal_to_undisturbed(tmp_path / "s.zarr")
+    assert stored_blocks(tmp_path / "s.zarr") >= 2
