@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-PICTURES = Path(os.environ.get("BALLSOCKET_SCREENSHOTS", "build/screenshots"))
+PICTURES = os.environ.get("BALLSOCKET_SCREENSHOTS")
+"""Folder for pictures of the pages; None keeps none."""
+
 WIDE, NARROW = 1280, 390
 WAIT = 90_000
 """Milliseconds until something that does not happen is taken for a fault: a machine may be slow."""
