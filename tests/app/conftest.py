@@ -13,7 +13,7 @@ _LOOP = pytest.StashKey()
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
-    """Let the event loop of Playwright count as running in browser tests only: other tests run their own loops."""
+    """Let the event loop of Playwright count as running only in tests that name a fixture with a browser."""
     if "browser" not in item.fixturenames:
         return (yield)
     asyncio._set_running_loop(item.config.stash.get(_LOOP, None))
@@ -62,7 +62,8 @@ def user(profile, address):
     yield someone
     assert not someone.errors
     assert all(urlsplit(url).hostname == "127.0.0.1" for url in someone.requests if url.startswith(("http", "ws")))
-    someone.page.evaluate("localStorage.clear()")
+    if someone.requests:
+        someone.page.evaluate("localStorage.clear()")
     someone.page.close()
 
 
