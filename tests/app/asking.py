@@ -2,7 +2,17 @@
 
 import json
 from base64 import b64decode
-from html import escape
+from html import escape, unescape
+
+import pytest
+
+
+def opened(link):
+    """A page as a browser has it after loading."""
+    session = pytest.importorskip("ballsocket.app.session", exc_type=ImportError)
+    page = session.Page(link)
+    page._refresh()
+    return page
 
 
 def does(page, what, **words):
@@ -26,3 +36,15 @@ def trouble(page):
     """Return what a page says is wrong: at the top of the answers, or beside its inputs."""
     errors = [f"<p>{escape(refusal['error'])}</p>" for _, refusal in page.channel._refused.values()]
     return "".join([page.channel.shown_value("#trouble") or "", *errors])
+
+
+def told(page, name):
+    """Return a part of a page, such as "wear-numbers"; empty before it is shown."""
+    return page.channel.shown_value(f"#{name}") or ""
+
+
+def refuses(page, name, value, sentence):
+    """Return True if an edit is refused in a sentence and changes nothing."""
+    before = page.screen
+    edits(page, name, value)
+    return sentence in unescape(trouble(page)) and page.screen == before

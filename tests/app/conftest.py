@@ -1,4 +1,4 @@
-"""One server and one browser for all tests of a worker; people who use them."""
+"""One server and one browser for all tests of a process; people who use them."""
 
 import asyncio
 from urllib.parse import urlsplit
@@ -6,12 +6,25 @@ from urllib.parse import urlsplit
 import pytest
 
 from .browser import opened_browser, served_explorer
-from .user import NARROW, WAIT, User, opened_profile
+from .user import NARROW, User, opened_profile
+
+_LOOP = pytest.StashKey()
 
 
-@pytest.fixture(scope="module")  # not longer: its loop is in the way of those of other tests
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_protocol(item):
+    """Let the event loop of Playwright count as running only in tests that name a fixture with a browser."""
+    if "browser" not in item.fixturenames:
+        return (yield)
+    asyncio._set_running_loop(item.config.stash.get(_LOOP, None))
+    result = yield  # a run that is stopped here ends the browser next: its loop stays
+    item.config.stash[_LOOP] = asyncio._get_running_loop()
+    asyncio._set_running_loop(None)
+    return result
+
+
+@pytest.fixture(scope="session")
 def browser():
-    pytest.importorskip("playwright.sync_api", reason="playwright is not installed").expect.set_options(timeout=WAIT)
     with opened_browser() as opened:
         yield opened
 
@@ -23,11 +36,10 @@ def address():
         yield served
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def profile(browser, address):
-    """One for all tests of a single user: it reads the scripts of the page once."""
-    with opened_profile(browser, address) as one:
-        yield one
+    """One for all tests of a single user: it reads the scripts of the page once, and ends with the browser."""
+    return opened_profile(browser, address).__enter__()
 
 
 @pytest.fixture
@@ -50,6 +62,8 @@ def user(profile, address):
     yield someone
     assert not someone.errors
     assert all(urlsplit(url).hostname == "127.0.0.1" for url in someone.requests if url.startswith(("http", "ws")))
+    if someone.requests:
+        someone.page.evaluate("localStorage.clear()")
     someone.page.close()
 
 

@@ -10,7 +10,6 @@ import pytest
 
 import ballsocket as bs
 
-from ..extent import either
 from .proxy import opened_proxy
 from .user import User, opened_profile
 
@@ -21,8 +20,7 @@ from ballsocket.app.widgets.joint_fields import joint_inputs
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.validity import OutsideDomainError
 
-PageTimeout = pytest.importorskip("playwright.sync_api", reason="playwright is not installed").TimeoutError
-
+pytestmark = pytest.mark.long
 _NUMBERS = ("load", "clearance", "ball_radius", "liner_thickness")
 _TYPED = {
     "load": ("1200", "0.8 kN", "4000 N", "nonsense", "3,000"),
@@ -86,8 +84,11 @@ class Hand:
     def _choose(self):
         name = self._random.choice(list(_CHOICES))
         value = self._random.choice(_CHOICES[name])
-        with suppress(PageTimeout):  # the real cup hides the choice of a model
-            self._page.locator(f"[data-name={name}] select").select_option(value, timeout=300)
+        choice = self._page.locator(f"[data-name={name}] select")
+        if not choice.is_visible():
+            return f"no {name}"
+        with suppress(Exception):  # the real cup hides the choice of a model meanwhile
+            choice.select_option(value, timeout=300)
         return f"choose {value} as {name}"
 
     def _segment(self):
@@ -201,16 +202,16 @@ def refusal_of(screen, in_real_cup):
     return "; ".join(contact.notes) or contact.status.sentence if contact.status.failed else None
 
 
-ACTS = int(os.environ.get("BALLSOCKET_ACTS", "500"))
-"""Number of things done in the long form of the test."""
+ACTS = int(os.environ.get("BALLSOCKET_ACTS", "120"))
+"""Number of things done."""
 
-_SEEDS = either((28,), (28, 1, 2, 3, 5))
+_SEEDS = 28, 1, 2
 
 
 @pytest.mark.parametrize("seed", _SEEDS)
 def test_boxes_drawing_answer_and_link_agree(browser, address, seed):
     """Answers are up to 0.2 s late, and up to four things are done at a time; the real cup is rarely awaited."""
-    acts, dice = either(25, ACTS // len(_SEEDS)), random.Random(seed)
+    acts, dice = ACTS // len(_SEEDS), random.Random(seed)
     with opened_proxy(address) as proxy, opened_profile(browser, proxy.address) as profile:
         user = User(profile, proxy.address).open()
         hand = Hand(user, seed)
@@ -259,32 +260,23 @@ def test_messages_of_older_screens_change_nothing(browser, address):
         assert_agreement(user, ["replay"])
 
 
-def test_a_preset_replaces_text_that_nobody_has_confirmed(user):
-    user.open()
-    user.page.locator("[data-name=load] input[type=text]").fill("77")
+def test_text_of_a_box_follows_what_changes_next(user):
+    """A preset replaces text that nobody has confirmed, a key text that equals the value, and undo refused text."""
+    box = user.open().page.locator("[data-name=load] input[type=text]")
+    box.fill("77")
     user.page.locator("[data-name=preset] select").select_option("hip-36")
     assert_agreement(user, ["text", "preset"])
-
-
-def test_typed_text_that_equals_the_value_is_confirmed_too(user):
-    """The browser reports no change of such a box, which must follow the next change from elsewhere all the same."""
-    user.open()
-    user.page.locator("[data-name=load] input[type=text]").fill("3000")
+    box.fill(box.input_value())  # the browser reports no change
     user.page.evaluate("document.activeElement.blur()")
     user.nudge("load")
     assert_agreement(user, ["the same text", "key"])
-
-
-def test_undo_removes_refused_text(user):
-    user.open()
-    user.nudge("clearance")
-    user.answered()
-    box = user.types("load", "nonsense")
+    before = box.input_value()
+    user.types("load", "nonsense")
     user.says("must be a number in N")
     assert box.input_value() == "nonsense"
     user.page.locator("#undo").click()
     user.until("!document.querySelector('[aria-invalid=true]')")
-    assert box.input_value() == "3000"
+    assert box.input_value() == before
     assert_agreement(user, ["refused text", "undo"])
 
 

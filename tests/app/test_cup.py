@@ -12,7 +12,7 @@ import pytest
 
 import ballsocket as bs
 
-from .asking import does, edits, saved, trouble
+from .asking import does, edits, saved
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 pytest.importorskip("skfem")
@@ -113,29 +113,6 @@ def test_an_orientation_of_zero_is_shown_and_not_replaced():
     assert _hint(upright) == ""
     assert ">anterior</text>" in pressed_bore(upright)
     assert ">anterior</text>" not in pressed_bore(default)
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "sentence"),
-    [
-        ("inclination", "91", "Inclination must be 0 to 90° (from an upright axis to a level one), got 91°"),
-        ("arc_of_cover", "0", "Arc of cover must be 40 to 340° (the ball must stay in its socket), got 0°"),
-        ("inwards", "85", "Load direction, medial must be -80 to 80° (the load must press into the body), got 85°"),
-        ("chamfer", "wide", "Chamfer must be a number in mm, or a length such as '16 mm', got 'wide'"),
-        ("side", "middle", "side = 'middle' is not allowed"),
-        ("aim", "up", "'up' as aim is not known"),
-        ("pick", [1.0], "is not a point of the map"),
-        ("show", "area", "'area' as standing is not known"),
-        ("colour", "red", "'colour' among the inputs of a cup"),
-    ],
-)
-def test_what_a_cup_cannot_be_is_told(name, value, sentence, monkeypatch):
-    monkeypatch.setattr(Job, "ask", lambda *words: None)
-    page = opened()
-    before = page.screen
-    edits(page, f"cup.{name}", value)
-    assert sentence in trouble(page).replace("&#x27;", "'")
-    assert page.screen == before
 
 
 def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(monkeypatch):

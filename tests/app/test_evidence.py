@@ -115,15 +115,6 @@ def test_limits_are_rows():
     assert "did you mean 'max_pressure'" in unescape(trouble(page))
 
 
-@pytest.mark.parametrize(("name", "value"), [("influence", "huge"), ("elements", True), ("colour", "red")])
-def test_what_is_no_input_is_refused(name, value):
-    page = opened()
-    before = page.screen
-    edits(page, f"evidence.{name}", value)
-    assert name in trouble(page)
-    assert page.screen == before
-
-
 def test_a_limit_is_asked_for_before_anything_runs(monkeypatch):
     asked = []
     monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key))

@@ -12,7 +12,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
 
-from .asking import does, edits, saved, trouble
+from .asking import does, edits, saved
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.jobs import Job
@@ -186,28 +186,6 @@ def test_a_cycle_of_ones_own_is_read_and_is_in_no_link():
     assert "walk" not in told(page, "load")
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "sentence"),
-    [
-        ("cycle", "dancing", "'dancing' as cycle is not known"),
-        ("body_weight", "0", "Body weight must be positive, got 0 N"),
-        ("contact", "steel", "'steel' as contact is not known"),
-        ("instant", "seven", "an instant of a cycle is a whole number"),
-        ("instant", -1, "instant = -1"),
-        ("own", {"name": "walk.exe", "text": OWN}, "'walk.exe' is not a table of a cycle"),
-        ("own", {"name": "walk.csv", "text": "", "size": 10**9}, "longer than 100000 characters"),
-        ("own", "walk.csv", "has a name and a text"),
-        ("colour", "red", "'colour' among the inputs of Gait"),
-    ],
-)
-def test_what_is_no_cycle_is_told(name, value, sentence):
-    page = opened()
-    before = page.screen
-    edits(page, f"gait.{name}", value)
-    assert sentence in unescape(trouble(page))
-    assert page.screen == before
-
-
 def test_a_cycle_that_cannot_be_pressed_says_why():
     page = opened()
     edits(page, "gait.own", {"name": "walk.csv", "text": "phase [%], force [N]\n0, 1\n50, few\n100, 1\n"})
@@ -215,20 +193,6 @@ def test_a_cycle_that_cannot_be_pressed_says_why():
     dislocated = opened(LINK.replace("cup.inclination=45", "cup.inclination=90"))
     assert "dislocated" in told(dislocated, "trouble")
     assert told(dislocated, "viewer") == ""
-
-
-@pytest.mark.parametrize(
-    ("pairs", "sentence"),
-    [
-        ("use.cycle=dance", "'dance' as cycle"),
-        ("use.body_weight=-1", "body_weight = -1"),
-        ("use.coefficient=-1", "coefficient = -1"),
-        ("use.millions=1000", "millions = 1000"),
-        ("use.speed=1", "'speed' of a hip in use in the link"),
-    ],
-)
-def test_links_about_use_are_strict(pairs, sentence):
-    assert sentence in unescape(trouble(Page(f"{LINK}&{pairs}")))
 
 
 @pytest.mark.long

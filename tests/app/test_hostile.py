@@ -11,13 +11,12 @@ from urllib.parse import quote
 import pytest
 
 from ..extent import either, some
-from .asking import edits, trouble
+from .asking import trouble
 from .browser import explorer_process
 from .user import User, opened_profile
 from .wire import BINARY, Wire, opened_wire
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-from ballsocket.app import session
 from ballsocket.app.session import Page
 from ballsocket.app.state.screen import VIEWS
 
@@ -104,40 +103,6 @@ def test_unknown_actions_and_values_get_a_sentence(address, words):
         assert wire.answer(3)["=load"]["value"] == 2900
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "sentence"),
-    [
-        ("load", 10**400, "the integer is too large"),
-        ("tilt", -(10**400), "the integer is too large"),
-        ("map.pick", [10**400, 1], "the integer is too large"),
-        ("cup.pick", [1, 10**400], "the integer is too large"),
-        ("behind.add", ["uhmwpe"], "as material is not known"),
-        ("preset", {}, "as preset is not known"),
-        ("kind", ["force"], "as load is not known"),
-        ("massive", "yes", "must be true or false"),
-        ("layer" + "9" * 5000, 1, "among the inputs is not known"),
-        ("compare.x", 1, "among the inputs of Compare is not known"),
-        ("designs.compare", [""] * 9, "at most 6 designs"),
-    ],
-    ids=lambda value: str(value)[:12],
-)
-def test_a_value_of_another_kind_gets_one_sentence(name, value, sentence):
-    page = Page(f"view={name.partition('.')[0]}" if name.split(".")[0] in VIEWS else "")
-    link = page.screen.link
-    edits(page, name, value)
-    assert sentence in trouble(page)
-    assert page.screen.link == link
-
-
-def test_designs_are_counted_before_they_are_read(monkeypatch):
-    """Seventy thousand links took the time of all users for seconds."""
-    page, reads = Page(""), []
-    monkeypatch.setattr(session, "read_link", reads.append)
-    edits(page, "designs.compare", [""] * 70_000)
-    assert not reads
-    assert "at most 6 designs" in trouble(page)
-
-
 def test_the_smallest_load_that_a_link_can_state_is_shown(caplog):
     page = Page("load.force=1e-320")
     assert trouble(page) == ""
@@ -202,10 +167,3 @@ def test_script_in_names_is_text_in_every_view(browser, address, view):
         user.page.wait_for_timeout(500)
         assert user.page.evaluate("window.ran") is None
         assert user.page.locator("img[src=x]").count() == 0
-
-
-def test_script_in_a_link_that_cannot_be_read_is_text(browser, address):
-    with opened_profile(browser, address, bypass_csp=True) as profile:
-        user = User(profile, address).open(f"?view={quote(_SCRIPT)}&{quote(_SCRIPT)}=1")
-        assert user.says("This link cannot be read")
-        assert user.page.evaluate("window.ran") is None

@@ -1,7 +1,6 @@
 """Layers behind the liner, and joints compared with one that is chosen, without a browser."""
 
 import re
-from html import unescape
 
 import pytest
 
@@ -42,22 +41,6 @@ def test_a_backing_is_built_from_bone_to_shell():
     joint = page.screen.file.joint
     assert joint == bs.joints["hip-28"]  # nothing is left to be free, or to be changed
     assert "behind.0" not in page.channel.shown_value("order")
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "sentence"),
-    [
-        ("0", "titanium", "'0' among the layers is not known"),
-        ("add", "cheese", "'cheese' as material is not known"),
-        ("support", "loose", "'loose' as support is not known"),
-    ],
-)
-def test_what_is_no_layer_is_told(name, value, sentence):
-    page = Page(HIP)
-    before = page.screen
-    edits(page, f"behind.{name}", value)
-    assert sentence in unescape(trouble(page))
-    assert page.screen == before
 
 
 def test_a_wall_of_layers_ends():

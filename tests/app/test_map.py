@@ -85,15 +85,6 @@ def test_a_limit_is_moved_by_its_line():
     assert "limit=max_pressure" in page.channel.shown_value("link")
 
 
-@pytest.mark.parametrize("point", [[0, 22.0, 16.0], [0, 1], "elsewhere", [7, 20.0, 8.0]])
-def test_a_limit_is_not_moved_to_where_there_is_no_number(point):
-    page = Page(f"{LINK}&limit=max_pressure<=12&up=outer_radius=15..30")
-    before = page.screen.limits
-    edits(page, "map.drag", point)
-    assert trouble(page)
-    assert page.screen.limits == before
-
-
 def test_a_picked_point_is_shown_beside_the_design_and_used_in_one_step():
     page = Page(LINK)
     edits(page, "map.pick", [15.3, 6.7])
@@ -180,15 +171,6 @@ def test_a_limit_that_the_joint_does_not_have_is_refused_beside_the_rows():
     answer = edits(page, "map.limits", [["ball_young", "<=", "200000"]])
     assert "has no ball_young" in answer["=map.limits"]["error"]
     assert page.screen.limits == ()
-
-
-@pytest.mark.parametrize(
-    "value", ["outer_radius<=26", [["outer_radius", "<="]], [["frob", "<=", "3"]], [["force", "=", "3"]]]
-)
-def test_rows_that_are_none_are_refused(value):
-    page = Page(LINK)
-    edits(page, "map.limits", value)
-    assert trouble(page)
 
 
 def test_rows_go_to_limits_and_back_in_every_unit():

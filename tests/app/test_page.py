@@ -39,16 +39,6 @@ def test_a_file_that_cannot_be_made_says_why():
     assert "press 'Run finite elements' first" in unescape(trouble(page))
 
 
-def test_a_refusal_goes_with_the_next_change():
-    page = Page("view=judge")
-    assert edits(page, "judge.arc_of_cover", "20")["reset"]
-    assert "20" in trouble(page)
-    assert page.screen == Page("view=judge").screen
-    edits(page, "judge.arc_of_cover", "150")
-    assert trouble(page) == ""
-    assert page.channel.shown_value("=judge.arc_of_cover")["value"] == pytest.approx(150)
-
-
 def test_what_does_not_change_is_not_shown_again(monkeypatch):
     page, shown = Page(""), []
     monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen))
@@ -132,17 +122,6 @@ def test_a_map_is_drawn_and_clicked_in_the_unit_that_its_axis_names():
     assert page.screen.file.joint.ball_radius == 14.0
 
 
-@pytest.mark.long
-def test_a_map_of_joints_that_tables_do_not_know_is_solved():
-    page = Page(
-        "view=map&joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=UHMWPE"
-        "&backing.0.thickness=3&backing.0.material=titanium&load.force=3000"
-    )
-    told = page.channel.shown_value("#map-note")
-    assert "Model exact, since tabulated covers none of these joints" in told
-    assert "Minimum of the largest pressure" in told
-
-
 def test_the_exact_curve_lies_below_those_through_which_it_can_be_seen():
     page = Page(f"view=press&preset=hip-28&load.force=3000&shown={','.join(reversed(bs.catalogue))}")
     curves = re.findall('data-name="([^"]+)"', page.channel.shown_value("#press-charts"))
@@ -171,44 +150,6 @@ def test_a_number_is_understood_as_people_write_it(text, meant):
     assert page.screen.file.joint.clearance == pytest.approx(meant, rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("name", "text", "why"),
-    [
-        ("load", "3,000", "Normal force '3,000' could be two numbers: write 3000 or 3.000"),
-        ("load", "much", "Normal force must be a number in N, or a force such as '3 kN', got 'much'"),
-        (
-            "liner_poisson",
-            "0,7",
-            "Liner Poisson's ratio must be -0.999 to 0.5 (the limits of an isotropic solid), got 0.7",
-        ),
-        ("clearance", None, "Diametral clearance must be a number in mm, or a length such as '16 mm', got None"),
-        ("clearence", "1", "'clearence' among the inputs is not known"),
-        ("liner", 3, "liner = 3 is not a material"),
-        ("preset", "hip-29", "'hip-29' as preset is not known"),
-    ],
-)
-def test_an_input_that_is_none_is_refused_in_words_and_stays(name, text, why):
-    page = Page("")
-    before = page.screen
-    answer = edits(page, name, text)
-    assert why in unescape(trouble(page))
-    assert answer["reset"] is True
-    assert page.screen == before
-    edits(page, name, (page.channel.shown_value(f"={name}") or {}).get("text"))  # the box as it was
-    edits(page, "load", 2900)
-    assert trouble(page) == ""
-
-
-def test_a_word_that_no_page_of_ours_knows_is_refused():
-    page = Page("")
-    for words in ({"what": "leave"}, {"what": "choose", "name": "theme", "value": "dark"}):
-        does(page, words.pop("what"), **words)
-        assert "is not known" in trouble(page)
-    does(page, "choose", name="shown", value="exact")
-    assert "shown takes words" in trouble(page)
-    assert page.screen == Page("").screen
-
-
 @pytest.mark.parametrize("view", ["press", "compare"])
 def test_a_report_has_the_joint_its_inputs_and_no_machine(view):
     name, page = make_file(Page(f"view={view}").seen(), "HTML")
@@ -219,10 +160,3 @@ def test_a_report_has_the_joint_its_inputs_and_no_machine(view):
     assert ("<span class='holds'>Passes: " in text) == (view == "press")
     assert "localhost" not in text
     assert "http" not in text.replace("http://www.w3.org", "")
-
-
-@pytest.mark.parametrize("number", ["inf", "nan", "1e400", "2.5", "-1"])
-def test_an_instant_of_a_link_is_a_whole_number(number, caplog):
-    page = Page(f"view=gait&use.instant={number}")
-    assert "This link cannot be read: instant = " in unescape(trouble(page))
-    assert not caplog.records

@@ -2,7 +2,6 @@
 
 import re
 from dataclasses import replace
-from html import unescape
 from math import radians
 
 import numpy as np
@@ -170,27 +169,6 @@ def test_a_design_is_put_beside_and_taken_away(monkeypatch):
     assert page.screen.beside[0].joint == bs.joints["hip-28"]
     edits(page, "wear.beside", "")
     assert page.screen.beside == ()
-
-
-@pytest.mark.parametrize(
-    ("name", "value", "sentence"),
-    [
-        ("coefficient", "much", "coefficient = 'much'"),
-        ("coefficient", "-1", "Coefficient [mm³/(N m)] -1 is not allowed"),
-        ("millions", "0", "Million cycles 0"),
-        ("spread", "0.5", "Patient-to-patient factor 0.5"),
-        ("law", "magic", "'magic' as law is not known"),
-        ("creep", True, "creep = True is not a choice"),
-        ("beside", "my hip", "'my hip' as design is not known"),
-        ("colour", "red", "'colour' among the inputs of Wear"),
-    ],
-)
-def test_what_cannot_be_worn_is_told(name, value, sentence):
-    page = opened()
-    before = page.screen
-    edits(page, f"wear.{name}", value)
-    assert sentence in unescape(trouble(page))
-    assert page.screen == before
 
 
 def test_a_hip_that_cannot_be_worn_says_why(at_once):

@@ -3,14 +3,32 @@
 import os
 import time
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
 
 import pytest
 
-PICTURES = Path(os.environ.get("BALLSOCKET_SCREENSHOTS", "build/screenshots"))
+import ballsocket as bs
+
+PICTURES = os.environ.get("BALLSOCKET_SCREENSHOTS")
+"""Folder for pictures of the pages; None keeps none."""
+
 WIDE, NARROW = 1280, 390
 WAIT = 90_000
 """Milliseconds until something that does not happen is taken for a fault: a machine may be slow."""
+
+
+def pressure(preset="hip-28", force=3000.0, **changes):
+    """Largest pressure that the page is to show."""
+    return float(bs.Exact().press(replace(bs.joints[preset], **changes), force=force).max_pressure)
+
+
+def expect(locator):
+    """What Playwright waits for."""
+    from playwright.sync_api import expect
+
+    return expect(locator)
 
 
 @contextmanager
@@ -60,7 +78,7 @@ class User:
         """Wait until an expression in the page is true; the page's own policy forbids to evaluate text inside it."""
         deadline = time.monotonic() + WAIT / 1000
         while not self.page.evaluate(condition, argument):
-            assert time.monotonic() < deadline, f"never true: {condition}"
+            assert time.monotonic() < deadline, f"never true: {condition} at {self.page.url}"
             time.sleep(0.02)
 
     def nudge(self, slider, key="ArrowRight", times=1):
@@ -83,6 +101,23 @@ class User:
     def says(self, words):
         self.page.locator(f"text={words}").first.wait_for()
         return True
+
+    def drags(self, handle, *moves):
+        """Drag a handle from its middle over some points, each relative to the one before."""
+        box = self.page.locator(handle).bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        self.page.mouse.move(x, y)
+        self.page.mouse.down()
+        for across, down in moves:
+            x, y = x + across, y + down
+            self.page.mouse.move(x, y, steps=4)
+        self.page.mouse.up()
+        return self.answered()
+
+    def link(self):
+        """Names and values in the address."""
+        query = parse_qs(urlsplit(self.page.url).query, keep_blank_values=True)
+        return {name: values[0] for name, values in query.items()}
 
     def saved(self, kind):
         with self.page.expect_download() as coming:
