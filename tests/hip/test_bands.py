@@ -10,8 +10,8 @@ from ballsocket.hip.uncertainty import _NominalResponse
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
+from .hips import K, hip
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
-from .test_wear import K, hip
 
 COUNTS = (1e6, 2e6)
 COLUMNS = list(RESULT_UNITS)
@@ -203,13 +203,6 @@ def test_notes_of_the_nominal_patient_have_the_contact_and_the_cycle():
     assert set(bands().nominal_notes) >= set(hip().notes)
     thin = bands(use=hip(liner=1.2)).nominal_notes
     assert any("nominal sample, in the first cycle" in note for note in thin)
-
-
-def test_old_names_of_the_bands_warn():
-    some = bands()
-    for old, value in {"lived": some.cohort, "without": 0, "scatter": some.variability, "off": {}}.items():
-        with pytest.warns(DeprecationWarning, match=f"Bands.{old} is deprecated"):
-            assert getattr(some, old) == value
 
 
 def test_the_response_to_the_coefficient_follows_a_power_law_exactly():

@@ -26,9 +26,9 @@ from ballsocket.hip.variability import RESULT_UNITS, CohortResult, join_results
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run
+from .hips import K, hip
 from .test_uncertainty import short_file
 from .test_variability import COEFFICIENT, FEW_CYCLES, TIGHT, WEIGHT, variability
-from .test_wear import K, hip
 
 COARSE = {"ring_width": radians(10.0)}
 
@@ -70,19 +70,6 @@ def test_more_patients_keep_the_first_ones():
         np.testing.assert_array_equal(more[name][:5], few[name])
     assert (sample_patients(one, 5, 4)["clearance"] != few["clearance"]).any()
     assert len(sample_patients(one, 1, 0)["clearance"]) == 1
-
-
-@pytest.mark.parametrize(
-    ("count", "seed", "message"),
-    [
-        (0, 0, "patients = 0 is not allowed: it must be 1 to 1000000"),
-        (1_000_001, 0, "patients = 1000001 is not allowed"),
-        (1, -1, "seed = -1 is not allowed: it must be at least 0"),
-    ],
-)
-def test_counts_and_seeds_that_are_not_allowed_are_refused(count, seed, message):
-    with pytest.raises(ValueError, match=message):
-        sample_patients(variability(clearance=TIGHT), count, seed)
 
 
 @pytest.mark.parametrize(("n_patients", "sizes"), [(1, [1]), (16, [16]), (17, [16, 1]), (40, [16, 16, 8])])

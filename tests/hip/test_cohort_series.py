@@ -20,9 +20,9 @@ from ballsocket.hip.variability import RESULT_UNITS
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from ..cli.command import run as run_command
+from .hips import QUICK, K, hip
 from .test_uncertainty import short_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
-from .test_wear import QUICK, K, hip
 
 COUNTS = (2e5, 4e5)
 NARROW = {"coefficient": LogNormal(median=K, factor=1.2), "body_weight": Normal(mean=800.0, deviation=60.0)}
@@ -174,11 +174,6 @@ def test_patients_who_are_not_similar_are_simulated_and_the_reason_is_stated():
         population(patients, [1e3], patients=3, method="series")
 
 
-def test_an_unknown_method_is_refused():
-    with pytest.raises(ValueError, match="method 'serie' is not known; did you mean 'series'"):
-        population(quick(), [1e3], patients=2, method="serie")
-
-
 def test_a_series_ends_where_a_load_points_5_degrees_inside_the_rim():
     """Beyond that the rim changes the contact too much for a polynomial; these patients are simulated."""
     loose = quick(tilt=Rectangular(low=0.0, high=radians(89.0)))
@@ -308,16 +303,3 @@ def test_the_command_states_method_and_error(tmp_path, few_held_out):
     assert "Sobol indices of volume (first and total order): coefficient " in shown
     simulated = json.loads(run_command(*words[:3], "30", "--method", "runs", "--json").stdout)
     assert simulated["uncertainty"]["series"] is None
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--method", "runs"], "--method is the method of a cohort: add --patients, or leave out --method"),
-        (["--patients", "2", "--method", "all"], "method 'all' is not known"),
-    ],
-)
-def test_wrong_words_of_the_command_are_refused(tmp_path, words, message):
-    done = run_command("hip", str(short_file(tmp_path)), *words)
-    assert done.returncode == 2
-    assert message in done.stderr

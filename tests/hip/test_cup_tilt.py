@@ -22,8 +22,7 @@ from ballsocket.hip.config import read_hip
 from ballsocket.studies import Normal
 
 from ..cli.command import run
-from .test_file import write_edited_file
-from .test_wear import hip
+from .hips import hip, report_after, write_edited_file
 
 TILT = 'tilt = "30 deg" # between the load and the cup\'s axis'
 
@@ -41,7 +40,7 @@ def test_a_cup_with_an_explicit_zero_angle_is_upright(words):
 
 
 def test_a_sweep_of_tilts_is_continuous_at_zero():
-    zero, tilted = (hip(cup=bs.Cup(inclination=radians(tilt))).after(2e5).last for tilt in (0.0, 1e-4))
+    zero, tilted = (report_after(hip(cup=bs.Cup(inclination=radians(tilt))), 2e5) for tilt in (0.0, 1e-4))
     assert zero.volume == pytest.approx(tilted.volume, rel=1e-5)
     assert zero.max_pressure == pytest.approx(tilted.max_pressure, rel=1e-4)
     assert zero.edge_distance.min() == pytest.approx(tilted.edge_distance.min(), abs=1e-3)

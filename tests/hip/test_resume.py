@@ -16,9 +16,8 @@ import ballsocket as bs
 from ballsocket.hip import Activity, Archard, Mix, in_vivo, iso_14242_1, iso_14242_4, logarithmic
 
 from ..cli.command import run
+from .hips import K, hip, write_edited_file
 from .test_checkpoint import KilledError
-from .test_file import write_edited_file
-from .test_wear import K, hip
 
 WIDE = {"ring_width": radians(9.0), "cycle": iso_14242_1(16)}
 MIX = Mix(

@@ -19,9 +19,8 @@ from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from ..cli.command import run
 from ..extent import either
-from .test_file import TEXT, write_edited_file
+from .hips import TEXT, K, write_edited_file
 from .test_variability import COEFFICIENT, FEW_CYCLES, TIGHT, WEIGHT, variability
-from .test_wear import K, hip
 
 UNCERTAINTY = """[uncertainty]
 coefficient = { median = "1.066e-6 mm^3/(N m)", factor = 1.5 }
@@ -87,19 +86,6 @@ def test_progress_counts_the_patients_of_all_sample_sets():
     assert bands.cohort.table.shape == (6, 2, 6)
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ({"count": 1}, "count = 1 is not allowed: it must be at least 2"),
-        ({"count": 2, "seed": -1}, "seed = -1 is not allowed: it must be at least 0"),
-    ],
-)
-def test_counts_and_seeds_that_are_not_allowed_are_refused(words, message):
-    one = variability(clearance=TIGHT)
-    with pytest.raises(ValueError, match=message):
-        uncertainty(one, one.use.after(FEW_CYCLES), **words)
-
-
 def test_the_coarse_simulation_differs_little_from_the_full_one():
     one = variability(clearance=TIGHT)
     history = one.use.after(2e6, [1e6])
@@ -127,11 +113,6 @@ def test_dislocated_patients_are_counted_and_left_out():
     assert bands.indices is None
     assert bands.summary()["sobol"] is None
     assert any("samples have no result" in note for note in bands.notes)
-
-
-def test_old_argument_names_warn():
-    with pytest.warns(DeprecationWarning, match="'scatter'"):
-        population(scatter=variability(hip(), clearance=TIGHT), counts=[FEW_CYCLES], patients=1)
 
 
 # a shared coefficient
@@ -244,62 +225,11 @@ def test_the_command_computes_bands_and_indices(tmp_path):
     assert set(logarithmic().notes) <= set(answer["notes"])
 
 
-@pytest.mark.parametrize(
-    ("line", "message"),
-    [
-        ("clearance = { mean = '0.1 mm' }", r"clearance = .* must be \{low, high\}, \{mean, deviation\}"),
-        ("clearance = { low = '0.1 kN', high = '0.2 mm' }", "clearance.low = '0.1 kN' is not a length"),
-        ("clearance = { low = 0.2, high = 0.1 }", "clearance.low = 0.2 is not allowed: it is finite and below high"),
-        (
-            "coefficient = { median = 1e-6, factor = 0.5 }",
-            "coefficient.factor = 0.5 is not allowed: a factor of one standard",
-        ),
-        ("coefficient = { median = '1e-9 mm^3/(N mm)', factor = 2 }", r"1 mm\^3/\(N mm\) is 1000 mm\^3/\(N m\)"),
-        ("weight = { low = 1, high = 2 }", "'weight' in .uncertainty. is not known"),
-        ("body_weight = { low = '70 kg', high = '90 kg' }", "body_weight.low = '70 kg' is not a force"),
-        ("cycles_per_year = { low = -2, high = 1 }", "the median of cycles_per_year = -0.5 is not allowed"),
-        ("tilt = { low = 0, high = 9 }\ninclination = { low = 0, high = 9 }", "tilt and inclination both orient the"),
-        ("count = 1\ntilt = { low = 0, high = 9 }", "count = 1 is not allowed: it must be at least 2"),
-        ("count = true\ntilt = { low = 0, high = 9 }", "count = True is not allowed: a whole number"),
-        ("count = 2.5\ntilt = { low = 0, high = 9 }", "count = 2.5 is not allowed: a whole number"),
-        (
-            "seed = -1\ntilt = { low = 0, high = 9 }",
-            "seed = -1 is not allowed: a whole number from 0",
-        ),
-        ("seed = 1048577\ntilt = { low = 0, high = 9 }", "seed = 1048577 is not allowed"),
-        ("count = 8", "no quantity differs between patients: give one of coefficient, clearance"),
-        (
-            "clearance = { low = '0.3 mm', high = '0.5 mm' }",
-            "clearance = 0.1 mm lies outside its tolerance of 0.3 to 0.5 mm: change one of them",
-        ),
-        ("coefficient = { median = 1e-5, factor = 1.1 }", "coefficient = 1.066e-06 lies outside its tolerance"),
-        ("inclination = { low = 70, high = 80 }", "inclination = .* lies outside its tolerance"),
-    ],
-)
-def test_a_table_that_is_not_allowed_is_refused(tmp_path, line, message):
-    with pytest.raises(ValueError, match=f"hip.toml: .*{message}"):
-        read_hip(short_file(tmp_path, extra=f"[uncertainty]\n{line}\n"))
-
-
 def test_count_and_seed_have_defaults(tmp_path):
     settings = read_hip(short_file(tmp_path)).uncertain
     assert (settings.count, settings.seed) == (64, 0)
     settings = read_hip(short_file(tmp_path, extra=f"{UNCERTAINTY}count = 100\nseed = 0\n")).uncertain
     assert (settings.count, settings.seed) == (100, 0)
-
-
-def test_patients_need_a_table_and_have_no_report(tmp_path):
-    plain = short_file(tmp_path, extra="")
-    for words, message in (
-        ([], "--patients needs a table"),
-        (
-            ["--report", str(tmp_path / "x.html")],
-            "one hip: leave out",
-        ),
-    ):
-        done = run("hip", str(plain), "--patients", "2", *words)
-        assert done.returncode == 2
-        assert message in done.stderr
 
 
 def test_the_nominal_patient_has_the_weight_and_the_years_of_the_file(tmp_path):

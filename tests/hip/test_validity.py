@@ -24,7 +24,7 @@ from ballsocket.hip.contact_checks import half_angles
 from ballsocket.studies import LogNormal
 
 from ..cli.command import run
-from .test_file import write_edited_file
+from .hips import write_edited_file
 
 UPRIGHT = bs.Cup(inclination=0.0)
 QUICK = {"ring_width": radians(5.0), "wear": Archard(coefficient=1e-6), "cup": UPRIGHT}
