@@ -7,7 +7,7 @@ import pytest
 from ballsocket.hip.hip_setup import HipSetup
 
 from ..cli.command import run
-from .hips import SHORT, write_edited_file
+from .hips import SHORT, UNCERTAINTY, write_edited_file
 
 
 @pytest.fixture
@@ -22,8 +22,8 @@ def solved_file(tmp_path_factory):
     """Return a folder with a solved hip file, and its JSON; the folder has a report, a table and a store too."""
     folder = tmp_path_factory.mktemp("hip")
     file = write_edited_file(folder, *SHORT)
-    head = '\n[report]\ncustomer = "Acme <Ortho>"\nlogo = "logo.svg"\n'
-    file.write_text(file.read_text(encoding="utf-8") + head, encoding="utf-8")
+    tables = f'{UNCERTAINTY}count = 2\n[report]\ncustomer = "Acme <Ortho>"\nlogo = "logo.svg"\n'
+    file.write_text(f"{file.read_text(encoding='utf-8')}\n{tables}", encoding="utf-8")
     (folder / "logo.svg").write_text("<svg/>", encoding="utf-8")
     files = ("--report", str(folder / "hip.html"), "--csv", str(folder / "hip.csv"), "--store", str(folder / "store"))
     process = run("hip", str(file), "--json", *files)

@@ -31,6 +31,11 @@ SHORT = (
 )
 """Changes of the example to few cycles, instants and rings."""
 
+UNCERTAINTY = """[uncertainty]
+coefficient = { median = "1.066e-6 mm^3/(N m)", factor = 1.5 }
+clearance = { low = "0.05 mm", high = "0.2 mm" }
+"""
+
 
 def hip(diameter=28.0, liner=8.0, clearance=0.1, **words):
     """Return a hip of another program's material; equal arguments give the same object."""

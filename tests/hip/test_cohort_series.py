@@ -288,7 +288,7 @@ def test_a_series_of_creeping_patients_is_within_its_tolerance():
 # the command
 
 
-def test_the_command_states_method_and_error(tmp_path, few_held_out):
+def test_the_command_states_method_and_error(tmp_path, few_held_out, short_film):
     file = short_file(tmp_path, extra='[uncertainty]\ncoefficient = { median = "1.066e-6 mm^3/(N m)", factor = 1.5 }\n')
     words = "hip", str(file), "--patients", "200"
     answer = json.loads(run_command(*words, "--json").stdout)

@@ -114,7 +114,7 @@ def test_json_has_the_results_of_python(solved_file):
             assert stated[name] == pytest.approx(getattr(report, name), rel=1e-6)
     assert answer["error"]["volume"] == pytest.approx(history.error.volume, rel=1e-6)
     assert answer["valid"] is history.valid
-    assert answer["notes"][: len(history.notes)] == list(history.notes)
+    assert set(history.notes) <= set(answer["notes"])
 
 
 @pytest.mark.long
@@ -146,7 +146,7 @@ def test_the_table_shows_the_numbers_and_assumptions_of_the_run(solved_file, sho
 def test_a_report_has_figures_and_results_and_stands_alone(solved_file):
     folder, answer = solved_file
     page = (folder / "hip.html").read_text(encoding="utf-8")
-    assert page.count("data:image/png;base64") == 6
+    assert page.count("data:image/png;base64") == 7
     assert "<h1>Wear of a hip: hip in use</h1>" in page
     assert "<dd>Acme &lt;Ortho&gt;</dd>" in page
     assert "<img class='logo'" in page
