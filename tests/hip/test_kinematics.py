@@ -154,6 +154,12 @@ def test_crossing_angles_of_known_tracks():
     assert sliding.cross_shear(pressed)[0] == pytest.approx(1 / 3)
 
 
+def test_flexion_has_no_cross_shear_at_any_point():
+    increments, directions = flexion().rotation_increments, random_directions(40, 1)
+    sliding = SurfaceSliding(radius=14.0, rotation_increments=increments, directions=directions)
+    assert sliding.cross_shear(np.ones((len(increments), 40))) == pytest.approx(0.0, abs=1e-12)
+
+
 def test_selected_points_slide_as_before():
     cycle = iso_14242_1(30)
     directions = random_directions(12, 4)

@@ -8,31 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import (
-    Activity,
-    Archard,
-    ContactAreaWear,
-    CrossShear,
-    CustomWearLaw,
-    Cycle,
-    FilmLimit,
-    Frame,
-    FrictionEnergyWear,
-    KelvinVoigtChain,
-    LogarithmicCreep,
-    Lubricant,
-    MeasuredWear,
-    Mix,
-    Spring,
-    in_vivo,
-    iso_14242_1,
-    iso_14242_4,
-    logarithmic,
-    named_cycle,
-    population,
-    rocking,
-    uncertainty,
-)
+from ballsocket import hip as bh
 from ballsocket.hip.cohort import sample_patients
 from ballsocket.hip.config import read_hip, read_wear_test
 from ballsocket.hip.creep_law import constrained_share
@@ -47,16 +23,16 @@ from ..cli.command import run
 from .hips import QUICK, SHORT, TEXT, TILTED, K, hip, history, write_edited_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
 
-CUSTOM = CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
-WALK, STAIRS = (in_vivo(name, 750.0, 16) for name in ("walking", "stairs-up"))
+CUSTOM = bh.CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
+WALK, STAIRS = (bh.in_vivo(name, 750.0, 16) for name in ("walking", "stairs-up"))
 
 
 def mix(cycle, count=1.0):
-    return Mix(activities=(Activity(cycle=cycle, per_year=count),))
+    return bh.Mix(activities=(bh.Activity(cycle=cycle, per_year=count),))
 
 
 def custom(function):
-    return hip(wear=CustomWearLaw(function=function), **QUICK).after(1e4)
+    return hip(wear=bh.CustomWearLaw(function=function), **QUICK).after(1e4)
 
 
 def thrown(phases):
@@ -66,7 +42,7 @@ def thrown(phases):
 
 
 def measured(**words):
-    return MeasuredWear(**{"quantity": "volume", "values": 38.0, **words})
+    return bh.MeasuredWear(**{"quantity": "volume", "values": 38.0, **words})
 
 
 def patient(**values):
@@ -76,34 +52,37 @@ def patient(**values):
 
 
 def bands_of(count=2, seed=0):
-    return uncertainty(variability(clearance=TIGHT), history(hip(**QUICK), 1e4), count=count, seed=seed)
+    return bh.uncertainty(variability(clearance=TIGHT), history(hip(**QUICK), 1e4), count=count, seed=seed)
 
 
 VALUES = [
     # wear and creep laws
-    (lambda: Archard(coefficient=-1e-9), "coefficient = -1e-09 is not allowed: .*at least 0, and finite"),
-    (lambda: Archard(coefficient=inf), "coefficient = inf is not allowed"),
-    (lambda: Archard(coefficient=nan), "coefficient = nan is not allowed"),
-    (lambda: FrictionEnergyWear(coefficient=1e-6, friction=10.0), "friction = 10 is not allowed: .*below 10"),
-    (lambda: FrictionEnergyWear(coefficient=1e-6, friction=-0.1), "friction = -0.1 is not allowed"),
-    (lambda: ContactAreaWear(coefficient=-1.0), "coefficient = -1 is not allowed"),
-    (lambda: CrossShear(straight=-1.0, circular=1.0), "straight = -1 is not allowed"),
-    (lambda: CrossShear(straight=1.0, circular=-1.0), "circular = -1 is not allowed"),
-    (lambda: CrossShear(straight=1, circular=1, exponent=-1.0), "exponent = -1 .*above -1, and below 3"),
-    (lambda: CrossShear(straight=1, circular=1, exponent=3.0), "exponent = 3 is not allowed"),
-    (lambda: CrossShear(straight=1, circular=1, reference=0.0), "reference = 0 .*MPa.* above 0, and"),
-    (lambda: with_coefficient(CrossShear(straight=0.0, circular=1e-6), 1e-6), "on a straight track is positive"),
+    (lambda: bh.Archard(coefficient=-1e-9), "coefficient = -1e-09 is not allowed: .*at least 0, and finite"),
+    (lambda: bh.Archard(coefficient=inf), "coefficient = inf is not allowed"),
+    (lambda: bh.Archard(coefficient=nan), "coefficient = nan is not allowed"),
+    (lambda: bh.FrictionEnergyWear(coefficient=1e-6, friction=10.0), "friction = 10 is not allowed: .*below 10"),
+    (lambda: bh.FrictionEnergyWear(coefficient=1e-6, friction=-0.1), "friction = -0.1 is not allowed"),
+    (lambda: bh.ContactAreaWear(coefficient=-1.0), "coefficient = -1 is not allowed"),
+    (lambda: bh.CrossShear(straight=-1.0, circular=1.0), "straight = -1 is not allowed"),
+    (lambda: bh.CrossShear(straight=1.0, circular=-1.0), "circular = -1 is not allowed"),
+    (lambda: bh.CrossShear(straight=1, circular=1, exponent=-1.0), "exponent = -1 .*above -1, and below 3"),
+    (lambda: bh.CrossShear(straight=1, circular=1, exponent=3.0), "exponent = 3 is not allowed"),
+    (lambda: bh.CrossShear(straight=1, circular=1, reference=0.0), "reference = 0 .*MPa.* above 0, and"),
+    (lambda: with_coefficient(bh.CrossShear(straight=0.0, circular=1e-6), 1e-6), "on a straight track is positive"),
     (lambda: with_coefficient(CUSTOM, 1e-6), "the wear law has no coefficient"),
     (lambda: custom(lambda cycle: np.nan * cycle.work), "returned a depth of nan mm"),
     (lambda: custom(lambda cycle: -1e-9 * cycle.work - 1e-9), "a depth of -.* mm: a depth is at least 0, and finite"),
     (lambda: custom(lambda cycle: 1e-9), r"returned depths of shape \(\); the points need \(\d+,\)"),
-    (lambda: KelvinVoigtChain(compliances=(1e-3,), times=(1.0, 2.0)), "as many compliances as times, .* got 1 .* and"),
-    (lambda: KelvinVoigtChain(compliances=(), times=()), "at least one, got 0"),
-    (lambda: KelvinVoigtChain(compliances=(1e-3, -1e-3), times=(1.0, 1.0)), "compliances = -0.001 is not allowed"),
-    (lambda: KelvinVoigtChain(compliances=(1e-3,), times=(0.0,)), "times = 0 is not allowed"),
-    (lambda: KelvinVoigtChain(compliances=(1e-3,), times=(inf,)), "times = inf is not allowed"),
-    (lambda: LogarithmicCreep(confinement=-0.1), "confinement = -0.1 is not allowed"),
-    (lambda: LogarithmicCreep(confinement=1.5), "confinement = 1.5 is not allowed"),
+    (
+        lambda: bh.KelvinVoigtChain(compliances=(1e-3,), times=(1.0, 2.0)),
+        "as many compliances as times, .* got 1 .* and",
+    ),
+    (lambda: bh.KelvinVoigtChain(compliances=(), times=()), "at least one, got 0"),
+    (lambda: bh.KelvinVoigtChain(compliances=(1e-3, -1e-3), times=(1.0, 1.0)), "compliances = -0.001 is not allowed"),
+    (lambda: bh.KelvinVoigtChain(compliances=(1e-3,), times=(0.0,)), "times = 0 is not allowed"),
+    (lambda: bh.KelvinVoigtChain(compliances=(1e-3,), times=(inf,)), "times = inf is not allowed"),
+    (lambda: bh.LogarithmicCreep(confinement=-0.1), "confinement = -0.1 is not allowed"),
+    (lambda: bh.LogarithmicCreep(confinement=1.5), "confinement = 1.5 is not allowed"),
     (lambda: constrained_share(0.6), "poisson = 0.6 is not allowed"),
     (lambda: wear_factor("k", "1e-9 mm3/Nmm"), r"is for mm of sliding: .* is 1000 mm\^3/\(N m\), so that this is"),
     (lambda: wear_factor("k", "1e-9 mm^2/N"), r"1 mm\^2/N is 1000 mm\^3/\(N m\)"),
@@ -130,11 +109,17 @@ VALUES = [
     (lambda: hip(1001.0), "head_diameter = 1001 is not allowed: .* 1 mm to 1000 mm"),
     (lambda: hip(0.9), r"head_diameter = 0\.9 is not allowed: .* 1 mm to 1000 mm"),
     (lambda: hip(clearance=1000.0), "bore diameter = 2028 is not allowed"),
-    (lambda: hip(liner=inf, creep=logarithmic()), "liner_thickness = inf is not allowed: creep needs a liner of"),
-    (lambda: hip(ball_wear=Archard(coefficient=K), creep=logarithmic()), "ball_wear needs surface=Springs.. and no"),
-    (lambda: hip(ball_wear=Archard(coefficient=K), surface=bs.ClosedShell()), "ball_wear needs surface=Springs.. and"),
+    (lambda: hip(liner=inf, creep=bh.logarithmic()), "liner_thickness = inf is not allowed: creep needs a liner of"),
     (
-        lambda: hip(cycle=Cycle(name="thrown", force=thrown, angles=lambda t: np.zeros((3, len(t)))), cup=bs.Cup()),
+        lambda: hip(ball_wear=bh.Archard(coefficient=K), creep=bh.logarithmic()),
+        "ball_wear needs surface=Springs.. and no",
+    ),
+    (
+        lambda: hip(ball_wear=bh.Archard(coefficient=K), surface=bs.ClosedShell()),
+        "ball_wear needs surface=Springs.. and",
+    ),
+    (
+        lambda: hip(cycle=bh.Cycle(name="thrown", force=thrown, angles=lambda t: np.zeros((3, len(t)))), cup=bs.Cup()),
         r"dislocated at 40\.5 % of the cycle: the load of 1000 N points 90\.\d° from",
     ),
     (lambda: hip(cup=replace(TILTED, arc_of_cover=radians(50.0))), r"dislocated at .*, and the bore ends at 25\.0°"),
@@ -144,7 +129,7 @@ VALUES = [
     ),
     (
         lambda: hip(
-            cycle=iso_14242_4(50, mismatch=8.0), cup=bs.Cup(inclination=radians(80.0), arc_of_cover=radians(150.0))
+            cycle=bh.iso_14242_4(50, mismatch=8.0), cup=bs.Cup(inclination=radians(80.0), arc_of_cover=radians(150.0))
         ),
         "dislocated at .* % of the cycle",
     ),
@@ -155,26 +140,32 @@ VALUES = [
     (lambda: hip().after(1e12), r"1e\+12 cycles at the rate of the first one would wear [.\d]+e\+05 mm away"),
     # film
     *(
-        (lambda name=name: Lubricant(**{name: -1.0}), f"{name} = -1 is not allowed")
+        (lambda name=name: bh.Lubricant(**{name: -1.0}), f"{name} = -1 is not allowed")
         for name in ("ball_roughness", "cup_roughness", "viscosity", "friction")
     ),
-    (lambda: Lubricant(viscosity=0.0), "viscosity = 0 is not allowed"),
-    (lambda: Lubricant(cup_roughness=inf), "cup_roughness = inf is not allowed"),
-    (lambda: FilmLimit(ratio=-1.0), "film_limit = -1 is not allowed: a film ratio is at least 0"),
-    (lambda: FilmLimit(ratio=nan), "film_limit = nan is not allowed: a film ratio is at least 0"),
-    (lambda: FilmLimit(cycles=0), "cycles = 0"),
-    (lambda: hip(**QUICK, clearance=0.0, film_limit=FilmLimit()), "clearance = 0.* is not allowed: film_limit needs"),
+    (lambda: bh.Lubricant(viscosity=0.0), "viscosity = 0 is not allowed"),
+    (lambda: bh.Lubricant(cup_roughness=inf), "cup_roughness = inf is not allowed"),
+    (lambda: bh.FilmLimit(ratio=-1.0), "film_limit = -1 is not allowed: a film ratio is at least 0"),
+    (lambda: bh.FilmLimit(ratio=nan), "film_limit = nan is not allowed: a film ratio is at least 0"),
+    (lambda: bh.FilmLimit(cycles=0), "cycles = 0"),
+    (
+        lambda: hip(**QUICK, clearance=0.0, film_limit=bh.FilmLimit()),
+        "clearance = 0.* is not allowed: film_limit needs",
+    ),
     # cycles
-    *((lambda load=load: iso_14242_4(swing_load=load), "swing_load = .* is not allowed") for load in (0.0, -1.0, inf)),
     *(
-        (lambda number=number: Spring(stiffness=number, mismatch=4.0), "stiffness = .* is not allowed")
+        (lambda load=load: bh.iso_14242_4(swing_load=load), "swing_load = .* is not allowed")
+        for load in (0.0, -1.0, inf)
+    ),
+    *(
+        (lambda number=number: bh.Spring(stiffness=number, mismatch=4.0), "stiffness = .* is not allowed")
         for number in (0.0, inf)
     ),
     *(
-        (lambda number=number: Spring(stiffness=9.0, mismatch=number), "mismatch = .* is not allowed")
+        (lambda number=number: bh.Spring(stiffness=9.0, mismatch=number), "mismatch = .* is not allowed")
         for number in (0.0, inf)
     ),
-    (lambda: rocking(order="xx"), "rotation_order = 'xx' is not allowed"),
+    (lambda: bh.rocking(order="xx"), "rotation_order = 'xx' is not allowed"),
     *(
         (
             lambda weight=weight: check_body_weight(weight),
@@ -182,27 +173,32 @@ VALUES = [
         )
         for weight in (0.0, -1.0, 10_001.0, nan)
     ),
-    (lambda: named_cycle("jogging"), "'jogging' has loads in multiples of body weight: set body_weight"),
-    (lambda: named_cycle("two-axis", body_weight=750.0), "'two-axis' has loads in N: it does not take a body_weight"),
-    (lambda: named_cycle("walking", body_weight=-1.0), "body_weight = -1 is not allowed"),
-    (lambda: named_cycle("iso-14242"), "cycle 'iso-14242' is not known; did you mean 'iso-14242-[14]'"),
-    (lambda: in_vivo("waking", 800.0), "load 'waking' is not known; did you mean 'walking'"),
+    (lambda: bh.named_cycle("jogging"), "'jogging' has loads in multiples of body weight: set body_weight"),
     (
-        lambda: Cycle(name="own", force=lambda t: np.where(t > 0.5, nan, 1.0), angles=lambda t: np.zeros((3, len(t)))),
+        lambda: bh.named_cycle("two-axis", body_weight=750.0),
+        "'two-axis' has loads in N: it does not take a body_weight",
+    ),
+    (lambda: bh.named_cycle("walking", body_weight=-1.0), "body_weight = -1 is not allowed"),
+    (lambda: bh.named_cycle("iso-14242"), "cycle 'iso-14242' is not known; did you mean 'iso-14242-[14]'"),
+    (lambda: bh.in_vivo("waking", 800.0), "load 'waking' is not known; did you mean 'walking'"),
+    (
+        lambda: bh.Cycle(
+            name="own", force=lambda t: np.where(t > 0.5, nan, 1.0), angles=lambda t: np.zeros((3, len(t)))
+        ),
         "force.* = nan .*is not allowed: the numbers of a cycle are finite",
     ),
     (
-        lambda: Cycle(name="own", force=lambda t: 1 + 0 * t, angles=lambda t: np.full((3, len(t)), nan)),
+        lambda: bh.Cycle(name="own", force=lambda t: 1 + 0 * t, angles=lambda t: np.full((3, len(t)), nan)),
         "angle.* is not allowed",
     ),
     *(
         (lambda count=count: check_step_count(count), "n_steps = .* is not allowed: a whole number from 8 to 10000")
         for count in (7, 10_001, 72.0, True, "8", None)
     ),
-    (lambda: iso_14242_1(7), "n_steps = 7 is not allowed"),
-    (lambda: Mix(activities=()), "a mix needs at least one activity"),
-    (lambda: mix(iso_14242_4(40)), "iso-14242-4 has forces in the cup's frame, or a spring: it cannot be part"),
-    (lambda: mix(replace(WALK, frame=Frame.CUP)), "walking has forces in the cup's frame"),
+    (lambda: bh.iso_14242_1(7), "n_steps = 7 is not allowed"),
+    (lambda: bh.Mix(activities=()), "a mix needs at least one activity"),
+    (lambda: mix(bh.iso_14242_4(40)), "iso-14242-4 has forces in the cup's frame, or a spring: it cannot be part"),
+    (lambda: mix(replace(WALK, frame=bh.Frame.CUP)), "walking has forces in the cup's frame"),
     *((lambda count=count: mix(WALK, count), "per_year = .* is not allowed") for count in (0.0, -1.0, inf)),
     (lambda: TableOptions(frame="thigh"), "frame 'thigh' is not known"),
     (lambda: TableOptions(force_on="bone"), "force_on 'bone' is not known"),
@@ -227,7 +223,7 @@ VALUES = [
     (lambda: variability(body_weight=Rectangular(low=-3.0, high=1.0)), "the median of body_weight = -1 is not allowed"),
     (lambda: variability(cycles_per_year=Rectangular(low=-1.0, high=1.0)), "the median of cycles_per_year = 0 is not"),
     (
-        lambda: population(variability(clearance=TIGHT), [1e3], patients=2, method="serie"),
+        lambda: bh.population(variability(clearance=TIGHT), [1e3], patients=2, method="serie"),
         "method 'serie' is not known; did you mean 'series'",
     ),
     # measured wear
@@ -262,10 +258,10 @@ def test_values_that_are_not_allowed_are_refused(make, message):
     ("make", "message"),
     [
         *(
-            (lambda value=value: Archard(coefficient=value), "coefficient must be one number, got")
+            (lambda value=value: bh.Archard(coefficient=value), "coefficient must be one number, got")
             for value in ("1e-6", True, None, [1e-6])
         ),
-        (lambda: FilmLimit(ratio=[1.0, 2.0]), "film_limit must be one number"),
+        (lambda: bh.FilmLimit(ratio=[1.0, 2.0]), "film_limit must be one number"),
         (lambda: hip(**QUICK, film_limit=1.0), "film_limit must be a FilmLimit"),
     ],
     ids=words_of,

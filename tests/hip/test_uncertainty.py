@@ -129,14 +129,6 @@ def test_bands_for_one_coefficient_are_those_of_patients_with_it():
     assert bands.shared.values["median"] / bands.shared.values["low"] == pytest.approx(1.5**1.96, rel=1e-3)
 
 
-def test_volumes_of_few_cycles_are_proportional_to_the_shared_coefficient():
-    one = variability(coefficient=COEFFICIENT, cycles_per_year=LogNormal(median=1e6, factor=2.0))
-    run, bands = population(one, [FEW_CYCLES], patients=5)
-    volumes, own = bands.cohort.table[:, 0, 0], run.values["coefficient"]
-    for name, coefficient in bands.shared.values.items():
-        np.testing.assert_allclose(bands.shared.results[name][:, 0, 0], volumes * coefficient / own, rtol=1e-3)
-
-
 def test_there_is_no_shared_result_without_results_or_wear(monkeypatch):
     two = variability(coefficient=COEFFICIENT, clearance=TIGHT)
     sampled = {"coefficient": np.array([K, 2 * K]), "clearance": np.array([0.1, 0.1])}
