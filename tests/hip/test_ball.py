@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Archard, CustomWearLaw, Cycle, flexion, iso_14242_1, logarithmic
+from ballsocket.hip import Archard, Cycle, flexion, iso_14242_1
 from ballsocket.hip.ball_wear import ball_directions, map_counterface
 from ballsocket.reports.hip_report import write_hip_report
 
-from .test_wear import K, hip
+from .hips import K, hip, report_after
 
 COARSE = {"ring_width": radians(4.0)}
 BOTH = {"wear": Archard(coefficient=K / 2), "ball_wear": Archard(coefficient=K / 2), **COARSE}
@@ -27,8 +27,8 @@ def spinning(count=24):
 
 
 def test_ball_volume_equals_the_work_of_friction():
-    report = (
-        hip(cycle=iso_14242_1(40), wear=Archard(coefficient=K), ball_wear=Archard(coefficient=3e-7)).after(5e5).last
+    report = report_after(
+        hip(cycle=iso_14242_1(40), wear=Archard(coefficient=K), ball_wear=Archard(coefficient=3e-7)), 5e5
     )
     assert report.volume == pytest.approx(1e-3 * K * report.work, rel=1e-6)
     assert report.ball_volume == pytest.approx(1e-3 * 3e-7 * report.work, rel=1e-6)
@@ -36,8 +36,8 @@ def test_ball_volume_equals_the_work_of_friction():
 
 def test_ball_spinning_about_its_load_wears_as_the_socket():
     """And both together leave the contact as twice the wear of the socket alone does."""
-    pair = hip(cycle=spinning(), cup=bs.Cup(), **BOTH).after(2e6).last
-    alone = hip(cycle=spinning(), cup=bs.Cup(), **COARSE).after(2e6).last
+    pair = report_after(hip(cycle=spinning(), cup=bs.Cup(), **BOTH), 2e6)
+    alone = report_after(hip(cycle=spinning(), cup=bs.Cup(), **COARSE), 2e6)
     assert pair.volume == pytest.approx(pair.ball_volume, rel=1e-9)
     assert pair.ball_depth == pytest.approx(pair.depth, rel=0.02)
     assert pair.volume + pair.ball_volume == pytest.approx(alone.volume, rel=2e-3)
@@ -48,7 +48,7 @@ def test_ball_spinning_about_its_load_wears_as_the_socket():
 def test_flexion_spreads_the_wear_of_the_ball_over_its_track():
     """The load stands still on the socket, and goes to and fro on the ball."""
     use = hip(cycle=flexion(40), **BOTH)
-    report = use.after(1e6).last
+    report = report_after(use, 1e6)
     assert report.ball_volume == pytest.approx(report.volume, rel=1e-9)
     assert report.ball_depth < 0.95 * report.depth
     to_front = ball_directions(use.ball_grid)[1]
@@ -67,24 +67,6 @@ def test_ball_and_socket_have_the_same_work_in_each_instant():
     assert (found.pressure * found.sliding.distances) @ ours.areas == pytest.approx(given, rel=1e-9)
     smaller = (use.joint.socket_radius / use.joint.ball_radius) ** 2  # is the ball, under the same force
     assert found.pressure.max() == pytest.approx(smaller * use.unworn.pressure.max(), rel=2e-3)
-
-
-def test_run_with_ball_wear_resumes_from_its_checkpoint(tmp_path):
-    use = hip(cycle=iso_14242_1(20), **BOTH)
-    use.after(1e5, store=tmp_path)
-    assert use.after(2e5, store=tmp_path).last.ball_volume == pytest.approx(use.after(2e5).last.ball_volume, rel=1e-3)
-
-
-@pytest.mark.parametrize("words", [{"surface": bs.ClosedShell()}, {"creep": logarithmic()}])
-def test_ball_wear_needs_springs_without_creep(words):
-    with pytest.raises(ValueError, match="ball_wear needs surface=Springs.. and no creep law"):
-        hip(**words, **BOTH)
-
-
-def test_custom_ball_law_cannot_be_stored(tmp_path):
-    use = hip(ball_wear=CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work))
-    with pytest.raises(ValueError, match="runs with a CustomWearLaw cannot be stored"):
-        use.after(1e4, store=tmp_path)
 
 
 @pytest.mark.long

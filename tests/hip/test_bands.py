@@ -8,10 +8,10 @@ import pytest
 from ballsocket.hip.bands import Bands, SharedCoefficient
 from ballsocket.hip.uncertainty import _NominalResponse
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
-from ballsocket.studies import LogNormal, Normal, Rectangular
+from ballsocket.studies import LogNormal, Rectangular
 
+from .hips import K, hip
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
-from .test_wear import K, hip
 
 COUNTS = (1e6, 2e6)
 COLUMNS = list(RESULT_UNITS)
@@ -61,6 +61,7 @@ def test_patients_without_a_result_are_left_out():
     np.testing.assert_allclose(some.quantile("volume", 0.5), [2.0, 4.0])
     assert "3 of 5 samples have no result, most often: dislocated; the bands are for the others" in some.notes
     assert some.edge_loading(0) == 0.0
+    assert some.valid is True
     none = bands(replace(result, table=np.full_like(table, np.nan), refused=np.full(5, "x")))
     assert none.n_failed == 5
     assert np.isnan(none.quantile("volume", 0.5)).all()
@@ -101,15 +102,6 @@ def test_validity_and_utilisation_are_those_since_the_first_cycle():
     assert np.isnan(bands(result).utilisation_quantile(0.5)).all()
 
 
-def test_patients_without_a_result_do_not_make_the_bands_invalid():
-    result = cohort(3)
-    assert bands(result).valid is True
-    result.contact[1, 1, 1] = 0
-    assert bands(result).valid is False
-    refused = np.array(["", "dislocated", ""])
-    assert bands(replace(result, refused=refused)).valid is True
-
-
 def test_notes_state_assumptions_and_limits():
     result = cohort(3)
     result.table[:, -1, COLUMNS.index("depth")] = [7.9, 8.0, 8.1]  # mm; the liner has 8
@@ -119,13 +111,11 @@ def test_notes_state_assumptions_and_limits():
         "1 of 3 patients wear their liner through",
     )
     assert "patients wear" not in " ".join(bands(cohort(1), hip(liner=1e6, clearance=0.3)).notes)
-
-
-def test_the_coefficient_has_a_note_with_its_band():
     note = bands(distributions={"coefficient": LogNormal(median=1e-6, factor=2.0)}, level=0.95).notes[1]
-    assert note == (
-        "the wear coefficient is unknown, but the same for all samples: 95 % between 2.57e-07 and 3.89e-06 mm³/(N m)"
-    )
+    unknown = "the wear coefficient is unknown, but the same for all samples: "
+    assert note == f"{unknown}95 % between 2.57e-07 and 3.89e-06 mm³/(N m)"
+    assert set(bands().nominal_notes) >= set(hip().notes)
+    assert any("nominal sample, in the first cycle" in note for note in bands(use=hip(liner=1.2)).nominal_notes)
 
 
 def test_members_of_a_band_are_predictions_with_an_unknown_coefficient():
@@ -143,18 +133,10 @@ def test_the_band_of_the_patients_is_that_of_one_coefficient():
         np.testing.assert_allclose(high, factor * np.array([95.0, 190.0]))
     np.testing.assert_allclose(some.population_band("depth")[0], [2 * 1005.0, 2 * 2010.0])
     np.testing.assert_allclose(some.shared.quantile("low", "penetration", 0.5), [2050.0, 4100.0])
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (("volume", "middle"), "coefficient = 'middle' is not allowed: low, median, high"),
-        (("edge_distance",), "'edge_distance' has no band for one coefficient: volume, depth, penetration"),
-    ],
-)
-def test_an_unknown_band_is_refused(words, message):
-    with pytest.raises(ValueError, match=message):
-        bands(shared=shared()).population_band(*words)
+    with pytest.raises(ValueError, match="coefficient = 'middle' is not allowed: low, median, high"):
+        some.population_band("volume", "middle")
+    with pytest.raises(ValueError, match="'edge_distance' has no band for one coefficient: volume, depth, penetr"):
+        some.population_band("edge_distance")
     with pytest.raises(ValueError, match="with coefficient and another quantity"):
         bands().population_band("volume")
 
@@ -165,51 +147,28 @@ def test_the_summary_has_the_bands_of_every_report():
     first, second = summary["bands"]
     assert (first["cycles"], second["cycles"]) == COUNTS
     assert (first["years"], second["years"]) == pytest.approx((2.0, 4.0))
-    assert first["depth"]["low"] == pytest.approx(1005.0)
-    assert first["depth"]["median"] == 1050.0
-    assert first["depth"]["high"] == pytest.approx(1095.0)
+    assert [first["depth"][name] for name in ("low", "median", "high")] == pytest.approx([1005.0, 1050.0, 1095.0])
     assert second["volume"]["given_coefficient"]["high"] == pytest.approx({"low": 40.0, "median": 400.0, "high": 760.0})
     assert "given_coefficient" not in first["max_pressure"]
     assert summary["sobol"] is None
     assert summary["uncertainty"]["coefficient"] == {"low": 1e-7, "median": 2e-7, "high": 4e-7}
     assert summary["uncertainty"]["quick_run_off"] == {"volume": 0.01}
-    assert {name: summary["uncertainty"][name] for name in ("patients", "without_answer", "seed", "level")} == {
-        "patients": 101,
-        "without_answer": 0,
-        "seed": 7,
-        "level": 0.9,
-    }
+    counts = {name: summary["uncertainty"][name] for name in ("patients", "without_answer", "seed", "level")}
+    assert counts == {"patients": 101, "without_answer": 0, "seed": 7, "level": 0.9}
     plain = bands().summary()
     assert "years" not in plain["bands"][0]
     assert plain["uncertainty"]["coefficient"] is None
 
 
-def test_the_summary_has_the_indices_of_every_quantity():
+def test_the_summary_has_indices_and_distributions_with_angles_in_degrees():
     indices = {"first_order": np.array([[0.1, 0.9], [0.2, 0.8], [0.3, np.nan]])}
-    distributions = {"clearance": TIGHT, "tilt": Normal(mean=0.1, deviation=0.1)}
-    sobol = bands(distributions=distributions, indices=indices).summary()["sobol"]
-    assert sobol["volume"] == {"clearance": {"first_order": 0.1}, "tilt": {"first_order": 0.9}}
-    assert sobol["penetration"] == {"clearance": {"first_order": 0.3}, "tilt": {"first_order": None}}
-
-
-def test_angles_of_distributions_are_shown_in_degrees():
-    distributions = {"tilt": Rectangular(low=0.0, high=np.pi / 4), "body_weight": Normal(mean=800.0, deviation=100.0)}
-    scatter = bands(distributions=distributions).summary()["uncertainty"]["scatter"]
+    distributions = {"body_weight": WEIGHT, "tilt": Rectangular(low=0.0, high=np.pi / 4)}
+    summary = bands(distributions=distributions, indices=indices).summary()
+    assert summary["sobol"]["volume"] == {"body_weight": {"first_order": 0.1}, "tilt": {"first_order": 0.9}}
+    assert summary["sobol"]["penetration"]["tilt"] == {"first_order": None}
+    scatter = summary["uncertainty"]["scatter"]
     assert scatter["tilt"] == {"distribution": "Rectangular", "low": 0.0, "high": pytest.approx(45.0)}
     assert scatter["body_weight"] == {"distribution": "Normal", "mean": 800.0, "deviation": 100.0}
-
-
-def test_notes_of_the_nominal_patient_have_the_contact_and_the_cycle():
-    assert set(bands().nominal_notes) >= set(hip().notes)
-    thin = bands(use=hip(liner=1.2)).nominal_notes
-    assert any("nominal sample, in the first cycle" in note for note in thin)
-
-
-def test_old_names_of_the_bands_warn():
-    some = bands()
-    for old, value in {"lived": some.cohort, "without": 0, "scatter": some.variability, "off": {}}.items():
-        with pytest.warns(DeprecationWarning, match=f"Bands.{old} is deprecated"):
-            assert getattr(some, old) == value
 
 
 def test_the_response_to_the_coefficient_follows_a_power_law_exactly():

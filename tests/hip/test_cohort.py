@@ -1,13 +1,10 @@
 """Simulated patient cohorts: samples, pieces, the store and its resumption, and the table of patients."""
 
 import json
-import os
-import signal
 import subprocess
 import sys
 import time
 from dataclasses import replace
-from math import radians
 
 import numpy as np
 import pytest
@@ -22,19 +19,17 @@ from ballsocket.hip.cohort import (
     table_columns,
     write_csv,
 )
-from ballsocket.hip.variability import RESULT_UNITS, CohortResult, join_results
+from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run
+from .hips import QUICK, K, hip
 from .test_uncertainty import short_file
 from .test_variability import COEFFICIENT, FEW_CYCLES, TIGHT, WEIGHT, variability
-from .test_wear import K, hip
-
-COARSE = {"ring_width": radians(10.0)}
 
 
 def quick_variability(**distributions):
-    return variability(hip(**COARSE), **(distributions or {"clearance": TIGHT}))
+    return variability(hip(**QUICK), **(distributions or {"clearance": TIGHT}))
 
 
 def result(n_patients, value=1.0, error=""):
@@ -72,25 +67,13 @@ def test_more_patients_keep_the_first_ones():
     assert len(sample_patients(one, 1, 0)["clearance"]) == 1
 
 
-@pytest.mark.parametrize(
-    ("count", "seed", "message"),
-    [
-        (0, 0, "patients = 0 is not allowed: it must be 1 to 1000000"),
-        (1_000_001, 0, "patients = 1000001 is not allowed"),
-        (1, -1, "seed = -1 is not allowed: it must be at least 0"),
-    ],
-)
-def test_counts_and_seeds_that_are_not_allowed_are_refused(count, seed, message):
-    with pytest.raises(ValueError, match=message):
-        sample_patients(variability(clearance=TIGHT), count, seed)
-
-
-@pytest.mark.parametrize(("n_patients", "sizes"), [(1, [1]), (16, [16]), (17, [16, 1]), (40, [16, 16, 8])])
-def test_a_piece_has_sixteen_patients_or_the_last_ones(n_patients, sizes):
-    run = cohort_run(n_patients)
-    assert len(run) == n_patients
-    assert [len(run.patient_numbers(piece)) for piece in run.pieces] == sizes
-    assert [number for piece in run.pieces for number in run.patient_numbers(piece)] == list(range(n_patients))
+def test_a_piece_has_sixteen_patients_or_the_last_ones():
+    for n_patients, sizes in {1: [1], 16: [16], 17: [16, 1], 40: [16, 16, 8]}.items():
+        run = cohort_run(n_patients)
+        assert len(run) == n_patients
+        pieces = [list(run.patient_numbers(piece)) for piece in run.pieces]
+        assert [len(piece) for piece in pieces] == sizes
+        assert sum(pieces, []) == list(range(n_patients))  # noqa: RUF017
 
 
 def test_every_patient_is_simulated_in_order(monkeypatch):
@@ -113,13 +96,6 @@ def test_a_patient_without_a_result_has_its_error():
     assert np.isfinite(cohort.table[0]).all()
     assert cohort.table.shape == (3, 1, len(RESULT_UNITS))
     assert cohort.contact.shape == (3, 2, 3)
-
-
-def test_results_are_joined_in_order():
-    joined = join_results([result(2, 1.0), result(1, 5.0, "dislocated")])
-    assert joined.table[:, 0, 0].tolist() == [1.0, 1.0, 5.0]
-    assert joined.contact.shape == (3, 2, 3)
-    assert joined.refused.tolist() == ["", "", "dislocated"]
 
 
 def test_a_worker_of_another_version_is_refused():
@@ -168,7 +144,7 @@ def test_another_cohort_is_refused(tmp_path):
     others = [
         (quick_variability(coefficient=LogNormal(median=K, factor=2.0)), [FEW_CYCLES], 0),
         (replace(one, body_weight=800.0), [FEW_CYCLES], 0),
-        (variability(hip(**COARSE, clearance=0.2), coefficient=COEFFICIENT), [FEW_CYCLES], 0),
+        (variability(hip(**QUICK, clearance=0.2), coefficient=COEFFICIENT), [FEW_CYCLES], 0),
         (one, [2 * FEW_CYCLES], 0),
         (one, [FEW_CYCLES], 1),
     ]
@@ -177,11 +153,11 @@ def test_another_cohort_is_refused(tmp_path):
             cohort_store(tmp_path, *other)
 
 
-@pytest.mark.parametrize("content", [b"", b"[]", b"3", b"{}", b"\xff"], ids=range(5))
-def test_a_damaged_label_is_refused(tmp_path, content):
-    (tmp_path / "patients.json").write_bytes(content)
-    with pytest.raises(ValueError, match="patients.json is not the label of a patient cohort; delete it"):
-        cohort_store(tmp_path, quick_variability(), [FEW_CYCLES], 0)
+def test_a_damaged_label_is_refused(tmp_path):
+    for content in (b"", b"[]", b"3", b"{}", b"\xff"):
+        (tmp_path / "patients.json").write_bytes(content)
+        with pytest.raises(ValueError, match="patients.json is not the label of a patient cohort; delete it"):
+            cohort_store(tmp_path, quick_variability(), [FEW_CYCLES], 0)
 
 
 def test_a_refused_number_of_patients_leaves_no_folder(tmp_path):
@@ -190,15 +166,6 @@ def test_a_refused_number_of_patients_leaves_no_folder(tmp_path):
     with pytest.raises(ValueError, match="patients = 0 is not allowed"):
         population(one, [FEW_CYCLES], patients=0, store=store)
     assert not (tmp_path / "none").exists()
-
-
-def test_a_store_does_not_change_the_results(tmp_path):
-    one = quick_variability()
-    store = cohort_store(tmp_path, one, [FEW_CYCLES], 0)
-    plain, stored, again = (population(one, [FEW_CYCLES], patients=3, store=s)[1].cohort for s in (None, store, store))
-    for cohort in (stored, again):
-        np.testing.assert_array_equal(cohort.table, plain.table)
-        np.testing.assert_array_equal(cohort.contact, plain.contact)
 
 
 # table
@@ -234,11 +201,12 @@ def test_the_table_has_a_row_for_each_patient(tmp_path):
     assert second.split(",")[:7] == ["0.2", "30", "2000000", "12", "13", "14", ""]
 
 
+@pytest.mark.long
 def test_a_cohort_with_the_real_cup_states_its_foundation(tmp_path):
     path = short_file(tmp_path, ("[uncertainty]", '[uncertainty]\ncontact = "cup"'))
     settings = read_hip(path).uncertain
     assert settings.variability.surface == bs.RealCup()
-    on_cup = replace(settings.variability, use=hip(**COARSE), distributions={"clearance": TIGHT})
+    on_cup = replace(settings.variability, use=hip(**QUICK), distributions={"clearance": TIGHT})
     _, bands = population(on_cup, [FEW_CYCLES], patients=2)
     assert bands.n_failed == 0
     assert "the bands are for full elasticity (RealCup) on rings of 6°" in bands.notes
@@ -250,7 +218,7 @@ def test_a_cohort_with_the_real_cup_states_its_foundation(tmp_path):
 # the command
 
 
-def test_the_command_stores_every_patient(tmp_path):
+def test_the_command_stores_every_patient(tmp_path, short_film):
     file = short_file(tmp_path)
     done = run("hip", str(file), "--patients", "5", "--store", str(tmp_path / "store"), "--json")
     assert done.returncode == 0, done.stderr
@@ -260,14 +228,13 @@ def test_the_command_stores_every_patient(tmp_path):
     volumes = [float(row.split(",")[2]) for row in rows]
     answer = json.loads(done.stdout)
     assert answer["bands"][0]["volume"]["median"] == pytest.approx(np.median(volumes), rel=1e-6)
-    assert 0 < answer["uncertainty"]["quick_run_off"]["volume"] < 0.01
+    assert 0 <= answer["uncertainty"]["quick_run_off"]["volume"] < 0.01
     assert answer["valid"] is True
 
 
-def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path):
+def test_the_command_prints_bands_uncut_and_reasons_of_invalid_contacts(tmp_path, short_film):
     """In 80 columns, with springs outside the range of their formula."""
-    path = short_file(tmp_path)
-    path.write_text(path.read_text().replace('liner_thickness = "8 mm"', 'liner_thickness = "1.2 mm"'))
+    path = short_file(tmp_path, ('liner_thickness = "8 mm"', 'liner_thickness = "1.2 mm"'))
     words = "hip", str(path), "--patients", "4"
     shown = run(*words, columns=80)
     assert shown.returncode == 0, shown.stderr
@@ -294,7 +261,7 @@ def test_a_killed_cohort_resumes(tmp_path):
     while len(list(store.glob("*.npz"))) < 3:
         assert started.poll() is None
         time.sleep(0.02)
-    os.kill(started.pid, signal.SIGKILL)
+    started.kill()
     started.wait()
     times = {path.name: path.stat().st_mtime_ns for path in store.glob("*.npz")}
     assert 3 <= len(times) < 7

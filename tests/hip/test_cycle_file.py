@@ -1,7 +1,7 @@
 """Cycles in files: text tables, tables of OpenSim and OrthoLoad, and the tables [cycle] and [[activity]]."""
 
 import re
-from math import degrees, pi, radians
+from math import pi, radians
 
 import numpy as np
 import pytest
@@ -11,19 +11,21 @@ from ballsocket.hip import Frame, Mix, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import TableOptions, parse_cycle, read_cycle
 from ballsocket.hip.cycle_tables import parse_head, read_table
-from ballsocket.hip.kinematics import rotation_matrices, sliding_distance
+from ballsocket.hip.kinematics import rotation_matrices
 from ballsocket.hip.schema import CycleKeys
 
 from ..cli.command import run
-from ..places import EXAMPLES
+from .hips import TEXT, write_edited_file
 
 PHASES = np.linspace(0.0, 1.0, 201)
 ISO = iso_14242_1()
 ANGLES = np.degrees(ISO.angles(PHASES))
 FORCE = np.stack([0.1 * ISO.force(PHASES), 200 * np.sin(2 * np.pi * PHASES), ISO.force(PHASES)])
 """Force on the socket to the side, to the front and upwards."""
-UP = np.array([0.0, 0.0, 1.0])
 HEADS = "time [s],force [N],flexion [deg],adduction [deg],rotation [deg]"
+FORCE_COLUMN = r"needs either a column force \[N\], or force_x, force_y and force_z"
+TIME_COLUMN = r"a column time \[s\] or phase \[%\] is needed"
+LEFT = TableOptions(side=bs.Side.LEFT)
 
 
 # text tables
@@ -33,8 +35,7 @@ def write_table(path, change=lambda rows: rows, heads=HEADS):
     """Write the cycle of ISO 14242-1 as a table of 201 lines."""
     rows = np.column_stack([1.2 * PHASES, ISO.force(PHASES), *ANGLES])
     lines = [",".join(f"{number:.9g}" for number in row) for row in rows]
-    path.write_text("\n".join(["# a comment", heads, *change(lines)]) + "\n")
-    return path
+    return write_lines(path, f"# a comment\n{heads}", change(lines))
 
 
 def write_lines(path, heads, lines):
@@ -69,52 +70,40 @@ def test_units_of_columns_are_converted(tmp_path):
         read_cycle(path)
 
 
-@pytest.mark.parametrize(
-    ("head", "value", "expected"),
-    [
-        ("force [kN]", 2.0, 2000.0),
-        ("force [BW]", 2.0, 1500.0),
-        ("Force (N)", 2.0, 2.0),
-        ('"force [ % BW ]"', 2.0, 15.0),
-    ],
-)
-def test_units_of_force(tmp_path, head, value, expected):
-    lines = [f"{phase},{value}" for phase in range(0, 101, 10)]
-    cycle = read_cycle(write_lines(tmp_path / "load.csv", f"phase [%],{head}", lines), body_weight=750.0)
-    assert cycle.force_magnitudes == pytest.approx(expected)
-    assert cycle.duration == 1.0
-
-
-@pytest.mark.parametrize(("unit", "seconds"), [("s", 0.1), ("ms", 100.0), ("min", 0.1 / 60)])
-def test_units_of_time(tmp_path, unit, seconds):
-    lines = [f"{step * seconds:.12g},700" for step in range(11)]
-    assert read_cycle(write_lines(tmp_path / "t.csv", f"time [{unit}],force [N]", lines)).duration == pytest.approx(1.0)
+def test_units_of_force_and_time(tmp_path):
+    path = tmp_path / "load.csv"
+    forces = {"force [kN]": 2000.0, "force [BW]": 1500.0, "Force (N)": 2.0, '"force [ % BW ]"': 15.0}
+    for head, expected in forces.items():
+        write_lines(path, f"phase [%],{head}", [f"{phase},2" for phase in range(0, 101, 10)])
+        cycle = read_cycle(path, body_weight=750.0)
+        assert cycle.force_magnitudes == pytest.approx(expected)
+        assert cycle.duration == 1.0
+    for unit, seconds in {"s": 0.1, "ms": 100.0, "min": 0.1 / 60}.items():
+        lines = [f"{step * seconds:.12g},700" for step in range(11)]
+        assert read_cycle(write_lines(path, f"time [{unit}],force [N]", lines)).duration == pytest.approx(1.0)
 
 
 def test_three_components_of_the_force(tmp_path):
     heads = "phase [%],force_x [kN],force_y [kN],force_z [kN]"
     lines = [f"{100 * t},{0.1 * np.sin(2 * pi * t)},0.0,{2 + np.cos(2 * pi * t)}" for t in np.linspace(0, 1, 41)]
-    path = write_table(tmp_path / "load.csv", lambda _: lines, heads)
+    path = write_lines(tmp_path / "load.csv", heads, lines)
     cycle = read_cycle(path)
     angle = 2 * pi * cycle.phases
     expected = np.column_stack([100 * np.sin(angle), 0 * angle, 2000 + 1000 * np.cos(angle)])
     assert cycle.forces == pytest.approx(expected, abs=3.0)
-    assert degrees(abs(cycle.rotation_increments).max()) == 0
-    left = read_cycle(path, options=TableOptions(side=bs.Side.LEFT)).forces
-    assert left == pytest.approx(cycle.forces * [-1, 1, 1], abs=1e-9)
+    assert not cycle.rotation_increments.any()
+    assert read_cycle(path, options=LEFT).forces == pytest.approx(cycle.forces * [-1, 1, 1], abs=1e-9)
     on_ball = read_cycle(path, options=TableOptions(force_on="ball")).forces
     assert on_ball == pytest.approx(-cycle.forces, abs=1e-9)
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t", " ", "   "])
-@pytest.mark.parametrize("comma", [False, True])
-def test_separators_and_decimal_commas(tmp_path, separator, comma):
-    if comma and separator not in (";", "\t"):
-        pytest.skip("a decimal comma needs semicolons or tabs")
-    rows = [[10 * step + 0.5, 700.25 + 0 * step] for step in range(11)]
-    lines = [separator.join(f"{number:.2f}".replace(".", "," if comma else ".") for number in row) for row in rows]
-    cycle = read_cycle(write_lines(tmp_path / "load.txt", separator.join(["phase [%]", "force [N]"]), lines))
-    assert cycle.force_magnitudes == pytest.approx(700.25)
+def test_separators_and_decimal_commas(tmp_path, separator):
+    for point in ".," if separator in ";\t" else ".":
+        rows = [[10 * step + 0.5, 700.25] for step in range(11)]
+        lines = [separator.join(f"{number:.2f}".replace(".", point) for number in row) for row in rows]
+        cycle = read_cycle(write_lines(tmp_path / "load.txt", separator.join(["phase [%]", "force [N]"]), lines))
+        assert cycle.force_magnitudes == pytest.approx(700.25)
 
 
 def test_units_may_stand_below_the_heads(tmp_path):
@@ -127,37 +116,23 @@ def test_units_may_stand_below_the_heads(tmp_path):
     assert (table.is_opensim, table.in_degrees) == (False, None)
 
 
-@pytest.mark.parametrize(
-    ("head", "parsed"),
-    [
-        ("Force [N]", ("force", "N")),
-        ('"force_x (kN)"', ("force_x", "kN")),
-        ("  time ", ("time", None)),
-        ("phase[ % ]", ("phase", "%")),
-        ("Fx'", ("fx", None)),
-    ],
-)
-def test_heads_are_names_with_units(head, parsed):
-    assert parse_head(head) == parsed
-
-
-@pytest.mark.parametrize("head", ["", "[N]", "force [N] upwards", "2 force", "force N"])
-def test_other_heads_are_rejected(head):
-    with pytest.raises(ValueError, match="is not a name with a unit, such as 'force"):
-        parse_head(head)
+def test_heads_are_names_with_units():
+    pairs = {"Force [N]": ("force", "N"), '"force_x (kN)"': ("force_x", "kN"), "  time ": ("time", None)}
+    for head, parsed in (pairs | {"phase[ % ]": ("phase", "%"), "Fx'": ("fx", None)}).items():
+        assert parse_head(head) == parsed
+    for head in ("", "[N]", "force [N] upwards", "2 force", "force N"):
+        with pytest.raises(ValueError, match="is not a name with a unit, such as 'force"):
+            parse_head(head)
 
 
 @pytest.mark.parametrize(
-    ("change", "refused"),
+    ("change", "message"),
     [
         (
             lambda rows: [*rows[:-1], rows[100].replace(rows[100].split(",")[0], "1.2", 1)],
             r"does not close: force begins with 300 N and ends with 3000 N",
         ),
-        (
-            lambda rows: [*rows[:-1], rows[-1].replace(",25,", ",20,", 1)],
-            "does not close: flexion begins with 25° and ends with 20°",
-        ),
+        (lambda rows: [*rows[:-1], rows[-1].replace(",25,", ",20,", 1)], "flexion begins with 25° and ends with 20°"),
         (lambda rows: [*rows[:50], *rows[80:]], r"time has a gap from 0\.294 to 0\.48, 31 times the median step"),
         (lambda rows: [*rows[:7], rows[7].split(",")[0] + ",nan,0,0,0", *rows[8:]], "line 10 has 'nan' for force"),
         (lambda rows: [*rows[:7], rows[7].split(",")[0] + ",,0,0,0", *rows[8:]], "line 10 has nothing for force"),
@@ -168,24 +143,23 @@ def test_other_heads_are_rejected(head):
         (lambda rows: [], "0 lines below the heads"),
     ],
 )
-def test_tables_that_are_not_a_cycle_are_rejected(tmp_path, change, refused):
-    with pytest.raises(ValueError, match=f"walk.csv: .*{refused}"):
+def test_tables_that_are_not_a_cycle_are_rejected(tmp_path, change, message):
+    with pytest.raises(ValueError, match=f"walk.csv: .*{message}"):
         read_cycle(write_table(tmp_path / "walk.csv", change))
 
 
 def test_five_lines_are_enough_and_steps_may_differ_threefold(tmp_path):
-    assert read_cycle(write_lines(tmp_path / "a.csv", "phase [%],force [N]", [f"{25 * k},5" for k in range(5)]))
+    path = tmp_path / "a.csv"
+    assert read_cycle(write_lines(path, "phase [%],force [N]", [f"{25 * k},5" for k in range(5)]))
     times = [0, 1, 2, 3, 5.9, 7]
-    assert read_cycle(write_lines(tmp_path / "b.csv", "time [s],force [N]", [f"{t},5" for t in times])).duration == 7
+    assert read_cycle(write_lines(path, "time [s],force [N]", [f"{t},5" for t in times])).duration == 7
     times[4] = 6.1
-    with pytest.raises(
-        ValueError, match="time has a gap from 3 to 6.1, 3.1 times the median step; allowed are 3 times"
-    ):
-        read_cycle(write_lines(tmp_path / "c.csv", "time [s],force [N]", [f"{t},5" for t in times]))
+    with pytest.raises(ValueError, match="a gap from 3 to 6.1, 3.1 times the median step; allowed are 3 times"):
+        read_cycle(write_lines(path, "time [s],force [N]", [f"{t},5" for t in times]))
 
 
 @pytest.mark.parametrize(
-    ("heads", "refused"),
+    ("heads", "message"),
     [
         (HEADS.replace("force [N]", "force"), r"the column force has no unit: write 'force \[N\]'"),
         (HEADS.replace("flexion [deg]", "flexion"), r"the column flexion has no unit: write 'flexion \[deg\]'"),
@@ -193,33 +167,29 @@ def test_five_lines_are_enough_and_steps_may_differ_threefold(tmp_path):
         (HEADS.replace("[N]", "[lbf]"), "the unit 'lbf' of the column force is unknown; allowed: n, kn, %bw, bw"),
         (HEADS.replace("force", "load"), "'load' as a column is not known"),
         (HEADS.replace("flexion [deg]", "force [N]"), "the column force appears twice"),
-        (
-            "flexion [deg],force [N],adduction [deg],force_x [N],rotation [deg]",
-            r"a column time \[s\] or phase \[%\] is needed",
-        ),
-        (HEADS.replace("rotation [deg]", "phase [%]"), r"a column time \[s\] or phase \[%\] is needed, and not both"),
-        (HEADS.replace("force", "force_x"), r"needs either a column force \[N\], or force_x, force_y and force_z"),
-        (
-            "time [s],force [N],force_x [N],force_y [N],force_z [N]",
-            r"needs either a column force \[N\], or force_x, force_y and force_z",
-        ),
+        (HEADS.replace("time [s]", "force_x [N]"), TIME_COLUMN),
+        (HEADS.replace("rotation [deg]", "phase [%]"), f"{TIME_COLUMN}, and not both"),
+        (HEADS.replace("force", "force_x"), FORCE_COLUMN),
+        ("time [s],force [N],force_x [N],force_y [N],force_z [N]", FORCE_COLUMN),
     ],
 )
-def test_heads_that_are_incomplete_are_rejected(tmp_path, heads, refused):
-    with pytest.raises(ValueError, match=refused):
+def test_heads_that_are_incomplete_are_rejected(tmp_path, heads, message):
+    with pytest.raises(ValueError, match=message):
         read_cycle(write_table(tmp_path / "walk.csv", heads=heads))
 
 
 def test_angles_and_forces_beyond_a_hip_are_rejected(tmp_path):
-    lines = [f"{t:g},1000,{25 * np.cos(2 * np.pi * t):.6f}" for t in np.linspace(0, 1, 21)]
-    path = write_lines(tmp_path / "walk.csv", "time [s],force [N],flexion [rad]", lines)
+    path = tmp_path / "walk.csv"
+
+    def write(unit, force, amplitude):
+        lines = [f"{t:g},{force},{amplitude * np.cos(2 * np.pi * t):.6f}" for t in np.linspace(0, 1, 21)]
+        return write_lines(path, f"time [s],force [{unit}],flexion [rad]", lines)
+
     with pytest.raises(ValueError, match="flexion goes to 1432°; allowed are angles up to 180°: check its unit"):
-        read_cycle(path)
-    lines = [f"{t:g},2e6,{3.1 * np.cos(2 * np.pi * t):.6f}" for t in np.linspace(0, 1, 21)]
-    path = write_lines(tmp_path / "walk.csv", "time [s],force [kN],flexion [rad]", lines)
+        read_cycle(write("N", 1000, 25))
     with pytest.raises(ValueError, match=r"force goes to 2e\+09 N; allowed are forces up to 1e\+09 N"):
-        read_cycle(path)
-    assert read_cycle(write_lines(path, "time [s],force [N],flexion [rad]", lines)).largest_force == 2e6
+        read_cycle(write("kN", 2e6, 3.1))
+    assert read_cycle(write("N", 2e6, 3.1)).largest_force == 2e6
 
 
 def test_files_that_are_not_text_or_too_large_are_rejected(tmp_path):
@@ -240,10 +210,9 @@ def test_files_that_are_not_text_or_too_large_are_rejected(tmp_path):
 def opensim(path, columns, time=1.1 * PHASES, header="nRows=201\nnColumns=4\ninDegrees=yes"):
     """Write an OpenSim file, with a further column that wear does not need."""
     rows = np.column_stack([time, np.zeros(len(time)), *columns.values()])
-    heads = "\t".join(["time", "pelvis_tilt", *columns])
     lines = ["\t".join(f"{number:.9g}" for number in row) for row in rows]
-    path.write_text("\n".join([path.stem, "version=1", header, "endheader", heads, *lines]) + "\n")
-    return path
+    heads = "\t".join(["time", "pelvis_tilt", *columns])
+    return write_lines(path, f"{path.stem}\nversion=1\n{header}\nendheader\n{heads}", lines)
 
 
 def coordinates(path, side="r", **words):
@@ -260,13 +229,12 @@ def reactions(path, side="r", on="femur", frame="pelvis", force=-FORCE, **words)
     return opensim(path, {f"{name}_in_{frame}_f{axis}": axes[axis] for axis in "xyz"}, **words)
 
 
-def orthoload(path, force, separator=";", comma=True, units=True):
-    heads = ["Time", "Fx", "Fy", "Fz", "F", "Mx"]
+def orthoload(path, force, separator=";", comma=True):
+    heads = separator.join(["Time", "Fx", "Fy", "Fz", "F", "Mx"])
+    units = separator.join(["[s]", *["[N]"] * 4, "[Nm]"])
     rows = np.column_stack([PHASES, *force, np.linalg.norm(force, axis=0), 0 * PHASES])
     lines = [separator.join(f"{number:.6f}".replace(".", "," if comma else ".") for number in row) for row in rows]
-    below = [separator.join(["[s]", *["[N]"] * 4, "[Nm]"])] if units else []
-    path.write_text("\n".join(["Patient H1L, level walking", "", separator.join(heads), *below, *lines]))
-    return path
+    return write_lines(path, f"Patient H1L, level walking\n\n{heads}\n{units}", lines)
 
 
 def in_femur(force):
@@ -277,16 +245,13 @@ def in_femur(force):
 @pytest.mark.parametrize(("on", "frame"), [("femur", "pelvis"), ("pelvis", "pelvis"), ("femur", "femur")])
 def test_coordinates_and_reactions_of_opensim(tmp_path, side, on, frame):
     force = FORCE if frame == "pelvis" else in_femur(FORCE)
-    files = [
-        coordinates(tmp_path / "ik.mot", side),
-        reactions(tmp_path / "loads.sto", side, on, frame, force if on == "pelvis" else -force),
-    ]
-    cycle = read_cycle(files, 100, options=TableOptions(side=bs.Side.RIGHT if side == "r" else bs.Side.LEFT))
+    loads = reactions(tmp_path / "loads.sto", side, on, frame, force if on == "pelvis" else -force)
+    options = TableOptions(side=bs.Side.RIGHT if side == "r" else bs.Side.LEFT)
+    cycle = read_cycle([coordinates(tmp_path / "ik.mot", side), loads], 100, options=options)
     assert (cycle.name, cycle.notes) == ("ik", ())
     assert cycle.duration == pytest.approx(1.1)
-    expected = np.stack(
-        [0.1 * ISO.force_magnitudes, 200 * np.sin(2 * np.pi * ISO.phases), ISO.force_magnitudes], axis=1
-    )
+    front = 200 * np.sin(2 * np.pi * ISO.phases)
+    expected = np.stack([0.1 * ISO.force_magnitudes, front, ISO.force_magnitudes], axis=1)
     assert cycle.forces == pytest.approx(expected, abs=3.0)
     assert np.degrees(cycle.angles(PHASES)) == pytest.approx(ANGLES, abs=1e-6)
 
@@ -296,9 +261,7 @@ def test_coordinates_of_opensim_in_radians(tmp_path):
     columns = dict(zip(names, np.radians(ANGLES), strict=True))
     states = opensim(tmp_path / "states.sto", columns, header="nRows=201\ninDegrees=no")
     cycle = read_cycle([states, reactions(tmp_path / "loads.sto")])
-    assert sliding_distance(14.0, cycle.rotation_increments, UP) == pytest.approx(
-        sliding_distance(14.0, ISO.rotation_increments, UP), rel=1e-3
-    )
+    assert np.degrees(cycle.angles(PHASES)) == pytest.approx(ANGLES, abs=1e-6)
 
 
 def test_one_cycle_is_cut_out_of_a_longer_record(tmp_path):
@@ -311,8 +274,8 @@ def test_one_cycle_is_cut_out_of_a_longer_record(tmp_path):
     between = read_cycle(file, options=TableOptions(begin=0.2021, end=1.2021))
     assert between.duration == pytest.approx(1.0)
     assert between.force(np.zeros(1))[2, 0] == pytest.approx(ISO.force(np.array([0.2021]))[0], rel=1e-3)
-    assert read_cycle(file, options=TableOptions(begin=0.7)).duration == pytest.approx(1.0)
-    assert read_cycle(file, options=TableOptions(end=0.7)).duration == pytest.approx(1.0)
+    for words in ({"begin": 0.7}, {"end": 0.7}):
+        assert read_cycle(file, options=TableOptions(**words)).duration == pytest.approx(1.0)
     for begin, end in ((0.2, 3.0), (-0.4, 0.6), (1.2, 0.2)):
         with pytest.raises(ValueError, match=f"from {begin:g} to {end:g} is not allowed: time goes from -0.3 to 1.7"):
             read_cycle(file, options=TableOptions(begin=begin, end=end))
@@ -320,17 +283,16 @@ def test_one_cycle_is_cut_out_of_a_longer_record(tmp_path):
         read_cycle(file, options=TableOptions(begin=0.2, end=0.211))
 
 
-@pytest.mark.parametrize(("separator", "comma", "units"), [(";", True, True), ("\t", False, True)])
-def test_orthoload_forces_act_on_the_ball_and_rotate_with_it(tmp_path, separator, comma, units):
-    file = orthoload(tmp_path / "h1l.csv", -in_femur(FORCE), separator, comma, units)
+@pytest.mark.parametrize(("separator", "comma"), [(";", True), ("\t", False)])
+def test_orthoload_forces_act_on_the_ball_and_rotate_with_it(tmp_path, separator, comma):
+    file = orthoload(tmp_path / "h1l.csv", -in_femur(FORCE), separator, comma)
     cycle = read_cycle(file, options=TableOptions(motion=ISO))
     assert cycle.forces[:, 2] == pytest.approx(ISO.force_magnitudes, abs=3.0)
     assert cycle.forces[:, 0] == pytest.approx(0.1 * ISO.force_magnitudes, abs=3.0)
     assert "the motion is that of iso-14242-1" in cycle.notes
     assert cycle.rotations == pytest.approx(ISO.rotations, abs=0)
-    mirrored = -in_femur(FORCE) * [[-1.0], [1.0], [1.0]]
-    with_left = read_cycle(orthoload(tmp_path / "left.csv", mirrored), options=TableOptions(side=bs.Side.LEFT))
-    assert with_left.forces == pytest.approx(read_cycle(file).forces, abs=1e-3)
+    mirrored = orthoload(tmp_path / "left.csv", -in_femur(FORCE) * [[-1.0], [1.0], [1.0]])
+    assert read_cycle(mirrored, options=LEFT).forces == pytest.approx(read_cycle(file).forces, abs=1e-3)
 
 
 def test_orthoload_time_replaces_its_cycle_column(tmp_path):
@@ -354,17 +316,17 @@ def test_options_replace_frame_and_body_of_the_columns(tmp_path):
 def test_the_difference_of_the_ends_is_distributed_over_the_cycle(tmp_path):
     drifting = FORCE + np.array([[0.0], [0.0], [60.0]]) * PHASES
     file = reactions(tmp_path / "loads.sto", force=-drifting)
-    with pytest.raises(
-        ValueError, match="loads.sto: the cycle does not close: force_z begins with -300 N and ends with -360 N"
-    ):
+    with pytest.raises(ValueError, match="loads.sto: the cycle does not close: force_z begins with -300 N and ends wi"):
         read_cycle(file)
     cycle = read_cycle(file, options=TableOptions(closing=0.05))
     assert cycle.force(np.array([0.0, 1.0]))[2] == pytest.approx(330.0, rel=1e-6)
     assert cycle.forces[:, 2] == pytest.approx(ISO.force_magnitudes + 30.0, abs=3.0)
+    assert [TableOptions(closing=value).closing for value in (0.0, 0.5)] == [0.0, 0.5]
+    assert TableOptions().closing == 0.01
 
 
 @pytest.mark.parametrize(
-    ("make", "refused"),
+    ("make", "message"),
     [
         (lambda p: coordinates(p, header="nRows=201"), "the header does not state the unit of angles"),
         (
@@ -374,7 +336,7 @@ def test_the_difference_of_the_ends_is_distributed_over_the_cycle(tmp_path):
         (lambda p: coordinates(p, header="datarows 300\ninDegrees=yes"), "the header states '300' rows"),
         (lambda p: coordinates(p, "l"), "no column of the right hip, such as hip_flexion_r or hip_r_on_femur_"),
         (lambda p: reactions(p, frame="ground"), "in the ground frame: let OpenSim express it in pelvis or femur"),
-        (lambda p: coordinates(p), r"needs either a column force \[N\], or force_x, force_y and force_z"),
+        (lambda p: coordinates(p), FORCE_COLUMN),
         (lambda p: coordinates(p, time=np.sort(np.append(1.1 * PHASES[:-1], 9))), "time has a gap from"),
         (
             lambda p: opensim(p, {f"hip_r_on_{part}_in_pelvis_fx": PHASES for part in ("femur_r", "pelvis")}),
@@ -382,23 +344,20 @@ def test_the_difference_of_the_ends_is_distributed_over_the_cycle(tmp_path):
         ),
     ],
 )
-def test_opensim_files_that_are_not_a_cycle_are_rejected(tmp_path, make, refused):
-    with pytest.raises(ValueError, match=f"walk.sto: .*{refused}"):
+def test_opensim_files_that_are_not_a_cycle_are_rejected(tmp_path, make, message):
+    with pytest.raises(ValueError, match=f"walk.sto: .*{message}"):
         read_cycle(make(tmp_path / "walk.sto"))
 
 
 def test_tables_of_one_cycle_are_combined_at_the_times_of_the_first(tmp_path):
     angles = coordinates(tmp_path / "ik.mot")
-    coarse = np.linspace(-0.1, 1.3, 301)
     constant = np.tile([[0.0], [0.0], [-900.0]], 301)
-    loads = reactions(tmp_path / "a.sto", force=constant, time=coarse, header="nRows=301")
+    loads = reactions(tmp_path / "a.sto", force=constant, time=np.linspace(-0.1, 1.3, 301), header="nRows=301")
     assert read_cycle([angles, loads]).forces == pytest.approx(np.tile([0.0, 0.0, 900.0], (100, 1)))
-    short = reactions(tmp_path / "loads.sto", time=0.9 * PHASES)
-    with pytest.raises(ValueError, match="goes from 0 to 1.1, and another one only from 0 to 0.9: use from and to"):
-        read_cycle([angles, short])
-    late = reactions(tmp_path / "late.sto", time=0.1 + 1.1 * PHASES)
-    with pytest.raises(ValueError, match="goes from 0 to 1.1, and another one only from 0.1 to 1.2: use from and to"):
-        read_cycle([angles, late])
+    for time, span in ((0.9 * PHASES, "0 to 0.9"), (0.1 + 1.1 * PHASES, "0.1 to 1.2")):
+        short = reactions(tmp_path / "short.sto", time=time)
+        with pytest.raises(ValueError, match=f"goes from 0 to 1.1, and another one only from {span}: use from and to"):
+            read_cycle([angles, short])
     with pytest.raises(ValueError, match="the column flexion is in two files"):
         read_cycle([angles, angles])
     with pytest.raises(ValueError, match="has angles, so the motion of iso-14242-1 cannot be used"):
@@ -408,80 +367,40 @@ def test_tables_of_one_cycle_are_combined_at_the_times_of_the_first(tmp_path):
         read_cycle([angles, by_phase])
 
 
-@pytest.mark.parametrize(
-    ("words", "refused"),
-    [
-        ({"frame": "thigh"}, "frame 'thigh' is not known"),
-        ({"force_on": "bone"}, "force_on 'bone' is not known"),
-        ({"closing": 0.51}, "closing = 0.51 is not allowed: 0 to 0.5 of the range of a column"),
-        ({"closing": -0.01}, "closing = -0.01 is not allowed"),
-    ],
-)
-def test_options_out_of_range_are_rejected(words, refused):
-    with pytest.raises(ValueError, match=refused):
-        TableOptions(**words)
-
-
-def test_options_at_the_ends_of_their_ranges_are_allowed():
-    assert [TableOptions(closing=value).closing for value in (0.0, 0.5)] == [0.0, 0.5]
-    assert TableOptions().closing == 0.01
-
-
-def test_names_of_version_1_still_read_tables(tmp_path):
-    from ballsocket.hip import cycle_file
-
-    with pytest.warns(DeprecationWarning, match="cycle_file.Reading is deprecated: use TableOptions"):
-        reading = cycle_file.Reading(closing=0.05)
-    with pytest.warns(DeprecationWarning, match=r"'reading' of read_cycle\(\) is deprecated: use 'options'"):
-        assert read_cycle(write_table(tmp_path / "walk.csv"), reading=reading).n_steps == 100
-
-
 # [cycle] and [[activity]]
 
-TEXT = (EXAMPLES / "hip_in_use.toml").read_text(encoding="utf-8")
-ACTIVITIES = """body_weight = "750 N"
-[[activity]]
+ACTIVITIES = """[[activity]]
 name = "walking"
-instants = 40
+instants = 16
 per_year = 1e6
 [[activity]]
 name = "stairs-up"
-instants = 40
+instants = 16
 per_year = 5e4
 """
 CYCLE = TEXT[TEXT.index("[cycle]") : TEXT.index("[wear]")]
 COUNTS = "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n"
 
 
-def write_hip_file(folder, *changes, text=TEXT):
-    """Write a hip file with some of its text replaced."""
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    file = folder / "hip.toml"
-    file.write_text(text, encoding="utf-8")
-    return file
-
-
 def parsed(folder=None, **cycle):
     return parse_cycle({"cycle": cycle}, folder)
 
 
-def test_activities_in_a_hip_file(tmp_path):
-    lines = ACTIVITIES.split("\n", 1)
-    text = TEXT.replace(COUNTS, f"{lines[0]}\nyears = 2\nreport_years = [1, 2]\n").replace(CYCLE, lines[1])
-    text = text.replace("[wear]", '[wear]\nring_width = "8 deg"')
-    given = read_hip(write_hip_file(tmp_path, text=text))
-    assert isinstance(given.use.cycle, Mix)
-    assert given.use.cycle.per_year == 1.05e6
-    assert (given.cycles, given.report_at) == (2.1e6, (1.05e6, 2.1e6))
-    history = given.use.after(given.cycles, given.report_at).summary()["history"]
+def test_activities_in_a_hip_file(tmp_path, short_film):
+    years = (COUNTS, 'body_weight = "750 N"\nyears = 2\nreport_years = [1, 2]\n')
+    file = write_edited_file(tmp_path, years, (CYCLE, ACTIVITIES), ("[wear]", '[wear]\nring_width = "8 deg"'))
+    hip = read_hip(file)
+    assert isinstance(hip.use.cycle, Mix)
+    assert hip.use.cycle.per_year == 1.05e6
+    assert (hip.cycles, hip.report_at) == (2.1e6, (1.05e6, 2.1e6))
+    history = hip.use.after(hip.cycles, hip.report_at).summary()["history"]
     assert [report["years"] for report in history] == pytest.approx([1.0, 2.0])
-    printed = run("hip", str(write_hip_file(tmp_path, text=text))).stdout
+    printed = run("hip", str(file)).stdout
     assert "walking + stairs-up: slide" in printed
     assert re.search(r"^ +1 +1\.05 .*\n +2 +2\.1 ", printed, flags=re.MULTILINE)
-    shares = text.replace("per_year = 1e6", "share = 0.9").replace("per_year = 5e4", "share = 0.1")
-    mix = read_hip(write_hip_file(tmp_path, text="cycles_per_year = 2e6\n" + shares)).use.cycle
+    text = file.read_text(encoding="utf-8").replace("per_year = 1e6", "share = 0.9")
+    shares = "cycles_per_year = 2e6\n" + text.replace("per_year = 5e4", "share = 0.1")
+    mix = read_hip(write_edited_file(tmp_path, text=shares)).use.cycle
     assert mix.fractions == pytest.approx((0.9, 0.1))
     assert mix.per_year == pytest.approx(2e6)
 
@@ -491,8 +410,6 @@ def test_a_cycle_has_defaults_and_takes_instants_and_rotation_order():
     assert (cycle.n_steps, cycle.order) == (100, "xyz")
     cycle = parsed(name="iso-14242-1", instants=24, rotation_order="rotation, adduction, flexion")
     assert (cycle.n_steps, cycle.order) == (24, "zyx")
-    with pytest.raises(ValueError, match="^instants = 7 is not allowed: a whole number from 8 to 10000"):
-        parsed(name="iso-14242-1", instants=7)
 
 
 def test_body_weight_is_that_of_the_cycle_or_of_the_file():
@@ -501,96 +418,47 @@ def test_body_weight_is_that_of_the_cycle_or_of_the_file():
     assert parse_cycle(content, None).largest_force == pytest.approx(1976.0, rel=1e-6)
     content["cycle"]["body_weight"] = "900 N"
     assert parse_cycle(content, None).largest_force == pytest.approx(2223.0, rel=1e-6)
-    with pytest.raises(ValueError, match="'walking' has loads in multiples of body weight: set body_weight"):
-        parsed(name="walking")
 
 
 @pytest.mark.parametrize("name", ["iso-14242-1", "walking"])
 def test_loads_are_scaled_to_a_multiple_of_body_weight(name):
-    cycle = parsed(name=name, body_weight="800 N", times_body_weight=2.5)
-    assert cycle.largest_force == pytest.approx(2000.0, rel=1e-6)
-    for times, force in ((0.005, 4.0), (0.5, 400.0), (100, 8e4)):
+    for times, force in ((0.005, 4.0), (2.5, 2000.0), (100, 8e4)):
         scaled = parsed(name=name, body_weight="800 N", times_body_weight=times)
         assert scaled.largest_force == pytest.approx(force, rel=1e-6)
     for times in (0, -1, 101):
         with pytest.raises(
-            ValueError, match=r"times_body_weight = .* is not allowed: a load is above 0 and at most 100"
+            ValueError, match="times_body_weight = .* is not allowed: a load is above 0 and at most 100"
         ):
             parsed(name=name, body_weight="800 N", times_body_weight=times)
 
 
 def test_tables_beside_a_hip_file(tmp_path):
-    coordinates(tmp_path / "ik.mot", "l")
-    reactions(tmp_path / "loads.sto", "l")
+    files = coordinates(tmp_path / "ik.mot", "l"), reactions(tmp_path / "loads.sto", "l")
     words = {"file": ["ik.mot", "loads.sto"], "side": "left", "from": 0, "to": 1.1}
     cycle = parsed(tmp_path, **words)
-    expected = read_cycle([tmp_path / "ik.mot", tmp_path / "loads.sto"], options=TableOptions(side=bs.Side.LEFT))
-    assert cycle.forces == pytest.approx(expected.forces, abs=0)
+    assert cycle.forces == pytest.approx(read_cycle(files, options=LEFT).forces, abs=0)
     assert cycle.name == "ik"
-    for key, value in (("from", 0.5), ("to", 0.5)):
-        with pytest.raises(ValueError, match="does not close"):
-            parsed(tmp_path, **words | {key: value})
-    with pytest.raises(ValueError, match="closing = 0.6 is not allowed"):
-        parsed(tmp_path, **words | {"closing": 0.6})
-    with pytest.raises(ValueError, match="side = 'lef' is not known; did you mean 'left'"):
-        parsed(tmp_path, **words | {"side": "lef"})
+    for change, message in (
+        ({"from": 0.5}, "does not close"),
+        ({"to": 0.5}, "does not close"),
+        ({"closing": 0.6}, "closing = 0.6 is not allowed"),
+        ({"side": "lef"}, "side = 'lef' is not known; did you mean 'left'"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            parsed(tmp_path, **words | change)
 
 
-@pytest.mark.parametrize(
-    ("words", "check"),
-    [
-        ({"name": "iso-14242-4", "mismatch": "3 mm"}, lambda cycle: cycle.spring.mismatch == 3.0),
-        ({"name": "iso-14242-4", "stiffness": "80 N/mm"}, lambda cycle: cycle.spring.stiffness == 80.0),
-        ({"name": "iso-14242-4", "swing_load": "0.1 kN"}, lambda cycle: cycle.force(np.zeros(1))[0] == 100.0),
-        ({"name": "two-axis", "force": "1 kN"}, lambda cycle: abs(cycle.largest_force - 1000) < 1e-3),
-        ({"name": "biaxial-rocking", "force": "1 kN"}, lambda cycle: abs(cycle.largest_force - 1000) < 1e-3),
-        (
-            {"name": "biaxial-rocking", "amplitude": "10 deg"},
-            lambda cycle: abs(cycle.rotations[0, 2, 2] - np.cos(radians(10))) < 1e-12,
-        ),
-        ({"name": "constant-load", "force": "1 kN"}, lambda cycle: cycle.largest_force == 1000.0),
-        (
-            {"name": "constant-load", "amplitude": "10 deg"},
-            lambda cycle: abs(cycle.angles(np.zeros(1))[0, 0] - radians(10)) < 1e-15,
-        ),
-    ],
-)
-def test_parameters_of_simulators_have_units(words, check):
-    assert check(parsed(**words))
-    assert words.keys() <= set(CycleKeys.__struct_encode_fields__)
-
-
-@pytest.mark.parametrize(
-    ("changes", "refused"),
-    [
-        ([('name = "iso-14242-1"', 'name = "walking"')], "'walking' has loads in multiples of body weight"),
-        ([('name = "iso-14242-1"', 'name = "walking"\nmismatch = 4')], "'mismatch' with the name 'walking' in .cycle."),
-        ([("instants = 100", 'instants = 100\nbody_weight = "8 N"')], "'body_weight' with the name 'iso-14242-1' in"),
-        ([("instants = 100", "instants = 100\ntimes_body_weight = 2")], "times_body_weight needs a body_weight"),
-        ([(CYCLE, f"{CYCLE}[[activity]]\nname = 'walking'\n")], r"both \[cycle\] and \[\[activity\]\]: remove one"),
-        ([(CYCLE, "[activity]\nname = 'walking'\n")], r"must be an array of tables: \[\[activity\]\]"),
-        ([(CYCLE, "[[activity]]\nname = 'flexion'\n")], r"needs either per_year \(cycles a year\) or share"),
-        ([(CYCLE, "[[activity]]\nname = 'flexion'\nper_year = 2\nshare = 1\n")], "needs either per_year"),
-        (
-            [(CYCLE, "[[activity]]\nname = 'flexion'\nshare = 1\n")],
-            "share needs cycles_per_year at the top of the file",
-        ),
-        ([(CYCLE, "[[activity]]\nname = 'flexion'\nper_yaer = 1\n")], "'per_yaer' in activity.0. is not known"),
-        (
-            [(CYCLE, "[[activity]]\nper_year = 1\n")],
-            r"\[\[activity\]\] needs either a name or a file; names: iso-14242-1",
-        ),
-        ([('name = "iso-14242-1"', "file = []")], r"file = \[\] names no table"),
-        ([('name = "iso-14242-1"', 'file = [""]')], "names no table"),
-        ([('name = "iso-14242-1"', 'file = "a.csv"\nforce = "2 N"')], "'force' with a file in .cycle. is not known"),
-        ([('name = "iso-14242-1"', 'name = "iso-14242-4"\nswing_load = 0')], "swing_load = 0 is not allowed"),
-        ([("instants = 100", 'instants = 100\nbody_weight = "1 MN"')], "body_weight = 1e.06 is not allowed"),
-        ([(COUNTS, "years = 3\n")], "years needs activities with counts a year"),
-    ],
-)
-def test_cycles_that_are_incomplete_are_rejected(tmp_path, changes, refused):
-    with pytest.raises(ValueError, match=refused):
-        read_hip(write_hip_file(tmp_path, *changes))
+def test_parameters_of_simulators_have_units():
+    assert parsed(name="iso-14242-4", mismatch="3 mm").spring.mismatch == 3.0
+    assert parsed(name="iso-14242-4", stiffness="80 N/mm").spring.stiffness == 80.0
+    assert parsed(name="iso-14242-4", swing_load="0.1 kN").force(np.zeros(1))[0] == 100.0
+    for name in ("two-axis", "biaxial-rocking", "constant-load"):
+        assert parsed(name=name, force="1 kN").largest_force == pytest.approx(1000.0, abs=1e-3)
+    rocking = parsed(name="biaxial-rocking", amplitude="10 deg")
+    assert rocking.rotations[0, 2, 2] == pytest.approx(np.cos(radians(10)), abs=1e-12)
+    assert parsed(name="constant-load", amplitude="10 deg").angles(np.zeros(1))[0, 0] == pytest.approx(radians(10))
+    keys = {"mismatch", "stiffness", "swing_load", "force", "amplitude"}
+    assert keys <= set(CycleKeys.__struct_encode_fields__)
 
 
 def test_the_motion_of_a_named_cycle_is_used(tmp_path):
@@ -600,7 +468,7 @@ def test_the_motion_of_a_named_cycle_is_used(tmp_path):
     assert cycle.rotation_increments == pytest.approx(named_cycle("two-axis", 40, "zyx").rotation_increments, abs=1e-9)
     assert cycle.duration == pytest.approx(1.0)
     assert "the motion is that of two-axis" in cycle.notes
-    walking = parsed(tmp_path, **words, motion="stand-up")
-    assert walking.angles(np.zeros(1))[0, 0] == pytest.approx(radians(80.0))
-    on_ball = parsed(tmp_path, **words, force_on="socket").forces
-    assert on_ball == pytest.approx(-cycle.forces, abs=1e-9)
+    standing = parsed(tmp_path, **words, motion="stand-up")
+    assert standing.angles(np.zeros(1))[0, 0] == pytest.approx(radians(80.0))
+    on_socket = parsed(tmp_path, **words, force_on="socket").forces
+    assert on_socket == pytest.approx(-cycle.forces, abs=1e-9)

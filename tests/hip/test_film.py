@@ -1,6 +1,7 @@
 """Film, friction and the distance to the rim over a cycle."""
 
 import json
+from dataclasses import replace
 from math import radians
 
 import numpy as np
@@ -11,44 +12,44 @@ from ballsocket.hip import Cycle, Lubricant, flexion, iso_14242_1
 from ballsocket.hip.hamrock_dowson import film_thickness
 from ballsocket.lubrication.friction import Stribeck
 
-from ..extent import either
-from .test_wear import QUICK, hip
+from .hips import QUICK, hip
 
 
-def test_film_of_a_hip_is_in_the_published_range():
-    joint = bs.Joint(
-        ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.Material(young=1000.0, poisson=0.4), ball=bs.COCR
-    )
-    least, central = film_thickness(joint, np.array(2500.0), np.array(1.5), 2.5e-3)
-    assert 1e6 * least == pytest.approx(72, abs=0.5)
-    assert 1e6 * central == pytest.approx(139, abs=0.5)
+def test_formula_film_of_a_hip_is_that_of_hamrock_and_dowson():
+    joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.Material(young=1000.0, poisson=0.4))
+    force, speed, viscosity = np.array([2500.0]), np.array([1.5]), 2.5e-3
+    least, central = film_thickness(joint, force, speed, viscosity)
+    radius, modulus = 14.0 * 14.1 / 0.1, 2 * 1000.0 / (1 - 0.16)
+    u, w = 1e-6 * viscosity * speed * 14.0 / 2 / (modulus * radius), force / (modulus * radius**2)
+    assert least == pytest.approx(2.80 * radius * u**0.65 * w**-0.21, rel=1e-12)
+    assert central == pytest.approx(3.34 * radius * u**0.64 * w**-0.22, rel=1e-12)
+    assert (1e6 * least, 1e6 * central) == (pytest.approx(72, abs=0.5), pytest.approx(139, abs=0.5))  # as published
+    soft_ball = replace(joint, ball=bs.Material(young=1000.0, poisson=0.4))
+    assert film_thickness(soft_ball, force, speed, viscosity)[0] > least
+    assert np.isnan(film_thickness(replace(joint, clearance=0.0), force, speed, viscosity)).all()
 
 
-def test_film_scales_equally_with_speed_and_viscosity():
-    joint, force = hip().joint, np.array(2500.0)
-    films = [
-        film_thickness(joint, force, np.array(w), eta)[0] for w, eta in ((1.5, 2.5e-3), (1.5, 5e-3), (3.0, 2.5e-3))
-    ]
-    assert films[1] == pytest.approx(films[2], rel=1e-12)
-    assert films[1] / films[0] == pytest.approx(2**0.65, rel=1e-12)
-
-
-def test_power_of_the_moment_equals_the_friction_power():
-    use = hip()
-    film = use.film(Lubricant(friction=0.1), method="hamrock-dowson")
+def test_film_of_a_cycle_has_consistent_ratio_moment_power_and_heat():
+    use = hip(**QUICK)
+    film = use.film(Lubricant(ball_roughness=3e-5, cup_roughness=4e-5, friction=0.1), method="hamrock-dowson")
+    assert film.ratio == pytest.approx(film.least / 5e-5, rel=1e-12)
     assert 1e-3 * np.einsum("tk,tk->", film.moment, use.rotation_increments) == pytest.approx(film.heat, rel=1e-12)
-    assert film.heat == pytest.approx(0.1 * use.first.work, rel=1e-12)
-    assert film.power.mean() * use.cycle.duration == pytest.approx(film.heat, rel=1e-12)
+    assert film.heat == pytest.approx(0.1 * use.first.work, rel=1e-9)
+    assert film.heat == pytest.approx((film.power * use.cycle.seconds).sum(), rel=1e-12)
+    double = use.film(Lubricant(friction=0.2), method="hamrock-dowson")
+    assert double.moment == pytest.approx(2 * film.moment, rel=1e-12)
+    for ratio, regime in {0.99: "boundary", 1.0: "mixed", 2.99: "mixed", 3.0: "full"}.items():
+        assert replace(film, ratio=np.array([0.1, ratio])).regime == regime
 
 
 def test_json_has_the_largest_moment_vector():
     """Flexion turns about the side: so does its moment, in the cup's frame across the tilt."""
-    use = hip(cycle=flexion(72))
-    told = use.film(Lubricant(), cycles=1).summary()
-    vector = np.array(told["moment_on_cup_Nmm"])
-    assert np.linalg.norm(vector) == pytest.approx(told["moment_Nmm"], rel=1e-12)
+    use = hip(cycle=flexion(32), ring_width=radians(5.0))
+    summary = use.film(Lubricant(), cycles=1).summary()
+    vector = np.array(summary["moment_on_cup_Nmm"])
+    assert np.linalg.norm(vector) == pytest.approx(summary["moment_Nmm"], rel=1e-12)
     aside = np.array(use.placed.frame) @ [1.0, 0.0, 0.0]
-    assert abs(vector @ aside) == pytest.approx(told["moment_Nmm"], rel=0.02)
+    assert abs(vector @ aside) == pytest.approx(summary["moment_Nmm"], rel=0.02)
 
 
 def test_moment_lies_between_bounds_of_force_and_pressure():
@@ -63,13 +64,13 @@ def test_moment_lies_between_bounds_of_force_and_pressure():
 
 def test_smooth_surfaces_have_a_full_film():
     use = hip(**QUICK)
-    assert use.film(Lubricant(ball_roughness=1e-6, cup_roughness=1e-6), cycles=30).regime == "full"
-    assert use.film(Lubricant(), cycles=30).regime == "boundary"
+    assert use.film(Lubricant(ball_roughness=1e-6, cup_roughness=1e-6), cycles=8).regime == "full"
+    assert use.film(Lubricant(), cycles=8).regime == "boundary"
 
 
 def test_film_is_carried_over_the_cycle_and_compared_with_the_formula():
     use = hip(**QUICK)
-    wave, formula = use.film(cycles=30), use.film(method="hamrock-dowson")
+    wave, formula = use.film(cycles=8), use.film(method="hamrock-dowson")
     assert wave.method == "wave"
     assert wave.thickness.shape == wave.core.shape == use.unworn.pressure.shape
     assert np.isnan(wave.thickness[use.unworn.pressure == 0]).mean() > 0.9
@@ -90,8 +91,9 @@ def test_walking_refreshes_a_part_of_the_contact_and_its_core_settles():
     assert "drifts by 1.6° in a cycle and is settled, but its smallest film still falls" in film.note
 
 
+@pytest.mark.long
 def test_films_on_cells_of_several_widths_agree_within_their_stated_errors():
-    films = [hip(ring_width=radians(width)).film() for width in either((3.0, 2.0), (3.0, 2.0, 1.0))]
+    films = [hip(ring_width=radians(width)).film() for width in (3.0, 2.0, 1.0)]
     finest = films[-1]
     for film in films[:-1]:
         errors = film.error + finest.error
@@ -146,13 +148,7 @@ def test_a_still_ball_has_no_film():
         force=lambda phase: np.stack([0 * phase, 0 * phase, 1000.0 + 0 * phase]),
         angles=lambda phase: np.zeros((3, *phase.shape)),
     )
-    assert hip(cycle=still, ring_width=radians(8.0)).film().least == pytest.approx(0.0)
-
-
-@pytest.mark.parametrize("words", [{"viscosity": 0.0}, {"friction": -0.1}, {"cup_roughness": np.inf}])
-def test_invalid_lubricants_are_refused(words):
-    with pytest.raises(ValueError, match=f"{next(iter(words))} = .* is not allowed"):
-        Lubricant(**words)
+    assert hip(cycle=still, ring_width=radians(8.0)).film(cycles=3).least == pytest.approx(0.0)
 
 
 def test_edge_distance_equals_the_closed_form():
@@ -162,7 +158,7 @@ def test_edge_distance_equals_the_closed_form():
     assert use.edge_distance(use.unworn) == pytest.approx(expected, abs=0.05)
 
 
-def test_contact_at_the_rim_is_noted_with_its_instant():
+def test_contact_at_the_rim_is_noted_with_its_instant(short_film):
     history = hip(cycle=iso_14242_1(36), ring_width=radians(4.0), cup=bs.Cup(inclination=radians(60.0))).after(1e5)
     assert history.last.edge_distance.min() == 0
     note = next(note for note in history.notes if note.startswith("edge loading: in the first cycle"))
@@ -211,8 +207,8 @@ def test_edge_azimuth_follows_the_load():
         ({}, Lubricant(ball_roughness=0.0, cup_roughness=0.0), "lambda_largest"),
     ],
 )
-def test_missing_films_are_null_in_json(words, lubricant, missing):
-    told = hip(**QUICK, **words).after(1e4, lubricant=lubricant).summary()
-    assert told["film"][missing] is None
-    assert told["film"]["heat_J_per_cycle"] > 0
-    json.dumps(told, allow_nan=False)
+def test_missing_films_are_null_in_json(short_film, words, lubricant, missing):
+    summary = hip(**QUICK, **words).after(1e4, lubricant=lubricant).summary()
+    assert summary["film"][missing] is None
+    assert summary["film"]["heat_J_per_cycle"] > 0
+    json.dumps(summary, allow_nan=False)

@@ -6,16 +6,11 @@ from math import radians
 import numpy as np
 import pytest
 
-import ballsocket as bs
 from ballsocket.elasticity.off_axis.grid import even_grid, graded_grid
-from ballsocket.hip import Lubricant
 from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
-from ballsocket.hip.hamrock_dowson import film_thickness
 from ballsocket.hip.simulation import _relative_discretization_error, check_cycles
 from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, neighbours_in_subset, spring_foundation
-
-from .test_wear import QUICK, hip
 
 CELLS = graded_grid(radians(90.0), radians(6.0))
 SPRINGS = spring_foundation(CELLS, modulus=100.0, clearance=0.1, socket_radius=14.1)
@@ -129,15 +124,6 @@ def test_cells_of_the_ball_have_their_axis_to_the_front():
     assert (directions == np.stack([y, z, x])).all()
 
 
-def test_smoothing_conserves_volume_and_removes_waves_of_the_grid():
-    smooth = GridSmoothing(grid=CELLS)
-    field = np.random.default_rng(4).normal(size=(CELLS.rings, CELLS.meridians))
-    assert (smooth(field) * CELLS.areas).sum() == pytest.approx((field * CELLS.areas).sum(), rel=1e-9)
-    assert smooth(np.ones_like(field)) == pytest.approx(1.0)
-    checkerboard = (-1.0) ** np.arange(CELLS.meridians) * np.ones((CELLS.rings, 1))
-    assert abs(smooth(checkerboard)[-3]).max() < 1e-9
-
-
 @pytest.mark.parametrize(("waves", "factor"), [(0, 1.0), (6, 0.75), (9, 0.5), (12, 0.25), (18, 0.0)])
 def test_smoothing_filters_waves_around_the_equator_by_one_two_one(waves, factor):
     """[1 2 1]/4 multiplies a wave over n cells by cos²(π/n); there are 36 cells around the equator."""
@@ -172,38 +158,6 @@ def test_load_levels_interpolate_every_load_of_one_direction():
     same = interpolate_loads(np.tile([0.0, 0.0, 500.0], (40, 1)))
     assert same.loads.tolist() == [[0.0, 0.0, 500.0]]
     assert same.interpolate(same.loads) == pytest.approx(np.tile([0.0, 0.0, 500.0], (40, 1)))
-
-
-def test_film_thickness_is_that_of_hamrock_and_dowson():
-    joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.Material(young=1000.0, poisson=0.4))
-    least, central = film_thickness(joint, np.array([1000.0]), np.array([2.0]), 2.5e-3)
-    radius, modulus = 14.0 * 14.1 / 0.1, 2 * 1000.0 / (1 - 0.16)
-    speed, load = 2.5e-9 * 2.0 * 14.0 / 2 / (modulus * radius), 1000.0 / (modulus * radius**2)
-    assert least[0] == pytest.approx(2.80 * radius * speed**0.65 * load**-0.21, rel=1e-12)
-    assert central[0] == pytest.approx(3.34 * radius * speed**0.64 * load**-0.22, rel=1e-12)
-    soft_ball = replace(joint, ball=bs.Material(young=1000.0, poisson=0.4))
-    assert film_thickness(soft_ball, np.array([1000.0]), np.array([2.0]), 2.5e-3)[0][0] > least[0]
-    closed = replace(joint, clearance=0.0)
-    assert np.isnan(film_thickness(closed, np.array([1000.0]), np.array([2.0]), 2.5e-3)).all()
-
-
-def test_film_of_a_cycle_has_consistent_ratio_power_and_heat():
-    use = hip(**QUICK)
-    film = use.film(Lubricant(ball_roughness=3e-5, cup_roughness=4e-5, friction=0.1))
-    assert film.ratio == pytest.approx(film.least / 5e-5, rel=1e-12)
-    assert film.heat == pytest.approx((film.power * use.cycle.seconds[use.loaded]).sum(), rel=1e-12)
-    assert film.heat == pytest.approx(0.1 * use.first.work, rel=1e-9)
-    double = use.film(Lubricant(friction=0.2))
-    assert double.moment == pytest.approx(2 * film.moment, rel=1e-12)
-    regimes = {0.99: "boundary", 1.0: "mixed", 2.99: "mixed", 3.0: "full"}
-    for ratio, regime in regimes.items():
-        assert replace(film, ratio=np.array([0.1, ratio])).regime == regime
-
-
-@pytest.mark.parametrize("name", ["ball_roughness", "cup_roughness", "viscosity", "friction"])
-def test_lubricants_outside_their_limits_are_refused(name):
-    with pytest.raises(ValueError, match=f"{name} = -1 is not allowed"):
-        Lubricant(**{name: -1.0})
 
 
 def test_numerical_errors_follow_from_halved_steps():

@@ -1,4 +1,4 @@
-"""Resumed runs: equal to uninterrupted runs bit by bit, for every kind of run."""
+"""Resumed runs equal uninterrupted ones bit by bit, and checkpoints of other runs are refused."""
 
 import json
 import os
@@ -13,73 +13,115 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.core.storage.atomic_files import read_arrays, write_arrays
 from ballsocket.hip import Activity, Archard, Mix, in_vivo, iso_14242_1, iso_14242_4, logarithmic
+from ballsocket.hip.simulation import make_checkpoint
 
 from ..cli.command import run
-from .test_checkpoint import KilledError
-from .test_file import write_edited_file
-from .test_wear import K, hip
+from .hips import QUICK, K, hip, write_edited_file
 
 WIDE = {"ring_width": radians(9.0), "cycle": iso_14242_1(16)}
-MIX = Mix(
-    activities=(
-        Activity(cycle=in_vivo("walking", 750.0, 16), per_year=9e5),
-        Activity(cycle=in_vivo("stairs-up", 750.0, 16), per_year=1e5),
-    )
-)
-QUICK = {
-    "springs": hip(**WIDE),
-    "creep": hip(**WIDE, creep=logarithmic()),
-    "ball": hip(**WIDE, ball_wear=Archard(coefficient=K)),
-    "mix": hip(**WIDE | {"cycle": MIX}),
-    "shell": hip(**WIDE, surface=bs.ClosedShell()),
-}
-LONG = {
-    "steep cup": hip(**WIDE | {"cup": bs.Cup(inclination=radians(60.0))}),
-    "microseparation": hip(**WIDE | {"cycle": replace(iso_14242_4(), n_steps=16)}),
-    "creeping shell": hip(**WIDE, surface=bs.ClosedShell(), creep=logarithmic()),
-    "cup": hip(**WIDE, surface=bs.RealCup()),
+PARTS = {in_vivo("walking", 750.0, 16): 9e5, in_vivo("stairs-up", 750.0, 16): 1e5}
+MIX = Mix(activities=tuple(Activity(cycle=cycle, per_year=count) for cycle, count in PARTS.items()))
+KINDS = {
+    "springs": {},
+    "creep": {"creep": logarithmic()},
+    "ball": {"ball_wear": Archard(coefficient=K)},
+    "mix": {"cycle": MIX},
+    "shell": {"surface": bs.ClosedShell()},
+    "steep cup": {"cup": bs.Cup(inclination=radians(60.0))},
+    "microseparation": {"cycle": replace(iso_14242_4(), n_steps=16)},
+    "creeping shell": {"surface": bs.ClosedShell(), "creep": logarithmic()},
+    "cup": {"surface": bs.RealCup()},
 }
 CYCLES, REPORTS = 1e5, [2e4]
 
 
-def assert_same(expected, resumed):
-    """Compare every number of two histories to the last bit."""
-    assert (resumed.steps, resumed.error) == (expected.steps, expected.error)
-    for report, twin in zip(expected.reports, resumed.reports, strict=True):
-        for field in fields(report):
-            assert np.array_equal(getattr(report, field.name), getattr(twin, field.name), equal_nan=True), field.name
+class KilledError(Exception):
+    pass
 
 
 def interrupted(use, store, blocks):
-    """Run a hip that is interrupted after every few blocks, and resume it until it ends."""
+    """Run a hip that is interrupted after every few blocks, and resume it until it ends; count all blocks."""
+    total = 0
     for _ in range(200):
         blocks_left = blocks
 
         def listen(cycles):
-            nonlocal blocks_left
-            blocks_left -= 1
+            nonlocal blocks_left, total
+            blocks_left, total = blocks_left - 1, total + 1
             if blocks_left <= 0 and cycles not in (*REPORTS, CYCLES):  # there the state is stored after the report
                 raise KilledError
 
         try:
-            return replace(use).after(CYCLES, REPORTS, progress=listen, store=store)
+            return replace(use).after(CYCLES, REPORTS, progress=listen, store=store), total
         except KilledError:
             pass
     raise AssertionError("the run did not end")
 
 
-@pytest.mark.parametrize("use", QUICK.values(), ids=QUICK)
-def test_an_interrupted_run_equals_an_uninterrupted_one(use, tmp_path):
-    uninterrupted = replace(use).after(CYCLES, REPORTS)
-    assert uninterrupted.steps > 3
-    assert_same(uninterrupted, interrupted(use, tmp_path, blocks=3))
+@pytest.mark.parametrize("blocks", [3, pytest.param(1, marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "kind", [*list(KINDS)[:4], *(pytest.param(kind, marks=pytest.mark.long) for kind in list(KINDS)[4:])]
+)
+def test_an_interrupted_run_equals_an_uninterrupted_one(kind, blocks, tmp_path):
+    use = hip(**WIDE | KINDS[kind])
+    expected, (resumed, total) = replace(use).after(CYCLES, REPORTS), interrupted(use, tmp_path, blocks)
+    assert resumed.steps == expected.steps == total > 3  # no block is lost
+    assert resumed.error == expected.error
+    for report, twin in zip(expected.reports, resumed.reports, strict=True):
+        assert (type(twin.converged), type(twin.volume)) == (bool, float)
+        for field in fields(report):
+            assert np.array_equal(getattr(report, field.name), getattr(twin, field.name), equal_nan=True), field.name
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("use", (QUICK | LONG).values(), ids=QUICK | LONG)
-def test_a_run_interrupted_after_every_block_equals_an_uninterrupted_one(use, tmp_path):
-    assert_same(replace(use).after(CYCLES, REPORTS), interrupted(use, tmp_path, blocks=1))
+def test_a_finished_run_is_not_repeated_and_can_be_continued(tmp_path):
+    use, store = hip(**QUICK), tmp_path / "new" / "folder"
+    first = use.after(2e5, store=store)
+    blocks = []
+    assert use.after(2e5, progress=blocks.append, store=store).last.volume == first.last.volume
+    assert not blocks
+    longer = use.after(4e5, [2e5], store=store)
+    assert longer.reports[0].volume == first.last.volume
+    assert longer.last.volume == pytest.approx(use.after(4e5).last.volume, rel=1e-3)
+    with pytest.raises(ValueError, match="400000 cycles .*100000"):
+        use.after(4e5, [1e5], store=store)
+
+
+def test_checkpoints_of_other_runs_and_damaged_ones_are_refused(tmp_path):
+    use, path = hip(**QUICK), tmp_path / "hip_in_use.npz"
+    use.after(1e4, store=tmp_path)
+    with pytest.raises(ValueError, match="has the checkpoint of another run: another hip, cycle, law or version"):
+        hip(wear=Archard(coefficient=2 * K), **QUICK).after(1e4, store=tmp_path)
+    arrays = read_arrays(path)
+    del arrays["report_0_volume"]
+    write_arrays(path, **arrays)
+    with pytest.raises(ValueError, match="is not a checkpoint of a run"):
+        use.after(1e4, store=tmp_path)
+    for content in (b"", b"no archive", b"PK"):
+        path.write_bytes(content)
+        with pytest.raises(ValueError, match="hip_in_use.npz is not a checkpoint of a run; delete it to start again"):
+            use.after(1e4, store=tmp_path)
+
+
+def test_the_identity_depends_on_every_input_of_the_run(tmp_path):
+    use = hip()
+    others = [
+        use,
+        hip(diameter=32.0),
+        hip(clearance=0.2),
+        hip(creep=logarithmic()),
+        hip(ball_wear=Archard(coefficient=K)),
+        hip(cycle=use.cycle.scaled(1.1)),
+        replace(use, ring_width=0.06),
+        replace(use, tolerance=1e-3),
+        replace(use, seconds_per_cycle=2.0),
+        replace(use, cup=use.cup.tilted(0.1)),
+    ]
+    identities = {make_checkpoint(other, tmp_path).identity for other in others}
+    assert len(identities) == len(others)
+    assert {len(identity) for identity in identities} == {64}
+    assert make_checkpoint(replace(use), tmp_path).identity in identities
 
 
 def numbers(process):
@@ -87,21 +129,20 @@ def numbers(process):
     return {name: value for name, value in json.loads(process.stdout).items() if name != "next"}
 
 
-KILLS = int(os.environ.get("BALLSOCKET_KILLS", "20"))
+KILLS = int(os.environ.get("BALLSOCKET_KILLS", "8"))
 """Number of kills in the long form of the test."""
 
 
 @pytest.mark.long
 def test_a_process_killed_at_random_times_gives_the_same_json(tmp_path):
-    file = write_edited_file(
-        tmp_path, ("[1e6, 2e6, 5e6]", "[1e6, 2e6, 3e6, 4e6, 5e6]"), ("instants = 100", "instants = 60")
-    )
-    expected, draw = numbers(run("hip", str(file), "--json")), random.Random(20)
-    words = [sys.executable, "-m", "ballsocket", "hip", str(file), "--json", "--store"]
+    reports = ("[1e6, 2e6, 5e6]", "[1e6, 2e6, 3e6, 4e6, 5e6]")
+    file = str(write_edited_file(tmp_path, reports, ("instants = 100", "instants = 60")))
+    expected, draw = numbers(run("hip", file, "--json")), random.Random(20)
+    words = [sys.executable, "-m", "ballsocket", "hip", file, "--json", "--store"]
     begun = monotonic()
-    Popen([*words, str(tmp_path / "timed")], stdout=DEVNULL, stderr=DEVNULL).wait(120)
+    Popen([*words, str(tmp_path / "timed")], stdout=DEVNULL, stderr=DEVNULL).wait(600)
     duration, kills, number = monotonic() - begun, 0, 0
-    while kills < KILLS:
+    while kills < KILLS and number < 4 * KILLS:
         number += 1
         store = str(tmp_path / f"store{number}")
         for _ in range(6):  # each resumes what the one before has stored
@@ -113,4 +154,4 @@ def test_a_process_killed_at_random_times_gives_the_same_json(tmp_path):
                 process.kill()
                 process.wait()
                 kills += 1
-        assert numbers(run("hip", str(file), "--json", "--store", store)) == expected
+        assert numbers(run("hip", file, "--json", "--store", store)) == expected

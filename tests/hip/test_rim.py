@@ -13,7 +13,7 @@ from ballsocket.elasticity.off_axis.surfaces import ClosedShell
 from ballsocket.hip import Spring, iso_14242_1, iso_14242_4
 from ballsocket.hip.rim import Microseparation, RimDistance, SpringLoadedBall, rim_distance
 
-from .test_wear import hip
+from .hips import hip
 
 # distance to the rim
 
@@ -33,18 +33,18 @@ def distance_of(*fields, inset=0.0):
     return rim_distance(GRID, RADIUS, field, np.maximum(field, 0.0), inset)
 
 
-@pytest.mark.parametrize("half_angle", [20.0, 33.3, 47.0, 80.0])
-def test_the_distance_of_a_central_cap_is_exact(half_angle):
-    result = distance_of(cap(radians(half_angle)))
-    assert result.distance[0] == pytest.approx(RADIUS * radians(90.0 - half_angle), rel=1e-9)
-    assert result.pressure[0] == 0.0
+def test_the_distance_of_a_central_cap_is_exact():
+    half_angles = np.radians([20.0, 33.3, 47.0, 80.0])
+    result = distance_of(*map(cap, half_angles))
+    assert result.distance == pytest.approx(RADIUS * (REACH - half_angles), rel=1e-9)
+    assert result.pressure == pytest.approx(0.0, abs=0)
 
 
-@pytest.mark.parametrize("azimuth", [0.0, 40.0, -90.0, 135.0])
-def test_the_distance_of_a_tilted_cap_is_along_its_azimuth(azimuth):
-    result = distance_of(cap(radians(30.0), radians(40.0), radians(azimuth)))
-    assert result.distance[0] == pytest.approx(RADIUS * radians(20.0), abs=RADIUS * radians(0.3))
-    assert np.degrees(result.azimuth[0]) == pytest.approx(azimuth, abs=3.0)
+def test_the_distance_of_a_tilted_cap_is_along_its_azimuth():
+    azimuths = [0.0, 40.0, -90.0, 135.0]
+    result = distance_of(*(cap(radians(30.0), radians(40.0), radians(azimuth)) for azimuth in azimuths))
+    assert result.distance == pytest.approx(RADIUS * radians(20.0), abs=RADIUS * radians(0.3))
+    assert np.degrees(result.azimuth) == pytest.approx(azimuths, abs=3.0)
 
 
 def test_a_contact_at_the_rim_has_no_distance_and_the_mean_azimuth_of_its_cells():
@@ -75,15 +75,21 @@ def loading(*forces):
     )
 
 
+RIM = RimDistance(
+    distance=np.array([3.0, 0.0, 0.0, 1.0]),
+    azimuth=np.radians([10.0, 20.0, -30.0, 40.0]),
+    pressure=np.array([5.0, 1.0, 2.0, 0.0]),
+)
+
+
+def closest_approach():
+    return RIM.closest_approach(loading(900.0, 100.0, 200.0, 800.0))
+
+
 def test_the_closest_approach_is_that_of_the_largest_load_among_equals():
-    result = RimDistance(
-        distance=np.array([3.0, 0.0, 0.0, 1.0]),
-        azimuth=np.radians([10.0, 20.0, -30.0, 40.0]),
-        pressure=np.array([5.0, 1.0, 2.0, 0.0]),
-    )
-    assert result.closest_index(loading(900.0, 100.0, 200.0, 800.0)) == 2
-    assert result.closest_index(loading(900.0, 300.0, 200.0, 800.0)) == 1
-    closest = result.closest_approach(loading(900.0, 100.0, 200.0, 800.0))
+    assert RIM.closest_index(loading(900.0, 100.0, 200.0, 800.0)) == 2
+    assert RIM.closest_index(loading(900.0, 300.0, 200.0, 800.0)) == 1
+    closest = closest_approach()
     assert (closest.distance, closest.steps_at_rim, closest.pressure) == (0.0, 2, 5.0)
     assert closest.step_description == "55.0 % of the cycle"
     assert closest.location == "55.0 % of the cycle, 30° from the cup's uppermost point"
@@ -96,8 +102,6 @@ def test_the_closest_approach_is_that_of_the_largest_load_among_equals():
         "kind": "edge loading",
         "instants_edge_loaded": 2,
     }
-    with pytest.warns(DeprecationWarning, match="ClosestApproach.reaching is deprecated: use steps_at_rim"):
-        assert closest.reaching == 2
 
 
 def test_a_cycle_without_load_has_no_closest_approach():
@@ -164,8 +168,8 @@ def test_a_ball_leaves_its_bore_if_it_moves_to_the_rim_against_its_spring(mismat
     assert not spring_ball(mismatch).leaves_bore(forces).any()
 
 
-def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase():
-    use = hip(cycle=iso_14242_4(100), cup=bs.Cup(inclination=radians(45.0)))
+def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase(short_film):
+    use = hip(cycle=iso_14242_4(100), cup=bs.Cup(inclination=radians(45.0)), ring_width=radians(8.0))
     apart = use.separation
     assert (use.cycle.phases[apart.steps] > 0.6).sum() > 30
     assert apart.largest < 8.0
@@ -220,12 +224,6 @@ def test_microseparation_of_a_left_hip_mirrors_that_of_a_right_one():
     )
     assert left.separation.displacement == pytest.approx(right.separation.displacement * [1, -1, 1], abs=1e-9)
     assert left.first.volume == pytest.approx(right.first.volume, rel=1e-9)
-
-
-def test_an_unsupported_ball_is_dislocated():
-    steep = bs.Cup(inclination=radians(80.0), arc_of_cover=radians(150.0))
-    with pytest.raises(ValueError, match=r"dislocated at .* % of the cycle"):
-        hip(cycle=iso_14242_4(50, mismatch=8.0), cup=steep)
 
 
 def test_a_mismatch_moves_the_contact_towards_the_rim():

@@ -24,8 +24,8 @@ from ballsocket.hip.wear_law import CycleExposure
 from ballsocket.hip.wear_laws import WEAR_LAWS
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
+from .hips import QUICK, K, hip
 from .test_variability import TIGHT, WEIGHT, variability
-from .test_wear import QUICK, K, hip
 
 COUNTS = (3e5, 1e6)
 RATE = LogNormal(median=1.5e6, factor=1.5)

@@ -10,8 +10,8 @@ from ballsocket.hip.socket_foundation import NO_LATERAL_SPRING
 from ballsocket.hip.spring_equilibrium import load_blocks, newton_step, solve_in_blocks, spring_solver
 from ballsocket.hip.wear_integrator import WearIntegrator
 
+from .hips import QUICK, hip
 from .test_foundations import SPRINGS, TILTED
-from .test_wear import QUICK, hip
 
 WORN = np.random.default_rng(1).uniform(0.0, 0.02, len(SPRINGS.areas))
 CONTACTS = {

@@ -20,8 +20,7 @@ from ballsocket.hip import (
 from ballsocket.hip.config import read_wear_test
 from ballsocket.reports.hip_comparison import wear_fit_figure
 
-from .test_file import write_edited_file
-from .test_wear import QUICK, hip
+from .hips import QUICK, hip, write_edited_file
 
 COUNTS = [1e5, 2e5, 4e5]
 TRUE = 8e-7
@@ -96,30 +95,6 @@ def test_scatter_makes_or_widens_the_band():
     assert fit_wear_coefficient(use, broad).low == 0.0
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ({"quantity": "weight"}, "quantity 'weight' is not known"),
-        ({"rate": "final"}, "rate 'final' is not known; did you mean 'initial'"),
-        ({}, "volume needs the cycles of its values, or else the kind of its rate: initial, steady, mean"),
-        ({"cycles": [1e6, 2e6]}, "volume has 1 values and 2 cycles"),
-        ({"cycles": 1e6, "rate": "mean"}, "a rate of volume takes from and to, not cycles"),
-        ({"rate": "steady", "end": 2e6}, "a steady rate of volume needs from and to"),
-        ({"rate": "mean"}, "a mean rate of volume needs to"),
-        ({"rate": "mean", "begin": 1e6, "end": 2e6}, "a mean rate is from 0 cycles"),
-        ({"rate": "steady", "begin": 2e6, "end": 1e6}, "to = 1e.06 is not allowed"),
-        ({"rate": "initial", "end": 1e6}, "an initial rate is that of the new bore"),
-        ({"rate": "initial", "quantity": "penetration"}, "an initial rate of penetration is not defined"),
-        ({"cycles": 1e6, "values": -1.0}, "a measured wear is positive and finite"),
-        ({"cycles": 1e6, "uncertainty": 0.0}, "a standard uncertainty is positive"),
-        ({"cycles": 1e6, "begin": 1.0}, "from and to belong to a rate"),
-    ],
-)
-def test_data_that_mean_nothing_are_refused(words, message):
-    with pytest.raises(ValueError, match=message):
-        MeasuredWear(**{"quantity": "volume", "values": 38.0, **words})
-
-
 DATA = """
 [[data]]
 quantity = "volume"
@@ -150,28 +125,6 @@ def test_a_file_with_measured_wear_is_identified(tmp_path):
     assert "needs coefficient" in str(CliRunner().invoke(app, ["hip", file]).exception)
     refused = CliRunner().invoke(app, ["identify", file, "--samples", "100"])
     assert "--samples needs measurements of a contact" in str(refused.exception)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        (
-            'rate = "mean"\nto = 2e5\n',
-            "",
-            r"'38 mm\^3/Mc' is a rate: state its kind, rate = 'initial'",
-        ),
-        ("/Mc", "", r"'38 mm\^3' of a rate needs a unit such as '38 mm\^3/Mc'"),
-        ("/Mc", "/year", "is per year: state cycles_per_year at the top of the file"),
-        ("38 mm^3/Mc", "38 mm/Mc", "must be a number with a unit"),
-        ('values = "38 mm^3/Mc"\n', "", "needs its values"),
-        ('quantity = "volume"\n', "", "needs its quantity"),
-        (DATA, "", "no measured wear: add "),
-        ("volume", "volum", "quantity 'volum' is not known; did you mean 'volume'"),
-    ],
-)
-def test_files_of_measured_wear_that_mean_nothing_are_refused(tmp_path, old, new, message):
-    with pytest.raises(ValueError, match=message):
-        read_wear_test(write_edited_file(tmp_path, *CHANGES, (old, new)))
 
 
 def test_rates_per_year_and_uncertainties_have_units(tmp_path):

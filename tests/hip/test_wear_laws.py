@@ -1,7 +1,7 @@
 """Wear laws and creep laws on small exposures with depths by hand, their limits, units and JSON."""
 
+import re
 from dataclasses import FrozenInstanceError
-from math import inf, nan
 from types import SimpleNamespace
 
 import numpy as np
@@ -15,7 +15,6 @@ from ballsocket.hip import (
     FrictionEnergyWear,
     KelvinVoigtChain,
     LogarithmicCreep,
-    flexion,
 )
 from ballsocket.hip.creep_law import confinement_note
 from ballsocket.hip.creep_laws import CREEP_LAWS, read_creep_law
@@ -74,41 +73,11 @@ def test_wear_sensitivity_is_the_derivative_by_the_pressure():
     assert max_wear_sensitivity(Archard(coefficient=1e-6), exposure(pressure=0 * PRESSURE)) == 0.0
 
 
-@pytest.mark.parametrize(
-    ("law", "words", "refused"),
-    [
-        (Archard, {"coefficient": -1e-9}, "coefficient = -1e-09 is not allowed: .*at least 0, and finite"),
-        (Archard, {"coefficient": inf}, "coefficient = inf is not allowed"),
-        (Archard, {"coefficient": nan}, "coefficient = nan is not allowed"),
-        (FrictionEnergyWear, {"coefficient": 1e-6, "friction": 10.0}, "friction = 10 is not allowed: .*below 10"),
-        (FrictionEnergyWear, {"coefficient": 1e-6, "friction": -0.1}, "friction = -0.1 is not allowed"),
-        (ContactAreaWear, {"coefficient": -1.0}, "coefficient = -1 is not allowed"),
-        (CrossShear, {"straight": -1.0, "circular": 1.0}, "straight = -1 is not allowed"),
-        (CrossShear, {"straight": 1.0, "circular": -1.0}, "circular = -1 is not allowed"),
-        (CrossShear, {"straight": 1e-6, "circular": 1e-6, "exponent": -1.0}, "exponent = -1 .*above -1, and below 3"),
-        (CrossShear, {"straight": 1e-6, "circular": 1e-6, "exponent": 3.0}, "exponent = 3 is not allowed"),
-        (CrossShear, {"straight": 1e-6, "circular": 1e-6, "reference": 0.0}, "reference = 0 .*MPa.* above 0, and"),
-        (KelvinVoigtChain, {"compliances": (1e-3, -1e-3), "times": (1.0, 1.0)}, "compliances = -0.001"),
-        (KelvinVoigtChain, {"compliances": (1e-3,), "times": (inf,)}, "times = inf is not allowed"),
-        (LogarithmicCreep, {"confinement": -0.1}, "confinement = -0.1 is not allowed"),
-    ],
-)
-def test_numbers_outside_their_limits_are_refused(law, words, refused):
-    with pytest.raises(ValueError, match=refused):
-        law(**words)
-
-
 def test_limits_themselves_are_allowed_where_stated():
     assert Archard(coefficient=0.0).depth(exposure()).max() == 0
     CrossShear(straight=0.0, circular=0.0, exponent=-0.999, reference=1e-9)
     FrictionEnergyWear(coefficient=0.0, friction=0.0)
     KelvinVoigtChain(compliances=[0.0], times=np.array([1.0]), confinement=0.0)
-
-
-@pytest.mark.parametrize("value", ["1e-6", True, None, [1e-6]])
-def test_other_objects_than_numbers_are_type_errors(value):
-    with pytest.raises(TypeError, match="coefficient must be one number, got"):
-        Archard(coefficient=value)
 
 
 def test_laws_are_frozen():
@@ -133,10 +102,6 @@ def test_another_coefficient_keeps_the_other_numbers():
     assert with_coefficient(energy, 2e-5) == FrictionEnergyWear(coefficient=2e-5, friction=0.1)
     scaled = with_coefficient(CrossShear(straight=2e-6, circular=6e-6, exponent=0.5), 1e-6)
     assert (scaled.straight, scaled.circular, scaled.exponent) == pytest.approx((1e-6, 3e-6, 0.5))
-    with pytest.raises(ValueError, match="a sampled wear factor on a straight track is positive"):
-        with_coefficient(CrossShear(straight=0.0, circular=1e-6), 1e-6)
-    with pytest.raises(ValueError, match="the wear law has no coefficient"):
-        with_coefficient(CustomWearLaw(function=np.sum), 1e-6)
 
 
 def test_registered_laws_state_names_units_and_examples():
@@ -154,8 +119,6 @@ def test_registered_laws_state_names_units_and_examples():
         "mm³/(N m)",
     ]
     assert set(law_keys(WEAR_LAWS)) == {"coefficient", "friction", "circular", "exponent", "reference"}
-    with pytest.raises(KeyError, match="wear law 'archart' is not known; did you mean 'archard'"):
-        WEAR_LAWS["archart"]
 
 
 EXAMPLES = {
@@ -189,8 +152,6 @@ def test_laws_are_read_with_their_units():
     assert read_ball_law(table) is None
     ball = read_ball_law({**table, "ball_coefficient": "3 mm^3/MJ"})
     assert (ball.name, ball.coefficient, ball.friction) == ("energy", pytest.approx(3e-6), 0.1)
-    with pytest.raises(ValueError, match="ball_coefficient is not allowed with the law 'cross-shear'; it belongs to"):
-        read_ball_law({"law": "cross-shear", "coefficient": 1e-6, "circular": 1e-6, "ball_coefficient": 1e-6})
     assert (wear_factor("k", 1), wear_per_energy("e", 2), wear_per_slide("C", "3 mm/m")) == (1, 2, pytest.approx(3e-3))
 
 
@@ -198,61 +159,11 @@ def test_the_creep_law_follows_from_its_keys():
     assert read_creep_law({}, 0.4) == LogarithmicCreep()
     chain = read_creep_law({"compliances": [1e-3], "times": [60], "confinement": "constrained"}, 0.4)
     assert (chain.compliances, chain.times, chain.confinement) == ((1e-3,), (60.0,), pytest.approx(7 / 15))
-    assert confinement_note(chain, 0.4) == (
-        "creep strain is 0.467 of that of a free bar: the liner is laterally constrained"
+    note = re.fullmatch(
+        "creep strain is ([0-9.]+) of that of a free bar: the liner is laterally constrained",
+        confinement_note(chain, 0.4),
     )
+    assert float(note[1]) == pytest.approx(7 / 15, abs=1e-3)
     assert "is 0.47 of that" in confinement_note(LogarithmicCreep(), 0.4)
     assert confinement_note(LogarithmicCreep(), 0.0) == confinement_note(LogarithmicCreep(), -0.2) == ""
     assert "is 0 of that" in confinement_note(LogarithmicCreep(), 0.5)
-
-
-def test_old_names_of_laws_warn_and_work():
-    from ballsocket.hip import AreaLaw, EnergyLaw, InUse, Ladder, OwnLaw, wear_laws
-
-    assert (AreaLaw, EnergyLaw, Ladder) == (ContactAreaWear, FrictionEnergyWear, KelvinVoigtChain)
-    assert InUse.__name__ == "HipSimulation"
-    with pytest.warns(DeprecationWarning, match="'of' .* is deprecated: use 'function'"):
-        law = OwnLaw(of=np.sum)
-    with pytest.warns(DeprecationWarning, match="of is deprecated: use function"):
-        assert law.of is np.sum
-    with pytest.warns(DeprecationWarning, match="AreaLaw is deprecated: use ContactAreaWear"):
-        assert wear_laws.AreaLaw is ContactAreaWear
-    with pytest.warns(DeprecationWarning, match="advanced is deprecated: use advance_strain"):
-        assert KelvinVoigtChain.advanced.__wrapped__ is KelvinVoigtChain.advance_strain
-    from ballsocket.hip.coefficients import wear_factor as moved
-
-    assert moved is wear_factor
-
-
-def test_old_names_of_simulations_warn_and_work():
-    from ballsocket.hip.history import NumericalError
-
-    with pytest.warns(DeprecationWarning, match="First is deprecated"):
-        from ballsocket.hip.first import First
-    with pytest.warns(DeprecationWarning, match="Error is deprecated: use NumericalError"):
-        from ballsocket.hip.history import Error
-    from ballsocket.hip.set_up import HipSetup
-    from ballsocket.hip.use import HipSimulation
-
-    from .test_wear import hip
-
-    assert issubclass(HipSimulation, HipSetup)
-    assert Error is NumericalError
-    use, seen = hip(ring_width=0.15, cycle=flexion(8)), []
-    assert isinstance(use.first, First)
-    renamed = {"rest": "solve_equilibrium", "bed": "foundation", "halved": "discretization_error"}
-    for old, new in {
-        **renamed,
-        "tether": "lateral_stiffness",
-        "moved": "side_cycle",
-        "largest": "largest_load_index",
-    }.items():
-        with pytest.warns(DeprecationWarning, match=f"{old} is deprecated: use {new}"):
-            value = getattr(use, old)
-        assert np.array_equal(value, getattr(use, new))
-    with pytest.warns(DeprecationWarning, match="argument 'listen' of after.* is deprecated: use 'progress'"):
-        report = use.after(1e4, listen=seen.append).last
-    assert seen[-1] == 1e4
-    for old, new in {"worn_in": "wear_displacement", "crept_in": "creep_displacement", "settled": "converged"}.items():
-        with pytest.warns(DeprecationWarning, match=f"{old} is deprecated: use {new}"):
-            assert np.array_equal(getattr(report, old), getattr(report, new))

@@ -1,0 +1,131 @@
+"""A new cycle and new laws, as docs/contributing describes them, in a copy of the package."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+import ballsocket as bs
+
+from ..places import CONTRIBUTING
+
+HIP = """
+joint = "hip-28"
+cycles = 1e4
+report_at = []
+[cycle]
+name = "pendulum"
+force = "1.5 kN"
+instants = 20
+[cup]
+tilt = "30 deg"
+[wear]
+law = "threshold"
+coefficient = "1e-6 mm^3/(N m)"
+threshold = "0.5 MPa"
+ring_width = "8 deg"
+[creep]
+law = "exponential"
+compliance = 1e-3
+time = 3600.0
+"""
+UNCERTAINTY = '[uncertainty]\ncoefficient = {median = "1e-6 mm^3/(N m)", factor = 1.5}\ncount = 4\n'
+PYTHON = """
+import ballsocket as bs
+from ballsocket.hip import InUse, iso_14242_1, named_cycle
+from ballsocket.hip.exponential_creep import ExponentialCreep
+from ballsocket.hip.file import read_hip
+from ballsocket.hip.threshold_wear import ThresholdWear
+
+law, creep = ThresholdWear(coefficient=1e-6, threshold=0.5), ExponentialCreep(compliance=1e-3, time=3600.0)
+assert abs(creep.response(3600.0) / 0.632121e-3 - 1) < 1e-5
+use = InUse(joint=bs.joints["hip-28"], cycle=iso_14242_1(12), wear=law, creep=creep)
+assert 0 < use.first.volume < 40
+hip = read_hip("uncertain.toml")
+assert (hip.use.wear, hip.use.creep) == (law, creep)
+assert hip.uncertain.scatter.patient({"coefficient": 2e-6}).use.wear == ThresholdWear(coefficient=2e-6, threshold=0.5)
+cycle = named_cycle("pendulum", 40, force=1000.0)
+assert cycle.largest_force == 1000.0
+assert abs(abs(cycle.rotation_increments[:, 0]).sum() / 4 / 0.4 - 1) < 1e-2
+"""
+EXPLORER = """
+from ballsocket.app.state.use import CHOICES, hip_of, use_of, use_pairs
+from ballsocket.app.state.screen import Screen
+from ballsocket.app.views.wear.view import Wear
+from ballsocket.files.joint_file import JointFile
+assert "pendulum" in CHOICES["cycle"]
+settings = use_of({"law": "threshold", "threshold": "0.25", "creep": "exponential", "creep_time": "60"})
+assert use_of({name.partition(".")[2]: text for name, text in use_pairs(settings)}) == settings
+screen = Screen(file=JointFile(joint=bs.joints["hip-28"], load={"force": 1000.0}), use=settings)
+worn = hip_of(screen.file, settings)
+assert (worn.wear.threshold, worn.creep.time, worn.creep.compliance) == (0.25, 60.0, 1e-3)
+hidden = {setting.key: setting.field(screen).get("hidden", False) for setting in Wear.settings}
+assert (hidden["threshold"], hidden["creep_time"], hidden["circular"]) == (False, False, True)
+"""
+ADDED = {
+    "cycle": ("pendulum", "cycle_registry", "PENDULUM", "from .simulator_cycles", "    *IN_VIVO_CYCLES,\n"),
+    "wear_law": ("threshold_wear", "wear_laws", "ThresholdWear", "from .law_fields", "    CrossShear,\n"),
+    "creep_law": ("exponential_creep", "creep_laws", "ExponentialCreep", "from .law_fields", "    KelvinVoigtChain,\n"),
+}
+"""Page, new module, registry, new name, and the lines of the registry before which it is imported and listed."""
+
+
+@pytest.fixture(scope="module")
+def package(tmp_path_factory):
+    """Copy the package into a folder with hip files, and add the code of the pages with two lines in a registry."""
+    folder = tmp_path_factory.mktemp("added")
+    room = folder / "ballsocket" / "hip"
+    shutil.copytree(Path(bs.__file__).parent, room.parent, ignore=shutil.ignore_patterns("__pycache__"))
+    for page, (module, registry, name, before_import, entry) in ADDED.items():
+        text = (CONTRIBUTING / f"{page}.md").read_text("utf-8")
+        code = re.search(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)[1]
+        assert code.count("\n") <= 21
+        (room / f"{module}.py").write_text(code, "utf-8")
+        text = (room / f"{registry}.py").read_text("utf-8")
+        for old, new in {
+            before_import: f"from .{module} import {name}\n{before_import}",
+            entry: f"{entry}    {name},\n",
+        }.items():
+            assert old in text
+            text = text.replace(old, new, 1)
+        (room / f"{registry}.py").write_text(text, "utf-8")
+    (folder / "hip.toml").write_text(HIP, "utf-8")
+    (folder / "uncertain.toml").write_text(HIP + UNCERTAINTY, "utf-8")
+    return folder
+
+
+def run(package, *words):
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    process = subprocess.run(
+        [sys.executable, "-W", "error::DeprecationWarning:ballsocket", *words],
+        cwd=package,
+        capture_output=True,
+        encoding="utf-8",
+        check=False,
+        env={**environment, "PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"},
+    )
+    assert process.returncode == 0, process.stderr
+    return process.stdout
+
+
+@pytest.mark.long
+def test_a_new_cycle_and_new_laws_work_in_python_files_uncertainty_and_explorer(package):
+    run(package, "-c", PYTHON + (EXPLORER if find_spec("tornado") else ""))
+
+
+@pytest.mark.long
+def test_a_new_cycle_and_new_laws_work_on_the_command_line_and_in_json(package):
+    answer = json.loads(run(package, "-m", "ballsocket", "hip", "hip.toml", "--json"))
+    assert answer["laws"]["wear"] == {"law": "threshold", "coefficient_mm3_per_Nm": 1e-6, "threshold_MPa": 0.5}
+    assert answer["laws"]["creep"] == {"law": "exponential", "compliance_per_MPa": 1e-3, "time_s": 3600.0}
+    assert answer["history"][-1]["creep_depth"] > 0
+    assert 0 < answer["initial"]["wear_mm3_per_Mc"] < 40
+    assert answer["cycle"]["name"] == "pendulum"
+    assert answer["cycle"]["peaks"]["force_N"] == pytest.approx(1500.0)
+    assert answer["cycle"]["slide_mm"] == pytest.approx(4 * 14.0 * 0.4, rel=2e-3)

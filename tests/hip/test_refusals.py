@@ -1,0 +1,440 @@
+"""Values, files and command lines of hips that are refused, each with its message."""
+
+import re
+from dataclasses import replace
+from math import inf, nan, pi, radians
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket import hip as bh
+from ballsocket.hip.cohort import sample_patients
+from ballsocket.hip.config import read_hip, read_wear_test
+from ballsocket.hip.creep_law import constrained_share
+from ballsocket.hip.cycle import check_step_count
+from ballsocket.hip.cycle_file import TableOptions
+from ballsocket.hip.in_vivo import check_body_weight
+from ballsocket.hip.wear_law import wear_factor, with_coefficient
+from ballsocket.hip.wear_laws import WEAR_LAWS, read_ball_law, read_wear_law
+from ballsocket.studies import LogNormal, Rectangular
+
+from ..cli.command import run
+from .hips import QUICK, SHORT, TEXT, TILTED, K, hip, history, write_edited_file
+from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
+
+CUSTOM = bh.CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
+WALK, STAIRS = (bh.in_vivo(name, 750.0, 16) for name in ("walking", "stairs-up"))
+
+
+def mix(cycle, count=1.0):
+    return bh.Mix(activities=(bh.Activity(cycle=cycle, per_year=count),))
+
+
+def custom(function):
+    return hip(wear=bh.CustomWearLaw(function=function), **QUICK).after(1e4)
+
+
+def thrown(phases):
+    """Force whose direction leaves a hemisphere."""
+    angle = radians(95.0) * np.sin(pi * phases)
+    return 1000.0 * np.stack([-np.sin(angle), 0 * phases, np.cos(angle)])
+
+
+def measured(**words):
+    return bh.MeasuredWear(**{"quantity": "volume", "values": 38.0, **words})
+
+
+def patient(**values):
+    rates = LogNormal(median=1e6, factor=2.0)
+    variable = variability(body_weight=WEIGHT, coefficient=COEFFICIENT, cycles_per_year=rates)
+    return variable.patient(values)
+
+
+def bands_of(count=2, seed=0):
+    return bh.uncertainty(variability(clearance=TIGHT), history(hip(**QUICK), 1e4), count=count, seed=seed)
+
+
+VALUES = [
+    # wear and creep laws
+    (lambda: bh.Archard(coefficient=-1e-9), "coefficient = -1e-09 is not allowed: .*at least 0, and finite"),
+    (lambda: bh.Archard(coefficient=inf), "coefficient = inf is not allowed"),
+    (lambda: bh.Archard(coefficient=nan), "coefficient = nan is not allowed"),
+    (lambda: bh.FrictionEnergyWear(coefficient=1e-6, friction=10.0), "friction = 10 is not allowed: .*below 10"),
+    (lambda: bh.FrictionEnergyWear(coefficient=1e-6, friction=-0.1), "friction = -0.1 is not allowed"),
+    (lambda: bh.ContactAreaWear(coefficient=-1.0), "coefficient = -1 is not allowed"),
+    (lambda: bh.CrossShear(straight=-1.0, circular=1.0), "straight = -1 is not allowed"),
+    (lambda: bh.CrossShear(straight=1.0, circular=-1.0), "circular = -1 is not allowed"),
+    (lambda: bh.CrossShear(straight=1, circular=1, exponent=-1.0), "exponent = -1 .*above -1, and below 3"),
+    (lambda: bh.CrossShear(straight=1, circular=1, exponent=3.0), "exponent = 3 is not allowed"),
+    (lambda: bh.CrossShear(straight=1, circular=1, reference=0.0), "reference = 0 .*MPa.* above 0, and"),
+    (lambda: with_coefficient(bh.CrossShear(straight=0.0, circular=1e-6), 1e-6), "on a straight track is positive"),
+    (lambda: with_coefficient(CUSTOM, 1e-6), "the wear law has no coefficient"),
+    (lambda: custom(lambda cycle: np.nan * cycle.work), "returned a depth of nan mm"),
+    (lambda: custom(lambda cycle: -1e-9 * cycle.work - 1e-9), "a depth of -.* mm: a depth is at least 0, and finite"),
+    (lambda: custom(lambda cycle: 1e-9), r"returned depths of shape \(\); the points need \(\d+,\)"),
+    (
+        lambda: bh.KelvinVoigtChain(compliances=(1e-3,), times=(1.0, 2.0)),
+        "as many compliances as times, .* got 1 .* and",
+    ),
+    (lambda: bh.KelvinVoigtChain(compliances=(), times=()), "at least one, got 0"),
+    (lambda: bh.KelvinVoigtChain(compliances=(1e-3, -1e-3), times=(1.0, 1.0)), "compliances = -0.001 is not allowed"),
+    (lambda: bh.KelvinVoigtChain(compliances=(1e-3,), times=(0.0,)), "times = 0 is not allowed"),
+    (lambda: bh.KelvinVoigtChain(compliances=(1e-3,), times=(inf,)), "times = inf is not allowed"),
+    (lambda: bh.LogarithmicCreep(confinement=-0.1), "confinement = -0.1 is not allowed"),
+    (lambda: bh.LogarithmicCreep(confinement=1.5), "confinement = 1.5 is not allowed"),
+    (lambda: constrained_share(0.6), "poisson = 0.6 is not allowed"),
+    (lambda: wear_factor("k", "1e-9 mm3/Nmm"), r"is for mm of sliding: .* is 1000 mm\^3/\(N m\), so that this is"),
+    (lambda: wear_factor("k", "1e-9 mm^2/N"), r"1 mm\^2/N is 1000 mm\^3/\(N m\)"),
+    (lambda: wear_factor("k", "1e-9 mm^3/(kN m)"), r"for another length of sliding|is 0.001 mm\^3/\(N m\)"),
+    (lambda: wear_factor("k", "1 kg"), "has the wrong unit"),
+    (lambda: wear_factor("k", "1e-6 __import__"), "is not a coefficient, such as"),
+    (lambda: wear_factor("k", "much"), "is not a coefficient, such as"),
+    (lambda: wear_factor("k", True), "is not a coefficient, such as"),
+    (lambda: wear_factor("k", "-1e-6 mm^3/(N m)"), "k = -1e-06 is not allowed"),
+    (lambda: wear_factor("k", nan), "k = nan is not allowed"),
+    (
+        lambda: read_ball_law({"law": "cross-shear", "coefficient": 1, "circular": 1, "ball_coefficient": 1}),
+        "ball_coefficient is not allowed with the law 'cross-shear'; it belongs to",
+    ),
+    (lambda: read_wear_law({"material": "pom"}), "no published wear factor of 'pom' is known here: state coefficient"),
+    (lambda: read_wear_law({"material": "uhmwp"}), "material 'uhmwp' is not known; did you mean 'uhmwpe'"),
+    (lambda: read_wear_law({"material": "uhmwpe", "coefficient": 1e-6}), "material and coefficient exclude each other"),
+    (lambda: read_wear_law({"material": "uhmwpe", "law": "energy"}), "material gives the wear factor of the law"),
+    # hips
+    (lambda: hip(ring_width=3.0), "ring_width = 3 is not allowed: 0.5 to 10 degrees"),
+    (lambda: hip(tolerance=0.0), "tolerance = 0 is not allowed"),
+    (lambda: hip(clearance=np.array([0.1, 0.2])), "joint must have single numbers"),
+    (lambda: hip(2.8e7), r"head_diameter = 2\.8e\+07 is not allowed: .* 1 mm to 1000 mm"),
+    (lambda: hip(1001.0), "head_diameter = 1001 is not allowed: .* 1 mm to 1000 mm"),
+    (lambda: hip(0.9), r"head_diameter = 0\.9 is not allowed: .* 1 mm to 1000 mm"),
+    (lambda: hip(clearance=1000.0), "bore diameter = 2028 is not allowed"),
+    (lambda: hip(liner=inf, creep=bh.logarithmic()), "liner_thickness = inf is not allowed: creep needs a liner of"),
+    (
+        lambda: hip(ball_wear=bh.Archard(coefficient=K), creep=bh.logarithmic()),
+        "ball_wear needs surface=Springs.. and no",
+    ),
+    (
+        lambda: hip(ball_wear=bh.Archard(coefficient=K), surface=bs.ClosedShell()),
+        "ball_wear needs surface=Springs.. and",
+    ),
+    (
+        lambda: hip(cycle=bh.Cycle(name="thrown", force=thrown, angles=lambda t: np.zeros((3, len(t)))), cup=bs.Cup()),
+        r"dislocated at 40\.5 % of the cycle: the load of 1000 N points 90\.\d° from",
+    ),
+    (lambda: hip(cup=replace(TILTED, arc_of_cover=radians(50.0))), r"dislocated at .*, and the bore ends at 25\.0°"),
+    (
+        lambda: hip(cycle=mix(STAIRS), cup=bs.Cup(arc_of_cover=radians(60.0), inclination=radians(45.0))),
+        r"dislocated at \d\.\d % of stairs-up",
+    ),
+    (
+        lambda: hip(
+            cycle=bh.iso_14242_4(50, mismatch=8.0), cup=bs.Cup(inclination=radians(80.0), arc_of_cover=radians(150.0))
+        ),
+        "dislocated at .* % of the cycle",
+    ),
+    (lambda: hip().after(0.0), "cycles = 0 is not allowed"),
+    (lambda: hip().after(nan), "cycles = nan"),
+    (lambda: hip().after(1e6, [2e6]), "report_at = 2e.06 is not allowed"),
+    (lambda: hip().after(5.0, [-1]), "report_at = -1 is not allowed"),
+    (lambda: hip().after(1e12), r"1e\+12 cycles at the rate of the first one would wear [.\d]+e\+05 mm away"),
+    # film
+    *(
+        (lambda name=name: bh.Lubricant(**{name: -1.0}), f"{name} = -1 is not allowed")
+        for name in ("ball_roughness", "cup_roughness", "viscosity", "friction")
+    ),
+    (lambda: bh.Lubricant(viscosity=0.0), "viscosity = 0 is not allowed"),
+    (lambda: bh.Lubricant(cup_roughness=inf), "cup_roughness = inf is not allowed"),
+    (lambda: bh.FilmLimit(ratio=-1.0), "film_limit = -1 is not allowed: a film ratio is at least 0"),
+    (lambda: bh.FilmLimit(ratio=nan), "film_limit = nan is not allowed: a film ratio is at least 0"),
+    (lambda: bh.FilmLimit(cycles=0), "cycles = 0"),
+    (
+        lambda: hip(**QUICK, clearance=0.0, film_limit=bh.FilmLimit()),
+        "clearance = 0.* is not allowed: film_limit needs",
+    ),
+    # cycles
+    *(
+        (lambda load=load: bh.iso_14242_4(swing_load=load), "swing_load = .* is not allowed")
+        for load in (0.0, -1.0, inf)
+    ),
+    *(
+        (lambda number=number: bh.Spring(stiffness=number, mismatch=4.0), "stiffness = .* is not allowed")
+        for number in (0.0, inf)
+    ),
+    *(
+        (lambda number=number: bh.Spring(stiffness=9.0, mismatch=number), "mismatch = .* is not allowed")
+        for number in (0.0, inf)
+    ),
+    (lambda: bh.rocking(order="xx"), "rotation_order = 'xx' is not allowed"),
+    *(
+        (
+            lambda weight=weight: check_body_weight(weight),
+            "body_weight = .* is not allowed: a body weight is above 0 and at most 10000 N",
+        )
+        for weight in (0.0, -1.0, 10_001.0, nan)
+    ),
+    (lambda: bh.named_cycle("jogging"), "'jogging' has loads in multiples of body weight: set body_weight"),
+    (
+        lambda: bh.named_cycle("two-axis", body_weight=750.0),
+        "'two-axis' has loads in N: it does not take a body_weight",
+    ),
+    (lambda: bh.named_cycle("walking", body_weight=-1.0), "body_weight = -1 is not allowed"),
+    (lambda: bh.named_cycle("iso-14242"), "cycle 'iso-14242' is not known; did you mean 'iso-14242-[14]'"),
+    (lambda: bh.in_vivo("waking", 800.0), "load 'waking' is not known; did you mean 'walking'"),
+    (
+        lambda: bh.Cycle(
+            name="own", force=lambda t: np.where(t > 0.5, nan, 1.0), angles=lambda t: np.zeros((3, len(t)))
+        ),
+        "force.* = nan .*is not allowed: the numbers of a cycle are finite",
+    ),
+    (
+        lambda: bh.Cycle(name="own", force=lambda t: 1 + 0 * t, angles=lambda t: np.full((3, len(t)), nan)),
+        "angle.* is not allowed",
+    ),
+    *(
+        (lambda count=count: check_step_count(count), "n_steps = .* is not allowed: a whole number from 8 to 10000")
+        for count in (7, 10_001, 72.0, True, "8", None)
+    ),
+    (lambda: bh.iso_14242_1(7), "n_steps = 7 is not allowed"),
+    (lambda: bh.Mix(activities=()), "a mix needs at least one activity"),
+    (lambda: mix(bh.iso_14242_4(40)), "iso-14242-4 has forces in the cup's frame, or a spring: it cannot be part"),
+    (lambda: mix(replace(WALK, frame=bh.Frame.CUP)), "walking has forces in the cup's frame"),
+    *((lambda count=count: mix(WALK, count), "per_year = .* is not allowed") for count in (0.0, -1.0, inf)),
+    (lambda: TableOptions(frame="thigh"), "frame 'thigh' is not known"),
+    (lambda: TableOptions(force_on="bone"), "force_on 'bone' is not known"),
+    (lambda: TableOptions(closing=0.51), "closing = 0.51 is not allowed: 0 to 0.5 of the range of a column"),
+    (lambda: TableOptions(closing=-0.01), "closing = -0.01 is not allowed"),
+    # patients
+    (lambda: sample_patients(variability(clearance=TIGHT), 0, 0), "patients = 0 is not allowed: it must be 1 to"),
+    (lambda: sample_patients(variability(clearance=TIGHT), 1_000_001, 0), "patients = 1000001 is not allowed"),
+    (lambda: sample_patients(variability(clearance=TIGHT), 1, -1), "seed = -1 is not allowed: it must be at least 0"),
+    (lambda: bands_of(count=1), "count = 1 is not allowed: it must be at least 2"),
+    (lambda: bands_of(seed=-1), "seed = -1 is not allowed: it must be at least 0"),
+    (lambda: patient(coefficient=-1e-9), "coefficient = -1e-09 is not allowed: it must be at least 0"),
+    (lambda: patient(body_weight=0.0), "body_weight = 0 is not allowed: it must be positive"),
+    (lambda: patient(body_weight=inf), "body_weight = inf is not allowed: it must be positive"),
+    (lambda: patient(cycles_per_year=-1.0), "cycles_per_year = -1 is not allowed: it must be positive"),
+    (lambda: patient(coefficient=1.0).simulate([1e7]), "cycles at the rate of the first one would wear"),
+    (lambda: variability(), "no quantity differs between patients: give one of coefficient, clearance"),
+    (lambda: variability(weight=WEIGHT), "'weight'"),
+    (lambda: variability(hip(wear=CUSTOM), coefficient=COEFFICIENT), "coefficient"),
+    (lambda: variability(tilt=TIGHT, anteversion=TIGHT), "tilt and anteversion both orient the cup: give one of them"),
+    (lambda: variability(tilt=TIGHT, inclination=TIGHT), "tilt and inclination both orient the cup"),
+    (lambda: variability(body_weight=Rectangular(low=-3.0, high=1.0)), "the median of body_weight = -1 is not allowed"),
+    (lambda: variability(cycles_per_year=Rectangular(low=-1.0, high=1.0)), "the median of cycles_per_year = 0 is not"),
+    (
+        lambda: bh.population(variability(clearance=TIGHT), [1e3], patients=2, method="serie"),
+        "method 'serie' is not known; did you mean 'series'",
+    ),
+    # measured wear
+    (lambda: measured(quantity="weight"), "quantity 'weight' is not known"),
+    (lambda: measured(rate="final"), "rate 'final' is not known; did you mean 'initial'"),
+    (lambda: measured(), "volume needs the cycles of its values, or else the kind of its rate: initial, steady, mean"),
+    (lambda: measured(cycles=[1e6, 2e6]), "volume has 1 values and 2 cycles"),
+    (lambda: measured(cycles=1e6, rate="mean"), "a rate of volume takes from and to, not cycles"),
+    (lambda: measured(rate="steady", end=2e6), "a steady rate of volume needs from and to"),
+    (lambda: measured(rate="mean"), "a mean rate of volume needs to"),
+    (lambda: measured(rate="mean", begin=1e6, end=2e6), "a mean rate is from 0 cycles"),
+    (lambda: measured(rate="steady", begin=2e6, end=1e6), "to = 1e.06 is not allowed"),
+    (lambda: measured(rate="initial", end=1e6), "an initial rate is that of the new bore"),
+    (lambda: measured(rate="initial", quantity="penetration"), "an initial rate of penetration is not defined"),
+    (lambda: measured(cycles=1e6, values=-1.0), "a measured wear is positive and finite"),
+    (lambda: measured(cycles=1e6, uncertainty=0.0), "a standard uncertainty is positive"),
+    (lambda: measured(cycles=1e6, begin=1.0), "from and to belong to a rate"),
+]
+
+
+def words_of(case):
+    return case if isinstance(case, str) else ""
+
+
+@pytest.mark.parametrize(("make", "message"), VALUES, ids=words_of)
+def test_values_that_are_not_allowed_are_refused(make, message):
+    with pytest.raises(ValueError, match=message):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        *(
+            (lambda value=value: bh.Archard(coefficient=value), "coefficient must be one number, got")
+            for value in ("1e-6", True, None, [1e-6])
+        ),
+        (lambda: bh.FilmLimit(ratio=[1.0, 2.0]), "film_limit must be one number"),
+        (lambda: hip(**QUICK, film_limit=1.0), "film_limit must be a FilmLimit"),
+    ],
+    ids=words_of,
+)
+def test_other_kinds_of_values_are_type_errors(make, message):
+    with pytest.raises(TypeError, match=message):
+        make()
+
+
+@pytest.mark.parametrize("words", [{"wear": CUSTOM}, {"ball_wear": CUSTOM}], ids=["socket", "ball"])
+def test_a_run_by_a_custom_law_cannot_be_stored(words, tmp_path):
+    with pytest.raises(ValueError, match="runs with a CustomWearLaw cannot be stored"):
+        hip(**words, **QUICK).after(1e4, store=tmp_path)
+
+
+def test_unknown_laws_suggest_the_closest():
+    with pytest.raises(KeyError, match="wear law 'archart' is not known; did you mean 'archard'"):
+        WEAR_LAWS["archart"]
+
+
+# files
+
+NAME, INSTANTS, LAW, TILT = 'name = "iso-14242-1"', "instants = 100", 'law = "archard"', 'tilt = "30 deg"'
+CYCLE = TEXT[TEXT.index("[cycle]") : TEXT.index("[wear]")]
+COUNTS = "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n"
+JOINT = TEXT[TEXT.index("[joint]") : TEXT.index("[cup]")]
+
+EDITS = [
+    ("mm^3/(N m)", "mm^3/(N mm)", r"1 mm\^3/\(N mm\) is 1000 mm\^3/\(N m\), so that this is 0.001066 mm"),
+    ("mm^3/(N m)", "mm^3/N", r"has the wrong unit; expected mm\^3/\(N m\)"),
+    ('coefficient = "1.066e-6 mm^3/(N m)" #', "#", "the law 'archard' needs coefficient .*such as coefficient ="),
+    (LAW, 'law = "archart"', "law 'archart' is not known; did you mean 'archard'"),
+    (LAW, 'law = "area"', "has the wrong unit; expected mm/mm, a depth over a length of sliding"),
+    (LAW, 'law = "cross-shear"', r"the law 'cross-shear' needs circular \(wear factor on a"),
+    (LAW, 'law = "energy"', "the law 'energy' needs friction"),
+    (LAW, f"{LAW}\nfriction = 0.1", "friction belongs to the law 'energy'"),
+    (LAW, f'{LAW}\nball_coefficient = "1 mm^3/(N mm)"', "ball_coefficient = .* is 1000"),
+    (LAW, f"{LAW}\nexponent = 1", "exponent belongs to the law 'cross-shear'"),
+    (LAW, f"{LAW}\nfilm_limit = -1", "film_limit = -1.* is not allowed: a film ratio is at least 0"),
+    ('contact = "springs"', 'contact = "spring"', "contact = 'spring' is not known; did you mean 'springs'"),
+    ('contact = "springs"', 'model = "hertz"', "the model 'hertz' has no radial springs; models with springs:"),
+    (JOINT, 'joint = "hip-28"\n[liner]\nyoung = 3\n', r"joint = 'hip-28' is a whole joint: \[liner\] belongs to a"),
+    (NAME, 'name = "iso-14242"', "cycle 'iso-14242' is not known"),
+    (NAME, f'{NAME}\nfile = "x.csv"', "needs either a name or a file"),
+    (NAME, 'name = "walking"', "'walking' has loads in multiples of body weight: set body_weight"),
+    (NAME, 'name = "walking"\nmismatch = 4', "'mismatch' with the name 'walking' in .cycle."),
+    (NAME, "file = []", r"file = \[\] names no table"),
+    (NAME, 'file = [""]', "names no table"),
+    (NAME, 'file = "a.csv"\nforce = "2 N"', "'force' with a file in .cycle. is not known"),
+    (NAME, 'name = "iso-14242-4"\nswing_load = 0', "swing_load = 0 is not allowed"),
+    (INSTANTS, "instants = 3", "instants = 3 is not allowed: a whole number from 8 to 10000"),
+    (INSTANTS, 'instants = 100\nforce = "2 kN"', "'force' with the name 'iso-14242-1' in .cycle. is not known"),
+    (INSTANTS, 'instants = 100\nbody_weight = "8 N"', "'body_weight' with the name 'iso-14242-1' in"),
+    (INSTANTS, "instants = 100\ntimes_body_weight = 2", "times_body_weight needs a body_weight"),
+    (INSTANTS, 'instants = 100\nbody_weight = "1 MN"', "body_weight = 1e.06 is not allowed"),
+    (CYCLE, f"{CYCLE}[[activity]]\nname = 'walking'\n", r"both \[cycle\] and \[\[activity\]\]: remove one"),
+    (CYCLE, "[activity]\nname = 'walking'\n", r"must be an array of tables: \[\[activity\]\]"),
+    (CYCLE, "[[activity]]\nname = 'flexion'\n", r"needs either per_year \(cycles a year\) or share"),
+    (CYCLE, "[[activity]]\nname = 'flexion'\nper_year = 2\nshare = 1\n", "needs either per_year"),
+    (CYCLE, "[[activity]]\nname = 'flexion'\nshare = 1\n", "share needs cycles_per_year at the top of the file"),
+    (CYCLE, "[[activity]]\nname = 'flexion'\nper_yaer = 1\n", "'per_yaer' in activity.0. is not known"),
+    (CYCLE, "[[activity]]\nper_year = 1\n", r"\[\[activity\]\] needs either a name or a file; names: iso-14242-1"),
+    (COUNTS, "years = 3\n", "years needs activities with counts a year"),
+    ("flexion, adduction", "flexion, flexion", "rotation_order = 'flexion, flexion, rotation' is not allowed"),
+    (TILT, 'tilt = "90.1 deg"', "tilt = 90.1 is not allowed: a cup's tilt from the load is 0 to 90 degrees"),
+    (TILT, 'tilt = "-1 deg"', "a cup's tilt from the load is 0 to 90 degrees"),
+    (TILT, f'{TILT}\ninclination = "30 deg"', "tilt and inclination exclude each other"),
+    (TILT, f"{TILT}\narc = 3", "'arc' in .cup. is not known; did you mean 'arc_of_cover'"),
+    ("180 deg", "55 deg", r"dislocated at 0\.5 % of the cycle: .*30\.0° from the dome's pole.* ends at 27\.5°"),
+    ("cycles = 5e6", "cycles = 1e6", "report_at = 2e.06 is not allowed: it lies between 0 and"),
+    ("cycles = 5e6", 'cycles = "many"', "cycles = 'many' must be a number, such as 5e6"),
+    ("report_at = [1e6, 2e6, 5e6]", "report_at = 1e6", "report_at = 1000000.0 must be a list"),
+    ("[wear]", "[waer]", "'waer' at the top is not known; did you mean 'wear'"),
+    ("clearance = ", "clearence = ", "'clearence' in .joint. is not known; did you mean 'clearance'"),
+]
+
+TABLES = [
+    ('[creep]\nlaw = "log"', "creep law 'log' is not known; did you mean 'logarithmic'"),
+    ('[creep]\nlaw = "logarithmic"\ntimes = [1]', "times belongs to the law 'kelvin-voigt'"),
+    ("[creep]\ntimes = [1]", "the law 'kelvin-voigt' needs compliances .*, such as compliances = .0.001, 0.002."),
+    ("[creep]\ntimes = [1]\ncompliances = [1, 2]", "as many compliances as times"),
+    ('[creep]\nconfinement = "walls"', "confinement = 'walls' is not known"),
+    ("[creep]\nseconds_per_cycle = 0", "seconds_per_cycle = 0 is not allowed"),
+    ("[film]\nviscosity = -1", "viscosity = -1 is not allowed"),
+    ("[film]\nviscosities = 1", "'viscosities' in .film. is not known; did you mean 'viscosity'"),
+]
+
+UNCERTAIN = [
+    ("clearance = { mean = '0.1 mm' }", r"clearance = .* must be \{low, high\}, \{mean, deviation\}"),
+    ("clearance = { low = '0.1 kN', high = '0.2 mm' }", "clearance.low = '0.1 kN' is not a length"),
+    ("clearance = { low = 0.2, high = 0.1 }", "clearance.low = 0.2 is not allowed: it is finite and below high"),
+    ("clearance = { low = '0.3 mm', high = '0.5 mm' }", "clearance = 0.1 mm lies outside its tolerance of 0.3 to 0.5"),
+    ("coefficient = { median = 1e-6, factor = 0.5 }", "coefficient.factor = 0.5 is not allowed: a factor of one"),
+    ("coefficient = { median = '1e-9 mm^3/(N mm)', factor = 2 }", r"1 mm\^3/\(N mm\) is 1000 mm\^3/\(N m\)"),
+    ("coefficient = { median = 1e-5, factor = 1.1 }", "coefficient = 1.066e-06 lies outside its tolerance"),
+    ("weight = { low = 1, high = 2 }", "'weight' in .uncertainty. is not known"),
+    ("body_weight = { low = '70 kg', high = '90 kg' }", "body_weight.low = '70 kg' is not a force"),
+    ("cycles_per_year = { low = -2, high = 1 }", "the median of cycles_per_year = -0.5 is not allowed"),
+    ("tilt = { low = 0, high = 9 }\ninclination = { low = 0, high = 9 }", "tilt and inclination both orient the"),
+    ("inclination = { low = 70, high = 80 }", "inclination = .* lies outside its tolerance"),
+    ("count = 1\ntilt = { low = 0, high = 9 }", "count = 1 is not allowed: it must be at least 2"),
+    ("count = true\ntilt = { low = 0, high = 9 }", "count = True is not allowed: a whole number"),
+    ("count = 2.5\ntilt = { low = 0, high = 9 }", "count = 2.5 is not allowed: a whole number"),
+    ("seed = -1\ntilt = { low = 0, high = 9 }", "seed = -1 is not allowed: a whole number from 0"),
+    ("seed = 1048577\ntilt = { low = 0, high = 9 }", "seed = 1048577 is not allowed"),
+    ("count = 8", "no quantity differs between patients: give one of coefficient, clearance"),
+]
+
+DATA = '[[data]]\nquantity = "volume"\nvalues = "38 mm^3/Mc"\nrate = "mean"\nto = 2e5\nuncertainty = "10 %"\n'
+MEASURED = [
+    ('rate = "mean"\nto = 2e5\n', "", r"'38 mm\^3/Mc' is a rate: state its kind, rate = 'initial'"),
+    ("/Mc", "", r"'38 mm\^3' of a rate needs a unit such as '38 mm\^3/Mc'"),
+    ("/Mc", "/year", "is per year: state cycles_per_year at the top of the file"),
+    ("38 mm^3/Mc", "38 mm/Mc", "must be a number with a unit"),
+    ('values = "38 mm^3/Mc"\n', "", "needs its values"),
+    ('quantity = "volume"\n', "", "needs its quantity"),
+    (DATA, "", "no measured wear: add "),
+    ("volume", "volum", "quantity 'volum' is not known; did you mean 'volume'"),
+]
+
+
+def refuse_file(file, message):
+    with pytest.raises(ValueError, match=f"hip.toml: .*{message}"):
+        read_hip(file)
+
+
+@pytest.mark.parametrize(("old", "new", "message"), EDITS)
+def test_wrong_files_are_refused_with_their_name(tmp_path, old, new, message):
+    refuse_file(write_edited_file(tmp_path, (old, new)), message)
+
+
+@pytest.mark.parametrize(
+    ("table", "message"), [*TABLES, *((f"[uncertainty]\n{line}", text) for line, text in UNCERTAIN)]
+)
+def test_wrong_tables_are_refused_with_the_name_of_the_file(tmp_path, table, message):
+    refuse_file(write_edited_file(tmp_path, text=f"{TEXT}\n{table}\n"), message)
+
+
+@pytest.mark.parametrize(("old", "new", "message"), MEASURED)
+def test_files_of_measured_wear_that_mean_nothing_are_refused(tmp_path, old, new, message):
+    with pytest.raises(ValueError, match=message):
+        read_wear_test(write_edited_file(tmp_path, *SHORT[1:], (old, new), text=f"{TEXT}\n{DATA}"))
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["a.toml", "b.toml", "--report", "ab.html"], "--report shows one hip, got 2 files"),
+        (["a.toml", "b.toml", "--patients", "4"], "--patients needs one file, got 2"),
+        (["b.toml", "--patients", "4", "--csv", "b.csv"], "--csv shows one hip: leave out --csv or --patients"),
+        (["a.toml", "a.toml"], "two files are the same"),
+        (["a.toml", "--csv", "a.txt"], "must end in .csv"),
+        (["a.toml", "--figure", "a.gif"], "must end in .png, .svg, .pdf"),
+        (["a.toml", "--report", "a.txt"], "must end in .html"),
+        (["a.toml", "--report", "missing/a.html"], "cannot write a.html"),
+        (["logo.toml", "--report", "a.html"], "logo.svg"),
+        (["wrong.toml"], "wrong.toml: .*'waer' at the top is not known"),
+        (["a.toml", "--patients", "2"], "--patients needs a table"),
+        (["b.toml", "--patients", "2", "--report", "x.html"], "one hip: leave out"),
+        (["b.toml", "--method", "runs"], "--method is the method of a cohort: add --patients, or leave out --method"),
+        (["b.toml", "--patients", "2", "--method", "all"], "method 'all' is not known"),
+    ],
+)
+def test_wrong_words_of_the_command_are_refused_in_one_line(tmp_path, words, message):
+    texts = {
+        "a": TEXT,
+        "b": f"{TEXT}\n[uncertainty]\nclearance = {{low = 0.05, high = 0.2}}\n",
+        "logo": f'{TEXT}\n[report]\nlogo = "logo.svg"\n',
+        "wrong": TEXT.replace("[wear]", "[waer]"),
+    }
+    for name, text in texts.items():
+        (tmp_path / f"{name}.toml").write_text(text, encoding="utf-8")
+    process = run("hip", *words, folder=tmp_path)
+    assert process.returncode == 2
+    assert process.stderr.count("\n") == 1
+    assert re.search(message, process.stderr)
