@@ -186,8 +186,9 @@ def test_one_contact_is_printed_with_six_digits_and_many_with_five():
     assert "utilisation" not in repr(
         MODEL.press(replace(HIP, liner=HIP.liner.without_strengths(), ball=None), force=1.0)
     )
-    stressed = repr(MODEL.press(HIP, force=3000.0)).splitlines()  # 0.336924 times the yield stress
-    assert next(line for line in stressed if "utilisation" in line).split()[1:] == ["0.337"]
+    stressed = MODEL.press(HIP, force=3000.0)
+    (shown,) = (line.split()[1] for line in repr(stressed).splitlines() if "utilisation" in line)
+    assert float(shown) == pytest.approx(stressed.utilisation, rel=2e-3)  # half of the last of three digits
     table = MODEL.press(HIP, force=force)._repr_html_()
     assert "<td style='text-align:left'>half angle</td>" in table
     assert "<b>hess-forsbach</b>" in table

@@ -95,6 +95,9 @@ def test_area_and_ratios_follow_their_definitions():
     assert contact.indentation_ratio == pytest.approx(contact.indentation / 6.75)
     assert contact.width_ratio == pytest.approx(18.0 * np.sin(contact.half_angle) / 6.75)
     assert contact.conformity == pytest.approx(0.1 / contact.indentation)
+    thick = bs.HessForsbach().press(HIP.replace(liner_thickness=30.0), indentation=0.05)
+    assert thick.depth_ratio == pytest.approx(0.05 / 18.0)
+    assert thick.indentation_ratio == pytest.approx(0.05 / 30.0)
 
 
 def test_a_contact_of_floats_has_the_joint_that_was_pressed():

@@ -78,16 +78,6 @@ def test_friction_torque_is_the_same_after_half_and_full_turns_of_the_axis():
     assert CONTACT.friction_torque(0.1, 2 * pi) == pytest.approx(CONTACT.friction_torque(0.1, 0.0), rel=1e-12)
 
 
-@MODELS
-def test_force_vector_points_back_to_the_centre(model):
-    depth = 0.06
-    direction = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [-2 / 3, 1 / 3, 2 / 3]])
-    displacement = (HIP.clearance + depth) * direction
-    force = model.force_vector(HIP, displacement)
-    magnitude = model.press(HIP, indentation=depth).force
-    np.testing.assert_allclose(force, -magnitude * direction, rtol=1e-6, atol=1e-9 * magnitude)
-
-
 def test_force_vector_is_zero_within_the_clearance():
     displacement = np.array([[0.0, 0.0, 0.0], [0.0, 0.0, 0.0999], [0.05, 0.0, 0.05], [0.0, 0.1001, 0.0]])
     force = bs.HessForsbach().force_vector(HIP, displacement)
@@ -115,43 +105,7 @@ def test_pressure_of_angles_in_degrees_is_rejected():
     assert type(CONTACT.pressure(0.3)) is float
 
 
-def test_areas_of_caps():
-    angle = np.array([0.0, 0.3, 1.2])
-    contact = bs.HessForsbach().press(HIP, half_angle=angle)
-    np.testing.assert_allclose(contact.area, 2 * pi * 17.9**2 * (1 - np.cos(angle)), rtol=1e-12)
-
-
 def test_area_is_at_most_that_of_the_ball():
     deep = bs.Hertz().press(HIP, indentation=0.1 * 18.0 * 4.0**2 / 17.9)
     assert deep.half_angle == pytest.approx(4.0, rel=1e-12)
     assert deep.area == pytest.approx(4 * pi * 17.9**2, rel=1e-12)
-
-
-def test_ratios_of_lengths():
-    contact = bs.HessForsbach().press(HIP, indentation=np.array([0.05, 0.0]))
-    np.testing.assert_allclose(contact.indentation_ratio, [0.05 / 6.75, 0.0])
-    np.testing.assert_allclose(contact.depth_ratio, [0.05 / 6.75, 0.0])
-    np.testing.assert_allclose(contact.conformity, [2.0, np.inf])
-    thick = bs.HessForsbach().press(replace(HIP, liner_thickness=30.0), indentation=0.05)
-    assert thick.depth_ratio == pytest.approx(0.05 / 18.0)
-    assert thick.indentation_ratio == pytest.approx(0.05 / 30.0)
-
-
-def test_energy_is_the_work_of_the_force():
-    d = np.linspace(0.0, 0.1, 2001)
-    contact = bs.HessForsbach().press(HIP, indentation=d)
-    work = np.concatenate([[0.0], np.cumsum((contact.force[1:] + contact.force[:-1]) / 2 * np.diff(d))])
-    np.testing.assert_allclose(contact.energy, work, rtol=1e-5, atol=1e-4)
-    slope = np.gradient(contact.force, d)
-    np.testing.assert_allclose(contact.stiffness[5:-5], slope[5:-5], rtol=1e-4)
-
-
-def test_old_names_of_attributes_warn():
-    for old, new in (
-        ("von_mises_between", "von_mises_bounds"),
-        ("utilisation_between", "utilisation_bounds"),
-    ):
-        with pytest.warns(DeprecationWarning, match=f"Contact.{old} is deprecated: use {new}"):
-            assert getattr(CONTACT, old) == getattr(CONTACT, new)
-    with pytest.warns(DeprecationWarning, match="of_numbers is deprecated: use accepts_floats"):
-        assert getattr(bs.HessForsbach(), "of_numbers") is True  # noqa: B009, a name that scripts do not rename

@@ -1,12 +1,11 @@
-"""Delegation of a wrapped model, and old names of the modules of contact."""
+"""Delegation of a wrapped model."""
 
 from dataclasses import dataclass
-from importlib import import_module
 
 import pytest
 
 import ballsocket as bs
-from ballsocket.contact import Covered, Model, ModelInfo, ModelWrapper, Pressed, RimLimited, Wrapped
+from ballsocket.contact import Model, ModelInfo, ModelWrapper
 
 from ..joints import HIP
 
@@ -14,18 +13,6 @@ ATTRIBUTES = (
     *("name", "title", "sources", "fits", "domain", "validity", "promise", "remarks", "reach", "parameters"),
     *("planar", "differentiable", "smooth_step", "seconds_a_press", "contact_type", "accepts_floats"),
 )
-OLD_NAMES = {
-    "catalogue.theories": "listed_models",
-    "contact.contact.Pressed": "ballsocket.contact.outcome.ModelInfo",
-    "contact.law.Law": "ForceLaw",
-    "contact.model.Covered": "RimLimited",
-    "contact.model.Wrapped": "ModelWrapper",
-    "contact.outcome.Theory": "ModelInfo",
-    "contact.strength.ELASTIC": "MAX_ELASTIC_UTILISATION",
-    "contact.strength.share": "von_mises_ratio",
-    "contact.verdict.shares": "strength_uses",
-    "contact.verdict.verdict": "assess_strength",
-}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,17 +53,3 @@ def test_a_wrapper_presses_as_the_wrapped_model():
 def test_a_model_info_without_a_contact_has_no_laws():
     with pytest.raises(NotImplementedError, match="pin-in-hole has no laws of a contact"):
         bs.PinInHole().numpy_laws(HIP, 0.1)
-
-
-@pytest.mark.parametrize(("old", "new"), OLD_NAMES.items())
-def test_old_names_of_modules_warn(old, new):
-    path, _, name = f"ballsocket.{old}".rpartition(".")
-    module = import_module(path)
-    with pytest.warns(DeprecationWarning, match=f"{name} is deprecated: use {new}"):
-        value = getattr(module, name)
-    new_path, _, new_name = new.rpartition(".")
-    assert value is getattr(import_module(new_path or path), new_name)
-
-
-def test_old_names_of_the_door_are_the_same_classes():
-    assert (Covered, Pressed, Wrapped) == (RimLimited, ModelInfo, ModelWrapper)

@@ -1,7 +1,6 @@
 """Executors: every piece is computed once, and a worker process that dies costs another attempt at its piece."""
 
 import os
-import signal
 import subprocess
 import sys
 import time
@@ -21,6 +20,7 @@ from ballsocket.core.executors import processes as module
 from ballsocket.core.executors.dask import local_cluster
 from ballsocket.core.executors.processes import available_cores, limit_threads
 
+KINDS = Processes, Distributed
 WORK = """
 import os, signal
 from dataclasses import dataclass
@@ -66,10 +66,13 @@ def work(tmp_path, monkeypatch):
     return import_module("some_work")
 
 
-def test_every_executor_computes_every_piece_once(work):
+def test_every_executor_computes_every_piece_once_and_raises_its_error(work):
     expected = [(number, number * number) for number in range(20)]
     assert list(Serial().run(work.Square(), range(20))) == expected
     assert sorted(Processes(workers=2).run(work.Square(), range(20))) == expected
+    for executor in (Serial(), Processes(workers=1)):
+        with pytest.raises(ValueError, match="piece 5 = 5 is not allowed"):
+            list(executor.run(work.Fails(), [5]))
 
 
 def test_no_pieces_start_no_worker(work, monkeypatch):
@@ -93,46 +96,38 @@ def test_a_piece_that_always_kills_its_process_is_an_error(tmp_path, work):
     assert len(list((tmp_path / "deaths").iterdir())) == 2
 
 
-def test_an_error_of_a_piece_is_raised_as_it_is(work):
-    for executor in (Serial(), Processes(workers=1)):
-        with pytest.raises(ValueError, match="piece 5 = 5 is not allowed"):
-            list(executor.run(work.Fails(), [5]))
-
-
-@pytest.mark.parametrize("kind", [Processes, Distributed])
-def test_the_number_of_workers_is_checked(kind):
-    for workers in (1, 1000, None):
-        assert kind(workers=workers).workers == workers
-    for workers in (0, 1001):
-        with pytest.raises(ValueError, match=f"workers = {workers} is not allowed: it must be 1 to 1000"):
-            kind(workers=workers)
-
-
-def test_an_address_excludes_a_number_of_workers():
-    with pytest.raises(ValueError, match="workers = 2 is not allowed for the scheduler at tcp://host:1"):
-        Distributed(address="tcp://host:1", workers=2)
-
-
-@pytest.mark.parametrize("address", ["", "nonsense", "tcp://", "udp://10.0.0.1:1", 8786])
-def test_an_address_is_one_of_a_scheduler(address):
-    with pytest.raises(
-        ValueError, match=f"address = {address!r} is not allowed: a Dask scheduler has an address such as"
-    ):
-        Distributed(address=address)
+WRONG_ADDRESSES = ("", "nonsense", "tcp://", "udp://10.0.0.1:1", 8786)
+ADDRESS = "address = {!r} is not allowed: a Dask scheduler has an address such as"
 
 
 @pytest.mark.parametrize(
-    ("numbers", "message"),
+    ("make", "options", "message"),
     [
-        ({"workers": 1.5}, "workers = 1.5 is not allowed: a whole number"),
-        ({"workers": True}, "workers = True is not allowed: a whole number"),
-        ({"retries": -1}, "retries = -1 is not allowed: a whole number from 0"),
-        ({"retries": "x"}, "retries = 'x' is not allowed: a whole number"),
+        *(
+            (kind, {"workers": n}, f"workers = {n} is not .*: it must be 1 to 1000")
+            for kind in KINDS
+            for n in (0, 1001)
+        ),
+        (Distributed, {"workers": 1.5}, "workers = 1.5 is not allowed: a whole number"),
+        (Distributed, {"workers": True}, "workers = True is not allowed: a whole number"),
+        (Distributed, {"retries": -1}, "retries = -1 is not allowed: a whole number from 0"),
+        (Distributed, {"retries": "x"}, "retries = 'x' is not allowed: a whole number"),
+        (
+            Distributed,
+            {"address": "tcp://host:1", "workers": 2},
+            "workers = 2 is not allowed for the scheduler at",
+        ),
+        *(
+            (Distributed, {"address": a}, ADDRESS.format(a))
+            for a in ("", "nonsense", "tcp://", "udp://10.0.0.1:1", 8786)
+        ),
+        (Distributed, {"security": object()}, "security needs the address of a scheduler"),
     ],
 )
-def test_numbers_of_a_cluster_are_whole(numbers, message):
+def test_options_that_are_not_allowed_are_refused(make, options, message):
     with pytest.raises(ValueError, match=message):
-        Distributed(**numbers)
+        make(**options)
+    assert [make(workers=workers).workers for workers in (1, 1000, None)] == [1, 1000, None]
 
 
 def test_available_cores_are_those_of_this_process(monkeypatch):
@@ -142,9 +137,6 @@ def test_available_cores_are_those_of_this_process(monkeypatch):
     for count, cores in ((5, 5), (None, 1)):
         monkeypatch.setattr(os, "cpu_count", lambda count=count: count)
         assert available_cores() == cores
-
-
-def test_the_number_of_processes_is_that_of_the_available_cores(monkeypatch):
     monkeypatch.setattr(module, "available_cores", lambda: 5)
     assert (Processes()._n_workers, Processes(workers=2)._n_workers) == (5, 2)
 
@@ -176,7 +168,7 @@ class FakePool:
         return future
 
 
-def test_few_pieces_are_submitted_at_a_time():
+def test_few_pieces_are_submitted_at_a_time(monkeypatch):
     pool, pending = FakePool(), deque(range(10))
     results = module._submit_until_worker_dies(pool, pending, 4)
     next(results)
@@ -185,9 +177,6 @@ def test_few_pieces_are_submitted_at_a_time():
     assert pool.submitted == list(range(10))
     assert len(finished) == 9
     assert not pending
-
-
-def test_two_pieces_are_submitted_for_each_worker(monkeypatch):
     limits = []
 
     def record(pool, pending, limit):
@@ -197,7 +186,7 @@ def test_two_pieces_are_submitted_for_each_worker(monkeypatch):
 
     monkeypatch.setattr(module, "_submit_until_worker_dies", record)
     assert list(Processes(workers=3).run(abs, [1])) == []
-    assert limits == [6]
+    assert limits == [6]  # two for each worker
 
 
 def test_a_broken_pool_leaves_the_other_pieces_pending():
@@ -255,15 +244,6 @@ def test_a_worker_ends_with_its_parent(before):
     assert not is_running(worker)
 
 
-@pytest.mark.skipif(not hasattr(os, "O_ASYNC"), reason="signals of pipes of a system like Unix")
-def test_a_closed_pipe_is_recognized():
-    receiver, sender = os.pipe()
-    assert not module._is_pipe_closed(receiver)
-    os.close(sender)
-    assert module._is_pipe_closed(receiver)
-    os.close(receiver)
-
-
 # Dask
 
 
@@ -276,13 +256,11 @@ def scheduler():
         yield cluster.scheduler_address
 
 
-def test_dask_workers_compute_every_piece_once(scheduler):
+def test_dask_workers_compute_every_piece_once_and_raise_its_error(scheduler):
     executor = Distributed(address=scheduler)
     assert sorted(executor.run(abs, [-3, 1, -2])) == [(-3, 3), (-2, 2), (1, 1)]
     assert sorted(executor.run(hex, [16])) == [(16, "0x10")]
-
-
-def test_an_error_on_a_dask_worker_is_raised(scheduler):
+    assert list(executor.run(np.zeros(2_000_000).take, [7])) == [(7, 0.0)]  # a large function is sent without a warning
     with pytest.raises(TypeError):
         list(Distributed(address=scheduler, retries=0).run(len, [1]))
 
@@ -303,11 +281,6 @@ def test_a_piece_is_a_task_of_dask_and_nothing_is_left_after_the_run(scheduler):
         wait_until(lambda: client.run_on_scheduler(tasks) == ([], plugins))
     assert 1 < len(during) <= 6
     assert sum(key.endswith("-work") for key in during) == 1
-
-
-def test_a_large_work_function_is_sent_without_a_warning(scheduler):
-    columns = np.zeros(2_000_000)
-    assert list(Distributed(address=scheduler).run(columns.take, [7])) == [(7, 0.0)]
 
 
 def wait_until(condition):
@@ -337,17 +310,6 @@ def test_missing_workers_are_reported_within_seconds(monkeypatch, caplog):
     assert warnings() == [
         f"the Dask scheduler at {address} has no workers: the work waits for the first one; Ctrl-C stops it"
     ]
-
-
-def test_certificates_need_an_address():
-    with pytest.raises(ValueError, match="security needs the address of a scheduler"):
-        Distributed(security=object())
-
-
-def test_a_tls_address_without_certificates_is_one_sentence():
-    pytest.importorskip("distributed")
-    with pytest.raises(ConnectionError, match="needs certificates: 'tls://127.0.0.1:1'"):
-        list(Distributed(address="tls://127.0.0.1:1").run(abs, [1]))
 
 
 def write_certificate(folder):
@@ -418,8 +380,10 @@ def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable(monkeypatc
     assert started["stopped"]
 
 
-def test_a_scheduler_that_does_not_respond_is_an_error(monkeypatch):
+def test_a_scheduler_that_cannot_be_reached_is_an_error_of_one_sentence(monkeypatch):
     distributed = pytest.importorskip("distributed")
+    with pytest.raises(ConnectionError, match="needs certificates: 'tls://127.0.0.1:1'"):
+        list(Distributed(address="tls://127.0.0.1:1").run(abs, [1]))
 
     def refuse(address, timeout, security):
         raise OSError(f"timed out after {timeout} s")
@@ -427,31 +391,3 @@ def test_a_scheduler_that_does_not_respond_is_an_error(monkeypatch):
     monkeypatch.setattr(distributed, "Client", refuse)
     with pytest.raises(ConnectionError, match="the Dask scheduler does not respond: 'tcp://127.0.0.1:1'"):
         list(Distributed(address="tcp://127.0.0.1:1").run(abs, [1]))
-
-
-# a whole command
-
-
-def kill_after(pieces, words, data):
-    """Start a reproduction, and kill it with all its processes when it has stored some pieces."""
-    running = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
-    while len(list(data.glob("*.json"))) < pieces and running.poll() is None:
-        time.sleep(0.02)
-    os.killpg(running.pid, signal.SIGKILL)
-    running.wait()
-
-
-@pytest.mark.long
-@pytest.mark.skipif(not hasattr(os, "killpg"), reason="groups of processes of a system like Unix")
-def test_a_killed_reproduction_resumes(tmp_path):
-    """The whole command, killed after its first pieces, and then run to its end."""
-    out = tmp_path / "out"
-    words = [sys.executable, "-m", "ballsocket", "reproduce", "--quick", "--workers", "1", "--out", str(out)]
-    data = out / "data" / "quick"
-    kill_after(3, words, data)
-    stored = {path: path.stat().st_mtime_ns for path in data.glob("*.json")}
-    assert len(stored) >= 3
-    subprocess.run(words, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    assert (out / "report.html").stat().st_size > 100_000
-    assert len(list(data.glob("*.json"))) >= len(stored) + 2
-    assert all(path.stat().st_mtime_ns == when for path, when in stored.items())

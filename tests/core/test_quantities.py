@@ -1,18 +1,12 @@
 """One description of each quantity, used by tables, files, studies and messages."""
 
-import json
-import os
 import re
-import shutil
-import subprocess
-import sys
 from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from inspect import getattr_static
 from math import inf, nan, pi
 from operator import attrgetter
-from pathlib import Path
 
 import numpy as np
 import pint
@@ -40,8 +34,6 @@ from ballsocket.core.quantities import (
     QUANTITIES,
     STRESS_LIMITS,
 )
-from ballsocket.files.joint_file import JointFile
-from ballsocket.files.joint_toml import tables_of
 from ballsocket.files.units import parse
 from ballsocket.studies.design import check_values, grid
 from ballsocket.studies.limits import LIMITED_NAMES as LIMITED
@@ -171,65 +163,8 @@ def test_joint_and_study_reject_the_same_numbers(name):
         check_values(grid(**{name: [wrong]}))
 
 
-@pytest.mark.parametrize("name", LOADS)
-def test_messages_of_invalid_loads_state_what_is_allowed(name):
-    with pytest.raises(ValueError, match=re.escape(LOADS[name].allowed)):
-        bs.Hertz().press(HIP, **{name: _WRONG[name]})
-
-
 def test_only_the_liner_thickness_may_be_infinite():
     assert {name for name, parameter in PARAMETERS.items() if parameter.allows(inf)} == {"liner_thickness"}
-
-
-def test_keys_of_files_are_names_of_quantities():
-    tables = tables_of(JointFile(HIP, {"force": 3000.0}))
-    assert set(tables["joint"]) | set(tables["load"]) <= set(QUANTITIES)
-
-
-_ADDED = """
-import json, ballsocket as bs
-from ballsocket.reports import terminal
-from ballsocket.core.quantities import QUANTITIES
-from ballsocket.studies.design import grid
-hip = bs.joints["hip-28"]
-contact = bs.HessForsbach().press(hip, force=3000.0)
-found = bs.study(bs.HessForsbach(), hip, grid(force=[1000.0, 3000.0]), quantities=["conformity"])
-print(json.dumps({
-    "summary": contact.summary(),
-    "repr": repr(contact),
-    "html": contact._repr_html_(),
-    "study": found.conformity.attrs,
-    "same": float(found.conformity[1]) == contact.conformity,
-    "label": QUANTITIES["conformity"].label(),
-}))
-terminal.print_press(bs.compare(hip, force=3000.0, models={"hertz": bs.Hertz()}))
-"""
-
-
-@pytest.mark.long
-def test_a_quantity_is_added_by_one_entry(tmp_path):
-    """Once `conformity`, an attribute of every contact, is among what is printed, everything that prints knows it."""
-    shutil.copytree(Path(bs.__file__).parent, tmp_path / "ballsocket", ignore=shutil.ignore_patterns("__pycache__"))
-    table = tmp_path / "ballsocket" / "core" / "quantities.py"
-    before = table.read_text(encoding="utf-8")
-    entry = re.search(r'    Quantity\("conformity".*?\),\n', before, flags=re.DOTALL)[0]
-    table.write_text(
-        before.replace(entry, "").replace(
-            "CONTACT = _make_quantity_table(\n", f"CONTACT = _make_quantity_table(\n{entry}"
-        ),
-        "utf-8",
-    )
-    env = {**os.environ, "PYTHONPATH": str(tmp_path), "COLUMNS": "200", "PYTHONIOENCODING": "utf-8"}
-    done = subprocess.run([sys.executable, "-c", _ADDED], capture_output=True, encoding="utf-8", env=env, check=True)
-    first, *rest = done.stdout.splitlines()
-    told = json.loads(first)
-    assert list(told["summary"])[1] == "conformity"
-    assert ["conformity", f"{told['summary']['conformity']:.6g}"] in map(str.split, told["repr"].splitlines())
-    assert "<td>conformity" in told["html"].replace(" style='text-align:left'", "")
-    assert told["study"] == variable_attributes("conformity")
-    assert told["same"]
-    assert told["label"] == "conformity c/d"
-    assert any(line.split()[:2] == ["model", "c/d"] for line in rest)
 
 
 def test_ranges_have_symbol_and_unit_of_their_quantity():
@@ -248,8 +183,3 @@ def test_the_glossary_of_the_site_has_every_quantity(monkeypatch):
         assert entry.startswith(f"`{each.name}`")
         assert each.meaning in entry
         assert each.allowed[1:] in entry
-
-
-def test_the_package_offers_the_table_of_quantities():
-    assert bs.quantities is quantities
-    assert "quantities" not in bs.__all__

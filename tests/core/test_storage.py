@@ -24,101 +24,67 @@ from ballsocket.core.storage.atomic_files import (
 )
 from ballsocket.core.storage.pieces import PieceRun, PieceStore, check_worker_code, fingerprint, hash_inputs
 
-SECONDS_AGO = {"young": 30.0, "old": 90.0}
-
 
 def names(folder):
     return sorted(path.name for path in folder.iterdir())
 
 
-# atomic files
-
-
-def test_a_file_appears_only_after_it_is_complete(tmp_path):
-    path = tmp_path / "a.txt"
+def interrupted(path, error):
     with write_atomically(path) as draft:
-        draft.write_text("new", encoding="utf-8")
-        assert draft.name == "a.txt"
-        assert draft.parent.parent == tmp_path
-        assert not path.exists()
+        draft.write_text("half", encoding="utf-8")
+        raise error(draft)
+
+
+def test_a_file_is_written_completely_or_not_at_all(tmp_path):
+    path = tmp_path / "a.txt"
+    mask = os.umask(0o022)
+    try:
+        with write_atomically(path) as draft:
+            draft.write_text("new", encoding="utf-8")
+            assert (draft.name, draft.parent.parent) == ("a.txt", tmp_path)
+            assert is_draft_folder(draft.parent.name)
+            assert not path.exists()
+    finally:
+        os.umask(mask)
+    if os.name == "posix":
+        assert stat.S_IMODE(path.stat().st_mode) == 0o644
+    with pytest.raises(KeyboardInterrupt):
+        interrupted(path, lambda draft: KeyboardInterrupt())
     assert path.read_text(encoding="utf-8") == "new"
     assert names(tmp_path) == ["a.txt"]
-
-
-def test_an_error_leaves_the_old_file_and_no_draft(tmp_path):
-    path = write_text(tmp_path / "a.txt", "old")
-
-    def interrupted():
-        with write_atomically(path) as draft:
-            draft.write_text("half", encoding="utf-8")
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        interrupted()
-    assert path.read_text(encoding="utf-8") == "old"
-    assert names(tmp_path) == ["a.txt"]
-
-
-def test_a_folder_is_written_atomically(tmp_path):
+    assert write_text(path, "µ", "latin-1").read_bytes() == b"\xb5"
+    assert write_text(path, "µ").read_bytes() == b"\xc2\xb5"
     with write_atomically(tmp_path / "store") as draft:
         draft.mkdir()
         write_text(draft / "part", "1")
-    assert (tmp_path / "store" / "part").read_text(encoding="utf-8") == "1"
+    assert names(tmp_path / "store") == ["part"]
 
 
-def test_write_text_uses_the_encoding(tmp_path):
-    assert write_text(tmp_path / "a.txt", "µ", "latin-1").read_bytes() == b"\xb5"
-    assert write_text(tmp_path / "a.txt", "µ").read_bytes() == b"\xc2\xb5"
-
-
-def test_errors_name_the_requested_file(tmp_path):
-    path = tmp_path / "missing" / "a.txt"
+def test_errors_name_the_requested_file_and_those_of_other_files_their_own(tmp_path):
+    path, missing = tmp_path / "a.txt", tmp_path / "missing" / "a.txt"
     with pytest.raises(FileNotFoundError) as error:
-        write_text(path, "x")
+        write_text(missing, "x")
+    assert error.value.filename == str(missing)
+    with pytest.raises(OSError, match="No space left on device") as error:
+        interrupted(path, lambda draft: OSError(28, "No space left on device", str(draft)))
     assert error.value.filename == str(path)
-    with (
-        pytest.raises(OSError, match="No space left on device") as error,
-        write_atomically(tmp_path / "a.txt") as draft,
-    ):
-        raise OSError(28, "No space left on device", str(draft))
-    assert error.value.filename == str(tmp_path / "a.txt")
-
-
-def test_an_error_of_another_file_keeps_its_name(tmp_path):
-    with pytest.raises(OSError, match="other") as error, write_atomically(tmp_path / "a.txt"):
-        raise OSError(2, "No such file", "other")
+    with pytest.raises(OSError, match="other") as error:
+        interrupted(path, lambda draft: OSError(2, "No such file", "other"))
     assert error.value.filename == "other"
 
 
-@pytest.mark.parametrize(("name", "draft"), [(".a.x.draft", True), ("a.draft", False), (".a", False), ("a", False)])
-def test_names_of_drafts_are_recognized(name, draft):
-    assert is_draft_folder(name) is draft
-
-
-def test_draft_folders_of_killed_processes_are_removed(tmp_path):
-    for age, seconds in SECONDS_AGO.items():
-        folder = tmp_path / f".a.txt.{age}.draft"
+def test_only_old_unlocked_draft_folders_of_the_same_file_are_removed(tmp_path):
+    for name, seconds in (("a.txt.young", 30.0), ("a.txt.old", 90.0), ("b.txt.old", 1e9)):
+        folder = tmp_path / f".{name}.draft"
         folder.mkdir()
-        then = os.stat(tmp_path).st_mtime - seconds
+        then = max(os.stat(tmp_path).st_mtime - seconds, 0.0)
         os.utime(folder, (then, then))
-    write_text(tmp_path / "a.txt", "x")
-    assert names(tmp_path) == [".a.txt.young.draft", "a.txt"]
-
-
-def test_a_locked_draft_folder_is_not_removed_at_any_age(tmp_path):
-    with make_draft_folder(tmp_path / "a.txt") as folder:
-        os.utime(folder, (0, 0))
+    with make_draft_folder(tmp_path / "a.txt") as locked:
+        os.utime(locked, (0, 0))
         write_text(tmp_path / "a.txt", "x")
-        assert folder.is_dir()
-    assert names(tmp_path) == ["a.txt"]
-
-
-def test_draft_folders_of_other_files_are_not_removed(tmp_path):
-    folder = tmp_path / ".b.txt.x.draft"
-    folder.mkdir()
-    os.utime(folder, (0, 0))
-    write_text(tmp_path / "a.txt", "x")
-    assert folder.is_dir()
+        assert locked.is_dir()
+    assert names(tmp_path) == [".a.txt.young.draft", ".b.txt.old.draft", "a.txt"]
+    assert not any(map(is_draft_folder, ("a.draft", ".a", "a")))
 
 
 def test_names_of_the_greatest_length_can_be_written(tmp_path):
@@ -327,12 +293,3 @@ def test_a_failed_run_resumes_with_the_failed_piece():
     with pytest.raises(ValueError, match="thirteen"):
         list(PieceRun(square, [11, 12, 13, 14], store).compute_missing(Serial()))
     assert PieceRun(square, [11, 12, 13, 14], store).missing == [13, 14]
-
-
-def test_files_have_the_permissions_of_the_system(tmp_path):
-    mask = os.umask(0o022)
-    try:
-        path = write_text(tmp_path / "a.txt", "x")
-    finally:
-        os.umask(mask)
-    assert stat.S_IMODE(path.stat().st_mode) == 0o644

@@ -1,4 +1,4 @@
-"""Orientation, rim and checks of a cup."""
+"""Orientation, frame, rim and checks of a cup, from the definition of its radiographic angles."""
 
 from math import cos, degrees, pi, radians, sin
 
@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.problem.cup import UP
+from ballsocket.problem.cup import UP, AngleDefinition
 
 MEDIAL = (-sin(radians(15.0)), 0.0, cos(radians(15.0)))
 """A load on a right hip, 15° from the vertical to the body's middle."""
@@ -43,12 +43,6 @@ def test_rim_distance_of_hips_of_28_and_36_mm(radius, thickness, inclination, an
     assert degrees(cup.tilt(MEDIAL)) == pytest.approx(tilt, abs=0.05)
     assert cup.edge_distance(radius, 0.0, MEDIAL) == pytest.approx(centre, abs=0.005)
     assert cup.edge_distance(radius, contact.half_angle, MEDIAL) == pytest.approx(edge, abs=0.005)
-
-
-def test_a_cup_without_an_orientation_is_loaded_along_its_axis():
-    assert bs.Cup().dome == UP
-    assert bs.Cup().tilt(UP) == 0.0
-    assert bs.Cup(arc_of_cover=2.0).edge_distance(18.0, 0.4) == pytest.approx((1.0 - 0.4) * 18.0)
 
 
 @given(st.builds(bs.Cup, **ORIENTED))
@@ -89,32 +83,111 @@ def test_directions_over_time_give_angles_over_time():
     assert bs.Cup().edge_distance(10.0, np.zeros(2), forces).shape == (2, 2)
 
 
+CUPS = [
+    bs.Cup(inclination=radians(inclination), anteversion=radians(anteversion), side=side)
+    for inclination, anteversion in ((0.0, 0.0), (45.0, 15.0), (60.0, -20.0), (30.0, 5.0))
+    for side in bs.Side
+]
+EACH_CUP = pytest.mark.parametrize(
+    "cup", CUPS, ids=lambda cup: f"{cup.inclination:.2f} {cup.anteversion:.2f} {cup.side}"
+)
+
+
+@EACH_CUP
+def test_frame_is_right_handed_and_orthonormal(cup):
+    x, y, z = np.array(cup.frame)
+    np.testing.assert_allclose(np.array(cup.frame) @ np.array(cup.frame).T, np.eye(3), atol=1e-14)
+    np.testing.assert_allclose(np.cross(z, x), y, atol=1e-14)
+    np.testing.assert_allclose(z, cup.dome, atol=1e-15)
+    assert x[1] == 0.0  # x lies in the plane of the rim and in the frontal plane
+    assert x[2] >= 0.0
+
+
+def test_tilt_of_a_vertical_load_combines_both_angles():
+    cup = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
+    assert cup.tilt(UP) == pytest.approx(np.arccos(cos(radians(45.0)) * cos(radians(15.0))), rel=1e-12)
+    assert type(cup.tilt(UP)) is float
+    assert bs.Cup().tilt((0.0, 0.0, -2.0)) == pytest.approx(pi)
+    assert cup.tilted(0.7).tilt(UP) == pytest.approx(0.7, rel=1e-12)
+    assert cup.tilted(0.7).anteversion == 0.0
+
+
+def test_rim_distance_decreases_with_tilt_and_half_angle():
+    cup = bs.Cup(arc_of_cover=radians(160.0))
+    direction = (sin(0.3), 0.0, cos(0.3))
+    assert cup.edge_distance(18.0, 0.5, direction) == pytest.approx((radians(80.0) - 0.3 - 0.5) * 18.0, rel=1e-12)
+    assert cup.edge_distance(18.0, 0.5) == pytest.approx((radians(80.0) - 0.5) * 18.0, rel=1e-12)
+    assert cup.edge_distance(18.0, 1.4) < 0
+    assert cup.rim == pytest.approx(radians(80.0))
+
+
+def test_orientation_is_known_only_if_an_angle_was_set():
+    assert not bs.Cup(arc_of_cover=3.0).oriented
+    assert bs.Cup(inclination=0.0).oriented
+    assert bs.Cup(anteversion=0.0).oriented
+
+
+MURRAY = {
+    (45.0, 15.0): {"operative": (43.0795, 20.7536), "anatomical": (46.9205, 20.7536)},
+    (40.0, 15.0): {"operative": (38.3808, 19.2790), "anatomical": (42.2735, 22.6291)},
+}
+"""Operative and anatomical angles in degrees of radiographic ones (Murray 1993)."""
+
+
+@pytest.mark.parametrize("angles", MURRAY, ids=str)
+def test_angles_of_a_cup_in_the_definitions_of_murray(angles):
+    cup = bs.Cup.from_angles(*map(radians, angles))
+    assert cup == bs.Cup(inclination=radians(angles[0]), anteversion=radians(angles[1]))
+    for definition, expected in MURRAY[angles].items():
+        assert np.degrees(cup.angles(definition)) == pytest.approx(expected, abs=6e-5)
+
+
+def test_each_definition_describes_the_same_axis():
+    """The definitions are projections of the axis: on the frontal, the sagittal and the transverse plane."""
+    random = np.random.default_rng(4)
+    for inclination, anteversion in zip(random.uniform(0.01, 1.56, 200), random.uniform(-1.55, 1.55, 200), strict=True):
+        cup = bs.Cup(inclination=inclination, anteversion=anteversion)
+        x, y, z = cup.opening
+        assert np.sin(cup.angles("operative")[0]) == pytest.approx(x, abs=1e-12)
+        assert np.tan(cup.angles("operative")[1]) == pytest.approx(-y / z, rel=1e-10)
+        assert np.cos(cup.angles("anatomical")[0]) == pytest.approx(-z, abs=1e-12)
+        assert np.tan(cup.angles("anatomical")[1]) == pytest.approx(y / x, rel=1e-10)
+        for definition in AngleDefinition:
+            again = bs.Cup.from_angles(*cup.angles(definition), definition=definition)
+            np.testing.assert_allclose(again.angles(), (inclination, anteversion), rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("definition", ["radiographic", "Operative", AngleDefinition.ANATOMICAL])
+@pytest.mark.parametrize("tilt", [-20.0, 10.0])
+def test_a_pelvic_tilt_rotates_the_cup_about_the_transverse_axis(definition, tilt):
+    angles = radians(40.0), radians(18.0)
+    straight, tilted = (
+        bs.Cup.from_angles(*angles, definition=definition, pelvic_tilt=radians(size)) for size in (0.0, tilt)
+    )
+    before, after = straight.angles("operative"), tilted.angles("operative")
+    assert after[0] == pytest.approx(before[0], abs=1e-12)
+    assert after[1] == pytest.approx(before[1] - radians(tilt), abs=1e-12)
+    assert straight.opening[0] == pytest.approx(tilted.opening[0], abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        ({"inclination": 45}, "inclination = 45 is not allowed: .* 0 to 90 degrees, .* 0 to 1.571 radians"),
+        ({"inclination": 45}, "inclination = 45 is not allowed: .* 0 to 90 degrees, .*; 45 degrees are 0.7854 radians"),
         ({"anteversion": 15.0}, "anteversion = 15 is not allowed: .* -90 to 90 degrees, .* -1.571 to 1.571 radians"),
         ({"arc_of_cover": 180.0}, "arc_of_cover = 180 is not allowed: .* 40 to 340 degrees, .* to 5.934 radians"),
+        ({"arc_of_cover": 0.5}, "arc_of_cover = 0.5 is not allowed: an arc of cover is 40 to 340 degrees"),
         ({"inclination": -0.1}, "inclination = -0.1 is not allowed"),
         ({"inclination": np.nan}, "inclination = nan is not allowed"),
-    ],
-)
-def test_angles_are_radians(words, message):
-    with pytest.raises(ValueError, match=message):
-        bs.Cup(**words)
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
+        ({"chamfer": -1.0}, "chamfer = -1 is not allowed"),
         ({"inclination": np.zeros(2)}, "inclination must be one number"),
         ({"anteversion": "15 deg"}, "anteversion must be a number"),
         ({"side": "left"}, "side must be Side.RIGHT or Side.LEFT, got 'left'"),
-        ({"interface": None}, "interface must be Interface.BONDED or Interface.SLIDING"),
+        ({"interface": True}, "interface must be Interface.BONDED or Interface.SLIDING, got True"),
     ],
 )
-def test_arrays_and_unknown_enumerations_are_rejected(words, message):
-    with pytest.raises(TypeError, match=message):
+def test_values_of_a_cup_that_are_not_allowed_are_refused(words, message):
+    with pytest.raises(TypeError if "must be" in message else ValueError, match=message):
         bs.Cup(**words)
 
 
@@ -127,15 +200,20 @@ def test_arrays_and_unknown_enumerations_are_rejected(words, message):
         (1.0, "a direction has three components"),
     ],
 )
-def test_invalid_directions_are_rejected(direction, message):
+def test_directions_without_a_length_or_three_components_are_refused(direction, message):
     with pytest.raises(ValueError, match=message):
         bs.Cup().tilt(direction)
 
 
-def test_only_models_with_a_rim_have_a_cup():
-    """And to those the load is along the cup's axis, wherever that faces."""
-    cup = bs.Cup(arc_of_cover=2.5, inclination=0.7, side=bs.Side.LEFT)
-    assert bs.FiniteElement(meshes=1).in_cup(cup) == bs.FiniteElement(cup=cup, meshes=1)
-    for model in bs.catalogue.values():
-        assert model.in_cup(cup) == bs.model.Covered(model=model, cup=cup)
-        assert model.in_cup(cup).in_cup(bs.Cup()) is model
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"definition": "surgical"}, "definition = 'surgical' is not allowed: radiographic, operative, anatomical"),
+        ({"pelvic_tilt": 2.0}, "pelvic_tilt = 2 is not allowed: a pelvic tilt"),
+        ({"inclination": 2.0}, "inclination = 2 is not allowed"),
+        ({"anteversion": -1.2, "pelvic_tilt": 1.4}, "the cup would open upwards: .* inclination is .*; allowed are 0"),
+    ],
+)
+def test_angles_of_other_definitions_that_are_not_allowed_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        bs.Cup.from_angles(**{"inclination": 0.8, "anteversion": 0.2, **arguments})

@@ -88,14 +88,6 @@ def test_gaps_agree_for_small_indentations():
     assert not CircularGap.conservative
 
 
-@EACH_GAP
-def test_the_old_name_of_the_derivative_warns(gap):
-    with pytest.warns(DeprecationWarning, match="deepening is deprecated: use indentation_derivative"):
-        old = getattr(gap, "deepening")  # noqa: B009, a name that scripts do not rename
-    depths = np.full(ANGLES.shape, 0.2)
-    np.testing.assert_array_equal(old(ANGLES, depths), gap.indentation_derivative(ANGLES, depths))
-
-
 def test_other_gaps_are_rejected():
     check_gap(LinearGap)
     check_gap(CircularGap)
