@@ -57,6 +57,7 @@ def viewed(page):
     return json.loads(re.search(r"data-viewer='([^']*)'", told(page, "viewer"))[1])
 
 
+@pytest.mark.long
 def test_a_cycle_that_presses_nothing_is_no_cycle_without_rim_contact():
     page = opened()
     idle = re.sub(r", (300|2000|2500),", ", 0,", OWN)
@@ -119,6 +120,7 @@ def test_the_page_plays_what_the_process_found():
     assert float(first.split(",")[2]) == pytest.approx(found.pressure[0])
 
 
+@pytest.mark.long
 def test_rim_contact_is_named_and_red():
     page = opened()
     found = simulate_gait(page.screen.file, DEFAULT_USE, None, lambda news: None)
@@ -176,6 +178,7 @@ def test_a_patients_load_needs_a_weight():
     assert f"{largest:.4g} <span class='unit'>N" in told(page, "numbers")
 
 
+@pytest.mark.long
 def test_a_cycle_of_ones_own_is_read_and_is_in_no_link():
     page = opened()
     edits(page, "gait.own", {"name": "walk <1>.csv", "size": len(OWN), "text": OWN})

@@ -116,6 +116,7 @@ def memory_of(process):
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the memory of a process is read from /proc")
 def test_a_client_that_never_reads_does_not_grow_the_server():
     """Answers of the edits are many times the memory that the server may gain, and another user goes on."""

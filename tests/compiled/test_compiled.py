@@ -140,6 +140,7 @@ def liners(size: int, ball: bs.Material | None = None) -> bs.Joint:
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ball", some([bs.COCR, None], 1), ids=lambda ball: "elastic ball" if ball else "rigid ball")
 @pytest.mark.parametrize("model", some([bs.Refined(), bs.Tabulated()], 1), ids=lambda model: model.name)
 def test_compiled_solved_models_agree_to_eleven_digits(model, ball):

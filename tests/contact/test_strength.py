@@ -44,6 +44,7 @@ def _press_to_utilisation(utilisation: float):
     return bs.Exact().press(replace(HIP, liner=liner), force=3000.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("model", [bs.Exact(), bs.FiniteElement(meshes=1)], ids=lambda model: model.name)
 def test_models_that_solve_for_stresses_report_the_largest(model):
     contact = model.press(HIP, force=20e3)

@@ -102,6 +102,7 @@ def test_a_thin_compressible_liner_is_a_bonded_layer():
     assert contact.force == pytest.approx(columns.force, rel=0.03)
 
 
+@pytest.mark.long
 def test_a_thin_incompressible_liner_is_squeezed_like_a_film():
     """u = -(L³/3G) ∇²p: d -> a²/(4 R*) and F -> π G a⁶/(32 R* L³) for L << a, with corrections in L/a."""
     nearly = bs.Material(young=1000.0, poisson=0.4999)

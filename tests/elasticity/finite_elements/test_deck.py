@@ -248,6 +248,7 @@ def test_a_sliding_liner_in_a_rigid_socket_has_a_radial_support():
     assert not deck.heads("*EQUATION")
 
 
+@pytest.mark.long
 def test_a_sliding_liner_shares_the_radial_displacement_of_its_backing():
     bonded, sliding = (
         Read(deck_of(pressed(joint(RIGID, backing=(SOFT, TITANIUM)), interface=interface)).text())
@@ -299,6 +300,7 @@ def test_invalid_steps_and_scales_are_refused(wrong):
         deck_of(pressed(RIGID), **wrong)
 
 
+@pytest.mark.long
 def test_meshes_that_do_not_match_need_a_large_scale():
     contact = pressed(STEEL, ball_spacing=bs.Adapted(elements=36))
     assert Read(deck_of(contact).text()).heads("*STEP")
@@ -440,6 +442,7 @@ def test_a_missing_and_an_invalid_deck_are_reported(tmp_path):
         ccx.run(tmp_path)
 
 
+@pytest.mark.long
 @needs_ccx
 def test_results_of_an_earlier_run_are_not_read(tmp_path, monkeypatch):
     deck_of(pressed(RIGID), steps=1).write(tmp_path)
@@ -450,6 +453,7 @@ def test_results_of_an_earlier_run_are_not_read(tmp_path, monkeypatch):
         ccx.run(tmp_path)
 
 
+@pytest.mark.long
 @needs_ccx
 def test_steps_that_were_not_reached_are_nan(tmp_path):
     made = deck_of(pressed(RIGID), steps=2)
@@ -475,6 +479,7 @@ VARIANTS = {
 }
 
 
+@pytest.mark.long
 @needs_ccx
 @pytest.mark.parametrize("name", some(VARIANTS, 2))
 def test_calculix_has_the_expected_results(name, tmp_path):

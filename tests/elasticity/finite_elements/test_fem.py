@@ -81,6 +81,7 @@ def test_a_backed_liner_has_the_exact_solution(backing):
         assert getattr(ours, name) == pytest.approx(getattr(exact, name), rel=1e-3), name
 
 
+@pytest.mark.long
 def test_a_massive_socket_has_the_exact_solution():
     joint = lined(thickness=np.inf)
     ours, exact = bs.FiniteElement(cup=FULL).press(joint, force=30.0), bs.Exact().press(joint, force=30.0)
@@ -122,6 +123,7 @@ def test_displacements_of_the_bore_are_the_exact_ones():
 # --- against CalculiX ---
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", some(CALCULIX), ids=lambda case: case["name"])
 def test_calculix_has_the_same_indentation_pressure_and_half_angle(case):
     """Steel half ball pushed by its equator, hemispherical liner, linearised: the same problem by other elements."""
@@ -142,6 +144,7 @@ def test_calculix_has_the_same_indentation_pressure_and_half_angle(case):
 # --- what the exact solution leaves out ---
 
 
+@pytest.mark.long
 def test_the_rim_softens_wide_contacts_most():
     """A hemisphere is softer near its rim; a complete sphere is not."""
     angle = np.radians([30.0, 50.0, 70.0, 80.0])
@@ -152,6 +155,7 @@ def test_the_rim_softens_wide_contacts_most():
     assert softer[-1] > 0.1
 
 
+@pytest.mark.long
 def test_arcs_of_cover_below_a_hemisphere_are_softer():
     arcs = np.radians(some([120.0, 140.0, 160.0, 180.0]))
     depths = [
@@ -160,6 +164,7 @@ def test_arcs_of_cover_below_a_hemisphere_are_softer():
     assert np.all(np.diff(depths) < 0)
 
 
+@pytest.mark.long
 def test_a_contact_that_fills_the_socket_has_a_status_and_numbers():
     cup = bs.Cup(arc_of_cover=np.radians(70.0))
     loads = np.array(some([100.0, 2500.0, 3500.0, 4500.0], 2))
@@ -218,6 +223,7 @@ def test_a_free_shell_is_softer_than_a_fixed_one():
     assert soft.indentation > 1.2 * stiff.indentation
 
 
+@pytest.mark.long
 def test_a_chamfer_far_from_the_contact_changes_nothing_and_ends_the_bore():
     sharp, cut = (bs.FiniteElement(cup=bs.Cup(chamfer=chamfer)) for chamfer in (0.0, 3.0))
     depths = [model.press(HIP, force=500.0).indentation for model in (sharp, cut)]
@@ -231,6 +237,7 @@ def test_a_chamfer_far_from_the_contact_changes_nothing_and_ends_the_bore():
 # --- error bars, convergence ---
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("element", "name", "order"),
     [
@@ -307,6 +314,7 @@ def test_uniform_meshes_agree_with_adapted_ones():
         assert getattr(one, name) == pytest.approx(getattr(other, name), rel=2e-3), name
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ball", [bs.Uniform(size=0.7), bs.Adapted(elements=24), bs.Adapted(elements=120)])
 def test_the_meshes_of_ball_and_socket_need_not_match(ball):
     joint = replace(HIP, ball=bs.Material(young=2000.0, poisson=0.3))
@@ -352,6 +360,7 @@ def test_the_stiffness_near_the_perfect_fit_is_the_slope_of_the_force(clearance)
 # --- the contract of all models, as far as elements keep it ---
 
 
+@pytest.mark.long
 def test_force_indentation_and_half_angle_are_inverse():
     model = bs.FiniteElement(meshes=1)
     forces = np.array(some([1.0, 30.0, 500.0, 1000.0, 3000.0, 4500.0]))
@@ -408,6 +417,7 @@ def test_arrays_of_joints_and_loads_give_the_results_of_single_ones():
     assert contact.error["max_pressure"][2, 0] == single.error["max_pressure"]
 
 
+@pytest.mark.long
 def test_results_do_not_depend_on_the_other_loads():
     model = bs.FiniteElement(meshes=1)
     alone = model.press(HIP, force=700.0).indentation
@@ -418,11 +428,13 @@ def test_results_do_not_depend_on_the_other_loads():
 # --- refusals ---
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("chamfer", "force"), some(product([0.1, 1.0, 2.7], [3.0, 30.0, 300.0, 3000.0]), 4))
 def test_chamfers_can_be_meshed_at_every_load(chamfer, force):
     assert bs.FiniteElement(cup=bs.Cup(chamfer=chamfer), meshes=1).press(HIP, force=force).status is bs.Status.OK
 
 
+@pytest.mark.long
 def test_a_contact_that_leaves_the_pole_has_no_result_and_changes_no_other():
     """A soft free shell closes around the ball: beyond some load the contact is no cap."""
     shell = bs.Layer(thickness=3.0, material=bs.Material(young=1000.0, poisson=0.3))
@@ -439,6 +451,7 @@ def test_incompressible_balls_and_backings_are_refused():
             bs.FiniteElement().press(joint, force=1.0)
 
 
+@pytest.mark.long
 def test_the_largest_stress_excludes_the_sharp_corner():
     cup = bs.Cup(arc_of_cover=np.radians(80.0))
     peaks = [
@@ -522,6 +535,7 @@ def test_contacts_wider_than_88_degrees_have_no_result():
     assert "at most 88" in contact.notes[0]
 
 
+@pytest.mark.long
 def test_displacements_and_stresses_need_one_contact_under_load():
     contact = bs.FiniteElement(meshes=1).press(HIP, force=np.array([10.0, 20.0]))
     with pytest.raises(ValueError, match="displacements and stresses are for one contact"):

@@ -34,6 +34,7 @@ def test_bricks_and_wedges_share_nodes_and_have_positive_volume():
         assert middle == pytest.approx((corners[0] + corners[1]) / 2, abs=0.05)
 
 
+@pytest.mark.long
 @needs_ccx
 @pytest.mark.parametrize(
     ("tilt", "size", "tolerance"),

@@ -35,6 +35,7 @@ CUPS = {
 """Joint, cup, load in N, and the tilt in degrees at which the contact first touches the rim, in rings of 0.5°."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", some(CUPS, 2))
 def test_edge_distance_decreases_smoothly_with_tilt_at_the_rim(name):
     """Steps of half a degree reduce it by 0.03 to 0.2 mm, and differ by less than 0.1 mm."""
@@ -48,6 +49,7 @@ def test_edge_distance_decreases_smoothly_with_tilt_at_the_rim(name):
     assert (contact.edge_loaded == (contact.edge_distance <= 0)).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", list(CUPS)[: either(quick=1, long=4)])
 def test_edge_distance_is_independent_of_ring_width(name):
     """Rings of 2° within 0.1 mm, far from the rim, near it, and beyond it."""
@@ -77,6 +79,7 @@ def test_edge_distance_of_a_cut_contact_needs_few_presses(name):
     assert len(presses) <= 9
 
 
+@pytest.mark.long
 def test_edge_distances_of_many_cut_contacts_need_the_presses_of_a_few():
     """The tilts at first rim contact of 40 loads follow from those of 8, within 0.03°."""
     model, force = bs.Sphere(ring_width=radians(4.0)), np.geomspace(800.0, 5000.0, 40)
@@ -180,6 +183,7 @@ def test_bore_narrower_than_its_axial_contact_misses_the_overlap():
     assert contact.edge_margin == pytest.approx(pi / 6 - np.arccos(0.05 / 0.1), abs=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("poisson", some([0.45, 0.3], 1))
 def test_error_estimates_hold_for_edge_loading(poisson):
     """Contacts that the rim cuts off, in rings of 4° and of 2°."""

@@ -101,6 +101,7 @@ def test_springs_agree_with_the_closed_form(tilt):
     assert contact.half_angle == pytest.approx(closed.half_angle, abs=radians(0.05))
 
 
+@pytest.mark.long
 def test_error_estimates_hold():
     """Nineteen of twenty errors of random contacts in closed shells are below their estimates, none far above."""
     random = np.random.default_rng(7)

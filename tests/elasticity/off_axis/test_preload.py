@@ -142,6 +142,7 @@ def test_the_pull_out_force_on_springs_is_the_largest_integral(fit, friction):
     assert pulled.displacement == pytest.approx(displacements[np.argmax(forces)], abs=0.1)
 
 
+@pytest.mark.long
 def test_the_pull_out_force_grows_with_cover_and_friction_and_does_not_need_fine_rings():
     narrow, wide = (bs.pull_out(held(arc), TIGHT) for arc in (195.0, 205.0))
     assert 0 < narrow.force < wide.force < bs.pull_out(held(205.0), TIGHT, 0.1).force
