@@ -12,27 +12,25 @@ from __future__ import annotations
 import runpy
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy
 
 from ballsocket.export import TARGETS, ExportJob
 
 from . import tools
-from .report import Report, Rows
-from .timing import interleaved
+from .report import Pair, Row, compare
+from .timing import Job
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "what_does_clearance_do_to_a_four_bar.py"
 BAR = SimpleNamespace(**runpy.run_path(str(EXAMPLE), run_name="four_bar"))
-NAME, DEPTH, REPEATS = "linked", 0.004, 3
+NAME, DEPTH = "linked", 0.004
 RESTITUTION = {"restitutionCoefficient": 0.8, "impactModel": 2, "minimumImpactVelocity": 1e-3}
-STEPS = (4e-5, 2e-5, 1e-5)
 
 
 def compiled(duration: float, step: float, samples: int) -> numpy.ndarray:
@@ -52,6 +50,7 @@ def _march() -> Callable[..., None]:
     from numba.extending import register_jitable
 
     from ballsocket.dynamics import reaction as formulas
+    from ballsocket.dynamics.ball_centre import ball_centre_at
 
     for each in (BAR.dot, BAR.cross, BAR.plus, BAR.at_joint, BAR.rates):
         register_jitable(each)
@@ -59,7 +58,7 @@ def _march() -> Callable[..., None]:
     @numba.njit(error_model="numpy")
     def ask(joint, position, velocity, spin):  # type: ignore[no-untyped-def]
         potential, given = joint
-        place = formulas.ball_centre_at(position[0], position[1], position[2], given.clearance)
+        place = ball_centre_at(position[0], position[1], position[2], given.clearance)
         contact = formulas.elastic_contact(potential, place, given)
         fx, fy, fz, mx, my, mz = formulas.force_and_moment(place, contact, velocity, spin, given)
         lost = formulas.dissipation(place, contact, velocity, spin, given)
@@ -81,9 +80,8 @@ def _march() -> Callable[..., None]:
     return march
 
 
-@dataclass(frozen=True, kw_only=True)
-class Answer:
-    """What Exudyn says over the time in s: the rocker's angle in rad, and what was lost in N mm."""
+class Answer(NamedTuple):
+    """Results of Exudyn over the time in s: the rocker's angle in rad, and the energy lost in N mm."""
 
     time: numpy.ndarray
     angle: numpy.ndarray
@@ -191,28 +189,30 @@ def _settings(exu: Any, duration: float, step: float, samples: int) -> Any:
     return settings
 
 
-def measure() -> Report | str:
-    if find_spec("exudyn") is None:
-        return "exudyn is not installed"
-    right = compiled(1.0, 2.5e-6, 201)[9]
-    angles: dict[str, Callable[[], numpy.ndarray]] = {
-        f"compiled, steps of {1e6 * step:g} µs": (lambda h=step: compiled(1.0, h, 201)[9])  # type: ignore[misc]
-        for step in STEPS
+def measure() -> list[Row]:
+    reference = compiled(1.0, 2.5e-6, 201)[9]
+    calls: dict[str, Callable[[], numpy.ndarray]] = {
+        "law": lambda: in_exudyn("law", 1.0, 2e-5, 201).angle,
+        "sphere": lambda: in_exudyn("sphere", 1.0, 2e-5, 201).angle,
+        "python": lambda: BAR.fallen(numpy.linspace(0.0, 1.0, 201))[9],
+        "compiled": lambda: compiled(1.0, 4e-5, 201)[9],
     }
-    angles["Exudyn, the exported law, 20 µs"] = lambda: in_exudyn("law", 1.0, 2e-5, 201).angle
-    angles["Exudyn, its hollow sphere, 20 µs"] = lambda: in_exudyn("sphere", 1.0, 2e-5, 201).angle
-    angles["the element in Python, LSODA"] = lambda: BAR.fallen(numpy.linspace(0.0, 1.0, 201))[9]
-    off = {name: float(numpy.max(abs(each() - right))) for name, each in angles.items()}
-    _, seconds = interleaved(REPEATS, dict(angles))
-    rows = Rows("A second of the four-bar", ("what", "takes, ms", "largest difference of the rocker's angle, mrad"))
-    for name in angles:
-        rows.add(name, seconds[name].per(1e-3), f"{1e3 * off[name]:.2g}")
-    notes = [
-        f"The rocker swings through {1e3 * numpy.ptp(right):.0f} mrad; the reference is the compiled one with steps of "
-        "2.5 µs. Exudyn's times have all in them that begins a run.",
-        "The hollow sphere has the k and n nearest to the law up to 4 µm, and a restitution of its own: another law.",
-    ]
-    return Report([rows], notes, ("exudyn",))
+
+    def named(words: str, key: str) -> str:
+        """Words and the largest error of the rocker's angle, in mrad of 169."""
+        error = float(numpy.max(abs(calls[key]() - reference)))
+        return f"{words}, {1e3 * error:.1g} mrad off"
+
+    ours = named("compiled, steps of 40 µs", "compiled")
+    job = Job(calls["compiled"])
+    pairs = [Pair(ours, job, named("the element in Python, LSODA", "python"), Job(calls["python"]))]
+    for key, words in (("law", "the exported law"), ("sphere", "its own hollow sphere")):
+        rival = f"Exudyn, {words}, 20 µs"
+        if find_spec("exudyn") is None:
+            pairs.append(Pair(ours, job, rival, "exudyn is not installed"))
+        else:
+            pairs.append(Pair(ours, job, named(rival, key), Job(calls[key])))
+    return compare(pairs, repeats=3)
 
 
 def kept(duration: float = 1.0, step: float = 1e-5, samples: int = 201) -> str:
