@@ -53,7 +53,7 @@ def main(words: Sequence[str] | None = None) -> int:
             continue
         report.show(name, BENCHMARKS[name], rows)
         if options.write:
-            report.write(name, BENCHMARKS[name], rows)
+            report.write(name, rows)
     return 0
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import radians
 from pathlib import Path
 
 from ballsocket.core.executors import Serial
@@ -11,7 +10,6 @@ from ballsocket.hip import PatientVariability, logarithmic
 from ballsocket.hip.cohort import CohortRun, sample_patients
 from ballsocket.hip.cohort_series import CohortSeries
 from ballsocket.hip.config import read_hip
-from ballsocket.studies import Normal
 
 from .report import Pair, Row, compare
 from .timing import Job
@@ -25,18 +23,11 @@ def measure() -> list[Row]:
     settings = read_hip(FILE).uncertain
     assert settings is not None
     tilted = settings.variability
-    angles = {
-        "inclination": Normal(mean=radians(42.0), deviation=radians(7.0), low=radians(20.0), high=radians(65.0)),
-        "anteversion": Normal(mean=radians(15.0), deviation=radians(7.0), low=radians(-10.0), high=radians(40.0)),
-    }
-    others = {name: value for name, value in tilted.distributions.items() if name != "tilt"}
-    oriented = replace(tilted, distributions={**others, **angles})
     creeping = replace(tilted, use=replace(tilted.use, creep=logarithmic(), seconds_per_cycle=20.0))
     rows: list[Row] = []
     for name, patients, number in (
-        ("tilt", tilted, PATIENTS),
-        ("inclination and anteversion", oriented, PATIENTS),
-        ("tilt and creep", creeping, CREEPING),
+        ("wear", tilted, PATIENTS),
+        ("wear and creep", creeping, CREEPING),
     ):
         rows += _compared(name, patients, number)
     return rows
@@ -54,7 +45,7 @@ def _compared(name: str, patients: PatientVariability, number: int) -> list[Row]
 
     few = CohortRun(variability=patients, counts=COUNTS, values=sample_patients(patients, SAMPLE, 1))
 
-    each = Pair(f"{name}, {number} patients", Job(solve, number), "each simulated", Job(few.simulate, SAMPLE))
+    each = Pair(f"one of {number} patients, {name}", Job(solve, number), "each simulated", Job(few.simulate, SAMPLE))
     times = compare([each], repeats=1)
     shown = (f"{word.replace('_', ' ')} {100 * errors[word]:.2g} %" for word in QUANTITIES if word in errors)
-    return [*times, Row(f"{name}, 95 % of held-out errors within", ", ".join(shown))]
+    return [*times, Row(f"patients, {name}: 95 % of the errors within", ", ".join(shown))]

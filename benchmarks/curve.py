@@ -31,12 +31,21 @@ def measure() -> list[Row]:
     pairs = []
     for name, model in (("tabulated", tabulated), ("refined", refined), ("exact-curve", exact)):
         ours = _press(model, force)
-        pairs.append(Pair(f"{name}, NumPy", ours, f"{with_version('scipy')} CubicSpline", scipy))
+        pairs.append(
+            Pair(f"{name}, one joint and a million loads, NumPy", ours, f"{with_version('scipy')} CubicSpline", scipy)
+        )
         if not isinstance(model, bs.ExactCurve):
             fast = _press(Compiled(model=model), force)
-            pairs.append(Pair(f"{name}, compiled", fast, f"spline in {with_version('numba')}", numba))
+            pairs.append(
+                Pair(
+                    f"{name}, one joint and a million loads, compiled",
+                    fast,
+                    f"spline in {with_version('numba')}",
+                    numba,
+                )
+            )
             jax = if_installed("jax", partial(_jax, model, force))
-            pairs.append(Pair(f"{name}, compiled", fast, "the same in JAX", jax))
+            pairs.append(Pair(f"{name}, one joint and a million loads, compiled", fast, "the same in JAX", jax))
     return compare(pairs)
 
 

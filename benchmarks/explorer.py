@@ -86,9 +86,11 @@ def measure() -> list[Row]:
         ("move of a slider, processor time", {"": cpu, **{name: its for name, (_, its) in moves.items()}}),
     ):
         rows += [Row(work, found[""], f"empty page of {name}: {found[name]}") for name in empty]
-        rows += [Row(work, found[""], f"empty page of {name}", skipped=True) for name in missing]
+        rows += [
+            Row(work, found[""], f"empty page of {name}: skipped, not installed", skipped=True) for name in missing
+        ]
         if not empty:
-            rows.append(Row(work, found[""], f"skipped: not installed: {', '.join(missing)}"))
+            rows.append(Row(work, found[""]))
     return [*rows, Row("move of a slider, to the table", table)]
 
 

@@ -1,8 +1,8 @@
 """A second of a spatial four-bar whose ball joint has clearance: compiled, in Python, and in Exudyn.
 
-The mechanism of `examples/what_does_clearance_do_to_a_four_bar.py`. Fair, because Exudyn has its own bodies and joints
-for it and takes the steps that its implicit method is right with to the same few ten millionths of the angle; its
-hollow sphere is asked for no more than an elastic force and a restitution. The step of each is told with its error.
+The mechanism of `examples/what_does_clearance_do_to_a_four_bar.py`. Exudyn has its own bodies and joints for it; its
+hollow sphere has an elastic force and a restitution only. Of 169 mrad through which the rocker swings the compiled
+element is 0.07 off at steps of 40 µs, the element in Python 0.003, Exudyn 1.1.
 
 `python -m benchmarks.four_bar FILE` writes what Exudyn answers as the example reads it.
 """
@@ -13,7 +13,6 @@ import runpy
 import sys
 from collections.abc import Callable
 from functools import cache, partial
-from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import SimpleNamespace
@@ -24,7 +23,7 @@ import numpy
 from ballsocket.export import TARGETS, ExportJob
 
 from . import tools
-from .report import Pair, Row, compare
+from .report import Pair, Row, compare, if_installed
 from .timing import Job
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "what_does_clearance_do_to_a_four_bar.py"
@@ -190,28 +189,12 @@ def _settings(exu: Any, duration: float, step: float, samples: int) -> Any:
 
 
 def measure() -> list[Row]:
-    reference = compiled(1.0, 2.5e-6, 201)[9]
-    calls: dict[str, Callable[[], numpy.ndarray]] = {
-        "law": lambda: in_exudyn("law", 1.0, 2e-5, 201).angle,
-        "sphere": lambda: in_exudyn("sphere", 1.0, 2e-5, 201).angle,
-        "python": lambda: BAR.fallen(numpy.linspace(0.0, 1.0, 201))[9],
-        "compiled": lambda: compiled(1.0, 4e-5, 201)[9],
-    }
-
-    def named(words: str, key: str) -> str:
-        """Words and the largest error of the rocker's angle, in mrad of 169."""
-        error = float(numpy.max(abs(calls[key]() - reference)))
-        return f"{words}, {1e3 * error:.1g} mrad off"
-
-    ours = named("compiled, steps of 40 µs", "compiled")
-    job = Job(calls["compiled"])
-    pairs = [Pair(ours, job, named("the element in Python, LSODA", "python"), Job(calls["python"]))]
-    for key, words in (("law", "the exported law"), ("sphere", "its own hollow sphere")):
-        rival = f"Exudyn, {words}, 20 µs"
-        if find_spec("exudyn") is None:
-            pairs.append(Pair(ours, job, rival, "exudyn is not installed"))
-        else:
-            pairs.append(Pair(ours, job, named(rival, key), Job(calls[key])))
+    work, ours = "four-bar for a second, compiled, 40 µs", Job(lambda: compiled(1.0, 4e-5, 201))
+    python = Job(lambda: BAR.fallen(numpy.linspace(0.0, 1.0, 201)))
+    pairs = [Pair(work, ours, "the element in Python, LSODA", python)]
+    for name, words in (("law", "the exported law"), ("sphere", "its own hollow sphere")):
+        theirs = if_installed("exudyn", lambda name=name: Job(lambda: in_exudyn(name, 1.0, 2e-5, 201)))  # type: ignore[misc]
+        pairs.append(Pair(work, ours, f"Exudyn, {words}, 20 µs", theirs))
     return compare(pairs, repeats=3)
 
 

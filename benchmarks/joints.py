@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy
 from scipy.interpolate import PchipInterpolator
-from scipy.optimize import brentq, elementwise
+from scipy.optimize import brentq
 
 import ballsocket as bs
 from ballsocket.compiled import Compiled
@@ -32,28 +32,28 @@ def measure() -> list[Row]:
     random = numpy.random.default_rng(2021)
     inputs = [random.uniform(low, high, POINTS) for low, high in RANGES]
     one_liner = [*inputs[:3], 750.0, 0.46, inputs[5]]
-    closed, tabulated, refined = bs.HessForsbach(), bs.Tabulated(), bs.Refined()
+    closed = bs.HessForsbach()
     fast = _press(Compiled(model=closed), inputs)
 
     def in_jax(*numbers: Any) -> tuple[Any, ...]:
         return results(closed.press(joint_of(numbers), force=numbers[5]))
 
     source, target = numpy.ones((10, POINTS)), numpy.empty((10, POINTS))  # as many bytes as a press reads and writes
-    scipy = with_version("scipy")
-    pairs = [
-        Pair("paper's model", fast, "copy of the same bytes", Job(lambda: numpy.copyto(target, source), 2 * POINTS)),
-        Pair("paper's model", fast, "the same in NumPy", _press(closed, inputs)),
-        Pair("paper's model", fast, "the same in JAX", if_installed("jax", lambda: jax_job(in_jax, inputs, POINTS))),
-        Pair("paper's model", fast, f"{scipy} find_root", Job(partial(_find_root, _first(inputs, SAMPLE)), SAMPLE)),
-        Pair("paper's model", fast, f"{scipy} brentq", Job(partial(_brentq, _first(inputs, SAMPLE)), SAMPLE)),
-    ]
+    rivals: dict[str, Job | str] = {
+        "copy of the same bytes": Job(lambda: numpy.copyto(target, source), 2 * POINTS),
+        "the same in NumPy": _press(closed, inputs),
+        "the same in JAX": if_installed("jax", lambda: jax_job(in_jax, inputs, POINTS)),
+        f"{with_version('scipy')} brentq": Job(partial(_brentq, _first(inputs, SAMPLE)), SAMPLE),
+    }
+    pairs = [Pair("paper's model, a joint a press", fast, rival, job) for rival, job in rivals.items()]
     exact = _press(bs.Exact(), _first(inputs, FEW))
-    for title, some in (("one liner material", one_liner), ("a material each", inputs)):
-        for model in (tabulated, refined):
-            ours = _press(Compiled(model=model), some)
-            pairs.append(Pair(f"{model.name}, {title}", ours, "the same in NumPy", _press(model, some)))
-            if some is inputs:
-                pairs.append(Pair(f"{model.name}, {title}", ours, "exact", exact))
+    for model in (bs.Tabulated(), bs.Refined()):
+        work, ours = f"{model.name}, a joint a press", Compiled(model=model)
+        one = _press(ours, one_liner)
+        pairs += [
+            Pair(f"{work}, one liner material", one, "the same in NumPy", _press(model, one_liner)),
+            Pair(f"{work}, a material each", _press(ours, inputs), "exact", exact),
+        ]
     return compare(pairs)
 
 
@@ -106,20 +106,10 @@ def _excess(d, R2, c, K, F):  # type: ignore[no-untyped-def]
     return numpy.pi * R2**2 * K / 3 * (2 * d - c + c * (c / (c + d)) ** 2) - F
 
 
-def _derived(d: Any, clearance: Any, modulus: Any) -> tuple[Any, ...]:
-    return d, numpy.arccos(clearance / (clearance + d)), modulus * d
-
-
 def _brentq(inputs: Inputs) -> object:
     """One root after the other, in plain floats."""
     constants = _constants(inputs)
     rows = zip(*(part.tolist() for part in (*constants, inputs[2])), strict=True)
     roots = [brentq(_excess, 0.0, thickness, args=tuple(four), xtol=1e-15, rtol=1e-15) for *four, thickness in rows]
-    return _derived(numpy.array(roots), constants[1], constants[2])
-
-
-def _find_root(inputs: Inputs) -> object:
-    """All roots at once."""
-    constants = _constants(inputs)
-    found = elementwise.find_root(_excess, (0.0 * inputs[2], inputs[2]), args=constants)
-    return _derived(found.x, constants[1], constants[2])
+    d, (_, clearance, modulus, _) = numpy.array(roots), constants
+    return d, numpy.arccos(clearance / (clearance + d)), modulus * d

@@ -56,15 +56,15 @@ def measure() -> list[Row]:
             fast, python = CompiledElement(element), _python(element, states[:CALLS])
             batch = _batch(fast, states)
             pairs += [
-                Pair(f"{name}, in Python", python, rival, opensim),
-                Pair(f"{name}, in a compiled loop", _compiled(fast, states), "in Python", python),
-                Pair(f"{name}, {MANY} states at once", batch, "in Python", python),
+                Pair(f"force element, {name}, in Python", python, rival, opensim),
+                Pair(f"force element, {name}, in a compiled loop", _compiled(fast, states), "in Python", python),
+                Pair(f"force element, {name}, {MANY} states at once", batch, "in Python", python),
             ]
             try:
                 job = _in_c(element, Path(folder) / name[:5], states)
             except NoCompiler:
                 continue
-            pairs.append(Pair(f"{name}, exported to C, without tangent", job, "in Python", python))
+            pairs.append(Pair(f"force element, {name}, in C, without tangent", job, "in Python", python))
         return compare(pairs)
 
 

@@ -21,13 +21,13 @@ from .timing import Clock, Job, Spread, in_turns, processor_time
 RESULTS = Path(__file__).with_name("RESULTS.md")
 HEAD = """# Measured
 
-`python -m benchmarks NAME ... --write` replaces the rows of a section; those whose rival is not installed stay.
+`python -m benchmarks NAME ... --write` replaces the rows of NAME; those whose rival is not installed stay.
 Ours and the rival took turns in one run. Times are medians of one press, step, patient or run: processor time on one
 core, unless a row says "by the clock". The ratio is the rival's time over ours, with its least and its largest value
 over the rounds.
 
-| work | ours | rival | ratio | machine, date |
-| --- | --- | --- | --- | --- |
+| NAME | work | ours | rival | ratio | machine, date |
+| --- | --- | --- | --- | --- | --- |
 """
 
 
@@ -146,29 +146,22 @@ def show(name: str, title: str, rows: Iterable[Row]) -> None:
     console.print(table)
 
 
-def write(name: str, title: str, rows: Sequence[Row], path: Path = RESULTS) -> None:
-    """Replace the rows of a section; a skipped row stays as it was measured before."""
+def write(name: str, rows: Sequence[Row], path: Path = RESULTS) -> None:
+    """Replace the rows of a benchmark; a skipped row stays as it was measured before."""
     sections = _read(path)
     before = {row.key: row for row in sections.get(name, [])}
     here = machine()
-    heading = Row(f"**{name}**: {title}", "")
-    sections[name] = [heading]
-    for row in rows:
-        if not row.skipped:
-            sections[name].append(replace(row, machine=row.machine or here))
-        elif row.key in before:
-            sections[name].append(before[row.key])
-    lines = ["| " + " | ".join(row.cells) + " |\n" for section in sections.values() for row in section]
+    measured = [before.get(row.key) if row.skipped else replace(row, machine=row.machine or here) for row in rows]
+    sections[name] = [row for row in measured if row is not None]
+    lines = ("| " + " | ".join((title, *row.cells)) + " |\n" for title, rows in sections.items() for row in rows)
     path.write_text(HEAD + "".join(lines), encoding="utf-8")
 
 
 def _read(path: Path) -> dict[str, list[Row]]:
-    """Rows by the name of their section, the row of its title first."""
+    """Rows by the name of their benchmark."""
     sections: dict[str, list[Row]] = {}
-    for line in path.read_text(encoding="utf-8").splitlines() if path.exists() else ():
-        if line.startswith("| **"):
-            section = sections.setdefault(line.split("**")[1], [])
-        if sections and line.startswith("|"):
-            work, ours, rival, ratio, where = (cell.strip() for cell in line.split("|")[1:-1])
-            section.append(Row(work, ours, rival, ratio, where))
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    for line in [line for line in lines if line.startswith("|")][2:]:
+        name, work, ours, rival, ratio, where = (cell.strip() for cell in line.split("|")[1:-1])
+        sections.setdefault(name, []).append(Row(work, ours, rival, ratio, where))
     return sections

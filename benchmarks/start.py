@@ -20,9 +20,8 @@ def measure() -> list[Row]:
     imported = _process("-c", "import ballsocket")
     helped = _process("-m", "ballsocket", "--help")
     pressed = _process("-m", "ballsocket", "press", "examples/hip.toml")
-    bare, numpy = _process("-c", "pass"), _process("-c", NUMPY)
+    numpy = _process("-c", NUMPY)
     pairs = (
-        Pair("import ballsocket", imported, "python -c pass", bare),
         Pair("import ballsocket", imported, NUMPY, numpy),
         Pair("ballsocket --help", helped, NUMPY, numpy),
         Pair("ballsocket press examples/hip.toml", pressed, NUMPY, numpy),

@@ -29,8 +29,8 @@ def measure() -> list[Row]:
     many, hundred, single, few, less = (points(*size) for size in sizes)
     memory, by_hand = _study(closed, many, stored=False), _by_hand(closed, many)
     pairs = [
-        Pair("paper's model, 10⁷ presses in memory", memory, "a loop by hand", by_hand),
-        Pair("paper's model, 10⁷ presses into Zarr", _study(closed, many)),
+        Pair("study of 10⁷ presses by the paper's model, in memory", memory, "a loop by hand", by_hand),
+        Pair("the same into Zarr", _study(closed, many)),
         Pair("tabulated, 100 loads a joint, into Zarr", _study(tabulated, hundred)),
         Pair("tabulated, a joint a press, into Zarr", _study(tabulated, single)),
     ]
