@@ -1,1 +1,1 @@
-"""How fast, and against whom: `python -m benchmarks NAME` measures this package and its rivals in one run."""
+"""Speed beside rivals: `python -m benchmarks` lists the benchmarks, `RESULTS.md` has the results."""

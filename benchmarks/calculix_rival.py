@@ -1,4 +1,4 @@
-"""The same contact by CalculiX, the free finite-element program: its input, its run and what it answers.
+"""The same contact by CalculiX, the free finite-element program: its input and its run.
 
 Axisymmetric 8-node quadrilaterals of reduced integration, frictionless face-to-face penalty contact. The ball is rigid:
 one ring of elements, every node of it displaced, so that it costs nothing and indentation means the same as ours. The
@@ -15,13 +15,12 @@ import shutil
 import subprocess
 from dataclasses import dataclass
 from itertools import pairwise
-from math import cos, pi, radians, sin
+from math import cos, pi, sin
 from pathlib import Path
 
 import numpy
 
 import ballsocket as bs
-from ballsocket.elasticity.finite_elements.calculix import SECTORS, read_contact_pressures, read_printed
 
 SCALE = 1e-3
 RIM, GROWTH, WIDEST = 120.0, 1.3, 15.0  # degrees, of the liner's elements beyond the contact
@@ -41,55 +40,18 @@ class Mesh:
     ratio: float = 1.3
 
 
-@dataclass(frozen=True, kw_only=True)
-class Steps:
-    """Force in N, pressure at the pole in MPa and half angle in rad of each step."""
-
-    force: numpy.ndarray
-    max_pressure: numpy.ndarray
-    half_angle: numpy.ndarray
-
-
 class Calculix:
     """One joint on one mesh, pushed to some indentations in turn."""
 
     def __init__(self, joint: bs.Joint, mesh: Mesh, depths: numpy.ndarray, folder: Path) -> None:
-        self.steps, self.folder, self.name = len(depths), folder, "deck"
+        self.folder, self.name = folder, "deck"
         folder.mkdir(parents=True, exist_ok=True)
-        deck = _Deck(joint, mesh)
-        self.nodes, self.surface = len(deck.nodes), deck.surface
-        (folder / f"{self.name}.inp").write_text(deck.text(depths), encoding="ascii")
+        (folder / f"{self.name}.inp").write_text(_Deck(joint, mesh).text(depths), encoding="ascii")
 
     def run(self) -> None:
         command, environment = shutil.which("ccx"), {**os.environ, "OMP_NUM_THREADS": "1"}
         assert command is not None
         subprocess.run([command, "-i", self.name], cwd=self.folder, env=environment, capture_output=True, check=True)
-
-    def answer(self) -> Steps:
-        """What the last run wrote; NaN for a step that it did not reach."""
-        whole = numpy.full((3, self.steps), numpy.nan)
-        for step, forces in read_printed(self.folder / f"{self.name}.dat", "PUSHED").items():
-            whole[0, step] = -forces[0, 1] * SECTORS / SCALE
-        for step, pressures in read_contact_pressures(self.folder / f"{self.name}.frd").items():
-            whole[1:, step] = _profile(self.surface, pressures)
-        return Steps(force=whole[0], max_pressure=whole[1], half_angle=whole[2])
-
-
-def _profile(surface: dict[int, float], pressures: dict[int, float]) -> tuple[float, float]:
-    """Pole pressure and half angle from the contact pressures at the nodes of the surface, given with their angles.
-
-    The pressures of a coarse mesh zigzag from node to node, most of all at the pole. So the pole pressure is that of
-    a + b φ² + c φ⁴ through the inner two thirds without the pole's own elements. The half angle lies halfway between
-    the last node under pressure and the next: no better than the mesh.
-    """
-    known = surface.keys() & pressures.keys()
-    angle, pressure = numpy.array(sorted((surface[node], pressures[node] / SCALE) for node in known)).T
-    last = int(numpy.flatnonzero(pressure > 0.01 * numpy.median(pressure[pressure > 0]))[-1])
-    edge = float(angle[last] + angle[min(last + 1, len(angle) - 1)]) / 2
-    inner = (angle > radians(2.6)) & (angle < 0.67 * edge)
-    degree = 2 if numpy.count_nonzero(inner) >= 6 else 1
-    fit = numpy.polynomial.Polynomial.fit(angle[inner] ** 2, pressure[inner], degree)
-    return float(fit(0.0)), edge
 
 
 class _Deck:
@@ -108,8 +70,6 @@ class _Deck:
         self._fill("LINER", angles, self.radii, 0.0)
         self._fill("BALL", angles[: contact + 1], numpy.array([R2 - c - RING, R2 - c]), c)
         self.touching = self.inner["LINER"][:contact]
-        on_bore = ("LINER", round(R2, 9))
-        self.surface = {n: angle for (angle, radius, body), n in self.nodes.items() if (body, radius) == on_bore}
 
     def _fill(self, body: str, angles: numpy.ndarray, radii: numpy.ndarray, drop: float) -> None:
         count = sum(map(len, self.elements.values()))

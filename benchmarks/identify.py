@@ -1,13 +1,11 @@
-"""Clearance and modulus from twenty points of a press by the tables: the best point, and 4000 samples of the posterior.
+"""Clearance and modulus from twenty points: the best point beside `curve_fit`, samples of the posterior beside emcee.
 
-Rivals are what one would write by hand: SciPy's `curve_fit` on the same model from the middle of the ranges, and emcee
-as it comes, with stretches between its walkers, for as many evaluations of the same posterior. Fair, because all ask
-the same model about the same data in NumPy, in turns; best points are compared, and samples counted as independent.
+SciPy's `curve_fit` starts on the same model from the middle of the ranges; ours also searches the ranges for a start,
+twice. emcee runs as it comes, for as many evaluations of the same posterior; samples are counted as independent ones.
 """
 
 from __future__ import annotations
 
-import importlib.util
 from math import sqrt
 from typing import Any
 
@@ -17,49 +15,29 @@ import ballsocket as bs
 from ballsocket.identify import IdentificationResult, Measured
 from ballsocket.identify.posterior import Posterior
 
-from .report import Report, Rows
-from .timing import Spread, Work, interleaved
+from .report import Pair, Row, compare, digits, if_installed, with_version
+from .timing import Job
 
-POINTS, SAMPLES, REPEATS, DRAWS = 20, 4000, 7, 3
-OPTIMUM, POSTERIOR = 0.2, 10.0  # s, the aims
+POINTS, SAMPLES, WALKERS = 20, 4000, 64
 FREE = {"clearance": (0.02, 0.3), "liner.young": (400.0, 2000.0)}
 HIP = bs.joints["hess-forsbach"]
 
 
-def measure() -> Report | str:
-    if importlib.util.find_spec("emcee") is None:
-        return "emcee is not installed"
+def measure() -> list[Row]:
     data = _data()
-    found = bs.identify(bs.Tabulated(), HIP, data, FREE)
-    _, fits = interleaved(
-        REPEATS, {"ours": lambda: bs.identify(bs.Tabulated(), HIP, data, FREE), "rival": _by_hand(data)}
-    )
-    best = Rows(f"The best point from {POINTS} points, s", ("what", "ours", "curve_fit", "ours over it"))
-    best.add(
-        "clearance and modulus",
-        fits["ours"],
-        fits["rival"],
-        f"{fits['ours'].over(fits['rival'])}; {_verdict(fits['ours'], OPTIMUM)}",
-    )
-    chains, drawn, plain = _chains(found)
-    rows = Rows(f"{SAMPLES} samples of the posterior", ("what", "ours", "emcee as it comes", "ratio"))
-    rows.add("s", chains["ours"], chains["rival"], _verdict(chains["ours"], POSTERIOR))
-    rows.add(
-        "independent samples, the fewest of an unknown",
-        f"{_fewest(drawn):.0f}",
-        f"{plain:.0f}",
-        f"{_fewest(drawn) / plain:.1f} times as many",
-    )
-    by_hand = _by_hand(data)()
-    apart = max(abs(found.point[name] / value - 1) for name, value in zip(found.point, by_hand, strict=True))
-    return Report(
-        [best, rows],
-        [
-            f"The best points agree within {apart:.1e}, relative. Ours also searches the ranges for a start, twice.",
-            f"R-hat {max(drawn.r_hat.values()):.4f}; acceptance {drawn.acceptance:.2f}. One process draws all samples.",
-        ],
-        ("scipy", "emcee"),
-    )
+    result = bs.identify(bs.Tabulated(), HIP, data, FREE)
+    ours = Job(lambda: bs.identify(bs.Tabulated(), HIP, data, FREE))
+    rows = compare([Pair("the best point", ours, f"{with_version('scipy')} curve_fit", Job(lambda: _by_hand(data)))])
+    work = f"{SAMPLES} samples of the posterior"
+    rival = with_version("emcee")
+    drawn = result.posterior(SAMPLES)
+    theirs = if_installed("emcee", lambda: Job(lambda: _emcee(result, _steps(drawn))))
+    rows += compare([Pair(work, Job(lambda: result.posterior(SAMPLES)), rival, theirs)], repeats=2)
+    if isinstance(theirs, str):
+        return rows
+    independent, its = min(drawn.effective.values()), _independent(_emcee(result, _steps(drawn)))
+    ratio = f"{digits(independent / its)} times as many"
+    return [*rows, Row("independent ones of these", f"{independent:.0f}", f"{rival}: {its:.0f}", ratio)]
 
 
 def _data() -> Measured:
@@ -71,7 +49,6 @@ def _data() -> Measured:
 
 
 def _by_hand(data: Measured) -> Any:
-    """What SciPy's own differences find, which ask for one joint after the other."""
     from scipy.optimize import curve_fit
 
     model = bs.Tabulated()
@@ -81,50 +58,27 @@ def _by_hand(data: Measured) -> Any:
         return model.press(joint, force=force).indentation
 
     start = [sqrt(low * high) for low, high in FREE.values()]
-    return lambda: curve_fit(
-        depth, data.force, data.values, start, data.uncertainty, bounds=tuple(zip(*FREE.values(), strict=True))
-    )[0]
-
-
-def _chains(found: IdentificationResult) -> tuple[dict[str, Spread], Posterior, float]:
-    """Seconds of both, our posterior, and how many independent samples the plain chains have."""
-    drawn = found.posterior(SAMPLES)
-    plain = _plain(found, _steps(drawn))
-    _, seconds = interleaved(DRAWS, {"ours": lambda: found.posterior(SAMPLES), "rival": plain})
-    chain: Any = plain()
-    times = _longest(chain)
-    return seconds, drawn, chain[..., 0].size / times
-
-
-def _longest(chain: Any) -> float:
-    """The longest autocorrelation time of an unknown."""
-    from emcee.autocorr import integrated_time
-
-    return float(max(integrated_time(chain, quiet=True)))
+    bounds = tuple(zip(*FREE.values(), strict=True))
+    return curve_fit(depth, data.force, data.values, start, data.uncertainty, bounds=bounds)[0]
 
 
 def _steps(drawn: Posterior) -> int:
-    """Steps of 64 walkers that are as many evaluations as our chains took."""
+    """Steps of the walkers that are as many evaluations as our chains took."""
     name = drawn.names[0]
-    return int(drawn.effective[name] * drawn.autocorrelation[name] / 64)
+    return int(drawn.effective[name] * drawn.autocorrelation[name] / WALKERS)
 
 
-def _plain(found: IdentificationResult, steps: int) -> Work:
+def _emcee(result: IdentificationResult, steps: int) -> Any:
     import emcee
 
-    def run() -> Any:
-        random = numpy.random.default_rng(0)
-        places = found.best.theta + 0.1 * random.standard_normal((64, len(found.best.theta)))
-        sampler = emcee.EnsembleSampler(64, places.shape[1], found.misfit.log_posterior, vectorize=True)
-        sampler.run_mcmc(places, steps + 200)
-        return sampler.get_chain(discard=200)
-
-    return run
+    random = numpy.random.default_rng(0)
+    places = result.best.theta + 0.1 * random.standard_normal((WALKERS, len(result.best.theta)))
+    sampler = emcee.EnsembleSampler(WALKERS, places.shape[1], result.misfit.log_posterior, vectorize=True)
+    sampler.run_mcmc(places, steps + 200)
+    return sampler.get_chain(discard=200)
 
 
-def _fewest(drawn: Posterior) -> float:
-    return min(drawn.effective.values())
+def _independent(chain: Any) -> float:
+    from emcee.autocorr import integrated_time
 
-
-def _verdict(taken: Spread, aim: float) -> str:
-    return f"aim {aim:g} s: {'met' if taken.median <= aim else 'missed'}"
+    return float(chain[..., 0].size / max(integrated_time(chain, quiet=True)))

@@ -12,6 +12,10 @@ import numpy
 from scipy.sparse import csr_matrix, identity
 from scipy.sparse.linalg import spsolve
 
+import ballsocket as bs
+
+from .timing import Job
+
 METRES, STIFFNESS = 1e-3, 1e9  # per millimetre; Pa/m per MPa/mm
 
 
@@ -24,8 +28,6 @@ class BallInSocket:
     coordinate: Any
     ball: int  # index of the ball's forces
     clearance: float  # mm
-    faces: int
-    off_sphere: float  # mm, the farthest spring
 
     def force(self, indentation: float) -> float:
         """The axial force, in N, with the ball pressed `indentation` mm beyond first touch."""
@@ -34,11 +36,19 @@ class BallInSocket:
         return -float(self.model.getRigidBodyForces(self.state).get(self.ball).get(1).get(0))
 
 
-def socket_mesh(radius: float, faces: int) -> tuple[numpy.ndarray, numpy.ndarray, float]:
-    """Vertices and triangles of a closed solid: a hemispherical socket (pole at +x), a rim and an outer cone.
+def force_job(joint: bs.Joint, modulus: float, faces: int, depth: float, calls: int = 100) -> Job:
+    """Force evaluations at two alternating positions, as in the steps of a simulation."""
+    pair = build(float(joint.ball_radius), float(joint.clearance), modulus, faces)
 
-    And how far off the sphere the farthest spring of the socket sits.
-    """
+    def call() -> None:
+        for number in range(calls):
+            pair.force(depth * (1 + 1e-6 * (number % 2)))
+
+    return Job(call, calls)
+
+
+def socket_mesh(radius: float, faces: int) -> tuple[numpy.ndarray, numpy.ndarray]:
+    """Vertices and triangles of a closed solid: a hemispherical socket (pole at +x), a rim and an outer cone."""
     rings = max(2, round(math.sqrt(faces / 6 + 2.25) - 1.5))  # gives 6 rings² + 18 rings faces
     rows, triangles = [numpy.array([[radius, 0.0, 0.0]])], []
     for ring in range(1, rings + 1):
@@ -53,12 +63,11 @@ def socket_mesh(radius: float, faces: int) -> tuple[numpy.ndarray, numpy.ndarray
             triangles += [(near[step], near[step + 1], far[step + 1]) for step in range(ring - 1)]
     vertices, inside = numpy.vstack(rows), numpy.array(triangles)
     vertices = _centroids_near_sphere(vertices, inside, radius)
-    off_sphere = float(abs(numpy.linalg.norm(vertices[inside].mean(axis=1), axis=1) - radius).max())
     rim, edge, apex = len(vertices) - 6 * rings, len(vertices), len(vertices) + 6 * rings
     for a, b in ((step, (step + 1) % (6 * rings)) for step in range(6 * rings)):
         triangles += [(rim + a, rim + b, edge + a), (rim + b, edge + b, edge + a), (edge + a, edge + b, apex)]
     solid = numpy.vstack([vertices, 1.3 * vertices[rim:], [[3 * radius, 0.0, 0.0]]])
-    return solid, numpy.array(triangles), off_sphere
+    return solid, numpy.array(triangles)
 
 
 def _centroids_near_sphere(vertices: numpy.ndarray, faces: numpy.ndarray, radius: float) -> numpy.ndarray:
@@ -88,7 +97,7 @@ def build(ball_radius: float, clearance: float, foundation_modulus: float, faces
 
     opensim.Logger.setLevelString("Error")
     opensim.Logger.removeFileSink()  # no opensim.log in the working directory
-    vertices, triangles, off_sphere = socket_mesh((ball_radius + clearance) * METRES, faces)
+    vertices, triangles = socket_mesh((ball_radius + clearance) * METRES, faces)
     model, zero = opensim.Model(), opensim.Vec3(0)
     model.setGravity(zero)
     ball = opensim.Body("ball", 1.0, zero, opensim.Inertia(1.0, 1.0, 1.0))
@@ -109,4 +118,4 @@ def build(ball_radius: float, clearance: float, foundation_modulus: float, faces
         model.addForce(contact)
         state = model.initSystem()  # reads the mesh: the folder must still exist
     coordinate, index = joint.getCoordinate(), ball.getMobilizedBodyIndex()
-    return BallInSocket(model, state, coordinate, index, clearance, len(triangles), off_sphere / METRES)
+    return BallInSocket(model, state, coordinate, index, clearance)

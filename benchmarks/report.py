@@ -1,34 +1,42 @@
-"""What a benchmark found, as a table for the terminal and as a section of RESULTS.md."""
+"""Rows of a benchmark, printed and written into RESULTS.md."""
 
 from __future__ import annotations
 
 import os
 import platform
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field, replace
 from datetime import date
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
-RESULTS = Path(__file__).with_name("RESULTS.md")
-_HEAD = """# Measured
+from .timing import Clock, Job, Spread, in_turns, processor_time
 
-Written by `python -m benchmarks NAME --write`, one section per benchmark. Every time reads "median (min..max)" over
-the repeats of one run, in which ours and the rivals took turns; a wide range is a noisy machine. Ratios are taken
-round by round, and read the same way.
+RESULTS = Path(__file__).with_name("RESULTS.md")
+HEAD = """# Measured
+
+`python -m benchmarks NAME ... --write` replaces the rows of NAME; those whose rival is not installed stay.
+Ours and the rival took turns in one run. Times are medians of one press, step, patient or run: processor time on one
+core, unless a row says "by the clock". The ratio is the rival's time over ours, with its least and its largest value
+over the rounds.
+
+| NAME | work | ours | rival | ratio | machine, date |
+| --- | --- | --- | --- | --- | --- |
 """
 
 
 @dataclass
 class Rows:
-    """One table."""
+    """A table with columns of its own, as `benchmarks.identical` prints it."""
 
     title: str
-    columns: tuple[str, ...] = ("what", "ours", "rival", "ratio")
+    columns: tuple[str, ...]
     rows: list[tuple[str, ...]] = field(default_factory=list)
 
     def add(self, *cells: object) -> None:
@@ -37,56 +45,123 @@ class Rows:
 
 @dataclass
 class Report:
-    """Tables and the sentences that explain them; `rivals` are packages whose versions belong to the numbers."""
+    """Tables, and the sentences that explain them."""
 
     tables: list[Rows]
     notes: Sequence[str]
-    rivals: Sequence[str] = ()
 
 
-def machine(packages: Sequence[str]) -> str:
-    """Where and with what this ran, in one line."""
-    parts = [_processor(), f"{os.cpu_count()} cores", f"{platform.system()}", f"Python {platform.python_version()}"]
-    for package in dict.fromkeys(("numpy", "numba", *packages)):
-        try:
-            parts.append(f"{package} {version(package)}")
-        except PackageNotFoundError:
-            parts.append(f"no {package}")
-    return ", ".join([*parts, date.today().isoformat()])
+@dataclass(frozen=True)
+class Row:
+    """One row of RESULTS.md; `rival` is "name" or "name: value"."""
+
+    work: str
+    ours: str
+    rival: str = ""
+    ratio: str = ""
+    machine: str = ""
+    skipped: bool = False
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """Work and rival without version and value: the row that this one replaces."""
+        return self.work, re.sub(r" \d+\.\d[\d.]*\b", "", self.rival.partition(":")[0])
+
+    @property
+    def cells(self) -> tuple[str, ...]:
+        return self.work, self.ours, self.rival, self.ratio, self.machine
 
 
-def _processor() -> str:
+@dataclass(frozen=True)
+class Pair:
+    """Our job and a rival's; in place of the rival's job stands the reason why it is skipped."""
+
+    work: str
+    ours: Job
+    rival: str = ""
+    theirs: Job | str | None = None
+
+
+def compare(pairs: Iterable[Pair], repeats: int = 5, clock: Clock = processor_time) -> list[Row]:
+    """Time all jobs of the pairs in turns; a job that several pairs share is timed once a round."""
+    pairs = list(pairs)
+    jobs = [job for pair in pairs for job in (pair.ours, pair.theirs) if isinstance(job, Job)]
+    seconds = in_turns(dict.fromkeys(jobs), repeats, clock)
+    return [_row(pair, seconds) for pair in pairs]
+
+
+def _row(pair: Pair, seconds: dict[Job, Spread]) -> Row:
+    ours = seconds[pair.ours]
+    if isinstance(pair.theirs, Job):
+        theirs = seconds[pair.theirs]
+        rival, ratio = f"{pair.rival}: {duration(theirs.median)}", ratio_text(theirs.over(ours))
+        return Row(pair.work, duration(ours.median), rival, ratio)
+    if pair.theirs is None:
+        return Row(pair.work, duration(ours.median))
+    return Row(pair.work, duration(ours.median), f"{pair.rival}: skipped, {pair.theirs}", skipped=True)
+
+
+def if_installed(package: str, make: Callable[[], Job]) -> Job | str:
+    """Return the job of a rival, or the reason why it is skipped."""
+    return f"{package} is not installed" if find_spec(package) is None else make()
+
+
+def duration(seconds: float) -> str:
+    """Three digits of a time in a suitable unit."""
+    for unit, name in ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")):
+        if seconds >= 0.9995 * unit or name == "ns":
+            return f"{digits(seconds / unit)} {name}"
+    raise AssertionError(seconds)
+
+
+def ratio_text(ratio: Spread) -> str:
+    return f"{digits(ratio.median)} ({digits(min(ratio.values))}..{digits(max(ratio.values))})"
+
+
+def digits(value: float) -> str:
+    """Three digits, without an exponent."""
+    places = 0 if abs(value) >= 99.95 else 1 if abs(value) >= 9.995 else 2 if abs(value) >= 0.9995 else 3
+    return f"{value:.{places}f}"
+
+
+def with_version(package: str) -> str:
+    """Package and version; the package alone where it is not installed."""
+    return package if find_spec(package) is None else f"{package} {version(package)}"
+
+
+def machine() -> str:
+    """Processor, number of cores and date."""
     listed = Path("/proc/cpuinfo")
     lines = listed.read_text(encoding="utf-8").splitlines() if listed.exists() else []
     models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return models[0] if models else platform.processor() or platform.machine()
+    processor = models[0] if models else platform.processor() or platform.machine()
+    return f"{processor}, {os.cpu_count()} cores, {date.today().isoformat()}"
 
 
-def show(name: str, title: str, report: Report) -> None:
-    """Print it."""
+def show(name: str, title: str, rows: Iterable[Row]) -> None:
     console = Console(width=None if Console().is_terminal else 160, highlight=False, markup=False)
-    console.print(f"{name}: {title}\n{machine(report.rivals)}", soft_wrap=True)
-    for rows in report.tables:
-        table = Table(*rows.columns, title=rows.title, title_justify="left", box=box.SIMPLE_HEAD)
-        for row in rows.rows:
-            table.add_row(*row)
-        console.print(table)
-    for note in report.notes:
-        console.print(f"- {note}")
+    table = Table("work", "ours", "rival", "ratio", title=f"{name}: {title}", title_justify="left", box=box.SIMPLE_HEAD)
+    for row in rows:
+        table.add_row(*row.cells[:4])
+    console.print(table)
 
 
-def write(name: str, title: str, report: Report, path: Path = RESULTS) -> None:
-    """Put it into the file, in the place of the section of that name."""
-    parts = path.read_text(encoding="utf-8").split("\n## ")[1:] if path.exists() else []
-    sections = {part.partition(":")[0]: part.strip() for part in parts}
-    sections[name] = _section(name, title, report)
-    text = _HEAD + "".join(f"\n## {section}\n" for section in sections.values())
-    path.write_text(text, encoding="utf-8")
+def write(name: str, rows: Sequence[Row], path: Path = RESULTS) -> None:
+    """Replace the rows of a benchmark; a skipped row stays as it was measured before."""
+    sections = _read(path)
+    before = {row.key: row for row in sections.get(name, [])}
+    here = machine()
+    measured = [before.get(row.key) if row.skipped else replace(row, machine=row.machine or here) for row in rows]
+    sections[name] = [row for row in measured if row is not None]
+    lines = ("| " + " | ".join((title, *row.cells)) + " |\n" for title, rows in sections.items() for row in rows)
+    path.write_text(HEAD + "".join(lines), encoding="utf-8")
 
 
-def _section(name: str, title: str, report: Report) -> str:
-    lines = [f"{name}: {title}", "", machine(report.rivals)]
-    for rows in report.tables:
-        body = [rows.columns, ("---",) * len(rows.columns), *rows.rows]
-        lines += ["", f"**{rows.title}**", "", *("| " + " | ".join(row) + " |" for row in body)]
-    return "\n".join([*lines, "", *(f"- {note}" for note in report.notes)])
+def _read(path: Path) -> dict[str, list[Row]]:
+    """Rows by the name of their benchmark."""
+    sections: dict[str, list[Row]] = {}
+    lines = path.read_text(encoding="utf-8").splitlines() if path.exists() else []
+    for line in [line for line in lines if line.startswith("|")][2:]:
+        name, work, ours, rival, ratio, where = (cell.strip() for cell in line.split("|")[1:-1])
+        sections.setdefault(name, []).append(Row(work, ours, rival, ratio, where))
+    return sections

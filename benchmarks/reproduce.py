@@ -1,37 +1,25 @@
-"""The whole paper by one command, as a user waits for it: quick, full, and once more when everything is kept.
-
-No rival does this; the aims are ten seconds and five minutes on two cores.
-"""
+"""The whole paper by one command, by the clock on all cores."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
-import time
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from .report import Report, Rows
-from .timing import Spread
-
-QUICK_ROUNDS = 5
-AIMS = {"quick": 10.0, "full": 300.0}
+from .report import Pair, Row, compare
+from .start import checkout_environment
+from .timing import Job, wall_time
 
 
-def seconds(folder: Path, *options: str) -> float:
-    start = time.perf_counter()
+def measure() -> list[Row]:
+    with TemporaryDirectory() as folder:
+        commands = {"ballsocket reproduce --quick": ["--quick"], "ballsocket reproduce": []}
+        pairs = [Pair(name, _reproduce(Path(folder) / name, options)) for name, options in commands.items()]
+        return compare(pairs, repeats=0, clock=wall_time)
+
+
+def _reproduce(folder: Path, options: list[str]) -> Job:
     words = [sys.executable, "-m", "ballsocket", "reproduce", *options, "--out", str(folder)]
-    subprocess.run(words, check=True, capture_output=True)
-    return time.perf_counter() - start
-
-
-def measure() -> Report:
-    rows = Rows("The command, seconds", ("what", "ours", "aim", "verdict"))
-    with TemporaryDirectory() as room:
-        quick = Spread(tuple(seconds(Path(room) / f"quick{turn}", "--quick") for turn in range(QUICK_ROUNDS)))
-        full = Spread((seconds(Path(room) / "full"),))
-        again = Spread((seconds(Path(room) / "full"),))
-    for name, taken in (("quick", quick), ("full", full)):
-        rows.add(name, taken, f"{AIMS[name]:g}", "met" if taken.median <= AIMS[name] else "missed")
-    rows.add("full, all pieces kept", again, "", "")
-    return Report([rows], ["A fresh process each time; one worker for each of the two cores."], ("scipy", "matplotlib"))
+    return Job(partial(subprocess.run, words, check=True, capture_output=True, env=checkout_environment()))

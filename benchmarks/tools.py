@@ -17,8 +17,6 @@ from typing import Any
 import numpy
 
 import ballsocket as bs
-from ballsocket.dynamics import simulate
-from ballsocket.export.fmu import Fmu
 
 Path3 = numpy.ndarray
 NAME = "bouncing"
@@ -52,20 +50,6 @@ class Bounce:
 GRAVITY = 9.81
 
 
-def ours(bounce: Bounce, folder: Path) -> Path3:
-    """The package's own steps, of 2 µs."""
-    found = simulate(
-        bounce.element,
-        mass=1.0,
-        position=bounce.position,
-        velocity=bounce.velocity,
-        pull=(0.0, 0.0, -GRAVITY),
-        duration=bounce.duration,
-        step=2e-6,
-    )
-    return found.position[:: (len(found.time) - 1) // (bounce.samples - 1)]
-
-
 def by_load(bounce: Bounce, load: Callable[[Any, Any, Any], tuple[Any, Any]]) -> Path3:
     """Dormand and Prince of order 8 on a load in SI units, tolerance 1e-11."""
     from scipy.integrate import solve_ivp
@@ -79,32 +63,6 @@ def by_load(bounce: Bounce, load: Callable[[Any, Any, Any], tuple[Any, Any]]) ->
     options: dict[str, Any] = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-14, "max_step": 1e-4}
     found = solve_ivp(rate, (0.0, bounce.duration), start, t_eval=bounce.times, **options)
     return 1e3 * found.y[:3].T
-
-
-def fmu(bounce: Bounce, folder: Path) -> Path3:
-    """The unit of FMI 3 as fmpy loads it, for model exchange."""
-    import fmpy
-    from fmpy.simulation import instantiate_fmu
-
-    path = str(Fmu(element=bounce.element, name=NAME).write(folder / f"{NAME}.fmu").path)
-    about = fmpy.read_model_description(path)
-    unit = instantiate_fmu(fmpy.extract(path, str(folder / "unzipped")), about, "ModelExchange")
-    unit.enterInitializationMode()
-    unit.exitInitializationMode()
-    inputs, outputs = list(range(1, 10)), list(range(10, 16))
-
-    def load(r: Any, v: Any, w: Any) -> tuple[Any, Any]:
-        unit.setFloat64(inputs, [*r, *v, *w])
-        values = unit.getFloat64(outputs)
-        return values[:3], values[3:]
-
-    return by_load(bounce, load)
-
-
-def python(bounce: Bounce, folder: Path) -> Path3:
-    """The exported module, whose C it calls."""
-    with module(folder, NAME) as joint:
-        return by_load(bounce, lambda *state: joint.load(*state)[:2])
 
 
 def mujoco(bounce: Bounce, folder: Path) -> Path3:

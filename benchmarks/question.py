@@ -1,0 +1,88 @@
+"""One question at a time, in plain floats: a press, a force law in Python and compiled; beside OpenSim and the formula.
+
+OpenSim's ElasticFoundationForce returns the force alone, on its coarsest mesh. A press returns indentation, largest
+pressure and half angle; a law returns force and tangent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from itertools import count
+from typing import Any
+
+import numpy
+
+import ballsocket as bs
+from ballsocket.compiled import compiled_law
+from ballsocket.models.kinematics import linear_force, linear_stiffness
+
+from .opensim_model import force_job
+from .report import Pair, Row, compare, if_installed, with_version
+from .timing import Job
+
+JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.4))
+FORCE, DEPTH, CALLS, POINTS = 1000.0, 0.02, 50, 10**5  # N, mm
+MODELS = {"paper's model": bs.HessForsbach(), "tabulated": bs.Tabulated(), "exact": bs.Exact()}
+
+
+def measure() -> list[Row]:
+    modulus = float(bs.hess_forsbach(JOINT))
+    opensim = if_installed("opensim", partial(force_job, JOINT, modulus, 1000, DEPTH, CALLS))
+    rival = f"{with_version('opensim')}, a force, 924 faces"
+    formula = "Eq. (13) and slope in Python"
+    bare = _repeated(lambda depth: _formula(modulus, depth), DEPTH)
+    pairs = [Pair(f"{name}, a press", _press(model), rival, opensim) for name, model in MODELS.items()]
+    for name in ("paper's model", "tabulated"):
+        law = MODELS[name].law(JOINT)
+        pairs.append(Pair(f"{name}, a law in a compiled loop", _compiled(compiled_law(law)), formula, bare))
+        if name == "tabulated":
+            pairs.append(Pair(f"{name}, a law in Python", _repeated(law, DEPTH), formula, bare))
+    fresh = count(1)
+    pairs += [
+        Pair(f"{name}, binding the law of a new joint", Job(partial(_bind, MODELS[name], fresh)))
+        for name in ("tabulated", "exact")
+    ]
+    return compare(pairs)
+
+
+def _formula(modulus: float, depth: float) -> tuple[Any, Any]:
+    """Eq. (13) and its slope."""
+    radius, clearance = JOINT.socket_radius, JOINT.clearance
+    return linear_force(radius, clearance, modulus, depth), linear_stiffness(radius, clearance, modulus, depth)
+
+
+def _press(model: bs.Model) -> Job:
+    def press(force: float) -> None:
+        contact = model.press(JOINT, force=force)
+        _ = contact.indentation, contact.max_pressure, contact.half_angle
+
+    return _repeated(press, FORCE)
+
+
+def _repeated(function: Callable[[float], object], value: float) -> Job:
+    def call() -> None:
+        for number in range(CALLS):
+            function(value * (1 + 1e-6 * (number % 2)))
+
+    return Job(call, CALLS)
+
+
+def _compiled(law: Any) -> Job:
+    import numba
+
+    depths = DEPTH * numpy.random.default_rng(1).uniform(0.9, 1.1, POINTS)
+
+    @numba.njit
+    def total(law, depths):  # type: ignore[no-untyped-def]
+        both = 0.0
+        for depth in depths:
+            force, tangent = law(depth)
+            both += force + tangent
+        return both
+
+    return Job(lambda: total(law, depths), POINTS)
+
+
+def _bind(model: bs.Model, fresh: Any) -> object:
+    return model.law(JOINT.replace(liner_thickness=6.75 + 1e-6 * next(fresh)))
