@@ -39,7 +39,7 @@ def assert_same(one: bs.Contact, other: bs.Contact) -> None:
         np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=2e-14, err_msg=name)
 
 
-@pytest.mark.parametrize("model", some(MODELS, 3), ids=lambda model: f"{model.modulus.name}-{model.kinematics.name}")
+@pytest.mark.parametrize("model", some(MODELS, 1), ids=lambda model: f"{model.modulus.name}-{model.kinematics.name}")
 def test_compiled_and_python_models_agree_on_random_joints(model):
     joint = random_joint(2_000, seed=11)
     force = joint.liner.young * joint.ball_radius**2 * 1e-6
@@ -141,8 +141,8 @@ def liners(size: int, ball: bs.Material | None = None) -> bs.Joint:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("ball", some([bs.COCR, None], 1), ids=lambda ball: "elastic ball" if ball else "rigid ball")
-@pytest.mark.parametrize("model", some([bs.Refined(), bs.Tabulated()], 1), ids=lambda model: model.name)
+@pytest.mark.parametrize("ball", [bs.COCR, None], ids=["elastic ball", "rigid ball"])
+@pytest.mark.parametrize("model", [bs.Refined(), bs.Tabulated()], ids=lambda model: model.name)
 def test_compiled_solved_models_agree_to_eleven_digits(model, ball):
     fast, joint = Compiled(model=model), liners(3_000, ball)
     force = np.random.default_rng(1).uniform(-1.0, 1.0, 3_000).clip(0.0) * 1e5  # a half of them without load
@@ -158,9 +158,9 @@ def test_compiled_solved_models_agree_to_eleven_digits(model, ball):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("model", [bs.Refined(), bs.Tabulated()], ids=lambda model: model.name)
-def test_compiled_solved_models_broadcast_joints_and_loads(model):
-    fast, row = Compiled(model=model), np.array([500.0, 3000.0])
+def test_compiled_solved_models_broadcast_joints_and_loads():
+    model, row = bs.Refined(), np.array([500.0, 3000.0])
+    fast = Compiled(model=model)
     joint = bs.Joint(ball_radius=np.array([[14.0], [16.0]]), clearance=0.1, liner_thickness=6.0, liner=bs.UHMWPE)
     for pressed, force in ((joint, row), (HIP, row), (joint, 500.0), (HIP, row[:0]), (HIP, np.array(500.0))):
         one, other = fast.press(pressed, force=force), model.press(pressed, force=force)
@@ -180,7 +180,7 @@ def evaluate_compiled(law, depths):  # type: ignore[no-untyped-def]
 DEPTHS = np.concatenate([[-1.0, 0.0, np.nan, np.inf, 1e3], np.geomspace(1e-9, 10.0, 300)])
 
 
-@pytest.mark.parametrize("model", some([*MODELS[:3], bs.Tabulated(), bs.Refined()], 3), ids=lambda model: model.name)
+@pytest.mark.parametrize("model", some([*MODELS[:3], bs.Tabulated(), bs.Refined()], 1), ids=lambda model: model.name)
 def test_compiled_law_equals_the_python_law_in_both_kinds_of_programs(model):
     law, plain = Compiled(model=model).law(HIP), model.law(HIP)
     results = np.array([plain(depth) for depth in DEPTHS.tolist()])
@@ -188,7 +188,7 @@ def test_compiled_law_equals_the_python_law_in_both_kinds_of_programs(model):
     np.testing.assert_array_equal([law(depth) for depth in DEPTHS.tolist()], evaluate_compiled(law, DEPTHS))
 
 
-@pytest.mark.parametrize("name", ["exact", "plane-layer", "hertz", "liu-reconstruction"])
+@pytest.mark.parametrize("name", some(["exact", "plane-layer", "hertz", "liu-reconstruction"], 2))
 def test_the_law_of_any_model_compiles(name):
     plain = bs.catalogue[name].law(HIP)
     depths = np.geomspace(1e-6, 0.1, 100)

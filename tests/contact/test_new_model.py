@@ -54,22 +54,8 @@ def run(package, folder, *words):
 def test_a_new_file_and_a_line_of_the_catalogue_pass_the_contract(package):
     assert FILE.count("\n") <= 48
     places = [str(ROOT / "tests" / name) for name in CONTRACT]
-    done = run(
-        package,
-        ROOT,
-        "-m",
-        "pytest",
-        "-v",
-        "-n",
-        "0",
-        "-o",
-        "pythonpath=",
-        "-p",
-        "no:cacheprovider",
-        "-k",
-        "mattress",
-        *places,
-    )
+    options = ("-n", "0", "--long", "-o", "pythonpath=", "-p", "no:cacheprovider", "-k", "mattress")
+    done = run(package, ROOT, "-m", "pytest", "-v", *options, *places)
     assert done.returncode == 0, done.stdout
     assert int(re.search(r"(\d+) passed", done.stdout)[1]) >= 30
 

@@ -52,6 +52,7 @@ def test_a_stiff_shell_on_a_soft_backing_has_its_largest_pressure_on_a_ring(join
     assert contact.error["max_pressure"] == contact.error["pole_pressure"]
 
 
+@pytest.mark.long
 def test_finite_elements_find_the_same_ring():
     pytest.importorskip("skfem")
     joint = shell(25.0, 0.0725, 4.0, 20.0)
