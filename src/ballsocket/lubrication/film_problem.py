@@ -151,14 +151,14 @@ def check_reynolds(contact: Contact, dry: DryContact) -> None:
         )
     if dry.cut and isinstance(contact, OffAxisContact):
         raise ValueError(
-            f"method = 'reynolds' is not possible for an edge margin of {degrees(float(contact.edge_margin)):.3g} deg: "
+            f"method = 'reynolds' is not possible for an edge margin of {degrees(float(contact.edge_margin)):.1f} deg: "
             "the rim cuts the contact, and the film's mesh does not resolve its corner; use method='wave'"
         )
     low, high = _edge_bounds(contact)
     if high - low > _MAX_OUT_OF_ROUND:
         raise ValueError(
-            f"method = 'reynolds' is not possible for a contact whose edge lies {degrees(low):.3g} to "
-            f"{degrees(high):.3g} deg from its load: it needs a rounder one, within "
+            f"method = 'reynolds' is not possible for a contact whose edge lies {degrees(low):.0f} to "
+            f"{degrees(high):.0f} deg from its load: it needs a rounder one, within "
             f"{degrees(_MAX_OUT_OF_ROUND):.0f} deg; use method='wave'"
         )
 

@@ -195,3 +195,16 @@ def test_error_estimates_hold_for_edge_loading(poisson):
     for name in ("indentation", "max_pressure", "half_angle", "energy", "stiffness"):
         error = abs(getattr(wide, name) / getattr(narrow, name) - 1)
         assert (error <= wide.error[name]).all(), name
+
+
+@pytest.mark.parametrize("tilt", [0.0, 40.0, 62.0])
+def test_the_error_of_the_edge_margin_holds_against_finer_rings(tilt):
+    """Two contacts end before the rim, and the rim cuts the third; its error has the tolerance of a search too."""
+    coarse, fine = (
+        bs.Sphere(ring_width=radians(width)).press(HIP, force=2000.0, tilt=radians(tilt))
+        for width in (4.0, either(quick=2.0, long=1.0))
+    )
+    assert coarse.edge_loaded == (tilt > 60.0)
+    assert coarse.edge_margin == pytest.approx(fine.edge_margin, abs=coarse.error["edge_margin"])
+    assert radians(0.02) * coarse.edge_loaded < coarse.error["edge_margin"] < radians(2.5)
+    assert coarse.summary()["error"]["edge_margin_deg"] == pytest.approx(np.degrees(coarse.error["edge_margin"]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import floor, inf, isclose, isnan, log10
+from math import ceil, floor, inf, isclose, isnan, log10
 
 from ...contact.describe import Column
 from ...core.kinds import Kind, Unit
@@ -56,6 +56,12 @@ class Reading:
         """Write a number in internal units with its chosen unit."""
         unit = self.unit(quantity)
         return f"{number_text(value * unit.factor, unit.text)}{unit_suffix(unit.text)}"
+
+    def with_known_digits(self, quantity: Quantity, value: float, error: float) -> str:
+        """Write a number in internal units with its chosen unit, without digits below its error."""
+        unit = self.unit(quantity)
+        decimals = max(0, ceil(-log10(error * unit.factor)))
+        return f"{number_text(round(value * unit.factor, decimals), unit.text)}{unit_suffix(unit.text)}"
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:

@@ -14,7 +14,7 @@ from ...contact.strength import von_mises_ratio
 from ...core import arrays
 from ...core.arrays import Array, Numbers
 from ...core.validity import Status
-from .directions import check_direction, polar_angle
+from .directions import TILT_TOLERANCE, check_direction, polar_angle
 
 if TYPE_CHECKING:
     from .contact_patch import ContactPatch
@@ -134,6 +134,21 @@ class OffAxisContact(SolvedContact):
 
         return self._mask_failed(lambda: self.laws.combine(lambda contacts: edge_margins(contacts.state)))
 
+    @cached_property
+    def error(self) -> dict[str, Array]:
+        """Estimated relative errors, one array for each quantity name; `edge_margin` has its error in rad.
+
+        The edge of the contact has the error of the half angle. Where the rim cuts the contact off, the margin is a
+        rotation of the load: its error grows with the tilt, and includes the tolerance of the search.
+        """
+        errors = super().error
+        relative = errors["half_angle"]
+        cut = _CUT_ERROR * relative * (self.half_angle + self.tilt) + TILT_TOLERANCE
+        return {
+            **errors,
+            "edge_margin": self._match_load(arrays.where(self.edge_loaded, cut, relative * self.half_angle)),
+        }
+
     @property
     def edge_distance(self) -> Array:
         """Arc in mm from the edge of the contact to the end of the bore (contact patch edge to rim, CPER).
@@ -228,8 +243,11 @@ class OffAxisContact(SolvedContact):
         angles = numpy.stack([polar_angle(numpy.moveaxis(at, -1, 0)), numpy.arctan2(at[..., 1], at[..., 0])], axis=-1)
         status = arrays.to_numpy(self.status)
         names = [Status(int(number)).name for number in status.ravel()]
+        summary = super().summary()
+        summary["error"]["edge_margin_deg"] = arrays.to_list(self.error["edge_margin"] * degrees(1.0))
+        del summary["error"]["edge_margin"]
         return {
-            **super().summary(),
+            **summary,
             "status": names[0] if status.ndim == 0 else names,
             "force_vector": arrays.to_list(self.force_vector),
             "displacement": arrays.to_list(self.displacement),
@@ -250,6 +268,9 @@ class OffAxisContact(SolvedContact):
             return {}
         return {"force_vector_in_body": (arrays.to_numpy(self.force_vector) @ numpy.asarray(cup.frame)).tolist()}
 
+
+_CUT_ERROR = 2.0
+"""Factor of the error of the margin of contacts that the rim cuts off, measured against rings of 0.75°."""
 
 _RIM_NOTE = "edge loading: the contact reaches the rim"
 _PRELOADED_RIM_NOTE = "the contact reaches the rim, as is normal in a preloaded joint"

@@ -6,6 +6,7 @@ Arrays of vectors have their components first. Only arrays that come from a user
 from __future__ import annotations
 
 from dataclasses import replace
+from math import radians
 from typing import Any
 
 import numpy
@@ -15,6 +16,9 @@ from ...core.arrays import Array, Numbers
 from ...core.checks import check_vectors, require
 from ...core.quantities import AIM, CUP
 from ...problem.cup import Cup
+
+TILT_TOLERANCE = radians(0.02)
+"""Largest step in a search for a tilt that is not solved any more: 0.006 mm of arc in a bore of 18 mm."""
 
 _SMALLEST_COMPONENT = 1e-100  # squares of smaller components underflow
 

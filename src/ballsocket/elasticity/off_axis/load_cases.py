@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from math import pi, radians
+from math import pi
 from types import MappingProxyType
 
 import numpy
@@ -15,7 +15,7 @@ from ...core.executors.processes import check_memory, count_text
 from ...models.kinematics import versine_of
 from .bore_contact import BoreContact, initial_displacement
 from .contact_states import ContactStates, ContactSummaries, LoadSolver, summarise
-from .directions import polar_angle, unit_vectors
+from .directions import TILT_TOLERANCE, polar_angle, unit_vectors
 from .equilibrium import solve_force
 from .lane_solver import coarser_lanes
 from .rim_curve import cached_rim_points, force_curve, indentation_curve
@@ -148,9 +148,6 @@ LOAD_SOLVERS: MappingProxyType[str, LoadSolver] = MappingProxyType(
 
 
 _MAX_TILT_STEPS = 30
-
-_TILT_TOLERANCE = radians(0.02)
-"""Largest step of the tilt that is not solved any more: 0.006 mm of arc in a bore of 18 mm."""
 
 _POLE_TILT = 1e-6  # rad: tilt of an axial load that still defines a meridian
 
@@ -285,8 +282,8 @@ def _solve_rim_contact(
         below, above = low_level[active], high_level[active]
         interpolated = (low[active] * above - high[active] * below) / (above - below)
         touching = numpy.minimum(tilt + trial_margin, high[active])
-        root[active] = numpy.where(free & (trial_margin < _TILT_TOLERANCE), touching, interpolated)
-        active = active[abs(root[active] - tilt) > _TILT_TOLERANCE]
+        root[active] = numpy.where(free & (trial_margin < TILT_TOLERANCE), touching, interpolated)
+        active = active[abs(root[active] - tilt) > TILT_TOLERANCE]
     return numpy.where(filled, _overhang_angles(axial), root)
 
 

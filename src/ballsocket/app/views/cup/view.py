@@ -191,7 +191,7 @@ _TITLES = {"rim_distance": "distance from the largest pressure to the rim"}
 def _numbers(contact: OffAxisContact, screen: Screen) -> str:
     reading = screen.reading
     angle = reading.unit(CUP["inclination"])
-    margin = f"{reading.with_unit(CUP['inclination'], float(contact.edge_margin))} of arc"
+    margin = f"{_edge_margin_text(contact, reading)} of arc"
     cells = [
         _cell(DERIVED["edge_distance"], contact.edge_distance, reading, margin),
         _cell(CONTACT["max_pressure"], contact.max_pressure, reading),
@@ -211,11 +211,18 @@ def _cell(quantity: Quantity, value: Any, reading: Reading, more: str = "") -> s
 
 def _verdict(contact: OffAxisContact, reading: Reading) -> str:
     """State in words if the contact stays on the bore."""
-    apart = reading.with_unit(DERIVED["edge_distance"], float(contact.edge_distance))
-    angle = reading.with_unit(CUP["inclination"], float(contact.edge_margin))
     if contact.edge_loaded:
         return "<p class='trust no'>✗ Rim contact (edge loading): the contact reaches the rim of the cup</p>"
+    error = float(contact.error["edge_margin"] * contact.joint.socket_radius)
+    apart = reading.with_known_digits(DERIVED["edge_distance"], float(contact.edge_distance), error)
+    angle = _edge_margin_text(contact, reading)
     return f"<p class='trust yes'>✓ The contact ends {apart} ({angle}) before the rim</p>"
+
+
+def _edge_margin_text(contact: OffAxisContact, reading: Reading) -> str:
+    """Write the angle from the contact to the rim with the digits that are known."""
+    margin, error = float(contact.edge_margin), float(contact.error["edge_margin"])
+    return reading.with_known_digits(CUP["inclination"], margin, error)
 
 
 def _hint(contact: OffAxisContact) -> str:
