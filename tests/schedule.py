@@ -2,28 +2,16 @@
 
 from xdist.scheduler import LoadScopeScheduling
 
-_GROUPS = {
-    "browser": tuple(
-        f"tests/app/test_{name}.py"
-        for name in (
-            *("accessibility", "agreement", "app", "app_views", "connection"),
-            *("history", "hostile", "slow_lines", "views"),
-        )
-    ),
-    "evidence": ("tests/evidence/",),
-    "sources": tuple(f"tests/test_{name}.py" for name in ("doors", "imports", "patterns", "words")),
-}
-"""Files that share a server and a browser, a computed pack or parsed sources: one worker takes all of them."""
-
 _FIRST = (
-    *_GROUPS["browser"],
-    "tests/hip/test_wear.py",
     "tests/evidence/",
-    "tests/test_docs.py",
+    "tests/app/",
+    "tests/hip/",
     "tests/elasticity/",
     "tests/lubrication/",
-    "tests/hip/",
-    "tests/app/",
+    "tests/test_docs.py",
+    "tests/compiled/",
+    "tests/cli/",
+    "tests/studies/",
     "tests/fuzz/",
     "tests/export/",
 )
@@ -39,6 +27,6 @@ class FileScheduling(LoadScopeScheduling):
     """Scheduling by files: what the tests of a file share is computed once, not once for each worker."""
 
     def _split_scope(self, nodeid):
-        """Return the group of a test, or its file."""
+        """Return the file of a test; the files of evidence share a computed pack."""
         path = nodeid.partition("::")[0]
-        return next((name for name, paths in _GROUPS.items() if path.startswith(paths)), path)
+        return "evidence" if path.startswith("tests/evidence/") else path
