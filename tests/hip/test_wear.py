@@ -181,6 +181,7 @@ def test_the_first_cycle_converges_with_second_order(refined, limit):
     assert errors[1] / errors[2] > 3
 
 
+@pytest.mark.long
 def test_finest_steps_have_an_error_estimate():
     """They cannot be halved, and rings of 0.5° neither."""
     assert 0 < hip(cycle=flexion(8), ring_width=radians(0.9)).discretization_error[0] < 0.05
