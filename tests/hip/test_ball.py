@@ -10,7 +10,7 @@ from ballsocket.hip import Archard, Cycle, flexion, iso_14242_1
 from ballsocket.hip.ball_wear import ball_directions, map_counterface
 from ballsocket.reports.hip_report import write_hip_report
 
-from .hips import K, hip, report_after
+from .hips import QUICK, K, hip, report_after
 
 COARSE = {"ring_width": radians(4.0)}
 BOTH = {"wear": Archard(coefficient=K / 2), "ball_wear": Archard(coefficient=K / 2), **COARSE}
@@ -27,9 +27,7 @@ def spinning(count=24):
 
 
 def test_ball_volume_equals_the_work_of_friction():
-    report = report_after(
-        hip(cycle=iso_14242_1(40), wear=Archard(coefficient=K), ball_wear=Archard(coefficient=3e-7)), 5e5
-    )
+    report = report_after(hip(**QUICK, wear=Archard(coefficient=K), ball_wear=Archard(coefficient=3e-7)), 5e5)
     assert report.volume == pytest.approx(1e-3 * K * report.work, rel=1e-6)
     assert report.ball_volume == pytest.approx(1e-3 * 3e-7 * report.work, rel=1e-6)
 

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 import ballsocket as bs
 from ballsocket.hip import Archard, CrossShear, HipSimulation, iso_14242_1
 
+from ..extent import some
 from .hips import report_after
 
 POINTS, INSTANTS = 2000, 40
@@ -73,11 +74,14 @@ def by_cross_shear(straight, circular):
 
 @pytest.mark.parametrize(
     ("diameter", "clearance", "liner", "tilt", "order", "law", "depth_of"),
-    [
-        (32.0, 0.05, 7.0, 45.0, "ZYX", Archard(coefficient=2e-6), archard(2e-6)),
-        (22.225, 0.3, 4.0, 20.0, "XYZ", Archard(coefficient=3e-7), archard(3e-7)),
-        (44.0, 0.03, 3.0, 55.0, "YXZ", CrossShear(straight=5e-8, circular=8e-7), by_cross_shear(5e-8, 8e-7)),
-    ],
+    some(
+        [
+            (44.0, 0.03, 3.0, 55.0, "YXZ", CrossShear(straight=5e-8, circular=8e-7), by_cross_shear(5e-8, 8e-7)),
+            (32.0, 0.05, 7.0, 45.0, "ZYX", Archard(coefficient=2e-6), archard(2e-6)),
+            (22.225, 0.3, 4.0, 20.0, "XYZ", Archard(coefficient=3e-7), archard(3e-7)),
+        ],
+        1,
+    ),
 )
 def test_independent_loop_gives_the_same_wear(diameter, clearance, liner, tilt, order, law, depth_of):
     joint = bs.Joint(ball_radius=diameter / 2, clearance=clearance, liner_thickness=liner, liner=bs.UHMWPE)

@@ -121,6 +121,7 @@ def test_more_patients_keep_the_first_ones(few_held_out):
     np.testing.assert_allclose(more[:150], few, rtol=1e-12)
 
 
+@pytest.mark.long
 def test_the_error_is_that_of_the_held_out_patients(few_held_out, monkeypatch):
     """A series of a low degree is refined; without refinement its error is stated, or patients are simulated."""
     monkeypatch.setattr(module, "_FIRST_DEGREES", (0,) * 5)
@@ -187,6 +188,7 @@ def test_a_series_ends_where_a_load_points_5_degrees_inside_the_rim():
     assert radians(84.0) < high <= radians(85.0)
 
 
+@pytest.mark.long
 def test_patients_outside_the_ranges_have_the_results_of_simulations(few_held_out):
     patients = quick(coefficient=COEFFICIENT)
     values = sample_patients(patients, 40, 0)

@@ -21,7 +21,7 @@ def elastic(surface="shell", **words):
     return hip(**({"surface": SURFACES[surface], "ring_width": COARSE, "cycle": iso_14242_1(50)} | words))
 
 
-@pytest.mark.parametrize("surface", SURFACES)
+@pytest.mark.parametrize("surface", ["shell", pytest.param("cup", marks=pytest.mark.long)])
 def test_first_cycle_has_the_contacts_of_the_off_axis_model(surface):
     use = elastic(surface, ring_width=radians(3.0))
     sphere = bs.Sphere(cup=TILTED, surface=SURFACES[surface], ring_width=radians(3.0))
@@ -31,7 +31,7 @@ def test_first_cycle_has_the_contacts_of_the_off_axis_model(surface):
     assert use.first.max_pressure == pytest.approx(contact.max_pressure, rel=1e-2)
 
 
-@pytest.mark.parametrize("surface", SURFACES)
+@pytest.mark.parametrize("surface", ["shell", pytest.param("cup", marks=pytest.mark.long)])
 def test_worn_volume_equals_the_work_of_friction(surface):
     use = elastic(surface)
     report = report_after(use, 2e5)

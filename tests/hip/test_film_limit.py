@@ -73,7 +73,7 @@ def test_archard_wears_by_the_work_below_the_limit():
 
 
 def test_json_and_notes_state_the_limit_and_the_excluded_share(short_film):
-    use = limited(1.0, cycles=1)
+    use = limited(1.0)
     limited_history = use.after(1e5)
     summary = json.loads(json.dumps(limited_history.summary(), allow_nan=False))
     share = use.excluded_work_share

@@ -6,6 +6,7 @@ from math import cos, pi, radians, sin
 import numpy as np
 import pytest
 
+from ballsocket.elasticity.off_axis.directions import tangents
 from ballsocket.hip import constant_load, flexion, iso_14242_1
 from ballsocket.hip.kinematics import (
     SurfaceSliding,
@@ -195,3 +196,16 @@ def test_the_track_of_a_point_is_as_long_as_its_sliding_distance():
     assert np.linalg.norm(track, axis=1) == pytest.approx(14.0)
     assert tracks(cycle.rotations, point)[0] == pytest.approx(track / 14.0)
     assert tracks(np.eye(3)[None], random_directions(5, 7)).shape == (5, 1, 3)
+
+
+def test_tangents_and_normals_are_orthonormal():
+    normals = random_directions(30, 2)
+    frame = np.stack([*tangents(normals), normals])
+    assert np.einsum("ikp,jkp->pij", frame, frame) == pytest.approx(np.broadcast_to(np.eye(3), (30, 3, 3)), abs=1e-14)
+
+
+def test_transposed_rotations_give_the_track_of_a_socket_point_on_the_ball():
+    cycle = flexion(1000)
+    on_socket = tracks(cycle.rotations, POLE, radius=14.0)[0]
+    on_ball = tracks(cycle.rotations.swapaxes(1, 2), POLE, radius=14.0)[0]
+    assert on_ball == pytest.approx(on_socket * [1.0, -1.0, 1.0], abs=1e-9)

@@ -30,7 +30,7 @@ def mixed(*parts):
 
 
 @pytest.mark.long
-def test_a_mix_of_one_activity_equals_that_activity():
+def test_a_mix_of_one_activity_equals_that_activity(short_film):
     coarse = {"ring_width": QUICK["ring_width"]}
     alone, mix = hip(cycle=WALK, **coarse), hip(cycle=mixed((WALK, 1e6)), **coarse)
     assert mix.first == alone.first
@@ -113,7 +113,7 @@ def test_creep_of_a_mix_follows_the_mean_force_over_time():
 
 
 @pytest.mark.long
-def test_the_step_closest_to_the_rim_names_its_activity():
+def test_the_step_closest_to_the_rim_names_its_activity(short_film):
     stumble = in_vivo("stumbling", 750.0, 40)
     history = hip(cycle=mixed((WALK, 1e6), (stumble, 10.0)), cup=bs.Cup(inclination=radians(40.0))).after(1e4)
     assert history.worst.step_description.endswith("% of stumbling")

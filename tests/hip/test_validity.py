@@ -108,7 +108,7 @@ def test_a_worn_bore_has_its_own_validity():
     assert history.contact_checks[-1][0].half_angle > use.unworn_checks[0].half_angle
 
 
-@pytest.mark.parametrize("surface", [bs.ClosedShell(), bs.RealCup()])
+@pytest.mark.parametrize("surface", [bs.ClosedShell(), pytest.param(bs.RealCup(), marks=pytest.mark.long)])
 def test_an_elastic_run_has_the_validity_of_the_sphere(surface):
     cycle = constant_load(8, force=40e3)
     use = use_of(HIP, cycle, surface=surface, ring_width=radians(4.0))

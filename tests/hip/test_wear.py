@@ -54,6 +54,15 @@ def test_worn_volume_equals_the_work_of_friction(words):
     assert report.volume == pytest.approx((report.wear * areas).sum(), rel=1e-12)
 
 
+def test_worn_bore_balances_its_loads():
+    use = hip(**QUICK)
+    report = report_after(use, 2e6)
+    rest = use.solve_equilibrium(report.wear.ravel())
+    carried = np.einsum("tp,kp,p->tk", rest.pressure, use.foundation.normals, use.foundation.areas)
+    assert carried == pytest.approx(use.loads, abs=1e-6 * 300)
+    assert rest.pressure.max() == pytest.approx(report.max_pressure, rel=1e-6)
+
+
 def test_worn_bore_has_the_contact_of_the_off_axis_model():
     """On rings of other widths, with the depth between the cells by interpolation."""
     from scipy.interpolate import RegularGridInterpolator
@@ -181,6 +190,7 @@ def test_the_first_cycle_converges_with_second_order(refined, limit):
     assert errors[1] / errors[2] > 3
 
 
+@pytest.mark.long
 def test_finest_steps_have_an_error_estimate():
     """They cannot be halved, and rings of 0.5° neither."""
     assert 0 < hip(cycle=flexion(8), ring_width=radians(0.9)).discretization_error[0] < 0.05

@@ -46,7 +46,11 @@ def test_a_rate_of_38_mm3_gives_three_coefficients():
 
 @pytest.mark.parametrize(
     ("quantity", "words"),
-    [("volume", {}), ("depth", {}), ("penetration", {"creep": logarithmic()})],
+    [
+        ("volume", {}),
+        pytest.param("depth", {}, marks=pytest.mark.long),
+        pytest.param("penetration", {"creep": logarithmic()}, marks=pytest.mark.long),
+    ],
     ids=["volume", "depth", "penetration with creep"],
 )
 def test_simulated_totals_give_the_coefficient_back(quantity, words):
