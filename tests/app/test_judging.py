@@ -40,6 +40,7 @@ def all_places_are_given_back():
     assert len(running.QUEUE) == 0
 
 
+@pytest.mark.long
 def test_a_run_answers_what_a_press_answers():
     *on_the_way, last = until_the_end(judging(HIP))
     found = last.value

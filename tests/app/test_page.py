@@ -160,3 +160,13 @@ def test_a_report_has_the_joint_its_inputs_and_no_machine(view):
     assert ("<span class='holds'>Passes: " in text) == (view == "press")
     assert "localhost" not in text
     assert "http" not in text.replace("http://www.w3.org", "")
+
+
+def test_a_refusal_goes_with_the_next_change():
+    page = Page("view=judge")
+    assert edits(page, "judge.arc_of_cover", "20")["reset"]
+    assert "20" in trouble(page)
+    assert page.screen == Page("view=judge").screen
+    edits(page, "judge.arc_of_cover", "150")
+    assert trouble(page) == ""
+    assert page.channel.shown_value("=judge.arc_of_cover")["value"] == pytest.approx(150)
