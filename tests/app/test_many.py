@@ -225,6 +225,7 @@ def test_a_flood_of_requests_holds_up_its_sender_alone(served, monkeypatch):
     run(served, whole)
 
 
+@pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the memory of a process is read from /proc")
 def test_further_pages_take_little_memory(served):
     """300 pages may take at most 100 MB more than the first."""

@@ -67,9 +67,7 @@ def test_a_life_is_that_of_python(at_once):
     assert "<th scope='row'>deepest wear</th>" in shown
     assert told(page, "wear-earlier") == ""
     edits(page, "wear.millions", 1)
-    assert (
-        told(page, "wear-numbers").replace("earlier design 1", "hip-36") == shown
-    )  # nothing that was computed is lost
+    assert told(page, "wear-numbers").replace("earlier design 1", "hip-36") == shown  # nothing is lost
     assert "belong to an earlier design" in told(page, "wear-earlier")
     edits(page, "wear.millions", 0.1)
     assert (told(page, "wear-numbers"), told(page, "wear-earlier")) == (shown, "")
