@@ -32,7 +32,7 @@ def browser():
 @pytest.fixture(scope="session")
 def address():
     pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-    with served_explorer() as served:
+    with served_explorer("--origin", "hips.example.org:8443") as served:
         yield served
 
 
@@ -65,6 +65,27 @@ def user(profile, address):
     if someone.requests:
         someone.page.evaluate("localStorage.clear()")
     someone.page.close()
+
+
+@pytest.fixture
+def at_once(monkeypatch):
+    """Do the work of a process here and now, and keep what it tells; films and maps of orientations are not made."""
+    pytest.importorskip("tornado", reason="the explorer's extra is not installed")
+    from ballsocket.app.jobs import Job
+    from ballsocket.app.running import RunFinished, RunRefused
+
+    heard = []
+
+    def ask(self, key, work):
+        if work.func.__name__ in ("simulate_film", "map_orientations"):
+            return
+        try:
+            self._heard(key, RunFinished(work(lambda news: heard.append(news) or self._heard(key, news))))
+        except ValueError as error:
+            self._heard(key, RunRefused(why=str(error)))
+
+    monkeypatch.setattr(Job, "ask", ask)
+    return heard
 
 
 @pytest.fixture

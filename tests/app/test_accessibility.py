@@ -26,7 +26,7 @@ def violations(user):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("view", "looks"), list(zip(VIEWS, cycle(_LOOKS))))
+@pytest.mark.parametrize(("view", "looks"), list(zip(VIEWS, cycle(_LOOKS), strict=False)))
 def test_axe_finds_no_violation(browser, address, view, looks):
     """One page takes two looks: its size and its theme change while it is open."""
     with opened_profile(browser, address, bypass_csp=True) as profile:

@@ -12,7 +12,7 @@ import pytest
 
 import ballsocket as bs
 
-from .asking import does, edits, saved
+from .asking import does, edits, opened, saved, told
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 pytest.importorskip("skfem")
@@ -21,7 +21,6 @@ from ballsocket.app.jobs import Job
 from ballsocket.app.pictures.bore import pressed_bore
 from ballsocket.app.results import ResultStore
 from ballsocket.app.running import RunFinished
-from ballsocket.app.session import Page
 from ballsocket.app.views.cup import worker
 from ballsocket.app.views.cup.charts import angle_map
 from ballsocket.app.views.cup.view import _hint
@@ -49,25 +48,15 @@ def at_once(monkeypatch):
     return asked
 
 
-def told(page, name):
-    return page.channel.shown_value(f"#cup-{name}") or ""
-
-
-def opened(link=LINK):
-    page = Page(link)
-    page._refresh()  # the page has loaded
-    return page
-
-
 def test_the_view_says_what_the_sphere_says(at_once):
-    page = opened()
+    page = opened(LINK)
     contact = bs.Sphere(cup=page.screen.file.cup).press(JOINT, force=3000.0)
-    assert f"{float(contact.edge_distance):.4g} <span class='unit'>mm" in told(page, "numbers")
-    (margin,) = re.findall(r"([\d.]+)° of arc", told(page, "numbers"))
+    assert f"{float(contact.edge_distance):.4g} <span class='unit'>mm" in told(page, "cup-numbers")
+    (margin,) = re.findall(r"([\d.]+)° of arc", told(page, "cup-numbers"))
     assert float(margin) == pytest.approx(degrees(contact.edge_margin), abs=degrees(contact.error["edge_margin"]))
-    assert f"{float(contact.max_pressure):.4g} <span class='unit'>MPa" in told(page, "numbers")
-    assert f"{float(contact.edge_distance):.4g} mm from the rim" in told(page, "map")
-    viewed = json.loads(re.search(r"data-viewer='([^']*)'", told(page, "viewer"))[1])
+    assert f"{float(contact.max_pressure):.4g} <span class='unit'>MPa" in told(page, "cup-numbers")
+    assert f"{float(contact.edge_distance):.4g} mm from the rim" in told(page, "cup-map")
+    viewed = json.loads(re.search(r"data-viewer='([^']*)'", told(page, "cup-viewer"))[1])
     assert viewed["loads"][0] == pytest.approx(contact.force_vector / 3000.0, abs=1e-4)
     assert viewed["axes"]["up"] == pytest.approx([axis[2] for axis in page.screen.file.cup.frame], abs=1e-4)
     assert viewed["radii"] == pytest.approx([18.0 / 18.1, 1 + 5 / 18.1, 1 + 5 / 18.1], abs=1e-4)
@@ -88,22 +77,22 @@ def test_the_view_says_what_the_sphere_says(at_once):
     way = page.screen.file.aim["direction"]
     assert degrees(np.arctan2(-way[0], way[2])) == pytest.approx(20)  # the middle is to the left of a right hip
     leaning = bs.Sphere(cup=page.screen.file.cup).press(JOINT, force=3000.0, direction=way)
-    assert f"{degrees(leaning.tilt):.4g}<span class='unit'>°" in told(page, "numbers")
+    assert f"{degrees(leaning.tilt):.4g}<span class='unit'>°" in told(page, "cup-numbers")
     edits(page, "cup.side", "left")
     assert page.screen.file.aim["direction"][0] == pytest.approx(-way[0])
-    assert f"{degrees(leaning.tilt):.4g}<span class='unit'>°" in told(page, "numbers")  # a mirror changes nothing
+    assert f"{degrees(leaning.tilt):.4g}<span class='unit'>°" in told(page, "cup-numbers")  # a mirror changes nothing
     assert "load.direction=" in page.channel.shown_value("link")
     assert opened(page.channel.shown_value("link")).screen == page.screen
 
     edits(page, "cup.inwards", 0)
     edits(page, "cup.pick", [75.0, 12.34])
     assert degrees(page.screen.file.cup.anteversion) == pytest.approx(12.3)
-    assert "✗ Rim contact (edge loading)" in told(page, "numbers")
-    table = told(page, "numbers")
+    assert "✗ Rim contact (edge loading)" in told(page, "cup-numbers")
+    table = told(page, "cup-numbers")
     assert table.index("reach of the contact</th>") < table.index("✗ fails") < table.index("? not known")
     edits(page, "cup.inclination", 90)
-    assert "dislocated: the load pushes the ball out" in told(page, "trouble")
-    assert told(page, "numbers") == ""
+    assert "dislocated: the load pushes the ball out" in told(page, "cup-trouble")
+    assert told(page, "cup-numbers") == ""
 
 
 def test_an_orientation_of_zero_is_shown_and_not_replaced():
@@ -118,13 +107,13 @@ def test_an_orientation_of_zero_is_shown_and_not_replaced():
 
 def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(monkeypatch):
     monkeypatch.setattr(Job, "ask", lambda *words: None)
-    page = opened()
+    page = opened(LINK)
     assert page.channel.shown_value("=cup.tilt")["hidden"]
     assert not page.channel.shown_value("=cup.inclination")["hidden"]
     edits(page, "cup.aim", "axis")
     assert page.screen.file.aim["tilt"] == pytest.approx(page.screen.file.cup.tilt((0.0, 0.0, 1.0)))
     assert page.channel.shown_value("=cup.inclination")["hidden"]
-    assert "turns with the cup" in told(page, "stood")
+    assert "turns with the cup" in told(page, "cup-stood")
     edits(page, "cup.tilt", 30)
     assert page.screen.file.aim == {"tilt": pytest.approx(radians(30))}
     does(page, "choose", name="angle", value="radians")
@@ -154,8 +143,8 @@ def test_a_bore_whose_rings_are_on_disk_is_pressed_at_once(monkeypatch):
     monkeypatch.setattr(long_view.results, "RESULTS", worker.RESULTS)
     asked = []
     monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key[0]))
-    page = opened()
-    assert "MPa" in told(page, "numbers")
+    page = opened(LINK)
+    assert "MPa" in told(page, "cup-numbers")
     assert set(asked) == {"cup-stood"}
 
 
@@ -214,7 +203,7 @@ def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
 
 @pytest.mark.long
 def test_the_map_is_that_of_python(monkeypatch):
-    page, angles = opened(), {"inclination": worker.INCLINATIONS[::5], "anteversion": worker.ANTEVERSIONS[::5]}
+    page, angles = opened(LINK), {"inclination": worker.INCLINATIONS[::5], "anteversion": worker.ANTEVERSIONS[::5]}
     for name, values in angles.items():
         monkeypatch.setattr(worker, f"{name.upper()}S", values)
     found = worker.map_orientations(page.screen.file, lambda news: None)

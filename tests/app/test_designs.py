@@ -121,6 +121,7 @@ def test_a_file_has_the_name_of_its_design(name, stem):
     assert file_stem(name) == stem
 
 
+@pytest.mark.long
 @given(st.text(max_size=100))
 def test_a_file_name_is_one_that_every_system_takes(name):
     stem = file_stem(name)
@@ -145,6 +146,7 @@ def does(user, action):
     return user.answered()
 
 
+@pytest.mark.long
 def test_designs_are_named_kept_compared_saved_and_opened(user, profile, tmp_path):
     page = user.open().page
     user.types("name", "hip 36 a")
@@ -201,6 +203,7 @@ def test_designs_are_named_kept_compared_saved_and_opened(user, profile, tmp_pat
     assert address(user)["name"] == "hip 36 a"
 
 
+@pytest.mark.long
 def test_a_refused_number_stays_in_its_box_with_the_reason(user):
     page = user.open().page
     box = user.types("ball_radius", "-5")

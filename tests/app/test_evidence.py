@@ -13,14 +13,13 @@ from ballsocket.evidence.question import read_question
 from ballsocket.files.joint_file import JointFile
 from ballsocket.hip.config import read_hip
 
-from .asking import does, edits, saved, trouble
+from .asking import does, edits, opened, saved, trouble
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
 from ballsocket.app import results
 from ballsocket.app.jobs import Job
 from ballsocket.app.running import RunFinished
-from ballsocket.app.session import Page
 from ballsocket.app.state.evidence_question import DEFAULT_QUESTION, EvidenceQuestion
 from ballsocket.app.state.use import DEFAULT_USE, Use
 from ballsocket.app.views.evidence import view as evidence
@@ -29,12 +28,6 @@ from ballsocket.app.views.evidence.worker import EvidencePack, gather_pack, writ
 LINK = "view=evidence&preset=hip-36&load.force=3000"
 CUP = bs.Cup(inclination=radians(40.0))
 FILE = JointFile(bs.joints["hip-36"], {"force": 3000.0})
-
-
-def opened(link=LINK):
-    page = Page(link)
-    page._refresh()  # the page has loaded
-    return page
 
 
 def told(page, name):
@@ -66,7 +59,7 @@ def test_what_is_typed_is_a_question_file(tmp_path):
 
 
 def test_a_question_is_read_as_it_is_typed():
-    page = opened()
+    page = opened(LINK)
     assert "2 cases" in told(page, "found")
     assert "2000 N, 3000 N" in told(page, "found")
     edits(page, "evidence.matrix", "force = 2, 3 kN; clearance = 0.05, 0.1, 0.15 mm")
@@ -93,13 +86,13 @@ def test_a_question_is_read_as_it_is_typed():
     ],
 )
 def test_what_is_wrong_with_a_question_is_said_in_the_view(name, value, sentence):
-    page = opened()
+    page = opened(LINK)
     edits(page, f"evidence.{name}", value)
     assert sentence in told(page, "found")
 
 
 def test_limits_are_rows():
-    page = opened()
+    page = opened(LINK)
     edits(page, "evidence.limits", [["max_pressure", "<=", "20"], ["half_angle", "<=", "60"]])
     assert page.screen.asked.limits.startswith("max_pressure<=20.0; half_angle<=1.047")
     assert page.channel.shown_value("=evidence.limits")["value"][1] == ["half_angle", "<=", "60"]
@@ -118,7 +111,7 @@ def test_limits_are_rows():
 def test_a_limit_is_asked_for_before_anything_runs(monkeypatch):
     asked = []
     monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key))
-    page = opened()
+    page = opened(LINK)
     assert "✗ No limit is stated" in told(page, "found")
     edits(page, "evidence.run", True)
     assert "Evidence needs a limit to decide on" in told(page, "trouble")

@@ -24,6 +24,7 @@ from ballsocket.app.widgets.words import accuracy_sentence
 from ballsocket.reports.check_table import checks_html, checks_of
 from ballsocket.reports.section_plots import gap_factor
 
+from ..extent import either
 from .asking import does, edits, saved, trouble
 
 HIP = bs.joints["hip-28"]
@@ -83,7 +84,7 @@ def test_every_handle_is_an_input_and_says_its_number():
     assert page.screen.file.aim == {}
 
 
-@pytest.mark.parametrize("tilt", [20.0, 45.0, 75.0])
+@pytest.mark.parametrize("tilt", either([20.0, 75.0], [20.0, 45.0, 75.0]))
 def test_a_tilted_contact_is_that_of_the_real_cup_in_this_view_and_in_the_view_cup(tilt, real_cup):
     page = Page(f"{JOINT}&load.tilt={tilt} deg")
     page._refresh()

@@ -15,8 +15,6 @@ from tornado.websocket import websocket_connect
 
 from ballsocket.app.server import HostNames
 
-from .browser import served_explorer
-
 STRICT = {
     "X-Content-Type-Options": "nosniff",
     "X-Frame-Options": "DENY",
@@ -27,9 +25,8 @@ STRICT = {
 
 
 @pytest.fixture(scope="module")
-def place():
-    with served_explorer("--origin", "hips.example.org:8443") as address:
-        yield urlsplit(address)
+def place(address):
+    return urlsplit(address)
 
 
 def answer(place, path="/", method="GET", host=None, **headers):

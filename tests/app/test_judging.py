@@ -96,6 +96,7 @@ def test_a_process_that_cannot_be_started_is_said(monkeypatch):
     assert judging(HIP).news() == RunRefused(why="no process could be started: Resource temporarily unavailable")
 
 
+@pytest.mark.long
 def test_what_cannot_be_meshed_is_said():
     cup = Cup(arc_of_cover=0.75, chamfer=9.0)
     refused = until_the_end(judging(JointFile(HIP.joint, HIP.load, cup)))[-1]

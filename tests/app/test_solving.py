@@ -90,6 +90,7 @@ def test_joints_as_people_make_them_are_pressed_at_once():
         assert not any(heavy(joint, name) for name in bs.catalogue), preset
 
 
+@pytest.mark.long
 def test_what_was_solved_elsewhere_is_what_a_press_answers():
     page = Page(link(THIN_LINER_RATIO * 1.2, answered_by="plane-layer"))
     waited_for(page)
