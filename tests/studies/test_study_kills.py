@@ -102,6 +102,7 @@ def equal_to_undisturbed(store):
 
 def test_files_that_may_not_grow_stop_the_command_with_one_sentence(start):
     """A real failure of the system's: no file may be larger than 20 kB."""
+    pytest.importorskip("resource", reason="no limits of resources")
     limited = (
         "import resource as r; r.setrlimit(r.RLIMIT_FSIZE, (20000, 20000)); from ballsocket.cli import main; main()"
     )
