@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import time
 from contextlib import suppress
 from urllib.parse import parse_qs
 
@@ -11,7 +12,7 @@ import pytest
 import ballsocket as bs
 
 from .proxy import opened_proxy
-from .user import User, opened_profile
+from .user import WAIT, User, opened_profile
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.pressing import tilt_of
@@ -156,7 +157,7 @@ def assert_inputs_agree(user, history):
     """Compare boxes, bars, and those handles and answers that are not marked as late with what the link says."""
     user.page.evaluate("document.activeElement && document.activeElement.blur()")
     user.page.locator(".app[data-idle=yes][data-shown]:not([data-lost])").wait_for()
-    shown = user.page.evaluate(_SHOWN, list(_NUMBERS))
+    shown = settled_page(user)
     screen = read_link(parse_qs(shown["link"]))
     fields = {name: entry.field for name, entry in joint_inputs(screen).items()}
     for name, text in shown["boxes"].items():
@@ -174,9 +175,18 @@ def assert_inputs_agree(user, history):
         assert float(shown["answer"]) == pytest.approx(answer_of(screen, shown["real"]), rel=1e-6), history
     elif shown["sentence"]:
         assert shown["sentence"] == refusal_of(screen, shown["real"]), history
-    else:
-        assert shown["waits"], history
     return shown
+
+
+def settled_page(user):
+    """Return what the page shows once it has an answer or a reason, or says that it waits for one."""
+    deadline = time.monotonic() + WAIT / 1000
+    while time.monotonic() < deadline:
+        shown = user.page.evaluate(_SHOWN, list(_NUMBERS))
+        if shown["answer"] or shown["sentence"] or shown["waits"]:
+            return shown
+        time.sleep(0.02)
+    pytest.fail(f"neither an answer nor a reason nor a wait: {shown}")
 
 
 def contact_of(screen, in_real_cup):
@@ -271,6 +281,8 @@ def test_text_of_a_box_follows_what_changes_next(user):
     user.nudge("load")
     assert_agreement(user, ["the same text", "key"])
     before = box.input_value()
+    user.nudge("clearance")
+    user.answered()
     user.types("load", "nonsense")
     user.says("must be a number in N")
     assert box.input_value() == "nonsense"
