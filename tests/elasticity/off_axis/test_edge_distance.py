@@ -1,5 +1,6 @@
 """Distance of contacts from the rim, inside the bore and for edge loading."""
 
+import re
 from dataclasses import replace
 from math import pi, radians
 
@@ -7,6 +8,8 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.app.views.cup.view import _verdict
+from ballsocket.app.widgets.reading import Reading
 from ballsocket.elasticity.off_axis import load_cases
 from ballsocket.elasticity.off_axis.load_cases import edge_margins
 
@@ -208,3 +211,17 @@ def test_the_error_of_the_edge_margin_holds_against_finer_rings(tilt):
     assert coarse.edge_margin == pytest.approx(fine.edge_margin, abs=coarse.error["edge_margin"])
     assert radians(0.02) * coarse.edge_loaded < coarse.error["edge_margin"] < radians(2.5)
     assert coarse.summary()["error"]["edge_margin_deg"] == pytest.approx(np.degrees(coarse.error["edge_margin"]))
+
+
+@pytest.mark.parametrize(
+    ("load", "words"),
+    [
+        ({"force": 3000.0}, r"ends \d\.\d mm \(\d\.\d°\) before the rim"),
+        ({"force": 0.0}, "ends 0 mm"),
+        ({"force": 1000.0, "direction": (0.0, 0.0, -1.0)}, "ends no result"),
+    ],
+    ids=["contact", "no load", "dislocated"],
+)
+def test_the_explorer_writes_known_digits_of_the_edge_margin_or_no_contact(load, words):
+    model = bs.Sphere(cup=bs.Cup(inclination=radians(45.0)), ring_width=radians(4.0))
+    assert re.search(words, _verdict(model.press(HIP, **load), Reading()))

@@ -58,7 +58,12 @@ class Reading:
         return f"{number_text(value * unit.factor, unit.text)}{unit_suffix(unit.text)}"
 
     def with_known_digits(self, quantity: Quantity, value: float, error: float) -> str:
-        """Write a number in internal units with its chosen unit, without digits below its error."""
+        """Write a number in internal units with its chosen unit, without digits below its error.
+
+        Without a contact the error is 0, or NaN where there is no solution: then all digits are written.
+        """
+        if not 0 < error < inf:
+            return self.with_unit(quantity, value)
         unit = self.unit(quantity)
         decimals = max(0, ceil(-log10(error * unit.factor)))
         return f"{number_text(round(value * unit.factor, decimals), unit.text)}{unit_suffix(unit.text)}"
