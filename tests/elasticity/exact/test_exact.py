@@ -13,6 +13,7 @@ from ballsocket.elasticity.exact.kernel import Kernel
 from ballsocket.elasticity.exact.model import curve_of
 from ballsocket.elasticity.exact.modes import ElasticBall, Shell, Socket
 
+from ...extent import some
 from ...joints import HIP
 from ...places import DATA
 
@@ -187,7 +188,7 @@ def test_a_backing_of_the_liners_material_is_a_thicker_liner():
     assert soft.max_pressure < one.max_pressure
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("tolerance", some([1e-6, 1e-9, 1e-3], 1))
 def test_the_error_estimate_holds(tolerance):
     """On random joints the true error (against a much finer solution) is below the estimate, or below rounding."""
     rng = np.random.default_rng(11)

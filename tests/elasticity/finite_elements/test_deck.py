@@ -15,6 +15,7 @@ from ballsocket.elasticity.finite_elements.deck import deck_of
 from ballsocket.elasticity.finite_elements.deck_bodies import faceting_gap
 
 from ...extent import some
+from ..calculix import needs_ccx
 
 LINER = bs.Material(young=1000.0, poisson=0.4)
 RIGID = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LINER)
@@ -22,7 +23,6 @@ STEEL = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LI
 TITANIUM, SOFT = bs.Layer(thickness=3.0, material=bs.TITANIUM), bs.Layer(thickness=4.0, material=bs.BONE_CEMENT)
 SLIDING = bs.Interface.SLIDING
 COARSE = bs.Adapted(elements=24)
-needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="no command ccx")
 
 
 def joint(like: bs.Joint, **changes: object) -> bs.Joint:
@@ -224,7 +224,7 @@ def test_a_fixed_liner_has_a_fixed_outer_surface():
     assert not deck.heads("*EQUATION")
 
 
-@pytest.mark.parametrize("arc", [140.0, 180.0])
+@pytest.mark.parametrize("arc", some([140.0, 180.0], 1))
 def test_a_free_liner_is_supported_at_its_rim(arc):
     deck = Read(deck_of(pressed(joint(RIGID, backing=(TITANIUM,), support=bs.Support.FREE), arc=arc)).text())
     radius, angle = deck.polar("SEATED")

@@ -16,6 +16,8 @@ from ballsocket.evidence.code_checks import (
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Interface
 
+from ...extent import some
+
 ORDERS = pytest.mark.parametrize("order", [1, 2], ids=["bilinear", "biquadratic"])
 
 
@@ -34,7 +36,7 @@ def test_a_uniform_strain_has_its_energy(order):
     assert strain_energy_error(order) < (5e-3 if order == 1 else 1e-4)
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.49, 0.4999])
+@pytest.mark.parametrize("poisson", some([0.4999, 0.49, 0.3, 0.0], 1))
 @pytest.mark.parametrize(("order", "elements", "least"), [(1, 32, 1.9), (2, 8, 3.9)], ids=["bilinear", "biquadratic"])
 def test_a_thick_sphere_under_pressure_converges_and_does_not_lock(order, elements, least, poisson):
     """Displacement by Bartel's modulus K_B = E/R2 (2(1-2ν) + (1+ν)k³)/((1+ν)(1-2ν)(1-k³)), k = R2/b."""

@@ -1,6 +1,5 @@
 """Tilted deck: its mesh, its text, and forces computed by CalculiX."""
 
-import shutil
 from math import pi, radians
 
 import numpy as np
@@ -11,9 +10,9 @@ from ballsocket.elasticity.off_axis.deck import SphericalBlock, TiltedDeck, run
 
 from ...cli.command import run as command
 from ...extent import either
+from ..calculix import needs_ccx
 
 JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.4))
-needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="CalculiX is not installed")
 
 
 def test_bricks_and_wedges_share_nodes_and_have_positive_volume():

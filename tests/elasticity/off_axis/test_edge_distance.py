@@ -67,7 +67,7 @@ def test_edge_distance_is_independent_of_ring_width(name):
     assert touching == pytest.approx(first_touch, abs=0.25)
 
 
-@pytest.mark.parametrize("name", list(CUPS)[: either(quick=2, long=4)])
+@pytest.mark.parametrize("name", list(CUPS)[: either(quick=1, long=4)])
 def test_edge_distance_of_a_cut_contact_needs_few_presses(name):
     joint, cup, force, first_touch = CUPS[name]
     contact = bs.Sphere(cup=cup).press(joint, force=force, tilt=radians(first_touch + 6.0))
@@ -101,7 +101,7 @@ def test_edge_distances_of_many_cut_contacts_need_the_presses_of_a_few():
     assert sum(solved) <= 8 * 9
 
 
-@pytest.mark.parametrize("load", [{"force": [400.0, 2000.0]}, {"indentation": [0.01, 0.04]}])
+@pytest.mark.parametrize("load", some([{"force": [400.0, 2000.0]}, {"indentation": [0.01, 0.04]}], 1))
 def test_contacts_leave_the_rim_at_the_tilt_that_their_curve_states(load):
     """They end before the rim at a tilt 0.1° below it, and reach it 0.1° above."""
     model, ((kind, values),) = bs.Sphere(ring_width=radians(3.0)), load.items()
@@ -121,6 +121,7 @@ def test_edge_distances_of_an_unworn_bore_need_no_presses(monkeypatch):
     assert contact.edge_margin == pytest.approx(narrow, abs=radians(0.01))
 
 
+@pytest.mark.long
 def test_half_angle_is_resolved_between_the_cells():
     """Half angles of closed shells at rings of 2°: within 0.25° of the exact ones, of random joints."""
     random, errors = np.random.default_rng(11), []
@@ -142,7 +143,15 @@ def test_half_angle_is_resolved_between_the_cells():
 
 @pytest.mark.parametrize(
     ("arc", "load"),
-    [(180.0, {"force": 2000.0}), (200.0, {"force": 9000.0}), (150.0, {"indentation": 0.05}), (70.0, {"force": 3000.0})],
+    some(
+        [
+            (180.0, {"force": 2000.0}),
+            (200.0, {"force": 9000.0}),
+            (150.0, {"indentation": 0.05}),
+            (70.0, {"force": 3000.0}),
+        ],
+        2,
+    ),
 )
 def test_edge_margin_follows_the_rotation_of_the_load(arc, load):
     """It decreases by about the rotation, a little less near the rim, and by exactly the rotation beyond."""
@@ -169,6 +178,7 @@ def test_edge_margin_passes_the_rings_evenly():
     assert decrease.max() < 1.8
 
 
+@pytest.mark.long
 def test_load_rotated_back_by_the_margin_just_touches_the_rim():
     model, tilt = bs.Sphere(), radians(70.0)
     beyond = model.press(HIP, force=2500.0, tilt=tilt)

@@ -53,12 +53,12 @@ def test_three_dimensional_elements_give_the_same_force_and_pressure(case, step)
 SHELLS = [(0.4, None), (0.49, None), (0.3, bs.STEEL), (0.0, bs.STEEL)]
 
 
-@pytest.mark.parametrize(("poisson", "ball"), some(SHELLS, 2))
+@pytest.mark.parametrize(("poisson", "ball"), some(SHELLS, 1))
 def test_closed_shell_agrees_with_the_exact_solution(poisson, ball):
     """In rings of 1°, F and pmax agree within 0.03 %, ε within 0.2°."""
     joint = lined(poisson, ball=ball)
     model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(1.0))
-    for tilt in (0.0, 0.35):
+    for tilt in some([0.35, 0.0], 1):
         contact = model.press(joint, indentation=0.06, tilt=tilt)
         exact = bs.Exact().press(joint, indentation=0.06)
         for name in ("force", "max_pressure"):
@@ -79,13 +79,13 @@ CUPS = {
 }
 
 
-@pytest.mark.parametrize("name", some(CUPS, 2))
+@pytest.mark.parametrize("name", some(CUPS, 1))
 def test_axial_load_agrees_with_axisymmetric_elements(name):
     """F, pmax and U agree within 0.1 % with a rigid ball; the elements model an elastic one differently."""
     cup, backing = CUPS[name]
     joint = lined(0.45, backing=backing)
     contact = bs.Sphere(cup=cup).press(joint, indentation=0.05)
-    elements = bs.FiniteElement(cup=cup).press(joint, indentation=0.05)
+    elements = bs.FiniteElement(cup=cup, meshes=1).press(joint, indentation=0.05)
     for name in ("force", "max_pressure", "energy"):
         assert getattr(contact, name) == pytest.approx(getattr(elements, name), rel=1e-3)
 
@@ -142,7 +142,9 @@ def test_force_is_the_slope_of_energy_and_stiffness_that_of_force(tilt):
 def test_axial_contact_is_uniform_around_the_pole():
     """Cells are narrow there, and the residual of the iteration must not become pressure."""
     narrow = bs.Cup(arc_of_cover=radians(40.0))
-    contact = bs.Sphere(cup=narrow, ring_width=radians(0.5)).press(lined(0.4), indentation=0.006)
+    contact = bs.Sphere(cup=narrow, ring_width=radians(either(quick=1.0, long=0.5))).press(
+        lined(0.4), indentation=0.006
+    )
     assert np.ptp(contact.pressure_map[2][0]) < 1e-4 * contact.max_pressure
 
 
@@ -150,7 +152,7 @@ def test_contact_is_independent_of_the_meridians():
     model, tilt = bs.Sphere(), 0.9
     contacts = [
         model.press(RIGID, force=3000.0, direction=(sin(tilt) * cos(azimuth), sin(tilt) * sin(azimuth), cos(tilt)))
-        for azimuth in (0.0, 0.013, 0.7, 2.0)
+        for azimuth in some([0.0, 0.013, 0.7, 2.0], 3)
     ]
     for contact in contacts[1:]:
         for name in ("indentation", "max_pressure", "half_angle", "energy"):

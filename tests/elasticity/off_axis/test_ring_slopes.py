@@ -41,6 +41,7 @@ def test_compliance_of_a_single_layer_falls_with_its_modulus():
     assert slopes[0] == pytest.approx(-rings / HIP.liner.young, rel=1e-12)
 
 
+@pytest.mark.long
 def test_an_infinite_liner_has_no_slope_by_thickness():
     massive = HIP.replace(liner_thickness=float("inf"))
     for surface in (bs.ClosedShell(), bs.RealCup()):
@@ -50,6 +51,7 @@ def test_an_infinite_liner_has_no_slope_by_thickness():
         assert (np.einsum("mii->mi", by_young) < 0).all()
 
 
+@pytest.mark.long
 def test_slopes_pass_a_change_of_the_mesh():
     """At some thickness the mesh has one element more; the slopes before and after differ by its error alone."""
 
