@@ -107,7 +107,7 @@ def test_error_estimates_hold():
     random = np.random.default_rng(7)
     names = ("force", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
     ratios = []
-    for _ in range(either(quick=6, long=60)):
+    for _ in range(either(quick=6, long=30)):
         joint = replace(lined(random.choice([0.0, 0.3, 0.45])), clearance=10 ** random.uniform(-2, -0.5))
         exact = bs.Exact().press(joint, half_angle=np.radians(random.uniform(14.0, 60.0, 8)))
         model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(random.choice([2.0, 4.0])))

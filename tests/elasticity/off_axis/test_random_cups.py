@@ -1,6 +1,6 @@
 """Random cups, loads and directions: each contact obeys the laws of contact or has a status.
 
-Six cups, or sixty with `--long`; the environment variable BALLSOCKET_CUPS sets another number.
+Six cups, or forty with `--long`; the environment variable BALLSOCKET_CUPS sets another number.
 """
 
 import os
@@ -14,7 +14,7 @@ import ballsocket as bs
 from ...extent import either
 
 LOADS = 5
-COUNT = int(os.environ.get("BALLSOCKET_CUPS", "0")) or either(quick=6, long=60)
+COUNT = int(os.environ.get("BALLSOCKET_CUPS", "0")) or either(quick=6, long=40)
 NUMBERS = (
     "force",
     "indentation",
