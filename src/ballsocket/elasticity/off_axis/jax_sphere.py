@@ -445,7 +445,8 @@ def _measure_outline(bores: _Bores, contact: tuple[Array, Array, Array]) -> tupl
     level = xp.where(pressure > 0, pressure * bores.edge_compliance, xp.minimum(remaining, 0.0))
     patches = Patches(pressure=pressure[None], level=level[None], axis=axis[None])
     centres, steps = contact_centres(bores.cells, patches), range(1, int(2 * pi / _MIN_STEP) + 1)
-    edges = edge_angles(bores.cells, *jax.lax.stop_gradient((patches.level, centres)), steps)
+    fixed_level, fixed_centres = jax.lax.stop_gradient((patches.level, centres))
+    edges = edge_angles(bores.cells, fixed_level, fixed_centres, steps)
     edges = _differentiable_edges(bores.cells, patches.level, centres, edges)
     return half_angles(bores.cells, patches, edges)[0], edge_margins(bores.cells, patches)[0]
 
