@@ -192,8 +192,8 @@ def _show_front(result: Any, goals: tuple[str, str], limits: list[Limit], output
     output.draw(lambda: study_plots.front_figure(result, front, goals, limits))
 
 
-class IntervalMethod(str, Choice):
-    """Methods of computing intervals, which are text: click before 8.2 compares a default with the allowed words."""
+class IntervalMethod(Choice):
+    """Methods of computing intervals."""
 
     BOOTSTRAP = "bootstrap"
     NONE = "none"
