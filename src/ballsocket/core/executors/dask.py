@@ -121,8 +121,7 @@ class Distributed:
 
         if self.address is not None:
             try:
-                with _restore_scheduler_on_error():
-                    client = Client(self.address, timeout=_CONNECTION_TIMEOUT, security=self.security)
+                client = _open_client(self.address, self.security)
             except OSError as error:
                 raise ConnectionError(None, "the Dask scheduler does not respond", self.address) from error
             except TypeError as error:  # of Dask, for an encrypted address alone
@@ -138,17 +137,22 @@ class Distributed:
             yield client
 
 
-@contextmanager
-def _restore_scheduler_on_error() -> Iterator[None]:
-    """Restore Dask's default scheduler after an error: a client that could not connect would remain the default."""
-    import dask
+def _open_client(address: str, security: Any) -> Client:
+    """Connect a Dask client, and close it at once if that fails, which also restores Dask's default scheduler.
 
-    scheduler = dask.config.get("scheduler", None)
-    try:
-        yield
-    except BaseException:
-        dask.config.set(scheduler=scheduler)
-        raise
+    The garbage collector would close it later, perhaps while another client starts: both wait for one lock then.
+    """
+    from distributed import Client
+
+    class ClosingClient(Client):
+        def start(self, **options: Any) -> None:
+            try:
+                super().start(**options)
+            except BaseException:
+                self.close()
+                raise
+
+    return ClosingClient(address, timeout=_CONNECTION_TIMEOUT, security=security)
 
 
 @contextmanager
