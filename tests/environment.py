@@ -12,6 +12,7 @@ workplace = None if "BALLSOCKET_CACHE" in os.environ else TemporaryDirectory(pre
 if workplace is not None:
     os.environ["BALLSOCKET_CACHE"] = os.path.join(workplace.name, "cache")
     os.environ.setdefault("JAX_COMPILATION_CACHE_DIR", os.path.join(workplace.name, "jax"))
+    os.environ.setdefault("DASK_TEMPORARY_DIRECTORY", workplace.name)
     os.environ.setdefault("JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS", "0.1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # the cores are busy with other tests
 if str(ROOT / "src") in sys.path:  # commands use the checkout too
