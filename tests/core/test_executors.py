@@ -353,7 +353,7 @@ def test_tls_needs_the_certificates(tmp_path):
         with pytest.raises(ConnectionError, match="address, scheduler and security differ in their encryption"):
             list(Distributed(address=plain, security=security).run(abs, [-1]))
     assert dask.config.get("scheduler", None) is None, "a client that is not connected must not compute for others"
-    clients = [thing for thing in gc.get_objects() if issubclass(type(thing), distributed.Client)]  # no dead weak proxies
+    clients = [thing for thing in gc.get_objects() if issubclass(type(thing), distributed.Client)]
     assert {client.status for client in clients} <= {"closed", "newly-created"}  # a start under way would wait for them
 
 
