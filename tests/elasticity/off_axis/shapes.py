@@ -1,4 +1,4 @@
-"""Joints, models and scanned points that several tests of this room use."""
+"""Joints, models, bores and scanned points that several tests of this room use."""
 
 from dataclasses import replace
 from math import pi, radians
@@ -6,6 +6,7 @@ from math import pi, radians
 import numpy as np
 
 import ballsocket as bs
+from ballsocket.elasticity.off_axis.bore_contact import BoreContact, GapField
 
 from ...joints import HIP
 
@@ -13,6 +14,20 @@ RIGID = replace(HIP, ball=None)
 COARSE = bs.Sphere(ring_width=radians(4.0))
 TIGHT = bs.Joint(ball_radius=13.5, interference=0.05, liner_thickness=2.5, liner=bs.POM)
 WRAPPED = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(300.0)), ring_width=radians(5.0))
+
+
+def lined(poisson=0.4, *, ball_radius=17.9, clearance=0.1, thickness=6.75, young=1000.0, **others):
+    liner = bs.Material(young=young, poisson=poisson)
+    return bs.Joint(ball_radius=ball_radius, clearance=clearance, liner_thickness=thickness, liner=liner, **others)
+
+
+def gap_of(grid, depth=0.0, clearance=0.1, kind=bs.LinearGap):
+    depth = depth + np.zeros((grid.rings, grid.meridians))
+    return GapField(grid=grid, clearance=clearance, socket_radius=18.0, depth=depth, kind=kind)
+
+
+def bore_of(compliance, **gap):
+    return BoreContact(compliance=compliance, gap=gap_of(compliance.grid, **gap))
 
 
 def scanned_points(radius=18.0, depth=lambda n: 0.0 * n[2], reach=85.0, count=60, shift=(0.0, 0.0, 0.0)):

@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.off_axis.bore_contact import (
-    BoreContact,
-    GapField,
-    initial_displacement,
-    make_bore_arrays,
-)
+from ballsocket.elasticity.off_axis.bore_contact import initial_displacement, make_bore_arrays
 from ballsocket.elasticity.off_axis.compliance import cached_compliance
 from ballsocket.elasticity.off_axis.coupled_search import (
     TANGENT_ITERATIONS,
@@ -30,17 +25,13 @@ from ballsocket.elasticity.off_axis.lane_solver import coarser_lanes, solve_lane
 from ballsocket.elasticity.off_axis.surfaces import ClosedShell
 
 from ...joints import HIP
+from .shapes import RIGID, bore_of
 
 COMPLIANCE = cached_compliance(ClosedShell(), HIP, bs.Cup(), radians(3.0))
-GRID = COMPLIANCE.grid
+GRID, BORE = COMPLIANCE.grid, bore_of(COMPLIANCE)
+WORN = np.maximum(GRID.centroids[0] + GRID.centroids[2], 0.0) ** 2
 FORCES = np.array([400.0, 3000.0, 1200.0, 2000.0])
 AXES = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, -0.8, 0.6], [0.36, 0.48, 0.8]])
-
-
-def bore_of(depth=0.0, kind=bs.LinearGap):
-    worn = depth * np.maximum(GRID.centroids[0] + GRID.centroids[2], 0.0) ** 2
-    gap = GapField(grid=GRID, clearance=0.1, socket_radius=18.0, depth=worn, kind=kind)
-    return BoreContact(compliance=COMPLIANCE, gap=gap)
 
 
 def solve(bore, rows, tolerance=1e-6):
@@ -49,17 +40,10 @@ def solve(bore, rows, tolerance=1e-6):
     return solve_lanes(bore, coarser_lanes(bore), load, FORCES[rows], start, tolerance)
 
 
-def test_operator_of_lanes_equals_that_of_the_compliance():
-    fields = np.random.default_rng(0).standard_normal((3, GRID.rings, GRID.meridians))
-    arrays = make_bore_arrays(bore_of(), np.float64)
-    displacement = apply_operator(arrays, arrays.softness, np.ascontiguousarray(fields.T))
-    assert pytest.approx(COMPLIANCE.displacement(fields), abs=1e-12 * abs(displacement).max()) == displacement.T
-
-
 @pytest.mark.parametrize("even", [True, False])
 def test_symmetric_fields_need_one_side_of_the_plane_of_the_load(even):
     """Overlaps, forces and displacements of even and odd fields are those of both sides together."""
-    bore = make_bore_arrays(bore_of(), np.float64)
+    bore = make_bore_arrays(BORE, np.float64)
     side, sign = fold_bore(bore, even=even), 1 if even else -1
     half = np.random.default_rng(0).standard_normal((GRID.meridians // 2, GRID.rings, 3))
     both = np.concatenate([half, sign * half[::-1]])
@@ -74,16 +58,16 @@ def test_symmetric_fields_need_one_side_of_the_plane_of_the_load(even):
 
 
 def test_contacts_in_a_plane_of_symmetry_have_the_tangents_of_both_sides():
-    pressure = solve(bore_of(), np.arange(2)).pressure
-    tangents = solve_tangents(bore_of(), pressure)
-    bore = make_bore_arrays(bore_of())
+    pressure = solve(BORE, np.arange(2)).pressure
+    tangents = solve_tangents(BORE, pressure)
+    bore = make_bore_arrays(BORE)
     expected = solve_sensitivity(bore, pressure.T > 0, TANGENT_ITERATIONS).tangent
     assert tangents == pytest.approx(expected, abs=1e-5 * float(abs(expected).max()))
 
 
 @pytest.mark.parametrize("depth", [0.0, 0.03])
 def test_each_lane_balances_its_load_with_closed_gaps(depth):
-    bore = bore_of(depth)
+    bore = bore_of(COMPLIANCE, depth=depth * WORN)
     solution = solve(bore, np.arange(4))
     overlap = bore.gap.overlap(solution.displacement)
     gap = COMPLIANCE.displacement(solution.pressure) - overlap
@@ -96,15 +80,14 @@ def test_each_lane_balances_its_load_with_closed_gaps(depth):
 
 
 def test_lanes_do_not_depend_on_each_other():
-    bore = bore_of()
-    together, alone = solve(bore, np.arange(4)), solve(bore, np.array([2]))
+    together, alone = solve(BORE, np.arange(4)), solve(BORE, np.array([2]))
     assert together.displacement[2] == pytest.approx(alone.displacement[0], abs=1e-8)
     assert together.pressure[2] == pytest.approx(alone.pressure[0], abs=2e-5 * alone.pressure.max())
 
 
 def test_newton_step_anticipates_pressures_that_have_not_converged():
     """The step from rough pressures is close to the way to equilibrium; the force alone would mislead it."""
-    bore = coarser_lanes(bore_of())
+    bore = coarser_lanes(BORE)
     arrays = make_bore_arrays(bore, np.float64)
     start = initial_displacement(bore.gap, COMPLIANCE.uniform_stiffness, bore.gap.depth, FORCES, AXES)
     lanes = start_coarse(arrays, (AXES * FORCES[:, None]).T, FORCES, start.T)
@@ -117,7 +100,7 @@ def test_newton_step_anticipates_pressures_that_have_not_converged():
 
 
 def test_measured_overlaps_are_those_of_the_gap():
-    bore = bore_of(0.02)
+    bore = bore_of(COMPLIANCE, depth=0.02 * WORN)
     arrays = make_bore_arrays(bore, np.float64)
     displacement = 0.15 * AXES
     measured = measure(arrays, 0.0 * AXES.T, displacement.T, np.zeros((GRID.meridians, GRID.rings, 4)))
@@ -128,7 +111,6 @@ def test_measured_overlaps_are_those_of_the_gap():
 
 def test_bores_without_lanes():
     """Springs and circular gaps have no coupled search."""
-    springs = cached_compliance(bs.Springs(), HIP.replace(ball=None), bs.Cup(), radians(3.0))
-    gap = bore_of().gap
-    assert coarser_lanes(BoreContact(compliance=springs, gap=gap)) is None
-    assert coarser_lanes(bore_of(kind=bs.CircularGap)) is None
+    springs = cached_compliance(bs.Springs(), RIGID, bs.Cup(), radians(3.0))
+    assert coarser_lanes(bore_of(springs)) is None
+    assert coarser_lanes(bore_of(COMPLIANCE, kind=bs.CircularGap)) is None

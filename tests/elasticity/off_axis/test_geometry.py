@@ -1,0 +1,234 @@
+"""Directions in the cup, grids of rings and meridians, and the gap between ball and bore."""
+
+from dataclasses import replace
+from math import pi, radians
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import ballsocket as bs
+from ballsocket.elasticity.off_axis.bore_contact import initial_displacement
+from ballsocket.elasticity.off_axis.compliance import AxisymmetricOperator
+from ballsocket.elasticity.off_axis.directions import (
+    check_direction,
+    cup_frames,
+    magnitudes_and_directions,
+    polar_angle,
+    tangents,
+    tilted_directions,
+    unit_vectors,
+)
+from ballsocket.elasticity.off_axis.grid import Grid, even_grid, graded_grid, rim_grid
+
+from .shapes import gap_of
+
+POLAR, AZIMUTH = np.linspace(0.1, 3.0, 7)[:, None], np.linspace(-3.0, 3.0, 5)
+
+
+def test_unit_vectors_have_their_angles_and_right_handed_tangents():
+    n = unit_vectors(POLAR, AZIMUTH)
+    assert np.linalg.norm(n, axis=0) == pytest.approx(1.0)
+    assert polar_angle(5.0 * n) == pytest.approx(POLAR + 0 * AZIMUTH)
+    assert np.arctan2(n[1], n[0]) == pytest.approx(AZIMUTH + 0 * POLAR)
+    first, second = tangents(n)
+    for vectors in (first, second):
+        assert np.linalg.norm(vectors, axis=0) == pytest.approx(1.0)
+        assert (vectors * n).sum(axis=0) == pytest.approx(0.0, abs=1e-15)
+    assert np.cross(first, second, axis=0) == pytest.approx(n)
+
+
+def test_polar_angle_is_accurate_at_both_poles():
+    assert polar_angle(np.array([[1e-9, 0.0], [0.0, 1e-9], [1.0, -1.0]])) == pytest.approx([1e-9, pi - 1e-9], rel=1e-6)
+
+
+def test_zero_vectors_have_zero_direction():
+    length, direction = magnitudes_and_directions(np.array([[0.0, 3.0, 4.0], [0.0, 0.0, 0.0], [-2.0, 0.0, 0.0]]))
+    assert length == pytest.approx([5.0, 0.0, 2.0])
+    assert direction == pytest.approx(np.array([[0.0, 0.6, 0.8], [0.0, 0.0, 0.0], [-1.0, 0.0, 0.0]]))
+
+
+@pytest.mark.parametrize("scale", [1e-200, 1e-99, 1.0, 1e99, 1e200])
+def test_directions_of_extreme_length_are_scaled(scale):
+    checked = check_direction([[3.0 * scale, 0.0, 4.0 * scale]])
+    length = np.linalg.norm(checked, axis=-1)
+    assert 0 < length < np.inf
+    assert checked / length[:, None] == pytest.approx(np.array([[0.6, 0.0, 0.8]]))
+    assert check_direction([1e99, 0, 0])[0] == 1e99
+    assert check_direction([1e101, 0, 0])[0] == pytest.approx(1.0)
+
+
+def test_tilted_directions_start_at_x():
+    assert tilted_directions(0.4, None) == pytest.approx([np.sin(0.4), 0.0, np.cos(0.4)])
+    n = tilted_directions(np.array([0.4, 0.8]), np.array([[0.3], [2.0]]))
+    assert n.shape == (2, 2, 3)
+    assert n[1, 0] == pytest.approx([np.sin(0.4) * np.cos(2.0), np.sin(0.4) * np.sin(2.0), np.cos(0.4)])
+
+
+def test_frames_of_many_cups_are_those_of_single_cups():
+    cup = bs.Cup(inclination=0.7, anteversion=0.2, side=bs.Side.LEFT)
+    inclination, anteversion = np.array([[0.3], [0.9]]), np.array([0.0, 0.4, 0.5])
+    frames = cup_frames(cup, inclination, anteversion)
+    assert frames.shape == (2, 3, 3, 3)
+    for i, j in np.ndindex(2, 3):
+        single = replace(cup, inclination=float(inclination[i, 0]), anteversion=float(anteversion[j]))
+        assert frames[i, j] == pytest.approx(np.array(single.frame))
+    assert cup_frames(cup, None, 0.4) == pytest.approx(np.array(replace(cup, anteversion=0.4).frame))
+    assert cup_frames(cup, 0.3, None) == pytest.approx(np.array(replace(cup, inclination=0.3).frame))
+
+
+# --- grids ---
+
+FINE = Grid(edges=np.linspace(0.0, 1.3, 27), meridians=44)
+ODD = Grid(edges=np.linspace(0.0, 1.3, 28), meridians=44)
+
+
+@pytest.mark.parametrize("reach", [radians(60.0), radians(140.0), pi])
+def test_cell_areas_and_normals_integrate_to_the_bore(reach):
+    cells = graded_grid(reach, radians(3.0))
+    assert cells.areas.sum() * cells.meridians == pytest.approx(2 * pi * (1 - np.cos(reach)))
+    assert cells.ring_areas.sum() == pytest.approx(2 * pi * (1 - np.cos(reach)))
+    assert (cells.normals * cells.areas).sum(axis=(1, 2)) == pytest.approx([0, 0, pi * np.sin(reach) ** 2], abs=1e-12)
+
+
+def test_normals_are_means_over_their_cells():
+    cells = Grid(edges=np.array([0.0, 0.3, 0.5, 1.1]), meridians=8)
+    points, weights = np.polynomial.legendre.leggauss(12)
+    for ring in range(3):
+        low, high = cells.edges[ring : ring + 2]
+        polar = (low + high) / 2 + (high - low) / 2 * points
+        azimuth = cells.azimuth[2] + pi / 8 * points
+        n = unit_vectors(polar[:, None], azimuth[None])
+        measure = (weights * np.sin(polar))[:, None] * weights
+        mean = (n * measure).sum(axis=(1, 2)) / measure.sum()
+        assert cells.normals[:, ring, 2] == pytest.approx(mean, abs=1e-12)
+        assert cells.centroids[:, ring, 2] == pytest.approx(mean / np.linalg.norm(mean), abs=1e-12)
+        assert cells.middles[:, ring, 2] == pytest.approx(unit_vectors((low + high) / 2, cells.azimuth[2]))
+
+
+def test_properties_of_a_small_grid():
+    cells = Grid(edges=np.array([0.0, 0.2, 0.6]), meridians=6)
+    assert (cells.rings, cells.max_harmonic, cells.reach) == (2, 3, 0.6)
+    assert cells.width == pytest.approx(0.4)
+    assert cells.polar == pytest.approx([0.1, 0.4])
+    assert cells.azimuth == pytest.approx(np.arange(1, 12, 2) * pi / 6)
+    with pytest.raises(ValueError, match="read-only"):
+        cells.centroids[0, 0, 0] = 1.0
+
+
+RIM_RINGS = [(graded_grid, [0.5, 0.25, 0.25]), (rim_grid, [0.5, 0.25, 0.125, 0.0625, 0.0625]), (even_grid, [1.0])]
+
+
+@pytest.mark.parametrize(("make", "fractions"), RIM_RINGS)
+def test_last_ring_is_graded_towards_the_rim(make, fractions):
+    cells = make(1.5, 0.1)
+    assert cells.edges[: -len(fractions)] == pytest.approx(np.arange(15) * 0.1)
+    assert np.diff(cells.edges[-len(fractions) - 1 :]) == pytest.approx(0.1 * np.array(fractions))
+    assert cells.reach == 1.5
+    assert cells.meridians == 2 * round(pi / 0.1)
+
+
+def test_grids_have_a_smallest_number_of_rings_and_meridians():
+    assert (even_grid(0.3, 2.0).rings, even_grid(0.3, 2.0).meridians) == (4, 8)
+    assert graded_grid(0.3, 2.0).rings == 1 + 3
+    assert even_grid(1.0, 1.0 / 6).rings == 6  # rounding adds no ring
+    assert even_grid(1.01, 1.0 / 6).rings == 7
+
+
+@pytest.mark.parametrize("cells", [FINE, ODD], ids=["even", "odd"])
+def test_coarsening_preserves_integrals_and_inverts_refinement(cells):
+    coarse, random = cells.coarser_grid, np.random.default_rng(1)
+    assert (coarse.rings, coarse.meridians) == ((cells.rings + 1) // 2, cells.meridians // 2)
+    assert coarse.reach == cells.reach
+    fine_field = random.normal(size=(2, cells.rings, cells.meridians))
+    coarse_field = random.normal(size=(2, coarse.rings, coarse.meridians))
+    assert cells.coarsen(cells.refine(coarse_field)) == pytest.approx(coarse_field)
+    integral = cells.integrate_product(fine_field, np.ones(fine_field.shape))
+    assert coarse.integrate_product(cells.coarsen(fine_field), np.ones(coarse_field.shape)) == pytest.approx(integral)
+
+
+@pytest.mark.parametrize("cells", [FINE, ODD], ids=["even", "odd"])
+def test_coarse_matrices_are_means_of_the_fine_operator(cells):
+    """For low harmonics: refine the pressures, apply the fine operator, and average the displacements."""
+    coarse, random, low = cells.coarser_grid, np.random.default_rng(4), cells.meridians // 4
+    matrices = random.normal(size=(cells.max_harmonic + 1, cells.rings, cells.rings))
+    matrices[low:] = 0.0
+    coarse_matrices = cells.coarsen_matrices(matrices)
+    assert coarse_matrices.shape == (coarse.max_harmonic + 1, coarse.rings, coarse.rings)
+    for m in (0, 1, 3, low - 1):
+        field = random.normal(size=(1, coarse.rings, 1)) * np.cos(m * coarse.azimuth)
+        expected = cells.coarsen(AxisymmetricOperator(matrices=matrices)(cells.refine(field)))
+        assert AxisymmetricOperator(matrices=coarse_matrices)(field) == pytest.approx(expected, abs=1e-9)
+
+
+def test_few_rings_or_unpaired_meridians_are_not_coarsened():
+    for rings, meridians, coarsened in ((23, 44, False), (24, 44, True), (26, 34, False), (26, 36, True)):
+        cells = Grid(edges=np.linspace(0.0, 1.3, rings + 1), meridians=meridians)
+        assert (cells.coarser_grid is not None) == coarsened
+
+
+def test_integral_of_a_product_is_exact_for_uniform_fields():
+    field = np.full((3, FINE.rings, FINE.meridians), 2.0)
+    assert FINE.integrate_product(field, 3 * field) == pytest.approx(12.0 * 2 * pi * (1 - np.cos(1.3)))
+
+
+def test_cell_averages_attenuate_each_harmonic():
+    """The mean of cos mφ over a cell is sinc(m / meridians) of its middle; it acts on pressure and displacement."""
+    cells = even_grid(1.5, 0.15)
+    averaged = cells.average_over_cells(np.repeat(np.diag(cells.ring_areas)[None], cells.max_harmonic + 1, axis=0))
+    shortest = np.ceil(pi * np.sin(cells.polar) / cells.width).clip(2, cells.max_harmonic).astype(int)
+    diagonal = np.einsum("mii->mi", averaged)
+    for ring, m in enumerate(shortest):
+        expected = np.sinc(np.minimum(np.arange(cells.max_harmonic + 1), m) / cells.meridians) ** 2
+        assert diagonal[:, ring] == pytest.approx(expected)
+    assert not averaged[:, ~np.eye(cells.rings, dtype=bool)].any()
+
+
+# --- gap ---
+
+GRID = even_grid(1.4, 0.1)
+DEPTH = 0.02 * GRID.middles[0] ** 2
+DISPLACEMENT = np.array([[0.3, -0.1, 0.4], [0.0, 0.0, 0.0], [-2.0, 1.0, 3.0]])
+
+
+def test_overlap_is_the_normal_displacement_or_the_distance_to_the_displaced_ball():
+    """The point at the circular overlap from the bore along its normal lies on the ball."""
+    along = np.tensordot(DISPLACEMENT, GRID.normals, 1)
+    assert gap_of(GRID, DEPTH).overlap(DISPLACEMENT) == pytest.approx(along - 0.1 - DEPTH)
+    circular = gap_of(GRID, DEPTH, kind=bs.CircularGap)
+    for e, part, field in zip(DISPLACEMENT, along, circular.overlap(DISPLACEMENT), strict=True):
+        assert field == pytest.approx(part + np.sqrt(17.9**2 - e @ e + part**2) - 18.0 - DEPTH, abs=1e-12)
+    misses = 17.9**2 - 100.0**2 + (100.0 * GRID.normals[2]) ** 2 <= 0
+    assert misses.any()
+    far = circular.overlap(np.array([[0.0, 0.0, -100.0]]))
+    assert far[0][misses] == pytest.approx(-18.0)  # the ray misses the ball
+
+
+@pytest.mark.parametrize("kind", [bs.LinearGap, bs.CircularGap])
+def test_slope_is_the_derivative_of_the_overlap(kind):
+    gap, h = gap_of(GRID, DEPTH, kind=kind), 1e-5
+    slope = np.broadcast_to(gap.overlap_slope(DISPLACEMENT), (3, 3, GRID.rings, GRID.meridians))
+    for axis, step in enumerate(h * np.eye(3)):
+        difference = (gap.overlap(DISPLACEMENT + step) - gap.overlap(DISPLACEMENT - step)) / (2 * h)
+        assert slope[:, axis] == pytest.approx(difference, abs=1e-8)
+
+
+def test_coarser_gap_averages_the_depth():
+    grid = even_grid(1.4, 1.4 / 30)
+    coarse = gap_of(grid, grid.middles[2]).on_coarser_grid(grid.coarser_grid)
+    assert coarse.depth == pytest.approx(grid.coarsen(grid.middles[2]))
+    assert (coarse.grid, coarse.clearance, coarse.kind) == (grid.coarser_grid, 0.1, bs.LinearGap)
+
+
+def test_initial_displacement_carries_the_load_on_springs_in_a_full_sphere():
+    axes, force = np.array([[0.0, 0.6, 0.8], [1.0, 0.0, 0.0]]), np.array([2000.0, 100.0])
+    bore, preloaded, without = (SimpleNamespace(clearance=c, socket_radius=18.0) for c in (0.1, -0.1, 0.0))
+    start = initial_displacement(bore, 200.0, np.array([0.0, 0.02]), force, axes)
+    length = np.linalg.norm(start, axis=1)
+    assert start / length[:, None] == pytest.approx(axes)
+    e = length - 0.02
+    x = 0.1 / e  # cosine of the half angle
+    carried = 2 * np.pi * 18.0**2 * 200.0 * (e * (1 - x**3) / 3 - 0.1 * (1 - x**2) / 2)
+    assert carried == pytest.approx(force, rel=1e-6)
+    starts = [initial_displacement(joint, 200.0, np.zeros(2), force, axes) for joint in (preloaded, without)]
+    assert starts[0] == pytest.approx(starts[1])
