@@ -15,31 +15,22 @@ from ballsocket.elasticity.off_axis.load_cases import edge_margins
 
 from ...extent import either, some
 from ...joints import HIP
+from .shapes import lined
 
 STEP = radians(4.0)
-
-
-def lined(ball_radius, clearance, thickness, young, poisson):
-    liner = bs.Material(young=young, poisson=poisson)
-    return bs.Joint(ball_radius=ball_radius, clearance=clearance, liner_thickness=thickness, liner=liner)
-
-
+THIN = lined(0.45, ball_radius=18.0, clearance=0.15, thickness=2.5, young=800.0)
+CHAMFERED = bs.Cup(arc_of_cover=radians(170.0), chamfer=1.0)
 CUPS = {
-    "thin and soft": (lined(18.0, 0.15, 2.5, 800.0, 0.45), bs.Cup(arc_of_cover=radians(150.0)), 2000.0, 52.3),
+    "thin and soft": (THIN, bs.Cup(arc_of_cover=radians(150.0)), 2000.0, 52.3),
     "hip-36": (bs.joints["hip-36"], bs.Cup(arc_of_cover=radians(170.0)), 3000.0, 45.9),
-    "nearly incompressible": (lined(17.9, 0.1, 6.75, 1000.0, 0.49), bs.Cup(), 2000.0, 60.4),
-    "thick with a chamfer": (
-        lined(14.0, 0.1, 12.0, 1000.0, 0.4),
-        bs.Cup(arc_of_cover=radians(170.0), chamfer=1.0),
-        2000.0,
-        35.6,
-    ),
+    "nearly incompressible": (lined(0.49), bs.Cup(), 2000.0, 60.4),
+    "thick with a chamfer": (lined(ball_radius=14.0, thickness=12.0), CHAMFERED, 2000.0, 35.6),
 }
 """Joint, cup, load in N, and the tilt in degrees at which the contact first touches the rim, in rings of 0.5°."""
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", some(CUPS, 2))
+@pytest.mark.parametrize("name", CUPS)
 def test_edge_distance_decreases_smoothly_with_tilt_at_the_rim(name):
     """Steps of half a degree reduce it by 0.03 to 0.2 mm, and differ by less than 0.1 mm."""
     joint, cup, force, first_touch = CUPS[name]
@@ -53,7 +44,7 @@ def test_edge_distance_decreases_smoothly_with_tilt_at_the_rim(name):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", list(CUPS)[: either(quick=1, long=4)])
+@pytest.mark.parametrize("name", ["thin and soft", "hip-36", "thick with a chamfer"])
 def test_edge_distance_is_independent_of_ring_width(name):
     """Rings of 2° within 0.1 mm, far from the rim, near it, and beyond it."""
     joint, cup, force, first_touch = CUPS[name]
@@ -63,52 +54,47 @@ def test_edge_distance_is_independent_of_ring_width(name):
         for width in (2.0, 1.0)
     )
     assert wide == pytest.approx(narrow, abs=0.1)
-    touching = first_touch + np.degrees(wide[-1] / joint.socket_radius) + 6.0
-    assert touching == pytest.approx(first_touch, abs=0.25)
+
+
+def edge_margins_and_sizes(contact):
+    """Search the edge margins of a contact without its curve, and return the number of loads of each press, too."""
+    state, sizes = contact.laws.pieces[0][1].state, []
+
+    def solve(bore, load, *arguments):
+        sizes.append(len(load))
+        return state.solve(bore, load, *arguments)
+
+    return edge_margins(replace(state, solve=solve, rim_curve=None)), sizes
 
 
 @pytest.mark.parametrize("name", list(CUPS)[: either(quick=1, long=4)])
 def test_edge_distance_of_a_cut_contact_needs_few_presses(name):
     joint, cup, force, first_touch = CUPS[name]
     contact = bs.Sphere(cup=cup).press(joint, force=force, tilt=radians(first_touch + 6.0))
-    state, presses = contact.laws.pieces[0][1].state, []
-
-    def solve(*arguments):
-        presses.append(arguments)
-        return state.solve(*arguments)
-
-    margin = edge_margins(replace(state, solve=solve))
+    margin, sizes = edge_margins_and_sizes(contact)
+    assert margin[0] == pytest.approx(contact.edge_margin, abs=radians(0.1))
     assert np.degrees(margin[0]) == pytest.approx(-6.0, abs=0.25)
-    assert len(presses) <= 9
+    assert 0 < len(sizes) <= 9
 
 
 @pytest.mark.long
 def test_edge_distances_of_many_cut_contacts_need_the_presses_of_a_few():
     """The tilts at first rim contact of 40 loads follow from those of 8, within 0.03°."""
     model, force = bs.Sphere(ring_width=radians(4.0)), np.geomspace(800.0, 5000.0, 40)
-    contact = model.press(HIP, force=force, tilt=radians(75.0))
-    state, solved = contact.laws.pieces[0][1].state, []
-
-    def solve(bore, load, *arguments):
-        solved.append(len(load))
-        return state.solve(bore, load, *arguments)
-
-    margins = edge_margins(replace(state, solve=solve))
-    few = force[3::9]
-    each = [float(model.press(HIP, force=value, tilt=radians(75.0)).edge_margin) for value in few]
+    margins, sizes = edge_margins_and_sizes(model.press(HIP, force=force, tilt=radians(75.0)))
+    each = [float(model.press(HIP, force=value, tilt=radians(75.0)).edge_margin) for value in force[3::9]]
     assert (margins < 0).all()
     assert np.degrees(margins[3::9]) == pytest.approx(np.degrees(each), abs=0.03)
-    assert sum(solved) <= 8 * 9
+    assert 0 < sum(sizes) <= 8 * 9
 
 
 @pytest.mark.parametrize("load", some([{"force": [400.0, 2000.0]}, {"indentation": [0.01, 0.04]}], 1))
 def test_contacts_leave_the_rim_at_the_tilt_that_their_curve_states(load):
     """They end before the rim at a tilt 0.1° below it, and reach it 0.1° above."""
-    model, ((kind, values),) = bs.Sphere(ring_width=radians(3.0)), load.items()
-    cut = model.press(HIP, **load, tilt=radians(80.0))
-    touching = radians(80.0) + cut.edge_margin
+    model = bs.Sphere(ring_width=radians(3.0))
+    touching = radians(80.0) + model.press(HIP, **load, tilt=radians(80.0)).edge_margin
     near = touching + np.radians([[-0.1], [0.1]])
-    assert model.press(HIP, **{kind: np.array(values)}, tilt=near).edge_loaded.tolist() == [[False] * 2, [True] * 2]
+    assert model.press(HIP, **load, tilt=near).edge_loaded.tolist() == [[False] * 2, [True] * 2]
 
 
 def test_edge_distances_of_an_unworn_bore_need_no_presses(monkeypatch):
@@ -125,39 +111,31 @@ def test_edge_distances_of_an_unworn_bore_need_no_presses(monkeypatch):
 def test_half_angle_is_resolved_between_the_cells():
     """Half angles of closed shells at rings of 2°: within 0.25° of the exact ones, of random joints."""
     random, errors = np.random.default_rng(11), []
-    for _ in range(either(quick=5, long=14)):
+    model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(2.0))
+    for poisson in (0.0, 0.3, 0.4, 0.45, 0.48):
         radius = random.uniform(8.0, 30.0)
-        joint = lined(
-            radius,
-            10 ** random.uniform(-2.0, -0.4),
-            radius * 10 ** random.uniform(-1.0, 0.2),
-            1000.0,
-            random.choice([0.0, 0.3, 0.4, 0.45, 0.48]),
-        )
-        exact = bs.Exact().press(joint, half_angle=np.radians(random.uniform(14.0, 58.0, 4)))
-        model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(2.0))
-        contact = model.press(joint, indentation=exact.indentation, tilt=random.uniform(0.0, 0.35, 4))
+        sizes = {"clearance": 10 ** random.uniform(-2.0, -0.4), "thickness": radius * 10 ** random.uniform(-1.0, 0.2)}
+        joint = lined(poisson, ball_radius=radius, **sizes)
+        exact = bs.Exact().press(joint, half_angle=np.radians(random.uniform(14.0, 58.0, 8)))
+        contact = model.press(joint, indentation=exact.indentation, tilt=random.uniform(0.0, 0.35, 8))
         errors.append(np.degrees(contact.half_angle - exact.half_angle))
     assert abs(np.array(errors)).max() < 0.25
 
 
-@pytest.mark.parametrize(
-    ("arc", "load"),
-    some(
-        [
-            (180.0, {"force": 2000.0}),
-            (200.0, {"force": 9000.0}),
-            (150.0, {"indentation": 0.05}),
-            (70.0, {"force": 3000.0}),
-        ],
-        2,
-    ),
-)
+LOADS = [
+    (180.0, {"force": 2000.0}),
+    (200.0, {"force": 9000.0}),
+    (150.0, {"indentation": 0.05}),
+    (70.0, {"force": 3000.0}),
+]
+
+
+@pytest.mark.parametrize(("arc", "load"), some(LOADS, 2))
 def test_edge_margin_follows_the_rotation_of_the_load(arc, load):
     """It decreases by about the rotation, a little less near the rim, and by exactly the rotation beyond."""
     model = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(arc)), ring_width=radians(3.0))
     tilt = np.arange(0.0, radians(arc / 2 - 8.0), STEP)
-    contact = model.press(HIP, tilt=tilt, **{name: value + 0 * tilt for name, value in load.items()})
+    contact = model.press(HIP, tilt=tilt, **load)
     margin, decrease = contact.edge_margin, -np.diff(contact.edge_margin)
     assert (decrease > 0).all()
     assert decrease.max() < STEP + radians(1.0)  # the last ring is loaded all at once
@@ -178,60 +156,47 @@ def test_edge_margin_passes_the_rings_evenly():
     assert decrease.max() < 1.8
 
 
-@pytest.mark.long
-def test_load_rotated_back_by_the_margin_just_touches_the_rim():
-    model, tilt = bs.Sphere(), radians(70.0)
-    beyond = model.press(HIP, force=2500.0, tilt=tilt)
-    assert beyond.edge_margin < -radians(10.0)
-    touching = tilt + beyond.edge_margin
-    back = model.press(HIP, force=2500.0, tilt=[touching - radians(2.0), touching + radians(1.0)])
-    assert back.edge_loaded.tolist() == [False, True]
-    assert back.edge_margin[0] < radians(4.0)
-
-
 def test_bore_narrower_than_its_axial_contact_misses_the_overlap():
-    joint = HIP.replace(clearance=0.05)
-    contact = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(60.0))).press(joint, indentation=0.05)
+    model = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(60.0)))
+    contact = model.press(HIP.replace(clearance=0.05), indentation=0.05)
     assert contact.edge_loaded
     assert contact.edge_margin == pytest.approx(pi / 6 - np.arccos(0.05 / 0.1), abs=1e-3)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("poisson", some([0.45, 0.3], 1))
+@pytest.mark.parametrize("poisson", [0.45, 0.3])
 def test_error_estimates_hold_for_edge_loading(poisson):
     """Contacts that the rim cuts off, in rings of 4° and of 2°."""
-    liner = bs.Material(young=1000.0, poisson=poisson)
-    joint = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=liner)
     tilt = np.radians([45.0, 60.0, 68.0, 75.0])
-    wide, narrow = (bs.Sphere(ring_width=radians(width)).press(joint, force=2000.0, tilt=tilt) for width in (4.0, 2.0))
+    wide, narrow = (
+        bs.Sphere(ring_width=radians(width)).press(lined(poisson), force=2000.0, tilt=tilt) for width in (4.0, 2.0)
+    )
     assert wide.edge_loaded.tolist() == [False, True, True, True]
     for name in ("indentation", "max_pressure", "half_angle", "energy", "stiffness"):
         error = abs(getattr(wide, name) / getattr(narrow, name) - 1)
         assert (error <= wide.error[name]).all(), name
 
 
-@pytest.mark.parametrize("tilt", [0.0, 40.0, 62.0])
-def test_the_error_of_the_edge_margin_holds_against_finer_rings(tilt):
+def test_error_of_the_edge_margin_holds_against_finer_rings():
     """Two contacts end before the rim, and the rim cuts the third; its error has the tolerance of a search too."""
+    tilt = np.radians([0.0, 40.0, 62.0])
     coarse, fine = (
-        bs.Sphere(ring_width=radians(width)).press(HIP, force=2000.0, tilt=radians(tilt))
+        bs.Sphere(ring_width=radians(width)).press(HIP, force=2000.0, tilt=tilt)
         for width in (4.0, either(quick=2.0, long=1.0))
     )
-    assert coarse.edge_loaded == (tilt > 60.0)
-    assert coarse.edge_margin == pytest.approx(fine.edge_margin, abs=coarse.error["edge_margin"])
-    assert radians(0.02) * coarse.edge_loaded < coarse.error["edge_margin"] < radians(2.5)
-    assert coarse.summary()["error"]["edge_margin_deg"] == pytest.approx(np.degrees(coarse.error["edge_margin"]))
+    error = coarse.error["edge_margin"]
+    assert coarse.edge_loaded.tolist() == [False, False, True]
+    assert (abs(coarse.edge_margin - fine.edge_margin) <= error).all()
+    assert (radians(0.02) * coarse.edge_loaded < error).all()
+    assert (error < radians(2.5)).all()
+    assert coarse.summary()["error"]["edge_margin_deg"] == pytest.approx(np.degrees(error))
 
 
-@pytest.mark.parametrize(
-    ("load", "words"),
-    [
+def test_explorer_writes_known_digits_of_the_edge_margin_or_no_contact():
+    model = bs.Sphere(cup=bs.Cup(inclination=radians(45.0)), ring_width=radians(4.0))
+    for load, words in (
         ({"force": 3000.0}, r"ends \d\.\d mm \(\d\.\d°\) before the rim"),
         ({"force": 0.0}, "ends 0 mm"),
-        ({"force": 1000.0, "direction": (0.0, 0.0, -1.0)}, "ends no result"),
-    ],
-    ids=["contact", "no load", "dislocated"],
-)
-def test_the_explorer_writes_known_digits_of_the_edge_margin_or_no_contact(load, words):
-    model = bs.Sphere(cup=bs.Cup(inclination=radians(45.0)), ring_width=radians(4.0))
-    assert re.search(words, _verdict(model.press(HIP, **load), Reading()))
+        ({"force": 1000.0, "direction": (0.0, 0.0, -1.0)}, "ends no result"),  # dislocated
+    ):
+        assert re.search(words, _verdict(model.press(HIP, **load), Reading()))

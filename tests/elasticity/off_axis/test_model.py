@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.executors import Distributed, Processes
+from ballsocket.core.executors import Processes
 from ballsocket.elasticity.off_axis import load_cases
 from ballsocket.elasticity.off_axis.pressure_solver import solve_pressure
 from ballsocket.studies import table
@@ -16,7 +16,7 @@ from ballsocket.studies import table
 from ...extent import either, some
 from ...joints import HIP
 from ...places import DATA
-from .shapes import COARSE, RIGID
+from .shapes import COARSE, RIGID, lined
 
 REAL_CUP = json.loads((DATA / "real_cup.json").read_text(encoding="utf-8"))
 STEPS = [(case, step) for case in REAL_CUP["cases"] for step in case["steps"]]
@@ -24,16 +24,6 @@ STEPS = [(case, step) for case in REAL_CUP["cases"] for step in case["steps"]]
 
 def unit_vector(angle):
     return np.array([sin(angle), 0.0, cos(angle)])
-
-
-def lined(poisson, **others):
-    return bs.Joint(
-        ball_radius=17.9,
-        clearance=0.1,
-        liner_thickness=6.75,
-        liner=bs.Material(young=1000.0, poisson=poisson),
-        **others,
-    )
 
 
 # --- other solutions ---
@@ -50,26 +40,21 @@ def test_three_dimensional_elements_give_the_same_force_and_pressure(case, step)
     assert contact.max_pressure == pytest.approx(step["max_pressure"], rel=2.5e-3)
 
 
-SHELLS = [(0.4, None), (0.49, None), (0.3, bs.STEEL), (0.0, bs.STEEL)]
-
-
-@pytest.mark.parametrize(("poisson", "ball"), some(SHELLS, 1))
+@pytest.mark.parametrize(("poisson", "ball"), some([(0.4, None), (0.49, None), (0.3, bs.STEEL), (0.0, bs.STEEL)], 1))
 def test_closed_shell_agrees_with_the_exact_solution(poisson, ball):
-    """In rings of 1°, F and pmax agree within 0.03 %, ε within 0.2°."""
+    """In rings of 1°, F, pmax and U agree within 0.03 %, ε within 0.2°."""
     joint = lined(poisson, ball=ball)
     model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(1.0))
-    for tilt in some([0.35, 0.0], 1):
-        contact = model.press(joint, indentation=0.06, tilt=tilt)
-        exact = bs.Exact().press(joint, indentation=0.06)
-        for name in ("force", "max_pressure"):
-            assert getattr(contact, name) == pytest.approx(getattr(exact, name), rel=3e-4)
-        assert contact.half_angle == pytest.approx(exact.half_angle, abs=radians(0.2))
-        assert contact.energy == pytest.approx(exact.energy, rel=3e-4)
+    contact = model.press(joint, indentation=0.06, tilt=[0.35, 0.0])
+    exact = bs.Exact().press(joint, indentation=0.06)
+    for name in ("force", "max_pressure", "energy"):
+        assert getattr(contact, name) == pytest.approx(getattr(exact, name), rel=3e-4)
+    assert contact.half_angle == pytest.approx(exact.half_angle, abs=radians(0.2))
 
 
-TITANIUM_ON_BONE = (
-    bs.Layer(thickness=4.0, material=bs.TITANIUM),
-    bs.Layer(thickness=20.0, material=bs.CANCELLOUS_BONE),
+TITANIUM_ON_BONE = tuple(
+    bs.Layer(thickness=thickness, material=material)
+    for thickness, material in ((4.0, bs.TITANIUM), (20.0, bs.CANCELLOUS_BONE))
 )
 CUPS = {
     "hemisphere": (bs.Cup(), ()),
@@ -90,11 +75,10 @@ def test_axial_load_agrees_with_axisymmetric_elements(name):
         assert getattr(contact, name) == pytest.approx(getattr(elements, name), rel=1e-3)
 
 
-@pytest.mark.parametrize("tilt", some([0.0, 0.3, 0.6]))
-def test_springs_agree_with_the_closed_form(tilt):
+def test_springs_agree_with_the_closed_form():
     """Away from the rim they agree within 1e-4 in the finest rings."""
     model = bs.Sphere(surface=bs.Springs(), ring_width=radians(0.5))
-    contact = model.press(RIGID, indentation=0.04, tilt=tilt)
+    contact = model.press(RIGID, indentation=0.04, tilt=[0.0, 0.3, 0.6])
     closed = bs.HessForsbach().press(RIGID, indentation=0.04)
     for name in ("force", "max_pressure", "energy", "pressure_integral"):
         assert getattr(contact, name) == pytest.approx(getattr(closed, name), rel=1e-4)
@@ -107,8 +91,8 @@ def test_error_estimates_hold():
     random = np.random.default_rng(7)
     names = ("force", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
     ratios = []
-    for _ in range(either(quick=6, long=30)):
-        joint = replace(lined(random.choice([0.0, 0.3, 0.45])), clearance=10 ** random.uniform(-2, -0.5))
+    for _ in range(15):
+        joint = lined(random.choice([0.0, 0.3, 0.45]), clearance=10 ** random.uniform(-2, -0.5))
         exact = bs.Exact().press(joint, half_angle=np.radians(random.uniform(14.0, 60.0, 8)))
         model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(random.choice([2.0, 4.0])))
         contact = model.press(joint, indentation=exact.indentation, tilt=random.uniform(0.0, 0.4, 8))
@@ -141,23 +125,18 @@ def test_force_is_the_slope_of_energy_and_stiffness_that_of_force(tilt):
 
 def test_axial_contact_is_uniform_around_the_pole():
     """Cells are narrow there, and the residual of the iteration must not become pressure."""
-    narrow = bs.Cup(arc_of_cover=radians(40.0))
-    contact = bs.Sphere(cup=narrow, ring_width=radians(either(quick=1.0, long=0.5))).press(
-        lined(0.4), indentation=0.006
-    )
+    model = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(40.0)), ring_width=radians(either(quick=1.0, long=0.5)))
+    contact = model.press(lined(), indentation=0.006)
     assert np.ptp(contact.pressure_map[2][0]) < 1e-4 * contact.max_pressure
 
 
 def test_contact_is_independent_of_the_meridians():
-    model, tilt = bs.Sphere(), 0.9
-    contacts = [
-        model.press(RIGID, force=3000.0, direction=(sin(tilt) * cos(azimuth), sin(tilt) * sin(azimuth), cos(tilt)))
-        for azimuth in some([0.0, 0.013, 0.7, 2.0], 3)
-    ]
-    for contact in contacts[1:]:
-        for name in ("indentation", "max_pressure", "half_angle", "energy"):
-            assert getattr(contact, name) == pytest.approx(getattr(contacts[0], name), rel=1e-3)
-        assert contact.edge_distance == pytest.approx(contacts[0].edge_distance, abs=5e-3)
+    azimuth = np.array([0.0, 0.013, 0.7, 2.0])
+    contact = bs.Sphere().press(RIGID, force=3000.0, tilt=0.9, azimuth=azimuth)
+    for name in ("indentation", "max_pressure", "half_angle", "energy"):
+        value = getattr(contact, name)
+        assert value == pytest.approx(value[0], rel=1e-3)
+    assert contact.edge_distance == pytest.approx(contact.edge_distance[0], abs=5e-3)
 
 
 def test_load_that_rotates_with_the_cup_gives_the_same_contact():
@@ -173,18 +152,15 @@ def test_load_that_rotates_with_the_cup_gives_the_same_contact():
 def test_force_is_balanced_and_the_ball_moves_towards_the_softer_rim():
     contact = bs.Sphere().press(RIGID, force=3000.0, tilt=1.1)
     assert contact.force_vector == pytest.approx(3000.0 * unit_vector(1.1), abs=1e-2)
-    assert contact.edge_loaded
-    displacement_angle = np.arctan2(contact.displacement[0], contact.displacement[2])
-    assert displacement_angle > 1.1
+    assert np.arctan2(contact.displacement[0], contact.displacement[2]) > 1.1
     assert contact.moment == pytest.approx(np.cross(contact.displacement, contact.force_vector))
 
 
 def test_contact_has_its_prescribed_half_angle_or_a_status():
     contact = bs.Sphere().press(RIGID, half_angle=0.7, tilt=0.3)
     assert contact.half_angle == pytest.approx(0.7, rel=1e-3)
-    coarse = bs.Sphere(ring_width=radians(6.0))
     angle, tilt = np.meshgrid([0.2, 0.5, 0.8, 1.1, 1.5], np.linspace(0.0, 1.4, 7))
-    wide = coarse.press(RIGID, half_angle=angle, tilt=tilt)
+    wide = bs.Sphere(ring_width=radians(6.0)).press(RIGID, half_angle=angle, tilt=tilt)
     solved = wide.status == 0
     assert abs(wide.half_angle - angle)[solved].max() < 0.5 * radians(6.0)
     assert solved[angle + tilt < radians(80.0)].all()
@@ -192,8 +168,7 @@ def test_contact_has_its_prescribed_half_angle_or_a_status():
 
 
 def test_batch_of_loads_equals_single_loads():
-    angles = np.linspace(0.0, 1.2, 5)
-    forces = np.linspace(300.0, 3000.0, 5)
+    angles, forces = np.linspace(0.0, 1.2, 5), np.linspace(300.0, 3000.0, 5)
     together = bs.Sphere().press(RIGID, force=forces, tilt=angles)
     assert together.force_vector.shape == (5, 3)
     for i in (0, 3):
@@ -202,17 +177,16 @@ def test_batch_of_loads_equals_single_loads():
         assert together.max_pressure[i] == pytest.approx(alone.max_pressure, rel=1e-4)
 
 
-# --- the rim ---
+# --- rim, worn bores and paths of displacements ---
 
 
 def test_contact_at_the_rim_is_reported():
     inside, cut = (bs.Sphere().press(RIGID, force=3000.0, tilt=tilt) for tilt in (0.5, 1.1))
     assert not inside.edge_loaded
-    assert inside.edge_distance > 0
     assert inside.edge_distance == pytest.approx(18.0 * (pi / 2 - 0.5 - inside.half_angle), abs=0.15)
     assert inside.rim_distance == pytest.approx(18.0 * (pi / 2 - 0.5))
     assert cut.edge_loaded
-    assert cut.edge_distance < 0
+    assert cut.edge_distance < 0 < inside.edge_distance
     assert any("edge loading" in note for note in cut.notes)
     assert np.isfinite(cut.max_pressure)
 
@@ -224,58 +198,59 @@ def test_sharp_rim_has_an_unbounded_pressure():
     assert chamfered.force == pytest.approx(3000.0)
 
 
-# --- worn bores ---
-
-
-def test_wear_lowers_the_pressure_locally():
-    fresh = bs.Sphere().press(RIGID, force=2000.0)
-    pit = bs.BoreDeviation(of=lambda n: 0.02 * np.exp(-((np.arccos(np.clip(n[2], -1, 1)) / 0.2) ** 2)))
-    worn = bs.Sphere(worn=pit).press(RIGID, force=2000.0)
-    assert worn.pole_pressure < fresh.pole_pressure
-    assert worn.indentation > fresh.indentation
-    assert worn.force == pytest.approx(2000.0)
-
-
 def test_bore_worn_to_the_shape_of_the_ball_has_no_clearance():
     """A bore worn to the displaced sphere of the ball has the pressure of a joint without clearance."""
-    shift = 0.1
-    fitted = bs.BoreDeviation(of=lambda n: shift * n[2] - 0.1)  # the surface of the ball at first touch, offset inwards
+    fitted = bs.BoreDeviation(of=lambda n: 0.1 * n[2] - 0.1)  # the surface of the ball at first touch, offset inwards
     worn = bs.Sphere(worn=fitted, surface=bs.Springs()).press(RIGID, indentation=0.01)
     angle = np.linspace(0.0, 1.2, 5)
-    modulus = bs.hess_forsbach(RIGID)
-    assert worn.pressure(angle) == pytest.approx(modulus * 0.01 * np.cos(angle), rel=2e-3)
+    assert worn.pressure(angle) == pytest.approx(bs.hess_forsbach(RIGID) * 0.01 * np.cos(angle), rel=2e-3)
+
+
+def test_ball_displaced_sideways_meets_the_rim():
+    """Microseparation: half a millimetre sideways and back into the bore, with a circular gap."""
+    path = np.stack([np.linspace(0.1, 0.55, 5), np.zeros(5), np.linspace(-0.5, 0.0, 5)], axis=-1)
+    contact = replace(COARSE, gap=bs.CircularGap).press(RIGID, displacement=path)
+    assert (np.diff(contact.force) > 0)[1:].all()
+    assert contact.edge_loaded[-1]
+    assert contact.displacement[contact.force > 0] == pytest.approx(path[contact.force > 0])
+    assert COARSE.press(RIGID, displacement=(0.05, 0.0, 0.02)).force == 0  # within the clearance
+
+
+def test_summaries_have_the_numbers_of_contacts_with_fields(monkeypatch):
+    monkeypatch.setattr(load_cases, "_BLOCK_LOADS", 2)
+    force, tilt = np.array([300.0, 3000.0, 1000.0]), np.array([0.1, 1.2, 0.6])
+    contact, summary = (COARSE.press(HIP, force=force, tilt=tilt, keep=keep) for keep in ("fields", "summary"))
+    for name in ("indentation", "half_angle", "max_pressure", "energy", "edge_margin", "max_error"):
+        of_contact, of_summary = (getattr(each, name, getattr(each.laws, name, None)) for each in (contact, summary))
+        assert of_summary == pytest.approx(of_contact, rel=1e-6)
+    assert summary.stiffness_matrix == pytest.approx(contact.stiffness_matrix, rel=1e-4, abs=1.0)
+    assert summary.notes == contact.notes
+    with pytest.raises(ValueError, match='a summary has no pressure: profiles, .* press with keep="fields"'):
+        summary.pressure(0.1)
+
+
+def test_contacts_that_exceed_the_memory_are_refused_before_the_work():
+    with pytest.raises(ValueError, match='2 000 000 contacts .none with keep="summary". take about .* of memory'):
+        COARSE.press(HIP, force=np.linspace(1.0, 2.0, 2_000_000))
+    many = np.broadcast_to(1000.0, (10**6, 10**6))  # one number in memory, and more contacts than fit
+    with pytest.raises(ValueError, match="1 000 000 000 000 contacts take about .* of memory"):
+        COARSE.press(HIP, force=many, tilt=0.1, keep="summary")
 
 
 # --- studies ---
 
 
 def test_study_has_orientations_as_axes():
-    import xarray
-
     cup = bs.Cup(inclination=radians(45.0))
     model = bs.Sphere(cup=cup, ring_width=radians(4.0))
-    study = bs.study(
-        model,
-        RIGID,
-        inclination=np.radians([30.0, 45.0, 60.0]),
-        anteversion=np.radians([0.0, 20.0]),
-        force=2000.0,
-        quantities=["max_pressure", "edge_distance"],
-    )
-    assert isinstance(study, xarray.Dataset)
+    axes = {"inclination": np.radians([30.0, 45.0, 60.0]), "anteversion": np.radians([0.0, 20.0])}
+    study = bs.study(model, RIGID, **axes, force=2000.0, quantities=["max_pressure", "edge_distance"])
     assert study.sizes == {"inclination": 3, "anteversion": 2}
-    single = bs.Sphere(cup=replace(cup, inclination=radians(60.0), anteversion=radians(20.0)), ring_width=radians(4.0))
+    single = replace(model, cup=replace(cup, inclination=radians(60.0), anteversion=radians(20.0)))
     point = study.sel(inclination=radians(60.0), anteversion=radians(20.0), method="nearest")
     assert float(point.max_pressure) == pytest.approx(single.press(RIGID, force=2000.0).max_pressure, rel=2e-3)
     assert (np.diff(study.edge_distance, axis=0) < 0).all()
-    tilts = bs.study(model, RIGID, tilt=np.radians([0.0, 40.0]), force=2000.0, quantities=["max_pressure"])
-    assert tilts.sizes == {"tilt": 2}
-    with pytest.raises(ValueError, match="a tilt is needed too"):
-        bs.study(model, RIGID, azimuth=[0.0, 0.5], force=2000.0)
-    with pytest.raises(ValueError, match="use sphere"):
-        bs.study(bs.Exact(), RIGID, tilt=[0.0, 0.5], force=2000.0)
-    with pytest.raises(ValueError, match="tilt and the orientation of the cup"):
-        bs.study(model, RIGID, tilt=[0.0, 0.5], inclination=[0.1, 0.2], force=2000.0)
+    assert bs.study(model, RIGID, tilt=[0.0, 0.7], force=2000.0, quantities=["max_pressure"]).sizes == {"tilt": 2}
 
 
 OVAL = bs.Sphere(ring_width=radians(6.0), worn=bs.OvalBore(squeeze=0.1))
@@ -302,53 +277,4 @@ def test_study_has_directions_and_steps_as_axes(tmp_path):
 def test_study_of_directions_is_independent_of_the_executor(monkeypatch):
     monkeypatch.setattr("ballsocket.studies.run.points_per_block", lambda model: 4)
     serial = bs.study(OVAL, RIGID, **AXES)
-    for engine in (Processes(workers=2), Distributed(workers=1)):
-        assert bs.study(OVAL, RIGID, engine=engine, **AXES).equals(serial)
-
-
-# --- paths of displacements ---
-
-
-def test_ball_displaced_sideways_meets_the_rim():
-    """Microseparation: half a millimetre sideways and back into the bore, with a circular gap."""
-    model = replace(COARSE, gap=bs.CircularGap)
-    path = np.stack([np.linspace(0.1, 0.55, 5), np.zeros(5), np.linspace(-0.5, 0.0, 5)], axis=-1)
-    contact = model.press(RIGID, displacement=path)
-    assert (np.diff(contact.force) > 0)[1:].all()
-    assert contact.edge_loaded[-1]
-    assert contact.displacement[contact.force > 0] == pytest.approx(path[contact.force > 0])
-
-
-def test_displacement_within_the_clearance_has_no_contact():
-    contact = COARSE.press(RIGID, displacement=(0.05, 0.0, 0.02))
-    assert contact.force == 0
-    with pytest.raises(ValueError, match="leave direction, tilt and azimuth out"):
-        COARSE.press(RIGID, displacement=(0.0, 0.0, 0.2), tilt=0.1)
-    with pytest.raises(ValueError, match="exactly one"):
-        COARSE.press(RIGID, displacement=(0.0, 0.0, 0.2), force=1.0)
-
-
-def test_summaries_have_the_numbers_of_contacts_with_fields(monkeypatch):
-    monkeypatch.setattr(load_cases, "_BLOCK_LOADS", 2)
-    force, tilt = np.array([300.0, 3000.0, 1000.0]), np.array([0.1, 1.2, 0.6])
-    contact, summary = (COARSE.press(HIP, force=force, tilt=tilt, keep=keep) for keep in ("fields", "summary"))
-    for name in ("indentation", "half_angle", "max_pressure", "energy", "edge_margin", "max_error"):
-        of_contact, of_summary = (getattr(each, name, getattr(each.laws, name, None)) for each in (contact, summary))
-        assert of_summary == pytest.approx(of_contact, rel=1e-6)
-    assert summary.stiffness_matrix == pytest.approx(contact.stiffness_matrix, rel=1e-4, abs=1.0)
-    assert summary.notes == contact.notes
-    with pytest.raises(ValueError, match='a summary has no pressure: profiles, .* press with keep="fields"'):
-        summary.pressure(0.1)
-
-
-def test_contacts_that_exceed_the_memory_are_refused_before_the_work():
-    with pytest.raises(ValueError, match='2 000 000 contacts .none with keep="summary". take about .* of memory'):
-        COARSE.press(HIP, force=np.linspace(1.0, 2.0, 2_000_000))
-    many = np.broadcast_to(1000.0, (10**6, 10**6))  # one number in memory, and more contacts than fit
-    with pytest.raises(ValueError, match="1 000 000 000 000 contacts take about .* of memory"):
-        COARSE.press(HIP, force=many, tilt=0.1, keep="summary")
-
-
-def test_keep_is_fields_or_summary():
-    with pytest.raises(ValueError, match="keep must be 'fields' or 'summary', got 'all'"):
-        bs.Sphere(keep="all")
+    assert bs.study(OVAL, RIGID, engine=Processes(workers=2), **AXES).equals(serial)

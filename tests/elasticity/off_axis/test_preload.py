@@ -9,9 +9,13 @@ import pytest
 import ballsocket as bs
 
 from ...extent import some
-from .shapes import RIGID, TIGHT, WRAPPED
+from .shapes import TIGHT, WRAPPED
 
 SPRINGS = replace(WRAPPED, surface=bs.Springs())
+
+
+def held(arc, **options):
+    return replace(WRAPPED, cup=bs.Cup(arc_of_cover=radians(arc)), **options)
 
 
 def test_preloaded_joint_is_in_equilibrium_without_a_load():
@@ -38,8 +42,7 @@ def test_displacement_and_wear_open_a_preloaded_contact():
 @pytest.mark.parametrize("interference", some([0.05, 0.002], 1))
 def test_springs_separate_at_the_interference(interference):
     """On springs each cell opens alone: the lateral displacement at which the first one does is the interference."""
-    joint = TIGHT.replace(interference=interference)
-    fitted = bs.Preload(model=SPRINGS, joint=joint)
+    fitted = bs.Preload(model=SPRINGS, joint=TIGHT.replace(interference=interference))
     assert fitted.separation_displacement((0.0, 1.0, 0.0)) == pytest.approx(interference, rel=0.03)
     assert fitted.wear_depth_to_loosen() == pytest.approx(interference, rel=1e-3)
     assert fitted.separation_displacement((0.0, 5.0, 0.0)) == fitted.separation_displacement((0.0, 1.0, 0.0))
@@ -48,21 +51,13 @@ def test_springs_separate_at_the_interference(interference):
 @pytest.mark.parametrize("arc", some([200.0, 240.0], 1))
 def test_uniform_wear_loosens_a_socket_with_an_open_dome_at_the_interference(arc):
     """Pressures are proportional to the interference that is left, even where the opening pushes the ball outwards."""
-    fitted = bs.Preload(model=held(arc), joint=TIGHT)
+    worn = bs.BoreDeviation(of=lambda n: 0.01 + 0.0 * n[2])
+    fitted, looser = (bs.Preload(model=held(arc, worn=depth), joint=TIGHT) for depth in (None, worn))
     assert fitted.equilibrium.pressure_map[2].min() == 0.0
     assert fitted.separation_displacement((1.0, 0.0, 0.0)) == 0.0
     assert fitted.wear_depth_to_loosen() == pytest.approx(0.05, rel=1e-3)
-    deviation = bs.BoreDeviation(of=lambda n: 0.01 + 0.0 * n[2])
-    assert bs.Preload(model=held(arc, worn=deviation), joint=TIGHT).wear_depth_to_loosen() == pytest.approx(
-        0.04, rel=1e-3
-    )
+    assert looser.wear_depth_to_loosen() == pytest.approx(0.04, rel=1e-3)
     assert fitted.equilibrium.notes[-1] == "the contact reaches the rim, as is normal in a preloaded joint"
-
-
-def test_open_contact_separates_at_zero():
-    groove = bs.BoreDeviation(of=lambda n: np.where(n[2] > 0.9, 0.2, 0.0))
-    fitted = bs.Preload(model=replace(SPRINGS, worn=groove), joint=TIGHT)
-    assert fitted.separation_displacement((0.0, 0.0, 1.0)) == 0.0
 
 
 def test_preloaded_joint_resists_push_and_pull():
@@ -70,16 +65,18 @@ def test_preloaded_joint_resists_push_and_pull():
     unloaded = WRAPPED.press(TIGHT, force=0.0)
     assert pulled.indentation < unloaded.indentation < pressed.indentation
     assert pulled.force < 0 < pressed.force
-    for contact in (pressed, pulled, unloaded):
-        assert contact.stiffness > 0
+    assert min(contact.stiffness for contact in (pressed, pulled, unloaded)) > 0
     slope = (pressed.force - pulled.force) / 0.03
     assert slope == pytest.approx(pressed.stiffness, rel=1e-3)  # the contact is closed: linear
     assert WRAPPED.press(TIGHT, force=5000.0).indentation > unloaded.indentation
 
 
-def test_hemisphere_does_not_hold_a_larger_ball():
-    contact = replace(WRAPPED, cup=bs.Cup()).press(TIGHT, force=0.0)
-    assert contact.status is bs.Status.DISLOCATED
+def test_a_half_socket_does_not_hold_a_preloaded_ball():
+    assert held(180.0).press(TIGHT, force=0.0).status is bs.Status.DISLOCATED
+    contact = held(180.0).press(TIGHT, force=2000.0)
+    assert not contact.valid
+    assert "a half socket does not hold a preloaded ball: set arc_of_cover above 180 deg" in " ".join(contact.notes)
+    assert held(181.0).press(TIGHT, force=2000.0).valid
 
 
 def test_springs_in_a_closed_preloaded_contact_are_linear():
@@ -88,26 +85,9 @@ def test_springs_in_a_closed_preloaded_contact_are_linear():
     contact = model.press(TIGHT, displacement=(0.01, 0.0, 0.0))
     reach = radians(170.0)
     integral = pi * (2 / 3 - np.cos(reach) + np.cos(reach) ** 3 / 3)  # ∫ sin²θ cos²φ dΩ
-    expected = bs.hess_forsbach(TIGHT) * TIGHT.socket_radius**2 * integral * 0.01
-    assert contact.force_vector[0] == pytest.approx(expected, rel=2e-3)
     stiffness = bs.hess_forsbach(TIGHT) * TIGHT.socket_radius**2 * integral
-    assert contact.stiffness_matrix[0, 0] == pytest.approx(stiffness, rel=2e-3)
-    assert contact.stiffness == pytest.approx(stiffness, rel=2e-3)
-
-
-def test_preload_needs_an_interference_and_a_cup_beyond_the_equator():
-    for model in (bs.Exact(), bs.HessForsbach(), bs.Tabulated()):
-        with pytest.raises(bs.OutsideDomainError, match="sphere"):
-            model.press(TIGHT, force=100.0)
-    with pytest.raises(ValueError, match="beyond the equator"):
-        bs.Preload(model=bs.Sphere(), joint=TIGHT)
-    with pytest.raises(ValueError, match="interference"):
-        bs.Preload(model=WRAPPED, joint=RIGID)
-    with pytest.raises(ValueError, match="one too many"):
-        bs.Joint(ball_radius=13.5, interference=0.05, clearance=0.1, liner_thickness=2.5, liner=bs.POM)
-    with pytest.raises(ValueError, match="a tenth of the ball"):
-        bs.Joint(ball_radius=13.5, interference=5.0, liner_thickness=2.5, liner=bs.POM)
-    assert TIGHT.replace(liner_thickness=3.0).interference == pytest.approx(0.05)
+    for value in (contact.force_vector[0] / 0.01, contact.stiffness_matrix[0, 0], contact.stiffness):
+        assert value == pytest.approx(stiffness, rel=2e-3)
 
 
 def test_methods_of_version_1_0_warn_and_work():
@@ -116,10 +96,6 @@ def test_methods_of_version_1_0_warn_and_work():
         assert fitted.rest is fitted.equilibrium
     with pytest.warns(DeprecationWarning, match="use separation_displacement"):
         assert fitted.lost_at == fitted.separation_displacement
-
-
-def held(arc, **options):
-    return replace(WRAPPED, cup=bs.Cup(arc_of_cover=radians(arc)), **options)
 
 
 def spring_force(joint, arc, displacement, friction):
@@ -133,9 +109,9 @@ def spring_force(joint, arc, displacement, friction):
     return np.trapezoid(K * np.maximum(overlap, 0.0) * normal * 2 * np.pi * R2**2 * np.sin(polar), polar)
 
 
-@pytest.mark.parametrize(("fit", "friction"), some([(("interference", 0.02), 0.2), (("clearance", 0.05), 0.0)], 1))
+@pytest.mark.parametrize(("fit", "friction"), some([({"interference": 0.02}, 0.2), ({"clearance": 0.05}, 0.0)], 1))
 def test_the_pull_out_force_on_springs_is_the_largest_integral(fit, friction):
-    joint = TIGHT.replace(**dict([fit]))
+    joint = TIGHT.replace(**fit)
     pulled = bs.pull_out(held(200.0, surface=bs.Springs(), ring_width=radians(1.0)), joint, friction)
     displacements = np.linspace(max(joint.clearance, 0.0), pulled.displacements[-1], 400)
     forces = [spring_force(joint, 200.0, displacement, friction) for displacement in displacements]
@@ -154,40 +130,21 @@ def test_the_pull_out_force_grows_with_cover_and_friction_and_does_not_need_fine
 
 
 def test_a_pull_out_force_beyond_linear_elasticity_is_not_reported():
-    pulled = bs.pull_out(held(240.0), TIGHT)
+    pulled, upper = (bs.pull_out(held(arc), TIGHT) for arc in (240.0, 205.0))
     assert np.isnan(pulled.force)
-    assert not pulled.valid
     assert pulled.summary()["force"] is None
     assert pulled.notes[0].startswith("pull-out: not computed, the rim would compress the liner by ")
-    upper = bs.pull_out(held(205.0), TIGHT)
     assert upper.utilisation > 1.38
-    assert not upper.valid
     assert upper.notes[0].startswith("pull-out: an upper bound, ")
-
-
-@pytest.mark.parametrize(
-    ("arc", "friction", "said"),
-    [(180.0, 0.0, "a socket of 180 deg does not hold its ball"), (200.0, -0.1, "friction = -0.1 is not allowed")],
-)
-def test_pull_out_of_an_open_socket_or_with_negative_friction_is_refused(arc, friction, said):
-    with pytest.raises(ValueError, match=said):
-        bs.pull_out(held(arc), TIGHT, friction)
+    assert not any(force.valid for force in (pulled, upper))
 
 
 def test_friction_of_a_preloaded_ball_is_that_of_its_pressures():
     """A uniform pressure p on a closed bore has the torque μ p R1 R2² π² about every axis: the mean sine is π/4."""
-    closed = replace(WRAPPED, surface=bs.ClosedShell(), cup=bs.Cup(arc_of_cover=radians(340.0)))
-    contact = closed.press(TIGHT, displacement=(0.0, 0.0, 0.0))
+    contact = held(340.0, surface=bs.ClosedShell()).press(TIGHT, displacement=(0.0, 0.0, 0.0))
     uniform = pi**2 * TIGHT.ball_radius * TIGHT.socket_radius**2 * contact.pressure_at((0.0, 0.6, 0.8))
     for axis_angle, lost in ((pi / 2, 1.01), (0.0, 1.0)):  # the opening of 20 degrees takes part of the bore
         assert lost * contact.friction_torque(0.1, axis_angle) == pytest.approx(0.1 * uniform, rel=0.02)
     ring = held(200.0).press(TIGHT, force=0.0)  # pushed out until the rim alone holds the ball
     assert ring.pole_pressure == 0
     assert ring.friction_torque(0.1, 0.0) > ring.friction_torque(0.1) > 1e3
-
-
-def test_a_half_socket_does_not_hold_a_preloaded_ball():
-    contact = held(180.0).press(TIGHT, force=2000.0)
-    assert not contact.valid
-    assert "a half socket does not hold a preloaded ball: set arc_of_cover above 180 deg" in " ".join(contact.notes)
-    assert held(181.0).press(TIGHT, force=2000.0).valid
