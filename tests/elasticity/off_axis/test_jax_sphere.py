@@ -1,5 +1,6 @@
 """`Sphere` in JAX: one step of the search, agreement with NumPy, derivatives, refused inputs."""
 
+from dataclasses import replace
 from functools import cache
 from math import radians
 
@@ -15,10 +16,10 @@ from ballsocket.elasticity.off_axis.coupled_search import apply_operator, integr
 from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.elasticity.off_axis.jax_sphere import JaxSphere
 from ballsocket.elasticity.off_axis.ring_matrices import vary_liner
-from ballsocket.problem.cup import Side, cup_axes
+from ballsocket.problem.cup import cup_axes
 
 from ...joints import HIP
-from .shapes import COARSE
+from .shapes import COARSE, bore_of
 
 jax = pytest.importorskip("jax")
 
@@ -30,10 +31,7 @@ DIRECTION = np.stack([np.sin(TILT), 0.1 * TILT, np.cos(TILT)], axis=-1)
 
 def test_operator_in_jax_equals_that_in_numpy():
     grid = even_grid(radians(90.0), radians(6.0))
-    bore = MODEL.bore_contact(HIP)
-    compliance = make_compliance(bs.ClosedShell(), HIP, bs.Cup(), grid)
-    gap = type(bore.gap)(grid=grid, clearance=0.1, socket_radius=18.0, depth=np.zeros((15, 60)), kind=bs.LinearGap)
-    arrays = make_bore_arrays(type(bore)(compliance=compliance, gap=gap))
+    arrays = make_bore_arrays(bore_of(make_compliance(bs.ClosedShell(), HIP, bs.Cup(), grid)))
     fields = np.random.default_rng(1).standard_normal((60, 15, 3)).astype(np.float32)
     in_jax = jax.tree.map(jax.numpy.asarray, arrays)
     expected = apply_operator(arrays, arrays.softness, fields)
@@ -74,7 +72,6 @@ NUMBERS = {"force": 3000.0, "x": 0.0, "y": 0.05, "z": 0.0, "clearance": 0.1, "de
 
 RIM = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(170.0)), ring_width=radians(3.0))
 """Real cup whose contacts reach the rim at a tilt of about 46°."""
-
 
 OUTPUTS = ("displacement", "force_vector", "pressure", "max_pressure", "half_angle", "edge_margin")
 
@@ -158,7 +155,7 @@ def double_precision():
 
 @pytest.mark.long
 def test_derivatives_are_slopes_of_the_numpy_solution(monkeypatch, double_precision):
-    """Tilted, near the rim, and cut off by it: within 1e-5 of central differences with the same cells in contact."""
+    """Near the rim, and cut off by it: within 1e-5 of central differences with the same cells in contact."""
     monkeypatch.setattr(patch_measures, "_SECANTS", 20)  # differences need edges to the last digit
     cup = JaxSphere(model=RIM, joint=HIP, tolerance=1e-9, dtype="float64")
     grid = RIM.bore_contact(HIP).compliance.grid
@@ -175,7 +172,7 @@ def test_derivatives_are_slopes_of_the_numpy_solution(monkeypatch, double_precis
         return outputs | {"pressure": (c.pressure[0] * weights).sum()}, c.pressure[0]
 
     misses = {}
-    for tilt in (0.5, 0.72, 1.1):
+    for tilt in (0.72, 1.1):
         values = NUMBERS | {"x": np.sin(tilt), "z": np.cos(tilt)}
         slopes, field = jax.jacrev(press, has_aux=True)(jax.tree.map(jax.numpy.asarray, values))
         cells = FixedCells(np.asarray(field) > 0, worn, weights)
@@ -194,72 +191,51 @@ def test_first_press_may_be_traced():
     assert np.asarray(cup._bores.frame) == pytest.approx(np.array(MODEL.cup.frame))
 
 
-def test_an_orientation_has_the_frame_of_its_cup_and_its_derivatives():
-    """Derivatives of the axes by both angles, against differences of the frames of other cups."""
-    angles, step = np.array([0.7, 0.3]), 1e-6
-    left = bs.Sphere(cup=bs.Cup(inclination=0.2, side=Side.LEFT), ring_width=radians(3.0))
-
-    def frame(inclination, anteversion):
-        return np.array(bs.Cup(inclination=inclination, anteversion=anteversion, side=Side.LEFT).frame)
-
+def test_an_angle_that_is_not_stated_is_that_of_the_cup():
+    left = replace(RIM, cup=bs.Cup(inclination=0.2, side=bs.Side.LEFT))
     with jax.enable_x64(True):
-        cup = JaxSphere(model=left, joint=HIP, dtype="float64")
-        assert np.asarray(cup._orient(None, 0.3)) == pytest.approx(frame(0.2, 0.3), abs=1e-12)
-        slopes = np.asarray(jax.jacfwd(lambda x: cup._orient(*x))(angles))
-    for column in range(2):
-        low, high = (frame(*(angles + change * np.eye(2)[column])) for change in (-step, step))
-        assert slopes[..., column] == pytest.approx((high - low) / (2 * step), abs=1e-8)
+        frame = np.asarray(JaxSphere(model=left, joint=HIP, dtype="float64")._orient(None, 0.3))
+    assert frame == pytest.approx(np.array(replace(left.cup, anteversion=0.3).frame), abs=1e-12)
 
 
-def test_bores_without_lanes_are_refused():
-    with pytest.raises(ValueError, match="JaxSphere needs LinearGap and rings of 3 deg"):
-        JaxSphere(model=COARSE, joint=HIP).press(FORCE, DIRECTION)
+SPHERE_REFUSALS = [
+    ({"model": "sphere"}, TypeError, "model must be Sphere, got 'sphere'"),
+    ({"joint": "hip-36"}, TypeError, r"joint must be a Joint, got 'hip-36'; use bs.joints\['hip-36'\]"),
+    ({"joint": HIP.replace(clearance=np.array([0.1, 0.2]))}, TypeError, "joint must have plain numbers"),
+    ({"joint": HIP.replace(liner=bs.Material(young=750.0, poisson=0.5))}, ValueError, "no answer for ν = 0.5"),
+    ({"dtype": "float16"}, ValueError, "dtype = 'float16' is not allowed: it is 'float32' or 'float64'"),
+    ({"dtype": None}, ValueError, "dtype = None is not allowed"),
+    ({"tolerance": 0.1}, ValueError, "tolerance = 0.1 is not allowed: a tolerance is 1e-9 to 1e-2"),
+]
+PRESS_REFUSALS = [
+    ({"model": COARSE}, ValueError, "JaxSphere needs LinearGap and rings of 3 deg"),
+    ({"dtype": "float64"}, ValueError, "float64.* needs jax.config.update.*jax_enable_x64"),
+    ({"force": 1000.0}, ValueError, r"force of shape \(\) is not allowed: it is a row \(loads,\)"),
+    ({"force": []}, ValueError, r"force of shape \(0,\) is not allowed"),
+    ({"force": "3 kN"}, TypeError, "force must be a number or an array of real numbers"),
+    ({"direction": [[0.0, 1.0]]}, ValueError, r"direction of shape \(1, 2\) is not allowed: its last axis holds x"),
+    ({"direction": np.ones((3, 3))}, ValueError, r"direction of shape \(3, 3\) is not allowed: its shape is"),
+    ({"clearance": [0.1, 0.2]}, ValueError, r"clearance of shape \(2,\) is not allowed: its shape is \(\)"),
+    ({"depth": 0.01}, ValueError, r"depth of shape \(\) is not allowed: its shape is \(34, 120\)"),
+    ({"young": [700.0, 800.0]}, ValueError, r"young of shape \(2,\) is not allowed"),
+    ({"poisson": 0.5}, ValueError, "sphere has no answer for ν = 0.5: an incompressible body"),
+    ({"inclination": [0.7, 0.8]}, ValueError, r"inclination of shape \(2,\) is not allowed"),
+]
 
 
-def test_tolerance_is_limited():
-    with pytest.raises(ValueError, match="tolerance = 0.1 is not allowed: a tolerance is 1e-9 to 1e-2"):
-        JaxSphere(model=MODEL, joint=HIP, tolerance=0.1)
-
-
-@pytest.mark.parametrize(
-    ("inputs", "error", "message"),
-    [
-        ({"model": "sphere"}, TypeError, "model must be Sphere, got 'sphere'"),
-        ({"joint": "hip-36"}, TypeError, r"joint must be a Joint, got 'hip-36'; use bs.joints\['hip-36'\]"),
-        ({"joint": HIP.replace(clearance=np.array([0.1, 0.2]))}, TypeError, "joint must have plain numbers"),
-        ({"joint": HIP.replace(liner=bs.Material(young=750.0, poisson=0.5))}, ValueError, "no answer for ν = 0.5"),
-        ({"dtype": "float16"}, ValueError, "dtype = 'float16' is not allowed: it is 'float32' or 'float64'"),
-        ({"dtype": None}, ValueError, "dtype = None is not allowed"),
-    ],
-)
+@pytest.mark.parametrize(("inputs", "error", "message"), SPHERE_REFUSALS)
 def test_wrong_bores_are_refused(inputs, error, message):
     with pytest.raises(error, match=message):
         JaxSphere(**{"model": MODEL, "joint": HIP} | inputs)
 
 
-@pytest.mark.parametrize(
-    ("inputs", "error", "message"),
-    [
-        ({"force": 1000.0}, ValueError, r"force of shape \(\) is not allowed: it is a row \(loads,\)"),
-        ({"force": []}, ValueError, r"force of shape \(0,\) is not allowed"),
-        ({"force": "3 kN"}, TypeError, "force must be a number or an array of real numbers"),
-        ({"direction": [[0.0, 1.0]]}, ValueError, r"direction of shape \(1, 2\) is not allowed: its last axis holds x"),
-        ({"direction": np.ones((3, 3))}, ValueError, r"direction of shape \(3, 3\) is not allowed: its shape is"),
-        ({"clearance": [0.1, 0.2]}, ValueError, r"clearance of shape \(2,\) is not allowed: its shape is \(\)"),
-        ({"depth": 0.01}, ValueError, r"depth of shape \(\) is not allowed: its shape is \(34, 120\)"),
-        ({"young": [700.0, 800.0]}, ValueError, r"young of shape \(2,\) is not allowed"),
-        ({"poisson": 0.5}, ValueError, "sphere has no answer for ν = 0.5: an incompressible body"),
-        ({"inclination": [0.7, 0.8]}, ValueError, r"inclination of shape \(2,\) is not allowed"),
-    ],
-)
+@pytest.mark.parametrize(("inputs", "error", "message"), PRESS_REFUSALS)
 def test_wrong_loads_are_refused(inputs, error, message):
+    fields = {"model": MODEL, "joint": HIP, "dtype": "float32"}
+    sphere = JaxSphere(**{name: inputs.get(name, value) for name, value in fields.items()})
+    loads = {name: value for name, value in inputs.items() if name not in fields}
     with pytest.raises(error, match=message):
-        JaxSphere(model=MODEL, joint=HIP).press(**{"force": FORCE, "direction": DIRECTION} | inputs)
-
-
-def test_double_precision_needs_the_setting_of_jax():
-    with pytest.raises(ValueError, match="float64.* needs jax.config.update.*jax_enable_x64"):
-        JaxSphere(model=MODEL, joint=HIP, dtype="float64").press(FORCE, DIRECTION)
+        sphere.press(**{"force": FORCE, "direction": DIRECTION} | loads)
 
 
 @pytest.mark.long
