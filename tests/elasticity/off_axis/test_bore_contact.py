@@ -10,10 +10,18 @@ from scipy.optimize import nnls
 
 import ballsocket as bs
 from ballsocket.elasticity.off_axis import bore_contact, equilibrium
-from ballsocket.elasticity.off_axis.bore_contact import BoreContact
-from ballsocket.elasticity.off_axis.compliance import make_compliance
+from ballsocket.elasticity.off_axis.bore_contact import BoreContact, initial_displacement, make_bore_arrays
+from ballsocket.elasticity.off_axis.compliance import cached_compliance, make_compliance
+from ballsocket.elasticity.off_axis.coupled_search import (
+    TANGENT_ITERATIONS,
+    make_predictor,
+    newton_step,
+    solve_sensitivity,
+    start_coarse,
+)
 from ballsocket.elasticity.off_axis.equilibrium import solve_force
 from ballsocket.elasticity.off_axis.grid import Grid, even_grid
+from ballsocket.elasticity.off_axis.lane_solver import coarser_lanes, solve_lanes, solve_tangents
 from ballsocket.elasticity.off_axis.pressure_solver import solve_pressure, solve_pressure_change
 
 from ...extent import some
@@ -60,14 +68,6 @@ def test_pressures_agree_with_non_negative_least_squares():
     assert 0 < (expected > 0).sum() < cells
     pressure = solve_pressure(compliance, overlap, tolerance=1e-9).pressure.ravel()
     assert pressure == pytest.approx(expected, abs=1e-5 * expected.max())
-
-
-def test_spring_pressures_are_the_modulus_times_the_overlap():
-    overlap, modulus = np.maximum(overlap_of(DISPLACEMENTS), 0.0), bs.hess_forsbach(RIGID)
-    springs = make_compliance(bs.Springs(), RIGID, bs.Cup(), GRID)
-    solution = solve_pressure(springs, overlap_of(DISPLACEMENTS))
-    assert solution.pressure == pytest.approx(modulus * overlap, rel=1e-5, abs=1e-9)
-    assert solution.energy == pytest.approx(modulus / 2 * GRID.integrate_product(overlap, overlap), rel=1e-5, abs=1e-12)
 
 
 def test_energy_is_that_of_the_pressures_and_stationary():
@@ -225,10 +225,65 @@ def test_preloaded_ball_without_a_load_stays_centred_in_a_symmetric_bore():
     assert solution.pressure == pytest.approx(0.05 * sphere.compliance.uniform_stiffness, rel=1e-3)
 
 
-def test_coarser_bore_has_twice_the_width():
-    coarse = BORE.coarser_bore
-    assert coarse.compliance.grid.meridians == FINE.meridians / 2
-    assert coarse.gap.grid is coarse.compliance.grid
-    field = np.ones((1, coarse.compliance.grid.rings, coarse.compliance.grid.meridians))
-    assert BORE.force(BORE.refine(field)) == pytest.approx(coarse.force(field), abs=0.2)
-    assert WIDE.coarser_bore is None
+# --- coupled search for displacements and pressures ---
+
+ELASTIC = cached_compliance(bs.ClosedShell(), HIP, bs.Cup(), radians(3.0))
+LANES = bore_of(ELASTIC)
+WORN = np.maximum(ELASTIC.grid.centroids[0] + ELASTIC.grid.centroids[2], 0.0) ** 2
+FORCES = np.array([400.0, 3000.0, 1200.0, 2000.0])
+AXES = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, -0.8, 0.6], [0.36, 0.48, 0.8]])
+
+
+def solve(bore, rows, tolerance=1e-6):
+    start = initial_displacement(bore.gap, ELASTIC.uniform_stiffness, bore.gap.depth, FORCES[rows], AXES[rows])
+    load = AXES[rows] * FORCES[rows, None]
+    return solve_lanes(bore, coarser_lanes(bore), load, FORCES[rows], start, tolerance)
+
+
+def test_contacts_in_a_plane_of_symmetry_have_the_tangents_of_both_sides():
+    pressure = solve(LANES, np.arange(2)).pressure
+    tangents = solve_tangents(LANES, pressure)
+    bore = make_bore_arrays(LANES)
+    expected = solve_sensitivity(bore, pressure.T > 0, TANGENT_ITERATIONS).tangent
+    assert tangents == pytest.approx(expected, abs=1e-5 * float(abs(expected).max()))
+
+
+@pytest.mark.parametrize("depth", [0.0, 0.03])
+def test_each_lane_balances_its_load_with_closed_gaps(depth):
+    bore = bore_of(ELASTIC, depth=depth * WORN)
+    solution = solve(bore, np.arange(4))
+    overlap = bore.gap.overlap(solution.displacement)
+    gap = ELASTIC.displacement(solution.pressure) - overlap
+    scale = overlap.max(axis=(1, 2), keepdims=True)
+    assert solution.converged.all()
+    assert (solution.pressure >= 0).all()
+    assert (np.where(solution.pressure > 0, abs(gap), 0.0) <= 1.1e-6 * scale).all()
+    assert (gap >= -1.1e-6 * scale).all()
+    assert bore.force(solution.pressure) == pytest.approx(AXES * FORCES[:, None], abs=1.1e-6 * FORCES.max())
+
+
+def test_lanes_do_not_depend_on_each_other():
+    together, alone = solve(LANES, np.arange(4)), solve(LANES, np.array([2]))
+    assert together.displacement[2] == pytest.approx(alone.displacement[0], abs=1e-8)
+    assert together.pressure[2] == pytest.approx(alone.pressure[0], abs=2e-5 * alone.pressure.max())
+
+
+def test_newton_step_anticipates_pressures_that_have_not_converged():
+    """The step from rough pressures is close to the way to equilibrium; the force alone would mislead it."""
+    bore = coarser_lanes(LANES)
+    arrays = make_bore_arrays(bore, np.float64)
+    start = initial_displacement(bore.gap, ELASTIC.uniform_stiffness, bore.gap.depth, FORCES, AXES)
+    lanes = start_coarse(arrays, (AXES * FORCES[:, None]).T, FORCES, start.T)
+    predictor = make_predictor(solve_sensitivity(arrays, lanes.pressure > 0, 3))
+    step = newton_step(arrays, lanes, predictor)
+    solved = bore.solve_displaced((lanes.displacement + step).T)
+    error = np.linalg.norm(bore.force(solved.pressure) - AXES * FORCES[:, None], axis=1)
+    before = bore.solve_displaced(lanes.displacement.T)
+    assert (error < 0.35 * np.linalg.norm(bore.force(before.pressure) - AXES * FORCES[:, None], axis=1)).all()
+
+
+def test_bores_without_lanes():
+    """Springs and circular gaps have no coupled search."""
+    springs = cached_compliance(bs.Springs(), RIGID, bs.Cup(), radians(3.0))
+    assert coarser_lanes(bore_of(springs)) is None
+    assert coarser_lanes(bore_of(ELASTIC, kind=bs.CircularGap)) is None

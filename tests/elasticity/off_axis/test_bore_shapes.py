@@ -13,7 +13,7 @@ from ballsocket.elasticity.off_axis.directions import unit_vectors
 from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.elasticity.off_axis.scans import scan_from_points
 
-from .shapes import COARSE, RIGID, scanned_points
+from .shapes import COARSE, RIGID, TIGHT, WRAPPED, scanned_points
 
 
 def test_depth_of_a_shifted_sphere_shifts_the_ball_alone():
@@ -81,6 +81,11 @@ def test_names_of_version_1_0_still_work():
     assert (bs.Worn, bs.Pinched) == (bs.BoreDeviation, bs.OvalBore)
     with pytest.warns(DeprecationWarning, match="use BoreDeviation"):
         assert bore_shapes.Worn is bs.BoreDeviation
+    fitted = bs.Preload(model=WRAPPED, joint=TIGHT)
+    with pytest.warns(DeprecationWarning, match="use equilibrium"):
+        assert fitted.rest is fitted.equilibrium
+    with pytest.warns(DeprecationWarning, match="use separation_displacement"):
+        assert fitted.lost_at == fitted.separation_displacement
 
 
 # --- scans ---

@@ -81,16 +81,6 @@ def test_stiffness_of_a_tilted_contact_is_the_slope_of_its_force():
     assert middle.stiffness == pytest.approx(slope, rel=0.02)
 
 
-def test_energy_on_springs_is_that_of_the_pressures():
-    contact = SPRINGS.press(RIGID, indentation=0.04, tilt=0.3)
-    polar, _, pressure = contact.pressure_map
-    grid = contact.single_state.bore.compliance.grid
-    assert len(polar) == grid.rings
-    energy = RIGID.socket_radius**2 * (pressure**2 * grid.areas).sum() / (2 * bs.hess_forsbach(RIGID))
-    assert contact.energy == pytest.approx(energy, rel=1e-6)
-    assert contact.pressure_integral == pytest.approx(RIGID.socket_radius**2 * (pressure * grid.areas).sum())
-
-
 @pytest.mark.parametrize("width", [radians(4.0), radians(2.0)])
 def test_error_estimates_follow_the_width_of_the_contact(width):
     """Errors grow with the square of ring width over half angle, those of edges with their ratio."""

@@ -73,13 +73,6 @@ def test_pressure_is_interpolated_across_the_pole_and_the_first_meridian():
     assert patch.pressure_at(np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]])) == pytest.approx([0.0, 10.0], abs=0.02)
 
 
-def test_pressure_along_the_load_plane_points_to_the_rim():
-    patch = cap(direction(0.5, 1.0), radians(25.0))
-    for angle in (0.3, -0.3):
-        expected = float(patch.pressure_at(direction(0.5 + angle, 1.0)))
-        assert patch.pressure_along(np.array([angle])) == pytest.approx([expected], abs=1e-12)
-
-
 def test_edge_lies_between_the_last_loaded_and_the_first_open_cell():
     """The levels of further cells do not matter: the edge divides the distance of two middles as 3 : 1."""
     rings = np.where(np.arange(GRID.rings) <= 12, 3.0, -50.0)
@@ -117,14 +110,6 @@ def test_margin_of_a_contact_that_almost_reaches_the_rim_is_positive():
     level[-2] = 0.1
     tight = patch_of(np.where(level > 0, 1.0, 0.0), level, tilt=radians(58.5) + 1e-3)
     assert tight.edge_margin == pytest.approx(1e-6)
-
-
-def test_empty_patch_has_no_pressure():
-    empty = np.zeros((GRID.rings, GRID.meridians))
-    patch = patch_of(empty, empty - 1.0, tilt=0.2)
-    value, location = patch.largest
-    assert value == patch.half_angle == 0.0
-    assert (location == patch.axis).all()
 
 
 def test_ring_around_the_load_has_the_half_angle_of_its_cells():

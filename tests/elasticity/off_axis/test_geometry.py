@@ -16,7 +16,6 @@ from ballsocket.elasticity.off_axis.directions import (
     magnitudes_and_directions,
     polar_angle,
     tangents,
-    tilted_directions,
     unit_vectors,
 )
 from ballsocket.elasticity.off_axis.grid import Grid, even_grid, graded_grid, rim_grid
@@ -56,13 +55,6 @@ def test_directions_of_extreme_length_are_scaled(scale):
     assert checked / length[:, None] == pytest.approx(np.array([[0.6, 0.0, 0.8]]))
     assert check_direction([1e99, 0, 0])[0] == 1e99
     assert check_direction([1e101, 0, 0])[0] == pytest.approx(1.0)
-
-
-def test_tilted_directions_start_at_x():
-    assert tilted_directions(0.4, None) == pytest.approx([np.sin(0.4), 0.0, np.cos(0.4)])
-    n = tilted_directions(np.array([0.4, 0.8]), np.array([[0.3], [2.0]]))
-    assert n.shape == (2, 2, 3)
-    assert n[1, 0] == pytest.approx([np.sin(0.4) * np.cos(2.0), np.sin(0.4) * np.sin(2.0), np.cos(0.4)])
 
 
 def test_frames_of_many_cups_are_those_of_single_cups():
@@ -106,16 +98,6 @@ def test_normals_are_means_over_their_cells():
         assert cells.middles[:, ring, 2] == pytest.approx(unit_vectors((low + high) / 2, cells.azimuth[2]))
 
 
-def test_properties_of_a_small_grid():
-    cells = Grid(edges=np.array([0.0, 0.2, 0.6]), meridians=6)
-    assert (cells.rings, cells.max_harmonic, cells.reach) == (2, 3, 0.6)
-    assert cells.width == pytest.approx(0.4)
-    assert cells.polar == pytest.approx([0.1, 0.4])
-    assert cells.azimuth == pytest.approx(np.arange(1, 12, 2) * pi / 6)
-    with pytest.raises(ValueError, match="read-only"):
-        cells.centroids[0, 0, 0] = 1.0
-
-
 RIM_RINGS = [(graded_grid, [0.5, 0.25, 0.25]), (rim_grid, [0.5, 0.25, 0.125, 0.0625, 0.0625]), (even_grid, [1.0])]
 
 
@@ -126,6 +108,8 @@ def test_last_ring_is_graded_towards_the_rim(make, fractions):
     assert np.diff(cells.edges[-len(fractions) - 1 :]) == pytest.approx(0.1 * np.array(fractions))
     assert cells.reach == 1.5
     assert cells.meridians == 2 * round(pi / 0.1)
+    with pytest.raises(ValueError, match="read-only"):
+        cells.centroids[0, 0, 0] = 1.0
 
 
 def test_grids_have_a_smallest_number_of_rings_and_meridians():
@@ -165,11 +149,6 @@ def test_few_rings_or_unpaired_meridians_are_not_coarsened():
     for rings, meridians, coarsened in ((23, 44, False), (24, 44, True), (26, 34, False), (26, 36, True)):
         cells = Grid(edges=np.linspace(0.0, 1.3, rings + 1), meridians=meridians)
         assert (cells.coarser_grid is not None) == coarsened
-
-
-def test_integral_of_a_product_is_exact_for_uniform_fields():
-    field = np.full((3, FINE.rings, FINE.meridians), 2.0)
-    assert FINE.integrate_product(field, 3 * field) == pytest.approx(12.0 * 2 * pi * (1 - np.cos(1.3)))
 
 
 def test_cell_averages_attenuate_each_harmonic():

@@ -90,14 +90,6 @@ def test_springs_in_a_closed_preloaded_contact_are_linear():
         assert value == pytest.approx(stiffness, rel=2e-3)
 
 
-def test_methods_of_version_1_0_warn_and_work():
-    fitted = bs.Preload(model=SPRINGS, joint=TIGHT)
-    with pytest.warns(DeprecationWarning, match="use equilibrium"):
-        assert fitted.rest is fitted.equilibrium
-    with pytest.warns(DeprecationWarning, match="use separation_displacement"):
-        assert fitted.lost_at == fitted.separation_displacement
-
-
 def spring_force(joint, arc, displacement, friction):
     """Integrate K (penetration of the displaced ball) along the normals of the ball, over the bore."""
     R1, R2, K = joint.ball_radius, joint.socket_radius, bs.hess_forsbach(joint)

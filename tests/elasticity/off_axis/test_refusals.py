@@ -154,17 +154,9 @@ def test_limits_themselves_are_allowed():
 
 
 @pytest.mark.parametrize(
-    ("name", "content"),
-    [
-        ("bore.stl", b"no mesh"),
-        ("bore.stl", b""),
-        ("bore.stl", bytes(80) + b"\x05\x00\x00\x00" + bytes(60)),
-        ("bore.stl", b"solid bore\nfacet normal 0 0 1\nouter loop\nvertex 1 2"),
-        ("bore.ply", b"ply\nformat ascii 1.0\n"),
-        ("bore.obj", b""),
-        ("bore", b"ply"),
-    ],
+    "content", [b"no mesh", b"", bytes(80) + b"\x05\0\0\0" + bytes(60), b"solid a\nvertex 1 2", b"ply\n"]
 )
+@pytest.mark.parametrize("name", ["bore.stl", "bore.ply", "bore.obj", "bore"])
 def test_damaged_mesh_files_raise(name, content, tmp_path):
     (tmp_path / name).write_bytes(content)
     with pytest.raises(ValueError, match=f"{name} cannot be read as a mesh: the file is incomplete or"):
