@@ -229,7 +229,8 @@ def test_preloaded_ball_without_a_load_stays_centred_in_a_symmetric_bore():
 
 ELASTIC = cached_compliance(bs.ClosedShell(), HIP, bs.Cup(), radians(3.0))
 LANES = bore_of(ELASTIC)
-WORN = np.maximum(ELASTIC.grid.centroids[0] + ELASTIC.grid.centroids[2], 0.0) ** 2
+WEAR = np.maximum(ELASTIC.grid.centroids[0] + ELASTIC.grid.centroids[2], 0.0) ** 2
+WORN = WEAR + WEAR[:, ::-1]  # to the last digit symmetric about the plane of the load
 FORCES = np.array([400.0, 3000.0, 1200.0, 2000.0])
 AXES = np.array([[0.0, 0.0, 1.0], [0.6, 0.0, 0.8], [0.0, -0.8, 0.6], [0.36, 0.48, 0.8]])
 
@@ -248,7 +249,7 @@ def test_contacts_in_a_plane_of_symmetry_have_the_tangents_of_both_sides():
     assert tangents == pytest.approx(expected, abs=1e-5 * float(abs(expected).max()))
 
 
-@pytest.mark.parametrize("depth", [0.0, 0.03])
+@pytest.mark.parametrize("depth", [0.0, 0.015])
 def test_each_lane_balances_its_load_with_closed_gaps(depth):
     bore = bore_of(ELASTIC, depth=depth * WORN)
     solution = solve(bore, np.arange(4))

@@ -1,9 +1,10 @@
-"""Contact of `Sphere`: vectors, notes, status, dictionary for JSON, error estimates, and loads of each kind."""
+"""Contact of `Sphere`: vectors, notes, status, dictionary for JSON, error estimates, loads of each kind, VTK."""
 
 from dataclasses import replace
 from math import degrees, pi, radians
 from types import SimpleNamespace
 
+import meshio
 import numpy as np
 import pytest
 
@@ -11,6 +12,7 @@ import ballsocket as bs
 from ballsocket.elasticity.off_axis.bore_contact import BoreContact
 from ballsocket.elasticity.off_axis.directions import unit_vectors
 from ballsocket.elasticity.off_axis.grid import even_grid
+from ballsocket.elasticity.off_axis.vtk import BALL, BORE, EDGE, write_vtk
 
 from .shapes import COARSE, RIGID, TIGHT, WRAPPED
 
@@ -190,3 +192,58 @@ def test_domain_and_validity_limits():
     for angle, few in ((19.0, True), (24.0, False)):
         notes = COARSE.press(RIGID, half_angle=radians(angle)).notes
         assert any("the contact spans few rings" in note for note in notes) is few
+
+
+# --- VTK files ---
+
+
+@pytest.fixture(scope="module")
+def mesh(tilted, tmp_path_factory):
+    path = tmp_path_factory.mktemp("vtk") / "contact.vtu"
+    write_vtk(tilted, path)
+    return meshio.read(path)
+
+
+def body(mesh, part):
+    """Return the corners of the cells of one body, and their pressures and gaps."""
+    for number, block in enumerate(mesh.cells):
+        mask = mesh.cell_data["part"][number] == part
+        if mask.any():
+            return block.data[mask], *(mesh.cell_data[name][number][mask] for name in ("pressure", "gap"))
+    raise AssertionError(f"no cells of part {part}")
+
+
+def test_surfaces_are_the_bore_and_the_displaced_ball(tilted, mesh):
+    assert (BORE, BALL, EDGE) == (0, 1, 2)
+    rings, meridians = tilted.pressure_map[2].shape
+    assert [len(body(mesh, part)[0]) for part in range(3)] == [rings * meridians, 90 * 180, 90]
+    bore, ball = (mesh.points[np.unique(body(mesh, part)[0])] for part in (BORE, BALL))
+    assert np.linalg.norm(bore, axis=1) == pytest.approx(RIGID.socket_radius)
+    assert bore[:, 2].min() == pytest.approx(0.0, abs=1e-9)
+    assert np.linalg.norm(ball - tilted.displacement, axis=1) == pytest.approx(RIGID.ball_radius)
+
+
+def test_edge_is_a_closed_line_around_the_contact(tilted, mesh):
+    links = body(mesh, EDGE)[0]
+    assert (links[:, 1] == np.roll(links[:, 0], -1)).all()
+    assert mesh.points[links[:, 0]] == pytest.approx(RIGID.socket_radius * tilted.outline)
+
+
+def test_gap_is_open_where_there_is_no_pressure_and_undeformed_far_away(tilted, mesh):
+    _, pressure, gap = body(mesh, BORE)
+    polar, azimuth, expected = tilted.pressure_map
+    assert pressure == pytest.approx(expected.ravel())
+    assert (pressure * gap == 0).all()
+    assert gap.min() >= -1e-6
+    assert gap.max() > 0.05
+    n = np.array([-np.sin(polar[-1]), 0.0, np.cos(polar[-1])])
+    far = gap.reshape(len(polar), len(azimuth))[-1, len(azimuth) // 2]
+    assert far == pytest.approx(RIGID.clearance - tilted.displacement @ n, abs=5e-3)
+    for part in (BALL, EDGE):
+        assert not np.any(body(mesh, part)[1:])
+
+
+@pytest.mark.parametrize("load", [{"force": [1.0, 2.0]}, {"force": 0.0}, {"force": 10.0, "tilt": radians(120.0)}])
+def test_contacts_without_a_solution_or_in_batches_raise(load, tmp_path):
+    with pytest.raises(ValueError, match="pressure maps"):
+        write_vtk(COARSE.press(RIGID, **load), tmp_path / "contact.vtu")
