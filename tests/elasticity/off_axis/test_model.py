@@ -91,11 +91,11 @@ def test_error_estimates_hold():
     random = np.random.default_rng(7)
     names = ("force", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
     ratios = []
-    for _ in range(15):
+    for _ in range(10):
         joint = lined(random.choice([0.0, 0.3, 0.45]), clearance=10 ** random.uniform(-2, -0.5))
-        exact = bs.Exact().press(joint, half_angle=np.radians(random.uniform(14.0, 60.0, 8)))
+        exact = bs.Exact().press(joint, half_angle=np.radians(random.uniform(14.0, 60.0, 12)))
         model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(random.choice([2.0, 4.0])))
-        contact = model.press(joint, indentation=exact.indentation, tilt=random.uniform(0.0, 0.4, 8))
+        contact = model.press(joint, indentation=exact.indentation, tilt=random.uniform(0.0, 0.4, 12))
         ratios += [abs(getattr(contact, name) / getattr(exact, name) - 1) / contact.error[name] for name in names]
         wide = model.press(joint, half_angle=exact.half_angle[:2], tilt=0.3)
         computed = [name for name in names if name != "half_angle"]

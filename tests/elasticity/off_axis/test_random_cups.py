@@ -1,6 +1,6 @@
 """Random cups, loads and directions: each contact obeys the laws of contact or has a status.
 
-Six cups, or forty with `--long`; the environment variable BALLSOCKET_CUPS sets another number.
+Six cups, or twenty with `--long`; the environment variable BALLSOCKET_CUPS sets another number.
 """
 
 import os
@@ -14,7 +14,7 @@ import ballsocket as bs
 from ...extent import either
 
 LOADS = 5
-COUNT = int(os.environ.get("BALLSOCKET_CUPS", "0")) or either(quick=6, long=40)
+COUNT = int(os.environ.get("BALLSOCKET_CUPS", "0")) or either(quick=6, long=20)
 SIZES = ("force", "indentation", "half_angle", "pole_pressure", "stiffness", "energy", "pressure_integral")
 PLACES = ("edge_distance", "edge_margin", "rim_distance", "tilt", "max_pressure_angle", "max_pressure_at")
 VECTORS = ("displacement", "moment", "force_vector", "stiffness_matrix")
