@@ -84,22 +84,17 @@ def test_softness_is_inverse_to_youngs_modulus():
     assert soft.softness.matrices == pytest.approx(10 * stiff.softness.matrices)
 
 
-def test_last_eight_compliances_are_cached():
-    widths = [radians(6.0 - 0.01 * i) for i in range(9)]
+def test_last_eight_compliances_are_cached_for_all_orientations():
+    def cached(number, cup=CUP):
+        return cached_compliance(bs.Springs(), RIGID, cup, radians(6.0 - 0.01 * number))
 
-    def cached(width, cup=CUP):
-        return cached_compliance(bs.Springs(), RIGID, cup, width)
-
-    first = cached(widths[0])
-    assert cached(widths[0], replace(CUP, inclination=0.5)) is first
-    for width in widths[1:8]:
-        cached(width)
-    assert cached(widths[0]) is first
-    cached(widths[8])
-    assert cached(widths[0]) is first  # the second was the oldest
-    for width in widths[1:]:
-        cached(width)
-    assert cached(widths[0]) is not first
+    first, *_ = (cached(number) for number in range(8))
+    assert cached(0, replace(CUP, inclination=0.5)) is first
+    cached(8)
+    assert cached(0) is first  # the second was the oldest
+    for number in range(1, 9):
+        cached(number)
+    assert cached(0) is not first
 
 
 def test_edge_relation_of_elastic_bodies_uses_the_combined_modulus():

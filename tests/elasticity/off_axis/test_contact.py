@@ -68,6 +68,7 @@ def test_zero_load_has_no_contact(name, load):
         assert getattr(both, quantity)[0] == 0.0
         assert getattr(both, quantity)[1] == pytest.approx(getattr(alone, quantity), rel=1e-5)
     assert both.status.tolist() == [0, 0]
+    assert both.force_vector.shape == (2, 3)
 
 
 def test_empty_load_gives_an_empty_contact():

@@ -182,7 +182,7 @@ def test_error_of_the_edge_margin_holds_against_finer_rings():
     tilt = np.radians([0.0, 40.0, 62.0])
     coarse, fine = (
         bs.Sphere(ring_width=radians(width)).press(HIP, force=2000.0, tilt=tilt)
-        for width in (4.0, either(quick=2.0, long=1.0))
+        for width in (4.0, either(quick=2.0, long=1.5))
     )
     error = coarse.error["edge_margin"]
     assert coarse.edge_loaded.tolist() == [False, False, True]

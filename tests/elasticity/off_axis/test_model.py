@@ -167,16 +167,6 @@ def test_contact_has_its_prescribed_half_angle_or_a_status():
     assert (wide.status[angle == 1.5] == int(bs.Status.NOT_REACHED)).all()  # wider than a hemisphere
 
 
-def test_batch_of_loads_equals_single_loads():
-    angles, forces = np.linspace(0.0, 1.2, 5), np.linspace(300.0, 3000.0, 5)
-    together = bs.Sphere().press(RIGID, force=forces, tilt=angles)
-    assert together.force_vector.shape == (5, 3)
-    for i in (0, 3):
-        alone = bs.Sphere().press(RIGID, force=float(forces[i]), tilt=float(angles[i]))
-        assert together.indentation[i] == pytest.approx(alone.indentation, rel=1e-5)
-        assert together.max_pressure[i] == pytest.approx(alone.max_pressure, rel=1e-4)
-
-
 # --- rim, worn bores and paths of displacements ---
 
 

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.elasticity.finite_elements.progress import progress_to
 from ballsocket.reports.orientation_results import orientation_figure
 from ballsocket.studies.expressions import parse_limit
 
@@ -29,14 +28,6 @@ def oriented():
 
 def legend(figure):
     return [text.get_text() for text in figure.legends[0].get_texts()] if figure.legends else []
-
-
-def test_progress_counts_the_inclinations_from_one():
-    messages = []
-    with progress_to(messages.append):
-        orient([0.3, 0.5, 0.7], 0.1)
-    counted = [text for text in messages if text.startswith("inclination")]
-    assert counted == [f"inclination {number} of 3" for number in (1, 2, 3)]
 
 
 def test_orientation_equals_the_press_of_a_cup_in_it(oriented):
