@@ -6,10 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from numpy.polynomial import polynomial
+from scipy.special import zeta
 
 import ballsocket as bs
-from ballsocket.elasticity.exact import load_curve, subsurface
-from ballsocket.elasticity.exact.kernel import Kernel
+from ballsocket.elasticity.exact import grid, load_curve, subsurface
+from ballsocket.elasticity.exact.kernel import CachedIntervals, Intervals, Kernel
 from ballsocket.elasticity.exact.model import curve_of
 from ballsocket.elasticity.exact.modes import ElasticBall, Shell, Socket
 
@@ -19,12 +20,20 @@ from ...places import DATA
 
 EXACT = json.loads((DATA / "exact.json").read_text())["cases"]
 CALCULIX = json.loads((DATA / "calculix.json").read_text())["cases"]
-RIGID = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.UHMWPE)
+RIGID = HIP.replace(ball=None)
+
+
+def plastic(poisson: float) -> bs.Material:
+    return bs.Material(young=1000.0, poisson=poisson)
 
 
 def joint(case: dict, **more: object) -> bs.Joint:
     lengths = {name: case[name] for name in ("ball_radius", "clearance", "liner_thickness")}
     return bs.Joint(**lengths, liner=bs.Material(young=case.get("young", 1000.0), poisson=case["poisson"]), **more)
+
+
+def massive(poisson: float, **more: object) -> bs.Joint:
+    return RIGID.replace(liner_thickness=np.inf, liner=plastic(poisson), **more)
 
 
 @pytest.mark.parametrize("case", EXACT, ids=lambda case: f"nu{case['poisson']}L{case['liner_thickness']}")
@@ -40,31 +49,19 @@ def test_indentation_pressure_and_half_angle_equal_an_independent_solution(case)
     np.testing.assert_allclose(np.degrees(contact.half_angle), angle, rtol=1e-6)
 
 
-def test_sphere_in_a_cavity_of_its_material_has_the_values_of_goodman_and_keers():
-    """Identical materials: an elastic sphere in an infinite cavity of nearly its size, ν 0.3."""
-    angle = np.radians([10.0, 20.0, 40.0, 60.0])
-    R, c, E = 100.0, 1e-4, 1000.0
-    same = bs.Material(young=E, poisson=0.3)
-    cavity = bs.Joint(ball_radius=R, clearance=c, liner_thickness=np.inf, liner=same, ball=same)
-    contact = bs.Exact().press(cavity, half_angle=angle)
-    modulus = E / (2 * (1 - 0.3**2))
-    np.testing.assert_allclose(
-        contact.force / (modulus * R * c), [0.00720792, 0.0603636, 0.5780481, 2.829880], rtol=5e-6
-    )
-    pressure = contact.max_pressure * R / (modulus * c)
-    np.testing.assert_allclose(pressure, [0.1141703, 0.2466258, 0.6678850, 1.778788], rtol=5e-6)
-
-
-def test_rigid_ball_in_an_infinite_cavity_has_the_reference_values():
-    angle = np.radians([20.0, 40.0, 60.0])
-    R, c, E = 100.0, 1e-4, 1000.0
-    cavity = bs.Joint(ball_radius=R, clearance=c, liner_thickness=np.inf, liner=bs.Material(young=E, poisson=0.3))
-    contact = bs.Exact().press(cavity, half_angle=angle)
-    modulus = E / (1 - 0.3**2)
-    np.testing.assert_allclose(contact.indentation / c, [0.1132483, 0.5192965, 1.803921], rtol=5e-6)
-    np.testing.assert_allclose(contact.force / (modulus * R * c), [0.0620483, 0.6224408, 3.307897], rtol=5e-6)
-    pressure = contact.max_pressure * R / (modulus * c)
-    np.testing.assert_allclose(pressure, [0.2545104, 0.7271863, 2.116084], rtol=5e-6)
+def test_a_sphere_in_an_infinite_cavity_has_the_published_values():
+    """A rigid ball, and one of the cavity's material (Goodman and Keers)."""
+    R, c, angle = 100.0, 1e-4, np.radians([20.0, 40.0, 60.0])
+    for ball, bodies, force, pressure in (
+        (None, 1, [0.0620483, 0.6224408, 3.307897], [0.2545104, 0.7271863, 2.116084]),
+        (plastic(0.3), 2, [0.0603636, 0.5780481, 2.829880], [0.2466258, 0.6678850, 1.778788]),
+    ):
+        contact = bs.Exact().press(massive(0.3, ball_radius=R, clearance=c, ball=ball), half_angle=angle)
+        modulus = 1000.0 / (bodies * (1 - 0.3**2))
+        np.testing.assert_allclose(contact.force / (modulus * R * c), force, rtol=5e-6)
+        np.testing.assert_allclose(contact.max_pressure * R / (modulus * c), pressure, rtol=5e-6)
+        if ball is None:
+            np.testing.assert_allclose(contact.indentation / c, [0.1132483, 0.5192965, 1.803921], rtol=5e-6)
 
 
 @pytest.mark.parametrize("case", CALCULIX, ids=lambda case: case["name"])
@@ -76,43 +73,36 @@ def test_pressure_and_half_angle_agree_with_calculix(case):
     ball = bs.Material(young=case["ball_young"], poisson=case["ball_poisson"])
     steps = [step for step in case["linearised"] if step["force"] > 400.0]
     contact = bs.Exact().press(joint(case, ball=ball), force=np.array([step["force"] for step in steps]))
-    pressure = contact.max_pressure / np.array([step["max_pressure"] for step in steps]) - 1
-    angle = np.degrees(contact.half_angle) - np.array([step["half_angle_deg"] for step in steps])
-    if case["poisson"] <= 0.46:
-        assert np.max(np.abs(pressure)) < 0.002
-        assert np.max(np.abs(angle)) < 0.15
-    else:
-        assert np.max(np.abs(pressure)) < 0.012
-        assert np.max(np.abs(angle)) < 0.4
+    relative, degrees = (0.002, 0.15) if case["poisson"] <= 0.46 else (0.012, 0.4)
+    np.testing.assert_allclose(contact.max_pressure, [step["max_pressure"] for step in steps], rtol=relative)
+    np.testing.assert_allclose(
+        np.degrees(contact.half_angle), [step["half_angle_deg"] for step in steps], rtol=0, atol=degrees
+    )
 
 
 def test_small_contacts_are_hertz():
-    close = bs.Joint(ball_radius=18.0, clearance=0.002, liner_thickness=6.75, liner=bs.UHMWPE, ball=bs.STEEL)
+    close = HIP.replace(ball_radius=18.0, clearance=0.002)
     contact = bs.Exact().press(close, half_angle=np.radians([0.05, 0.1]))
     hertz = bs.Hertz().press(close, half_angle=contact.half_angle)
-    for name, rel in (("force", 8e-3), ("indentation", 8e-3), ("max_pressure", 8e-3), ("stiffness", 8e-3)):
-        np.testing.assert_allclose(getattr(contact, name), getattr(hertz, name), rtol=rel, err_msg=name)
+    for name in ("force", "indentation", "max_pressure", "stiffness"):
+        np.testing.assert_allclose(getattr(contact, name), getattr(hertz, name), rtol=8e-3, err_msg=name)
 
 
 def test_a_thin_compressible_liner_is_a_bonded_layer():
-    thin = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=0.3, liner=bs.Material(young=1000.0, poisson=0.2))
-    contact = bs.Exact().press(thin, half_angle=np.radians(50.0))
-    columns = bs.BondedLayer().press(thin, half_angle=np.radians(50.0))
-    assert contact.indentation == pytest.approx(columns.indentation, rel=0.02)
-    assert contact.max_pressure == pytest.approx(columns.max_pressure, rel=0.02)
-    assert contact.force == pytest.approx(columns.force, rel=0.03)
+    thin = RIGID.replace(liner_thickness=0.3, liner=plastic(0.2))
+    contact, columns = (model.press(thin, half_angle=np.radians(50.0)) for model in (bs.Exact(), bs.BondedLayer()))
+    for name, rel in (("indentation", 0.02), ("max_pressure", 0.02), ("force", 0.03)):
+        assert getattr(contact, name) == pytest.approx(getattr(columns, name), rel=rel), name
 
 
 @pytest.mark.long
 def test_a_thin_incompressible_liner_is_squeezed_like_a_film():
     """u = -(L³/3G) ∇²p: d -> a²/(4 R*) and F -> π G a⁶/(32 R* L³) for L << a, with corrections in L/a."""
-    nearly = bs.Material(young=1000.0, poisson=0.4999)
     angle, R, G = np.radians(10.0), 17.9 * 18.0 / 0.1, 1000.0 / (2 * 1.4999)
     a = 18.0 * np.sin(angle)
     depths, forces = [], []
     for thickness in (0.4, 0.2, 0.1):
-        liner = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=thickness, liner=nearly)
-        contact = bs.Exact().press(liner, half_angle=angle)
+        contact = bs.Exact().press(RIGID.replace(liner_thickness=thickness, liner=plastic(0.4999)), half_angle=angle)
         depths.append(contact.indentation * 4 * R / a**2)
         forces.append(contact.force * 32 * R * thickness**3 / (np.pi * G * a**6))
     for shares in (depths, forces):  # of L² that vanishes, extrapolated twice
@@ -120,72 +110,21 @@ def test_a_thin_incompressible_liner_is_squeezed_like_a_film():
         assert (4 * fine - coarse) / 3 == pytest.approx(1.0, abs=0.08)
 
 
-def test_uniform_pressure_has_the_modulus_of_the_vessel():
-    socket = Socket(radius=18.0, shells=(Shell(thickness=6.75, young=1000.0, poisson=0.4),))
-    assert 1 / socket.compliance(0) == pytest.approx(bs.spherical_vessel(RIGID), rel=1e-12)
-
-
 @pytest.mark.parametrize("gap", [bs.LinearGap, bs.CircularGap])
 def test_inside_the_contact_the_surface_follows_the_ball(gap):
-    contact = bs.Exact(gap=gap).press(RIGID, force=3000.0)
-    angle = np.linspace(0.0, 0.98 * contact.half_angle, 9)
-    asked = gap(clearance=0.1, socket_radius=18.0).displacement(angle, contact.indentation)
-    np.testing.assert_allclose(contact.displacement(angle), asked, atol=2e-7 * contact.indentation)
-    beyond = np.linspace(1.02 * contact.half_angle, 1.5, 9)
-    room = contact.displacement(beyond) - gap(clearance=0.1, socket_radius=18.0).displacement(
-        beyond, contact.indentation
-    )
-    assert np.all(room > 0)  # the surfaces do not touch outside
-
-
-def test_the_circular_gap_raises_the_pressure_by_less_than_one_percent():
-    """Exact kinematics (5) against (6): p0 +0.4 %."""
-    linear, circular = (bs.Exact(gap=gap).press(RIGID, force=3000.0) for gap in (bs.LinearGap, bs.CircularGap))
-    assert circular.max_pressure / linear.max_pressure == pytest.approx(1.004, abs=1e-3)
+    contact, imposed = bs.Exact(gap=gap).press(RIGID, force=3000.0), gap(clearance=0.1, socket_radius=18.0).displacement
+    d, edge = contact.indentation, contact.half_angle
+    inside, beyond = np.linspace(0.0, 0.98 * edge, 9), np.linspace(1.02 * edge, 1.5, 9)
+    np.testing.assert_allclose(contact.displacement(inside), imposed(inside, d), atol=2e-7 * d)
+    assert np.all(contact.displacement(beyond) > imposed(beyond, d))  # the surfaces do not touch outside
 
 
 def test_pressure_vanishes_at_the_edge_as_a_square_root():
     contact = bs.Exact().press(RIGID, force=3000.0)
-    near = np.array([1e-6, 1e-4])
-    p = contact.pressure(contact.half_angle * (1 - near))
+    p = contact.pressure(contact.half_angle * (1 - np.array([1e-6, 1e-4])))
     assert p[1] / p[0] == pytest.approx(10.0, rel=2e-3)
     assert contact.pressure(contact.half_angle * 1.0001) == 0.0
     assert contact.pressure(np.pi) == 0.0
-
-
-def test_a_steel_ball_softens_the_contact_by_one_percent():
-    """Steel instead of rigid at ν 0.4: F at given d -1 %, p0 at given F -0.5 %, half angle +0.1°."""
-    steel, rigid = bs.Exact().press(HIP, force=3000.0), bs.Exact().press(RIGID, force=3000.0)
-    assert rigid.max_pressure / steel.max_pressure == pytest.approx(1.005, abs=2e-3)
-    assert np.degrees(steel.half_angle - rigid.half_angle) == pytest.approx(0.1, abs=0.05)
-    d = rigid.indentation
-    at_depth = [bs.Exact().press(which, indentation=d).force for which in (RIGID, HIP)]
-    assert at_depth[0] / at_depth[1] == pytest.approx(1.010, abs=2e-3)
-
-
-def test_a_backing_of_the_liners_material_is_a_thicker_liner():
-    split = bs.Joint(
-        ball_radius=17.9,
-        clearance=0.1,
-        liner_thickness=4.0,
-        liner=bs.UHMWPE,
-        backing=(bs.Layer(thickness=2.75, material=bs.UHMWPE),),
-    )
-    one, other = (bs.Exact().press(which, force=3000.0) for which in (RIGID, split))
-    assert one.indentation == pytest.approx(other.indentation, rel=1e-9)
-    soft = bs.Exact().press(
-        bs.Joint(
-            ball_radius=17.9,
-            clearance=0.1,
-            liner_thickness=6.75,
-            liner=bs.UHMWPE,
-            backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),),
-            support=bs.Support.FREE,
-        ),
-        force=3000.0,
-    )
-    assert soft.indentation > one.indentation
-    assert soft.max_pressure < one.max_pressure
 
 
 @pytest.mark.parametrize("tolerance", some([1e-6, 1e-9, 1e-3], 1))
@@ -193,13 +132,9 @@ def test_the_error_estimate_holds(tolerance):
     """On random joints the true error (against a much finer solution) is below the estimate, or below rounding."""
     rng = np.random.default_rng(11)
     for _ in range(12):
-        one = bs.Joint(
-            ball_radius=18.0,
-            clearance=0.1,
-            liner_thickness=18.0 / 10 ** rng.uniform(-1, 1.2),
-            liner=bs.Material(young=1000.0, poisson=rng.uniform(-0.3, 0.4999)),
-            ball=bs.STEEL if rng.random() < 0.5 else None,
-        )
+        thickness, liner = 18.0 / 10 ** rng.uniform(-1, 1.2), plastic(rng.uniform(-0.3, 0.4999))
+        ball = bs.STEEL if rng.random() < 0.5 else None
+        one = bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=thickness, liner=liner, ball=ball)
         angle = np.radians(rng.uniform(1.0, 84.0))
         contact = bs.Exact(tolerance=tolerance).press(one, half_angle=angle)
         finer = bs.Exact(tolerance=1e-10).press(one, half_angle=angle)
@@ -212,36 +147,29 @@ def test_the_error_estimate_holds(tolerance):
 def test_half_angles_beyond_85_degrees_are_not_reached():
     contact = bs.Exact().press(RIGID, half_angle=np.radians([84.9, 85.1]))
     np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.NOT_REACHED])
-    assert bs.Exact().press(RIGID, force=1e9).status is bs.Status.NOT_REACHED
-    assert np.isnan(bs.Exact().press(RIGID, force=1e9).max_pressure)
+    heavy = bs.Exact().press(RIGID, force=1e9)
+    assert heavy.status is bs.Status.NOT_REACHED
+    assert np.isnan(heavy.max_pressure)
 
 
-def test_joints_without_a_solution_are_refused():
-    with pytest.raises(ValueError, match=r"exact has no answer for ν = 0\.5: a liner of ν = 0\.5 between fixed walls"):
-        bs.Exact().press(
-            bs.Joint(
-                ball_radius=16.0, clearance=0.1, liner_thickness=6.0, liner=bs.Material(young=1000.0, poisson=0.5)
-            ),
-            force=1.0,
-        )
-    with pytest.raises(ValueError, match="exact has no answer for c = 0: without clearance"):
-        bs.Exact().press(bs.Joint(ball_radius=16.0, clearance=0.0, liner_thickness=6.0, liner=bs.UHMWPE), force=1.0)
-    with pytest.raises(ValueError, match="tolerance = 1e-15 is not allowed: double precision keeps"):
-        bs.Exact(tolerance=1e-15)
-    with pytest.raises(TypeError, match="gap must be LinearGap or CircularGap"):
-        bs.Exact(gap="linear")
-    with pytest.raises(ValueError, match="displacements and stresses are for one contact"):
-        bs.Exact().press(RIGID, force=np.array([1.0, 2.0])).displacement(0.1)
-    with pytest.raises(ValueError, match="need a contact under load"):
-        bs.Exact().press(RIGID, force=0.0).stress(0.0, 1.0)
-    with pytest.raises(ValueError, match="depth = -1 is not allowed"):
-        bs.Exact().press(RIGID, force=1.0).stress(0.0, -1.0)
-    with pytest.raises(ValueError, match="depth = 7 is not allowed: a depth .mm. must lie between 0 and 6.75"):
-        bs.Exact().press(RIGID, force=1.0).stress(0.0, 7.0)
-    with pytest.raises(ValueError, match="half_angle = .* at least 1 degree: use hertz"):
-        bs.Exact().press(RIGID, force=1e-6).displacement(0.0)
-    with pytest.raises(TypeError, match="tolerance must be a number"):
-        bs.Exact(tolerance="a")
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: bs.Exact().press(RIGID.replace(liner=plastic(0.5)), force=1.0), r"no answer for ν = 0\.5: a liner of"),
+        (lambda: bs.Exact().press(RIGID.replace(clearance=0.0), force=1.0), "no answer for c = 0: without clearance"),
+        (lambda: bs.Exact(tolerance=1e-15), "tolerance = 1e-15 is not allowed: double precision keeps"),
+        (lambda: bs.Exact(tolerance="a"), "tolerance must be a number"),
+        (lambda: bs.Exact(gap="linear"), "gap must be LinearGap or CircularGap"),
+        (lambda: bs.Exact().press(RIGID, force=np.array([1.0, 2.0])).displacement(0.1), "stresses are for one contact"),
+        (lambda: bs.Exact().press(RIGID, force=0.0).stress(0.0, 1.0), "need a contact under load"),
+        (lambda: bs.Exact().press(RIGID, force=1.0).stress(0.0, -1.0), "depth = -1 is not allowed"),
+        (lambda: bs.Exact().press(RIGID, force=1.0).stress(0.0, 7.0), "depth = 7 .* must lie between 0 and 6.75"),
+        (lambda: bs.Exact().press(RIGID, force=1e-6).displacement(0.0), "half_angle = .* 1 degree: use hertz"),
+    ],
+)
+def test_joints_without_a_solution_are_refused(call, message):
+    with pytest.raises((ValueError, TypeError), match=message):
+        call()
 
 
 def test_stress_at_the_surface_is_the_pressure():
@@ -252,29 +180,23 @@ def test_stress_at_the_surface_is_the_pressure():
     np.testing.assert_allclose(stress.shear, 0.0, atol=1e-9)
     inside = contact.stress(angle, 2.0)
     first, second, third = inside.principal
-    assert np.all(first >= second)
-    assert np.all(second >= third)
+    assert np.all((first >= second) & (second >= third))
     np.testing.assert_allclose(first + second + third, inside.radial + inside.meridional + inside.hoop, rtol=1e-12)
     spread = ((first - second) ** 2 + (second - third) ** 2 + (third - first) ** 2) / 2
     np.testing.assert_allclose(inside.von_mises, np.sqrt(spread), rtol=1e-12)
-
-
-def test_stress_at_one_point_is_made_of_floats():
-    stress = bs.Exact().press(HIP, force=3000.0).stress(angle=0.1, depth=1.0)
-    assert {type(part) for part in vars(stress).values()} == {float}
+    assert {type(part) for part in vars(contact.stress(angle=0.1, depth=1.0)).values()} == {float}
 
 
 def test_stress_below_a_small_contact_is_hertz():
     """Below a Hertz contact the von Mises stress is highest at 0.48 a, 0.62 p0 (ν 0.3)."""
-    deep = bs.Joint(
-        ball_radius=18.0, clearance=1.0, liner_thickness=np.inf, liner=bs.Material(young=1000.0, poisson=0.3)
-    )
-    contact = bs.Exact().press(deep, half_angle=np.radians(2.0))
-    peak = contact.peak_stress
-    a = contact.joint.socket_radius * np.sin(contact.half_angle)
+    contact = bs.Exact().press(massive(0.3, ball_radius=18.0, clearance=1.0), half_angle=np.radians(2.0))
+    peak, a = contact.peak_stress, contact.joint.socket_radius * np.sin(contact.half_angle)
     assert peak.von_mises / contact.max_pressure == pytest.approx(0.62, abs=0.01)
     assert peak.depth / a == pytest.approx(0.48, abs=0.03)
     assert peak.angle == pytest.approx(0.0, abs=1e-3)
+    lined = bs.Exact().press(RIGID.replace(liner=plastic(0.3)), half_angle=np.radians([0.3, 0.9, 1.1]))
+    np.testing.assert_allclose(lined.von_mises[:2] / lined.max_pressure[:2], 0.62, atol=1e-3)
+    assert lined.von_mises[2] / lined.max_pressure[2] == pytest.approx(0.62, abs=0.02)
 
 
 def test_stresses_balance_the_load_at_any_depth():
@@ -290,8 +212,6 @@ def test_stresses_balance_the_load_at_any_depth():
 
 def test_kernel_is_the_sum_of_its_modes():
     """The split into closed forms and a rest against the plain sum, smoothed to converge."""
-    from ballsocket.elasticity.exact import grid
-
     socket = Socket(radius=18.0, shells=(Shell(thickness=6.75, young=1000.0, poisson=0.4),))
     k = Kernel(socket=socket, ball=ElasticBall(radius=17.9, young=3000.0, poisson=0.2))
     n = np.arange(200_000)
@@ -307,12 +227,9 @@ def test_kernel_is_the_sum_of_its_modes():
 
 
 def test_cached_intervals_give_the_operators_of_new_ones():
-    """Cached operators equal new ones, for few modes and for more modes than are cached."""
-    from ballsocket.elasticity.exact.grid import cached_grid
-    from ballsocket.elasticity.exact.kernel import CachedIntervals, Intervals
-
+    """For few modes and for more modes than are cached."""
     angle = np.radians([1.0, 20.0, 60.0, 85.0])
-    kept, fresh = (kind(half_angle=angle, grid=cached_grid(10)) for kind in (CachedIntervals, Intervals))
+    kept, fresh = (kind(half_angle=angle, grid=grid.cached_grid(10)) for kind in (CachedIntervals, Intervals))
     for thickness in (20.0, 6.75, 0.5):
         k = Kernel(socket=Socket(radius=18.0, shells=(Shell(thickness=thickness, young=1000.0, poisson=0.4),)))
         for _ in range(2):  # computed, then read from the cache
@@ -322,36 +239,30 @@ def test_cached_intervals_give_the_operators_of_new_ones():
 
 def test_the_perfect_fit_limits_the_half_angle():
     """In a massive socket the ball fills its socket at 83.55°: larger loads approach it, larger angles are none."""
-    massive = bs.Joint(
-        ball_radius=18.0, clearance=0.1, liner_thickness=np.inf, liner=bs.Material(young=1000.0, poisson=0.3)
-    )
-    contact = bs.Exact().press(massive, half_angle=np.radians([82.75, 83.5, 84.0]))
+    filled = massive(0.3, ball_radius=18.0)
+    contact = bs.Exact().press(filled, half_angle=np.radians([82.75, 83.5, 84.0]))
     np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OK, bs.Status.NOT_REACHED])
     assert np.isnan(contact.max_pressure[2])
     assert "or less if the ball fills its socket first" in contact.notes[0]
     for name in ("force", "indentation"):
-        back = bs.Exact().press(massive, **{name: getattr(contact, name)[:2]})
+        back = bs.Exact().press(filled, **{name: getattr(contact, name)[:2]})
         np.testing.assert_allclose(back.half_angle, contact.half_angle[:2], rtol=1e-9)
 
 
-def test_an_incompressible_liner_has_a_solution_on_a_soft_backing():
-    soft = bs.Material(young=1000.0, poisson=0.5)
-    backed = bs.Joint(
-        ball_radius=17.9,
-        clearance=0.1,
-        liner_thickness=6.75,
-        liner=soft,
-        backing=(bs.Layer(thickness=np.inf, material=bs.UHMWPE),),
-    )
-    massive = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=np.inf, liner=soft)
-    for joint_here in (backed, massive):
-        contact = bs.Exact().press(joint_here, force=1000.0)
-        assert contact.status is bs.Status.OK
-        assert contact.error["max_pressure"] < 1e-6
+SOFT_BACKED = RIGID.replace(liner=plastic(0.5), backing=(bs.Layer(thickness=np.inf, material=bs.UHMWPE),))
+FREE = RIGID.replace(liner=plastic(0.5), support=bs.Support.FREE)
+
+
+@pytest.mark.parametrize("soft", [SOFT_BACKED, massive(0.5), FREE], ids=["backed", "massive", "free"])
+def test_an_incompressible_liner_that_can_give_way_has_a_solution(soft):
+    contact, nearly = (bs.Exact().press(soft.replace(liner=plastic(nu)), force=1000.0) for nu in (0.5, 0.49999))
+    assert contact.status is bs.Status.OK
+    assert contact.error["max_pressure"] < 1e-6
+    assert contact.indentation == pytest.approx(nearly.indentation, rel=1e-4)
 
 
 def test_a_large_clearance_is_valid_only_with_the_circular_gap():
-    loose = bs.Joint(ball_radius=17.0, clearance=1.0, liner_thickness=6.75, liner=bs.UHMWPE)
+    loose = RIGID.replace(ball_radius=17.0, clearance=1.0)
     assert not bs.Exact().press(loose, force=3000.0).valid
     assert bs.Exact(gap=bs.CircularGap).press(loose, force=3000.0).valid
     wide = bs.Exact(gap=bs.CircularGap).press(loose, half_angle=np.radians([60.0, 80.0]))
@@ -368,43 +279,21 @@ def test_energy_is_the_work_and_stiffness_the_slope(gap):
     np.testing.assert_allclose((above.force - below.force) / (2 * step), here.stiffness, rtol=1e-6)
 
 
-def test_the_stress_of_a_narrow_contact_is_that_of_a_half_space():
-    """Below Hertz' pressure the largest von Mises stress is 0.62 p0 for ν 0.3."""
-    liner = bs.Material(young=1000.0, poisson=0.3)
-    joint_here = bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=6.75, liner=liner)
-    contact = bs.Exact().press(joint_here, half_angle=np.radians([0.3, 0.9, 1.1]))
-    np.testing.assert_allclose(contact.von_mises[:2] / contact.max_pressure[:2], 0.62, atol=1e-3)
-    assert contact.von_mises[2] / contact.max_pressure[2] == pytest.approx(0.62, abs=0.02)
-
-
 def test_the_bounds_of_the_stress_are_ten_percent_from_a_coarse_sum():
-    soft = bs.Layer(thickness=10.0, material=bs.CANCELLOUS_BONE)
-    contact = bs.Exact().press(HIP.replace(backing=(soft,)), force=np.array([1e-6, 300.0, 3000.0]))
+    soft = HIP.replace(backing=(bs.Layer(thickness=10.0, material=bs.CANCELLOUS_BONE),))
+    contact = bs.Exact().press(soft, force=np.array([1e-6, 300.0, 3000.0]))
     low, high = contact.von_mises_bounds
-    assert (low < contact.von_mises).all()
-    assert (contact.von_mises < high).all()
+    assert ((low < contact.von_mises) & (contact.von_mises < high)).all()
     np.testing.assert_allclose(high / low, 1.1 / 0.9, rtol=1e-12)
-    middle = (low + high) / 2
-    np.testing.assert_allclose(middle, contact.von_mises, rtol=0.02)
-
-
-def power_law(state_error):
-    """Make contacts with d ~ ε² and F ~ ε³, as those of Hertz."""
-    angle = np.array([0.1, 0.2])
-    d, force = 3.0 * angle**2, 5.0 * angle**3
-    return SimpleNamespace(
-        half_angle=angle,
-        indentation=d,
-        force=force,
-        stiffness=1.5 * force / d,
-        indentation_slope=2 * d / angle,
-        error=np.array(state_error),
-    )
+    np.testing.assert_allclose((low + high) / 2, contact.von_mises, rtol=0.02)
 
 
 def test_errors_grow_with_the_slopes_of_a_point_contact():
     """Three times the error e of the solution: e/3 in ε by force, e (1 + 2/3) in d, 2 e in the pressure."""
-    state = power_law([1e-7, 2e-7])
+    angle = np.array([0.1, 0.2])
+    d, force, error = 3.0 * angle**2, 5.0 * angle**3, np.array([1e-7, 2e-7])
+    slopes = {"stiffness": 1.5 * force / d, "indentation_slope": 2 * d / angle}
+    state = SimpleNamespace(half_angle=angle, indentation=d, force=force, error=error, **slopes)
     for kind, slope in (("indentation", 2.0), ("force", 3.0)):
         np.testing.assert_allclose(load_curve.log_slope(kind, state), slope)
     e = 3 * state.error
@@ -449,10 +338,8 @@ def test_windows_of_knots_surround_their_half_angles():
 def test_a_refined_search_lies_between_the_neighbours_of_the_largest_value(index):
     values = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0, 8.0])
     finer = subsurface._refine_points_around(values, index)
+    assert finer[[0, 4, 8]].tolist() == [values[max(index - 1, 0)], values[index], values[min(index + 1, 6)]]
     assert len(finer) == 9
-    assert finer[4] == values[index]
-    assert finer[0] == values[max(index - 1, 0)]
-    assert finer[-1] == values[min(index + 1, 6)]
     assert (np.diff(finer) >= 0).all()
 
 
@@ -471,18 +358,6 @@ def test_the_peak_stress_is_the_largest_of_a_fine_search():
     assert contact.von_mises == peak.von_mises
 
 
-def test_an_incompressible_liner_that_is_free_outside_has_an_answer():
-    soft = RIGID.replace(liner=bs.Material(young=1000.0, poisson=0.5), support=bs.Support.FREE)
-    contact = bs.Exact().press(soft, force=100.0)
-    assert contact.status is bs.Status.OK
-    nearly = bs.Exact().press(soft.replace(liner=bs.Material(young=1000.0, poisson=0.49999)), force=100.0)
-    assert contact.indentation == pytest.approx(nearly.indentation, rel=1e-4)
-
-
 def test_zeta_values_are_those_of_scipy():
-    from scipy.special import zeta
-
-    from ballsocket.elasticity.exact import grid
-
     integers = [*range(2, 2 * grid._MAX_TERMS)]
     assert [grid._zeta(s) for s in integers] == pytest.approx(zeta(integers).tolist(), rel=3e-16)
