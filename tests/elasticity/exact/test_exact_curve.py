@@ -22,21 +22,16 @@ JOINTS = {
     "cement and bone, full before 85°": HIP.replace(backing=(CEMENT, BONE)),
     "free outside, lifted at the pole": HIP.replace(support=bs.Support.FREE, liner_thickness=1.5),
     "a soft ball in a massive socket": HIP.replace(ball=SOFT, liner_thickness=inf),
-    "a thin liner that keeps its volume": HIP.replace(
-        liner=bs.Material(young=10.0, poisson=0.4999), liner_thickness=1.0
-    ),
+    "thin and incompressible": HIP.replace(liner=bs.Material(young=10.0, poisson=0.4999), liner_thickness=1.0),
 }
 NAMES = (
     *("force", "indentation", "half_angle", "max_pressure", "pole_pressure", "stiffness", "energy"),
     *("pressure_integral", "area", "foundation_modulus"),
 )
+EVERY_JOINT = pytest.mark.parametrize("joint", JOINTS.values(), ids=JOINTS)
 
 
-@pytest.fixture(params=JOINTS, ids=list(JOINTS))
-def joint(request):
-    return JOINTS[request.param]
-
-
+@EVERY_JOINT
 def test_every_quantity_is_within_its_stated_error(joint):
     angles = np.radians([1e-3, 0.3, 2.0, 11.0, 29.0, 47.0, 63.0, 77.0])
     exact, curve = bs.Exact(tolerance=1e-9).press(joint, half_angle=angles), bs.ExactCurve()
@@ -50,14 +45,14 @@ def test_every_quantity_is_within_its_stated_error(joint):
             assert (off <= found.error.get(name, 1e-6) + 1e-10).all(), (kind, name)
 
 
+@EVERY_JOINT
 def test_every_joint_is_fitted_by_series(joint):
     """A curve that cannot be fitted would be solved contact by contact, with the same results."""
     state = bs.ExactCurve().press(joint, force=10.0).single_state
     assert isinstance(state, ChebyshevState)
-    series = state.series
+    series, knots = state.series, state.series.knots.half_angle
     assert series.is_accurate
     assert (series.truncation_error < 1e-6).all()
-    knots = series.knots.half_angle
     values, slopes = series.evaluate_dimensionless_functions(knots)
     np.testing.assert_allclose(values, chebyshev_curve._dimensionless_quantities(series.knots), rtol=1e-9, atol=1e-9)
     middle, step = knots[8:-4], 1e-5
@@ -65,6 +60,7 @@ def test_every_joint_is_fitted_by_series(joint):
     np.testing.assert_allclose(slopes[:, 8:-4], (above - below) / (2 * step), rtol=1e-4, atol=1e-6)
 
 
+@EVERY_JOINT
 def test_the_pressure_profile_is_within_a_millionth_of_the_peak(joint):
     angles = np.radians([0.3, 11.0, 47.0, 77.0])
     exact, found = (model.press(joint, half_angle=angles) for model in (bs.Exact(tolerance=1e-9), bs.ExactCurve()))
@@ -104,13 +100,12 @@ def test_stresses_equal_those_of_the_exact_solution():
 
 def test_validity_of_many_loads_needs_few_stress_solutions(monkeypatch):
     """Yield is checked at each load; the largest stress is located for a few contacts only."""
-    looks, forces = [], np.geomspace(1.0, 40_000.0, either(quick=1_000, long=20_000))
+    looks, forces = [], np.geomspace(1.0, 40_000.0, either(quick=1_000, long=5_000))
     peak = subsurface.largest_von_mises
     monkeypatch.setattr(subsurface, "largest_von_mises", lambda *all: looks.append(1) or peak(*all))
     found = bs.ExactCurve().press(JOINTS["shell"].replace(clearance=0.11), force=forces)
     first = int(np.argmin(found.valid))
-    assert found.valid[:first].all()
-    assert not found.valid[first:].any()
+    assert (found.valid == (np.arange(len(forces)) < first)).all()
     assert found.utilisation[first] == pytest.approx(1.38, rel=2e-3)
     assert len(looks) <= 41
 

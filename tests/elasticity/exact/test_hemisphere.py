@@ -106,12 +106,6 @@ def test_a_contact_is_near_the_hemisphere_up_to_fifteen_percent():
         assert limit.holds(contact)
 
 
-def test_a_common_hip_has_no_note():
-    contact = bs.Exact().press(bs.joints["hess-forsbach"], force=3000.0)
-    assert contact.notes == ()
-    assert max(map(abs, contact.hemisphere.values())) < NOTED_CHANGE
-
-
 def test_a_free_socket_has_the_change_of_finite_elements():
     """5 mm of liner without a backing: finite elements have d +14.1 % and dF/dd -16.2 % at 20 degrees."""
     joint = bs.joints["hip-28"].replace(support=bs.Support.FREE)
@@ -129,11 +123,10 @@ def test_the_change_does_not_depend_on_clearance_modulus_or_array():
 
 
 def test_layers_of_one_material_are_one_layer():
+    whole, inner, outer = (Shell(thickness=thickness, young=2.0, poisson=0.4) for thickness in (8.0, 3.0, 5.0))
     single, double = (
-        FreeFace(
-            socket=Socket(radius=10.0, shells=tuple(Shell(thickness=t, young=2.0, poisson=0.4) for t in thicknesses))
-        ).bore_displacement[:, :6]
-        for thicknesses in ((8.0,), (3.0, 5.0))
+        FreeFace(socket=Socket(radius=10.0, shells=shells)).bore_displacement[:, :6]
+        for shells in ((whole,), (inner, outer))
     )
     x = np.cos(np.linspace(0.0, 1.3, 9))
     waves = np.polynomial.legendre.legvander(x, len(single) - 1)
@@ -148,7 +141,6 @@ def test_tabulated_and_refined_models_estimate_the_change():
         assert closed_sphere_notes(contact)
         assert hemisphere_indentation_change(contact) == pytest.approx(exact.hemisphere["indentation"], rel=0.4)
         assert max_hemisphere_change(contact) > NOTED_CHANGE
-        assert model.press(bs.joints["hess-forsbach"], force=3000.0).notes == ()
     thicker = joint.replace(liner_thickness=30.0, liner=material(1000.0, 0.499))
     for model in (bs.Tabulated(), bs.Exact()):
         assert not model.press(thicker, half_angle=radians(60.0)).valid
