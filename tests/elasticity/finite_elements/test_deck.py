@@ -19,21 +19,14 @@ from ..calculix import needs_ccx
 
 LINER = bs.Material(young=1000.0, poisson=0.4)
 RIGID = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LINER)
-STEEL = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LINER, ball=bs.STEEL)
+STEEL, FREE = RIGID.replace(ball=bs.STEEL), RIGID.replace(support=bs.Support.FREE)
 TITANIUM, SOFT = bs.Layer(thickness=3.0, material=bs.TITANIUM), bs.Layer(thickness=4.0, material=bs.BONE_CEMENT)
 SLIDING = bs.Interface.SLIDING
 COARSE = bs.Adapted(elements=24)
 
 
-def joint(like: bs.Joint, **changes: object) -> bs.Joint:
-    names = ("ball_radius", "clearance", "liner_thickness", "liner", "ball", "backing", "support")
-    return bs.Joint(**{**{name: getattr(like, name) for name in names}, **changes})
-
-
-def pressed(
-    joint: bs.Joint, half_angle: float = 40.0, *, arc: float = 180.0, chamfer: float = 0.0, interface=None, **settings
-):
-    cup = bs.Cup(arc_of_cover=np.radians(arc), chamfer=chamfer, interface=interface or bs.Interface.BONDED)
+def pressed(joint, half_angle=40.0, *, arc=180.0, chamfer=0.0, interface=bs.Interface.BONDED, **settings):
+    cup = bs.Cup(arc_of_cover=np.radians(arc), chamfer=chamfer, interface=interface)
     model = bs.FiniteElement(**{"spacing": COARSE, "meshes": 1, **settings}, cup=cup)
     return model.press(joint, half_angle=np.radians(half_angle))
 
@@ -83,7 +76,7 @@ class Read:
 
 @pytest.mark.parametrize("element", list(bs.Element))
 def test_the_deck_has_the_mesh_of_the_solution(element):
-    contact = pressed(joint(STEEL, backing=(TITANIUM,)), element=element)
+    contact = pressed(STEEL.replace(backing=(TITANIUM,)), element=element)
     deck = Read(deck_of(contact, steps=3).text())
     middles = contact.mesh.elements if element is bs.Element.BIQUADRATIC else 0
     assert len(deck.elements) == contact.mesh.elements
@@ -91,9 +84,12 @@ def test_the_deck_has_the_mesh_of_the_solution(element):
     assert {node for nodes in deck.elements.values() for node in nodes} == set(deck.nodes)
     kind = "CAX8R" if middles else "CAX4"
     assert deck.heads("*ELEMENT") == [f"*ELEMENT, TYPE={kind}, ELSET={name}" for name in ("LINER", "BACKING1", "BALL")]
-    corners = np.array([[deck.nodes[node] for node in nodes[:4]] for nodes in deck.elements.values()])
-    x, y = corners.transpose(2, 1, 0)
-    assert np.all(np.sum(x * np.roll(y, -1, 0) - y * np.roll(x, -1, 0), axis=0) > 0)  # counterclockwise
+    places = np.array([[deck.nodes[node] for node in nodes] for nodes in deck.elements.values()])
+    corners, ends = places[:, :4], np.roll(places[:, :4], -1, axis=1)
+    assert np.all(np.linalg.det(np.stack([corners, ends], axis=-2)).sum(axis=1) > 0)  # counterclockwise
+    if middles:
+        apart = np.linalg.norm(places[:, 4:] - (corners + ends) / 2, axis=-1)
+        assert np.all(apart < 0.2 * np.linalg.norm(corners - ends, axis=-1))
     part = contact.section["liner"]
     outline = {(round(a, 8), round(b, 8)) for a, b in part.position.T}
     liner = [row for head, rows in deck.blocks if head.endswith("ELSET=LINER") for row in rows]
@@ -102,17 +98,8 @@ def test_the_deck_has_the_mesh_of_the_solution(element):
     assert len(outline) - len(places) == (len(liner) if middles else 0)
 
 
-def test_middle_nodes_lie_between_their_corners():
-    deck = Read(deck_of(pressed(RIGID)).text())
-    places = np.array([[deck.nodes[node] for node in nodes] for nodes in deck.elements.values()])
-    corners, middles = places[:, :4], places[:, 4:]
-    apart = np.linalg.norm(middles - (corners + np.roll(corners, -1, axis=1)) / 2, axis=-1)
-    assert np.all(apart < 0.2 * np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=-1))
-
-
 def test_each_part_has_a_section_and_its_elastic_constants():
-    made = deck_of(pressed(joint(STEEL, backing=(TITANIUM, SOFT))))
-    deck = Read(made.text())
+    deck = Read(deck_of(pressed(STEEL.replace(backing=(TITANIUM, SOFT)))).text())
     names = ["LINER", "BACKING1", "BACKING2", "BALL"]
     assert deck.heads("*MATERIAL") == [f"*MATERIAL, NAME={name}" for name in names]
     assert deck.heads("*SOLID SECTION") == [f"*SOLID SECTION, ELSET={name}, MATERIAL={name}" for name in names]
@@ -152,18 +139,15 @@ def test_steps_have_their_displacements_and_expected_results():
         np.testing.assert_allclose(made.expected[name], getattr(again, name))
     assert made.expected["force"][-1] == pytest.approx(contact.force, rel=1e-6)
     assert made.expected["half_angle_deg"][-1] == pytest.approx(40.0, abs=1e-4)
-    assert [int(line.split()[1]) for line in deck.title[-5:]] == [1, 2, 3, 4, 5]
-    np.testing.assert_allclose([float(word) for word in deck.title[-1].split()[1:]][1:],
-                               [made.expected[name][-1] for name in made.expected], rtol=1e-6)  # fmt: skip
+    printed = np.array([line.split()[1:] for line in deck.title[-5:]], dtype=float)
+    np.testing.assert_allclose(printed, np.column_stack([range(1, 6), *made.expected.values()]), rtol=1e-6)
 
 
 def test_the_title_states_joint_units_and_scale():
-    named = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=LINER, name="ø 36\n*STEP")
-    made = deck_of(pressed(named), steps=2, scale=0.002)
-    title = " ".join(Read(made.text()).title)
+    deck = Read(deck_of(pressed(RIGID.replace(name="ø 36\n*STEP")), steps=2, scale=0.002).text())
     for words in (bs.__version__, "R1 17.9 mm, clearance 0.1 mm", "N, mm, MPa", "multiplied by 0.002", "2 steps"):
-        assert words in title
-    assert len(Read(made.text()).heads("*STEP")) == 2
+        assert words in " ".join(deck.title)
+    assert len(deck.heads("*STEP")) == 2
 
 
 def test_an_elastic_ball_is_pushed_at_its_equator_and_a_rigid_one_at_all_nodes():
@@ -193,16 +177,10 @@ def test_a_rigid_ball_is_a_thin_ring_one_element_longer_than_the_bore():
 
 def test_facets_leave_a_gap_of_chords_or_parabolas():
     """Largest distance from an arc to the element through its nodes; none where both bodies have the same nodes."""
-    half, radius = 0.05, 18.0
-    pair = SimpleNamespace(
-        surfaces=[
-            SimpleNamespace(corners=np.arange(0.0, 0.91, 0.05)),
-            SimpleNamespace(corners=np.append(np.arange(0.0, 0.61, 2 * half), [1.6, 2.5])),
-        ],
-        angle=np.arange(0.0, 0.61, 0.05),
-        radius=radius,
-        resolution=SimpleNamespace(order=1),
-    )
+    half, radius, angle = 0.05, 18.0, np.arange(0.0, 0.61, 0.05)
+    corners = np.arange(0.0, 0.91, 0.05), np.append(np.arange(0.0, 0.61, 2 * half), [1.6, 2.5])
+    surfaces, resolution = [SimpleNamespace(corners=row) for row in corners], SimpleNamespace(order=1)
+    pair = SimpleNamespace(surfaces=surfaces, angle=angle, radius=radius, resolution=resolution)
     assert faceting_gap(pair) == pytest.approx(radius * (1 - np.cos(half)), rel=1e-3)
     pair.resolution.order = 2
     t = np.linspace(-1.0, 1.0, 2001)
@@ -213,20 +191,18 @@ def test_facets_leave_a_gap_of_chords_or_parabolas():
 
 
 def test_a_fixed_liner_has_a_fixed_outer_surface():
-    deck = Read(deck_of(pressed(joint(RIGID, backing=(TITANIUM,)))).text())
+    deck = Read(deck_of(pressed(RIGID.replace(backing=(TITANIUM,)))).text())
     radius, angle = deck.polar("FIXED")
     np.testing.assert_allclose(radius, 18.0 + 6.75 + 3.0)
     assert angle.min() == 0
     assert angle.max() == pytest.approx(np.pi / 2)
-    axis = deck.polar("UPRIGHT")[1]
-    assert np.count_nonzero(axis == 0) > 10
-    assert not deck.heads("*TRANSFORM")
-    assert not deck.heads("*EQUATION")
+    assert np.count_nonzero(deck.polar("UPRIGHT")[1] == 0) > 10
+    assert not deck.heads("*TRANSFORM") + deck.heads("*EQUATION")
 
 
 @pytest.mark.parametrize("arc", some([140.0, 180.0], 1))
 def test_a_free_liner_is_supported_at_its_rim(arc):
-    deck = Read(deck_of(pressed(joint(RIGID, backing=(TITANIUM,), support=bs.Support.FREE), arc=arc)).text())
+    deck = Read(deck_of(pressed(FREE.replace(backing=(TITANIUM,)), arc=arc)).text())
     radius, angle = deck.polar("SEATED")
     np.testing.assert_allclose(angle, np.radians(arc / 2), rtol=1e-9)
     assert radius.min() == pytest.approx(18.0 + 6.75)
@@ -251,7 +227,7 @@ def test_a_sliding_liner_in_a_rigid_socket_has_a_radial_support():
 @pytest.mark.long
 def test_a_sliding_liner_shares_the_radial_displacement_of_its_backing():
     bonded, sliding = (
-        Read(deck_of(pressed(joint(RIGID, backing=(SOFT, TITANIUM)), interface=interface)).text())
+        Read(deck_of(pressed(RIGID.replace(backing=(SOFT, TITANIUM)), interface=interface)).text())
         for interface in (bs.Interface.BONDED, SLIDING)
     )
     terms = [row for row in sliding.of("*EQUATION") if len(row) == 6]
@@ -278,11 +254,8 @@ def test_a_chamfer_is_excluded_from_the_contact_surface():
 @pytest.mark.parametrize(
     ("contact", "words"),
     [
-        (
-            lambda: bs.FiniteElement(spacing=COARSE, meshes=1).press(RIGID, force=np.array([1.0, 2.0])),
-            "a deck needs one contact",
-        ),
-        (lambda: bs.FiniteElement(spacing=COARSE, meshes=1).press(RIGID, force=0.0), "under load"),
+        (lambda: pressed(RIGID, [40.0, 50.0]), "a deck needs one contact"),
+        (lambda: pressed(RIGID, 0.0), "under load"),
         (lambda: pressed(RIGID, gap=bs.CircularGap), "linear gap"),
         (lambda: pressed(STEEL, ball_spacing=bs.Adapted(elements=36), element=bs.Element.BILINEAR), "do not match"),
     ],
@@ -292,9 +265,10 @@ def test_contacts_that_no_deck_can_represent_are_refused(contact, words):
         deck_of(contact())
 
 
-@pytest.mark.parametrize(
-    "wrong", [{"steps": 0}, {"steps": 10**6}, {"steps": 2.5}, {"scale": 0.0}, {"scale": 2.0}, {"scale": np.nan}]
-)
+WRONG = [{"steps": 0}, {"steps": 10**6}, {"steps": 2.5}, {"scale": 0.0}, {"scale": 2.0}, {"scale": np.nan}]
+
+
+@pytest.mark.parametrize("wrong", WRONG)
 def test_invalid_steps_and_scales_are_refused(wrong):
     with pytest.raises(ValueError, match=f"{next(iter(wrong))} = .* is not allowed"):
         deck_of(pressed(RIGID), **wrong)
@@ -327,39 +301,15 @@ def test_files_appear_complete_or_not_at_all(tmp_path, monkeypatch):
     assert path.read_text() == made.text()
 
 
-# --- reading CalculiX ---
-
-DAT = """
- total force (fx,fy,fz) for set PUSHED and time  0.5000000E+00
-
-        1.0E-01 -5.000000E-01  0.0E+00
-
- total force (fx,fy,fz) for set PUSHED and time  0.1000000E+01
-
-        1.0E-01 -1.000000E+00  0.0E+00
-
- displacements (vx,vy,vz) for set BORE and time  0.1000000E+01
-
-         7  1.000000E-06 -2.000000E-06  0.000000E+00
-        12  3.000000E-06 -4.000000E-06  0.000000E+00
-
- total force (fx,fy,fz) for set PUSHED and time  0.1999999E+01
-
-        1.0E-01 -3.000000E+00  0.0E+00
-
- total force (fx,fy,fz) for set PUSHED and time  0.2000000E+01
-
-        1.0E-01 -2.000000E+00  0.0E+00
-
- total force (fx,fy,fz) for set PUSHED and time  0.2700000E+01
-
-        1.0E-01 -7.000000E+00  0.0E+00
-"""
-
-
 def test_the_end_of_each_step_is_read(tmp_path):
     path = tmp_path / "a.dat"
-    path.write_text(DAT)
+    rows = (
+        *(("PUSHED", 0.5, "0.1 -0.5 0.0"), ("PUSHED", 1.0, "0.1 -1.0 0.0")),
+        ("BORE", 1.0, "7 1.0E-06 -2.0E-06 0.0\n        12 3.0E-06 -4.0E-06 0.0"),
+        *(("PUSHED", 1.999999, "0.1 -3.0 0.0"), ("PUSHED", 2.0, "0.1 -2.0 0.0"), ("PUSHED", 2.7, "0.1 -7.0 0.0")),
+    )
+    head = " total force (fx,fy,fz) for set {} and time  {:.7E}\n\n        {}\n\n"
+    path.write_text("\n" + "".join(head.format(*row) for row in rows))
     forces = ccx.read_printed(path, "PUSHED")
     assert {step: rows[0, 1] for step, rows in forces.items()} == {0: -1.0, 1: -2.0}
     np.testing.assert_array_equal(ccx.read_printed(path, "BORE")[0][:, 0], [7, 12])
@@ -392,6 +342,8 @@ def test_the_edge_is_extrapolated_from_five_nodes_behind_the_smeared_ones():
     gap[50:52] *= 3.0
     gap[57:] *= 2.0
     assert ccx.edge_angle(angle, gap) == pytest.approx(0.482, abs=1e-9)
+    last_two = np.append(np.zeros(99), [0.01, 0.02])
+    assert 0.9 < ccx.edge_angle(angle, last_two) <= 1.0
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e-3])
@@ -403,12 +355,8 @@ def test_gap_between_the_displaced_surfaces_is_computed_in_both_directions(scale
     nodes = [3, 5, 8, 9]
     bore = np.column_stack([nodes, scale * moved * np.sin(angle), -scale * moved * np.cos(angle)])
     ball = np.column_stack([[11, 12], [0.0, 0.0], [-scale * d, -scale * d]])
-    deck = {
-        "bore": {"node": nodes, "angle": angle.tolist()},
-        "round": {"node": [11, 12], "angle": [0.0, 1.6]},
-        "joint": {"clearance": clearance},
-        "scale": scale,
-    }
+    deck = {"bore": {"node": nodes, "angle": angle.tolist()}, "round": {"node": [11, 12], "angle": [0.0, 1.6]}}
+    deck |= {"joint": {"clearance": clearance}, "scale": scale}
     surfaces = ccx._Surfaces(deck=deck, bore=bore[::-1], ball=ball, pressures={})
     assert surfaces.indentation == pytest.approx(d)
     assert surfaces.gap == pytest.approx(moved - imposed, abs=1e-12)
@@ -420,6 +368,8 @@ def test_the_pole_pressure_excludes_the_neighbouring_nodes():
     pressures[:6] = (0.0, 0.0, 24.0, 15.0, 9.0, 11.0)
     pressures[angle > 0.8] = 77.0
     assert ccx.pressure_at_pole(angle, pressures, 1.0) == pytest.approx(10.0, rel=1e-6)
+    coarse = np.linspace(0.0, 1.0, 9)
+    assert ccx.pressure_at_pole(coarse, 7.0 - 3.0 * coarse**2, 1.0) == pytest.approx(7.0, rel=1e-9)
 
 
 def test_a_missing_calculix_is_reported(tmp_path, monkeypatch):
@@ -427,9 +377,6 @@ def test_a_missing_calculix_is_reported(tmp_path, monkeypatch):
     monkeypatch.setattr(shutil, "which", lambda _: None)
     with pytest.raises(FileNotFoundError, match="CalculiX is not installed"):
         ccx.run(tmp_path)
-
-
-# --- running CalculiX ---
 
 
 @needs_ccx
@@ -467,21 +414,18 @@ def test_steps_that_were_not_reached_are_nan(tmp_path):
 
 
 VARIANTS = {
-    "rigid ball": (RIGID, {}, 5e-3),
-    "steel ball": (STEEL, {}, 5e-3),
-    "nearly incompressible": (joint(RIGID, liner=bs.Material(young=1000.0, poisson=0.49)), {}, 5e-3),
-    "metal-backed": (joint(STEEL, backing=(TITANIUM,)), {}, 5e-3),
-    "metal-backed, free": (joint(RIGID, backing=(TITANIUM,), support=bs.Support.FREE), {}, 5e-3),
+    "nearly incompressible": (RIGID.replace(liner=bs.Material(young=1000.0, poisson=0.49)), {}, 5e-3),
+    "metal-backed": (STEEL.replace(backing=(TITANIUM,)), {}, 5e-3),
     "sliding": (RIGID, {"interface": SLIDING}, 5e-3),
-    "sliding on a backing": (joint(RIGID, backing=(SOFT,)), {"interface": SLIDING}, 5e-3),
+    "sliding on a backing": (RIGID.replace(backing=(SOFT,)), {"interface": SLIDING}, 5e-3),
     "chamfered": (RIGID, {"arc": 150.0, "chamfer": 2.0}, 5e-3),
-    "free": (joint(RIGID, support=bs.Support.FREE), {"arc": 140.0}, 1e-2),  # its pressure is nearly flat
+    "free": (FREE, {"arc": 140.0}, 1e-2),  # its pressure is nearly flat
 }
 
 
 @pytest.mark.long
 @needs_ccx
-@pytest.mark.parametrize("name", some(VARIANTS, 2))
+@pytest.mark.parametrize("name", VARIANTS)
 def test_calculix_has_the_expected_results(name, tmp_path):
     """Both are on the same coarse mesh; measured: force 0.05 to 0.13 %, half angle 0.07 degrees."""
     like, settings, tolerance = VARIANTS[name]
@@ -500,10 +444,8 @@ def test_the_penalty_reduces_the_force_by_less_than_a_thousandth(tmp_path):
     made = deck_of(pressed(RIGID), steps=1)
     forces = []
     for name, factor in (("own", 1.0), ("stiff", 20.0)):
-        path = made.write(tmp_path / name)
-        path.write_text(
-            path.read_text().replace(f"\n{made.contact_penalty:.6g}\n", f"\n{factor * made.contact_penalty:.6g}\n")
-        )
+        path, penalty = made.write(tmp_path / name), made.contact_penalty
+        path.write_text(path.read_text().replace(f"\n{penalty:.6g}\n", f"\n{factor * penalty:.6g}\n"))
         forces.append(ccx.run(path.parent).force[0])
     assert 1e-4 < forces[1] / forces[0] - 1 < 1e-3
 
@@ -514,5 +456,4 @@ def test_bilinear_facets_give_a_force_only(tmp_path):
     made.write(tmp_path)
     answer = ccx.run(tmp_path)
     assert 1.03 < answer.force[0] / made.expected["force"][0] < 1.09  # says the docstring of deck.py
-    assert np.isnan(answer.pole_pressure[0])
-    assert np.isnan(answer.half_angle[0])
+    assert np.isnan([answer.pole_pressure[0], answer.half_angle[0]]).all()
