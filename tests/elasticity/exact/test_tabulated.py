@@ -254,6 +254,7 @@ def test_few_steps_from_the_start_solve_loads_of_all_sizes(kind, elastic):
     found = bs.Tabulated().press(joint, **{kind: np.where(reached, getattr(known, kind), 0.0)})
     assert np.all(found.status[reached] == bs.Status.OK)
     np.testing.assert_allclose(found.half_angle[reached], angle[reached], rtol=1e-12)
+    np.testing.assert_allclose(found.force[reached], known.force[reached], rtol=2e-12)
 
 
 def test_traced_series_have_the_derivatives_of_the_polynomial():

@@ -19,6 +19,22 @@ from ballsocket.problem.cup import Interface
 from ...extent import some
 
 ORDERS = pytest.mark.parametrize("order", [1, 2], ids=["bilinear", "biquadratic"])
+LINER, BACKED = ((1.3, 1.0, 0.4),), ((1.3, 1.0, 0.4), (1.5, 20.0, 0.3))  # outer radius, E and ν of each layer
+
+
+def shape(layers, *, rim=1.5, chamfer=0.0, interface=Interface.BONDED, support=Support.FIXED):
+    return SocketShape(layers=layers, rim=rim, chamfer=chamfer, interface=interface, support=support)
+
+
+def resolution(size=0.1, *, reach=0.8, growth=1.3, deepest=0.5, order=2, halvings=0):
+    sizes = {"size": size, "reach": reach, "growth": growth, "widest": 0.3, "deepest": deepest}
+    return Resolution(**sizes, order=order, halvings=halvings)
+
+
+def solve_sliding(support):
+    """Return mesh and displacements of a sliding liner under unit forces, and the last grid line of the liner."""
+    body = socket_body(shape(BACKED, interface=Interface.SLIDING, support=support), resolution())
+    return body.elastic.block, body.displacements(np.ones(len(body.contact))), *body.elastic.block.sliding
 
 
 @ORDERS
@@ -49,15 +65,8 @@ def test_a_thick_sphere_under_pressure_converges_and_does_not_lock(order, elemen
 @ORDERS
 def test_condensed_compliance_equals_that_of_the_complete_system(order, interface):
     """Against the plain solution of all equations, for a liner on a stiffer layer."""
-    shape = SocketShape(
-        layers=((1.3, 1.0, 0.4), (1.5, 20.0, 0.3)),
-        rim=np.pi / 2,
-        chamfer=0.05,
-        interface=interface,
-        support=Support.FIXED,
-    )
-    resolution = Resolution(size=0.2, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=order, halvings=1)
-    body = socket_body(shape, resolution)
+    backed = shape(BACKED, rim=np.pi / 2, chamfer=0.05, interface=interface)
+    body = socket_body(backed, resolution(0.2, order=order, halvings=1))
     forces = np.random.default_rng(1).normal(size=len(body.contact))
     K = body.elastic.stiffness_matrix().tolil()
     load = np.zeros(K.shape[0])
@@ -67,26 +76,13 @@ def test_condensed_compliance_equals_that_of_the_complete_system(order, interfac
         K[unknown, unknown] = 1
         load[unknown] = 0
     whole = spsolve(K.tocsc(), load)
-    np.testing.assert_allclose(
-        body.compliance() @ forces, whole[body.normal_unknowns], rtol=1e-8, atol=1e-9 * abs(whole).max()
-    )
-    moved = body.displacements(forces)
-    np.testing.assert_allclose(moved[body.contact, 1], whole[body.normal_unknowns], atol=1e-9 * abs(whole).max())
+    normal, rounding = whole[body.normal_unknowns], 1e-9 * abs(whole).max()
+    np.testing.assert_allclose(body.compliance() @ forces, normal, rtol=1e-8, atol=rounding)
+    np.testing.assert_allclose(body.displacements(forces)[body.contact, 1], normal, atol=rounding)
 
 
 def test_sliding_layers_move_together_across_and_freely_along_the_interface():
-    shape = SocketShape(
-        layers=((1.3, 1.0, 0.4), (1.5, 20.0, 0.3)),
-        rim=1.5,
-        chamfer=0.0,
-        interface=Interface.SLIDING,
-        support=Support.FIXED,
-    )
-    resolution = Resolution(size=0.1, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2)
-    body = socket_body(shape, resolution)
-    mesh = body.elastic.block
-    (inner,) = mesh.sliding
-    moved = body.displacements(np.ones(len(body.contact)))
+    mesh, moved, inner = solve_sliding(Support.FIXED)
     one, other = moved[mesh.number[:, inner]], moved[mesh.number[:, inner + 1]]
     np.testing.assert_array_equal(one[:, 1], other[:, 1])
     assert abs(one[1:, 0] - other[1:, 0]).max() > 1e-3 * abs(one[:, 1]).max()
@@ -94,41 +90,23 @@ def test_sliding_layers_move_together_across_and_freely_along_the_interface():
 
 def test_a_sliding_liner_in_a_free_shell_is_free_at_its_rim():
     """The shell sits on its rim; the liner in it does not."""
-    shape = SocketShape(
-        layers=((1.3, 1.0, 0.4), (1.5, 20.0, 0.3)),
-        rim=1.5,
-        chamfer=0.0,
-        interface=Interface.SLIDING,
-        support=Support.FREE,
-    )
-    resolution = Resolution(size=0.1, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2)
-    body = socket_body(shape, resolution)
-    mesh = body.elastic.block
-    (inner,) = mesh.sliding
-    along = body.displacements(np.ones(len(body.contact)))[mesh.number[-1], 0]
+    mesh, moved, inner = solve_sliding(Support.FREE)
+    along = moved[mesh.number[-1], 0]
     assert np.all(along[: inner + 1] != 0)
     np.testing.assert_array_equal(along[inner + 1 :], 0.0)
 
 
 def test_bonded_layers_of_one_material_are_one_layer():
-    """Two bonded layers of one material are one layer."""
-    resolution = Resolution(size=0.1, reach=0.8, growth=1.2, widest=0.3, deepest=0.25, order=2)
-    ends = {"rim": 1.5, "chamfer": 0.0, "interface": Interface.BONDED, "support": Support.FIXED}
     one, two = (
-        socket_body(SocketShape(layers=layers, **ends), resolution)
-        for layers in (((1.5, 1.0, 0.3),), ((1.2, 1.0, 0.3), (1.5, 1.0, 0.3)))
+        socket_body(shape([(outer, 1.0, 0.3) for outer in radii]), resolution(growth=1.2, deepest=0.25))
+        for radii in ((1.5,), (1.2, 1.5))
     )
     forces = pressure_forces(one.elastic.block)[one.normal_unknowns] * np.cos(one.elastic.block.angle) ** 4
     np.testing.assert_allclose(one.compliance() @ forces, two.compliance() @ forces, rtol=1e-3, atol=1e-4)
 
 
 def test_a_chamfer_removes_only_the_edge_of_the_bore():
-    shape = SocketShape(
-        layers=((1.3, 1.0, 0.4),), rim=1.5, chamfer=0.1, interface=Interface.BONDED, support=Support.FIXED
-    )
-    mesh = socket_body(
-        shape, Resolution(size=0.1, reach=2.0, growth=1.2, widest=0.3, deepest=0.5, order=2)
-    ).elastic.block
+    mesh = socket_body(shape(LINER, chamfer=0.1), resolution(reach=2.0, growth=1.2)).elastic.block
     bore = mesh.radius[:, 0]
     np.testing.assert_allclose(bore[mesh.angle <= 1.4 + 1e-12], 1.0)
     assert bore[-1] == pytest.approx(1.1)
@@ -136,7 +114,7 @@ def test_a_chamfer_removes_only_the_edge_of_the_bore():
 
 
 def test_the_equator_of_the_ball_is_fixed_axially_and_free_radially():
-    body = ball_body(0.3, Resolution(size=0.1, reach=0.8, growth=1.3, widest=0.3, deepest=0.5, order=2))
+    body = ball_body(0.3, resolution())
     mesh = body.elastic.block
     moved = body.displacements(np.ones(len(body.contact)))
     np.testing.assert_array_equal(moved[mesh.number[-1], 0], 0.0)  # u_φ is the axial displacement there
