@@ -25,6 +25,7 @@ WHOLE = bs.FiniteElement(cup=FULL, meshes=1)
 """Model without the coarser mesh of the error estimate, which changes no other result."""
 
 ONE_MESH = bs.FiniteElement(meshes=1)
+SLIDING = bs.Cup(interface=bs.Interface.SLIDING)
 NARROW = bs.FiniteElement(cup=bs.Cup(arc_of_cover=np.radians(70.0)), meshes=1)
 CALCULIX = json.loads((DATA / "calculix.json").read_text(encoding="utf-8"))["cases"]
 RIGID = replace(HIP, ball=None)
@@ -83,7 +84,7 @@ def test_a_massive_socket_has_the_exact_solution():
 
 
 @pytest.mark.parametrize("force", some([30.0, 300.0, 3000.0], 1))
-def test_stresses_are_the_exact_ones(force):
+def test_stresses_and_displacements_are_the_exact_ones(force):
     ours, exact = WHOLE.press(RIGID, force=force), bs.Exact().press(RIGID, force=force)
     assert ours.peak_stress.von_mises == pytest.approx(exact.peak_stress.von_mises, rel=4e-3)
     assert ours.peak_stress.depth == pytest.approx(exact.peak_stress.depth, abs=0.25)
@@ -93,15 +94,8 @@ def test_stresses_are_the_exact_ones(force):
     for name in ("radial", "meridional", "hoop", "shear"):
         difference = abs(getattr(liner.stress, name)[deep] - getattr(theirs, name))
         assert difference.max() < 0.01 * exact.max_pressure, name
-
-
-@pytest.mark.long
-def test_displacements_of_the_bore_are_the_exact_ones():
-    ours, exact = WHOLE.press(RIGID, force=3000.0), bs.Exact().press(RIGID, force=3000.0)
-    liner = ours.section["liner"]
     bore = (liner.radius < 18.0 + 1e-9) & (liner.angle < 1.5)
-    across, up = liner.displacement[:, bore]
-    angle = liner.angle[bore]
+    angle, (across, up) = liner.angle[bore], liner.displacement[:, bore]
     outwards = across * np.sin(angle) - up * np.cos(angle)
     np.testing.assert_allclose(outwards, exact.displacement(angle), atol=2e-3 * exact.indentation)
 
@@ -160,22 +154,15 @@ def test_force_and_stiffness_do_not_jump_where_the_contact_reaches_the_rim():
     assert beyond - below == pytest.approx(at.stiffness * np.diff(around)[0], rel=0.02)
 
 
-def test_with_hardly_any_clearance_every_load_has_the_same_half_angle():
-    contact = ONE_MESH.press(replace(HIP, clearance=1e-6), force=np.array([1000.0, 3000.0]))
-    assert contact.half_angle[0] == pytest.approx(contact.half_angle[1], rel=1e-3)
-    assert contact.indentation[1] == pytest.approx(3 * contact.indentation[0], rel=1e-3)
-
-
 def test_a_liner_that_slides_is_softer_than_a_bonded_one():
-    cups = (bs.Cup(interface=interface) for interface in bs.Interface)
-    bonded, sliding = (replace(ONE_MESH, cup=cup).press(HIP, force=3000.0) for cup in cups)
+    bonded, sliding = (replace(ONE_MESH, cup=cup).press(HIP, force=3000.0) for cup in (bs.Cup(), SLIDING))
     assert sliding.indentation > 1.1 * bonded.indentation
     assert sliding.max_pressure < bonded.max_pressure
 
 
 @pytest.mark.long
 def test_a_liner_that_slides_on_a_stiff_shell_slides_as_on_a_rigid_one():
-    model = replace(ONE_MESH, cup=bs.Cup(interface=bs.Interface.SLIDING))
+    model = replace(ONE_MESH, cup=SLIDING)
     shell = bs.Layer(thickness=4.0, material=bs.Material(young=1e9, poisson=0.3))
     rigid, stiff = (model.press(replace(HIP, backing=backing), force=3000.0) for backing in ((), (shell,)))
     assert_close(stiff, rigid, 3e-4, ("indentation", "half_angle", "max_pressure"))
@@ -248,19 +235,6 @@ def test_error_bars_can_be_switched_off(hip):
     assert json.dumps(one.summary()["error"]["indentation"]) == "null"
 
 
-@pytest.mark.long
-def test_doubling_the_elements_changes_results_by_less_than_one_percent():
-    """Doubling the elements changes force, half angle and peak pressure by less than 1 % (R1 12, L 8 mm)."""
-    joint = replace(HIP, ball_radius=12.0, liner_thickness=8.0)
-    depth = bs.Exact().press(joint, force=3000.0).indentation
-    spacings = (bs.Uniform(size=size) for size in (0.05 * 2**0.5, 0.05))
-    models = (replace(ONE_MESH, spacing=spacing, element=bs.Element.BILINEAR) for spacing in spacings)
-    coarse, fine = (model.press(joint, indentation=depth) for model in models)
-    assert fine.mesh.elements == pytest.approx(67_000, rel=0.1)
-    assert coarse.mesh.elements == pytest.approx(fine.mesh.elements / 2, rel=0.2)
-    assert_close(coarse, fine, 1e-2, ("force", "half_angle", "max_pressure"))
-
-
 def test_uniform_meshes_agree_with_adapted_ones():
     models = (replace(ONE_MESH, spacing=spacing) for spacing in (bs.Adapted(), bs.Uniform(size=0.5)))
     assert_close(*(model.press(HIP, force=3000.0) for model in models), 2e-3)
@@ -298,10 +272,13 @@ def test_a_narrow_contact_in_a_massive_socket_is_hertz():
 
 
 @pytest.mark.parametrize("clearance", [1e-4, 1e-6])
-def test_the_stiffness_near_the_perfect_fit_is_the_slope_of_the_force(clearance):
-    contact = ONE_MESH.press(replace(HIP, clearance=clearance), force=np.array([2990.0, 3000.0, 3010.0]))
+def test_with_hardly_any_clearance_half_angle_and_stiffness_are_constant(clearance):
+    contact = ONE_MESH.press(replace(HIP, clearance=clearance), force=np.array([2990.0, 3000.0, 3010.0, 1000.0]))
     slope = 20.0 / (contact.indentation[2] - contact.indentation[0])
     assert contact.stiffness[1] == pytest.approx(slope, rel=1e-4)
+    rel = max(1e-3, 100 * clearance)
+    assert contact.half_angle[3] == pytest.approx(contact.half_angle[1], rel=rel)
+    assert contact.indentation[1] == pytest.approx(3 * contact.indentation[3], rel=rel)
 
 
 @pytest.mark.long
@@ -380,12 +357,6 @@ def test_the_largest_stress_excludes_the_sharp_corner():
     assert coarse.von_mises == pytest.approx(fine.von_mises, rel=1e-2)
 
 
-def test_a_contact_without_a_result_has_a_summary():
-    summary = WHOLE.press(HIP, indentation=1e6).summary()
-    assert summary["force"] is None
-    assert "mesh" not in summary
-
-
 def test_progress_is_reported_only_within_its_context():
     joint, told = replace(HIP, ball_radius=10.0), []
     with progress_to(told.append):
@@ -398,7 +369,6 @@ def test_progress_is_reported_only_within_its_context():
 
 
 RUBBER = bs.Material(young=1000.0, poisson=0.5)
-LAYER_MESSAGE = "liner_thickness = 6.75 is not allowed: a layer must have at least two"
 
 
 def press(force=1.0, joint=HIP, cup=None, **settings):
@@ -408,24 +378,19 @@ def press(force=1.0, joint=HIP, cup=None, **settings):
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: press(spacing=bs.Uniform(size=5.0)), LAYER_MESSAGE),
+        (lambda: press(spacing=bs.Uniform(size=5.0)), "liner_thickness = 6.75 is not allowed: a layer must have at"),
         (lambda: press(spacing=bs.Uniform(size=0.0005)), r"a mesh of \d+ elements needs about .* GiB of memory, and "),
         (lambda: press(cup=bs.Cup(chamfer=6.5)), "chamfer = 6.5 is not allowed: a chamfer must leave a tenth of the"),
         (lambda: press(joint=replace(HIP, clearance=0.0)), "fem has no answer for c = 0"),
         (lambda: press(joint=lined(0.5)), "fem has no answer for ν = 0.5"),
         (lambda: press(joint=replace(HIP, ball=RUBBER)), "fem has no answer for ν = 0.5"),
         (lambda: press(joint=replace(HIP, backing=(replace(UHMWPE, material=RUBBER),))), "no answer for ν = 0.5"),
-        (
-            lambda: press(joint=replace(HIP, support=bs.Support.FREE), cup=bs.Cup(interface=bs.Interface.SLIDING)),
-            "needs a backing or a fixed outer surface behind the liner",
-        ),
+        (lambda: press(joint=replace(HIP, support=bs.Support.FREE), cup=SLIDING), "needs a backing or a fixed outer"),
         (lambda: press(force=np.array([10.0, 20.0])).section, "displacements and stresses are for one contact"),
         (lambda: press(force=0.0).peak_stress, "need a contact under load"),
         (lambda: bs.Uniform(size=0.0), "size = 0 is not allowed"),
         (lambda: bs.FiniteElement(meshes=3), "meshes = 3 is not allowed"),
         (lambda: bs.FiniteElement(cup=180.0), "cup must be"),
-        (lambda: bs.Cup(arc_of_cover=0.1), "arc_of_cover = 0.1 is not allowed: an arc of cover is 40 to 340 degrees"),
-        (lambda: bs.Cup(chamfer=-1.0), "chamfer = -1 is not allowed"),
         (lambda: bs.Cup(chamfer=np.inf), "chamfer = inf is not allowed"),
     ],
 )
@@ -441,10 +406,13 @@ def test_a_missing_extra_is_reported_with_its_install_command(monkeypatch):
 
 
 def test_contacts_wider_than_88_degrees_have_no_result():
-    contact = bs.FiniteElement(cup=FULL).press(HIP, half_angle=np.radians(89.0))
-    assert contact.status is bs.Status.NOT_REACHED
-    assert np.isnan(contact.force)
-    assert "at most 88" in contact.notes[0]
+    for load in ({"half_angle": np.radians(89.0)}, {"indentation": 1e6}):
+        contact = WHOLE.press(HIP, **load)
+        assert contact.status is bs.Status.NOT_REACHED
+        assert np.isnan(contact.force)
+        assert "at most 88" in contact.notes[0]
+        assert contact.summary()["force"] is None
+        assert "mesh" not in contact.summary()
 
 
 def test_the_stated_mesh_size_equals_that_of_the_mesh(hip):
