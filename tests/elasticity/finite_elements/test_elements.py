@@ -6,13 +6,7 @@ from scipy.sparse.linalg import spsolve
 
 from ballsocket.elasticity.finite_elements.bodies import ball_body, socket_body
 from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, graded_points
-from ballsocket.evidence.code_checks import (
-    polar_components,
-    pressure_forces,
-    shell_block,
-    strain_energy_error,
-    thick_sphere_error,
-)
+from ballsocket.evidence.code_checks import polar_components, shell_block, strain_energy_error, thick_sphere_error
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Interface
 
@@ -71,10 +65,8 @@ def test_condensed_compliance_equals_that_of_the_complete_system(order, interfac
     K = body.elastic.stiffness_matrix().tolil()
     load = np.zeros(K.shape[0])
     load[body.normal_unknowns] = forces
-    for unknown in np.flatnonzero(body.fixed_unknowns | (K.tocsr().diagonal() == 0)):
-        K[unknown] = 0
-        K[unknown, unknown] = 1
-        load[unknown] = 0
+    fixed = np.flatnonzero(body.fixed_unknowns | (K.tocsr().diagonal() == 0))
+    K[fixed], K[fixed, fixed], load[fixed] = 0, 1, 0
     whole = spsolve(K.tocsc(), load)
     normal, rounding = whole[body.normal_unknowns], 1e-9 * abs(whole).max()
     np.testing.assert_allclose(body.compliance() @ forces, normal, rtol=1e-8, atol=rounding)
@@ -96,15 +88,6 @@ def test_a_sliding_liner_in_a_free_shell_is_free_at_its_rim():
     np.testing.assert_array_equal(along[inner + 1 :], 0.0)
 
 
-def test_bonded_layers_of_one_material_are_one_layer():
-    one, two = (
-        socket_body(shape([(outer, 1.0, 0.3) for outer in radii]), resolution(growth=1.2, deepest=0.25))
-        for radii in ((1.5,), (1.2, 1.5))
-    )
-    forces = pressure_forces(one.elastic.block)[one.normal_unknowns] * np.cos(one.elastic.block.angle) ** 4
-    np.testing.assert_allclose(one.compliance() @ forces, two.compliance() @ forces, rtol=1e-3, atol=1e-4)
-
-
 def test_a_chamfer_removes_only_the_edge_of_the_bore():
     mesh = socket_body(shape(LINER, chamfer=0.1), resolution(reach=2.0, growth=1.2)).elastic.block
     bore = mesh.radius[:, 0]
@@ -124,8 +107,7 @@ def test_the_equator_of_the_ball_is_fixed_axially_and_free_radially():
 @pytest.mark.parametrize("end", [3.0, -1.0])
 def test_graded_points_have_the_stated_ends_and_growing_steps(end):
     places = graded_points(1.0, end, 0.1, 1.3, 0.5)
-    assert places[0] == 1.0
-    assert places[-1] == pytest.approx(end, rel=1e-14)
+    assert places[[0, -1]] == pytest.approx((1.0, end), rel=1e-14)
     steps = abs(np.diff(places))
     assert np.all(np.diff(steps) > -1e-12)
     assert steps[0] == pytest.approx(0.1, rel=0.35)

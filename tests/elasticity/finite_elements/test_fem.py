@@ -8,7 +8,6 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.arrays import gauss_legendre
-from ballsocket.elasticity.finite_elements.mesh import Resolution
 from ballsocket.elasticity.finite_elements.progress import progress_to
 from ballsocket.elasticity.finite_elements.section import write_vtk
 from ballsocket.elasticity.finite_elements.spacing import bytes_needed
@@ -18,13 +17,9 @@ from ...extent import either, some
 from ...joints import HIP
 from ...places import DATA
 
-FULL = bs.Cup(arc_of_cover=np.radians(340.0))
-"""A socket that is nearly a whole sphere: there the exact solution is the truth."""
-
-WHOLE = bs.FiniteElement(cup=FULL, meshes=1)
-"""Model without the coarser mesh of the error estimate, which changes no other result."""
-
-ONE_MESH = bs.FiniteElement(meshes=1)
+FULL = bs.Cup(arc_of_cover=np.radians(340.0))  # nearly a whole sphere: there the exact solution is the truth
+ONE_MESH = bs.FiniteElement(meshes=1)  # without the coarser mesh of the error estimate, which changes no other result
+WHOLE = replace(ONE_MESH, cup=FULL)
 SLIDING = bs.Cup(interface=bs.Interface.SLIDING)
 NARROW = bs.FiniteElement(cup=bs.Cup(arc_of_cover=np.radians(70.0)), meshes=1)
 CALCULIX = json.loads((DATA / "calculix.json").read_text(encoding="utf-8"))["cases"]
@@ -154,10 +149,13 @@ def test_force_and_stiffness_do_not_jump_where_the_contact_reaches_the_rim():
     assert beyond - below == pytest.approx(at.stiffness * np.diff(around)[0], rel=0.02)
 
 
-def test_a_liner_that_slides_is_softer_than_a_bonded_one():
+def test_sliding_liners_and_free_shells_are_softer():
     bonded, sliding = (replace(ONE_MESH, cup=cup).press(HIP, force=3000.0) for cup in (bs.Cup(), SLIDING))
     assert sliding.indentation > 1.1 * bonded.indentation
     assert sliding.max_pressure < bonded.max_pressure
+    joints = (replace(HIP, backing=(UHMWPE,), support=support) for support in bs.Support)
+    fixed, free = (ONE_MESH.press(joint, force=2000.0) for joint in joints)
+    assert free.indentation > 1.2 * fixed.indentation
 
 
 @pytest.mark.long
@@ -166,12 +164,6 @@ def test_a_liner_that_slides_on_a_stiff_shell_slides_as_on_a_rigid_one():
     shell = bs.Layer(thickness=4.0, material=bs.Material(young=1e9, poisson=0.3))
     rigid, stiff = (model.press(replace(HIP, backing=backing), force=3000.0) for backing in ((), (shell,)))
     assert_close(stiff, rigid, 3e-4, ("indentation", "half_angle", "max_pressure"))
-
-
-def test_a_free_shell_is_softer_than_a_fixed_one():
-    joints = (replace(HIP, backing=(UHMWPE,), support=support) for support in bs.Support)
-    stiff, soft = (ONE_MESH.press(joint, force=2000.0) for joint in joints)
-    assert soft.indentation > 1.2 * stiff.indentation
 
 
 @pytest.mark.long
@@ -322,8 +314,7 @@ def test_results_scale_with_lengths_and_moduli():
 
 
 def test_arrays_of_joints_and_loads_give_the_results_of_single_ones():
-    joint = replace(HIP, clearance=np.array([0.05, 0.1]))
-    forces = np.array([0.0, 500.0, 3000.0])[:, None]
+    joint, forces = replace(HIP, clearance=np.array([0.05, 0.1])), np.array([[0.0], [500.0], [3000.0]])
     contact = bs.FiniteElement().press(joint, force=forces)
     assert contact.indentation.shape == (3, 2)
     np.testing.assert_array_equal(contact.indentation[0], 0.0)
@@ -361,11 +352,11 @@ def test_progress_is_reported_only_within_its_context():
     joint, told = replace(HIP, ball_radius=10.0), []
     with progress_to(told.append):
         ONE_MESH.press(joint, force=10.0)
-    heard = len(told)
-    assert heard > 0
-    assert all("elements" in text for text in told)
+    within = list(told)
+    assert within
+    assert all("elements" in text for text in within)
     ONE_MESH.press(joint, force=3000.0)
-    assert len(told) == heard
+    assert told == within
 
 
 RUBBER = bs.Material(young=1000.0, poisson=0.5)
@@ -423,7 +414,7 @@ def test_the_stated_mesh_size_equals_that_of_the_mesh(hip):
     along = np.sort(parts[0].angle[parts[0].radius < 18.0 + 1e-9])
     assert hip.mesh.element_size == pytest.approx(18.0 * along[2])  # an element has a node in its middle
     assert hip.summary()["mesh"] == vars(hip.mesh)
-    assert isinstance(hip.laws.pieces[0][1].state.solved[0].pair.resolution, Resolution)
+
     assert bytes_needed(2048, 2) == 2048 * (2 * 12 * 8 * 2 * 11 + 1000 * 2)
     with pytest.raises(KeyError, match="part 'cement' is not known; known parts: liner, ball"):
         _ = hip.section["cement"]
@@ -434,10 +425,9 @@ def test_a_section_names_its_parts_and_has_a_scale_for_each_kind():
     figure = section_figure(replace(ONE_MESH, spacing=bs.Adapted(elements=24)).press(joint, force=3000.0))
     section, _, *bars = figure.axes
     assert {text.get_text() for text in section.texts} == {"liner: UHMWPE", "backing 1: titanium", "ball: CoCr"}
-    labels = [f"von Mises stress in the {kind} [MPa]" for kind in ("backing", "liner", "ball")]
-    assert [bar.get_ylabel() for bar in bars] == labels
+    for bar, kind in zip(bars, ("backing", "liner", "ball"), strict=True):
+        assert kind in bar.get_ylabel()
     assert len({bar.get_ylim()[1] for bar in bars}) == 3
-    assert section.get_title() == "arc of cover 180°, outside fixed"
 
 
 def test_a_vtk_file_has_the_mesh_and_its_stresses(hip, tmp_path):
@@ -450,8 +440,7 @@ def test_a_vtk_file_has_the_mesh_and_its_stresses(hip, tmp_path):
     elements, part = np.concatenate([cells.data for cells in mesh.cells]), np.concatenate(mesh.cell_data["part"])
     assert len(elements) == hip.mesh.elements
     liner, ball = elements[part == 0], elements[part == 1]
-    stress = mesh.point_data["von_mises"]
-    assert stress[np.unique(liner)].max() == pytest.approx(hip.peak_stress.von_mises)
+    assert mesh.point_data["von_mises"][np.unique(liner)].max() == pytest.approx(hip.peak_stress.von_mises)
     assert mesh.point_data["displacement"][np.unique(ball), 1].max() < 0  # it goes down
     with pytest.raises(ValueError, match="must end in"):
         write_vtk(hip.section, tmp_path / "hip.txt")

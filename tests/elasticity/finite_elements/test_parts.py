@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.optimize import bisect
 
 import ballsocket as bs
 from ballsocket.elasticity.exact.model import curve_of
@@ -313,15 +314,6 @@ def test_loads_are_solved_on_the_mesh_of_their_class(curve):
     assert curve._mesh_class("force", 1e9) == 0
 
 
-def perfect_fit(pair, gap):
-    """Bisect for the half angle at which the indentation becomes infinite."""
-    low, high = 0.5, float(pair.angle[-1])
-    for _ in range(30):
-        middle = (low + high) / 2
-        low, high = (middle, high) if partial_contact(pair, gap, middle).indentation > 0 else (low, middle)
-    return low
-
-
 @pytest.fixture(scope="module")
 def soft_pair():
     return coarse_curve(replace(RIGID, liner_thickness=inf), 340.0).pairs(0, solver.COARSE)
@@ -333,7 +325,9 @@ def test_a_bracket_ends_before_the_perfect_fit(soft_pair, count):
 
     In a massive socket that is nearly a whole sphere the fit is that of the exact solution.
     """
-    fit, widest = perfect_fit(soft_pair, GAP), curve_of(bs.Exact(), replace(RIGID, liner_thickness=inf)).widest_angle
+    last = float(soft_pair.angle[-1])
+    fit = bisect(lambda angle: (partial_contact(soft_pair, GAP, angle).indentation > 0) - 0.5, 0.5, last, xtol=2e-9)
+    widest = curve_of(bs.Exact(), replace(RIGID, liner_thickness=inf)).widest_angle
     assert fit == pytest.approx(widest, abs=radians(0.3))
     ratio = 1.001
     low = fit / ratio ** (count - 0.5)
