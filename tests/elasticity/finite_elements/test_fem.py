@@ -112,9 +112,8 @@ def test_calculix_has_the_same_indentation_pressure_and_half_angle(case):
 @pytest.mark.long
 def test_the_rim_softens_wide_contacts_most():
     """A hemisphere is softer near its rim; a complete sphere is not."""
-    angle = np.radians([30.0, 50.0, 70.0, 80.0])
-    joint = lined(0.49, 15.0)
-    open_, closed = (bs.FiniteElement(cup=cup, meshes=1).press(joint, half_angle=angle) for cup in (bs.Cup(), FULL))
+    angle, joint = np.radians([30.0, 50.0, 70.0, 80.0]), lined(0.49, 15.0)
+    open_, closed = (model.press(joint, half_angle=angle) for model in (ONE_MESH, WHOLE))
     softer = closed.stiffness / open_.stiffness - 1
     assert np.all(np.diff(softer) > 0)
     assert softer[-1] > 0.1
