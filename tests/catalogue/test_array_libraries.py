@@ -150,8 +150,7 @@ def test_joints_and_contacts_are_jax_trees():
 
 
 BACKED = replace(
-    HIP,
-    backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM), bs.Layer(thickness=2.0, material=bs.BONE_CEMENT)),
+    HIP, backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM), bs.Layer(thickness=2.0, material=bs.BONE_CEMENT))
 )
 
 

@@ -10,14 +10,7 @@ from scipy import stats
 from ballsocket.identify import HeavyTailed
 from ballsocket.identify.bands import compute_bands, profile_ends, scatter_ratio
 from ballsocket.identify.fit import find_best_fit, minimise_misfit
-from ballsocket.identify.information import (
-    MAX_WIDTH_RATIO,
-    QUANTILE_95,
-    QUANTILE_99,
-    Information,
-    Interval,
-    ProfileEnd,
-)
+from ballsocket.identify.information import MAX_WIDTH_RATIO, QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
 from ballsocket.identify.misfit import FitResult
 from ballsocket.identify.unknowns import ParameterTransform, Unknown
 from ballsocket.studies import Normal, Rectangular

@@ -34,10 +34,7 @@ def test_rim_distance_of_hips_of_28_and_36_mm(radius, thickness, inclination, an
     """3 kN, 15° medial, on hemispheres of 1 GPa; arcs in mm on the ball. A steep cup is loaded at its edge."""
     cup = bs.Cup(inclination=radians(inclination), anteversion=radians(anteversion))
     hip = bs.Joint(
-        ball_radius=radius,
-        clearance=0.1,
-        liner_thickness=thickness,
-        liner=bs.Material(young=1000.0, poisson=0.4),
+        ball_radius=radius, clearance=0.1, liner_thickness=thickness, liner=bs.Material(young=1000.0, poisson=0.4)
     )
     contact = bs.HessForsbach().press(hip, force=3000.0)
     assert degrees(cup.tilt(MEDIAL)) == pytest.approx(tilt, abs=0.05)

@@ -140,10 +140,7 @@ def test_an_interference_is_a_negative_clearance():
         ({"interference": 0.1}, "clearance and interference are one too many"),
         ({"socket_radius": 16.1}, "ball_radius, socket_radius and clearance are one too many: any two of them fix"),
         ({"socket_radius": 16.3}, "ball_radius = 16 mm, but the others make 16.2 mm$"),
-        (
-            {"outer_diameter": 44.2},
-            "outer_diameter and liner_thickness are one too many: .*; leave one out$",
-        ),
+        ({"outer_diameter": 44.2}, "outer_diameter and liner_thickness are one too many: .*; leave one out$"),
         ({"outer_diameter": 49.0}, "liner_thickness = 6 mm, but the others make 8.4 mm$"),
         ({"liner_thickness": None}, "liner_thickness is missing, or outer_radius"),
         ({"ball_radius": None, "clearance": None, "head_diameter": 32.0}, "two of .* are needed, got head_diameter"),
