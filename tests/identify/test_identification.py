@@ -1,13 +1,14 @@
 """Identification of a joint from measurements."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import HeavyTailed, Machine, Measured, oscillation
-from ballsocket.identify.experiment import Candidate, experiment
+from ballsocket.identify import HeavyTailed, Machine, Measured
 from ballsocket.identify.misfit import by_tracing
-from ballsocket.identify.synthetic import draw_data_sets, trials
+from ballsocket.identify.synthetic import trials
 from ballsocket.studies import LogNormal, Normal
 
 from .rigid import JOINT, MODEL
@@ -67,9 +68,10 @@ def test_errors_of_the_machine_are_identified_with_the_joint():
 def test_values_of_a_saturated_film_are_lower_bounds():
     """The modulus is too low if the values at the limit count as exact."""
     film = np.minimum(TRUTH.max_pressure, 7.0)
-    free = {"liner.young": (400.0, 2000.0)}
-    honest = identified(measured("max_pressure", film, saturation=7.0), free=free)
-    taken = identified(measured("max_pressure", film), free=free)
+    honest, taken = (
+        identified(measured("max_pressure", film, saturation=limit), free={"liner.young": (400.0, 2000.0)})
+        for limit in (7.0, np.inf)
+    )
     assert honest["liner.young"].value == pytest.approx(1000.0, rel=0.01)
     assert taken.point["liner_young"] < 900.0
 
@@ -86,28 +88,6 @@ def test_outliers_have_little_influence_with_a_heavy_tail():
     assert any("there are outliers" in note for note in normal.notes)
 
 
-@pytest.mark.parametrize("quantities", [("area",), ("max_pressure",), ("half_angle", "max_pressure")])
-def test_areas_and_pressures_identify_only_the_product(quantities):
-    """Theory, 3g: of a rigid ball they depend on E c; only the socket's radius, R1 + c, hints at c."""
-    random = np.random.default_rng(5)
-    data = [measured(quantity, share=0.04, random=random) for quantity in quantities]
-    result = identified(*data, free={"clearance": (0.05, 0.2), "liner.young": (400.0, 2000.0)})
-    assert result.information.rank == 1
-    assert result.information.condition > 1e3
-    assert not result.identifiable
-    assert np.isnan(result["clearance"].value)
-    assert np.isnan(result["liner.young"].value)
-    (product,) = result.information.products
-    assert product.exponents == {"clearance": 1.0, "liner_young": 1.0}
-    assert product.low < 100.0 < product.high < 1.2 * product.low
-    assert result.notes[0] == (
-        "only clearance · liner_young is identifiable from these data, clearance and liner_young separately are not: "
-        "measure indentation or free play"
-    )
-    assert result.summary()["valid"] is False
-    assert result.summary()["estimates"][0]["value"] is None
-
-
 def test_the_gain_of_a_measurement_is_the_predicted_gain():
     areas = measured("area")
     result = identified(areas)
@@ -118,13 +98,6 @@ def test_the_gain_of_a_measurement_is_the_predicted_gain():
     assert more.identifiable
     assert gain.identifies == ("clearance", "liner_young")
     assert "area" not in result.next.sufficient_quantities
-
-
-def test_a_very_uncertain_candidate_gains_nothing():
-    result = identified(measured("indentation", share=1e-4))
-    (gain,) = experiment(result, [Candidate("max_pressure", 1e6, 1000.0)]).gains
-    assert gain.bits < 1e-6
-    assert gain.uncertainty_ratio["clearance"] == pytest.approx(1.0, abs=1e-6)
 
 
 def test_a_prior_distribution_makes_the_product_separable():
@@ -138,51 +111,28 @@ def test_a_prior_distribution_makes_the_product_separable():
     assert (factor.low, factor.high) == pytest.approx((0.1 / 1.1**1.96, 0.1 * 1.1**1.96), rel=0.01)
 
 
-def test_uncertain_loads_widen_the_band():
-    sure = identified(measured("indentation", share=1e-3))
-    unsure = identified(measured("indentation", share=1e-3, load_uncertainty=60.0))
-    wide, narrow = (each["clearance"].high / each["clearance"].low for each in (unsure, sure))
-    assert np.log(wide) > 2 * np.log(narrow)
-    offs = [draw_data_sets(result, np.random.default_rng(0))[0].values - TRUTH.indentation for result in (unsure, sure)]
-    assert np.std(offs[0]) > 3 * np.std(offs[1])
-
-
-@pytest.mark.long
-def test_bands_of_95_percent_hold_the_truth():
-    """40 sets of data: fewer than 33 held of 40 bands of 95 % would be a chance of one in ten thousand."""
-    result = identified(measured("indentation", share=0.01), measured("max_pressure", saturation=8.0))
-    tried = trials(result, 40)
-    assert min(tried.coverage.values()) >= 33 / 40
-    assert max(map(abs, tried.bias.values())) < 0.15
-
-
 @pytest.mark.long
 def test_coverage_and_bias_over_two_hundred_synthetic_sets():
-    model = bs.Tabulated()
-    contact = model.press(JOINT, force=FORCE)
-    data = [measured("indentation", contact.indentation, share=0.01), measured("area", contact.area)]
-    tried = trials(identified(*data, model=model), 200)
+    contact = bs.Tabulated().press(JOINT, force=FORCE)
+    depth, film = (measured(name, getattr(contact, name), share=0.01) for name in ("indentation", "max_pressure"))
+    result = identified(depth, replace(film, saturation=8.0), model=bs.Tabulated())
+    tried = trials(result, 200)
     for name in ("clearance", "liner_young"):
         assert 0.92 <= tried.coverage[name] <= 0.98
         assert abs(tried.bias[name]) < 0.1
 
 
 @pytest.mark.long
-def test_the_posterior_agrees_with_the_bands():
+def test_the_posterior_agrees_with_the_bands_or_follows_the_product():
     pytest.importorskip("emcee")
     result = identified(measured("indentation", share=0.003, random=np.random.default_rng(8)))
     posterior = result.posterior(1000)
     assert posterior.converged
     assert min(posterior.effective.values()) >= 1000
     assert 0.2 < posterior.acceptance < 0.9
-    for name, each in result.estimates.items():
-        np.testing.assert_allclose(posterior.band(name), (each.low, each.high), rtol=0.05)
+    for name, estimate in result.estimates.items():
+        np.testing.assert_allclose(posterior.band(name), (estimate.low, estimate.high), rtol=0.05)
     assert posterior.samples.shape == (1000, 2)
-
-
-@pytest.mark.long
-def test_the_posterior_of_an_unidentifiable_pair_follows_the_product():
-    pytest.importorskip("emcee")
     clearance, young = identified(measured("area")).posterior(500).samples.T
     assert clearance.max() > 2 * clearance.min()
     np.testing.assert_allclose(clearance * young, 100.0, rtol=0.06)
@@ -211,28 +161,13 @@ def test_jax_and_differences_have_the_same_best_point():
     np.testing.assert_allclose(traced.information.matrix, result.information.matrix, rtol=1e-3)
 
 
-@pytest.mark.long
-def test_a_custom_observable_is_read_from_contacts():
-    """The frequency of a small vibration about a load measures the stiffness there."""
-    observable = oscillation(mass=1.0)
-    swings = observable.read(TRUTH)
-    vibrations = Measured(quantity="frequency", observable=observable, values=swings, uncertainty=1.0, force=FORCE)
-    result = identified(vibrations, measured("area"))
-    assert result.point == pytest.approx({"clearance": 0.1, "liner_young": 1000.0}, rel=1e-5)
-    assert draw_data_sets(result, np.random.default_rng(0))[0].values == pytest.approx(swings, rel=0.1)
-    assert result.plot().axes[0].get_ylabel() == "frequency of oscillation f [Hz]"
-
-
 def test_the_uncertainty_of_a_load_is_divided_by_the_stiffness():
     """Data without error: the slope at the best point is that of the true joint, and a load of 0 adds nothing."""
-    force = np.array([0.0, 500.0, 1500.0, 3000.0])
+    force, sigma = np.array([0.0, 500.0, 1500.0, 3000.0]), np.array([40.0, 40.0, 60.0, 80.0])
     contact = MODEL.press(JOINT, force=force)
-    sigma = np.array([40.0, 40.0, 60.0, 80.0])
-    data = Measured(
-        quantity="indentation", values=contact.indentation, uncertainty=1e-4, force=force, load_uncertainty=sigma
-    )
+    row = {"quantity": "indentation", "values": contact.indentation, "uncertainty": 1e-4, "force": force}
     free_play = Measured(quantity="diametral_clearance", values=0.2, uncertainty=0.01)
-    result = identified(data, free_play, free={"clearance": (0.02, 0.3)})
+    result = identified(Measured(**row, load_uncertainty=sigma), free_play, free={"clearance": (0.02, 0.3)})
     expected = np.hypot(1e-4, np.append(0.0, sigma[1:] / contact.stiffness[1:]))
     np.testing.assert_allclose(result.misfit.uncertainty, [*expected, 0.01], rtol=1e-4)
     plain = identified(measured("indentation"), free={"clearance": (0.02, 0.3)})

@@ -1,4 +1,4 @@
-"""Registry of unknowns: numbers of a model, errors of a machine, and the cost of a new one."""
+"""Registry of unknowns: work of adhesion, friction, errors of a machine, and the cost of a new one."""
 
 import copy
 import json
@@ -9,23 +9,26 @@ import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from math import pi, sqrt
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.identify import MACHINE_ERRORS, Machine, Measured
+from ballsocket.identify import MACHINE_ERRORS, Machine, Measured, sliding_torque
 from ballsocket.identify.file import read_identify
+from ballsocket.identify.misfit import by_differences
 from ballsocket.problem.cup import Cup
 from ballsocket.studies import Normal
 
+from ..extent import some
 from ..places import CONTRIBUTING
-from .rigid import JOINT
 
+HIP = bs.joints["hess-forsbach"]
 FORCE = np.linspace(0.5, 40.0, 12)
 MODEL = bs.AdhesiveSocket(work_of_adhesion=2e-4)
-CONTACT = MODEL.press(JOINT, force=FORCE)
+CONTACT = MODEL.press(HIP, force=FORCE)
 
 
 def indentations(**settings):
@@ -34,40 +37,96 @@ def indentations(**settings):
 
 def test_the_work_of_adhesion_is_identified_from_indentations_at_small_forces():
     start = bs.AdhesiveSocket()
-    result = bs.identify(start, JOINT, indentations(), {"work_of_adhesion": (1e-5, 1e-3), "clearance": (0.05, 0.2)})
-    assert result.point == pytest.approx({"work_of_adhesion": 2e-4, "clearance": 0.1}, rel=1e-3)
-    alone = bs.identify(start, JOINT, indentations(), {"work_of_adhesion": (0.0, 1e-3)})
-    assert alone.point == pytest.approx({"work_of_adhesion": 2e-4}, rel=1e-4)
-    assert alone.joint == JOINT
-    prior = Normal(mean=3e-4, deviation=1e-8)  # counts as knowledge
-    known = bs.identify(start, JOINT, indentations(), {"work_of_adhesion": prior})
-    assert known.point["work_of_adhesion"] == pytest.approx(3e-4, rel=1e-2)
+    result = bs.identify(start, HIP, indentations(), {"work_of_adhesion": (1e-5, 1e-3), "clearance": (0.05, 0.2)})
+    assert result.point == pytest.approx({"work_of_adhesion": 2e-4, "clearance": HIP.clearance}, rel=1e-3)
     assert result.identifiable
     assert result["work_of_adhesion"].unit == "N/mm"
     assert result.model.work_of_adhesion == pytest.approx(2e-4, rel=1e-3)
-    assert result.joint.clearance == pytest.approx(0.1, rel=1e-3)
+    assert result.joint.clearance == pytest.approx(HIP.clearance, rel=1e-3)
     assert result.misfit.forward.model is start
-
-
-def test_a_number_of_a_model_in_a_cup_is_identified():
-    covered = bs.AdhesiveSocket().in_cup(Cup(arc_of_cover=np.radians(150.0)))
-    result = bs.identify(covered, JOINT, indentations(), {"work_of_adhesion": (1e-5, 1e-3)})
-    assert result.point["work_of_adhesion"] == pytest.approx(2e-4, rel=1e-3)
-    assert result.model.cup == covered.cup
-    assert result.model.model.work_of_adhesion == pytest.approx(2e-4, rel=1e-3)
+    alone = bs.identify(start, HIP, indentations(), {"work_of_adhesion": (0.0, 1e-3)})
+    assert alone.point == pytest.approx({"work_of_adhesion": 2e-4}, rel=1e-4)
+    assert alone.joint == HIP
+    known = bs.identify(start, HIP, indentations(), {"work_of_adhesion": Normal(mean=3e-4, deviation=1e-8)})
+    assert known.point["work_of_adhesion"] == pytest.approx(3e-4, rel=1e-2)
+    covered = start.in_cup(Cup(arc_of_cover=np.radians(150.0)))
+    inside = bs.identify(covered, HIP, indentations(), {"work_of_adhesion": (1e-5, 1e-3)}).model
+    assert inside.model.work_of_adhesion == pytest.approx(2e-4, rel=1e-3)
+    assert inside.cup == covered.cup
 
 
 def test_a_file_frees_a_number_of_the_model(tmp_path):
     values = ", ".join(f'"{1e3 * value:.9f} um"' for value in CONTACT.indentation)
     (tmp_path / "adhesion.toml").write_text(
-        'model = "adhesive"\n[joint]\nball_radius = 16\nclearance = 0.1\nliner_thickness = 6\n'
-        '[liner]\nyoung = 1000\npoisson = 0.4\n[free]\nwork_of_adhesion = "0.01..1 J/m^2"\n'
+        'model = "adhesive"\njoint = "hess-forsbach"\n[free]\nwork_of_adhesion = "0.01..1 J/m^2"\n'
         f'[[data]]\nquantity = "indentation"\nvalues = [{values}]\nforce = {FORCE.tolist()}\nuncertainty = "1 nm"\n',
         "utf-8",
     )
     question = read_identify(tmp_path / "adhesion.toml")
     assert question.free["work_of_adhesion"] == pytest.approx((1e-5, 1e-3))
     assert question.identify_unknowns().point["work_of_adhesion"] == pytest.approx(2e-4, rel=1e-3)
+
+
+LOADS = np.linspace(300.0, 3000.0, 5)
+SLIDING = bs.HessForsbach().press(HIP, force=LOADS)
+FRICTION = {"friction_coefficient": (0.0, 0.3)}
+
+
+def torques(values=None, axis_angle=pi / 2):
+    """Make friction torques of μ = 0.06, or of stated values."""
+    values = SLIDING.friction_torque(0.06, axis_angle) if values is None else values
+    data = {"quantity": "friction_torque", "values": values, "uncertainty": 20.0, "force": LOADS}
+    return Measured(**data, observable=sliding_torque(axis_angle))
+
+
+def identified(data, free=FRICTION):
+    return bs.identify(bs.HessForsbach(), HIP, data, free)
+
+
+def test_the_coefficient_of_friction_is_recovered_from_torques_about_any_axis():
+    for axis_angle in some([0.7, 0.0, pi / 2], 1):
+        result = identified(torques(axis_angle=axis_angle))
+        assert result.point["friction_coefficient"] == pytest.approx(0.06, rel=1e-6)
+        assert result.identifiable
+        assert result["friction_coefficient"].unit == "1"
+        assert (result.joint, result.model) == (HIP, bs.HessForsbach())
+    press = Measured(quantity="indentation", values=SLIDING.indentation, uncertainty=1e-4, force=LOADS)
+    result = identified([press, torques()], {"clearance": (0.02, 0.3), **FRICTION})
+    assert result.point == pytest.approx({"clearance": HIP.clearance, "friction_coefficient": 0.06}, rel=1e-4)
+    assert result.identifiable
+
+
+def test_estimate_and_band_of_friction_are_those_of_weighted_linear_regression():
+    """The torque is μ f(F), so that μ = Σ f T/Σ f² with the standard uncertainty σ/sqrt(Σ f²)."""
+    lever = np.asarray(SLIDING.friction_torque(1.0))
+    values = 0.06 * lever + 20.0 * np.array([0.5, -1.0, 1.2, 0.3, -0.8])
+    estimate = identified(torques(values))["friction_coefficient"]
+    assert estimate.value == pytest.approx(lever @ values / (lever @ lever), rel=1e-6)
+    half = 1.959964 * 20.0 / sqrt(lever @ lever)
+    assert (estimate.high - estimate.low) / 2 == pytest.approx(half, rel=1e-3)
+
+
+def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
+    pytest.importorskip("jax")
+    from ballsocket.identify.misfit import by_tracing
+
+    misfit = identified(torques()).misfit
+    arguments = misfit.forward, misfit.transform, misfit.transform.to_theta([0.06])
+    for traced, differences in zip(by_tracing(*arguments), by_differences(*arguments), strict=True):
+        np.testing.assert_allclose(traced, differences, rtol=1e-8)
+
+
+@pytest.mark.parametrize(("axis", "angle"), some([('axis_angle = "0 deg"', 0.0), ("", pi / 2)], 1))
+def test_a_file_frees_the_coefficient_of_friction(tmp_path, axis, angle):
+    text = ", ".join(f'"{value / 1e3:.9f} N m"' for value in SLIDING.friction_torque(0.06, angle))
+    (tmp_path / "friction.toml").write_text(
+        'model = "hess-forsbach"\njoint = "hess-forsbach"\n[free]\nfriction_coefficient = "0..0.3"\n'
+        f'[[data]]\nquantity = "friction_torque"\nvalues = [{text}]\nforce = {LOADS.tolist()}\n'
+        f'uncertainty = "2 %"\n{axis}\n',
+        "utf-8",
+    )
+    result = read_identify(tmp_path / "friction.toml").identify_unknowns()
+    assert result.point == pytest.approx({"friction_coefficient": 0.06}, rel=1e-6)
 
 
 def test_a_machine_has_every_registered_error():
@@ -77,7 +136,6 @@ def test_a_machine_has_every_registered_error():
     assert Machine(offset=(-1.0, 2.0)).unknown_errors == {"machine.offset": (-1.0, 2.0)}
     assert Machine(offset=0.1) == Machine(offset=0.1)
     assert Machine(offset=0.1) != Machine(drift=0.1)
-    assert repr(Machine(offset=0.1)) == "Machine(compliance=0.0, offset=0.1, drift=0.0, name='machine')"
     assert pickle.loads(pickle.dumps(machine)) == copy.deepcopy(machine) == machine
     assert replace(machine, offset=0.3).known_errors()["press.offset"] == 0.3
     with pytest.raises(AttributeError, match="no attribute 'offsett'"):
@@ -89,10 +147,9 @@ FILES = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 PATHS = re.findall(r"`src/ballsocket/identify/(\w+)\.py`", PAGE)[:2]
 
 SCRIPT = """
-import json, sys
+import json
 import numpy as np
 import ballsocket as bs
-from ballsocket.cli.root import main
 from ballsocket.identify import Machine, Measured
 from ballsocket.identify.file import read_identify
 
@@ -113,19 +170,15 @@ open("data.toml", "w").write(
     '[machine.frame]\\nseating = "0..20 um"\\n'
     '[[data]]\\nfile = "press.csv"\\nuncertainty = "0.01 um"\\nmachine = "frame"\\n'
 )
-points.append(read_identify("data.toml").identify_unknowns().point)
-print(json.dumps({"points": points, "notes": known.notes}))
-sys.stdout.flush()
-sys.argv = ["ballsocket", "identify", "data.toml", "--json"]
-main()
+from_file = read_identify("data.toml").identify_unknowns()
+summary = [from_file.point, from_file["foundation_modulus"].unit]
+print(json.dumps([*points, *summary, known.notes]))
 """
 
 
 @pytest.mark.long
 def test_a_new_unknown_costs_one_file_and_one_line_of_the_registry(tmp_path):
-    """In a copy of the package with the two files of the page it is used from Python, by loads of both kinds, from a
-    file, and by the command.
-    """
+    """In a copy of the package with the two files of the page, by loads of both kinds, and from a file."""
     room = tmp_path / "ballsocket" / "identify"
     shutil.copytree(Path(bs.__file__).parent, room.parent, ignore=shutil.ignore_patterns("__pycache__"))
     registry = (room / "registry.py").read_text("utf-8")
@@ -137,23 +190,15 @@ def test_a_new_unknown_costs_one_file_and_one_line_of_the_registry(tmp_path):
     (room / "registry.py").write_text(registry, "utf-8")
     (tmp_path / "script.py").write_text(SCRIPT, "utf-8")
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    environment |= {"PYTHONPATH": str(tmp_path), "PYTHONIOENCODING": "utf-8"}
     completed = subprocess.run(
-        [sys.executable, "script.py"],
-        cwd=tmp_path,
-        capture_output=True,
-        encoding="utf-8",
-        check=False,
-        env={**environment, "PYTHONPATH": str(tmp_path), "PYTHONIOENCODING": "utf-8"},
+        [sys.executable, "script.py"], cwd=tmp_path, env=environment, capture_output=True, encoding="utf-8", check=False
     )
     assert completed.returncode == 0, completed.stderr
-    python, command = (json.loads(text) for text in completed.stdout.split("\n", 1))
-    by_force, by_depth, from_file = python["points"]
+    by_force, by_depth, from_file, unit, notes = json.loads(completed.stdout)
     truth = {"foundation_modulus": 300.0, "machine.seating": 0.005}
     assert by_force == pytest.approx(truth, rel=1e-3)
     assert by_depth == pytest.approx(truth, rel=1e-3)
     assert from_file == pytest.approx({"foundation_modulus": 300.0, "frame.seating": 0.005}, rel=1e-3)
-    assert any(note.startswith("a seating of 1 µm would move foundation_modulus by") for note in python["notes"])
-    estimates = {row["name"]: row for row in command["estimates"]}
-    assert estimates["foundation_modulus"]["unit"] == "MPa/mm"
-    assert estimates["foundation_modulus"]["value"] == pytest.approx(300.0, rel=1e-3)
-    assert estimates["frame.seating"]["value"] == pytest.approx(0.005, rel=1e-3)
+    assert unit == "MPa/mm"
+    assert any(note.startswith("a seating of 1 µm would move foundation_modulus by") for note in notes)
