@@ -12,8 +12,8 @@ from ballsocket.identify.bands import compute_bands, profile_ends, scatter_ratio
 from ballsocket.identify.fit import find_best_fit, minimise_misfit
 from ballsocket.identify.information import MAX_WIDTH_RATIO, QUANTILE_95, QUANTILE_99, Information, Interval, ProfileEnd
 from ballsocket.identify.misfit import FitResult
-from ballsocket.identify.unknowns import ParameterTransform, Unknown
-from ballsocket.studies import Normal, Rectangular
+from ballsocket.identify.unknowns import ParameterTransform
+from ballsocket.studies import Normal
 
 from .linear_problem import MATRIX, NAMES, TRUTH, linear_misfit, scaled_covariance, unknown
 
@@ -58,12 +58,10 @@ def test_two_valleys_of_equal_depth_are_rivals():
         def results_at(self, values, load_perturbation=0.0):
             return values**2 @ self.matrix.T
 
-    forward = Square(misfit.forward.data, MATRIX[:, :1])
-    square = replace(misfit, forward=forward)
+    square = replace(misfit, forward=Square(misfit.forward.data, MATRIX[:, :1]))
     object.__setattr__(square, "value", MATRIX[:, 0] * 0.04)
     best = find_best_fit(square, seed=0)
-    (rival,) = best.rivals
-    values = square.transform.to_values(np.stack([best.theta, rival]))[:, 0]
+    values = square.transform.to_values(np.stack([best.theta, *best.rivals]))[:, 0]
     np.testing.assert_allclose(sorted(values), [-0.2, 0.2], rtol=1e-4)
 
 
@@ -72,14 +70,11 @@ def test_ends_of_profiles_are_at_the_marginal_standard_deviation():
     deviations = np.sqrt(np.diag(scaled_covariance(misfit)))
     profiles = profile_ends(misfit, [best.theta], best.cost, (1.0, 9.0))
     for rise, row in zip((1.0, 9.0), profiles.ends, strict=True):
-        for index, (low, high) in enumerate(row):
-            half = sqrt(rise) * deviations[index]
-            assert best.theta[index] - low.theta[index] == pytest.approx(half, rel=0.011)
-            assert high.theta[index] - best.theta[index] == pytest.approx(half, rel=0.011)
-            assert low.closed
-            assert high.closed
-            assert low.limited_by == high.limited_by == ()
-            for end in (low, high):
+        for index, ends in enumerate(row):
+            for sign, end in zip((-1, 1), ends, strict=True):
+                half = sign * (end.theta[index] - best.theta[index])
+                assert half == pytest.approx(sqrt(rise) * deviations[index], rel=0.011)
+                assert (end.closed, end.limited_by) == (True, ())
                 assert 2 * (misfit.costs(end.theta[None])[0] - best.cost) == pytest.approx(rise, rel=0.021)
     assert profiles.cost == pytest.approx(best.cost, abs=1e-9)
     np.testing.assert_allclose(profiles.lowest, best.theta, atol=1e-6)
@@ -87,36 +82,21 @@ def test_ends_of_profiles_are_at_the_marginal_standard_deviation():
 
 def test_a_profile_ends_at_the_end_of_the_range():
     misfit, best = fitted(unknowns=(unknown(NAMES[0], low=0.099, high=0.45), unknown(NAMES[1])))
-    (row,) = profile_ends(misfit, [best.theta], best.cost, (4.0,)).ends
-    assert not row[0][0].closed
-    assert row[0][0].theta[0] == pytest.approx(misfit.transform.low[0])
-    assert row[0][0].limited_by == (0,)
-    assert row[0][1].closed
+    (((low, high), _),) = profile_ends(misfit, [best.theta], best.cost, (4.0,)).ends
+    assert (low.closed, low.limited_by, high.closed) == (False, (0,), True)
+    assert low.theta[0] == pytest.approx(misfit.transform.low[0])
 
 
 def test_the_range_of_one_unknown_limits_the_band_of_another():
     """Two nearly parallel columns: the one may only move as far as the range of the other."""
     matrix = np.stack([MATRIX[:, 0], MATRIX[:, 0] + 1e-3 * MATRIX[:, 1]], axis=1)
-    unknowns = (unknown(NAMES[0]), unknown(NAMES[1], low=-0.25, high=-0.15))
-    misfit, best = fitted(unknowns=unknowns, matrix=matrix)
-    (row,) = profile_ends(misfit, [best.theta], best.cost, (3.84,)).ends
-    assert row[0][0].limited_by == row[0][1].limited_by == (1,)
-    assert not row[1][0].closed
-    low, high = (misfit.transform.to_values(end.theta)[0] for end in row[0])
-    deviation = 0.02 / np.linalg.norm(matrix[:, 0])
-    assert low == pytest.approx(0.05 - 1.96 * deviation, abs=2e-3)
-    assert high == pytest.approx(0.15 + 1.96 * deviation, abs=2e-3)
-
-
-def test_the_outermost_end_of_several_starts_is_used():
-    misfit, best = fitted()
-    shifted = best.theta + np.array([0.3, -0.2])
-    one = profile_ends(misfit, [best.theta], best.cost, (3.84,)).ends[0]
-    two = profile_ends(misfit, [best.theta, shifted], best.cost, (3.84,)).ends[0]
-    for index in range(2):
-        assert two[index][0].theta[index] <= one[index][0].theta[index] + 1e-9
-        assert two[index][1].theta[index] >= one[index][1].theta[index] - 1e-9
-        assert two[index][1].theta[index] == pytest.approx(one[index][1].theta[index], rel=0.02)
+    misfit, best = fitted(unknowns=(unknown(NAMES[0]), unknown(NAMES[1], low=-0.25, high=-0.15)), matrix=matrix)
+    ((first, second),) = profile_ends(misfit, [best.theta], best.cost, (3.84,)).ends
+    assert first[0].limited_by == first[1].limited_by == (1,)
+    assert not second[0].closed
+    low, high = (misfit.transform.to_values(end.theta)[0] for end in first)
+    half = 1.96 * 0.02 / np.linalg.norm(matrix[:, 0])
+    assert (low, high) == pytest.approx((0.05 - half, 0.15 + half), abs=2e-3)
 
 
 @pytest.mark.parametrize("factor", [0.5, 3.0])
@@ -142,74 +122,54 @@ def test_the_scatter_ratio_of_a_heavy_tail_is_its_most_likely_scale():
     assert np.sum(5 * u**2 / (4 + u**2)) == pytest.approx(3.0, rel=1e-4)
 
 
-def test_bands_use_students_quantile_for_an_improbable_scatter():
+def test_bands_use_students_quantile_for_an_improbable_scatter_and_the_normal_one_for_a_probable():
     misfit, best, information = compute_bands(*fitted(NOISE, uncertainty=0.002))
     assert misfit.widening > 3
     assert information.quantile == pytest.approx(float(stats.t.ppf(0.975, 3)))
     deviation = sqrt(scaled_covariance(misfit, uncertainty=0.002)[0, 0]) * misfit.widening
-    interval = information.intervals[0]
-    assert (interval.high.theta - interval.low.theta)[0] == pytest.approx(
-        2 * information.quantile * deviation, rel=0.02
-    )
+    width = (information.intervals[0].high.theta - information.intervals[0].low.theta)[0]
+    assert width == pytest.approx(2 * information.quantile * deviation, rel=0.02)
     assert best.cost == pytest.approx(1.5, rel=1e-4)  # χ² of 3 degrees of freedom, halved
-
-
-def test_bands_use_the_normal_quantile_for_a_probable_scatter():
     misfit, _, information = compute_bands(*fitted(0.5 * NOISE))
     assert information.quantile == QUANTILE_95
     assert misfit.widening < 1.5
     np.testing.assert_allclose(information.matrix, np.linalg.inv(scaled_covariance(misfit)) / misfit.widening**2)
-    assert pytest.approx(stats.norm.ppf(0.975), rel=1e-15) == QUANTILE_95
-    assert pytest.approx(stats.norm.ppf(0.995), rel=1e-15) == QUANTILE_99
+    assert stats.norm.ppf([0.975, 0.995]) == pytest.approx([QUANTILE_95, QUANTILE_99], rel=1e-15)
 
 
-class Millimetres:
-    unit = "mm"
-
-
-LOG = [
-    Unknown(name=name, quantity=Millimetres, prior=Rectangular(low=1.0, high=9.0), low=1.0, high=9.0, logarithmic=True)
-    for name in ("a", "b")
-]
+LOG = [replace(unknown("clearance", low=1.0, high=9.0), name=name, logarithmic=True) for name in ("a", "b")]
 SPAN = log(9.0) / sqrt(12)
 DIAGONAL = np.array([[1.0, -1.0], [1.0, -1.0]]) / sqrt(2)
 OPEN = (False, False)
 
 
-def information_of(directions, half_widths, closed=(True, True), limits=((), ()), matrix=None, unknowns=LOG):
+def information_of(
+    directions, half_widths, closed=(True, True), limits=((), ()), matrix=((1, 0), (0, 1)), unknowns=LOG
+):
     """Return the information of intervals along given directions about the middle of the ranges."""
     transform = ParameterTransform(tuple(unknowns))
     middle = (transform.low + transform.high) / 2
     intervals = tuple(
         Interval(
-            ProfileEnd(middle - half * np.array(direction), is_closed, limited),
-            ProfileEnd(middle + half * np.array(direction), is_closed, limited),
-            is_closed,
+            *(ProfileEnd(middle + side * half * np.array(direction), is_closed, limited) for side in (-1, 1)), is_closed
         )
         for direction, half, is_closed, limited in zip(directions, half_widths, closed, limits, strict=True)
     )
-    return Information(transform, middle, np.eye(2) if matrix is None else np.array(matrix), intervals)
+    return Information(transform, middle, np.array(matrix), intervals)
 
 
-def test_a_band_of_half_the_range_or_without_an_end_makes_an_unknown_unidentifiable():
+def test_a_band_of_half_the_range_or_without_an_end_makes_an_unknown_without_a_distribution_unidentifiable():
     half_range = MAX_WIDTH_RATIO * sqrt(12) / 2
     below = information_of(np.eye(2), (0.99 * half_range, 0.1))
+    assert (below.unidentifiable, below.rank, below.products) == ((), 2, ())
     above = information_of(np.eye(2), (1.01 * half_range, 0.1))
-    assert below.unidentifiable == ()
-    assert below.rank == 2
-    assert below.products == ()
-    assert above.unidentifiable == ("a",)
-    assert above.rank == 1
+    assert (above.unidentifiable, above.rank) == (("a",), 1)
     assert above.deviations["a"] == pytest.approx(0.505)
     assert information_of(np.eye(2), (0.1, 0.1), closed=(True, False)).unidentifiable == ("b",)
-
-
-def test_an_unknown_with_a_distribution_is_always_identifiable():
     known = replace(LOG[0], prior=Normal(mean=3.0, deviation=1.0))
     information = information_of(np.eye(2), (5.0, 0.1), closed=(False, True), unknowns=(known, LOG[1]))
-    assert information.unidentifiable == ()
+    assert (information.unidentifiable, information.limited_by("a")) == ((), ())
     assert information.deviations["a"] == pytest.approx(10.0 / (2 * QUANTILE_95))
-    assert information.limited_by("a") == ()
 
 
 @pytest.mark.parametrize(("shift", "unidentifiable"), [(0.11, ("a", "b")), (0.09, ("b",))])
@@ -224,21 +184,16 @@ def test_an_unknown_that_an_unidentifiable_one_shifts_is_unidentifiable_too(shif
 
 
 def test_parallel_bands_are_one_unidentifiable_direction():
-    matrix = 5e3 * np.array([[1.0, 1.0], [1.0, 1.0]])
+    matrix = 5e3 * np.ones((2, 2))
     information = information_of(DIAGONAL, (2.0, 2.0), OPEN, matrix=matrix)
-    assert information.unidentifiable == ("a", "b")
-    assert information.rank == 1
+    assert (information.unidentifiable, information.rank) == (("a", "b"), 1)
     np.testing.assert_allclose(information.eigenvalues, [1e4, 0.0], atol=1e-9)
     assert information.condition == np.inf
     (product,) = information.products
-    assert product.exponents == {"a": 1.0, "b": 1.0}
-    assert product.name == "a · b"
-    half = QUANTILE_95 * SPAN * sqrt(2 / 1e4)
-    assert (product.low, product.value, product.high) == pytest.approx(
-        (9.0 * np.exp(-half), 9.0, 9.0 * np.exp(half)), rel=1e-6
-    )
-    perpendicular = information_of(np.eye(2), (2.0, 2.0), OPEN, matrix=matrix)
-    assert perpendicular.rank == 0
+    assert (product.name, product.exponents) == ("a · b", {"a": 1.0, "b": 1.0})
+    half = np.exp(QUANTILE_95 * SPAN * sqrt(2 / 1e4))
+    assert (product.low, product.value, product.high) == pytest.approx((9.0 / half, 9.0, 9.0 * half), rel=1e-6)
+    assert information_of(np.eye(2), (2.0, 2.0), OPEN, matrix=matrix).rank == 0  # perpendicular
 
 
 def test_powers_of_a_product_are_rounded_to_halves():
@@ -246,9 +201,7 @@ def test_powers_of_a_product_are_rounded_to_halves():
     across = np.array([[direction[1], -direction[0]]] * 2)
     information = information_of(across, (2.0, 2.0), OPEN, matrix=1e4 * np.outer(direction, direction))
     (product,) = information.products
-    assert product.exponents == {"a": 0.5, "b": 1.0}
-    assert product.name == "a^0.5 · b"
-    assert product.unit == "mm^0.5 mm"
+    assert (product.name, product.unit, product.exponents) == ("a^0.5 · b", "mm^0.5 mm", {"a": 0.5, "b": 1.0})
     keys = ("name", "exponents", "unit", "value", "low", "high")
     assert product.summary() == {key: getattr(product, key) for key in keys}
     assert information_of(np.eye(2)[[1, 1]], (2.0, 2.0), OPEN, matrix=[[1e4, 0.0], [0.0, 0.0]]).products == ()  # of one
