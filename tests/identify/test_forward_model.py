@@ -43,9 +43,7 @@ def test_results_are_those_of_single_presses_in_the_order_of_the_data():
         Measured(quantity="liner_young", values=900.0, uncertainty=5.0),
         Measured(quantity="ball_radius", values=16.0, uncertainty=0.1),
     )
-    rows = forward(*data).results_at(VALUES)
-    assert rows.shape == (2, 3 + 2 + 2 + 3 + 1 + 3 + 1 + 1)
-    for row, joint in zip(rows, JOINTS, strict=True):
+    for row, joint in zip(forward(*data).results_at(VALUES), JOINTS, strict=True):
         contact = MODEL.press(joint, force=FORCE)
         expected = [
             contact.indentation,
@@ -54,21 +52,22 @@ def test_results_are_those_of_single_presses_in_the_order_of_the_data():
             contact.pressure(np.array([0.0, 0.1, 0.2])),
             MODEL.press(joint, half_angle=np.array([0.3])).area,
             oscillation(2.0).read(contact),
-            [joint.liner.young],
-            [16.0],
+            [joint.liner.young, 16.0],
         ]
         np.testing.assert_allclose(row, np.concatenate(expected), rtol=1e-12)
 
 
 def test_a_perturbation_changes_every_load_by_its_fraction():
-    rows = forward(measured("indentation")).results_at(VALUES[:1], load_perturbation=0.01)
-    np.testing.assert_allclose(rows[0], MODEL.press(JOINTS[0], force=1.01 * FORCE).indentation, rtol=1e-12)
     by_depth = Measured(quantity="force", values=FORCE, uncertainty=1.0, indentation=[0.01, 0.02, 0.03])
-    machine = replace(by_depth, machine=Machine(offset=0.001))
+    read = replace(by_depth, machine=Machine(offset=0.001))
     depth = 1.01 * by_depth.indentation
-    for data, expected in ((by_depth, depth), (machine, depth - 0.001)):
+    for data, load, result in (
+        (measured("indentation"), {"force": 1.01 * FORCE}, "indentation"),
+        (by_depth, {"indentation": depth}, "force"),
+        (read, {"indentation": depth - 0.001}, "force"),
+    ):
         row = forward(data).results_at(VALUES[:1], load_perturbation=0.01)[0]
-        np.testing.assert_allclose(row, MODEL.press(JOINTS[0], indentation=expected).force, rtol=1e-12)
+        np.testing.assert_allclose(row, getattr(MODEL.press(JOINTS[0], **load), result), rtol=1e-12)
 
 
 def test_a_machine_adds_its_errors_to_indentations():
@@ -101,14 +100,20 @@ def test_a_value_of_zero_is_read_below_the_zero_of_the_machine(quantity, complia
     assert forward(data).results_at(VALUES[:1]).tolist() == [[0.0]]
 
 
-def test_a_point_without_a_joint_or_a_result_is_nan():
+def test_a_point_without_a_joint_or_a_result_is_nan_and_costs_infinitely_much():
     data = (measured("indentation"), Measured(quantity="clearance", values=0.1, uncertainty=0.1))
-    rows = forward(*data, names=("outer_radius",)).results_at(np.array([[15.0], [22.1]]))
-    assert np.isnan(rows[0]).all()
-    assert np.isfinite(rows[1]).all()
-    thin = forward(*data, names=("liner_thickness",), model=bs.Tabulated()).results_at(np.array([[0.01], [0.02]]))
-    assert np.isnan(thin[:, :3]).all()
-    assert np.isfinite(thin[:, 3]).all()
+    no_joint, joint = forward(*data, names=("outer_radius",)).results_at(np.array([[15.0], [22.1]]))
+    assert np.isnan(no_joint).all()
+    assert np.isfinite(joint).all()
+    thickness, model = ("liner_thickness",), bs.Tabulated()
+    thin = forward(*data, names=thickness, model=model).results_at(np.array([[0.01], [0.02]]))
+    assert (np.isnan(thin) == [True, True, True, False]).all()
+    transform = ParameterTransform(collect_unknowns({"liner_thickness": (0.01, 6.0)}, (), MODEL))
+    only = forward(data[0], names=thickness, model=model)
+    problem = Misfit(only, transform, NormalScatter(), by_differences, data[0].uncertainty)
+    theta = transform.to_theta([[0.01], [5.0]])
+    assert np.isinf(problem.costs(theta)).tolist() == [True, False]
+    assert problem.log_posterior(theta[:1]).tolist() == [-np.inf]
 
 
 UNKNOWNS = collect_unknowns({"clearance": (0.05, 0.2), "liner_young": Normal(mean=1000.0, deviation=80.0)}, (), MODEL)
@@ -125,26 +130,23 @@ def misfit(*data, scatter=None):
 THETA = TRANSFORM.to_theta(VALUES)
 
 
-def test_differences_are_the_derivatives_of_the_results():
+def test_differences_are_the_derivatives_of_the_results_and_one_sided_at_the_ends_of_a_range():
+    def results_at(theta):
+        return forward(*DATA).results_at(TRANSFORM.to_values(theta))
+
     results, slopes = by_differences(forward(*DATA), TRANSFORM, THETA)
-    np.testing.assert_array_equal(results, forward(*DATA).results_at(TRANSFORM.to_values(THETA)))
-    assert slopes.shape == (2, 6, 2)
-    for index in range(2):
-        shift = 1e-3 * np.eye(2)[index]
-        above, below = (forward(*DATA).results_at(TRANSFORM.to_values(THETA + side * shift)) for side in (1, -1))
-        np.testing.assert_allclose(slopes[..., index], (above - below) / 2e-3, rtol=1e-5)
+    np.testing.assert_array_equal(results, results_at(THETA))
+    for index, shift in enumerate(1e-3 * np.eye(2)):
+        expected = (results_at(THETA + shift) - results_at(THETA - shift)) / 2e-3
+        np.testing.assert_allclose(slopes[..., index], expected, rtol=1e-5)
     single, _ = by_differences(forward(*DATA), TRANSFORM, THETA[0])
     np.testing.assert_array_equal(single, results[0])
-
-
-def test_differences_are_one_sided_at_the_ends_of_a_range():
     ends = np.stack([TRANSFORM.low, TRANSFORM.high])
     ends[:, 1] = THETA[0, 1]
     _, slopes = by_differences(forward(*DATA), TRANSFORM, ends)
-    for end, side, slope in zip(ends, (1, -1), slopes, strict=True):
-        shift = side * 1e-4 * np.array([1.0, 0.0])
-        near, at_end = forward(*DATA).results_at(TRANSFORM.to_values(np.stack([end + shift, end])))
-        np.testing.assert_allclose(slope[:, 0], (near - at_end) / (side * 1e-4), rtol=1e-3)
+    for end, step, slope in zip(ends, (1e-4, -1e-4), slopes, strict=True):
+        near, at_end = results_at(end + np.array([[step, 0.0], [0.0, 0.0]]))
+        np.testing.assert_allclose(slope[:, 0], (near - at_end) / step, rtol=1e-3)
 
 
 def test_differences_omit_a_neighbour_without_a_result():
@@ -170,9 +172,8 @@ def test_residuals_have_the_derivatives_that_are_returned(scatter, data):
     assert residuals.shape == (2, 7)  # one more for the distribution of the modulus
     np.testing.assert_allclose(residuals[:, -1], TRANSFORM.prior_residuals(THETA)[:, 1])
     np.testing.assert_allclose(slopes[:, -1], [[0.0, 1.0]] * 2)
-    for index in range(2):
-        shift = 1e-5 * np.eye(2)[index]
-        above, below = (problem.residuals_and_slopes(THETA + side * shift)[0] for side in (1, -1))
+    for index, shift in enumerate(1e-5 * np.eye(2)):
+        above, below = (problem.residuals_and_slopes(theta)[0] for theta in (THETA + shift, THETA - shift))
         np.testing.assert_allclose(slopes[..., index], (above - below) / 2e-5, rtol=1e-3, atol=1e-3)
     np.testing.assert_allclose(problem.costs(THETA), np.sum(residuals**2, axis=1) / 2, rtol=1e-12)
 
@@ -181,10 +182,9 @@ def test_a_saturated_value_is_a_lower_bound_at_its_limit():
     problem = misfit(DATA[0], FILM)
     assert problem.saturated.tolist() == [False] * 4 + [True, True]
     assert problem.value.tolist() == [0.02, 0.03, 0.045, 4.0, 7.0, 7.0]
-    far_above = problem.residuals(np.array([[0.02, 0.03, 0.045, 4.0, 9.0, 12.0]]))
-    assert far_above.max() < 1e-6
-    below = problem.residuals(np.array([[0.02, 0.03, 0.045, 4.0, 6.0, 6.0]]))
-    assert below[0, 4] > 7.0
+    above, below = problem.residuals(np.array([[0.02, 0.03, 0.045, 4.0, *ends] for ends in ((9.0, 12.0), (6.0, 6.0))]))
+    assert above.max() < 1e-6
+    assert below[4] > 7.0
 
 
 def test_widening_divides_the_standardised_residuals():
@@ -200,15 +200,14 @@ def test_widening_divides_the_standardised_residuals():
 def test_the_information_is_the_weighted_product_of_the_slopes(scatter, factor):
     problem = misfit(*DATA, scatter=scatter)
     _, slopes = by_differences(problem.forward, TRANSFORM, THETA[0])
-    weights = factor / problem.uncertainty**2
-    np.testing.assert_allclose(problem.fisher_information(THETA[0]), (slopes * weights[:, None]).T @ slopes, rtol=1e-10)
+    weighted = slopes.T * factor / problem.uncertainty**2
+    np.testing.assert_allclose(problem.fisher_information(THETA[0]), weighted @ slopes, rtol=1e-10)
     errors = np.arange(12.0).reshape(2, 6)
-    np.testing.assert_allclose(problem.project_errors(THETA[0], errors), slopes.T @ (weights * errors).T, rtol=1e-10)
+    np.testing.assert_allclose(problem.project_errors(THETA[0], errors), weighted @ errors.T, rtol=1e-10)
 
 
 def test_a_lower_bound_far_below_the_result_has_no_information():
     linear, theta = linear_misfit(saturation=-10.0), linear_misfit().transform.to_theta(TRUTH)
-    assert linear.saturated.all()
     object.__setattr__(linear, "value", MATRIX @ TRUTH - 0.4)
     assert abs(linear.fisher_information(theta)).max() < 1e-6
     object.__setattr__(linear, "value", MATRIX @ TRUTH)  # half the density lies above: h² = 2/π of the full weight
@@ -232,20 +231,8 @@ def test_the_log_posterior_is_prior_plus_likelihood_within_the_ranges():
     residuals = problem.residuals(problem.forward.results_at(TRANSFORM.to_values(THETA)))
     expected = log_prior(TRANSFORM, THETA) - np.sum(residuals**2, axis=1) / 2
     np.testing.assert_allclose(problem.log_posterior(THETA), expected, rtol=1e-12)
-    shift = np.array([0.1, 0.0])
-    outside = np.stack([TRANSFORM.high + shift, TRANSFORM.low - shift])
+    outside = np.stack([TRANSFORM.high, TRANSFORM.low]) + np.array([[0.1, 0.0], [-0.1, 0.0]])
     assert problem.log_posterior(outside).tolist() == [-np.inf] * 2
-
-
-def test_the_cost_is_infinite_without_a_result():
-    data = measured("indentation", values=[0.02, 0.03, 0.045])
-    transform = ParameterTransform(collect_unknowns({"liner_thickness": (0.01, 6.0)}, (), MODEL))
-    model = forward(data, names=("liner_thickness",), model=bs.Tabulated())
-    problem = Misfit(model, transform, NormalScatter(), by_differences, data.uncertainty)
-    costs = problem.costs(transform.to_theta([[0.01], [5.0]]))
-    assert costs[0] == np.inf
-    assert np.isfinite(costs[1])
-    assert problem.log_posterior(transform.to_theta([[0.01]])).tolist() == [-np.inf]
 
 
 @pytest.mark.long

@@ -1,11 +1,14 @@
-"""Markov chains: convergence measures with known values, and a posterior with a closed form."""
+"""Models of scatter against SciPy, convergence of Markov chains, and a posterior with a closed form."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy import stats
+from scipy.integrate import quad
 
 import ballsocket as bs
-from ballsocket.identify import Measured
+from ballsocket.identify import HeavyTailed, Measured, NormalScatter
 from ballsocket.identify.posterior import (
     CONVERGED,
     Posterior,
@@ -31,14 +34,13 @@ def test_the_autocorrelation_time_of_an_autoregressive_chain_is_known():
 
 
 def test_r_hat_compares_halves_of_the_ensembles():
-    """Two steps a half: within-variance and between-variance by hand."""
+    """Two steps a half: within-variance and between-variance by hand; the middle one of an odd number is left out."""
     chains = np.array([[[0.0], [2.0], [1.0], [3.0]], [[4.0], [6.0], [5.0], [7.0]]])
     halves = np.array([[0.0, 2.0], [4.0, 6.0], [1.0, 3.0], [5.0, 7.0]])
     within = halves.var(axis=1, ddof=1).mean()
     variance = within / 2 + halves.mean(axis=1).var(ddof=1)
-    assert _r_hat(chains) == pytest.approx(np.sqrt(variance / within), rel=1e-12)
-    odd = np.concatenate([chains[:, :2], np.full((2, 1, 1), 99.0), chains[:, 2:]], axis=1)
-    assert _r_hat(odd) == pytest.approx(_r_hat(chains), rel=1e-12)
+    for ensemble in (chains, np.insert(chains, 2, 99.0, axis=1)):
+        assert _r_hat(ensemble) == pytest.approx(np.sqrt(variance / within), rel=1e-12)
     alike = np.random.default_rng(1).standard_normal((2, 500, 8))
     assert _r_hat(alike) == pytest.approx(1.0, abs=2e-3)
     alike[1] += 1.0
@@ -65,14 +67,13 @@ def test_the_band_of_samples_is_their_central_interval():
     samples = np.stack([np.linspace(0.0, 1.0, 1001), np.linspace(5.0, 3.0, 1001)], axis=1)
     ones = {"a": 1.0, "b": CONVERGED}
     result = Posterior(("a", "b"), samples, 0.4, ones, ones, ones)
-    assert result.band("a") == pytest.approx((0.025, 0.975))
     assert result.band("b", 0.5) == pytest.approx((3.5, 4.5))
     assert result.median("b") == pytest.approx(4.0)
     assert result.converged
-    assert not Posterior(("a",), samples, 0.4, ones, ones, {"a": CONVERGED + 1e-6}).converged
-    summary = result.summary()
-    assert summary["samples"] == 1001
-    assert summary["estimates"][0] == pytest.approx({"name": "a", "median": 0.5, "low": 0.025, "high": 0.975}, abs=1e-9)
+    assert not replace(result, r_hat={**ones, "a": CONVERGED + 1e-6}).converged
+    assert result.summary()["samples"] == 1001
+    expected = {"name": "a", "median": 0.5, "low": 0.025, "high": 0.975}
+    assert result.summary()["estimates"][0] == pytest.approx(expected, abs=1e-9)
 
 
 def test_the_posterior_of_a_number_without_data_is_its_prior():
@@ -91,3 +92,57 @@ def test_the_posterior_of_a_number_without_data_is_its_prior():
     np.testing.assert_array_equal(result.posterior(400, seed=3).samples, samples.samples)
     with pytest.raises(ValueError, match="samples = 99 is not allowed: a posterior has 100 samples or more"):
         result.posterior(99)
+
+
+Z = np.array([-40.0, -5.0, -1.3, -0.2, 0.0, 1e-7, 0.4, 2.0, 6.0, 30.0])
+CASES = [
+    (NormalScatter(), stats.norm()),
+    (HeavyTailed(), stats.t(4.0)),
+    (HeavyTailed(degrees=1.5), stats.t(1.5)),
+    (HeavyTailed(degrees=40.0), stats.t(40.0)),
+]
+each_scatter = pytest.mark.parametrize(("scatter", "reference"), CASES, ids=["normal", "t4", "t1.5", "t40"])
+
+
+def numeric_slope(function, z):
+    step = 1e-6 * np.maximum(1.0, abs(z))
+    return (function(z + step) - function(z - step)) / (2 * step)
+
+
+@each_scatter
+def test_half_the_squared_misfit_is_minus_the_log_density_with_its_slope(scatter, reference):
+    expected = reference.logpdf(0.0) - reference.logpdf(Z)
+    np.testing.assert_allclose(scatter.misfit(Z) ** 2 / 2, expected, rtol=1e-12, atol=1e-13)
+    assert np.all(np.sign(scatter.misfit(Z)) == np.sign(Z))
+    assert scatter.constant == pytest.approx(float(reference.logpdf(0.0)), rel=1e-14)
+    np.testing.assert_allclose(scatter.slope(Z), numeric_slope(scatter.misfit, Z), rtol=1e-7)
+
+
+@each_scatter
+def test_a_lower_bound_has_the_probability_of_the_distribution_function(scatter, reference):
+    z = Z[Z < 8.0]
+    residual, slope = scatter.censored(z)
+    np.testing.assert_allclose(residual**2 / 2, -reference.logcdf(z), rtol=1e-9)
+    assert np.all(residual >= 0.0)
+    np.testing.assert_allclose(slope, numeric_slope(lambda x: scatter.censored(x)[0], z), rtol=1e-4, atol=1e-9)
+    assert np.all(slope <= 0.0)
+
+
+def test_a_lower_bound_far_below_the_result_costs_nothing():
+    for scatter in (NormalScatter(), HeavyTailed()):
+        residual, slope = scatter.censored(np.array([1e30]))
+        assert residual == pytest.approx(0.0, abs=1e-12)
+        assert np.isfinite(slope).all()
+    assert NormalScatter().censored(np.array([50.0])) == (0.0, 0.0)
+
+
+@each_scatter
+def test_the_information_is_the_mean_square_of_the_score_and_draws_follow_the_distribution(scatter, reference):
+    def integrand(z):
+        point = np.array([z])
+        return float(reference.pdf(z) * (scatter.misfit(point) * scatter.slope(point))[0] ** 2)
+
+    assert scatter.information == pytest.approx(quad(integrand, -np.inf, np.inf)[0], rel=1e-6)
+    draws = scatter.draw(4000, np.random.default_rng(2))
+    assert draws.shape == (4000,)
+    assert stats.kstest(draws, reference.cdf).pvalue > 0.01

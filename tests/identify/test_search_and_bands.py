@@ -18,7 +18,6 @@ from ballsocket.studies import Normal
 from .linear_problem import MATRIX, NAMES, TRUTH, linear_misfit, scaled_covariance, unknown
 
 NOISE = np.array([0.03, -0.01, 0.02, -0.04, 0.01])
-SPANS = np.array([unknown(name).prior_deviation for name in NAMES])
 
 
 def fitted(*settings, **options):
