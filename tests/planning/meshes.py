@@ -12,9 +12,8 @@ def turned(profile, segments=96):
     ring = np.array([[[r * np.cos(a), r * np.sin(a), z] for a in angles] for r, z in profile])
     here, right, above, both = ring[:-1, :-1], ring[:-1, 1:], ring[1:, :-1], ring[1:, 1:]
     faces = np.concatenate([np.stack([here, both, right], axis=2), np.stack([here, above, both], axis=2)])
-    triangles = faces.reshape(-1, 3, 3)
-    sizes = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
-    return triangles[sizes > 1e-9]
+    a, b, c = np.moveaxis(faces.reshape(-1, 3, 3), 1, 0)
+    return np.stack([a, b, c], axis=1)[np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-9]
 
 
 def arc(radius, start, end, steps):
@@ -66,11 +65,6 @@ def scattered(triangles, deviation, seed=1):
     return moved[index.ravel()].reshape(-1, 3, 3)
 
 
-def rotation(seed=3):
-    matrix = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
-    return matrix * np.sign(np.linalg.det(matrix))
-
-
 def binary(triangles, header=b"made by a test"):
     records = np.zeros(len(triangles), dtype=[("n", "<f4", 3), ("v", "<f4", (3, 3)), ("a", "<u2")])
     records["v"] = triangles
@@ -80,6 +74,5 @@ def binary(triangles, header=b"made by a test"):
 def ascii_stl(triangles):
     corner = "      vertex {:.7g} {:.7g} {:.7g}\n"
     loop = f"  facet normal 0 0 0\n    outer loop\n{3 * corner}    endloop\n  endfacet\n"
-    return (
-        "solid test\n" + "".join(loop.format(*triangle.ravel()) for triangle in triangles) + "endsolid test\n"
-    ).encode()
+    facets = "".join(loop.format(*corners.ravel()) for corners in triangles)
+    return f"solid test\n{facets}endsolid test\n".encode()

@@ -34,8 +34,7 @@ def angles(cup):
 
 def test_every_file_of_slicer_gives_the_same_points(tmp_path):
     for name, text in (
-        *(("a.fcsv", pelves.fcsv(NAMES, POINTS, system, "4.11")) for system in ("LPS", "RAS")),
-        *(("a.fcsv", pelves.fcsv(NAMES, POINTS, system, "4.6")) for system in "01"),
+        *(("a.fcsv", pelves.fcsv(NAMES, POINTS, system)) for system in ("LPS", "RAS", "0", "1")),
         *(("a.mrk.json", pelves.markups(NAMES, POINTS, system)) for system in ("LPS", "RAS")),
         ("a.mrk.json", pelves.markups(NAMES, POINTS, "LPS", unit="m", scale=1e-3)),
         ("a.mrk.json", pelves.markups(NAMES, POINTS, "LPS", unit=["mm", "mm", "mm"])),
@@ -58,13 +57,13 @@ def test_files_of_slicer_3_need_a_coordinate_system_and_points_without_a_positio
     assert len(read_landmarks(tmp_path / "a.mrk.json").names) == len(NAMES) - 1
 
 
-@pytest.mark.parametrize("side", ["right", "left"])
-@pytest.mark.parametrize("pair", [(40.0, 15.0), (45.0, 20.0), (60.0, -5.0), (20.0, 35.0)])
+@pytest.mark.parametrize("side", Side)
+@pytest.mark.parametrize("pair", [(40.0, 15.0), (60.0, -5.0), (20.0, 35.0)])
 def test_angles_in_the_pelvic_plane_do_not_depend_on_the_pose_in_the_scanner(side, pair):
     turn = pelves.rotated(pitch=-12.0, roll=6.0, yaw=-9.0)
-    found = oriented(*pelves.pelvis(*pair, side=side, turn=turn, shift=(12.0, 200.0, -900.0)))
+    found = oriented(*pelves.pelvis(*pair, side=side.value, turn=turn, shift=(12.0, 200.0, -900.0)))
     assert angles(found.cup()) == pytest.approx(pair, abs=1e-9)
-    assert (found.side, found.cup().side) == (Side(side), Side(side))
+    assert found.side == found.cup().side == side
     assert found.residual == pytest.approx(0.0, abs=1e-9)
 
 
@@ -88,11 +87,8 @@ def test_pelvic_tilt_to_the_front_reduces_the_operative_anteversion_by_its_own_s
 
 def test_scatter_of_rim_points_gives_the_error_of_the_angles():
     """The standard error is that of repeated measurements."""
-    results = []
-    for seed in range(60):
-        points = POINTS.copy()
-        points[3:] += np.random.default_rng(seed).normal(0.0, 0.8, points[3:].shape)
-        results.append(oriented(NAMES, points))
+    noise = [np.random.default_rng(seed).normal(0.0, 0.8, (len(POINTS) - 3, 3)) for seed in range(60)]
+    results = [oriented(NAMES, np.concatenate([POINTS[:3], POINTS[3:] + errors])) for errors in noise]
     scatter = np.std([angles(found.cup()) for found in results], axis=0)
     stated = degrees(np.sqrt(np.mean([found.angle_error**2 for found in results])))
     assert stated == pytest.approx(1.8 / 1.4, rel=0.4)
@@ -114,24 +110,24 @@ def test_tubercles_replace_the_symphysis_and_names_are_read_freely():
 def test_names_are_replaced_and_rims_of_both_sides_need_a_choice(tmp_path):
     both = [*("F-1", "F-2", "F-3"), *(f"right {name}" for name in NAMES[3:]), *(f"left rim {k}" for k in range(8))]
     points = np.concatenate([POINTS, pelves.pelvis(50.0, 10.0, side="left")[1][3:]])
-    (tmp_path / "a.fcsv").write_text(pelves.fcsv(both, points))
-    rename = {"right_asis": "F-1", "left_asis": "F-2", "symphysis": "F-3"}
-    landmarks = read_landmarks(tmp_path / "a.fcsv", rename=rename)
+    path = tmp_path / "a.fcsv"
+    path.write_text(pelves.fcsv(both, points))
+    landmarks = read_landmarks(path, rename={"right_asis": "F-1", "left_asis": "F-2", "symphysis": "F-3"})
     frame = pelvic_frame(landmarks)
-    with pytest.raises(ValueError, match="rim points of both sides: choose the side, right or left"):
-        cup_orientation(landmarks, frame)
-    assert angles(cup_orientation(landmarks, frame, side="left").cup()) == pytest.approx((50.0, 10.0), abs=1e-4)
-    assert angles(cup_orientation(landmarks, frame, side="right").cup()) == pytest.approx((42.0, 17.0), abs=1e-4)
-    for wrong, message in (({"asis": "F-1"}, "landmark 'asis' is not known"), ({"rim": "F-9"}, "point 'F-9' does not")):
+    for side, expected in (("left", (50.0, 10.0)), ("right", (42.0, 17.0))):
+        assert angles(cup_orientation(landmarks, frame, side=side).cup()) == pytest.approx(expected, abs=1e-4)
+    for call, message in (
+        (lambda: cup_orientation(landmarks, frame), "rim points of both sides: choose the side, right or left"),
+        (lambda: read_landmarks(path, rename={"asis": "F-1"}), "landmark 'asis' is not known"),
+        (lambda: read_landmarks(path, rename={"rim": "F-9"}), "point 'F-9' does not"),
+    ):
         with pytest.raises(ValueError, match=message):
-            read_landmarks(tmp_path / "a.fcsv", rename=wrong)
+            call()
 
 
 def changed(row, point):
     """Return the points of the pelvis with one replaced."""
-    points = POINTS.copy()
-    points[row] = point
-    return points
+    return np.concatenate([POINTS[:row], [point], POINTS[row + 1 :]])
 
 
 def inwards():
@@ -150,7 +146,6 @@ SPINES, RIM = ["RASIS", "LASIS"], POINTS[3:] - [90.0, 0, 0]
         (lambda: oriented(NAMES[1:], POINTS[1:]), "the landmarks lack the right ASIS; the points are left ASIS, pubic"),
         (lambda: oriented(["a", "b", "c"], POINTS[:3]), "lack the right ASIS, the left ASIS, the pubic symphysis or"),
         (lambda: oriented([*SPINES, "left tubercle", *NAMES[3:]], POINTS), "the pubic symphysis or both pubic tuberc"),
-        (lambda: oriented([*SPINES, "right tubercle", *NAMES[3:]], POINTS), "the pubic symphysis or both pubic tuber"),
         (lambda: oriented(NAMES[:5], POINTS[:5]), "lack the cup's rim: 2 of at least 3 points with names like rim-1"),
         (lambda: oriented([NAMES[1], NAMES[0], *NAMES[2:]], POINTS), "right ASIS lies to the left of the left one"),
         (lambda: oriented(NAMES, POINTS * [-1.0, -1.0, 1.0]), "mirrored, or the file is in LPS coordinates where it"),
@@ -177,9 +172,8 @@ def test_impossible_landmarks_are_refused_in_a_sentence(call, message):
     ("name", "text", "message"),
     [
         ("a.csv", "", "landmarks are read from .fcsv and .mrk.json files"),
-        ("a.fcsv", "", "the file states no coordinate system"),
         ("a.fcsv", "# CoordinateSystem = RAS\n", "a.fcsv has no points"),
-        ("a.fcsv", pelves.fcsv(NAMES, POINTS, "2", "4.6"), "coordinate system '2' is not read: RAS"),
+        ("a.fcsv", pelves.fcsv(NAMES, POINTS, "2"), "coordinate system '2' is not read: RAS"),
         ("a.fcsv", pelves.fcsv(NAMES, POINTS)[:-25], "a row of .* columns is incomplete"),
         ("a.fcsv", pelves.fcsv(NAMES, POINTS * np.nan), "'right ASIS' at nan, nan, nan is not allowed"),
         ("a.fcsv", pelves.fcsv(NAMES, POINTS).replace("-125.0000", "12mm", 1), "point 'right ASIS' has no three numb"),

@@ -21,9 +21,9 @@ def folder(tmp_path_factory):
     names, points = pelves.pelvis(scatter=0.3, turn=pelves.rotated(pitch=8.0))
     (folder / "pelvis.mrk.json").write_text(pelves.markups(names, points))
     (folder / "anatomy.fcsv").write_text(pelves.fcsv(names[:3], points[:3]))
-    turn = np.linalg.qr(np.column_stack([pelves.axis(42.0, 17.0), [0, 1, 0], [0, 0, 1]]))[0]
-    turn = np.column_stack([turn[:, 1], turn[:, 2], pelves.axis(42.0, 17.0)])
-    turn[:, 0] *= np.sign(np.linalg.det(turn))
+    axis = pelves.axis(42.0, 17.0)
+    _, x, y = np.linalg.qr(np.column_stack([axis, [0, 1, 0], [0, 0, 1]]))[0].T
+    turn = np.column_stack([x * np.sign(np.linalg.det([x, y, axis])), y, axis])
     liner = meshes.liner(steps=24, segments=48)
     scan = (liner @ turn.T + [90.0, -40.0, -85.0]) @ pelves.rotated(pitch=8.0).T + [5.0, -40.0, 900.0]
     (folder / "liner.stl").write_bytes(meshes.binary(liner))
@@ -49,8 +49,7 @@ def test_a_stated_clearance_makes_a_joint_that_press_reads(folder):
         assert re.search(row, done.stdout)
     file = read_joint(folder / "joint.toml")
     assert (file.joint.clearance, file.load) == (0.15, {"force": 3000.0})
-    assert file.joint.ball_radius == pytest.approx(16.0, abs=0.001)
-    assert file.joint.liner_thickness == pytest.approx(8.0, abs=0.001)
+    assert (file.joint.ball_radius, file.joint.liner_thickness) == pytest.approx((16.0, 8.0), abs=0.001)
     assert degrees(file.cup.arc_of_cover) == pytest.approx(170.0, abs=0.01)
     planned = Cup.from_angles(radians(42.0), radians(17.0), pelvic_tilt=radians(8.0))
     assert file.cup.inclination == pytest.approx(planned.inclination, abs=radians(0.5))
@@ -63,24 +62,20 @@ def test_json_has_all_results_and_an_stl_file_in_the_scan_orients_the_cup(folder
     done = run("planning", *words, folder=folder)
     assert (done.returncode, done.stderr) == (0, "")
     answer = json.loads(done.stdout)
-    cup = answer["cup"]
-    assert answer["side"] == "right"
-    assert answer["pelvis"]["tilt_deg"] == pytest.approx(8.0, abs=0.01)
-    assert cup["pelvic_inclination_deg"] == pytest.approx(42.0, abs=0.1)
-    assert cup["pelvic_anteversion_deg"] == pytest.approx(17.0, abs=0.1)
     assert {"valid", "error", "notes", "sources", "next"} <= set(answer)
+    assert (answer["side"], answer["pelvis"]["tilt_deg"]) == ("right", pytest.approx(8.0, abs=0.01))
+    angles = answer["cup"]["pelvic_inclination_deg"], answer["cup"]["pelvic_anteversion_deg"]
+    assert angles == pytest.approx((42.0, 17.0), abs=0.1)
     assert (answer["liner"]["wall_thickness"], answer["head"]) == (pytest.approx(8.0, abs=0.01), None)
 
 
 def test_no_clearance_is_derived_from_two_files(folder):
     sentence = "no clearance is derived from two STL files, because their radii are nominal: public sets give -0.098"
     done = run("planning", *LINER, *HEAD, "--out", "other.toml", folder=folder)
-    assert (done.returncode, done.stdout) == (2, "")
-    assert sentence in done.stderr
+    assert (done.returncode, done.stdout, sentence in done.stderr) == (2, "", True)
     assert not (folder / "other.toml").exists()
     done = run("planning", *LINER, *HEAD, folder=folder)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert sentence in " ".join(done.stdout.split())
+    assert (done.returncode, done.stderr, sentence in " ".join(done.stdout.split())) == (0, "", True)
 
 
 @pytest.mark.parametrize(
@@ -92,11 +87,9 @@ def test_no_clearance_is_derived_from_two_files(folder):
         ((*HEAD, "--clearance", "0.1 mm", "--out", "a.toml"), "state --liner-thickness"),
         ((*LANDMARKS, "--clearance", "0.1 mm", "--out", "a.toml"), "a joint needs a radius"),
         ((*LINER, "--clearance", "3 kN", "--out", "a.toml"), "clearance = '3 kN' is not a length"),
-        ((*LINER, "--clearance", "-5 mm", "--out", "a.toml"), "clearance = -5.0 is not allowed"),
         ((*LINER, "--head", "small.stl"), r"radius 1[34]\.\d+ mm does not belong to the bore of radius 1[56]\.\d+ mm"),
         ((*LINER, "--stl-units", "m"), r"4\d\.\d m large"),
         ((*LINER, "--placed", "ijk"), "placed = 'ijk' is not allowed: RAS or LPS"),
-        ((*LANDMARKS, "--side", "up"), "side = 'up' is not allowed: right or left"),
         ((*LANDMARKS, "--side", "left"), "but its side is stated as left: the sides are mirrored"),
         ((*LANDMARKS, "--vertical", "0,0"), "vertical"),
         ((*LANDMARKS, "--coordinates", "RAS"), "the file states LPS coordinates, not RAS"),
