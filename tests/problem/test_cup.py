@@ -33,9 +33,7 @@ ORIENTED = {
 def test_rim_distance_of_hips_of_28_and_36_mm(radius, thickness, inclination, anteversion, tilt, centre, edge):
     """3 kN, 15° medial, on hemispheres of 1 GPa; arcs in mm on the ball. A steep cup is loaded at its edge."""
     cup = bs.Cup(inclination=radians(inclination), anteversion=radians(anteversion))
-    hip = bs.Joint(
-        ball_radius=radius, clearance=0.1, liner_thickness=thickness, liner=bs.Material(young=1000.0, poisson=0.4)
-    )
+    hip = bs.Joint(ball_radius=radius, clearance=0.1, liner_thickness=thickness, liner=bs.UHMWPE)
     contact = bs.HessForsbach().press(hip, force=3000.0)
     assert degrees(cup.tilt(MEDIAL)) == pytest.approx(tilt, abs=0.05)
     assert cup.edge_distance(radius, 0.0, MEDIAL) == pytest.approx(centre, abs=0.005)
@@ -80,20 +78,10 @@ def test_directions_over_time_give_angles_over_time():
     assert bs.Cup().edge_distance(10.0, np.zeros(2), forces).shape == (2, 2)
 
 
-CUPS = [
-    bs.Cup(inclination=radians(inclination), anteversion=radians(anteversion), side=side)
-    for inclination, anteversion in ((0.0, 0.0), (45.0, 15.0), (60.0, -20.0), (30.0, 5.0))
-    for side in bs.Side
-]
-EACH_CUP = pytest.mark.parametrize(
-    "cup", CUPS, ids=lambda cup: f"{cup.inclination:.2f} {cup.anteversion:.2f} {cup.side}"
-)
-
-
-@EACH_CUP
+@given(st.builds(bs.Cup, **ORIENTED))
 def test_frame_is_right_handed_and_orthonormal(cup):
-    x, y, z = np.array(cup.frame)
-    np.testing.assert_allclose(np.array(cup.frame) @ np.array(cup.frame).T, np.eye(3), atol=1e-14)
+    x, y, z = frame = np.array(cup.frame)
+    np.testing.assert_allclose(frame @ frame.T, np.eye(3), atol=1e-14)
     np.testing.assert_allclose(np.cross(z, x), y, atol=1e-14)
     np.testing.assert_allclose(z, cup.dome, atol=1e-15)
     assert x[1] == 0.0  # x lies in the plane of the rim and in the frontal plane
@@ -104,39 +92,33 @@ def test_tilt_of_a_vertical_load_combines_both_angles():
     cup = bs.Cup(inclination=radians(45.0), anteversion=radians(15.0))
     assert cup.tilt(UP) == pytest.approx(np.arccos(cos(radians(45.0)) * cos(radians(15.0))), rel=1e-12)
     assert type(cup.tilt(UP)) is float
-    assert bs.Cup().tilt((0.0, 0.0, -2.0)) == pytest.approx(pi)
     assert cup.tilted(0.7).tilt(UP) == pytest.approx(0.7, rel=1e-12)
     assert cup.tilted(0.7).anteversion == 0.0
-
-
-def test_rim_distance_decreases_with_tilt_and_half_angle():
-    cup = bs.Cup(arc_of_cover=radians(160.0))
-    direction = (sin(0.3), 0.0, cos(0.3))
-    assert cup.edge_distance(18.0, 0.5, direction) == pytest.approx((radians(80.0) - 0.3 - 0.5) * 18.0, rel=1e-12)
-    assert cup.edge_distance(18.0, 0.5) == pytest.approx((radians(80.0) - 0.5) * 18.0, rel=1e-12)
-    assert cup.edge_distance(18.0, 1.4) < 0
-    assert cup.rim == pytest.approx(radians(80.0))
-
-
-def test_orientation_is_known_only_if_an_angle_was_set():
     assert not bs.Cup(arc_of_cover=3.0).oriented
     assert bs.Cup(inclination=0.0).oriented
     assert bs.Cup(anteversion=0.0).oriented
 
 
-MURRAY = {
-    (45.0, 15.0): {"operative": (43.0795, 20.7536), "anatomical": (46.9205, 20.7536)},
-    (40.0, 15.0): {"operative": (38.3808, 19.2790), "anatomical": (42.2735, 22.6291)},
-}
-"""Operative and anatomical angles in degrees of radiographic ones (Murray 1993)."""
+def test_rim_distance_decreases_with_tilt_and_half_angle():
+    flat = bs.Cup(arc_of_cover=radians(160.0))
+    assert flat.rim == pytest.approx(radians(80.0))
+    assert flat.edge_distance(18.0, 0.5, (sin(0.3), 0.0, cos(0.3))) == pytest.approx((flat.rim - 0.8) * 18.0, rel=1e-12)
+    assert flat.edge_distance(18.0, 0.5) == pytest.approx((flat.rim - 0.5) * 18.0, rel=1e-12)
 
 
-@pytest.mark.parametrize("angles", MURRAY, ids=str)
-def test_angles_of_a_cup_in_the_definitions_of_murray(angles):
+@pytest.mark.parametrize(
+    ("angles", "operative", "anatomical"),
+    [
+        ((45.0, 15.0), (43.0795, 20.7536), (46.9205, 20.7536)),
+        ((40.0, 15.0), (38.3808, 19.2790), (42.2735, 22.6291)),
+    ],
+)
+def test_angles_of_a_cup_in_the_definitions_of_murray(angles, operative, anatomical):
+    """Murray 1993."""
     cup = bs.Cup.from_angles(*map(radians, angles))
     assert cup == bs.Cup(inclination=radians(angles[0]), anteversion=radians(angles[1]))
-    for definition, expected in MURRAY[angles].items():
-        assert np.degrees(cup.angles(definition)) == pytest.approx(expected, abs=6e-5)
+    assert np.degrees(cup.angles("operative")) == pytest.approx(operative, abs=6e-5)
+    assert np.degrees(cup.angles("anatomical")) == pytest.approx(anatomical, abs=6e-5)
 
 
 def test_each_definition_describes_the_same_axis():
@@ -167,50 +149,34 @@ def test_a_pelvic_tilt_rotates_the_cup_about_the_transverse_axis(definition, til
     assert straight.opening[0] == pytest.approx(tilted.opening[0], abs=1e-12)
 
 
+def from_angles(**words):
+    return bs.Cup.from_angles(**{"inclination": 0.8, "anteversion": 0.2, **words})
+
+
 @pytest.mark.parametrize(
-    ("words", "message"),
+    ("make", "words", "message"),
     [
-        ({"inclination": 45}, "inclination = 45 is not allowed: .* 0 to 90 degrees, .*; 45 degrees are 0.7854 radians"),
-        ({"anteversion": 15.0}, "anteversion = 15 is not allowed: .* -90 to 90 degrees, .* -1.571 to 1.571 radians"),
-        ({"arc_of_cover": 180.0}, "arc_of_cover = 180 is not allowed: .* 40 to 340 degrees, .* to 5.934 radians"),
-        ({"arc_of_cover": 0.5}, "arc_of_cover = 0.5 is not allowed: an arc of cover is 40 to 340 degrees"),
-        ({"inclination": -0.1}, "inclination = -0.1 is not allowed"),
-        ({"inclination": np.nan}, "inclination = nan is not allowed"),
-        ({"chamfer": -1.0}, "chamfer = -1 is not allowed"),
-        ({"inclination": np.zeros(2)}, "inclination must be one number"),
-        ({"anteversion": "15 deg"}, "anteversion must be a number"),
-        ({"side": "left"}, "side must be Side.RIGHT or Side.LEFT, got 'left'"),
-        ({"interface": True}, "interface must be Interface.BONDED or Interface.SLIDING, got True"),
+        (bs.Cup, {"inclination": 45}, "inclination = 45 is not allowed: .* 0 to 90 degrees, .*; 45 degrees are 0.7854"),
+        (bs.Cup, {"anteversion": 15.0}, "anteversion = 15 is .* -90 to 90 degrees, .* -1.571 to 1.571 radians"),
+        (bs.Cup, {"arc_of_cover": 180.0}, "arc_of_cover = 180 is not allowed: .* 40 to 340 degrees, .* to 5.934 radia"),
+        (bs.Cup, {"arc_of_cover": 0.5}, "arc_of_cover = 0.5 is not allowed: an arc of cover is 40 to 340 degrees"),
+        (bs.Cup, {"inclination": -0.1}, "inclination = -0.1 is not allowed"),
+        (bs.Cup, {"inclination": np.nan}, "inclination = nan is not allowed"),
+        (bs.Cup, {"chamfer": -1.0}, "chamfer = -1 is not allowed"),
+        (bs.Cup, {"inclination": np.zeros(2)}, "inclination must be one number"),
+        (bs.Cup, {"anteversion": "15 deg"}, "anteversion must be a number"),
+        (bs.Cup, {"side": "left"}, "side must be Side.RIGHT or Side.LEFT, got 'left'"),
+        (bs.Cup, {"interface": True}, "interface must be Interface.BONDED or Interface.SLIDING, got True"),
+        (bs.Cup().tilt, {"direction": (0.0, 0.0, 0.0)}, "the length of direction = 0 is not allowed: a direction poin"),
+        (bs.Cup().tilt, {"direction": [UP, (0.0, 0.0, 0.0)]}, r"the length of direction\[1\] = 0 is not allowed"),
+        (bs.Cup().tilt, {"direction": (1.0, 0.0)}, "a direction has three components"),
+        (bs.Cup().tilt, {"direction": 1.0}, "a direction has three components"),
+        (from_angles, {"definition": "surgical"}, "'surgical' is not allowed: radiographic, operative, anatomical"),
+        (from_angles, {"pelvic_tilt": 2.0}, "pelvic_tilt = 2 is not allowed: a pelvic tilt"),
+        (from_angles, {"inclination": 2.0}, "inclination = 2 is not allowed"),
+        (from_angles, {"anteversion": -1.2, "pelvic_tilt": 1.4}, "would open upwards: .* inclination is .*; allowed a"),
     ],
 )
-def test_values_of_a_cup_that_are_not_allowed_are_refused(words, message):
+def test_values_that_are_not_allowed_are_refused(make, words, message):
     with pytest.raises(TypeError if "must be" in message else ValueError, match=message):
-        bs.Cup(**words)
-
-
-@pytest.mark.parametrize(
-    ("direction", "message"),
-    [
-        ((0.0, 0.0, 0.0), "the length of direction = 0 is not allowed: a direction points somewhere"),
-        ([UP, (0.0, 0.0, 0.0)], r"the length of direction\[1\] = 0 is not allowed"),
-        ((1.0, 0.0), "a direction has three components"),
-        (1.0, "a direction has three components"),
-    ],
-)
-def test_directions_without_a_length_or_three_components_are_refused(direction, message):
-    with pytest.raises(ValueError, match=message):
-        bs.Cup().tilt(direction)
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"definition": "surgical"}, "definition = 'surgical' is not allowed: radiographic, operative, anatomical"),
-        ({"pelvic_tilt": 2.0}, "pelvic_tilt = 2 is not allowed: a pelvic tilt"),
-        ({"inclination": 2.0}, "inclination = 2 is not allowed"),
-        ({"anteversion": -1.2, "pelvic_tilt": 1.4}, "the cup would open upwards: .* inclination is .*; allowed are 0"),
-    ],
-)
-def test_angles_of_other_definitions_that_are_not_allowed_are_refused(arguments, message):
-    with pytest.raises(ValueError, match=message):
-        bs.Cup.from_angles(**{"inclination": 0.8, "anteversion": 0.2, **arguments})
+        make(**words)
