@@ -36,7 +36,6 @@ def numbers(folder, text, **settings):
     [
         ("force_N", "force", 1.0),
         ("force [kN]", "force", 1000.0),
-        ("indentation_um", "indentation", 1e-3),
         ("indentation_uncertainty_um", "indentation_uncertainty", 1e-3),
         ("half_angle_deg", "half_angle", np.pi / 180),
         ("area_cm2", "area", 100.0),
@@ -44,7 +43,6 @@ def numbers(folder, text, **settings):
         (" max_pressure_uncertainty [kPa] ", "max_pressure_uncertainty", 1e-3),
         ("max pressure [MPa]", "max_pressure", 1.0),
         ("stiffness_kN_per_mm", "stiffness", 1000.0),
-        ("liner_young_GPa", "liner_young", 1000.0),
         ("liner_poisson", "liner_poisson", 1.0),
     ],
 )
@@ -53,19 +51,13 @@ def test_heads_are_names_and_units(text, name, factor):
     assert (head.name, head.factor) == (name, pytest.approx(factor))
 
 
-@pytest.mark.parametrize("text", ["force)", "force [kN", "(force", "liner_poisson_mm"])
-def test_heads_with_half_a_bracket_or_a_wrong_unit_are_refused(text):
-    with pytest.raises(ValueError, match=r"column|unit of|liner_poisson"):
-        parse_head(text)
-
-
 def test_a_file_holds_several_quantities(tmp_path):
     heads = "# made by hand\n# not measured\nforce_kN,indentation_um,area_mm2,area_uncertainty_mm2"
-    columns = (FORCE / 1e3, 1e3 * CONTACT.indentation, CONTACT.area, 0.02 * CONTACT.area)
+    columns = (FORCE / 1e3, 1e3 * CONTACT.indentation, CONTACT.area, 0.03 * CONTACT.area)
     depth, area = numbers(tmp_path, rows(heads, *columns), uncertainty="2 %")
     np.testing.assert_allclose(depth.values, CONTACT.indentation, rtol=1e-5)
     np.testing.assert_allclose(depth.uncertainty, 0.02 * CONTACT.indentation, rtol=1e-5)
-    np.testing.assert_allclose(area.force, FORCE)
+    np.testing.assert_allclose([area.force, area.uncertainty], [FORCE, 0.03 * CONTACT.area], rtol=1e-5)
     assert (depth.quantity, area.quantity, area.name) == ("indentation", "area", "press.csv")
     (chosen,) = read_measured(tmp_path / "press.csv", quantities=["area"], load="force")
     assert chosen.quantity == "area"
@@ -97,7 +89,7 @@ def test_uncertainties_have_columns_or_one_text_or_are_estimated_later(tmp_path)
     assert (depth.has_unknown_noise, depth.quantity, depth.name) == (True, "indentation", "press.csv")
 
 
-def test_angles_belong_to_pressures_and_a_machine_to_indentations(tmp_path):
+def test_angles_belong_to_pressures_a_machine_to_indentations_and_a_saturation_to_films(tmp_path):
     machine = Machine(offset=0.01)
     text = "force_N,angle_deg,pressure_MPa,indentation_um,area_mm2\n900,0,5,20,100\n900,10,4,20,100\n"
     pressure, depth, area = numbers(tmp_path, text, uncertainty=0.1, machine=machine)
@@ -105,15 +97,9 @@ def test_angles_belong_to_pressures_and_a_machine_to_indentations(tmp_path):
     assert depth.angle is area.angle is None
     assert depth.machine is machine
     assert (area.machine.name, pressure.machine.name) == ("", "")
-    assert [data.saturation for data in (depth, area)] == [np.inf, np.inf]
-
-
-def test_a_saturation_makes_lower_bounds_and_rows_with_gaps_are_omitted_on_request(tmp_path):
+    assert depth.saturation == area.saturation == np.inf
     (film,) = numbers(tmp_path, "force_N,max_pressure_MPa\n900,5\n1800,7\n", uncertainty=0.1, saturation=7.0)
     assert film.saturated.tolist() == [False, True]
-    (depth,) = numbers(tmp_path, "force_N,indentation_um\n100,2\n200,\n300,4\n", gaps=Gaps.LEAVE_OUT)
-    np.testing.assert_allclose(depth.force, [100.0, 300.0])
-    np.testing.assert_allclose(depth.order, [0.0, 2.0])
 
 
 HEADS = "force_N,indentation_um\n"
@@ -130,6 +116,9 @@ HEADS = "force_N,indentation_um\n"
         (HEADS + "100,2\n200,\nx,4\n", {}, "no number for force, indentation in row 2, 3; add it, or omit such"),
         (HEADS + "100,\n" * 9, {}, r"in row 1, 2, 3, 4, 5, 6, 7, 8 \.\.\.; add it"),
         (HEADS + "100,\n" * 8 + "100,20\n", {}, "in row 1, 2, 3, 4, 5, 6, 7, 8; add it"),
+        ("force [kN,area_mm2\n1,2\n", {}, "the unit of force .kN = "),
+        ("force),area_mm2\n1,2\n", {}, "column 'force.'"),
+        ("force_N,liner_poisson_mm\n1,2\n", {}, "liner_poisson"),
         (HEADS, {}, "press.csv has no row"),
         ("force_N,area_mm2,area_uncertainty_mm2\n9,2,-1\n", {}, r"press.csv: area_uncertainty\[0\] = -1"),
         (HEADS + "0,2\n9,3\n", {}, r"force\[0\] = 0 is not allowed: at first touch the indentation is 0"),
@@ -169,6 +158,9 @@ uncertainty = "1 %"
 """
 
 
+PERCENT, FRAME, AREA = 'uncertainty = "1 %"', 'machine = "frame"', 'quantity = "area"'
+
+
 @pytest.fixture
 def question(tmp_path):
     """Function that writes the question, with some texts replaced, and reads it."""
@@ -196,8 +188,7 @@ def test_a_file_is_identified(question, name):
 
 def test_the_drift_of_a_machine_is_read_with_the_order_of_the_readings(question):
     values = ", ".join(f'"{1e3 * value:.6f} um"' for value in READ + 3e-4 * np.arange(4.0, -1.0, -1.0))
-    force = ", ".join(f'"{load} N"' for load in FORCE)
-    inline = f'quantity = "indentation"\nvalues = [{values}]\nforce = [{force}]\norder = [4, 3, 2, 1, 0]'
+    inline = f'quantity = "indentation"\nvalues = [{values}]\nforce = {FORCE.tolist()}\norder = [4, 3, 2, 1, 0]'
     given = question(('offset = "2 um"', 'offset = "2 um"\ndrift = "-1..1 um"'), ('file = "press.csv"', inline))
     assert given.data[0].machine.drift == pytest.approx((-1e-3, 1e-3))
     assert given.identify_unknowns().point["frame.drift"] == pytest.approx(3e-4, rel=0.05)
@@ -215,7 +206,7 @@ def test_a_file_states_scatter_priors_and_options(question):
     changes = (
         ('model = "tabulated"', ""),
         ('"0.02..0.3 mm"', '{mean = "0.1 mm", deviation = "10 um"}'),
-        ('uncertainty = "1 %"', 'uncertainty = "1 %"\nload_uncertainty = "5 N"\nsaturation = 900\nname = "film"'),
+        (PERCENT, PERCENT + '\nload_uncertainty = "5 N"\nsaturation = 900\nname = "film"'),
     )
     plain, heavy = question(*changes), question(*changes, before='scatter = "heavy-tailed"\n')
     assert (plain.scatter, heavy.scatter) == (NormalScatter(), HeavyTailed())
@@ -224,40 +215,32 @@ def test_a_file_states_scatter_priors_and_options(question):
     depth, area = heavy.data
     assert (area.name, area.saturation, area.load_uncertainty.tolist()) == ("film", 900.0, [5.0, 5.0])
     assert depth.load_uncertainty.tolist() == [0.0] * 5
-    assert depth.machine == Machine(compliance=(0.0, depth.machine.compliance[1]), offset=0.002, name="frame")
-    assert depth.machine.compliance[1] == pytest.approx(2e-5)
-    assert not area.machine.name
+    assert (depth.machine.name, depth.machine.offset, area.machine.name) == ("frame", 0.002, "")
+    assert depth.machine.compliance == pytest.approx((0.0, 2e-5))
     np.testing.assert_allclose(area.uncertainty, 0.01 * area.values)
 
 
 def test_a_file_chooses_columns_load_and_gaps(question, tmp_path):
     csv(tmp_path, "force_N,indentation_um,area_mm2\n100,20,200\n200,,300\n300,30,400\n")
-    data = question(
-        ('machine = "frame"', 'gaps = "leave-out"\nquantities = "area"'),
-        ('uncertainty = "0.1 um"', 'uncertainty = "1 mm^2"\nload = "indentation"'),
-    ).data[0]
+    options = 'uncertainty = "1 mm^2"\nload = "indentation"\ngaps = "leave-out"\nquantities = "area"\n'
+    data = question((FRAME, ""), ('uncertainty = "0.1 um"', options)).data[0]
     assert (data.quantity, data.load, data.values.tolist()) == ("area", "indentation", [200.0, 400.0])
     np.testing.assert_allclose(data.loads, [0.02, 0.03])
-
-
-PERCENT, FRAME, AREA = 'uncertainty = "1 %"', 'machine = "frame"', 'quantity = "area"'
+    assert data.order.tolist() == [0.0, 2.0]
 
 
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
         ("clearance =", "clearence =", "data.toml: 'clearence' in [free] is not known; did you mean 'clearance'?"),
-        ('"0.02..0.3 mm"', "0.1", "data.toml: clearance = 0.1 must be two ends, such as '0.02..0.3 mm'"),
         ('"0.02..0.3 mm"', '"0.02 mm"', "clearance = '0.02 mm' is not a range"),
         (FRAME, 'machine = "fram"', "data.toml: machine 'fram' is not known; did you mean 'frame'?"),
         (FRAME, "values = 3", "[[data]] needs either a file, or a quantity with its values"),
         (FRAME, 'force = "3 kN"', "'force' in [[data]] with a file is not known"),
         (PERCENT, 'uncertainty = "-1 %"', "data.toml: area_uncertainty[0] = "),
         (PERCENT, PERCENT + '\nmass = "2 kg"', "mass belongs to [[data]] of a frequency, not of area"),
-        (PERCENT, PERCENT + '\naxis_angle = "0 deg"', "axis_angle belongs to [[data]] of a friction_torque, not of"),
         (AREA, "", "data.toml: [[data]] with values needs its quantity"),
         (AREA, AREA + '\ngaps = "refuse"', "'gaps' in [[data]] with values is not known"),
-        ('file = "press.csv"', "", "data.toml: [[data]] needs either a file, or a quantity with its values"),
         ('model = "tabulated"', 'scatter = "cauchy"', "scatter = 'cauchy' is not known; known: normal, heavy-tailed"),
         ('"0..20 um/kN"', '"1 um"', "data.toml: machine.frame.compliance = '1 um' is not a compliance"),
         ("[free]", "[fre]", "'fre' at the top is not known; did you mean 'free'?"),

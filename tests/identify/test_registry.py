@@ -55,16 +55,17 @@ def test_the_work_of_adhesion_is_identified_from_indentations_at_small_forces():
     assert inside.cup == covered.cup
 
 
+def identified_file(folder, model, free, data):
+    text = f'model = "{model}"\njoint = "hess-forsbach"\n[free]\n{free}\n[[data]]\n{data}\n'
+    (folder / "data.toml").write_text(text, "utf-8")
+    return read_identify(folder / "data.toml").identify_unknowns().point
+
+
 def test_a_file_frees_a_number_of_the_model(tmp_path):
     values = ", ".join(f'"{1e3 * value:.9f} um"' for value in CONTACT.indentation)
-    (tmp_path / "adhesion.toml").write_text(
-        'model = "adhesive"\njoint = "hess-forsbach"\n[free]\nwork_of_adhesion = "0.01..1 J/m^2"\n'
-        f'[[data]]\nquantity = "indentation"\nvalues = [{values}]\nforce = {FORCE.tolist()}\nuncertainty = "1 nm"\n',
-        "utf-8",
-    )
-    question = read_identify(tmp_path / "adhesion.toml")
-    assert question.free["work_of_adhesion"] == pytest.approx((1e-5, 1e-3))
-    assert question.identify_unknowns().point["work_of_adhesion"] == pytest.approx(2e-4, rel=1e-3)
+    data = f'quantity = "indentation"\nvalues = [{values}]\nforce = {FORCE.tolist()}\nuncertainty = "1 nm"'
+    point = identified_file(tmp_path, "adhesive", 'work_of_adhesion = "0.01..1 J/m^2"', data)
+    assert point == pytest.approx({"work_of_adhesion": 2e-4}, rel=1e-3)
 
 
 LOADS = np.linspace(300.0, 3000.0, 5)
@@ -119,14 +120,9 @@ def test_jax_and_differences_have_equal_derivatives_by_the_coefficient():
 @pytest.mark.parametrize(("axis", "angle"), some([('axis_angle = "0 deg"', 0.0), ("", pi / 2)], 1))
 def test_a_file_frees_the_coefficient_of_friction(tmp_path, axis, angle):
     text = ", ".join(f'"{value / 1e3:.9f} N m"' for value in SLIDING.friction_torque(0.06, angle))
-    (tmp_path / "friction.toml").write_text(
-        'model = "hess-forsbach"\njoint = "hess-forsbach"\n[free]\nfriction_coefficient = "0..0.3"\n'
-        f'[[data]]\nquantity = "friction_torque"\nvalues = [{text}]\nforce = {LOADS.tolist()}\n'
-        f'uncertainty = "2 %"\n{axis}\n',
-        "utf-8",
-    )
-    result = read_identify(tmp_path / "friction.toml").identify_unknowns()
-    assert result.point == pytest.approx({"friction_coefficient": 0.06}, rel=1e-6)
+    data = f'quantity = "friction_torque"\nvalues = [{text}]\nforce = {LOADS.tolist()}\nuncertainty = "2 %"\n{axis}'
+    point = identified_file(tmp_path, "hess-forsbach", 'friction_coefficient = "0..0.3"', data)
+    assert point == pytest.approx({"friction_coefficient": 0.06}, rel=1e-6)
 
 
 def test_a_machine_has_every_registered_error():
@@ -163,12 +159,11 @@ by_depth = Measured(quantity="force", values=force, uncertainty=0.1, indentation
 free = {"foundation_modulus": (100.0, 800.0)}
 points = [bs.identify(bs.HessForsbach(), hip, data, free).point for data in (press, by_depth)]
 known = bs.identify(bs.HessForsbach(), hip, Measured(**{**depths, "uncertainty": 1e-4}), free)
-rows = "\\n".join(f"{load!r},{value!r}" for load, value in zip(force.tolist(), depth.tolist()))
-open("press.csv", "w").write("force_N,indentation_mm\\n" + rows + "\\n")
 open("data.toml", "w").write(
     'model = "hess-forsbach"\\njoint = "hess-forsbach"\\n[free]\\nfoundation_modulus = "100..800 MPa/mm"\\n'
     '[machine.frame]\\nseating = "0..20 um"\\n'
-    '[[data]]\\nfile = "press.csv"\\nuncertainty = "0.01 um"\\nmachine = "frame"\\n'
+    f'[[data]]\\nquantity = "indentation"\\nvalues = {depth.tolist()}\\nforce = {force.tolist()}\\n'
+    'uncertainty = "0.01 um"\\nmachine = "frame"\\n'
 )
 from_file = read_identify("data.toml").identify_unknowns()
 summary = [from_file.point, from_file["foundation_modulus"].unit]
