@@ -17,9 +17,9 @@ from ballsocket.planning import (
 )
 from ballsocket.problem.cup import Side
 
-from . import pelves
+from . import scans
 
-NAMES, POINTS = pelves.pelvis()
+NAMES, POINTS = scans.pelvis()
 
 
 def oriented(names, points, **frame):
@@ -34,10 +34,10 @@ def angles(cup):
 
 def test_every_file_of_slicer_gives_the_same_points(tmp_path):
     for name, text in (
-        *(("a.fcsv", pelves.fcsv(NAMES, POINTS, system)) for system in ("LPS", "RAS", "0", "1")),
-        *(("a.mrk.json", pelves.markups(NAMES, POINTS, system)) for system in ("LPS", "RAS")),
-        ("a.mrk.json", pelves.markups(NAMES, POINTS, "LPS", unit="m", scale=1e-3)),
-        ("a.mrk.json", pelves.markups(NAMES, POINTS, "LPS", unit=["mm", "mm", "mm"])),
+        *(("a.fcsv", scans.fcsv(NAMES, POINTS, system)) for system in ("LPS", "RAS", "0", "1")),
+        *(("a.mrk.json", scans.markups(NAMES, POINTS, system)) for system in ("LPS", "RAS")),
+        ("a.mrk.json", scans.markups(NAMES, POINTS, "LPS", unit="m", scale=1e-3)),
+        ("a.mrk.json", scans.markups(NAMES, POINTS, "LPS", unit=["mm", "mm", "mm"])),
     ):
         (tmp_path / name).write_text(text, encoding="utf-8")
         landmarks = read_landmarks(tmp_path / name)
@@ -51,7 +51,7 @@ def test_files_of_slicer_3_need_a_coordinate_system_and_points_without_a_positio
     with pytest.raises(ValueError, match=r"old\.fcsv: the file states no coordinate system: give it, RAS or LPS"):
         read_landmarks(path)
     assert read_landmarks(path, coordinates="lps").points.tolist() == [[-1.0, -2.0, 3.0]]
-    content = json.loads(pelves.markups(NAMES, POINTS))
+    content = json.loads(scans.markups(NAMES, POINTS))
     content["markups"][0]["controlPoints"][3]["positionStatus"] = "undefined"
     (tmp_path / "a.mrk.json").write_text(json.dumps(content))
     assert len(read_landmarks(tmp_path / "a.mrk.json").names) == len(NAMES) - 1
@@ -60,8 +60,8 @@ def test_files_of_slicer_3_need_a_coordinate_system_and_points_without_a_positio
 @pytest.mark.parametrize("side", Side)
 @pytest.mark.parametrize("pair", [(40.0, 15.0), (60.0, -5.0), (20.0, 35.0)])
 def test_angles_in_the_pelvic_plane_do_not_depend_on_the_pose_in_the_scanner(side, pair):
-    turn = pelves.rotated(pitch=-12.0, roll=6.0, yaw=-9.0)
-    found = oriented(*pelves.pelvis(*pair, side=side.value, turn=turn, shift=(12.0, 200.0, -900.0)))
+    turn = scans.rotated(pitch=-12.0, roll=6.0, yaw=-9.0)
+    found = oriented(*scans.pelvis(*pair, side=side.value, turn=turn, shift=(12.0, 200.0, -900.0)))
     assert angles(found.cup()) == pytest.approx(pair, abs=1e-9)
     assert found.side == found.cup().side == side
     assert found.residual == pytest.approx(0.0, abs=1e-9)
@@ -70,17 +70,19 @@ def test_angles_in_the_pelvic_plane_do_not_depend_on_the_pose_in_the_scanner(sid
 @pytest.mark.parametrize("tilt", [-15.0, 0.0, 8.0])
 def test_pelvic_tilt_to_the_front_reduces_the_operative_anteversion_by_its_own_size(tilt):
     """The pelvis rotates about the transverse axis, as the operative anteversion does (Murray 1993)."""
-    names, points = pelves.pelvis(45.0, 15.0, turn=pelves.rotated(pitch=tilt, yaw=4.0))
+    names, points = scans.pelvis(45.0, 15.0, turn=scans.rotated(pitch=tilt, yaw=4.0))
     found = oriented(names, points, vertical=(0.0, 0.0, 2.0))
     _, front, up = found.frame.body_axes @ found.axis
-    assert degrees(found.frame.tilt) == pytest.approx(tilt, abs=1e-9)
-    assert degrees(found.frame.obliquity) == pytest.approx(0.0, abs=1e-9)
+    assert np.degrees([found.frame.tilt, found.frame.obliquity]) == pytest.approx([tilt, 0.0], abs=1e-9)
     assert degrees(np.arctan2(front, -up)) == pytest.approx(20.7536 - tilt, abs=1e-3)
     stated = oriented(names, points, pelvic_tilt=radians(tilt))
     assert angles(stated.cup()) == pytest.approx(angles(found.cup()), abs=1e-9)
     assert angles(found.cup(upright=False)) == pytest.approx((45.0, 15.0), abs=1e-9)
-    names, points = pelves.pelvis(45.0, 0.0, turn=pelves.rotated(roll=5.0))
-    raised = oriented(names, points, vertical=(0.0, 0.0, 1.0))  # the right side is higher
+
+
+def test_pelvic_obliquity_adds_to_the_inclination_of_the_higher_side():
+    names, points = scans.pelvis(45.0, 0.0, turn=scans.rotated(roll=5.0))
+    raised = oriented(names, points, vertical=(0.0, 0.0, 1.0))
     assert degrees(raised.frame.obliquity) == pytest.approx(5.0, abs=1e-9)
     assert angles(raised.cup()) == pytest.approx((50.0, 0.0), abs=1e-9)
 
@@ -98,20 +100,19 @@ def test_scatter_of_rim_points_gives_the_error_of_the_angles():
 
 def test_tubercles_replace_the_symphysis_and_names_are_read_freely():
     names = ["RASIS", "ASIS_L", "R pubic tubercle", "tubercle left", *(f"Cup Rim {k}" for k in range(8))]
-    points = np.concatenate([POINTS[:2], POINTS[2] + [[25.0, 0, 0], [-25.0, 0, 0]], POINTS[3:]])
-    found = oriented(names, points)
+    tubercles = POINTS[2] + [[25.0, 0, 0], [-25.0, 0, 0]]
+    found = oriented(names, np.concatenate([POINTS[:2], tubercles, POINTS[3:]]))
     assert angles(found.cup()) == pytest.approx((42.0, 17.0), abs=1e-9)
     assert found.frame.tubercle_offset == pytest.approx(0.0, abs=1e-9)
-    points[2:4] = points[3:1:-1]
     with pytest.raises(ValueError, match="the right pubic tubercle lies to the left of the left one"):
-        oriented(names, points)
+        oriented(names, np.concatenate([POINTS[:2], tubercles[::-1], POINTS[3:]]))
 
 
 def test_names_are_replaced_and_rims_of_both_sides_need_a_choice(tmp_path):
     both = [*("F-1", "F-2", "F-3"), *(f"right {name}" for name in NAMES[3:]), *(f"left rim {k}" for k in range(8))]
-    points = np.concatenate([POINTS, pelves.pelvis(50.0, 10.0, side="left")[1][3:]])
+    points = np.concatenate([POINTS, scans.pelvis(50.0, 10.0, side="left")[1][3:]])
     path = tmp_path / "a.fcsv"
-    path.write_text(pelves.fcsv(both, points))
+    path.write_text(scans.fcsv(both, points))
     landmarks = read_landmarks(path, rename={"right_asis": "F-1", "left_asis": "F-2", "symphysis": "F-3"})
     frame = pelvic_frame(landmarks)
     for side, expected in (("left", (50.0, 10.0)), ("right", (42.0, 17.0))):
@@ -173,17 +174,17 @@ def test_impossible_landmarks_are_refused_in_a_sentence(call, message):
     [
         ("a.csv", "", "landmarks are read from .fcsv and .mrk.json files"),
         ("a.fcsv", "# CoordinateSystem = RAS\n", "a.fcsv has no points"),
-        ("a.fcsv", pelves.fcsv(NAMES, POINTS, "2"), "coordinate system '2' is not read: RAS"),
-        ("a.fcsv", pelves.fcsv(NAMES, POINTS)[:-25], "a row of .* columns is incomplete"),
-        ("a.fcsv", pelves.fcsv(NAMES, POINTS * np.nan), "'right ASIS' at nan, nan, nan is not allowed"),
-        ("a.fcsv", pelves.fcsv(NAMES, POINTS).replace("-125.0000", "12mm", 1), "point 'right ASIS' has no three numb"),
-        ("a.fcsv", pelves.fcsv(NAMES, POINTS).replace(",label", ",name"), "the columns lack label"),
-        ("a.mrk.json", pelves.markups(NAMES, POINTS)[:-60], "a.mrk.json: not JSON, or truncated"),
+        ("a.fcsv", scans.fcsv(NAMES, POINTS, "2"), "coordinate system '2' is not read: RAS"),
+        ("a.fcsv", scans.fcsv(NAMES, POINTS)[:-25], "a row of .* columns is incomplete"),
+        ("a.fcsv", scans.fcsv(NAMES, POINTS * np.nan), "'right ASIS' at nan, nan, nan is not allowed"),
+        ("a.fcsv", scans.fcsv(NAMES, POINTS).replace("-125.0000", "12mm", 1), "point 'right ASIS' has no three numb"),
+        ("a.fcsv", scans.fcsv(NAMES, POINTS).replace(",label", ",name"), "the columns lack label"),
+        ("a.mrk.json", scans.markups(NAMES, POINTS)[:-60], "a.mrk.json: not JSON, or truncated"),
         ("a.mrk.json", "[" * 100_000, "not JSON, or truncated"),
         ("a.mrk.json", "[]", "the list `markups` of a 3D Slicer file is missing"),
-        ("a.mrk.json", pelves.markups(NAMES, POINTS, unit="inch"), "coordinateUnits = 'inch' is not allowed"),
-        ("a.mrk.json", pelves.markups(NAMES, POINTS, scale=np.inf), "is not allowed: coordinates are finite"),
-        ("a.mrk.json", pelves.markups(NAMES, POINTS).replace("[-125.0", "[1.0, -125.0", 1), "three coordinates, got 4"),
+        ("a.mrk.json", scans.markups(NAMES, POINTS, unit="inch"), "coordinateUnits = 'inch' is not allowed"),
+        ("a.mrk.json", scans.markups(NAMES, POINTS, scale=np.inf), "is not allowed: coordinates are finite"),
+        ("a.mrk.json", scans.markups(NAMES, POINTS).replace("[-125.0", "[1.0, -125.0", 1), "three coordinates, got 4"),
         ("a.mrk.json", "x" * 10_000_001, "a landmark file has at most 10 MB"),
     ],
 )
