@@ -34,7 +34,6 @@ def numbers(folder, text, **settings):
 @pytest.mark.parametrize(
     ("text", "name", "factor"),
     [
-        ("force_N", "force", 1.0),
         ("force [kN]", "force", 1000.0),
         ("indentation_uncertainty_um", "indentation_uncertainty", 1e-3),
         ("half_angle_deg", "half_angle", np.pi / 180),
@@ -120,7 +119,6 @@ HEADS = "force_N,indentation_um\n"
         ("force),area_mm2\n1,2\n", {}, "column 'force.'"),
         ("force_N,liner_poisson_mm\n1,2\n", {}, "liner_poisson"),
         (HEADS, {}, "press.csv has no row"),
-        ("force_N,area_mm2,area_uncertainty_mm2\n9,2,-1\n", {}, r"press.csv: area_uncertainty\[0\] = -1"),
         (HEADS + "0,2\n9,3\n", {}, r"force\[0\] = 0 is not allowed: at first touch the indentation is 0"),
         (HEADS + "1,2\n", {"quantities": ["area"]}, "has no column of area; its columns are force, indentation"),
         (HEADS + "1,2\n", {"load": "half_angle"}, "has no load 'half_angle': it needs a column of force, indentation"),

@@ -64,7 +64,6 @@ COMPLIANT = Machine(compliance=1e-6)
         (lambda: measured("indentations"), "quantity 'indentations' is not known; did you mean 'indentation'?"),
         (lambda: measured("force"), "force is both the measured quantity and the load; choose another load"),
         (lambda: measured(force=None), "exactly one of force, indentation, half_angle is needed, got none"),
-        (lambda: measured(indentation=0.1), "exactly one of force, indentation, half_angle .* got force, indentation"),
         (lambda: measured(angle=0.1), "indentation takes no angle"),
         (lambda: measured("pressure"), "pressure needs an angle"),
         (lambda: measured("pressure", angle=4.0), "a polar angle lies between -pi and pi"),
@@ -76,7 +75,6 @@ COMPLIANT = Machine(compliance=1e-6)
         (lambda: Machine(compliance=(-1e-6, 1e-6)), "a machine's compliance .mm/N. is 0 or more"),
         (lambda: Machine(offset=(0.1, 0.1)), "offset = .* must be a number, or two ends in ascending order"),
         (lambda: Machine(offset=(0.1, 0.2, 0.3)), "two ends in ascending order"),
-        (lambda: Machine(drift=inf), "two ends in ascending order"),
         (lambda: Machine(drift=(-inf, 0.0)), "two ends in ascending order"),
         (lambda: unknowns({}, Machine(offset=1.0), Machine(offset=2.0)), "two machines have the name 'machine'; use"),
         # unknowns
@@ -85,7 +83,6 @@ COMPLIANT = Machine(compliance=1e-6)
         (lambda: unknowns({"clearance": (0.1, 0.1)}), "two finite ends in ascending order"),
         (lambda: unknowns({"clearance": (0.1, 0.2, 0.3)}), "must be two ends, such as"),
         (lambda: unknowns({"clearance": "wide"}), "must be two ends, such as"),
-        (lambda: unknowns({"tilt": (0.1, 0.2)}), "'tilt' among the unknowns is not known"),
         (lambda: unknowns({"clearence": (0.1, 0.2)}), "'clearence' among the unknowns is not known; did you mean 'cl"),
         (lambda: unknowns({"liner_poisson": (0.3, 0.6)}), "liner_poisson = 0.6 is not allowed"),
         (lambda: unknowns({"clearance": (-0.1, 0.1)}), "clearance = -0.1 is not allowed: a radial clearance"),
