@@ -298,8 +298,13 @@ def test_two_valleys_of_equal_depth_are_rivals():
     square = replace(misfit, forward=Square(misfit.forward.data, MATRIX[:, :1]))
     object.__setattr__(square, "value", MATRIX[:, 0] * 0.04)
     best = find_best_fit(square, seed=0)
-    values = square.transform.to_values(np.stack([best.theta, *best.rivals]))[:, 0]
+    valleys = [best.theta, *best.rivals]
+    values = square.transform.to_values(np.stack(valleys))[:, 0]
     np.testing.assert_allclose(sorted(values), [-0.2, 0.2], rtol=1e-4)
+    ((ends,),) = profile_ends(square, valleys, best.cost, (3.84,)).ends  # of a band that holds both
+    low, high = (square.transform.to_values(end.theta)[0] for end in ends)
+    assert low < -0.201
+    assert high > 0.201
 
 
 def test_ends_of_profiles_are_at_the_marginal_standard_deviation():
