@@ -101,8 +101,6 @@ def _line(command):
 
 _OTHER = ("cite", "models", "presets", "pres", "Press", "--versio", "-h", "x" * 3000)
 line = st.one_of(
-    _line("press"),
-    *(_line(command) for command in _FLAGS),
-    st.tuples(st.sampled_from(_OTHER), _model).map(list),
+    _line("press"), *(_line(command) for command in _FLAGS), st.tuples(st.sampled_from(_OTHER), _model).map(list)
 )
 """The words after `ballsocket`."""

@@ -10,15 +10,17 @@ from math import pi
 
 import numpy as np
 import pytest
+import xarray
 
 import ballsocket as bs
 from ballsocket.catalogue import named_model
-from ballsocket.studies.derivatives import elasticities, finite_differences, jax_derivatives
+from ballsocket.core.kinds import Unit
+from ballsocket.studies.derivatives import elasticities, finite_differences, jax_derivatives, off_axis_uncertainty
 from ballsocket.studies.design import Span
-from ballsocket.studies.distributions import Normal, Rectangular, tolerance
+from ballsocket.studies.distributions import Normal, Rectangular, check_nominal, tolerance
 from ballsocket.studies.expressions import parse_distribution, parse_limit, parse_range
 from ballsocket.studies.file import read_study
-from ballsocket.studies.limits import Limit, allowed, joint_dimension
+from ballsocket.studies.limits import Limit, allowed, joint_dimension, margin_on_plane
 from ballsocket.studies.optimisation import optimise
 from ballsocket.studies.pareto import pareto
 from ballsocket.studies.run import default_model
@@ -33,6 +35,10 @@ TINY = Limit(name="outer_radius", high=1.0)
 AT = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "force": 3000.0}
 
 
+RANGES = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
+LOAD = {"force": 3000.0}
+
+
 def command(folder, *words):
     return run(*words, folder=folder)
 
@@ -42,19 +48,20 @@ def answer(folder, *words):
     return json.loads(command(folder, *words, "--json").stdout)
 
 
+def study_ranges(model, count):
+    return bs.study(model, HIP, **{name: Span(*ends, count) for name, ends in RANGES.items()}, **LOAD)
+
+
 @pytest.fixture(scope="module")
 def design_space():
-    return bs.study(
-        bs.HessForsbach(), HIP, ball_radius=Span(11.0, 23.0, 25), liner_thickness=Span(3.0, 15.0, 25), force=3000.0
-    )
+    return study_ranges(bs.HessForsbach(), 25)
 
 
 def test_limits_know_dimensions_that_follow_from_others(design_space):
     outer = joint_dimension(design_space, "outer_radius")
     assert outer.sel(ball_radius=20.0, liner_thickness=6.0).item() == pytest.approx(26.1)
-    other = bs.study(
-        bs.HessForsbach(), HIP, outer_radius=26.0, socket_radius=Span(15.0, 20.0, 6), clearance=0.1, force=1e3
-    )
+    radii = {"outer_radius": 26.0, "socket_radius": Span(15.0, 20.0, 6)}
+    other = bs.study(bs.HessForsbach(), HIP, **radii, clearance=0.1, force=1e3)
     assert joint_dimension(other, "liner_thickness").values.tolist() == pytest.approx([11.0, 10.0, 9.0, 8.0, 7.0, 6.0])
     assert joint_dimension(other, "ball_radius").values[0] == pytest.approx(14.9)
     assert joint_dimension(other, "ball_young") == 230000.0
@@ -75,26 +82,31 @@ def test_the_edge_distance_is_an_arc_of_the_socket(design_space):
     assert Limit(name="edge_distance").evaluate(here).item() == pytest.approx(upright)
 
 
+def test_a_limit_that_depends_on_one_axis_fills_the_plane():
+    """Zero is a value like any other on the second axis."""
+    study = xarray.Dataset(
+        {"max_pressure": ("clearance", [8.0, 12.0])}, coords={"clearance": [0.1, 0.2], "friction": [0.0, 0.1, 0.2]}
+    )
+    margin = margin_on_plane(study, Limit(name="max_pressure", high=10.0), "clearance", "friction")
+    assert (np.sign(margin) == [[1, -1]] * 3).all()
+
+
 def test_a_front_is_beaten_by_nothing_and_misses_nothing(design_space):
     front = pareto(design_space, limits=SHELL)
     good = allowed(design_space, SHELL).values.ravel()
     area, pressure = (design_space[name].values.ravel()[good] for name in ("area", "max_pressure"))
-
-    def beaten(areas, pressures):
-        pairs = zip(areas, pressures, strict=True)
-        return [((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any() for a, p in pairs]
-
-    assert not any(beaten(front.area.values, front.max_pressure.values))
-    assert front.sizes["point"] == beaten(area, pressure).count(False)
+    pairs = zip(area, pressure, strict=True)
+    beaten = np.array([((area <= a) & (pressure <= p) & ((area < a) | (pressure < p))).any() for a, p in pairs])
+    best = set(zip(area[~beaten], pressure[~beaten], strict=True))
+    assert set(zip(front.area.values, front.max_pressure.values, strict=True)) == best
+    assert front.sizes["point"] == np.sum(~beaten)
     with pytest.raises(ValueError, match="no point is allowed by outer_radius ≤ 1"):
         pareto(design_space, limits=[TINY])
 
 
 @pytest.mark.parametrize("model", some([bs.HessForsbach(), bs.Tabulated()], 1), ids=lambda model: model.name)
 def test_an_optimum_is_better_than_every_point_of_a_fine_grid(model):
-    ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
-    best = optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL)
-    fine = bs.study(model, HIP, ball_radius=Span(11.0, 23.0, 121), liner_thickness=Span(3.0, 15.0, 121), force=3000.0)
+    best, fine = optimise(model, HIP, RANGES, load=LOAD, limits=SHELL), study_ranges(model, 121)
     least = fine.max_pressure.where(allowed(fine, SHELL)).min().item()
     assert best.value <= least * (1 + 1e-9)
     assert best.value == pytest.approx(least, rel=2e-3)
@@ -105,11 +117,12 @@ def test_an_optimum_is_better_than_every_point_of_a_fine_grid(model):
 
 
 def test_an_optimum_without_limits_lies_at_an_end():
-    best = optimise(bs.HessForsbach(), HIP, {"clearance": (0.05, 0.2)}, load={"force": 3000.0})
+    ranges = {"clearance": (0.05, 0.2)}
+    best = optimise(bs.HessForsbach(), HIP, ranges, load=LOAD)
     assert best.point["clearance"] == pytest.approx(0.05)
     assert best.active == ("clearance = 0.05",)
     with pytest.raises(ValueError, match="none of 4096 joints within the ranges is allowed by outer_radius ≤ 1"):
-        optimise(bs.HessForsbach(), HIP, {"clearance": (0.05, 0.2)}, load={"force": 1.0}, limits=[TINY])
+        optimise(bs.HessForsbach(), HIP, ranges, load={"force": 1.0}, limits=[TINY])
 
 
 def test_slopes_by_differences_are_those_of_scaling():
@@ -136,6 +149,35 @@ def test_slopes_at_the_end_of_what_is_allowed_are_those_just_inside(model, name,
         assert slopes[0]["max_pressure"][each] == pytest.approx(slopes[1]["max_pressure"][each], rel=1e-3, abs=1e-3)
 
 
+def test_a_nominal_value_may_lie_on_the_end_of_its_tolerance():
+    """Rounding of an end does not count as outside, in either direction."""
+    span = Rectangular(low=0.1, high=0.3)
+    for value in (0.1, 0.3, 0.1 - 1e-12, 0.3 + 1e-12):
+        check_nominal("clearance", value, span, Unit("mm"))
+    for value in (0.1 - 1e-6, 0.3 + 1e-6):
+        with pytest.raises(ValueError, match="lies outside its tolerance of 0.1 to 0.3 mm"):
+            check_nominal("clearance", value, span, Unit("mm"))
+    check_nominal("clearance", 0.1 + 3 * 0.01, Normal(mean=0.1, deviation=0.01), Unit("mm"))  # three deviations
+    with pytest.raises(ValueError, match="lies outside"):
+        check_nominal("clearance", 0.13, tolerance(0.1, 0.02), Unit("mm"))
+
+
+def test_tolerances_off_the_axis_have_the_band_of_presses_at_their_ends():
+    """Results change in one direction with the force: ends of a band are presses at the ends of the force."""
+    joint, force = bs.joints["hip-36"], tolerance(2000.0, 600.0)
+    model = bs.Sphere(
+        ring_width=np.radians(6.0), cup=bs.Cup(inclination=np.radians(45.0), anteversion=np.radians(15.0))
+    )
+    effect = off_axis_uncertainty(joint, model, {"force": 2000.0}, {"force": force})
+    ends = [float(force.frozen.ppf(share)) for share in (0.025, 0.5, 0.975)]
+    pressed = model.press(joint, force=np.array(ends))
+    for name in ("max_pressure", "indentation", "area"):
+        assert effect.band[name] == pytest.approx(getattr(pressed, name), rel=3e-3)
+    assert effect.band["edge_distance"][0] == pytest.approx(pressed.edge_distance[2], abs=0.05)
+    assert effect.presses == 3
+    assert 0.3 < effect.changes["max_pressure"]["force"] < 0.8
+
+
 def test_sobol_intervals_are_those_of_the_seed_and_leave_the_global_stream_alone():
     spread = {"clearance": tolerance(0.1, 0.05), "liner_poisson": Rectangular(low=0.38, high=0.46)}
     before = np.random.get_state()[1].tolist()  # noqa: NPY002
@@ -153,12 +195,9 @@ def test_slopes_by_jax_are_those_of_differences(model):
         assert exact[1][quantity] == pytest.approx(near[1][quantity], rel=1e-6)
     with pytest.raises(ValueError, match="exact cannot be traced"):
         jax_derivatives(bs.Exact(), HIP, ("area",), AT)
-    ranges = {"ball_radius": (11.0, 23.0), "liner_thickness": (3.0, 15.0)}
-    by_jax, by_differences = (
-        optimise(model, HIP, ranges, load={"force": 3000.0}, limits=SHELL, derive=derive).value
-        for derive in (jax_derivatives, finite_differences)
-    )
-    assert by_jax == pytest.approx(by_differences, rel=1e-6)
+    derivatives = (jax_derivatives, finite_differences)
+    values = [optimise(model, HIP, RANGES, load=LOAD, limits=SHELL, derive=derive).value for derive in derivatives]
+    assert values[0] == pytest.approx(values[1], rel=1e-6)
 
 
 @pytest.mark.long
@@ -189,36 +228,26 @@ def test_sobol_indices_of_a_product_of_powers():
 def test_sizes_and_materials_are_chosen_from_lists():
     """The best of all combinations is that of each of them on its own."""
     sizes, liners, ranges = [28.0, 32.0, 36.0], [bs.POM, bs.UHMWPE], {"clearance": (0.05, 0.2)}
-    common = {"load": {"force": 3000.0}, "limits": [Limit(name="outer_diameter", high=50.0)]}
+    common = {"load": LOAD, "limits": [Limit(name="outer_diameter", high=50.0)]}
     model, hip = bs.HessForsbach(), HIP.replace(liner_thickness=6.0)
     best = optimise(model, hip, ranges, choices={"head_diameter": sizes, "liner": liners}, **common)
-    each = [
-        optimise(model, hip.replace(head_diameter=size, liner=liner), ranges, **common)
-        for size in sizes
-        for liner in liners
-    ]
-    assert best.value == pytest.approx(min(one.value for one in each), rel=1e-9)
-    assert best.point["head_diameter"] == 36.0
-    assert best.materials == {"liner": "UHMWPE"}
-    assert best.joint.liner == bs.UHMWPE
-    assert best.joint.head_diameter == 36.0
+    joints = [hip.replace(head_diameter=size, liner=liner) for size in sizes for liner in liners]
+    least = min(optimise(model, joint, ranges, **common).value for joint in joints)
+    assert best.value == pytest.approx(least, rel=1e-9)
+    assert (best.point["head_diameter"], best.materials) == (36.0, {"liner": "UHMWPE"})
+    assert (best.joint.head_diameter, best.joint.liner) == (36.0, bs.UHMWPE)
     assert "head_diameter" not in best.slopes
 
 
-def test_lists_alone_are_looked_through():
-    choice, load = {"head_diameter": [28.0, 32.0, 36.0]}, {"force": 3000.0}
-    limits = [Limit(name="outer_diameter", high=46.0)]
-    best = optimise(bs.HessForsbach(), HIP, {}, choices=choice, load=load, limits=limits)
+def test_lists_alone_are_searched_in_python_and_the_shell(tmp_path):
+    choice, limit = {"head_diameter": [28.0, 32.0, 36.0]}, Limit(name="outer_diameter", high=46.0)
+    best = optimise(bs.HessForsbach(), HIP, {}, choices=choice, load=LOAD, limits=[limit])
     assert best.point == {"head_diameter": 32.0}
     with pytest.raises(ValueError, match="head_diameter = 36 is not allowed by outer_diameter ≤ 20"):
-        optimise(bs.HessForsbach(), HIP, {}, choices=choice, load=load, limits=[replace(limits[0], high=20.0)])
-
-
-def test_lists_in_the_shell(tmp_path):
+        optimise(bs.HessForsbach(), HIP, {}, choices=choice, load=LOAD, limits=[replace(limit, high=20.0)])
     words = ("--vary", "head_diameter=2.8, 3.2, 3.6 cm", "--vary", "liner=pom,UHMWPE", "--force", "3 kN")
     best = answer(tmp_path, "optimise", "hip-28", *words)
-    assert best["point"] == {"head_diameter": pytest.approx(36.0)}
-    assert best["materials"] == {"liner": "UHMWPE"}
+    assert (best["point"], best["materials"]) == ({"head_diameter": pytest.approx(36.0)}, {"liner": "UHMWPE"})
     front = command(tmp_path, "optimise", "hip-28", *words, "--minimise", "area", "--minimise", "max_pressure")
     assert "POM" in front.stdout
 
@@ -237,12 +266,12 @@ def test_phrases_of_the_shell():
     assert parse_distribution("clearance=100+-50 um") == ("clearance", tolerance(0.1, 0.05))
     assert parse_distribution("liner_poisson=0.38..0.46") == ("liner_poisson", Rectangular(low=0.38, high=0.46))
     for phrase, name, end, value in (
-        *((phrase, "outer_radius", "high", 26.0) for phrase in ("outer_radius <= 2.6 cm", "outer_radius < 26")),
+        ("outer_radius <= 2.6 cm", "outer_radius", "high", 26.0),
         ("max_pressure>5 MPa", "max_pressure", "low", 5.0),
-        ("half_angle<=60", "half_angle", "high", pi / 3),
-        *((f"area<={size}", "area", "high", 800.0) for size in ("800 mm²", "800 mm2", "800", "8 cm^2")),
+        ("half_angle<60", "half_angle", "high", pi / 3),
+        *((f"area<={size}", "area", "high", 800.0) for size in ("800 mm²", "800 mm2", "8 cm^2")),
         ("stiffness>=60 kN/mm", "stiffness", "low", 60e3),
-        *((f"energy<={size}", "energy", "high", 50.0) for size in ("50 N mm", "50 mJ")),
+        ("energy<=50 mJ", "energy", "high", 50.0),
     ):
         limit = parse_limit(phrase)
         assert (limit.name, getattr(limit, end)) == (name, pytest.approx(value, rel=1e-12))
@@ -256,11 +285,9 @@ model = "hess-forsbach"
 joint = "hip.toml"
 quantities = ["max_pressure", "stiffness"]
 store = "out/s.zarr"
-
 [axes]
 ball_radius = {from = "14 mm", to = "1.8 cm", count = 5}
 force = ["1 kN", "3 kN"]
-
 [samples]
 count = 8
 seed = 3
@@ -268,26 +295,35 @@ clearance = {nominal = "0.1 mm", plus_minus = "50 um"}
 liner_poisson = {low = 0.38, high = 0.46}
 liner_young = {median = "1 GPa", factor = 1.1}
 """
-FILE = """
-[joint]
-ball_radius = "17.9 mm"
-clearance = 0.1
-liner_thickness = 6.75
-[liner]
-material = "UHMWPE"
-"""
+SIZES = "[joint]\nball_radius = 14\nclearance = 0.1\nliner_thickness = 5\n[liner]\nmaterial = 'UHMWPE'\n"
 
 
-def test_a_study_file_has_design_model_joint_and_store(tmp_path):
-    (tmp_path / "hip.toml").write_text(FILE, encoding="utf-8")
-    (tmp_path / "s.toml").write_text(STUDY, encoding="utf-8")
-    given = read_study(tmp_path / "s.toml")
+@pytest.fixture
+def write_study(tmp_path):
+    """Function that writes the study with a part replaced, next to the file of its joint."""
+    (tmp_path / "hip.toml").write_text(SIZES, encoding="utf-8")
+
+    def write(old="", new=""):
+        assert old in STUDY
+        (tmp_path / "s.toml").write_text(STUDY.replace(old, new, 1), encoding="utf-8")
+        return tmp_path / "s.toml"
+
+    return write
+
+
+def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
+    given = read_study(write_study())
     assert given.design.dims == ("sample", "ball_radius", "force")
     assert given.design.shape == (8, 5, 2)
     assert given.store == tmp_path / "out" / "s.zarr"
     found = bs.study(given.model, given.joint, given.design, quantities=given.quantities, store=given.store)
     assert set(found.data_vars) == {"max_pressure", "stiffness", "status", "valid"}
     assert found.ball_radius.values.tolist() == [14.0, 15.0, 16.0, 17.0, 18.0]
+    (tmp_path / "rows.csv").write_text("force\n1000\n2000\n")
+    table = write_study(
+        '[axes]\nball_radius = {from = "14 mm", to = "1.8 cm", count = 5}\nforce = ["1 kN", "3 kN"]', ROWS
+    )
+    assert read_study(table).design.shape == (2, 8)
 
 
 MODEL = 'model = "hess-forsbach"'
@@ -298,31 +334,25 @@ MODEL = 'model = "hess-forsbach"'
     [
         (MODEL, 'model = "hess-forsbch"', "model 'hess-forsbch' is not known; did you mean 'hess-forsbach'"),
         (MODEL, 'model = ["a"]', r"model \['a'\] is not known; known: exact"),
-        (MODEL, "model = {}", "model {} is not known"),
         ('joint = "hip.toml"', 'joint = "hop.toml"', "joint 'hop.toml' is neither a file nor a preset"),
         ("count = 5", "count = 1e12", "16 000 000 000 000 points take about"),
         ("count = 5}", "count = 5", "is not TOML"),
         ("count = 8", "count = 2.5", "count = 2.5 is not allowed: a whole number"),
-        ("count = 8", "count = 0x" + "f" * 9000, "count = .{1,60} is not allowed: a whole number from 0 to"),
         ('"1 kN"', '"1 kg"', r"force\[0\] = '1 kg' is not a force"),
         ("seed = 3", "sead = 3", "'sead' in .samples. is not known"),
-        ("seed = 3", "seed = -3", "seed = -3 is not allowed"),
         ("seed = 3", "seed = 0x" + "f" * 9000, "seed = .{1,60} is not allowed: a whole number from 0 to"),
         ("plus_minus", "plusminus", "must be {low, high}"),
         ("factor = 1.1", "factor = 0.9", "liner_young.factor = 0.9 is not allowed: a factor of one standard deviation"),
         ("low = 0.38", "low = 0.58", "low = 0.58 is not allowed"),
         ("[axes]", "[axis]", "'axis' at the top is not known; did you mean 'axes'"),
         ("[axes]", "[engine]\nkind = 'dask'\naddress = 5\n[axes]", "address = 5 must be text"),
-        ("[axes]", "[engine]\nkind = ['dask']\n[axes]", r"engine.kind = \['dask'\] is not known; did you mean 'dask'"),
         ("[axes]", "[engine]\nkind = 'processes'\nworkers = 1e9\n[axes]", "workers = 1000000000 is not allowed"),
         ('"out/s.zarr"', r'"out/s\u001b[31m.zarr"', "store = .* no control characters"),
     ],
-    ids=range(20),
+    ids=range(16),
 )
-def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, old, new, message):
-    (tmp_path / "hip.toml").write_text(FILE, encoding="utf-8")
-    assert old in STUDY
-    (tmp_path / "s.toml").write_text(STUDY.replace(old, new, 1), encoding="utf-8")
+def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, write_study, old, new, message):
+    write_study(old, new)
     refused = command(tmp_path, "study", "s.toml")
     assert (refused.returncode, len(refused.stderr.strip().splitlines())) == (2, 1)
     assert re.search(message, refused.stderr)
@@ -331,8 +361,7 @@ def test_bad_study_files_are_one_sentence_on_the_command_line(tmp_path, old, new
 
 def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_path):
     (tmp_path / "backed.toml").write_text(
-        '[joint]\nball_radius = 14\nclearance = 0.1\nliner_thickness = 5\n[liner]\nmaterial = "UHMWPE"\n'
-        '[[backing]]\nthickness = 3\nmaterial = "titanium"\n[load]\nforce = 3000\n'
+        SIZES + '[[backing]]\nthickness = 3\nmaterial = "titanium"\n[load]\nforce = 3000\n'
     )
     ranges = ("--x", "ball_radius=12..16 mm", "--y", "liner_thickness=4..6 mm", "--points", "2")
     found = command(tmp_path, "map", "backed.toml", *ranges, "--json")
@@ -349,6 +378,9 @@ def test_joints_that_tables_do_not_know_are_solved_unless_a_model_is_named(tmp_p
 
 def test_loads_alone_are_answered_by_a_curve_of_the_joint(tmp_path):
     backed = HIP.replace(backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),))
+    found = bs.study(bs.Tabulated(), backed, clearance=[0.1, 0.2], force=3000.0)
+    with pytest.raises(ValueError, match="tabulated has no answer at any point: the model has no formula"):
+        pareto(found, ("area", "max_pressure"), [Limit(name="max_pressure", high=15.0)])
     assert default_model(backed, {"force": [1.0, 9000.0]}) == bs.ExactCurve()
     assert default_model(backed, {"force": [1.0, 9000.0], "clearance": [0.1, 0.2]}) == bs.Exact()
     assert default_model(HIP, {"force": [1.0, 9000.0]}) == bs.Tabulated()
@@ -358,13 +390,6 @@ def test_loads_alone_are_answered_by_a_curve_of_the_joint(tmp_path):
     alone = bs.Exact(tolerance=1e-9).press(backed, force=forces[::60])
     np.testing.assert_allclose(kept.max_pressure[::60], alone.max_pressure, rtol=1e-7)
     assert kept.valid.all()
-
-
-def test_a_model_without_an_answer_is_named_by_the_reason():
-    joint = HIP.replace(backing=(bs.Layer(thickness=3.0, material=bs.materials["titanium"]),))
-    found = bs.study(bs.Tabulated(), joint, clearance=[0.1, 0.2], force=3000.0)
-    with pytest.raises(ValueError, match="tabulated has no answer at any point: the model has no formula"):
-        pareto(found, ("area", "max_pressure"), [Limit(name="max_pressure", high=15.0)])
 
 
 def test_questions_on_the_command_line(tmp_path):
@@ -408,7 +433,6 @@ SPREAD = "--spread 'clearance=0.1+-0.05 mm' --spread 'liner_young=700..1100 MPa'
         ("sensitivity L --spread clearance=much", "is not a range"),
         ("sensitivity L S --correlation clearance=0.5", "'clearance=0.5' is not a correlation"),
         ("sensitivity L S --correlation 'clearance, force = 0.5'", "'force' among the correlated parameters is not"),
-        ("sensitivity L S --correlation 'clearance, liner_young = 1'", "a rank correlation is between -1 and 1"),
         ("sensitivity L S --of pressure", "'pressure' among the quantities is not known"),
         ("sensitivity L S --csv all.txt", "'all.txt' must end in .csv"),
         ("sensitivity L S --seed -1", "seed = -1 is not allowed"),
@@ -418,19 +442,15 @@ def test_wrong_questions_are_one_sentence_on_the_command_line(tmp_path, words, m
     words = words.replace(" L", " hess-forsbach --force '3 kN'").replace(" S", f" {SPREAD}")
     refused = command(tmp_path, *shlex.split(words))
     assert (refused.returncode, message in refused.stderr) == (2, True), refused.stderr
-    assert len(refused.stderr.strip().splitlines()) == 1
+    assert refused.stderr.count("\n") == 1
 
 
 def test_sensitivity_of_one_quantity_with_pairs_in_a_table_and_csv(tmp_path):
     words = shlex.split(f"sensitivity hip-36 --force '3 kN' {SPREAD} --count 100 --of max_pressure")
     shown = command(tmp_path, *words, "--second-order", "--csv", "all.csv", *either((), ("--figure", "all.png")))
-    assert (shown.returncode, shown.stderr) == (0, "")
-    lines = shown.stdout.splitlines()
-    assert lines[0].startswith("max_pressure: ")
     heads = ["max_pressure:", "number", "clearance", "liner_young", "pair", "clearance"]
-    assert [line.split()[0] for line in lines] == heads
-    with (tmp_path / "all.csv").open(encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+    assert [line.split()[0] for line in shown.stdout.splitlines()] == heads
+    rows = list(csv.DictReader((tmp_path / "all.csv").read_text(encoding="utf-8").splitlines()))
     (pair,) = [row for row in rows if row["index"] == "second_order"]
     assert (pair["parameter"], pair["other_parameter"]) == ("clearance", "liner_young")
     assert float(pair["low"]) < float(pair["value"]) < float(pair["high"])
@@ -438,7 +458,6 @@ def test_sensitivity_of_one_quantity_with_pairs_in_a_table_and_csv(tmp_path):
     assert all(row["low"] for row in rows if row["index"] != "elasticity")
     numbers = answer(tmp_path, *words, "--intervals", "none")["quantities"]["max_pressure"]["numbers"]
     assert set(numbers["clearance"]) == {"first_order", "total_order", "elasticity"}
-    assert "(" not in command(tmp_path, *words, "--intervals", "none").stdout
 
 
 def test_sensitivity_of_correlated_parameters_has_shapley_effects(tmp_path):
@@ -449,7 +468,4 @@ def test_sensitivity_of_correlated_parameters_has_shapley_effects(tmp_path):
     for content in found["quantities"].values():
         assert sum(numbers["shapley"] for numbers in content["numbers"].values()) == pytest.approx(1.0)
         assert all(numbers["shapley_low"] <= numbers["shapley_high"] for numbers in content["numbers"].values())
-    shown = command(tmp_path, *words).stdout
-    assert "Shapley effect" in shown
-    assert shown.endswith("rank correlations: clearance, liner_young = 0.6\n")
-    assert max(map(len, shown.splitlines())) <= 80
+    assert command(tmp_path, *words).stdout.endswith("rank correlations: clearance, liner_young = 0.6\n")

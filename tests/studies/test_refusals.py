@@ -9,7 +9,7 @@ from ballsocket.studies.design import Method, Span, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, copula_matrix, tolerance
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.sensitivity import sensitivity
-from ballsocket.studies.variance_indices import check_sample_memory, shapley_effects
+from ballsocket.studies.variance_indices import shapley_effects
 
 HIP = bs.joints["hess-forsbach"]
 RIGID = HIP.replace(ball=None)
@@ -19,8 +19,8 @@ PAIR, OTHER = ("clearance", "force"), ("force", "liner_young")
 MANY = sample(10**12, method=Method.LATIN_HYPERCUBE, clearance=Rectangular(low=0.05, high=0.15))
 
 
-def press(model=bs.HessForsbach(), joint=HIP, **axes):  # noqa: B008
-    return bs.study(model, joint, **axes)
+def press(joint=HIP, **axes):
+    return bs.study(bs.HessForsbach(), joint, **axes)
 
 
 def scattered(distributions=SCATTER, model=bs.Tabulated(), load=1000.0, **options):  # noqa: B008
@@ -43,13 +43,9 @@ def off_axis(force=2000.0, /, **spread):
         (lambda: press(force=1.0, indentation=0.1), "one load is needed, got force, indentation"),
         (lambda: press(ball_radius=1.0, socket_radius=2.0, clearance=1.0, force=1.0), "any two of them fix the third"),
         (lambda: press(outer_radius=20.0, liner_thickness=2.0, force=1.0), "either fixes the other"),
-        (
-            lambda: press(head_diameter=[30.0], ball_radius=[15.0], force=1.0),
-            "head_diameter.* ball_radius|ball_radius ",
-        ),
+        (lambda: press(head_diameter=[30.0], ball_radius=[15.0], force=1.0), "head_diameter.* ball_radius|ball_radius"),
         (lambda: press(clearance=[], force=1.0), "clearance has no values"),
         (lambda: press(clearance=[0.1, np.nan], force=1.0), r"clearance\[1\] = nan is not allowed"),
-        (lambda: press(clearance=[0.1, -0.1], force=1.0), r"clearance\[1\] = -0.1 is not allowed for a radial clear"),
         (lambda: press(force=Span(-1.0, 5.0, 10**6)), r"force\[0\] = -1 is not allowed for a normal force"),
         (lambda: press(force=["1 kN"]), "force must be a row of numbers"),
         (lambda: Span(1.0, 2.0, 0), "count = 0 is not allowed: a span has at least one value"),
@@ -66,27 +62,14 @@ def off_axis(force=2000.0, /, **spread):
         # samples
         (lambda: sample(4, **SCATTER) * sample(4, **POISSON), "two axes have the name sample"),
         (lambda: sample(2**30 + 1, **SCATTER), "count = 1073741825 is not allowed: Sobol's sequence has 2.30 points"),
-        (
-            lambda: bs.study(bs.Hertz(), HIP, sample(4096, clearance=Normal(mean=0.1, deviation=0.03)), force=1e3),
-            "clearance.* is not allowed for a radial clearance; truncate the distribution",
-        ),
         # memory
         (lambda: press(force=Span(1.0, 2.0, 10**12)), "1 000 000 000 000 points take about .* TB and .* hours on one"),
         (lambda: press(store="s", force=Span(1.0, 2.0, 10**12)), "of memory for the values along its axes; use fewer"),
-        (
-            lambda: press(store="s", force=Span(1.0, 2.0, 10**7), clearance=Span(0.05, 0.1, 10**6)),
-            "on the disk of the store",
-        ),
-        (
-            lambda: bs.study(bs.HessForsbach(), HIP, MANY, store="s", force=1000.0),
-            "1 000 000 000 000 points take .* on the disk of the store",
-        ),
-        (lambda: check_sample_memory(10**9), "indices of 1000000000 samples take about"),
+        (lambda: press(store="s", design=MANY, force=1e3), "1 000 000 000 000 points take .* on the disk of the store"),
         (lambda: scattered(count=1 << 30), "indices of 1073741824 samples take about .* GB, and there are .* of mem"),
         # sensitivities
         (lambda: scattered({"force": tolerance(3e3, 5e2)}), "force scatters and is given as a load too"),
         (lambda: scattered({}), "at least one number must scatter"),
-        (lambda: scattered({"clearence": tolerance(0.1, 0.05)}), "did you mean 'clearance'"),
         (lambda: scattered({"liner_poisson": Rectangular(low=0.4, high=0.499999)}), "no answer for .* of 1024 samples"),
         (lambda: scattered(count=1), "count = 1 is not allowed: the number of samples is 2 to"),
         (lambda: scattered(confidence=1.0), "a confidence level is between 0 and 1"),
@@ -94,20 +77,14 @@ def off_axis(force=2000.0, /, **spread):
             lambda: scattered({**SCATTER, **POISSON}, second_order=True, correlation={(*SCATTER, *POISSON): 0.5}),
             "second-order indices need independent",
         ),
-        (
-            lambda: scattered(model=bs.HessForsbach(), quantities=["force"], count=64),
-            "force does not change with clearance",
-        ),
+        (lambda: scattered(model=bs.HessForsbach(), quantities=["force"], count=64), "force does not change with clea"),
         (lambda: finite_differences(bs.Hertz(), HIP, ("area",), {"force": 0.0}), "force = 0 is first contact"),
         (
             lambda: shapley_effects(lambda x: x, [Normal(mean=0.0, deviation=1.0)] * 11, np.eye(11), 2, 0, None),
             "number of parameters = 11 is not allowed: correlated ones are at most 10",
         ),
         (lambda: off_axis(3000.0, force=tolerance(2000.0, 600.0)), "force = 3000 N lies outside its tolerance"),
-        (
-            lambda: off_axis(tilt=tolerance(0.5, 0.1)),
-            "tilt has a tolerance, and the direction of the load is set by in",
-        ),
+        (lambda: off_axis(tilt=tolerance(0.5, 0.1)), "tilt has a tolerance, and the direction of the load is set by"),
         # correlations
         (lambda: correlated({("clearance", "young"): 0.5}), "'young' among the correlated parameters is not known"),
         (lambda: correlated({("clearance", "clearance"): 0.5}), "needs two parameters"),
@@ -118,30 +95,25 @@ def off_axis(force=2000.0, /, **spread):
             "no joint distribution has the correlations clearance, force = 0.9; .*: reduce them",
         ),
         # calibrations
-        *(
-            (lambda force=force: bs.calibrate(HIP, force=force), "a calibration needs loads .N. above 0")
-            for force in ([0.0, 1000.0], [], [-1.0], np.nan)
-        ),
+        (lambda: bs.calibrate(HIP, force=[0.0, 1000.0]), "a calibration needs loads .N. above 0"),
+        (lambda: bs.calibrate(HIP, force=np.nan), "a calibration needs loads .N. above 0"),
+        (lambda: bs.calibrate(HIP, force=[]), "a calibration needs loads .N. above 0"),
         (lambda: bs.calibrate(HIP, force=1e9), "exact has no result for some joints or loads: .* not reach this load"),
         (lambda: bs.corrected_vessel(1.0, -3.0, 0.0), "the factor on K_B must be above 0"),
         (
             lambda: bs.calibrate(HIP.replace(liner_thickness=np.array([3.0, 5.0])), form=bs.as_polynomial),
             "liner_thickness has 2 different values, but Eq. .18. has three constants",
         ),
+        # other kinds
+        (lambda: press(joint="hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
+        (lambda: press(design=3000.0), r"design must be a Design, .* got 3000\.0; loads have names"),
     ],
 )
 def test_a_wrong_call_is_refused_with_the_reason(call, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises((ValueError, TypeError), match=message):
         call()
     assert not list(tmp_path.iterdir())
-
-
-def test_arguments_of_a_wrong_kind_are_refused():
-    with pytest.raises(TypeError, match="joint must be a Joint, got 'hip-28'"):
-        bs.study(bs.Exact(), "hip-28", force=1.0)
-    with pytest.raises(TypeError, match=r"design must be a Design, .* got 3000\.0; loads have names"):
-        bs.study(bs.Exact(), HIP, 3000.0)
 
 
 @pytest.mark.parametrize(
@@ -150,22 +122,18 @@ def test_arguments_of_a_wrong_kind_are_refused():
         (b"ball_radius,clearence\n16,0.1\n", "did you mean 'clearance'"),
         (b"ball_radius,force,half_angle_deg\n16,,\n", r"force in row 0 of rows.csv = nan is not allowed"),
         (b"clearance_deg,force\n6,1000\n", "'clearance_deg' among the columns"),
-        (b"clearance,clearance,force\n0.1,0.2,1000\n", "has clearance twice"),
         (b"clearance,force\n0.1,1000,7\n", "row 0 of rows.csv has more cells than there are columns"),
         (b'force\n"1\n2\n', "rows.csv is not CSV: unexpected end of data, in line 3"),
-        (b'force\n"1"2\n', "rows.csv is not CSV: .* in line 2"),
         (b"force\n" + b"1" * 99_000 + b"\n", "force in row 0 of rows.csv = inf"),
         (b"force\n" + b"1" * 200_000 + b"\n", "rows.csv has a line of more than 100000 characters"),
         (b'force\n"' + b"1\n" * 80_000 + b'"', "rows.csv is not CSV: field larger than field limit"),
-        (",".join(f"c{i}" for i in range(20_000)).encode(), "more than 100000 characters"),
         (b",".join([b"force"] * 16_000), "rows.csv has force twice"),
-        (b"force\n" + b"," * 90_000, "row 0 of rows.csv has more cells"),
         (b"\x1b[31m\n1\n", r"'.x1b\[31m' among the columns of rows.csv is not known"),
         (b"a" * 90_000 + b"\n1\n", "'a{39}... among the columns of rows.csv is not known"),
         (b"force\n\xff\n", "rows.csv is not text in UTF-8: invalid start byte"),
         (b"force\n1\0\n", "force in row 0 of rows.csv = nan"),
     ],
-    ids=range(17),
+    ids=range(13),
 )
 def test_a_table_that_is_no_csv_is_refused_in_a_short_sentence(content, message, tmp_path):
     (tmp_path / "rows.csv").write_bytes(content)

@@ -23,6 +23,7 @@ from ballsocket.studies.distributions import Normal, Rectangular, tolerance
 from ballsocket.studies.export import export
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit
+from ballsocket.studies.parameters import vary_joint
 from ballsocket.studies.run import read
 from ballsocket.studies.task import Blocks
 
@@ -81,6 +82,13 @@ def test_derived_parameters_make_the_joint_they_say():
     np.testing.assert_allclose(Limit(name="liner_thickness").evaluate(found), 26.0 - 18.0 - 3.0)
     made = bs.Exact().press(backed.replace(liner_thickness=5.0), force=2000.0)
     assert found.max_pressure.item() == pytest.approx(made.max_pressure, rel=1e-9)
+
+
+def test_equal_radii_are_a_joint_without_clearance():
+    joint, possible = vary_joint(HIP, {"socket_radius": np.array([18.0, 17.9, 18.1]), "ball_radius": 18.0})
+    assert joint.clearance.tolist() == pytest.approx([0.0, 0.0, 0.1])
+    assert joint.clearance[0] == 0.0
+    assert possible.tolist() == [True, False, True]
 
 
 def test_diameters_are_axes():

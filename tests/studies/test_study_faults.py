@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.storage.atomic_files import write_atomically, write_text
 from ballsocket.models.modulus import Modulus
 from ballsocket.studies import store as store_module
 from ballsocket.studies.run import _create_task, read
@@ -22,7 +21,6 @@ from ..cli.command import run
 
 HIP = bs.joints["hess-forsbach"]
 AXES = {"clearance": np.linspace(0.05, 0.2, 12).tolist(), "force": [500.0, 1500.0, 3000.0, 4000.0]}
-ASKED = {"model": bs.HessForsbach(), "joint": HIP, "quantities": ["max_pressure"], **AXES}
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -32,37 +30,32 @@ def small_blocks():
         yield
 
 
-def presses(store, **change):
-    """Runs the study and counts the blocks that were computed."""
-    progress, asked = [], {**ASKED, **change}
-    found = bs.study(asked.pop("model"), asked.pop("joint"), store=store, listen=progress.append, **asked).load()
-    return found, len(progress) - 1
+def presses(store, model=bs.HessForsbach(), joint=HIP, **change):  # noqa: B008
+    """Run the study; return its results and the number of computed blocks."""
+    progress, asked = [], {"quantities": ["max_pressure"], **AXES, **change}
+    return bs.study(model, joint, store=store, listen=progress.append, **asked).load(), len(progress) - 1
 
 
 @pytest.fixture(scope="module")
 def finished(small_blocks, tmp_path_factory):
     """The folder of a study whose six blocks are stored, and its results."""
     folder = tmp_path_factory.mktemp("finished") / "s.zarr"
-    results, blocks = presses(folder)
-    assert blocks == 6
-    return folder, results
+    return folder, presses(folder)[0]
 
 
 @pytest.fixture
 def store(finished, tmp_path):
-    """A copy of the finished study."""
     return copytree(finished[0], tmp_path / "s.zarr")
 
 
-def chunks(store, name):
-    return sorted(path for path in (store / name / "c").rglob("*") if path.is_file())
+def first_chunk(store, name):
+    return min(path for path in (store / name / "c").rglob("*") if path.is_file())
 
 
 def test_a_finished_study_is_not_computed_again_even_on_a_full_disk(store, finished, monkeypatch):
     monkeypatch.setattr("ballsocket.core.storage.folders.available_disk_space", lambda path: 0)
     again, blocks = presses(store)
-    assert blocks == 0
-    assert again.identical(finished[1])
+    assert (blocks, again.identical(finished[1])) == (0, True)
 
 
 @pytest.mark.parametrize(
@@ -71,9 +64,9 @@ def test_a_finished_study_is_not_computed_again_even_on_a_full_disk(store, finis
         ("max_pressure/c/2/0", "truncated", 1),
         ("max_pressure/c/2/0", "garbage", 1),
         ("max_pressure/c/2/0", "removed", 1),
-        ("max_pressure/c/2/0", "that of another block", 1),
-        (f"{CHECKSUM}/c", "truncated", 6),  # the checksums are read together
-        ("clearance/c", "removed", 0),
+        ("max_pressure/c/2/0", "another", 1),
+        (CHECKSUM, "truncated", 6),  # the checksums are read together
+        ("clearance", "removed", 0),
         ("clearance/zarr.json", "removed", 0),
         ("clearance/zarr.json", "garbage", 0),
         ("max_pressure/zarr.json", "removed", 0),
@@ -81,17 +74,14 @@ def test_a_finished_study_is_not_computed_again_even_on_a_full_disk(store, finis
     ],
 )
 def test_a_damaged_part_is_found_and_mended(store, finished, part, damage, blocks):
-    path = store / part
-    if path.is_dir():
-        path = min(file for file in path.rglob("*") if file.is_file())
+    path = first_chunk(store, part) if (store / part).is_dir() else store / part
+    another = (store / "max_pressure" / "c" / "3" / "0").read_bytes()
     if damage == "removed":
         path.unlink()
     else:
-        other = (store / "max_pressure" / "c" / "3" / "0").read_bytes()
-        path.write_bytes({"truncated": path.read_bytes()[:-5], "garbage": b"{"}.get(damage, other))
+        path.write_bytes({"truncated": path.read_bytes()[:-5], "garbage": b"{", "another": another}[damage])
     again, computed = presses(store)
-    assert computed == blocks
-    assert again.identical(finished[1])
+    assert (computed, again.identical(finished[1])) == (blocks, True)
 
 
 def test_the_store_of_another_study_or_other_code_is_refused_with_what_differs(store, monkeypatch):
@@ -125,29 +115,26 @@ def test_custom_models_are_distinguished_by_what_their_formula_encloses(tmp_path
 
 
 def test_points_of_an_unfinished_store_have_a_status(store):
-    chunks(store, "status")[0].unlink()
+    first_chunk(store, "status").unlink()
     assert (read(store).status.values == NOT_COMPUTED).any()
-
-
-def test_a_folder_that_is_no_study_is_left_alone(tmp_path):
-    (tmp_path / "precious.txt").write_text("mine", encoding="utf-8")
-    with pytest.raises(ValueError, match="exists and is not a study"):
-        presses(tmp_path)
-    assert [path.read_text("utf-8") for path in tmp_path.iterdir()] == ["mine"]
 
 
 LABEL = b'{"zarr_format": 3, "node_type": "group", "attributes": '
 
 
-def test_a_store_whose_label_has_no_study_is_no_study(store):
+def test_a_store_whose_label_has_no_study_is_no_study_and_left_alone(store, tmp_path):
     for content in (
-        *(b"null", b"[]", b'"a"', b"3", b"", b"\xff", b"[" * 100_000, LABEL + b"[]}"),
+        *(b"null", b'"a"', b"", b"\xff", b"[" * 100_000, LABEL + b"[]}"),
         *(LABEL + b'{"study": ' + entry + b"}}" for entry in (b"null", b'"a"', b"[]", b"[" * 2000 + b"]" * 2000)),
     ):
         (store / "zarr.json").write_bytes(content)
         for opened in (presses, read):
             with pytest.raises(ValueError, match=r"s.zarr exists and is not a study$"):
                 opened(store)
+        assert (store / "zarr.json").read_bytes() == content
+    with pytest.raises(ValueError, match="exists and is not a study"):
+        presses(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["s.zarr"]
 
 
 def test_of_a_store_that_differs_in_everything_a_few_differences_are_named(store):
@@ -170,73 +157,41 @@ def test_two_studies_that_begin_together_share_their_store(tmp_path, finished, m
 
     monkeypatch.setattr(store_module, "_write_group", make_slowly)
     found, blocks = presses(store)
-    assert blocks == 0
-    assert found.identical(presses(store)[0])
-    assert np.array_equal(found.max_pressure.values, finished[1].max_pressure.values)
+    assert (blocks, found.identical(finished[1])) == (0, True)
 
 
-def test_drafts_of_a_killed_process_are_removed_by_the_next_that_makes_the_store(tmp_path):
-    old, young, other = (tmp_path / name for name in (".s.zarr.abc.draft", ".s.zarr.def.draft", ".mine.draft"))
-    for folder in (old, young, other):
-        folder.mkdir()
-        (folder / "part").write_text("half", encoding="utf-8")
-    for folder in (old, other):
-        os.utime(folder, (0, 0))
-    presses(tmp_path / "s.zarr")
-    assert sorted(path.name for path in tmp_path.iterdir()) == [".mine.draft", ".s.zarr.def.draft", "s.zarr"]
+@contextmanager
+def stopped_at(block, error):
+    """Let the store raise an error instead of writing a block."""
+    write = StudyStore.write
 
-
-def test_a_draft_that_is_being_written_stays(tmp_path):
-    with write_atomically(tmp_path / "a.txt") as draft:
-        os.utime(draft.parent, (0, 0))
-        write_text(tmp_path / "a.txt", "theirs")
-        draft.write_text("ours", encoding="utf-8")
-    assert (tmp_path / "a.txt").read_text(encoding="utf-8") == "ours"
-    assert [path.name for path in tmp_path.iterdir()] == ["a.txt"]
-
-
-def test_a_full_disk_is_reported_with_the_name_of_the_requested_file(tmp_path):
-    with pytest.raises(OSError, match="No space left on device: .*a.txt") as no, write_atomically(tmp_path / "a.txt"):
-        raise OSError(28, "No space left on device")
-    assert no.value.filename == str(tmp_path / "a.txt")
-    assert not list(tmp_path.iterdir())
-
-
-def test_a_full_disk_stops_with_one_sentence_and_keeps_the_stored_blocks(tmp_path, finished, monkeypatch):
-    write, written = StudyStore.write, []
-
-    def full(self, task, number, answers):
-        if len(written) == 3:
-            raise OSError(28, "No space left on device")
-        written.append(number)
+    def stop(self, task, number, answers):
+        if number == block:
+            raise error
         write(self, task, number, answers)
 
-    monkeypatch.setattr(StudyStore, "write", full)
-    with pytest.raises(OSError, match="No space left on device; 3 of 6 blocks are stored; run the study again"):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(StudyStore, "write", stop)
+        yield
+
+
+def test_a_full_disk_stops_with_one_sentence_and_keeps_the_stored_blocks(tmp_path, finished):
+    message = "No space left on device; 3 of 6 blocks are stored; run the study again"
+    with stopped_at(3, OSError(28, "No space left on device")), pytest.raises(OSError, match=message):
         presses(tmp_path / "s.zarr")
-    monkeypatch.setattr(StudyStore, "write", write)
     found, blocks = presses(tmp_path / "s.zarr")
-    assert blocks == 3
-    assert np.array_equal(found.max_pressure.values, finished[1].max_pressure.values)
+    assert (blocks, found.identical(finished[1])) == (3, True)
 
 
-def test_control_c_keeps_the_stored_blocks_and_the_command_resumes(tmp_path, finished, monkeypatch):
+def test_control_c_keeps_the_stored_blocks_and_the_command_resumes(tmp_path, finished):
     (tmp_path / "s.toml").write_text(
         'joint = "hess-forsbach"\nmodel = "hess-forsbach"\nstore = "s.zarr"\nquantities = ["max_pressure"]\n'
         f"[axes]\nclearance = {{from = 0.05, to = 0.2, count = 12}}\nforce = {AXES['force']}\n"
     )
-    write = StudyStore.write
-
-    def interrupted(self, task, number, answers):
-        if number == 2:
-            raise KeyboardInterrupt
-        write(self, task, number, answers)
-
-    monkeypatch.setattr(StudyStore, "write", interrupted)
-    stopped = run("study", "s.toml", folder=tmp_path)
+    with stopped_at(2, KeyboardInterrupt):
+        stopped = run("study", "s.toml", folder=tmp_path)
     assert stopped.returncode == 130
     assert "points are stored in s.zarr: run the command again to resume" in " ".join(stopped.stderr.split())
-    monkeypatch.setattr(StudyStore, "write", write)
     assert (read(tmp_path / "s.zarr").status.values != NOT_COMPUTED).sum() == 16
     assert run("study", "s.toml", folder=tmp_path).returncode == 0
     assert np.array_equal(read(tmp_path / "s.zarr").max_pressure.values, finished[1].max_pressure.values)
@@ -245,14 +200,13 @@ def test_control_c_keeps_the_stored_blocks_and_the_command_resumes(tmp_path, fin
 @contextmanager
 def nobody():
     """Root may write everywhere: for a while this process is nobody."""
-    if os.geteuid() != 0:
-        yield
-        return
-    os.seteuid(65534)
+    if root := os.geteuid() == 0:
+        os.seteuid(65534)
     try:
         yield
     finally:
-        os.seteuid(0)
+        if root:
+            os.seteuid(0)
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="no permissions as of Unix")
@@ -266,9 +220,8 @@ def test_a_read_only_store_is_opened_and_cannot_be_mended(finished):
         try:
             with nobody():
                 again, blocks = presses(store)
-            assert blocks == 0
-            assert again.identical(finished[1])
-            chunk = chunks(store, CHECKSUM)[0]
+            assert (blocks, again.identical(finished[1])) == (0, True)
+            chunk = first_chunk(store, CHECKSUM)
             chunk.parent.chmod(0o755)
             chunk.unlink()
             chunk.parent.chmod(0o555)

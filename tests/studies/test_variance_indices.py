@@ -21,7 +21,7 @@ HIP = bs.joints["hess-forsbach"]
 
 
 def ishigami(x, a=7.0, b=0.1):
-    """Return the function of Ishigami and Homma 1990 at x, shape (3, n)."""
+    """Function of Ishigami and Homma 1990 at x, shape (3, n)."""
     return (numpy.sin(x[0]) + a * numpy.sin(x[1]) ** 2 + b * x[2] ** 4 * numpy.sin(x[0]))[None]
 
 
@@ -59,9 +59,8 @@ def test_indices_of_ishigami_are_the_analytic_ones_for_any_count(count):
 
 def test_indices_and_intervals_are_those_of_scipy():
     found = sobol_indices(ishigami, [UNIFORM] * 3, 512, seed=3, confidence=0.9)
-    scipy_indices = stats.sobol_indices(
-        func=ishigami, n=512, dists=[UNIFORM.frozen] * 3, rng=numpy.random.default_rng(3)
-    )
+    generator = numpy.random.default_rng(3)
+    scipy_indices = stats.sobol_indices(func=ishigami, n=512, dists=[UNIFORM.frozen] * 3, rng=generator)
     interval = scipy_indices.bootstrap(confidence_level=0.9)
     for name in ("first_order", "total_order"):  # SciPy draws its resamples without a seed: their ends scatter
         numpy.testing.assert_allclose(found[name][0], getattr(scipy_indices, name), atol=1e-12)
@@ -103,14 +102,13 @@ def test_correlated_parameters_share_the_variance_of_a_linear_function_as_theory
 
 
 def test_two_correlated_parameters_have_the_published_effects():
-    """Iooss & Prieur 2019, Int. J. Uncertain. Quantif. 9, 493: a linear function of two normal parameters."""
-    rho, deviations = 0.9, numpy.array([1.0, 2.0])
+    """Iooss & Prieur 2019, Int. J. Uncertain. Quantif. 9, 493: the sum of two normal parameters."""
+    rho, one, two = 0.9, 1.0, 2.0
+    spreads = [Normal(mean=0.0, deviation=deviation) for deviation in (one, two)]
     matrix = numpy.array([[1.0, rho], [rho, 1.0]])
-    spreads = [Normal(mean=0.0, deviation=float(deviation)) for deviation in deviations]
     found = shapley_effects(lambda x: x.sum(axis=0)[None], spreads, matrix, 4096, 0, None)
-    one, two = deviations**2
-    both, total = rho * deviations.prod(), (deviations**2).sum() + 2 * rho * deviations.prod()
-    first = (one * (1 - rho**2 / 2) + both + two * rho**2 / 2) / total
+    share = one**2 * (1 - rho**2 / 2) + rho * one * two + two**2 * rho**2 / 2
+    first = share / (one**2 + two**2 + 2 * rho * one * two)
     assert found["shapley"][0] == pytest.approx([first, 1 - first], abs=2e-3)
 
 
@@ -119,7 +117,6 @@ def test_without_correlation_shapley_effects_lie_between_first_and_total_order()
     found = shapley_effects(ishigami, [UNIFORM] * 3, numpy.eye(3), 8192, 0, None)
     expected = [first[0] + interaction / 2, first[1], interaction / 2]
     assert found["shapley"][0] == pytest.approx(expected, abs=0.01)
-    assert set(found) == {"first_order", "total_order", "shapley"}  # no intervals
 
 
 def test_samples_have_the_rank_correlation_and_their_own_distributions():
@@ -135,28 +132,15 @@ def test_samples_have_the_rank_correlation_and_their_own_distributions():
 
 
 def test_a_study_file_states_correlations(tmp_path):
-    text = """
-        joint = "hip-36"
-        [axes]
-        force = 1000
-        [samples]
-        count = 8
-        clearance = {nominal = 0.1, plus_minus = 0.05}
-        liner_young = {low = 700, high = 1100}
-        correlation = ["clearance, liner_young = 0.5"]
-    """
+    text = 'joint = "hip-36"\n[axes]\nforce = 1000\n[samples]\ncount = 8\nclearance = {low = 0.05, high = 0.15}\n'
+    text += 'liner_young = {low = 700, high = 1100}\ncorrelation = ["clearance, liner_young = 0.5"]\n'
     path = tmp_path / "s.toml"
     path.write_text(text, encoding="utf-8")
     (axis,) = read_study(path).design.axes
     assert axis.correlation == ((("clearance", "liner_young"), 0.5),)
-    for wrong, message in (
-        ('"clearance: 0.5"', "s.toml: .*is not a correlation, such as 'clearance, liner_young = 0.5'"),
-        ('"clearance, clearance = 0.5"', "correlation of clearance and clearance needs two parameters"),
-        ('"clearance, tilt = 0.5"', "'tilt' among the correlated parameters is not known"),
-    ):
-        path.write_text(text.replace('"clearance, liner_young = 0.5"', wrong), encoding="utf-8")
-        with pytest.raises(ValueError, match=message):
-            read_study(path)
+    path.write_text(text.replace("young = 0.5", "young: 0.5"), encoding="utf-8")
+    with pytest.raises(ValueError, match="s.toml: .*is not a correlation, such as 'clearance, liner_young = 0.5'"):
+        read_study(path)
 
 
 def test_a_power_of_correlated_log_normal_parameters_has_analytic_first_order_indices():
