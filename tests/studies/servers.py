@@ -1,15 +1,26 @@
-"""Schedulers and workers of Dask as processes."""
+"""A scheduler and workers of Dask as processes."""
 
+import json
 import subprocess
 import sys
-from contextlib import contextmanager
+import time
+from contextlib import ExitStack, contextmanager
 
 
 @contextmanager
-def server(words, folder, log):
-    """A command of Dask's that runs until it is no longer needed."""
-    with subprocess.Popen([sys.executable, "-m", "dask", *words], cwd=folder, stdout=log, stderr=log) as running:
-        try:
-            yield running
-        finally:
-            running.terminate()
+def cluster(folder, n_workers, log):
+    """Start `dask scheduler` and several of `dask worker`; yield the processes and the address."""
+    file, mark = folder / "scheduler.json", ("--no-dashboard", "--host", "127.0.0.1", "--scheduler-file")
+    commands = [("scheduler", *mark, file, "--port", "0")]
+    commands += [("worker", *mark, file, "--no-nanny", "--nthreads", "1")] * n_workers
+    with ExitStack() as stack:
+        processes = []
+        for words in commands:
+            command = [sys.executable, "-m", "dask", *map(str, words)]
+            process = stack.enter_context(subprocess.Popen(command, cwd=folder, stdout=log, stderr=log))
+            stack.callback(process.terminate)
+            processes.append(process)
+        while not file.exists() or not file.read_text("utf-8"):
+            assert processes[0].poll() is None
+            time.sleep(0.1)
+        yield processes, json.loads(file.read_text("utf-8"))["address"]

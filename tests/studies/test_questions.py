@@ -165,9 +165,7 @@ def test_a_nominal_value_may_lie_on_the_end_of_its_tolerance():
 def test_tolerances_off_the_axis_have_the_band_of_presses_at_their_ends():
     """Results change in one direction with the force: ends of a band are presses at the ends of the force."""
     joint, force = bs.joints["hip-36"], tolerance(2000.0, 600.0)
-    model = bs.Sphere(
-        ring_width=np.radians(6.0), cup=bs.Cup(inclination=np.radians(45.0), anteversion=np.radians(15.0))
-    )
+    model = bs.Sphere(ring_width=np.radians(6.0), cup=bs.Cup(inclination=0.785, anteversion=0.26))
     effect = off_axis_uncertainty(joint, model, {"force": 2000.0}, {"force": force})
     ends = [float(force.frozen.ppf(share)) for share in (0.025, 0.5, 0.975)]
     pressed = model.press(joint, force=np.array(ends))
@@ -319,11 +317,8 @@ def test_a_study_file_has_design_model_joint_and_store(tmp_path, write_study):
     found = bs.study(given.model, given.joint, given.design, quantities=given.quantities, store=given.store)
     assert set(found.data_vars) == {"max_pressure", "stiffness", "status", "valid"}
     assert found.ball_radius.values.tolist() == [14.0, 15.0, 16.0, 17.0, 18.0]
-    (tmp_path / "rows.csv").write_text("force\n1000\n2000\n")
-    table = write_study(
-        '[axes]\nball_radius = {from = "14 mm", to = "1.8 cm", count = 5}\nforce = ["1 kN", "3 kN"]', ROWS
-    )
-    assert read_study(table).design.shape == (2, 8)
+    (tmp_path / "rows.csv").write_text("liner_thickness\n5\n6\n")
+    assert read_study(write_study("[axes]", '[table]\npath = "rows.csv"\n[axes]')).design.shape == (2, 8, 5, 2)
 
 
 MODEL = 'model = "hess-forsbach"'

@@ -2,7 +2,6 @@
 
 import csv
 import json
-import time
 from importlib import import_module
 from subprocess import DEVNULL
 
@@ -24,59 +23,49 @@ from ballsocket.studies.export import export
 from ballsocket.studies.file import read_study
 from ballsocket.studies.limits import Limit
 from ballsocket.studies.parameters import vary_joint
-from ballsocket.studies.run import read
 from ballsocket.studies.task import Blocks
 
 from ..cli.command import run
 from ..extent import either, some
 from ..places import symlink_or_skip
-from .servers import server
+from .servers import cluster
 
 HIP = bs.joints["hess-forsbach"]
 AXES = {"clearance": [0.05, 0.1, 0.2], "ball_radius": [14.0, 17.9], "force": [500.0, 1500.0, 3000.0, 4000.0]}
 
 
 def same(one, other):
-    return all(one[name].values.tobytes() == other[name].values.tobytes() for name in one.data_vars) and set(
-        one.data_vars
-    ) == set(other.data_vars)
+    names = set(one.data_vars)
+    return names == set(other.data_vars) and all(one[n].values.tobytes() == other[n].values.tobytes() for n in names)
 
 
-@pytest.mark.parametrize(
-    "model", [bs.HessForsbach(), bs.Tabulated(), bs.Exact(), bs.PlaneLayer()], ids=lambda m: m.name
-)
-def test_every_point_is_a_press(model):
+@pytest.mark.parametrize("name", ["hess-forsbach", "tabulated", "exact", "plane-layer"])
+def test_every_point_is_a_press(name):
+    model = bs.catalogue[name]
     found = bs.study(model, HIP, quantities=["indentation", "area", "stiffness"], **AXES)
     assert found.sizes == {"clearance": 3, "ball_radius": 2, "force": 4}
-    for place in (
-        {"clearance": 0.2, "ball_radius": 14.0, "force": 500.0},
-        {"clearance": 0.05, "ball_radius": 17.9, "force": 4e3},
-    ):
-        contact = model.press(
-            HIP.replace(**{name: place[name] for name in ("ball_radius", "clearance")}), force=place["force"]
-        )
-        here = found.sel(place)
-        for name in ("indentation", "area", "stiffness"):
-            assert here[name].item() == pytest.approx(getattr(contact, name), rel=1e-9)
+    for clearance, radius, force in ((0.2, 14.0, 500.0), (0.05, 17.9, 4e3)):
+        contact = model.press(HIP.replace(ball_radius=radius, clearance=clearance), force=force)
+        here = found.sel(clearance=clearance, ball_radius=radius, force=force)
+        for quantity in ("indentation", "area", "stiffness"):
+            assert here[quantity].item() == pytest.approx(getattr(contact, quantity), rel=1e-9)
         assert here.valid.item() == contact.valid
 
 
 def test_labels_state_units_and_sources():
     found = bs.study(bs.HessForsbach(), HIP, clearance=[0.1], half_angle=np.radians([20.0, 40.0]))
     assert found.force.attrs == {"long_name": "normal force", "symbol": "F", "units": "N"}
-    assert found.half_angle.attrs["units"] == "rad"
-    assert found.clearance.attrs["units"] == "mm"
+    assert (found.half_angle.attrs["units"], found.clearance.attrs["units"]) == ("rad", "mm")
     assert "Heß & Forsbach 2021" in found.attrs["references"]
     assert json.loads(found.attrs["joint"])["liner"]["young"] == 1000.0
     assert found.status.attrs["flag_meanings"].split()[:2] == ["not_computed", "ok"]
-    assert json.loads(json.dumps(found.attrs))
 
 
 def test_derived_parameters_make_the_joint_they_say():
     found = bs.study(bs.HessForsbach(), HIP, outer_radius=26.0, socket_radius=[15.0, 20.0], clearance=0.2, force=2000.0)
-    for radius, pressure in zip((15.0, 20.0), found.max_pressure.values, strict=True):
-        joint = HIP.replace(ball_radius=radius - 0.2, clearance=0.2, liner_thickness=26.0 - radius)
-        assert pressure == pytest.approx(bs.HessForsbach().press(joint, force=2000.0).max_pressure, rel=1e-12)
+    radii = np.array([15.0, 20.0])
+    joint = HIP.replace(ball_radius=radii - 0.2, clearance=0.2, liner_thickness=26.0 - radii)
+    np.testing.assert_allclose(found.max_pressure, bs.HessForsbach().press(joint, force=2e3).max_pressure, rtol=1e-12)
     backed = HIP.replace(backing=(bs.Layer(thickness=3.0, material=bs.TITANIUM),))  # the outer radius is the shell's
     found = bs.study(bs.Exact(), backed, outer_radius=[26.0], force=2000.0)
     np.testing.assert_allclose(Limit(name="liner_thickness").evaluate(found), 26.0 - 18.0 - 3.0)
@@ -95,29 +84,30 @@ def test_diameters_are_axes():
     diameters = {"head_diameter": [30.0, 36.0], "diametral_clearance": 0.2, "outer_diameter": 52.0}
     found = bs.study(bs.HessForsbach(), HIP, **diameters, force=2000.0)
     radii = {"ball_radius": [15.0, 18.0], "clearance": 0.1, "outer_radius": 26.0}
-    np.testing.assert_array_equal(
-        found.max_pressure, bs.study(bs.HessForsbach(), HIP, **radii, force=2000.0).max_pressure
-    )
-    for name, limit in (("outer_radius", 26.0), ("ball_radius", [15.0, 18.0]), ("clearance", 0.1)):
+    by_radii = bs.study(bs.HessForsbach(), HIP, **radii, force=2000.0)
+    np.testing.assert_array_equal(found.max_pressure, by_radii.max_pressure)
+    for name, limit in radii.items():
         np.testing.assert_allclose(Limit(name=name).evaluate(found), limit, rtol=1e-12)
 
 
 LINERS = [bs.UHMWPE, bs.CROSSLINKED_PE, bs.POM]
 
 
+def rows_of(path):
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
+
+
 def test_materials_are_an_axis_or_fixed(tmp_path):
     for store in (None, tmp_path / "kept"):
         found = bs.study(bs.HessForsbach(), HIP, force=[1000.0, 3000.0], liner=LINERS, store=store)
         assert found.max_pressure.dims == ("force", "liner")
-        assert found.liner.values.tolist() == ["UHMWPE", "cross-linked PE", "POM"]
         for liner in LINERS:
             pressed = bs.HessForsbach().press(HIP.replace(liner=liner), force=np.array([1000.0, 3000.0]))
             np.testing.assert_allclose(found.max_pressure.sel(liner=liner.name), pressed.max_pressure, rtol=1e-12)
             assert found.liner_young.sel(liner=liner.name).item() == liner.young
-    for ending in ("csv", "nc"):
-        export(found, tmp_path / f"study.{ending}")
-    rows = list(csv.DictReader((tmp_path / "study.csv").read_text(encoding="utf-8").splitlines()))
-    assert [row["liner"] for row in rows[:3]] == [liner.name for liner in LINERS]
+    export(found, tmp_path / "study.csv")
+    assert [row["liner"] for row in rows_of(tmp_path / "study.csv")[:3]] == ["UHMWPE", "cross-linked PE", "POM"]
+    export(found, tmp_path / "study.nc")
     with xr.open_dataset(tmp_path / "study.nc", engine="h5netcdf") as again:
         assert again.liner.values.tolist() == found.liner.values.tolist()
     fixed, rigid = bs.study(bs.HessForsbach(), HIP, liner=bs.POM, force=[1000.0]), HIP.replace(ball=None)
@@ -126,22 +116,13 @@ def test_materials_are_an_axis_or_fixed(tmp_path):
     assert ball == pytest.approx(bs.Hertz().press(rigid.replace(ball=bs.POM), force=100.0).max_pressure, rel=1e-12)
 
 
-ORDERED = """
-joint = "hip-36"
-[axes]
-ball_radius = [15, 16, 17]
-outer_radius = [24, 25]
-liner = ["uhmwpe", "pom"]
-clearance = [0.05, 0.1]
-force = 3000
-"""
+ORDERED = 'joint = "hip-36"\n[axes]\nball_radius = [15, 16, 17]\nouter_radius = [24, 25]\nliner = ["uhmwpe", "pom"]\n'
+ORDERED += "clearance = [0.05, 0.1]\nforce = 3000\n"
 
 
 def test_a_study_has_one_order_in_memory_in_a_store_and_from_other_processes(tmp_path):
     (tmp_path / "study.toml").write_text(ORDERED, encoding="utf-8")
     given = read_study(tmp_path / "study.toml")
-    heads = "ball_radius_mm,outer_radius_mm,liner,liner_young_MPa,liner_poisson,liner_yield_stress_MPa,"
-    heads += "clearance_mm,force_N,indentation_mm,half_angle_deg,max_pressure_MPa,area_mm2,status,valid"
     texts = set()
     for store, engine in ((None, Serial()), (tmp_path / "here", Serial()), (tmp_path / "there", Processes(workers=2))):
         found = bs.study(given.model, given.joint, given.design, store=store, engine=engine)
@@ -149,7 +130,7 @@ def test_a_study_has_one_order_in_memory_in_a_store_and_from_other_processes(tmp
         export(found, tmp_path / "study.csv")
         texts.add((tmp_path / "study.csv").read_text(encoding="utf-8"))
     (text,) = texts
-    assert text.startswith(heads)
+    assert text.startswith("ball_radius_mm,outer_radius_mm,liner,liner_young_MPa,")
 
 
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Exact()], ids=lambda m: m.name)
@@ -198,17 +179,13 @@ def test_samples_times_a_grid_are_bands_and_all_points_are_counted():
     assert progress[0].n_done == 0
     assert progress[-1].n_done == progress[-1].n_points == 192
     assert progress[-1].seconds_left == 0.0
-    spread = found.max_pressure.quantile(0.95, dim="sample") - found.max_pressure.quantile(0.05, dim="sample")
-    assert (spread > 0).all()
     assert found.clearance.dims == ("sample",)
     drawn = json.loads(found.attrs["design"])["sample"]
     assert (drawn["count"], drawn["seed"], drawn["method"]) == (64, 0, "sobol")
 
 
 def test_rows_of_a_table(tmp_path):
-    (tmp_path / "rows.csv").write_text(
-        "ball_radius,clearance,half_angle_deg\n16,0.1,40\n14,0.05,50\n", encoding="utf-8"
-    )
+    (tmp_path / "rows.csv").write_text("ball_radius,clearance,half_angle_deg\n16,0.1,40\n14,0.05,50\n")
     found = bs.study(bs.HessForsbach(), HIP, table(tmp_path / "rows.csv"))
     assert found.sizes == {"row": 2}
     assert np.degrees(found.half_angle.values).tolist() == pytest.approx([40.0, 50.0])
@@ -217,10 +194,9 @@ def test_rows_of_a_table(tmp_path):
 
 
 def test_rows_are_read_from_files_alone_and_as_far_as_there_is_memory(tmp_path, monkeypatch):
-    for content in (b"", b"PAR1" * 100, b"force\n1\n"):
-        (tmp_path / "rows.parquet").write_bytes(content)
-        with pytest.raises(ValueError, match="rows.parquet is not a readable Parquet file"):
-            table(tmp_path / "rows.parquet")
+    (tmp_path / "rows.parquet").write_bytes(b"PAR1" * 100)
+    with pytest.raises(ValueError, match="rows.parquet is not a readable Parquet file"):
+        table(tmp_path / "rows.parquet")
     parquet.write_table(pyarrow.table({"force": np.ones(10**6)}), tmp_path / "rows.parquet")
     (tmp_path / "rows.csv").write_text("force\n" + "1\n" * 10**5, encoding="utf-8")
     monkeypatch.setattr("ballsocket.core.executors.processes.available_memory", lambda: 10**6)
@@ -241,9 +217,7 @@ def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
         assert same(bs.study(model, HIP, engine=Processes(workers=2), **AXES), here)
         for engine in (Serial(), Distributed(workers=1)):
             store = tmp_path / f"{model.name}-{type(engine).__name__}.zarr"
-            stored = bs.study(model, HIP, engine=engine, store=store, **AXES).load()
-            assert same(stored, here)
-            assert list(stored.data_vars) == [name for name in stored.data_vars if name in here.data_vars]
+            assert same(bs.study(model, HIP, engine=engine, store=store, **AXES).load(), here)
 
 
 @pytest.mark.long
@@ -264,17 +238,7 @@ def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(t
 
     several = "force = { from = '0.1 kN', to = '3 kN', count = 20 }"  # exact presses: several blocks
     text = f"model = 'exact'\n{ORDERED.replace('force = 3000', several)}"
-    where, mark = tmp_path / "scheduler.json", ("--no-dashboard", "--host", "127.0.0.1")
-    worker = ("worker", *mark, "--no-nanny", "--nthreads", "1", "--scheduler-file", str(where))
-    with (
-        server(("scheduler", *mark, "--port", "0", "--scheduler-file", str(where)), tmp_path, DEVNULL) as scheduler,
-        server(worker, tmp_path, DEVNULL),
-        server(worker, tmp_path, DEVNULL),
-    ):
-        while not where.exists() or not where.read_text("utf-8"):
-            assert scheduler.poll() is None
-            time.sleep(0.1)
-        address = json.loads(where.read_text(encoding="utf-8"))["address"]
+    with cluster(tmp_path, 2, DEVNULL) as (_, address):
         with Client(address) as client:
             client.wait_for_workers(2, timeout=600)
         for name, engine in (("here", ""), ("there", f"[engine]\nkind = 'dask'\naddress = '{address}'\n")):
@@ -293,7 +257,7 @@ def test_files_for_other_programs(tmp_path):
         assert np.array_equal(again.max_pressure.values, found.max_pressure.values)
         assert again.max_pressure.attrs["units"] == "MPa"
     export(found, tmp_path / "s.csv")
-    rows = list(csv.DictReader((tmp_path / "s.csv").read_text(encoding="utf-8").splitlines()))
+    rows = rows_of(tmp_path / "s.csv")
     assert len(rows) == 4
     assert float(rows[1]["max_pressure_MPa"]) == found.max_pressure.values[0, 1]
     assert float(rows[3]["half_angle_deg"]) == np.degrees(found.half_angle.values[1, 1])
@@ -322,10 +286,8 @@ def test_parquet_has_materials_and_the_points_of_all_chunks(tmp_path, monkeypatc
 
 
 def test_a_stored_study_is_read_by_xarray_alone(tmp_path):
-    bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", **AXES)
+    stored = bs.study(bs.HessForsbach(), HIP, store=tmp_path / "s.zarr", **AXES)
     plain = xr.open_zarr(tmp_path / "s.zarr", consolidated=False)
-    assert plain.max_pressure.dims == ("clearance", "ball_radius", "force")
-    assert plain.max_pressure.attrs["units"] == "MPa"
-    assert read(tmp_path / "s.zarr").max_pressure.sel(
-        clearance=0.1, force=3000.0, ball_radius=17.9
-    ).item() == pytest.approx(11.27, abs=0.01)
+    assert plain.max_pressure.identical(stored.max_pressure)
+    point = stored.max_pressure.sel(clearance=0.1, force=3000.0, ball_radius=17.9)
+    assert (point.item(), point.attrs["units"]) == (pytest.approx(11.27, abs=0.01), "MPa")

@@ -1,6 +1,5 @@
 """A study as a process of the system: killed, interrupted, out of room. The result is that of an undisturbed one."""
 
-import json
 import os
 import random
 import re
@@ -8,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import ExitStack, suppress
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
@@ -19,7 +18,7 @@ import ballsocket as bs
 from ballsocket.studies.run import read
 from ballsocket.studies.store import CHECKSUM
 
-from .servers import server
+from .servers import cluster
 
 COUNTS = {"clearances": 32, "radii": 25, "model": "exact"}
 """Four blocks of a little less than half a second."""
@@ -28,6 +27,7 @@ KILLS = min(5, int(os.environ.get("BALLSOCKET_KILLS", "2")))
 TIMES = {"serial": KILLS, "processes": KILLS, "dask": 1}
 PATIENCE = 600  # seconds, for a slow machine
 HIP = bs.joints["hess-forsbach"]
+MAIN = "from ballsocket.cli import main; main()"
 pytestmark = [
     pytest.mark.long,
     pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="no processes in /proc"),
@@ -36,12 +36,10 @@ STUDY = """
 joint = "hess-forsbach"
 model = "{model}"
 store = "s.zarr"
-
 [axes]
 clearance = {{ from = 0.05, to = 0.2, count = {clearances} }}
 ball_radius = {{ from = 14, to = 20, count = {radii} }}
 force = ["1 kN", "3 kN"]
-
 [engine]
 kind = "{engine}"
 """
@@ -52,7 +50,7 @@ def start(tmp_path):
     """Function that starts the study of a file in a group of processes, which ends with the test."""
     processes = []
 
-    def start(*options, code="from ballsocket.cli import main; main()", **counts):
+    def start(*options, code=MAIN, **counts):
         (tmp_path / "s.toml").write_text(STUDY.format(**{**COUNTS, **counts}), encoding="utf-8")
         process = subprocess.Popen(
             [sys.executable, "-c", code, "study", "s.toml", *options],
@@ -75,7 +73,7 @@ def start(tmp_path):
 
 
 def stored_blocks(store):
-    return len(list((store / CHECKSUM / "c").glob("*"))) if store.exists() else 0
+    return len(list((store / CHECKSUM / "c").glob("*")))
 
 
 def wait_for_blocks(process, store, number):
@@ -104,9 +102,7 @@ def equal_to_undisturbed(store):
 def test_files_that_may_not_grow_stop_the_command_with_one_sentence(start):
     """A real failure of the system's: no file may be larger than 20 kB."""
     pytest.importorskip("resource", reason="no limits of resources")
-    limited = (
-        "import resource as r; r.setrlimit(r.RLIMIT_FSIZE, (20000, 20000)); from ballsocket.cli import main; main()"
-    )
+    limited = f"import resource as r; r.setrlimit(r.RLIMIT_FSIZE, (20000, 20000)); {MAIN}"
     words = {"model": "hess-forsbach", "clearances": 100, "radii": 100, "engine": "serial"}
     process = start(code=limited, **words)
     _, errors = process.communicate(timeout=PATIENCE)
@@ -173,30 +169,23 @@ def test_workers_leave_when_the_study_is_killed_alone(tmp_path, start):
     assert not any(map(is_alive, workers))
 
 
-def is_alive(pid):
-    try:
-        return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="ascii").split(")")[-1].split()[0]
-    except FileNotFoundError:
-        return False
-
-
-def descendants(pid):
-    pids = []
-    for path in Path(f"/proc/{pid}/task").glob("*/children"):
-        with suppress(OSError):  # a thread that has ended
-            for child in path.read_text(encoding="ascii").split():
-                pids += [int(child), *descendants(child)]
-    return pids
-
-
 def workers_of(process):
-    """Return the process ids of a study's workers."""
-    workers = []
-    for pid in descendants(process.pid):
+    """Process ids of a study's workers."""
+    pids, workers = [process.pid], []
+    for pid in pids:
+        for path in Path(f"/proc/{pid}/task").glob("*/children"):
+            with suppress(OSError):  # a thread that has ended
+                pids += map(int, path.read_text(encoding="ascii").split())
         with suppress(OSError):
             if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes():
                 workers.append(pid)
     return workers
+
+
+def is_alive(pid):
+    with suppress(FileNotFoundError):
+        return "Z" not in Path(f"/proc/{pid}/stat").read_text(encoding="ascii").split(")")[-1].split()[0]
+    return False
 
 
 @pytest.mark.parametrize("end", ["interrupted", "killed", "scheduler killed"])
@@ -207,18 +196,10 @@ def test_a_study_on_the_users_workers_ends_without_tracebacks_and_leaves_nothing
     def tasks(dask_scheduler):
         return list(dask_scheduler.tasks)
 
-    file = tmp_path / "scheduler.json"
-    common = ("--no-dashboard", "--host", "127.0.0.1", "--scheduler-file", str(file))
-    with ExitStack() as stack:
-        log = stack.enter_context((tmp_path / "worker.log").open("w"))
-        scheduler, worker = (
-            stack.enter_context(server(words, tmp_path, log))
-            for words in (("scheduler", *common, "--port", "0"), ("worker", *common, "--no-nanny", "--nthreads", "1"))
-        )
-        while not file.exists() or not file.read_text("utf-8"):
-            assert scheduler.poll() is None
-            time.sleep(0.05)
-        address = json.loads(file.read_text("utf-8"))["address"]
+    with (
+        (tmp_path / "worker.log").open("w") as log,
+        cluster(tmp_path, 1, log) as ((scheduler, worker), address),
+    ):
         process = start("--scheduler", address, engine="dask", clearances=60, radii=30)
         wait_for_blocks(process, tmp_path / "s.zarr", 2)
         ended = scheduler if end == "scheduler killed" else process
