@@ -10,43 +10,36 @@ from ballsocket.evidence.pack import gather_evidence
 from ballsocket.evidence.question import read_question
 from ballsocket.reports.evidence_page import evidence_page
 
-QUESTION_TEXT = """
+CLEARANCE = 'clearance = ["0.05 mm", "0.15 mm"]'
+FORCE = 'force = ["2 kN", "4 kN"]'
+YOUNG = 'liner_young = "750 +- 75 MPa"'
+QUESTION_TEXT = f"""
 question = "May it be?"
 context_of_use = "A test."
 joint = "hip-36"
-
 [risk]
 influence = "low"
 consequence = "high"
-
 [required]
 accuracy = "5 %"
 limits = ["max_pressure <= 15 MPa", "edge_distance >= 1 mm"]
-
 [matrix]
-clearance = ["0.05 mm", "0.15 mm"]
-force = ["2 kN", "4 kN"]
-
+{CLEARANCE}
+{FORCE}
 [tolerances]
-liner_young = "750 +- 75 MPa"
-
+{YOUNG}
 [friction]
 coefficient = 0.06
 """
 
 
-def question_text(*replacements):
-    """Return the text of the question with parts of it replaced."""
+def question_of(folder, *replacements):
+    """Write the question with parts of it replaced, and read it."""
     text = QUESTION_TEXT
     for old, new in replacements:
         assert old in text, old
         text = text.replace(old, new)
-    return text
-
-
-def question_of(folder, *replacements):
-    """Write the question with parts of it replaced, and read it."""
-    (folder / "asked.toml").write_text(question_text(*replacements), encoding="utf-8")
+    (folder / "asked.toml").write_text(text, encoding="utf-8")
     return read_question(folder / "asked.toml")
 
 

@@ -6,16 +6,8 @@ import numpy as np
 import pytest
 
 from ballsocket import Exact
-from ballsocket.evidence.comparators import (
-    CLAIMS,
-    PUBLISHED,
-    SIMILARITY,
-    applicability,
-    claim,
-    question_ranges,
-    range_text,
-    similarity_ranges,
-)
+from ballsocket.evidence import comparators
+from ballsocket.evidence.comparators import CLAIMS, PUBLISHED, SIMILARITY, applicability, claim, similarity_ranges
 from ballsocket.problem import Joint, Layer, Material
 from ballsocket.problem.presets import ALUMINA, COCR, UHMWPE, joints
 
@@ -30,9 +22,7 @@ def published():
 
 def test_comparators_state_the_read_part_the_inputs_and_the_assumptions(published):
     for name, comparator in published.items():
-        assert comparator.read
-        assert comparator.inputs
-        assert comparator.published
+        assert all((comparator.read, comparator.inputs, comparator.published))
         assert bool(comparator.assumed) == bool(comparator.reaches)  # without assumptions no joint of ours is computed
         assert all(low <= high for low, high in comparator.ours.values())
         summary = comparator.summary()
@@ -65,23 +55,18 @@ def test_similar_joints_have_equal_similarity_numbers_and_half_angles():
     large = Joint(ball_radius=28.0, clearance=0.2, liner_thickness=12.0, liner=liner, ball=ball)
     numbers, scaled = similarity_ranges([(small, 2000.0)]), similarity_ranges([(large, 24000.0)])
     assert all(numbers[name] == pytest.approx(scaled[name]) for name in SIMILARITY)
-    assert Exact().press(small, force=2000.0).half_angle == pytest.approx(
-        Exact().press(large, force=24000.0).half_angle
-    )
+    half_angle = Exact().press(large, force=24000.0).half_angle
+    assert Exact().press(small, force=2000.0).half_angle == pytest.approx(half_angle)
 
 
 def test_comparators_apply_by_the_range_of_their_joints(published):
     assert applicability(published["durom"].reaches, NEEDED, tilted=False)["verdict"] == "does not apply"
     assert applicability(published["anderson"].reaches, NEEDED, tilted=False)["verdict"] == "does not apply"
     around = {name: (0.9 * low, 1.1 * high) for name, (low, high) in NEEDED.items()}
-    assert applicability(around, NEEDED, tilted=False) == {
-        "verdict": "applies",
-        "where": dict.fromkeys(SIMILARITY, "within"),
-        "text": "applies",
-    }
-    assert applicability(around, NEEDED, tilted=True)["text"] == (
-        "applies in part: a tilted load against one along the axis"
-    )
+    where = dict.fromkeys(SIMILARITY, "within")
+    assert applicability(around, NEEDED, tilted=False) == {"verdict": "applies", "where": where, "text": "applies"}
+    tilted = applicability(around, NEEDED, tilted=True)["text"]
+    assert tilted == "applies in part: a tilted load against one along the axis"
     thick = applicability({**around, "R1/L": (8.0, 9.0)}, NEEDED, tilted=False)
     assert thick["where"]["R1/L"] == "outside"
     assert thick["text"] == "applies in part: R1/L 3.6 against 8 to 9"
@@ -135,18 +120,14 @@ def test_half_of_the_numbers_outside_still_applies_in_part():
     stiff = {"E/E of the ball": (0.0, 0.0), **needed}
     soft = {**stiff, "E/E of the ball": (0.5, 0.5)}
     assert applicability(soft, stiff, tilted=False)["verdict"] == "does not apply"
-
-
-def test_ranges_are_written_with_three_digits():
-    assert range_text((0.12345, 0.12345)) == "0.123"
-    assert range_text((1.0, 2.5)) == "1 to 2.5"
+    assert (comparators.range_text((0.12345, 0.12345)), comparators.range_text((1.0, 2.5))) == ("0.123", "1 to 2.5")
 
 
 def test_ranges_of_a_question_include_its_tolerances(pack):
-    question, record, _ = pack
     from ballsocket.evidence.matrix import Row
 
-    ranges = question_ranges(question, [Row.of(row) for row in record["matrix"]])
+    question, record, _ = pack
+    ranges = comparators.question_ranges(question, [Row.of(row) for row in record["matrix"]])
     assert ranges["c/R1"] == pytest.approx((0.05 / 17.9, 0.15 / 17.9), rel=0.02)
     low, high = ranges["F/(E R1²)"]
     radius = question.file.joint.ball_radius
@@ -161,17 +142,17 @@ def ends(values):
 def test_resurfacing_has_the_published_pressure_and_a_smaller_area(published):
     """Wall 3.5 to 4.5 mm of cobalt-chromium on bone of 0.3 to 1 GPa, head 50 mm, bore 50.145 mm, 3200 N."""
     shell = Joint(ball_radius=25.0, clearance=0.0725, liner_thickness=4.0, liner=COCR, ball=COCR)
-    contacts = [
-        Exact().press(
-            shell.replace(liner_thickness=wall, backing=(Layer(thickness=math.inf, material=bone),)), force=3200
-        )
-        for wall in (3.5, 4.0, 4.5)
-        for bone in (Material(young=300.0, poisson=0.3), Material(young=1000.0, poisson=0.3))
-    ]
+    bones = [Layer(thickness=math.inf, material=Material(young=young, poisson=0.3)) for young in (300.0, 1000.0)]
+    joints = [shell.replace(liner_thickness=wall, backing=(bone,)) for wall in (3.5, 4.0, 4.5) for bone in bones]
+    contacts = [Exact().press(joint, force=3200) for joint in joints]
     durom = published["durom"]
-    for quantity, title in (("max_pressure", "largest pressure, MPa"), ("pole_pressure", "pole pressure, MPa")):
+    titles = {
+        "max_pressure": "largest pressure, MPa",
+        "pole_pressure": "pole pressure, MPa",
+        "area": "contact area, mm²",
+    }
+    for quantity, title in titles.items():
         assert durom.ours[title] == ends([float(getattr(contact, quantity)) for contact in contacts])
-    assert durom.ours["contact area, mm²"] == ends([float(contact.area) for contact in contacts])
     assert_reaches(durom, COCR, 3200.0, radii=(25.0, 25.0), clearances=(0.0725, 0.0725), walls=(3.5, 4.5))
     low, high = durom.ours["largest pressure, MPa"]
     assert low < 22 < high

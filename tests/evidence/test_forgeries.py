@@ -15,22 +15,10 @@ import pytest
 
 pytest.importorskip("xarray", reason="the extra for studies is not installed")
 from ballsocket.core.executors import Serial
-from ballsocket.evidence import comparison
+from ballsocket.evidence import comparison, folder
 from ballsocket.evidence.comparison import compare
 from ballsocket.evidence.credibility import assess
-from ballsocket.evidence.folder import (
-    PAGE,
-    QUESTION,
-    RECORD,
-    SIGNATURE,
-    SUMS,
-    digest,
-    digest_of,
-    record_bytes,
-    sign_pack,
-    signature_of,
-    sums_bytes,
-)
+from ballsocket.evidence.folder import PAGE, QUESTION, RECORD, SIGNATURE, SUMS, digest_of, sign_pack, signature_of
 
 from ..places import symlink_or_skip
 from .small_pack import page
@@ -52,7 +40,7 @@ def record_of(out):
 def seal(out):
     """Rewrite the checksums."""
     names = [name for name in (QUESTION, RECORD, PAGE, "addendum.html") if (out / name).exists()]
-    (out / SUMS).write_bytes(sums_bytes({name: (out / name).read_bytes() for name in names}))
+    (out / SUMS).write_bytes(folder.sums_bytes({name: (out / name).read_bytes() for name in names}))
 
 
 def plain_page(record, digest):
@@ -65,10 +53,9 @@ def plain_page(record, digest):
 
 def redraw(out, record):
     """Write a record and its page."""
-    (out / RECORD).write_bytes(record_bytes(record))
-    (out / PAGE).write_text(
-        plain_page(record, digest({n: (out / n).read_bytes() for n in (QUESTION, RECORD)})), "utf-8"
-    )
+    (out / RECORD).write_bytes(folder.record_bytes(record))
+    sums = folder.digest({name: (out / name).read_bytes() for name in (QUESTION, RECORD)})
+    (out / PAGE).write_text(plain_page(record, sums), "utf-8")
 
 
 def replace_bytes(name, change):
@@ -107,22 +94,12 @@ def updated(*path, **entries):
     return in_record(change)
 
 
-swap_figure = replace_bytes(
-    PAGE, lambda text: FIGURE.sub(b64encode(b"<svg>All limits kept, 3 MPa</svg>"), text, count=1)
-)
-
-
-def figure_of_another_pack(out):
-    record = record_of(out)
-    for row in record["matrix"]:
-        row["numbers"]["max_pressure"] *= 0.5
-    theirs = FIGURE.findall(plain_page(record, digest_of(out)).encode())
-    ours = FIGURE.findall((out / PAGE).read_bytes())
-    in_page(ours[1], theirs[1])(out)
+SWAPPED = b64encode(b"<svg>All limits kept, 3 MPa</svg>")
+swap_figure = replace_bytes(PAGE, lambda text: FIGURE.sub(SWAPPED, text, count=1))
 
 
 def change_a_letter_of_a_figure(out):
-    (figure, *_) = FIGURE.findall((out / PAGE).read_bytes())
+    (_, figure) = FIGURE.findall((out / PAGE).read_bytes())
     in_page(figure, b64encode(b64decode(figure).replace(b"#000000", b"#000001", 1)))(out)
 
 
@@ -137,7 +114,7 @@ def add(name):
 
 
 def of_another_version(out):
-    (out / RECORD).write_bytes(record_bytes({**record_of(out), "version": "1.0.0+deadbeef"}))
+    (out / RECORD).write_bytes(folder.record_bytes({**record_of(out), "version": "1.0.0+deadbeef"}))
     in_page(b"not kept", b"kept")(out)
 
 
@@ -171,12 +148,12 @@ def without_gaps(record):
 
 HIDDEN = b"data:image/><style>main,body>*{display:none}</style><h1 style=display:block>All limits are kept</h1>"
 STYLE = "</p><style>body>*{display:none}</style><p>\u200bAll limits are kept"
+DIGEST_DIFFERS = "the page differs from the page made from evidence.json"
 NOT_CANONICAL = "evidence.json: differs from the canonical form"
 
 FORGERIES = {
     "a figure that was swapped": (swap_figure, "figure 1 of the page differs from the figure made from evidence.json"),
-    "a figure of another pack": (figure_of_another_pack, "figure 2 of the page differs from the figure"),
-    "one colour of a figure": (change_a_letter_of_a_figure, "figure 1 of the page differs from the figure"),
+    "one colour of a figure": (change_a_letter_of_a_figure, "figure 2 of the page differs from the figure"),
     "a page that hides itself": (in_page(b"<html lang=", b"<html lang=" + HIDDEN), "instead of"),
     "a verdict on the page": (in_page(b"not kept", b"kept"), "instead of"),
     "text of no width on the page": (in_page(b"not kept", "not\u200b kept".encode()), "instead of"),
@@ -187,7 +164,7 @@ FORGERIES = {
     "another version": (of_another_version, r"version: cannot be verified by this version of ballsocket, .*deadbeef"),
     "another library of figures": (
         drawn_by_another_library,
-        r"cannot be verified with matplotlib .*: the pack was made with matplotlib 3.4.1",
+        "verified with matplotlib .*: .* made with matplotlib 3.4.1",
     ),
     "an added file": (add("addendum.html"), "addendum.html: does not belong to the pack"),
     "a name in capitals": (add("EVIDENCE.html"), "EVIDENCE.html: does not belong to the pack"),
@@ -200,10 +177,7 @@ FORGERIES = {
     "a verdict in both": (in_record(verdict), r"limits\[0\].verdict: written 'kept', now 'not kept'"),
     "a verdict in both, judged again": (in_record(verdict, True), r"limits\[0\].verdict: written 'kept'"),
     "styles in the words": (updated(context_of_use=STYLE), "context_of_use: written '</p><style>"),
-    "a level of a factor": (
-        updated("credibility", 7, reached="d", adequate=True),
-        r"credibility\[7\].reached: written 'd', now 'a'",
-    ),
+    "a level of a factor": (updated("credibility", 7, reached="d"), r"credibility\[7\].reached: written 'd', now 'a'"),
     "gaps that were left out": (in_record(without_gaps), "requirements: written"),
     "an empty word more": (updated(approved=None), "approved: written None, now 'absent'"),
     "a word less": (in_record(lambda record: record.pop("recentred")), "recentred: written 'absent'"),
@@ -212,20 +186,14 @@ FORGERIES = {
     "words behind the date": (updated(made_on="2026-01-01, approved"), "made_on: must be"),
     "a date to come": (
         updated(made_on=str(date.today() + timedelta(days=9))),
-        "made_on: must be a date that is not in the future",
+        "made_on: must be a date that is not in",
     ),
-    "words among the libraries": (
-        updated("made_with", numpy="2.4.6 and approved by the authority"),
-        "made_with: holds more than the names and versions",
-    ),
-    "another library": (updated("made_with", approved="yes"), "made_with: holds more"),
+    "words among the libraries": (updated("made_with", numpy="2.4.6 and approved"), "made_with: holds more than"),
+    "another library": (updated("made_with", approved="yes"), "made_with: holds more than the names and versions"),
     "a key twice": (twice_in_the_json, NOT_CANONICAL),
     "line ends of the record": (replace_bytes(RECORD, lambda text: text.replace(b"\n", b"\r\n")), NOT_CANONICAL),
     "bytes after the record": (replace_bytes(RECORD, lambda text: text + b" \n"), NOT_CANONICAL),
-    "a comment in the question": (
-        replace_bytes(QUESTION, lambda text: text + b"# approved\n"),
-        "the page differs from the page made from evidence.json",  # it shows the digest
-    ),
+    "a comment in the question": (replace_bytes(QUESTION, lambda text: text + b"# approved\n"), DIGEST_DIFFERS),
 }
 
 
@@ -241,18 +209,14 @@ def test_a_forged_pack_is_reported_with_the_reason(name, out):
     assert all(difference.summary() for difference in differences)
 
 
-def test_a_record_without_a_possible_page_is_reported(out):
+def test_an_unchanged_pack_passes_and_a_record_without_a_possible_page_does_not(out):
+    result = compare(out, page)
+    assert (result.differences, result.digest) == ((), digest_of(out))
+    assert result.digest in (out / PAGE).read_text("utf-8")
     record = record_of(out)
     del record["recentred"]
-    (out / RECORD).write_bytes(record_bytes(record))
+    (out / RECORD).write_bytes(folder.record_bytes(record))
     assert any("no page can be made of it" in str(difference) for difference in compare(out, page).differences)
-
-
-def test_an_unchanged_pack_passes(out):
-    result = compare(out, page)
-    assert result.differences == ()
-    assert result.digest == digest_of(out)
-    assert result.digest in (out / PAGE).read_text("utf-8")
 
 
 def test_only_the_canonical_form_of_checksums_passes(out):
@@ -265,13 +229,8 @@ def test_only_the_canonical_form_of_checksums_passes(out):
 
 
 @pytest.mark.parametrize(
-    ("factor", "added", "equal"),
-    [
-        (1 + 9e-10, 0.0, True),
-        (1 + 1.1e-9, 0.0, False),
-        (1.0, 9e-17, True),  # a thousandth of the allowed error is 1e-16
-        (1.0, 1.1e-16, False),
-    ],
+    ("factor", "added", "equal"),  # a thousandth of the allowed error is 1e-16
+    [(1 + 9e-10, 0.0, True), (1 + 1.1e-9, 0.0, False), (1.0, 9e-17, True), (1.0, 1.1e-16, False)],
 )
 def test_numbers_of_another_machine_may_differ_within_a_tolerance(out, factor, added, equal):
     def change(record):
@@ -315,12 +274,14 @@ def public(key):
     return import_module("ballsocket.evidence.signature").public_key_of(key)
 
 
-def test_a_signature_is_verified_by_its_key(out, keys):
+def test_a_signature_is_verified_by_its_key_and_no_other(out, keys):
     sign_pack(out, keys[0])
     fingerprint = public(keys[0]).fingerprint
     assert signature_of(out, public(keys[0])).summary() == {"fingerprint": fingerprint, "verified": True}
     assert signature_of(out).expected is None
     assert compare(out, page).differences == ()
+    with pytest.raises(ValueError, match="the signature is by another key, SHA256:.* not by SHA256:"):
+        signature_of(out, public(keys[1]))
 
 
 def of_another_pack(out):
@@ -345,12 +306,11 @@ def in_signature(change):
     ("forge", "sentence"),
     [
         (replace_bytes(SIGNATURE, lambda text: text[:-60]), "the signature is damaged: its file is cut off"),
-        (replace_bytes(SIGNATURE, lambda text: b""), "the signature is damaged"),
         (replace_bytes(SIGNATURE, lambda text: text.replace(b"A", b"B")), "the signature is"),
         (in_signature(lambda blob: blob + b"\0"), "bytes follow its end"),
         (
             in_signature(lambda blob: blob.replace(b"ballsocket", b"softballet")),
-            "is for the purpose b'softballet', not for 'ballsocket'",
+            "is for the purpose b'softballet', not",
         ),
         (of_another_pack, "is of other checksums: the pack was changed after it was signed"),
         (replace_bytes(SUMS, lambda text: text + b"\n"), "is of other checksums"),
@@ -378,12 +338,6 @@ def test_a_check_signs_and_verifies_only_the_compared_checksums(out, keys, monke
         signature_of(out, public(keys[0]))
     command._check(out, Serial(), False, None, public(keys[0]))
     assert "signature verified: by SHA256:" in capsys.readouterr().out
-
-
-def test_a_signature_by_another_key_is_refused(out, keys):
-    sign_pack(out, keys[1])
-    with pytest.raises(ValueError, match="the signature is by another key, SHA256:.* not by SHA256:"):
-        signature_of(out, public(keys[0]))
 
 
 @pytest.mark.skipif(shutil.which("ssh-keygen") is None, reason="ssh-keygen is not installed")

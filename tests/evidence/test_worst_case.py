@@ -15,7 +15,7 @@ from ballsocket.evidence.worst_case import compare_methods, largest_deviation, p
 from ballsocket.studies.sensitivity import sensitivity
 
 from ..places import EXAMPLES
-from .small_pack import question_of
+from .small_pack import CLEARANCE, FORCE, YOUNG, question_of
 
 CASE = {"clearance": 0.15, "force": 4000.0}
 JOINT = bs.joints["hip-36"].replace(clearance=0.15)
@@ -27,10 +27,8 @@ def method(numbers, valid=True, aligned=True):
 
 def test_largest_deviation_is_relative_to_the_first_method():
     first = method({"a": 2.0, "b": 4.0, "c": 0.0})
-    assert largest_deviation([first, method({"a": 2.2, "c": 1.0}), method({"a": 1.7, "b": 4.0})]) == {
-        "a": pytest.approx(0.15),
-        "b": 0.0,
-    }
+    others = [method({"a": 2.2, "c": 1.0}), method({"a": 1.7, "b": 4.0})]
+    assert largest_deviation([first, *others]) == {"a": pytest.approx(0.15), "b": 0.0}
     assert largest_deviation([first]) == {}
     assert largest_deviation([first, method({"a": 9.0}, valid=False), method({"b": 9.0}, aligned=False)]) == {}
 
@@ -43,26 +41,17 @@ def test_an_aligned_case_is_solved_by_three_methods(pack):
     assert summary["numbers"]["half_angle_deg"] == pytest.approx(np.degrees(exact.half_angle))
     assert summary["numbers"]["area"] == pytest.approx(exact.area)
     assert set(summary["errors"]) == {"force", "half_angle_deg", "indentation", "max_pressure"}
-    assert summary["valid"]
-    assert summary["aligned"]
+    assert (summary["valid"], summary["aligned"]) == (True, True)
 
 
 def test_a_tilted_case_is_also_solved_on_rings_of_half_the_width(tmp_path, monkeypatch):
     wide = property(lambda question: bs.Sphere(cup=question.file.cup, ring_width=np.radians(4.0)))
     monkeypatch.setattr(Question, "model", wide)  # for speed
-    question = question_of(
-        tmp_path,
-        ('clearance = ["0.05 mm", "0.15 mm"]', 'inclination = "40 deg"'),
-        ('force = ["2 kN", "4 kN"]', 'force = "4 kN"'),
-    )
+    question = question_of(tmp_path, (CLEARANCE, 'inclination = "40 deg"'), (FORCE, 'force = "4 kN"'))
     methods = compare_methods(question, {"inclination": np.radians(40.0), "force": 4000.0})
-    assert [(m.name, m.aligned) for m in methods] == [
-        ("sphere", False),
-        ("sphere, rings of half the width", False),
-        ("exact (along the axis)", True),
-        ("tabulated (along the axis)", True),
-        ("sphere (along the axis)", True),
-    ]
+    assert [m.name for m in methods[:2]] == ["sphere", "sphere, rings of half the width"]
+    assert [m.name for m in methods[2:]] == [f"{name} (along the axis)" for name in ("exact", "tabulated", "sphere")]
+    assert [m.aligned for m in methods] == [False] * 2 + [True] * 3
     deviation = largest_deviation([m.summary() for m in methods])
     assert 0 < deviation["max_pressure"] < 0.02
     assert methods[0].numbers["max_pressure"] != methods[1].numbers["max_pressure"]
@@ -75,10 +64,8 @@ def test_a_band_has_the_percentiles_of_the_tolerance_and_the_sobol_indices_of_th
     result = propagate_tolerances(pack[0], CASE)
     band = result["bands"]["max_pressure"]
     spread = pack[0].tolerances["liner_young"].frozen
-    ends = [
-        bs.Exact().press(JOINT.replace(liner=bs.Material(young=young, poisson=0.4)), force=4000.0).max_pressure
-        for young in spread.ppf([0.025, 0.5, 0.975])
-    ]
+    liners = [bs.Material(young=young, poisson=0.4) for young in spread.ppf([0.025, 0.5, 0.975])]
+    ends = [bs.Exact().press(JOINT.replace(liner=liner), force=4000.0).max_pressure for liner in liners]
     assert [band["low"], band["median"], band["high"]] == pytest.approx(sorted(map(float, ends)), rel=2e-3)
     assert (result["samples"], result["seed"], band["answered"]) == (1024, 1, 1024)
     assert (result["model"], result["aligned"]) == ("tabulated", False)
@@ -94,16 +81,11 @@ def test_bands_outside_the_tables_are_solved_exactly(tmp_path):
     (tmp_path / "metal.toml").write_bytes((EXAMPLES / "metal_backed_hip.toml").read_bytes())
     question = question_of(tmp_path, ("hip-36", "metal.toml"))
     result = propagate_tolerances(question, CASE)
-    assert (result["model"], result["samples"]) == ("exact", 64)
-    assert result["bands"]["max_pressure"]["answered"] == 64
+    assert (result["model"], result["samples"], result["bands"]["max_pressure"]["answered"]) == ("exact", 64, 64)
 
 
 def test_notes_state_values_in_the_units_of_files(tmp_path):
-    question = question_of(
-        tmp_path,
-        ('force = ["2 kN", "4 kN"]', 'half_angle = "50 deg"'),
-        ('liner_young = "750 +- 75 MPa"', 'half_angle = "40 +- 1 deg"'),
-    )
+    question = question_of(tmp_path, (FORCE, 'half_angle = "50 deg"'), (YOUNG, 'half_angle = "40 +- 1 deg"'))
     (note,) = propagate_tolerances(question, {"clearance": 0.1, "half_angle": np.radians(50.0)})["notes"]
     assert note.startswith("half angle 50 ° of the worst case lies outside its tolerance of 39 to 41 °: ")
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.core.executors.dask import Distributed
 from ballsocket.studies.derivatives import finite_differences, off_axis_uncertainty
 from ballsocket.studies.design import Method, Span, sample, table
 from ballsocket.studies.distributions import Normal, Rectangular, copula_matrix, tolerance
@@ -104,7 +105,8 @@ def off_axis(force=2000.0, /, **spread):
             lambda: bs.calibrate(HIP.replace(liner_thickness=np.array([3.0, 5.0])), form=bs.as_polynomial),
             "liner_thickness has 2 different values, but Eq. .18. has three constants",
         ),
-        # other kinds
+        # engines and other kinds
+        (lambda: Distributed(address="tcp://127.0.0.1:1", workers=2), "give an address or a number of workers"),
         (lambda: press(joint="hip-28", force=1.0), "joint must be a Joint, got 'hip-28'"),
         (lambda: press(design=3000.0), r"design must be a Design, .* got 3000\.0; loads have names"),
     ],

@@ -221,17 +221,6 @@ def test_engines_agree_bit_for_bit(tmp_path, monkeypatch):
 
 
 @pytest.mark.long
-def test_a_scheduler_is_asked_by_its_address():
-    from distributed import LocalCluster
-
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0", host="127.0.0.1") as cluster:
-        found = bs.study(bs.HessForsbach(), HIP, engine=Distributed(address=cluster.scheduler_address), **AXES)
-    assert same(found, bs.study(bs.HessForsbach(), HIP, **AXES))
-    with pytest.raises(ValueError, match="give an address or a number of workers"):
-        Distributed(address="tcp://127.0.0.1:1", workers=2)
-
-
-@pytest.mark.long
 def test_a_study_file_is_the_same_through_a_scheduler_and_workers_of_the_shell(tmp_path):
     """`dask scheduler` and two of `dask worker`, which share the blocks: the CSV is that of one process."""
     from distributed import Client
