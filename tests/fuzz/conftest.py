@@ -1,8 +1,5 @@
 """Fixtures of the tests with made-up input."""
 
-import shutil
-from contextlib import contextmanager
-from itertools import count
 from unittest import mock
 
 import pytest
@@ -17,20 +14,3 @@ def built_once():
     root.load_commands()
     with mock.patch.object(root, "app", get_command(root.app)):
         yield
-
-
-@pytest.fixture
-def fresh(tmp_path):
-    """Return a factory of folders, each removed after its use."""
-    number = count()
-
-    @contextmanager
-    def folder():
-        path = tmp_path / str(next(number))
-        path.mkdir()
-        try:
-            yield path
-        finally:
-            shutil.rmtree(path)
-
-    return folder

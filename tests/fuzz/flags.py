@@ -14,60 +14,38 @@ _QUICK = ("tabulated", "hess-forsbach", "vessel", "bartel", "hertz", "refined")
 _model = mostly(st.sampled_from(_QUICK), words.model.filter(lambda name: name.lower() != "fem"))
 _count = mostly(st.sampled_from(("2", "3", "5", "8")), st.sampled_from(("0", "-1", "1", "1e3", "x", "9" * 25)))
 _size = mostly(st.sampled_from(("1", "2 mm")), st.sampled_from(("0", "-1", "1e-9", "x", "99 mm", "inf")))
-_ENDS = {"ball_radius": "8..20", "clearance": "0.02..0.4 mm", "liner_thickness": "3..12", "liner_young": "0.3..3 GPa"}
-_range = mostly(
-    st.sampled_from(tuple(_ENDS)).map(lambda name: f"{name}={_ENDS[name]}"),
-    st.builds("{}={}{}{}".format, mistyped(PARAMETERS), number, st.sampled_from(("..", ".", "-", "+-")), quantity),
-)
-_limit = st.builds(
-    "{}{}{}".format,
-    mistyped(LIMITED),
-    st.sampled_from(("<=", ">=", "≤", "<", "=", "")),
-    mostly(st.sampled_from(("20", "26 mm", "10 MPa")), quantity),
-)
-_spread = st.builds(
-    "{}={}{}{}".format,
-    mistyped(PARAMETERS),
-    words.clearance,
-    st.sampled_from(("+-", "..", "±", "+/-", "")),
-    mostly(words.clearance, quantity),
-)
-_OWN = {
-    "--ball-radius": words.length,
-    "--clearance": words.clearance,
-    "--liner-thickness": words.length,
-    "--young": words.young,
-    "--poisson": words.poisson,
-}
-_OTHERS = {
-    "--head-diameter": words.length,
-    "--diametral-clearance": words.clearance,
-    "--outer-radius": words.length,
-    "--outer-diameter": words.length,
-    "--liner": words.material,
-    "--ball-young": words.young,
-    "--ball-poisson": words.poisson,
-    "--ball": words.material,
-    "--arc-of-cover": words.half_angle,
-    "--chamfer": words.clearance,
-    "--interface": mistyped(("bonded",)),
-}
+_signs = st.sampled_from(("..", "+-", "±", "+/-", ".", "-", ""))
+_compared = st.sampled_from(("<=", ">=", "≤", "<", "=", ""))
+_ENDS = ("ball_radius=8..20", "clearance=0.02..0.4 mm", "liner_thickness=3..12", "liner_young=0.3..3 GPa")
+_range = mostly(st.sampled_from(_ENDS), st.builds("{}={}{}{}".format, mistyped(PARAMETERS), number, _signs, quantity))
+_limited = mostly(st.sampled_from(("20", "26 mm", "10 MPa")), quantity)
+_limit = st.builds("{}{}{}".format, mistyped(LIMITED), _compared, _limited)
+_scatter = mostly(words.clearance, quantity)
+_spread = st.builds("{}={}{}{}".format, mistyped(PARAMETERS), words.clearance, _signs, _scatter)
+_correlation = st.builds("{}, {} = {}".format, mistyped(PARAMETERS), mistyped(PARAMETERS), quantity)
+_OWN = dict.fromkeys(("--ball-radius", "--liner-thickness"), words.length)
+_OWN |= {"--clearance": words.clearance, "--young": words.young, "--poisson": words.poisson}
+_OTHERS = dict.fromkeys(("--head-diameter", "--outer-radius", "--outer-diameter"), words.length)
+_OTHERS |= dict.fromkeys(("--diametral-clearance", "--chamfer"), words.clearance)
+_OTHERS |= dict.fromkeys(("--liner", "--ball"), words.material)
+_OTHERS |= {"--ball-young": words.young, "--ball-poisson": words.poisson, "--arc-of-cover": words.half_angle}
+_OTHERS |= {"--interface": mistyped(("bonded",))}
 _LOADS = {"--force": words.force, "--indentation": words.indentation, "--half-angle": words.half_angle}
-_STUDY = {"--force": words.force, "--indentation": words.indentation, "--limit": _limit}
+_STUDY = {"--force": words.force, "--indentation": words.indentation, "--limit": _limit, "--points": _count}
+_SPREADS = {"--spread": _spread, "--correlation": _correlation, "--of": mistyped(CONTACT)}
+_FORMS = mistyped(("constant", "polynomial"))
 _FLAGS = {
     "press": {**_OWN, **_OTHERS, **_LOADS},
-    "map": {**_STUDY, "--x": _range, "--y": _range, "--points": _count},
-    "optimise": {**_STUDY, "--vary": _range, "--minimise": mistyped(CONTACT), "--points": _count},
+    "map": {**_STUDY, "--x": _range, "--y": _range},
+    "optimise": {**_STUDY, "--vary": _range, "--minimise": mistyped(CONTACT)},
     "sensitivity": {
+        **_SPREADS,
         "--force": words.force,
-        "--spread": _spread,
         "--count": _count,
-        "--of": mistyped(CONTACT),
-        "--correlation": st.builds("{}, {} = {}".format, mistyped(PARAMETERS), mistyped(PARAMETERS), quantity),
         "--intervals": mistyped(("none", "bootstrap")),
     },
     "deck": {**_LOADS, "--steps": _count, "--scale": number, "--element-size": _size, "--element": odd_text},
-    "calibrate": {"--force": words.force, "--thickness": words.length, "--form": mistyped(("constant", "polynomial"))},
+    "calibrate": {"--force": words.force, "--thickness": words.length, "--form": _FORMS},
 }
 _ALWAYS = {
     "press": ("--force", "--model"),
@@ -78,8 +56,6 @@ _ALWAYS = {
     "calibrate": ("--force",),
 }
 _LAST = ([], [], [], ["--json"], ["--help"], ["--all"], ["--forse", "1"], ["--"], ["x" * 3000])
-OUT = "out"
-"""A folder to write into, below the one in which the commands run."""
 
 
 def _given(flags, names):
@@ -94,7 +70,7 @@ def _line(command):
     joint = mostly(st.sampled_from(tuple(bs.joints)), words.preset).map(lambda name: [name])
     if command == "press":
         joint |= _given(flags, _OWN)
-    out = st.just(["--out", OUT] if command == "deck" else [])
+    out = st.just(["--out", "out"] if command == "deck" else [])
     parts = (joint, _given(flags, _ALWAYS[command]), some, out, st.sampled_from(_LAST))
     return st.tuples(*parts).map(lambda each: [command, *(word for part in each for word in part)])
 

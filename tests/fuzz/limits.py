@@ -1,4 +1,4 @@
-"""Number of inputs, limits of time and memory for each, and the form of a refusal."""
+"""Number of inputs, limits of time and memory for each, the folder of an input, and the form of a refusal."""
 
 import os
 import signal
@@ -6,9 +6,12 @@ import sys
 import threading
 import time
 from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from hypothesis import HealthCheck, Phase, settings
 
+from ..cli.command import run
 from ..extent import either
 
 try:
@@ -22,9 +25,7 @@ MAX_SECONDS = 5.0
 MAX_GROWTH = 1e9
 """Bytes by which the process may grow for one input."""
 
-_TIMEOUT = 60
 _KIB = 1 if sys.platform == "darwin" else 1024
-_HAS_ALARM = hasattr(signal, "SIGALRM")
 _LONG = int(os.environ.get("BALLSOCKET_INPUTS", "50000")) // 100
 
 
@@ -46,34 +47,35 @@ def _peak_memory():
     return 0 if resource is None else resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _KIB
 
 
-@contextmanager
-def _ended_in_time():
-    """Interrupt an input after a minute, where the system has an alarm and the main thread runs the test."""
-    if not _HAS_ALARM or threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def end(number, frame):
-        raise InputTimeout
-
-    previous = signal.signal(signal.SIGALRM, end)
-    signal.alarm(_TIMEOUT)
-    try:
-        yield
-    finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, previous)
+def _end(number, frame):
+    raise InputTimeout
 
 
 @contextmanager
 def within_limits():
-    """Check the processor time and the memory of one input."""
+    """Check the processor time and the memory of one input; interrupt it after a minute where alarms are possible."""
     before, start = _peak_memory(), time.process_time()
-    with _ended_in_time():
+    alarm = hasattr(signal, "SIGALRM") and threading.current_thread() is threading.main_thread()
+    previous = signal.signal(signal.SIGALRM, _end) if alarm else None
+    try:
+        signal.alarm(60) if alarm else None
         yield
+    finally:
+        if alarm:
+            signal.alarm(0)
+            signal.signal(signal.SIGALRM, previous)
     seconds, growth = time.process_time() - start, _peak_memory() - before
     assert seconds <= MAX_SECONDS, f"{seconds:.3g} s"
     assert growth <= MAX_GROWTH, f"{growth / 1e9:.3g} GB"
+
+
+@contextmanager
+def folder_with(files):
+    """Make a folder with files of these bytes for one input."""
+    with TemporaryDirectory() as name:
+        for file, raw in files.items():
+            (Path(name) / file).write_bytes(raw)
+        yield Path(name)
 
 
 def check_sentence(text):
@@ -93,3 +95,9 @@ def check_run(run):
         assert run.stderr.startswith("ballsocket: ")
         assert run.stderr.endswith("\n")
         check_sentence(run.stderr[:-1])
+
+
+def check_command(files, *words):
+    """Run a command in a folder with files."""
+    with folder_with(files) as folder, within_limits():
+        check_run(run(*words, folder=folder))

@@ -28,16 +28,16 @@ from ballsocket.mcp.call import command_line
 from ..cli.command import run
 from ..places import EXAMPLES
 from . import damage
-from .limits import check_run, check_sentence, inputs, within_limits
+from .limits import check_command, check_run, check_sentence, folder_with, inputs, within_limits
 from .words import mistyped, number, odd_text, quantity
 
 
 @contextmanager
-def refused_in_a_sentence():
-    """Check that errors are those that the command line prints in one sentence."""
-    with within_limits(), numpy.errstate(all="ignore"):
+def refused_in_a_sentence(files=None):
+    """Yield a folder with files; check that errors are those that the command line prints in one sentence."""
+    with folder_with(files or {}) as folder, within_limits(), numpy.errstate(all="ignore"):
         try:
-            yield
+            yield folder
             event("read")
         except OSError as error:
             check_sentence(root._one_line(f"{error.filename}: {error.strerror}"))
@@ -111,49 +111,38 @@ def test_quantities(text, kind):
 
 @inputs(6)
 @given(raw=damage.table_of(CSV, ORTHOLOAD, STO), side=st.sampled_from((None, 700.0)))
-def test_cycle_tables(fresh, raw, side):
-    with fresh() as folder, refused_in_a_sentence():
-        (folder / "cycle.csv").write_bytes(raw)
+def test_cycle_tables(raw, side):
+    with refused_in_a_sentence({"cycle.csv": raw}) as folder:
         cycle = read_cycle(folder / "cycle.csv", n_steps=12, body_weight=side, options=TableOptions(closing=0.5))
         assert numpy.isfinite(numpy.asarray(cycle.force(PHASES))).all()
 
 
 @inputs(5)
 @given(raw=damage.file_of(*HIPS), table=damage.table_of(CSV))
-def test_hip_files(fresh, raw, table):
-    with fresh() as folder, refused_in_a_sentence():
-        (folder / "hip.toml").write_bytes(raw)
-        (folder / "cycle.csv").write_bytes(table)
+def test_hip_files(raw, table):
+    with refused_in_a_sentence({"hip.toml": raw, "cycle.csv": table}) as folder:
         read_hip(folder / "hip.toml")
 
 
 @inputs(1)
 @given(raw=damage.file_of(*HIPS[:3]), table=damage.table_of(CSV))
-def test_hips_in_use(fresh, raw, table):
-    with fresh() as folder, within_limits():
-        (folder / "hip.toml").write_bytes(raw)
-        (folder / "cycle.csv").write_bytes(table)
-        check_run(run("hip", "hip.toml", "--json", folder=folder))
+def test_hips_in_use(raw, table):
+    check_command({"hip.toml": raw, "cycle.csv": table}, "hip", "hip.toml", "--json")
 
 
 @inputs(5)
 @given(raw=damage.file_of(*MEASURED), table=damage.table_of(*POINTS))
-def test_measurements(fresh, raw, table):
-    with fresh() as folder, refused_in_a_sentence():
-        (folder / "measured.toml").write_bytes(raw)
-        (folder / "points.csv").write_bytes(table)
-        (folder / "measured_areas.csv").write_bytes(table)
-        (folder / "measured_hip.toml").write_bytes((EXAMPLES / "measured_hip.toml").read_bytes())
+def test_measurements(raw, table):
+    files = {"measured.toml": raw, **dict.fromkeys(("points.csv", "measured_areas.csv"), table)}
+    files["measured_hip.toml"] = (EXAMPLES / "measured_hip.toml").read_bytes()
+    with refused_in_a_sentence(files) as folder:
         read_identify(folder / "measured.toml")
 
 
 @inputs(3)
 @given(raw=damage.file_of(*QUESTIONS), hip=damage.file_of(*HIPS[:2]))
-def test_questions_of_evidence(fresh, raw, hip):
-    with fresh() as folder, refused_in_a_sentence():
-        (folder / "question.toml").write_bytes(raw)
-        (folder / "hip_in_use.toml").write_bytes(hip)
-        (folder / "cycle.csv").write_bytes(CSV)
+def test_questions_of_evidence(raw, hip):
+    with refused_in_a_sentence({"question.toml": raw, "hip_in_use.toml": hip, "cycle.csv": CSV}) as folder:
         assert read_question(folder / "question.toml").files[0] == folder / "question.toml"
 
 
@@ -178,42 +167,33 @@ def _meshes():
 
 MESHES = _meshes()
 _wound = st.sampled_from((b"", b"\0", b"\xff\xff\xff\x7f", b"nan ", b"1e999 ", b"-", b"\n")) | st.binary(max_size=5)
-
-
 wounds = st.lists(st.tuples(st.integers(0, 20_000), st.integers(0, 8), _wound), max_size=3)
 
 
 @inputs(2)
 @given(kind=st.sampled_from(tuple(MESHES)), wounds=wounds, cut=st.integers(0, 4))
-def test_scans(fresh, kind, wounds, cut):
+def test_scans(kind, wounds, cut):
     pytest.importorskip("meshio")
-    with fresh() as folder, refused_in_a_sentence():
-        raw = reduce(lambda damaged, wound: damage.with_bytes(damaged, *wound), wounds, MESHES[kind])
-        (folder / f"bore.{kind}").write_bytes(raw[: len(raw) // cut] if cut > 1 else raw)
+    raw = reduce(lambda damaged, wound: damage.with_bytes(damaged, *wound), wounds, MESHES[kind])
+    with refused_in_a_sentence({f"bore.{kind}": raw[: len(raw) // cut] if cut > 1 else raw}) as folder:
         read_scan(folder / f"bore.{kind}")
 
 
-def _archive():
-    stream = io.BytesIO()
-    numpy.savez(stream, rings=numpy.arange(12.0).reshape(3, 4), count=3, identity="run")
-    return stream.getvalue()
-
-
-ARCHIVE = _archive()
+_STREAM = io.BytesIO()
+numpy.savez(_STREAM, rings=numpy.arange(12.0).reshape(3, 4), count=3, identity="run")
+ARCHIVE = _STREAM.getvalue()
 
 
 @inputs(5)
 @given(bits=st.lists(st.integers(0, 8 * len(ARCHIVE) - 1), max_size=2), wounds=wounds)
-def test_archives(fresh, bits, wounds):
+def test_archives(bits, wounds):
     """An archive that can be read has all members, with the numbers that were written."""
-    with fresh() as folder, refused_in_a_sentence():
-        raw = bytearray(ARCHIVE)
-        for bit in bits:
-            raw[bit // 8] ^= 1 << bit % 8
-        (folder / "kept.npz").write_bytes(damage.with_bytes(bytes(raw), *wounds[0]) if wounds else raw)
-        arrays = read_arrays(folder / "kept.npz")
-        if not wounds:
-            assert len(arrays) == 3
+    raw = bytearray(ARCHIVE)
+    for bit in bits:
+        raw[bit // 8] ^= 1 << bit % 8
+    damaged = damage.with_bytes(bytes(raw), *wounds[0]) if wounds else bytes(raw)
+    with refused_in_a_sentence({"kept.npz": damaged}) as folder:
+        assert len(read_arrays(folder / "kept.npz")) == 3 or wounds
 
 
 _argument = st.one_of(
@@ -231,17 +211,16 @@ _call = st.tuples(
 
 @inputs(3)
 @given(call=_call, runs=st.integers(0, 9))
-def test_calls_of_assistants(fresh, call, runs):
+def test_calls_of_assistants(call, runs):
     """A call is refused, or becomes a command that reads only files in its folder."""
     name, arguments, content = call
-    with fresh() as folder:
-        if content is not None:
-            arguments = {**arguments, "content": content.decode("utf-8", "replace")}
-        with refused_in_a_sentence():
-            words = command_line(name, arguments, folder, root.load_commands())
-            assert all(isinstance(word, str) for word in words)
-            assert not any(Path(word).is_absolute() or word.startswith("..") for word in words)
-            if runs or words[0] not in ("press", "models", "curve"):
-                return
-            with mock.patch.dict(os.environ, restriction_variables((folder, Path(os.environ["BALLSOCKET_CACHE"])))):
-                check_run(run(*words, folder=folder))
+    if content is not None:
+        arguments = {**arguments, "content": content.decode("utf-8", "replace")}
+    with refused_in_a_sentence() as folder:
+        words = command_line(name, arguments, folder, root.load_commands())
+        assert all(isinstance(word, str) for word in words)
+        assert not any(Path(word).is_absolute() or word.startswith("..") for word in words)
+        if runs or words[0] not in ("press", "models", "curve"):
+            return
+        with mock.patch.dict(os.environ, restriction_variables((folder, Path(os.environ["BALLSOCKET_CACHE"])))):
+            check_run(run(*words, folder=folder))

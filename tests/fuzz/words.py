@@ -22,23 +22,15 @@ ODD_TEXT = (
 )  # fmt: skip
 
 odd_text = st.sampled_from(ODD_TEXT) | st.text(max_size=12)
-number = (
-    st.sampled_from(ODD_NUMBERS)
-    | st.floats().map(repr)
-    | st.integers(-(10**30), 10**30).map(str)
-    | st.floats(0.01, 100.0).map(lambda value: f"{value:.4g}")
-)
+_integer = st.integers(-(10**30), 10**30).map(str)
+number = st.sampled_from(ODD_NUMBERS) | st.floats().map(repr) | _integer | st.floats(0.01, 100.0).map("{:.4g}".format)
 quantity = st.builds("{}{}{}".format, number, st.sampled_from(("", " ", "  ")), st.sampled_from(ODD_UNITS))
 
 
 def mistyped(names):
     """One of some names, whole or with letters lost, doubled or swapped."""
-    return st.one_of(
-        st.sampled_from(tuple(names)),
-        st.builds(_without, st.sampled_from(tuple(names)), st.integers(0, 30)),
-        st.builds(str.upper, st.sampled_from(tuple(names))),
-        odd_text,
-    )
+    name = st.sampled_from(tuple(names))
+    return st.one_of(name, st.builds(_without, name, st.integers(0, 30)), name.map(str.upper), odd_text)
 
 
 def _without(name, place):
@@ -59,13 +51,13 @@ def quoted(strategy):
     return strategy.map(toml)
 
 
-length = st.floats(0.5, 30.0).map(lambda value: f"{value:.3g}")
-clearance = st.floats(0.005, 1.0).map(lambda value: f"{value:.3g}")
-young = st.floats(10.0, 4e5).map(lambda value: f"{value:.3g}")
-poisson = st.floats(0.0, 0.499).map(lambda value: f"{value:.3g}")
-force = st.floats(1.0, 5000.0).map(lambda value: f"{value:.3g}")
-indentation = st.floats(0.001, 0.3).map(lambda value: f"{value:.3g}")
-half_angle = st.floats(1.0, 88.0).map(lambda value: f"{value:.3g}")
+def between(low, high):
+    return st.floats(low, high).map("{:.3g}".format)
+
+
+length, clearance = between(0.5, 30.0), between(0.005, 1.0)
+young, poisson = between(10.0, 4e5), between(0.0, 0.499)
+force, indentation, half_angle = between(1.0, 5000.0), between(0.001, 0.3), between(1.0, 88.0)
 LOADS = {"force": force, "indentation": indentation, "half_angle": half_angle}
 material = mistyped(bs.materials)
 preset = mistyped(bs.joints)
