@@ -14,14 +14,13 @@ from pathlib import Path
 from read_files import outcome
 
 draw = random.Random(20261123)
-LENGTH = ("mm", "cm", "m", "um", "inch")
 SIZES = {"mm": 1.0, "cm": 10.0, "m": 1e3, "um": 1e-3, "inch": 25.4}
 
 
 def length(mm):
     """Write a length (mm) as a number or with a unit."""
-    unit = draw.choice(("", "", *LENGTH))
-    return f"{mm:.6g}" if not unit else f'"{mm / SIZES[unit]:.9g} {unit}"'
+    unit = draw.choice(("", "", *SIZES))
+    return f'"{mm / SIZES[unit]:.9g} {unit}"' if unit else f"{mm:.6g}"
 
 
 def force(newton):
@@ -54,16 +53,15 @@ def material(table, keep=1.0):
 
 
 def joint_tables(load=True):
-    radius = draw.choice((11.0, 14.0, 16.0, 18.0, 25.0))
-    clearance = draw.choice((0.03, 0.1, 0.25))
+    radius, clearance = draw.choice((11.0, 14.0, 16.0, 18.0, 25.0)), draw.choice((0.03, 0.1, 0.25))
     thickness = draw.choice((3.0, 6.0, 10.5))
-    lines = ["[joint]"]
-    lines += {
-        0: [f"ball_radius = {length(radius)}", f"clearance = {length(clearance)}"],
-        1: [f"head_diameter = {length(2 * radius)}", f"diametral_clearance = {length(2 * clearance)}"],
-        2: [f"socket_radius = {length(radius + clearance)}", f"clearance = {length(clearance)}"],
-        3: [f"ball_radius = {length(radius)}", f"socket_radius = {length(radius + clearance)}"],
-    }[draw.randrange(4)]
+    pairs = (
+        [f"ball_radius = {length(radius)}", f"clearance = {length(clearance)}"],
+        [f"head_diameter = {length(2 * radius)}", f"diametral_clearance = {length(2 * clearance)}"],
+        [f"socket_radius = {length(radius + clearance)}", f"clearance = {length(clearance)}"],
+        [f"ball_radius = {length(radius)}", f"socket_radius = {length(radius + clearance)}"],
+    )
+    lines = ["[joint]", *pairs[draw.randrange(4)]]
     layers = draw.randrange(3) if draw.random() < 0.3 else 0
     if layers or draw.random() < 0.6:
         lines += [f"liner_thickness = {length(thickness)}"]
@@ -78,9 +76,8 @@ def joint_tables(load=True):
         lines += [draw.choice(('material = "titanium"', "young = 500\npoisson = 0.3"))]
     if draw.random() < 0.4:
         lines += ["[cup]", *maybe(f"arc_of_cover = {angle(draw.choice((150, 165, 180)))}")]
-        lines += maybe(
-            f"inclination = {angle(draw.choice((40, 45, 50)))}\nanteversion = {angle(draw.choice((10, 20)))}"
-        )
+        inclination = f"inclination = {angle(draw.choice((40, 45, 50)))}"
+        lines += maybe(f"{inclination}\nanteversion = {angle(draw.choice((10, 20)))}")
         lines += maybe(f'interface = "{draw.choice(("bonded", "sliding", "Bonded"))}"', 0.3)
         lines += maybe(f'side = "{draw.choice(("left", "right"))}"', 0.3) + maybe(f"chamfer = {length(0.5)}", 0.3)
     if load and draw.random() < 0.8:
@@ -96,33 +93,31 @@ def joint_file():
 
 
 def named_joint():
-    name = draw.choice(("hip-28", "hip-32", "hip-36", "HIP 28", "joint.toml"))
-    return [f'joint = "{name}"']
+    return [f'joint = "{draw.choice(("hip-28", "hip-32", "hip-36", "HIP 28", "joint.toml"))}"']
 
 
 LAWS = (
-    ['law = "archard"', 'coefficient = "1.066e-6 mm^3/(N m)"'],
-    ['law = "archard"', "coefficient = 1e-6"],
-    ['law = "energy"', 'coefficient = "1e-5 mm^3/J"', "friction = 0.05"],
-    ['law = "area"', 'coefficient = "2e-10"'],
-    ['law = "cross-shear"', "coefficient = 1e-6", "circular = 2e-6"],
-    ['coefficient = "8e-7 mm³/(N·m)"'],
+    'law = "archard"\ncoefficient = "1.066e-6 mm^3/(N m)"',
+    'law = "archard"\ncoefficient = 1e-6',
+    'law = "energy"\ncoefficient = "1e-5 mm^3/J"\nfriction = 0.05',
+    'law = "area"\ncoefficient = "2e-10"',
+    'law = "cross-shear"\ncoefficient = 1e-6\ncircular = 2e-6',
+    'coefficient = "8e-7 mm³/(N·m)"',
 )
 CYCLES = (
-    ['name = "iso-14242-1"'],
-    ['name = "iso-14242-1"', "instants = 40", 'rotation_order = "flexion, adduction, rotation"'],
-    ['name = "iso-14242-3"'],
-    ['name = "walking"', 'body_weight = "800 N"'],
-    ['name = "stairs-up"', "body_weight = 750", "times_body_weight = 2.4"],
-    ['file = "cycle.csv"', "instants = 24"],
-    ['file = "cycle.csv"', 'side = "left"', 'frame = "body"', 'force_on = "socket"', "closing = 0.02"],
-    ['file = "force.csv"', 'motion = "iso-14242-1"'],
+    'name = "iso-14242-1"',
+    'name = "iso-14242-1"\ninstants = 40\nrotation_order = "flexion, adduction, rotation"',
+    'name = "iso-14242-3"',
+    'name = "walking"\nbody_weight = "800 N"',
+    'name = "stairs-up"\nbody_weight = 750\ntimes_body_weight = 2.4',
+    'file = "cycle.csv"\ninstants = 24',
+    'file = "cycle.csv"\nside = "left"\nframe = "body"\nforce_on = "socket"\nclosing = 0.02',
+    'file = "force.csv"\nmotion = "iso-14242-1"',
 )
 
 
 def hip_file():
-    lines = [*maybe('name = "hip"', 0.4)]
-    tables = []
+    lines, tables = maybe('name = "hip"', 0.4), []
     if draw.random() < 0.25:
         lines += ['body_weight = "800 N"', "cycles_per_year = 1.2e6"]
         lines += maybe("years = 5\nreport_years = [1, 5]", 0.7)
@@ -130,19 +125,17 @@ def hip_file():
         tables += ["[[activity]]", 'name = "stairs-up"', draw.choice(("share = 0.1", "per_year = 1e5"))]
     else:
         lines += [*maybe("cycles = 2e6"), *maybe("report_at = [1e6, 1.5e6]", 0.3)]
-        tables += ["[cycle]", *draw.choice(CYCLES)]
-    body = named_joint() if draw.random() < 0.5 else []
-    if body:
-        lines += body
-        body = []
+        tables += ["[cycle]", draw.choice(CYCLES)]
+    body = []
+    if draw.random() < 0.5:
+        lines += named_joint()
     else:
         body = joint_tables(load=False)
     if "[cup]" not in body:
         body += maybe(f"[cup]\ntilt = {angle(draw.choice((20, 30)))}", 0.4)
-    tables += ["[wear]", *draw.choice(LAWS), *maybe(f"ring_width = {angle(draw.choice((3, 5)))}", 0.4)]
-    tables += maybe(
-        draw.choice(('contact = "springs"', 'model = "bartel"', 'contact = "springs"\nmodel = "hess-forsbach"')), 0.3
-    )
+    tables += ["[wear]", draw.choice(LAWS), *maybe(f"ring_width = {angle(draw.choice((3, 5)))}", 0.4)]
+    models = ('contact = "springs"', 'model = "bartel"', 'contact = "springs"\nmodel = "hess-forsbach"')
+    tables += maybe(draw.choice(models), 0.3)
     if draw.random() < 0.25:
         tables += ["[creep]", *maybe("seconds_per_cycle = 1.0", 0.4)]
         tables += maybe('law = "kelvin-voigt"\ncompliances = [1e-4, 2e-4]\ntimes = [100, 1e4]', 0.4)
@@ -150,8 +143,8 @@ def hip_file():
         tables += ["[film]", *maybe("viscosity = 0.002"), *maybe(f"ball_roughness = {length(0.00002)}")]
         tables += maybe("friction = 0.06")
     if draw.random() < 0.25:
-        tables += ["[uncertainty]", *maybe("count = 256", 0.4), *maybe("seed = 3", 0.4)]
-        tables += ["clearance = { low = 0.02, high = 0.3 }"]
+        options = [*maybe("count = 256", 0.4), *maybe("seed = 3", 0.4)]
+        tables += ["[uncertainty]", *options, "clearance = { low = 0.02, high = 0.3 }"]
     return "\n".join([*lines, *body, *tables])
 
 
@@ -178,11 +171,9 @@ def study_file():
     model = draw.choice(("hess-forsbach", "exact", "tabulated", "bartel", "Hess Forsbach", "hertz"))
     lines = maybe(f'model = "{model}"', 0.7)
     lines += maybe('quantities = ["max_pressure", "area"]', 0.4) + maybe('store = "cases"', 0.3)
-    if draw.random() < 0.6:
-        lines += named_joint()
-        body = []
-    else:
-        body = joint_tables(load=False)
+    named = draw.random() < 0.6
+    lines += named_joint() if named else []
+    body = [] if named else joint_tables(load=False)
     parts = draw.sample(AXES, 2) if draw.random() < 0.7 else []
     body += ["[axes]", *parts] if parts else []
     if draw.random() < 0.5 or not parts:
@@ -194,31 +185,13 @@ def study_file():
 
 
 DATA = (
-    ['quantity = "area"', 'values = ["50 mm^2", "90 mm^2"]', 'force = ["500 N", "1 kN"]', 'uncertainty = "5 mm^2"'],
-    [
-        'quantity = "indentation"',
-        "values = [0.02, 0.03]",
-        "force = [500, 1000]",
-        'uncertainty = "2 %"',
-        "load_uncertainty = 5",
-    ],
-    ['file = "points.csv"', 'uncertainty = "2 %"'],
-    [
-        'file = "points.csv"',
-        'quantities = "indentation"',
-        "uncertainty = 0.001",
-        'gaps = "leave-out"',
-        'load = "force"',
-    ],
-    ['quantity = "diametral_clearance"', 'values = "0.21 mm"', 'uncertainty = "10 um"', 'name = "play"'],
-    ['quantity = "frequency"', 'values = "500 Hz"', "force = 1000", 'mass = "2 kg"', 'uncertainty = "5 Hz"'],
-    [
-        'quantity = "max_pressure"',
-        "values = [8, 12]",
-        "force = [500, 1500]",
-        'uncertainty = "5 %"',
-        'saturation = "10 MPa"',
-    ],
+    'quantity = "area"\nvalues = ["50 mm^2", "90 mm^2"]\nforce = ["500 N", "1 kN"]\nuncertainty = "5 mm^2"',
+    'quantity = "indentation"\nvalues = [0.02, 0.03]\nforce = [500, 1000]\nuncertainty = "2 %"\nload_uncertainty = 5',
+    'file = "points.csv"\nuncertainty = "2 %"',
+    'file = "points.csv"\nquantities = "indentation"\nuncertainty = 0.001\ngaps = "leave-out"\nload = "force"',
+    'quantity = "diametral_clearance"\nvalues = "0.21 mm"\nuncertainty = "10 um"\nname = "play"',
+    'quantity = "frequency"\nvalues = "500 Hz"\nforce = 1000\nmass = "2 kg"\nuncertainty = "5 Hz"',
+    'quantity = "max_pressure"\nvalues = [8, 12]\nforce = [500, 1500]\nuncertainty = "5 %"\nsaturation = "10 MPa"',
 )
 FREE = (
     'clearance = "0.02..0.3 mm"',
@@ -235,13 +208,10 @@ def identify_file():
     body = [] if joint else joint_tables(load=False)
     machine = draw.random() < 0.4
     tables = ["[machine.frame]", 'compliance = "0..20 um/kN"', "offset = 0.01"] if machine else []
-    free = ["[free]", FREE[0], *draw.sample(FREE[1:], 1)]
-    data = [
-        line
-        for table in draw.sample(DATA, 2)
-        for line in ("[[data]]", *table, *(maybe('machine = "frame"') if machine else []))
-    ]
-    return "\n".join([*lines, *joint, *body, *free, *tables, *data])
+    lines += [*joint, *body, "[free]", FREE[0], *draw.sample(FREE[1:], 1), *tables]
+    for table in draw.sample(DATA, 2):
+        lines += ["[[data]]", table, *(maybe('machine = "frame"') if machine else [])]
+    return "\n".join(lines)
 
 
 def question_file():
@@ -289,13 +259,8 @@ def damaged(text):
     return "\n".join(lines)
 
 
-MAKERS = {
-    "joint": joint_file,
-    "hip": hip_file,
-    "study": study_file,
-    "identify": identify_file,
-    "question": question_file,
-}
+MAKERS = {"joint": joint_file, "hip": hip_file, "study": study_file, "identify": identify_file}
+MAKERS["question"] = question_file
 
 
 def main():
@@ -303,20 +268,20 @@ def main():
     cases = []
     for kind, make in MAKERS.items():
         read, refused = [], []
-        while len(read) < 40:
-            text = make()
+
+        def sort(text, most, kind=kind, read=read, refused=refused):
             result = outcome(kind, text)
             if "refusal" not in result:
                 read.append({"kind": kind, "text": text, **result})
-            elif len(refused) < 20 and all(result["refusal"] != case["refusal"] for case in refused):
+            elif len(refused) < most and all(result["refusal"] != case["refusal"] for case in refused):
                 refused.append({"kind": kind, "text": text, **result})
+
+        while len(read) < 40:
+            sort(make(), 20)
         while len(refused) < 80:
-            text = damaged(draw.choice(read)["text"])
-            result = outcome(kind, text)
-            if "refusal" in result and all(result["refusal"] != case["refusal"] for case in refused):
-                refused.append({"kind": kind, "text": text, **result})
+            sort(damaged(draw.choice(read[:40])["text"]), 80)
         print(kind, len(read), len(refused))
-        cases += read + refused
+        cases += read[:40] + refused
     Path(__file__).with_name("files_of_1_0.json").write_text(json.dumps(cases, indent=0, ensure_ascii=False))
 
 
