@@ -23,10 +23,6 @@ def length(mm):
     return f'"{mm / SIZES[unit]:.9g} {unit}"' if unit else f"{mm:.6g}"
 
 
-def force(newton):
-    return draw.choice((f"{newton:g}", f'"{newton:g} N"', f'"{newton / 1e3:g} kN"'))
-
-
 def modulus(mpa):
     return draw.choice((f"{mpa:g}", f'"{mpa:g} MPa"', f'"{mpa / 1e3:g} GPa"', f'"{mpa:g} N/mm^2"'))
 
@@ -82,7 +78,8 @@ def joint_tables(load=True):
         lines += maybe(f'side = "{draw.choice(("left", "right"))}"', 0.3) + maybe(f"chamfer = {length(0.5)}", 0.3)
     if load and draw.random() < 0.8:
         lines += ["[load]"]
-        lines += [draw.choice((f"force = {force(2500)}", f"indentation = {length(0.05)}", f"half_angle = {angle(30)}"))]
+        force = draw.choice(("2500", '"2500 N"', '"2.5 kN"'))
+        lines += [draw.choice((f"force = {force}", f"indentation = {length(0.05)}", f"half_angle = {angle(30)}"))]
         lines += maybe(draw.choice((f"tilt = {angle(20)}", 'direction = "0, 0.2, 1"', "direction = [0, 0.2, 1]")), 0.2)
     return lines
 

@@ -6,14 +6,7 @@ Run `python tests/data/make_hemisphere.py > src/ballsocket/data/hemisphere.toml`
 import numpy as np
 
 import ballsocket as bs
-from ballsocket.contact.closed_sphere import (
-    BALL_FACTOR,
-    MAX_MODULUS_RATIO,
-    POISSON_RANGE,
-    THICKNESS_RATIO_RANGE,
-    polynomial_exponents,
-    polynomial_variables,
-)
+from ballsocket.contact import closed_sphere
 
 ANGLES = np.radians([3, 6, 10, 15, 20, 25, 30, 36, 42, 48, 54, 60, 66, 72, 78, 83])
 COUNT, SEED = 800, 1
@@ -30,32 +23,29 @@ HEAD = """\
 
 def joint_of(random: np.random.Generator) -> tuple[bs.Joint, float, float]:
     """A joint with a rigid ball, and modulus ratio and Poisson's ratio of an elastic one."""
-    near_half = 0.5 - np.exp(random.uniform(np.log(0.5 - POISSON_RANGE[1]), np.log(0.1)))
-    poisson = random.uniform(POISSON_RANGE[0], 0.45) if random.random() < 0.5 else near_half
-    ratio = np.exp(random.uniform(*np.log(THICKNESS_RATIO_RANGE)))
-    joint = bs.Joint(
-        ball_radius=14.0,
-        clearance=0.1,
-        liner_thickness=14.1 / ratio,
-        liner=bs.Material(young=1000.0, poisson=float(poisson)),
+    near_half = 0.5 - np.exp(random.uniform(np.log(0.5 - closed_sphere.POISSON_RANGE[1]), np.log(0.1)))
+    poisson = random.uniform(closed_sphere.POISSON_RANGE[0], 0.45) if random.random() < 0.5 else near_half
+    ratio = np.exp(random.uniform(*np.log(closed_sphere.THICKNESS_RATIO_RANGE)))
+    liner = bs.Material(young=1000.0, poisson=float(poisson))
+    joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=14.1 / ratio, liner=liner)
+    return (
+        joint,
+        float(np.exp(random.uniform(np.log(1e-3), np.log(closed_sphere.MAX_MODULUS_RATIO)))),
+        random.uniform(0.15, 0.4),
     )
-    return joint, float(np.exp(random.uniform(np.log(1e-3), np.log(MAX_MODULUS_RATIO)))), random.uniform(0.15, 0.4)
 
 
 def changes(joint: bs.Joint) -> np.ndarray:
     """Change of the indentation, and the largest of all, at the half angles."""
     relative_changes = bs.ExactCurve().press(joint, half_angle=ANGLES).hemisphere
-    return np.stack(
-        [relative_changes["indentation"], np.max([abs(values) for values in relative_changes.values()], axis=0)]
-    )
+    largest = np.max([abs(values) for values in relative_changes.values()], axis=0)
+    return np.stack([relative_changes["indentation"], largest])
 
 
 def fitted(variables: np.ndarray, known: np.ndarray, degree: int, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Coefficients, and the estimates at all variables."""
-    terms = np.stack(
-        [np.prod(variables ** np.array(exponents)[:, None], axis=0) for exponents in polynomial_exponents(degree)],
-        axis=1,
-    )
+    exponents = np.array(closed_sphere.polynomial_exponents(degree))
+    terms = np.prod(variables.T[:, None] ** exponents, axis=-1)
     good = np.isfinite(known) & (known > MIN_CHANGE) & ~held
     weight = np.clip(known[good] / SMALL_CHANGE, 0.15, 1.0)
     numbers, *_ = np.linalg.lstsq(terms[good] * weight[:, None], np.log(known[good]) * weight)
@@ -67,36 +57,25 @@ def main() -> None:
     where, rigid, elastic, ratios = [], [], [], []
     for _ in range(COUNT):
         joint, ratio, poisson = joint_of(random)
-        where.append(
-            np.stack(np.broadcast_arrays(*polynomial_variables(ANGLES, joint.liner.poisson, joint.thickness_ratio)))
-        )
+        variables = closed_sphere.polynomial_variables(ANGLES, joint.liner.poisson, joint.thickness_ratio)
+        where.append(np.stack(np.broadcast_arrays(*variables)))
         rigid.append(changes(joint))
         elastic.append(changes(joint.replace(ball=bs.Material(young=1000.0 / ratio, poisson=poisson))))
         ratios.append(np.full(len(ANGLES), ratio))
     at, share = np.concatenate(where, axis=1), np.concatenate(ratios)
     still, soft = np.concatenate(rigid, axis=1), np.concatenate(elastic, axis=1)
     held = np.arange(at.shape[1]) // len(ANGLES) % 4 == 0
-    estimates, rows = {}, {}
-    for name, known, degree in (
-        ("indentation", still[0], 5),
-        ("largest", still[1], 5),
-        ("ball", (soft[0] - still[0]) / share, 4),
-    ):
-        rows[name], estimates[name] = fitted(at, known, degree, held)
-    both = {
-        "indentation": (estimates["indentation"] + share * estimates["ball"], soft[0]),
-        "largest": (estimates["largest"] + BALL_FACTOR * share * estimates["ball"], soft[1]),
-    }
+    known = {"indentation": (still[0], 5), "largest": (still[1], 5), "ball": ((soft[0] - still[0]) / share, 4)}
+    fits = {name: fitted(at, *values, held) for name, values in known.items()}
+    estimates = {name: estimate for name, (_, estimate) in fits.items()}
+    added = {"indentation": share * estimates["ball"], "largest": closed_sphere.BALL_FACTOR * share * estimates["ball"]}
     print(HEAD)
-    for body, pairs in (
-        ("rigid ball", {name: (estimates[name], still[row]) for row, name in enumerate(both)}),
-        ("elastic ball", both),
-    ):
-        for name, (estimate, known) in pairs.items():
-            good = held & (known > 0.005)
-            quantiles = np.percentile((estimate / known)[good], [1, 5, 50, 95, 99])
+    for body, truth, change in (("rigid ball", still, dict.fromkeys(added, 0.0)), ("elastic ball", soft, added)):
+        for row, name in enumerate(added):
+            ratio = (estimates[name] + change[name]) / truth[row]
+            quantiles = np.percentile(ratio[held & (truth[row] > 0.005)], [1, 5, 50, 95, 99])
             print(f"# {body}, {name}: {', '.join(f'{value:.2f}' for value in quantiles)}")
-    for name, numbers in rows.items():
+    for name, (numbers, _) in fits.items():
         print(f"{name} = [")
         for first in range(0, len(numbers), 7):
             print("    " + " ".join(f"{number:.5g}," for number in numbers[first : first + 7]))

@@ -24,13 +24,8 @@ from ballsocket.mcp.tools import file_table
 
 PROMISED = Path(__file__).with_name("promised.json")
 LOAD = {"force": 3000.0}
-FILES = {
-    "joint": "joint file",
-    "study": "study file",
-    "hip": "hip file",
-    "identify": "file of data",
-    "evidence": "question of evidence",
-}
+FILES = {"joint": "joint file", "study": "study file", "hip": "hip file", "identify": "file of data"}
+FILES["evidence"] = "question of evidence"
 
 
 def main() -> None:
@@ -49,13 +44,12 @@ def present() -> dict[str, Any]:
     """Names, parameters, units, commands and their options, keys of JSON and of joint files, statuses."""
     hip = bs.joints["hip-36"]
     answer = bs.compare(hip, **LOAD).summary()
+    things = {name: getattr(bs, name) for name in bs.__all__}
     tilted = bs.Sphere(ring_width=0.1).press(hip, tilt=0.5, **LOAD)
     return {
         "names of ballsocket": sorted(bs.__all__),
         "names of ballsocket.hip": sorted(bs.hip.__all__),
-        "parameters": {
-            name: _parameters(getattr(bs, name)) for name in sorted(bs.__all__) if callable(getattr(bs, name))
-        },
+        "parameters": {name: _parameters(thing) for name, thing in sorted(things.items()) if callable(thing)},
         "models": sorted([*bs.catalogue, "fem", "sphere"]),
         "presets": {"joints": sorted(bs.joints), "materials": sorted(bs.materials)},
         "units": {each.name: each.unit for each in QUANTITIES.values()},

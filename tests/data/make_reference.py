@@ -9,17 +9,16 @@ Energy: its integral over d. Inputs are doubles, taken as exact.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from mpmath import acos, cos, diff, mp, mpf, nstr, pi, quad, sin, sqrt
 
 mp.dps = 80
-R1_PLUS_C = 18.0
-L, E, NU = 6.75, 1000.0, 0.4
-K = 276.5  # a foundation modulus that is a double
-ETA = 0.25  # adhesion number
+R2, E, NU = mpf(18), mpf(1000), mpf(0.4)
+K = mpf("276.5")  # a foundation modulus that is a double
+ETA = mpf("0.25")  # adhesion number
+PLANE_MODULUS = E / (1 - NU**2)
 Law = Callable[[mpf], mpf]
 
 
@@ -33,32 +32,21 @@ class Case:
     pole_pressure: Law
 
 
-def radial(model: str, c: mpf, displacement: Callable[[mpf, mpf], mpf], edge: Law, closed: Law) -> Case:
-    R2, k = mpf(R1_PLUS_C), mpf(K)
-
-    def force(d: mpf) -> mpf:
-        return closed(d)
-
-    def integrated(d: mpf) -> mpf:
-        # Eq. (11) in x = cos φ
-        return 2 * pi * R2**2 * quad(lambda x: k * displacement(d, x) * x, [cos(edge(d)), 1])
-
-    for d in (mpf("1e-3"), mpf("0.05")):
-        assert abs(integrated(d) / force(d) - 1) < mpf("1e-40"), model
-    return Case(model, force, edge, lambda d: k * displacement(d, mpf(1)))
+def radial(model: str, displacement: Callable[[mpf, mpf], mpf], edge: Law, force: Law) -> Case:
+    for d in (mpf("1e-3"), mpf("0.05")):  # Eq. (11) in x = cos φ
+        integrated = 2 * pi * R2**2 * quad(lambda x, d=d: K * displacement(d, x) * x, [cos(edge(d)), 1])
+        assert abs(integrated / force(d) - 1) < mpf("1e-40"), model
+    return Case(model, force, edge, lambda d: K * displacement(d, mpf(1)))
 
 
 def linear(c: mpf) -> Case:
-    R2, k = mpf(R1_PLUS_C), mpf(K)
+    def force(d: mpf) -> mpf:  # Eq. (13)
+        return pi * R2**2 * K / 3 * (2 * d - c + c * (c / (c + d)) ** 2)
 
-    def closed(d: mpf) -> mpf:  # Eq. (13)
-        return pi * R2**2 * k / 3 * (2 * d - c + c * (c / (c + d)) ** 2)
-
-    return radial("linear", c, lambda d, x: d * x - c * (1 - x), lambda d: acos(c / (c + d)), closed)
+    return radial("linear", lambda d, x: d * x - c * (1 - x), lambda d: acos(c / (c + d)), force)
 
 
 def exact(c: mpf) -> Case:
-    R2, k = mpf(R1_PLUS_C), mpf(K)
     R1 = R2 - c
 
     def displacement(d: mpf, x: mpf) -> mpf:  # Eq. (5)
@@ -69,20 +57,16 @@ def exact(c: mpf) -> Case:
         e = c + d
         return (e**2 + R2**2 - R1**2) / (2 * e * R2)
 
-    def closed(d: mpf) -> mpf:  # Eq. (11) integrated term by term
+    def force(d: mpf) -> mpf:  # Eq. (11) integrated term by term
         e, x = c + d, cosine(d)
         terms = e * (1 - x**3) / 3 + (R1**3 - (R2 - e * x) ** 3) / (3 * e**2) - R2 * (1 - x**2) / 2
-        return 2 * pi * R2**2 * k * terms
+        return 2 * pi * R2**2 * K * terms
 
-    return radial("exact", c, displacement, lambda d: acos(cosine(d)), closed)
+    return radial("exact", displacement, lambda d: acos(cosine(d)), force)
 
 
 def half_space(c: mpf, n: int) -> Case:
-    R2 = mpf(R1_PLUS_C)
-    R1 = R2 - c
-    modulus = mpf(E) / (1 - mpf(NU) ** 2)
-    gap = c / (2 * R1 * R2) * R2 ** (2 - 2 * n)
-    kappa = mpf(1)
+    gap, kappa = c / (2 * (R2 - c) * R2) * R2 ** (2 - 2 * n), mpf(1)
     for j in range(1, n + 1):
         kappa *= mpf(2 * j) / (2 * j - 1)
 
@@ -90,19 +74,17 @@ def half_space(c: mpf, n: int) -> Case:
         return (d / (kappa * gap)) ** (mpf(1) / (2 * n))
 
     def force(d: mpf) -> mpf:
-        return 2 * modulus * d * radius(d) * 2 * n / (2 * n + 1)
+        return 2 * PLANE_MODULUS * d * radius(d) * 2 * n / (2 * n + 1)
 
     def peak(d: mpf) -> mpf:
-        return modulus / pi * mpf(2 * n) / (2 * n - 1) * d / radius(d)
+        return PLANE_MODULUS / pi * mpf(2 * n) / (2 * n - 1) * d / radius(d)
 
     return Case("hertz" if n == 1 else f"steuermann-{n}", force, lambda d: radius(d) / R2, peak)
 
 
 def liu(c: mpf) -> Case:
-    R2, modulus = mpf(R1_PLUS_C), mpf(E) / (1 - mpf(NU) ** 2)
-
     def force(d: mpf) -> mpf:
-        return 4 * pi / 3 / 2 * modulus * R2 * d**2 / (c + d)
+        return 4 * pi / 3 / 2 * PLANE_MODULUS * R2 * d**2 / (c + d)
 
     def edge(d: mpf) -> mpf:
         return acos(c / (c + d))
@@ -111,17 +93,13 @@ def liu(c: mpf) -> Case:
 
 
 def adhesive(c: mpf) -> Case:
-    R2, k = mpf(R1_PLUS_C), mpf(K)
-    stretch = mpf(ETA) * c
-
-    def edge(d: mpf) -> mpf:
-        return acos((c - stretch) / (c + d))
+    free = c - ETA * c
 
     def force(d: mpf) -> mpf:
-        x = cos(edge(d))
-        return 2 * pi * R2**2 * k * ((c - stretch) * (1 - x**3) / (3 * x) - c * (1 - x**2) / 2)
+        x = free / (c + d)
+        return 2 * pi * R2**2 * K * (free * (1 - x**3) / (3 * x) - c * (1 - x**2) / 2)
 
-    return Case("adhesive", force, edge, lambda d: k * d)
+    return Case("adhesive", force, lambda d: acos(free / (c + d)), lambda d: K * d)
 
 
 def joints() -> Iterator[tuple[float, float]]:
@@ -133,7 +111,9 @@ def joints() -> Iterator[tuple[float, float]]:
         yield 0.0, d
 
 
-def rows() -> Iterator[str]:
+def main() -> None:
+    print("# make_reference.py: R2 18 mm, K 276.5 MPa/mm, E 1000 MPa, nu 0.4, rigid ball, eta 0.25")
+    print("model,clearance,indentation,force,half_angle,pole_pressure,stiffness,energy")
     for clearance, indentation in joints():
         c, d = mpf(clearance), mpf(indentation)
         cases = [linear(c), exact(c)]
@@ -142,18 +122,10 @@ def rows() -> Iterator[str]:
         if clearance and indentation >= clearance:  # below, forces change sign and relative errors mean nothing
             cases += [adhesive(c)]
         for case in cases:
-            values = (
-                case.force(d),
-                case.half_angle(d),
-                case.pole_pressure(d),
-                diff(case.force, d, h=d * mpf("1e-30")),
-                quad(case.force, [0, d / 1000, d / 30, d]),
-            )
-            yield ",".join([case.model, repr(clearance), repr(indentation), *(nstr(value, 25) for value in values)])
+            values = [law(d) for law in (case.force, case.half_angle, case.pole_pressure)]
+            values += [diff(case.force, d, h=d * mpf("1e-30")), quad(case.force, [0, d / 1000, d / 30, d])]
+            print(case.model, repr(clearance), repr(indentation), *(nstr(value, 25) for value in values), sep=",")
 
 
 if __name__ == "__main__":
-    sys.stdout.write("# make_reference.py: R2 18 mm, K 276.5 MPa/mm, E 1000 MPa, nu 0.4, rigid ball, eta 0.25\n")
-    sys.stdout.write("model,clearance,indentation,force,half_angle,pole_pressure,stiffness,energy\n")
-    for row in rows():
-        sys.stdout.write(row + "\n")
+    main()

@@ -59,10 +59,8 @@ def grid() -> Points:
     rng = np.random.default_rng(2)
     wide = list(zip(rng.uniform(0.0, 0.49, 60), np.exp(rng.uniform(np.log(0.5), np.log(10.0), 60)), strict=True))
     points, outside = Points(angles, inside, 1.0), Points(rng.uniform(3.0, 75.0, 12), wide, 0.07)
-    for name in ("angle", "pairs", "weight"):
-        setattr(points, name, np.concatenate([getattr(points, name), getattr(outside, name)]))
-    for name in ("logs", "slopes"):
-        setattr(points, name, np.concatenate([getattr(points, name), getattr(outside, name)], axis=1))
+    for name, axis in {"angle": 0, "pairs": 0, "weight": 0, "logs": 1, "slopes": 1}.items():
+        setattr(points, name, np.concatenate([getattr(points, name), getattr(outside, name)], axis=axis))
     return points
 
 
@@ -145,9 +143,8 @@ def fit() -> None:
         x, best = smallest_worst(lambda y, chosen=chosen: errors(y, points, chosen).ravel(), x)
         update_slopes(x, points)
         worst = np.abs(errors(x, points, every)).max()
-        print(
-            f"# round {count}: {100 * best:.3f} % on {len(chosen)} points, {100 * worst:.3f} % on all", file=sys.stderr
-        )
+        report = f"{100 * best:.3f} % on {len(chosen)} points, {100 * worst:.3f} % on all"
+        print(f"# round {count}: {report}", file=sys.stderr)
         if worst < 1.003 * best and count > 2:
             break
     x = np.round(x, 4)

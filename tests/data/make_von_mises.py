@@ -25,12 +25,8 @@ HEAD = """\
 
 def share(angle: float, poisson: float, ratio: float) -> tuple[float, ...] | None:
     """The three places and the share; None where the ball fills its socket before."""
-    joint = bs.Joint(
-        ball_radius=17.9,
-        clearance=0.1,
-        liner_thickness=18.0 / ratio if ratio else inf,
-        liner=bs.Material(young=1000.0, poisson=poisson),
-    )
+    liner, thickness = bs.Material(young=1000.0, poisson=poisson), 18.0 / ratio if ratio else inf
+    joint = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=thickness, liner=liner)
     contact = bs.Exact(tolerance=1e-5).press(joint, half_angle=radians(angle))
     if contact.status.failed:
         return None
