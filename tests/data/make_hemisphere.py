@@ -28,11 +28,8 @@ def joint_of(random: np.random.Generator) -> tuple[bs.Joint, float, float]:
     ratio = np.exp(random.uniform(*np.log(closed_sphere.THICKNESS_RATIO_RANGE)))
     liner = bs.Material(young=1000.0, poisson=float(poisson))
     joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=14.1 / ratio, liner=liner)
-    return (
-        joint,
-        float(np.exp(random.uniform(np.log(1e-3), np.log(closed_sphere.MAX_MODULUS_RATIO)))),
-        random.uniform(0.15, 0.4),
-    )
+    modulus_ratio = float(np.exp(random.uniform(np.log(1e-3), np.log(closed_sphere.MAX_MODULUS_RATIO))))
+    return joint, modulus_ratio, random.uniform(0.15, 0.4)
 
 
 def changes(joint: bs.Joint) -> np.ndarray:

@@ -67,15 +67,20 @@ def test_the_last_axis_varies_fastest(pack):
     assert cases == [{"clearance": c, "force": f} for c in (0.05, 0.15) for f in (2000.0, 4000.0)]
 
 
-def test_edge_distance_is_that_of_the_cup_and_errors_are_those_of_the_solver(pack):
+def test_numbers_of_a_case_are_those_of_a_single_press_in_the_cup(pack):
     question, record, _ = pack
-    (first, *_) = record["matrix"]
-    contact = bs.Exact().press(bs.joints["hip-36"].replace(clearance=0.05), force=2000.0)
-    distance = question.file.cup.edge_distance(contact.joint.socket_radius, contact.half_angle, UP)
-    assert first["numbers"]["edge_distance"] == pytest.approx(float(to_numpy(distance)))
-    assert first["numbers"]["half_angle_deg"] == pytest.approx(math.degrees(contact.half_angle))
-    assert first["status"] == "OK"
-    assert set(first["errors"]) == {"force", "half_angle_deg", "indentation", "max_pressure"}
+    assert len(record["matrix"]) == 4
+    for entry in record["matrix"]:
+        joint, numbers = bs.joints["hip-36"].replace(clearance=entry["case"]["clearance"]), entry["numbers"]
+        contact = bs.Exact().press(joint, force=entry["case"]["force"])
+        distance = question.file.cup.edge_distance(joint.socket_radius, contact.half_angle, UP)
+        assert numbers["max_pressure"] == pytest.approx(contact.max_pressure, rel=1e-9)
+        assert numbers["friction_torque"] == pytest.approx(contact.friction_torque(0.06), rel=1e-9)
+        assert numbers["edge_distance"] == pytest.approx(float(to_numpy(distance)))
+        assert numbers["half_angle_deg"] == pytest.approx(math.degrees(contact.half_angle))
+        assert (entry["status"], entry["valid"]) == ("OK", True)
+        assert set(entry["errors"]) == {"force", "half_angle_deg", "indentation", "max_pressure"}
+    assert Row.of(entry).summary() == entry
     tolerances = matrix.known_errors(bs.Exact(tolerance=1e-3).press(bs.joints["hip-36"], force=2000.0))
     assert all(0 <= error <= 1e-3 for error in map(float, tolerances.values()))
 

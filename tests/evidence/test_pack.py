@@ -71,30 +71,16 @@ def test_accuracies_are_shares_or_percentages_and_the_largest_questions_are_read
     assert (question.model.name, len(matrix.list_cases(question))) == ("exact", 8)
 
 
-def test_numbers_of_a_case_are_those_of_a_single_press(record):
-    assert len(record["matrix"]) == 4
-    for row in record["matrix"]:
-        joint = bs.joints["hip-36"].replace(clearance=row["case"]["clearance"])
-        contact = bs.Exact().press(joint, force=row["case"]["force"])
-        assert row["numbers"]["max_pressure"] == pytest.approx(contact.max_pressure, rel=1e-9)
-        assert row["numbers"]["friction_torque"] == pytest.approx(contact.friction_torque(0.06), rel=1e-9)
-        assert row["valid"]
-    assert record["worst"]["max_pressure"]["case"] == {"clearance": 0.15, "force": 4000.0}
-    assert matrix.Row.of(record["matrix"][0]).summary() == record["matrix"][0]
-
-
-def test_limits_methods_and_tolerances_of_the_small_pack(record):
+def test_limits_deviations_and_tolerances_of_the_small_pack(record):
     pressure, edge = record["limits"]
     beyond = [row for row in record["matrix"] if row["numbers"]["max_pressure"] > 15]
     assert pressure["beyond"] == len(beyond) > 0
     assert (pressure["verdict"], edge["verdict"][:4]) == ("not kept", "kept")
-    for piece in record["calculation"]:
-        assert {"exact", "tabulated", "sphere (along the axis)"} <= {method["name"] for method in piece["methods"]}
-        assert piece["deviation"]["max_pressure"] < 0.005
+    assert all(piece["deviation"]["max_pressure"] < 0.005 for piece in record["calculation"])
     assert record["accurate"]["holds"]
+    assert record["worst"]["max_pressure"]["case"] == {"clearance": 0.15, "force": 4000.0}
     band = record["uncertainty"]["bands"]["max_pressure"]
     assert band["low"] < record["worst"]["max_pressure"]["numbers"]["max_pressure"] < band["high"]
-    assert record["uncertainty"]["sobol"]["max_pressure"]["liner_young"] == pytest.approx(1.0, abs=0.05)
 
 
 def test_stored_results_are_reused_and_damaged_ones_computed_again(pack, record):
@@ -197,14 +183,12 @@ def test_the_page_has_no_links_escapes_the_question_and_shows_a_shared_note_once
     assert (out / QUESTION).read_text("utf-8") == QUESTION_TEXT
     undrawn = {"drawn": None, "calculation": [], "uncertainty": None}  # figures take time
     assert "<script>" not in evidence_page({**record, **undrawn, "question": "<script>alert(1)</script>"})
-    shared = [
-        (note, [method["name"] for method in piece["methods"] if note in method["notes"]])
-        for piece in record["calculation"]
-        for note in piece["methods"][0]["notes"]
-    ]
-    assert any(len(names) > 1 for _, names in shared)
-    for note, names in shared:
+    (piece, *_), shown = record["calculation"], 0
+    for note in piece["methods"][0]["notes"]:
+        names = [method["name"] for method in piece["methods"] if note in method["notes"]]
         assert f"<li>{', '.join(names)}: {note}</li>" in text
+        shown += len(names) > 1
+    assert shown
 
 
 ALLOWED = {"closed-forms": 1e-13, "balance": 1e-6, "slope-of-energy": 1e-5, "hertz-limit": 5e-3, "own-tolerance": 1.0}
@@ -237,20 +221,19 @@ def test_a_matrix_of_cup_angles_uses_the_off_axis_solver(tmp_path):
 @pytest.mark.parametrize(
     ("tolerance", "used"),
     [
-        ('liner_young = "700 +- 100 MPa"', 700.0),  # the preset has 1000 MPa, outside
-        ('liner_young = "900 +- 150 MPa"', 900.0),  # inside, but not where the tolerance says
-        ('liner_young = "600 .. 800 MPa"', 700.0),  # a range states no nominal value: the middle
-        ('liner_young = "900 .. 1200 MPa"', 1000.0),  # which the joint's value may have
-        ('liner_young = "1005 +- 100 MPa"', 1005.0),  # also for a small difference
-        ('liner_young = "1000 +- 100 MPa"', 1000.0),
+        ("700 +- 100 MPa", 700.0),  # the preset has 1000 MPa, outside
+        ("900 +- 150 MPa", 900.0),  # inside, but not where the tolerance says
+        ("600 .. 800 MPa", 700.0),  # a range states no nominal value: the middle
+        ("900 .. 1200 MPa", 1000.0),  # which the joint's value may have
+        ("1005 +- 100 MPa", 1005.0),  # also for a small difference
+        ("1000 +- 100 MPa", 1000.0),
     ],
 )
 def test_nominal_values_are_those_of_the_tolerances(tmp_path, tolerance, used):
-    question = question_of(tmp_path, ("hip-36", "hip-28"), (YOUNG, tolerance))
+    question = question_of(tmp_path, ("hip-36", "hip-28"), ("750 +- 75 MPa", tolerance))
     assert question.file.joint.liner.young == used
-    assert [(entry.name, entry.stated, entry.used) for entry in question.recentred] == (
-        [] if used == 1000.0 else [("liner_young", 1000.0, used)]
-    )
+    recentred = [(entry.name, entry.stated, entry.used) for entry in question.recentred]
+    assert recentred == ([] if used == 1000.0 else [("liner_young", 1000.0, used)])
     row = next(row for row in list_inputs(question) if row["name"] == "liner_young")
     assert row["value"] == used
     assert (row["source"] == "nominal value of its tolerance in the question") == (used != 1000.0)
@@ -281,13 +264,6 @@ def test_a_tolerance_of_a_diameter_is_halved_for_the_radius(tmp_path):
     assert question.file.joint.ball_radius == pytest.approx(18.2)
     row = next(row for row in list_inputs(question) if row["name"] == "ball_radius")
     assert (row["value"], row["tolerance"]) == (pytest.approx(18.2), "18.1 to 18.3")
-
-
-def test_a_case_outside_its_tolerance_is_noted(tmp_path):
-    question = question_of(tmp_path, (YOUNG, f'clearance = "0.1 +- 0.02 mm"\n{YOUNG}'))
-    (note,) = propagate_tolerances(question, {"clearance": 0.15, "force": 4000.0})["notes"]
-    assert note.startswith("radial clearance 0.15 mm of the worst case lies outside its tolerance of 0.08 to 0.12 mm: ")
-    assert propagate_tolerances(question, {"clearance": 0.11, "force": 4000.0})["notes"] == []
 
 
 def test_named_files_in_the_folder_of_stored_results_are_refused(tmp_path):

@@ -84,10 +84,11 @@ def test_bands_outside_the_tables_are_solved_exactly(tmp_path):
     assert (result["model"], result["samples"], result["bands"]["max_pressure"]["answered"]) == ("exact", 64, 64)
 
 
-def test_notes_state_values_in_the_units_of_files(tmp_path):
+def test_a_case_outside_its_tolerance_is_noted_in_the_units_of_files(tmp_path):
     question = question_of(tmp_path, (FORCE, 'half_angle = "50 deg"'), (YOUNG, 'half_angle = "40 +- 1 deg"'))
     (note,) = propagate_tolerances(question, {"clearance": 0.1, "half_angle": np.radians(50.0)})["notes"]
     assert note.startswith("half angle 50 ° of the worst case lies outside its tolerance of 39 to 41 °: ")
+    assert propagate_tolerances(question, {"clearance": 0.1, "half_angle": np.radians(40.9)})["notes"] == []
 
 
 @pytest.mark.skipif(find_spec("skfem") is None, reason="the extra for finite elements is not installed")
