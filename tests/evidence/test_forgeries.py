@@ -233,9 +233,6 @@ def test_a_folder_with_many_files_is_refused(out):
         compare(out, page)
 
 
-# signatures
-
-
 @pytest.fixture
 def keys():
     pytest.importorskip("cryptography", reason="the extra for signatures is not installed")

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-import ballsocket as bs
 from ballsocket.core.storage.pieces import Plan
 from ballsocket.evidence import matrix
 from ballsocket.evidence import pack as pack_module

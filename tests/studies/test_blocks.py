@@ -26,9 +26,6 @@ SCATTER = {"clearance": tolerance(0.1, 0.05), "liner_poisson": Rectangular(low=0
 EVERYTHING = (slice(None),)
 
 
-# blocks
-
-
 @pytest.mark.parametrize("shape", [(10**8,), (464, 464, 464), (10**4, 10**4), (10, 10, 10**6), (3162, 31623)])
 def test_a_large_study_has_at_most_ten_thousand_blocks(shape):
     blocks = divide_study(shape, points_per_block(bs.Exact()))
@@ -65,9 +62,6 @@ def test_the_time_left_is_the_rest_over_the_rate():
     assert {hours: _duration_text(hours) for hours in texts} == texts
     described = _describe_array(np.arange(100_000.0) + 3)  # in the identity of a stored study
     assert (described["count"], described["first"], described["last"]) == (100_000, 3.0, 100_002.0)
-
-
-# samples
 
 
 @pytest.fixture
@@ -152,8 +146,6 @@ def test_samples_in_chunks_are_the_same_in_a_store_and_for_other_processes(metho
     stored = bs.study(bs.HessForsbach(), HIP, design, force=1e3, store=tmp_path / "s.zarr", engine=engine)
     assert stored.load().equals(here)
 
-
-# memory
 
 COUNT = 1 << 21
 """Points of the studies of memory: two blocks of closed forms."""
