@@ -4,6 +4,7 @@ import io
 import os
 from contextlib import contextmanager
 from functools import reduce
+from math import cos
 from pathlib import Path
 from unittest import mock
 
@@ -50,13 +51,8 @@ def refused_in_a_sentence(files=None):
 PHASES = numpy.linspace(0.0, 1.0, 11)
 
 
-def _table(*heads):
-    columns = (PHASES, 2000 + 900 * numpy.cos(6.2832 * PHASES), 20 * (PHASES - PHASES**2), 0 * PHASES, 0 * PHASES)
-    rows = [",".join(f"{value:.4g}" for value in row) for row in zip(*columns, strict=True)]
-    return "\n".join([",".join(heads), *rows]).encode()
-
-
-CSV = _table("time [s]", "force [N]", "flexion [deg]", "adduction [deg]", "rotation [deg]")
+_rows = [f"{t:.4g},{2000 + 900 * cos(6.2832 * t):.4g},{20 * (t - t * t):.4g},0,0" for t in PHASES]
+CSV = "\n".join(["time [s],force [N],flexion [deg],adduction [deg],rotation [deg]", *_rows]).encode()
 ORTHOLOAD = b"\n".join(
     [b"Cycle\tFx\tFy\tFz\tF", b"[%]\t[N]\t[N]\t[N]\t[N]"]
     + [f"{10 * i}\t{100 + i * (10 - i)}\t{-50}\t{-2000 - i * (10 - i)}\t2000".encode() for i in range(11)]
@@ -77,8 +73,7 @@ HIPS = (
     b'[wear]\nlaw = "energy"\ncoefficient = "1e-5 mm^3/J"\nfriction = 0.05\nring_width = 10\n'
     b'[[activity]]\nname = "walking"\nshare = 0.9\n'
     b'instants = 10\n[[activity]]\nname = "stairs-up"\nper_year = 1e4\ninstants = 10\n',
-    (EXAMPLES / "hip_in_use.toml").read_bytes(),
-    (EXAMPLES / "hip_of_many.toml").read_bytes(),
+    *((EXAMPLES / name).read_bytes() for name in ("hip_in_use.toml", "hip_of_many.toml")),
     (EXAMPLES / "wear_test.toml").read_bytes().replace(b'law = "archard"', b"coefficient = 1e-6"),
 )
 MEASURED = (
@@ -92,19 +87,17 @@ POINTS = (
     b"force_N,indentation_um\n500,20\n1000,31\n2000,45\n",
     b"# a remark\nforce [kN],half_angle [deg],half_angle_uncertainty_deg\n0.5,20,1\n1,25,1\n2,31,1\n",
 )
-QUESTIONS = ((EXAMPLES / "evidence.toml").read_bytes(),)
 
 
-@inputs(14)
-@given(text=damage.coefficient | quantity, read=st.sampled_from((wear_factor, wear_per_energy, wear_per_slide)))
-def test_coefficients(text, read):
+@inputs(20)
+@given(
+    text=damage.coefficient | quantity | odd_text,
+    read=st.sampled_from((wear_factor, wear_per_energy, wear_per_slide)),
+    kind=st.sampled_from(tuple(Kind)),
+)
+def test_coefficients_and_quantities(text, read, kind):
     with refused_in_a_sentence():
         assert read("coefficient", text) >= 0
-
-
-@inputs(6)
-@given(text=damage.coefficient | quantity | odd_text, kind=st.sampled_from(tuple(Kind)))
-def test_quantities(text, kind):
     with refused_in_a_sentence():
         parse("number", text, kind)
 
@@ -140,32 +133,25 @@ def test_measurements(raw, table):
 
 
 @inputs(3)
-@given(raw=damage.file_of(*QUESTIONS), hip=damage.file_of(*HIPS[:2]))
+@given(raw=damage.file_of((EXAMPLES / "evidence.toml").read_bytes()), hip=damage.file_of(*HIPS[:2]))
 def test_questions_of_evidence(raw, hip):
     with refused_in_a_sentence({"question.toml": raw, "hip_in_use.toml": hip, "cycle.csv": CSV}) as folder:
         assert read_question(folder / "question.toml").files[0] == folder / "question.toml"
 
 
-def _meshes():
-    """Write a small bore as STL, PLY and OBJ."""
-    angle, azimuth = numpy.meshgrid(numpy.linspace(0.05, 1.2, 12), numpy.linspace(0, 6.28, 24))
-    directions = [numpy.sin(angle) * numpy.cos(azimuth), numpy.sin(angle) * numpy.sin(azimuth), numpy.cos(angle)]
-    points = 14.1 * numpy.stack(directions, axis=-1).reshape(-1, 3)
-    rows = [" ".join(f"{x:.5f}" for x in point) for point in points]
-    faces = [(i, i + 1, i + 12) for i in range(200)]
-    ply = ["ply", "format ascii 1.0", f"element vertex {len(rows)}", *(f"property float {axis}" for axis in "xyz")]
-    ply += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header", *rows]
-    obj = ["v " + row for row in rows] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in faces]
-    stl = numpy.zeros(len(faces), dtype=[("n", "<f4", 3), ("p", "<f4", (3, 3)), ("a", "<u2")])
-    stl["p"] = points[numpy.array(faces)]
-    return {
-        "ply": "\n".join([*ply, *(f"3 {i} {j} {k}" for i, j, k in faces)]).encode(),
-        "obj": "\n".join(obj).encode(),
-        "stl": b"\0" * 80 + len(faces).to_bytes(4, "little") + stl.tobytes(),
-    }
-
-
-MESHES = _meshes()
+_angle, _azimuth = numpy.meshgrid(numpy.linspace(0.05, 1.2, 12), numpy.linspace(0, 6.28, 24))
+_directions = [numpy.sin(_angle) * numpy.cos(_azimuth), numpy.sin(_angle) * numpy.sin(_azimuth), numpy.cos(_angle)]
+POINTS_OF_BORE = 14.1 * numpy.stack(_directions, axis=-1).reshape(-1, 3)
+ROWS = [" ".join(f"{x:.5f}" for x in point) for point in POINTS_OF_BORE]
+FACES = [(i, i + 1, i + 12) for i in range(200)]
+PLY = ["ply", "format ascii 1.0", f"element vertex {len(ROWS)}", *(f"property float {axis}" for axis in "xyz")]
+PLY += [f"element face {len(FACES)}", "property list uchar int vertex_indices", "end_header", *ROWS]
+PLY += [f"3 {i} {j} {k}" for i, j, k in FACES]
+OBJ = ["v " + row for row in ROWS] + [f"f {i + 1} {j + 1} {k + 1}" for i, j, k in FACES]
+STL = numpy.zeros(len(FACES), dtype=[("n", "<f4", 3), ("p", "<f4", (3, 3)), ("a", "<u2")])
+STL["p"] = POINTS_OF_BORE[numpy.array(FACES)]
+MESHES = {"ply": "\n".join(PLY).encode(), "obj": "\n".join(OBJ).encode()}
+MESHES["stl"] = b"\0" * 80 + len(FACES).to_bytes(4, "little") + STL.tobytes()
 _wound = st.sampled_from((b"", b"\0", b"\xff\xff\xff\x7f", b"nan ", b"1e999 ", b"-", b"\n")) | st.binary(max_size=5)
 wounds = st.lists(st.tuples(st.integers(0, 20_000), st.integers(0, 8), _wound), max_size=3)
 
@@ -200,20 +186,16 @@ _argument = st.one_of(
     quantity, odd_text, number, st.floats(), st.integers(), st.booleans(), st.none(), st.lists(odd_text, max_size=3),
     st.sampled_from(("hip-28", "../x.toml", "/etc/passwd", "--help", "./" * 110 + "../x", "a.toml", "tabulated")),
 )  # fmt: skip
-_call = st.tuples(
-    mistyped(("press", "study", "wear", "identify", "curve", "models", "evidence")),
-    st.dictionaries(
-        mistyped(("joint", "force", "model", "file", "steps", "indentation", "units")), _argument, max_size=4
-    ),
-    st.none() | damage.file_of(*HIPS[:2], *MEASURED),
-)
+_NAMES = mistyped(("press", "study", "wear", "identify", "curve", "models", "evidence"))
+_KEYS = mistyped(("joint", "force", "model", "file", "steps", "indentation", "units"))
+_arguments = st.dictionaries(_KEYS, _argument, max_size=4)
+_contents = st.none() | damage.file_of(*HIPS[:2], *MEASURED)
 
 
 @inputs(3)
-@given(call=_call, runs=st.integers(0, 9))
-def test_calls_of_assistants(call, runs):
+@given(name=_NAMES, arguments=_arguments, content=_contents, runs=st.integers(0, 9))
+def test_calls_of_assistants(name, arguments, content, runs):
     """A call is refused, or becomes a command that reads only files in its folder."""
-    name, arguments, content = call
     if content is not None:
         arguments = {**arguments, "content": content.decode("utf-8", "replace")}
     with refused_in_a_sentence() as folder:
