@@ -98,7 +98,6 @@ def test_similarity_numbers_are_those_of_the_joint():
 @pytest.mark.parametrize(
     ("reached", "position", "verdict"),
     [
-        ((1.0, 4.0), "within", "applies"),
         ((2.0, 3.0), "within", "applies"),
         ((2.5, 3.0), "in part", "applies in part"),
         ((1.0, 2.5), "in part", "applies in part"),

@@ -196,10 +196,7 @@ def test_a_study_on_the_users_workers_ends_without_tracebacks_and_leaves_nothing
     def tasks(dask_scheduler):
         return list(dask_scheduler.tasks)
 
-    with (
-        (tmp_path / "worker.log").open("w") as log,
-        cluster(tmp_path, 1, log) as ((scheduler, worker), address),
-    ):
+    with (tmp_path / "worker.log").open("w") as log, cluster(tmp_path, 1, log) as ((scheduler, worker), address):
         process = start("--scheduler", address, engine="dask", clearances=60, radii=30)
         wait_for_blocks(process, tmp_path / "s.zarr", 2)
         ended = scheduler if end == "scheduler killed" else process
