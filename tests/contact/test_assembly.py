@@ -1,4 +1,4 @@
-"""Assembled contacts: statuses, solutions of many joints, the largest pressure, and text of contacts."""
+"""Assembled contacts: statuses, solutions of many joints, and the largest pressure."""
 
 from dataclasses import replace
 from math import inf, nan
@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.contact import closed_sphere, describe
-from ballsocket.contact.assembly import SolverResult, as_arrays, broadcast_load, make_contact, make_scalar_contact
-from ballsocket.contact.per_joint import JointContacts, joint_at, solve_per_joint
+from ballsocket.contact import closed_sphere
+from ballsocket.contact.assembly import SolverResult, as_arrays, make_contact, make_scalar_contact
+from ballsocket.contact.per_joint import JointContacts, solve_per_joint
 from ballsocket.contact.roots import find_peak_pressure
 from ballsocket.core.validity import Status
 
@@ -34,11 +34,6 @@ def assembled(kind, force, indentation, failures, load=None):
     return alone
 
 
-def test_a_solved_point_has_its_numbers():
-    contact = assembled("half_angle", 3.0, 0.1, {})
-    assert (contact.force, contact.indentation, contact.status) == (3.0, 0.1, Status.OK)
-
-
 @pytest.mark.parametrize(
     ("failures", "status"),
     [
@@ -53,7 +48,8 @@ def test_a_solved_point_has_its_numbers():
 def test_the_most_severe_failure_is_the_status(failures, status):
     contact = assembled("half_angle", 3.0, 0.1, failures)
     assert contact.status == status
-    assert np.isnan(contact.force) == status.failed
+    expected = (nan, nan) if status.failed else (3.0, 0.1)
+    assert (contact.force, contact.indentation) == pytest.approx(expected, nan_ok=True)
 
 
 def test_a_failed_point_keeps_its_load():
@@ -71,16 +67,6 @@ def test_points_outside_the_domain_have_no_result():
     contact = make_contact(MODEL, bs.Contact, joint, "indentation", load, np.array([True, False]), result, False)
     assert contact.status.tolist() == [0, int(Status.OUTSIDE_DOMAIN)]
     np.testing.assert_array_equal(np.isnan(contact.force), [False, True])
-
-
-def test_loads_broadcast_against_strengths():
-    assert broadcast_load(3.0, (1.0, 2)) == 3.0
-    assert broadcast_load(3.0, (np.ones(4),)).shape == (4,)
-    plain, joint, load = as_arrays(HIP, 3.0)
-    assert plain
-    assert load.dtype == joint.ball_radius.dtype == np.float64
-    assert not as_arrays(HIP, 3.0, np.ones(2))[0]
-    assert not as_arrays(replace(HIP, clearance=np.array([0.1])), 3.0)[0]
 
 
 def doubled(joint, load, extra):
@@ -105,8 +91,6 @@ def test_joints_are_solved_once_with_all_of_their_loads():
     np.testing.assert_allclose(solution.pressure(np.array([[0.5], [2.0]])), np.outer([0.5, 2.0], solution.force))
     np.testing.assert_allclose(solution.pressure(np.array(0.5)), 0.5 * solution.force)
     np.testing.assert_allclose(solution.combine(lambda piece: piece.error["force"]), 0.01 * solution.force)
-    assert joint_at(joint, (4,), 1).clearance == 0.2
-    assert joint_at(replace(HIP, clearance=np.array([[0.1], [0.3]])), (2, 5), 7).clearance == 0.3
 
 
 def test_each_of_many_joints_has_its_own_solution():
@@ -128,13 +112,6 @@ def test_unreached_loads_and_joints_outside_the_domain_are_nan():
     assert single.force == pytest.approx(0.2)
 
 
-def test_foundation_modulus_is_pole_pressure_over_indentation():
-    contact = bs.Exact().press(HIP, indentation=np.array([0.0, 0.05, 0.1]))
-    assert contact.foundation_modulus[0] == np.inf
-    np.testing.assert_allclose(contact.foundation_modulus[1:], contact.pole_pressure[1:] / np.array([0.05, 0.1]))
-    np.testing.assert_allclose(contact.laws.max_error, np.max(list(contact.error.values()), axis=0))
-
-
 def test_solutions_of_one_contact_need_one_contact():
     many = bs.Exact().press(HIP, force=np.array([1.0, 2.0]))
     with pytest.raises(ValueError, match=r"displacements and stresses are for one contact, got the shape \(2,\)"):
@@ -142,7 +119,6 @@ def test_solutions_of_one_contact_need_one_contact():
     for alone in (bs.Exact().press(HIP, force=0.0), bs.Exact().press(HIP, half_angle=1.569)):
         with pytest.raises(ValueError, match="displacements and stresses need a contact under load"):
             _ = alone.single_state
-    assert bs.Exact().press(HIP, force=3000.0).summary()["error"]["force"] < 1e-3
 
 
 @pytest.mark.parametrize("peak", [0.0, 0.3, 0.62, 0.9])
@@ -167,49 +143,6 @@ def test_an_excess_within_the_noise_counts_as_the_pole():
     assert largest == pytest.approx(1.0 + 0.25e-5, abs=1e-10)
 
 
-def test_numbers_are_printed_with_their_range():
-    assert describe.number_text(1 / 3, 4, "-") == "0.3333"
-    assert describe.number_text(np.array([1.0, np.nan, 2.5]), 3, "-") == "1 to 2.5"
-    assert describe.number_text(np.array([2.0, 2.0]), 3, "-") == "2"
-    assert describe.number_text(nan, 3, "-") == "-"
-    assert describe.count_text(True) == "yes"
-    assert describe.count_text(np.array([False])) == "no"
-    assert describe.count_text(np.array([True, False, True])) == "2 of 3"
-
-
-def test_one_contact_is_printed_with_six_digits_and_many_with_five():
-    force = 1234.56789
-    assert "1234.57 N" in repr(MODEL.press(HIP, force=force))
-    assert "1234.6 to 2469.1 N" in repr(MODEL.press(HIP, force=np.array([force, 2 * force])))
-    text = repr(MODEL.press(HIP, force=force))
-    assert [line.split()[0] for line in text.splitlines()[1:]][-2:] == ["utilisation", "valid"]
-    assert "utilisation" not in repr(
-        MODEL.press(replace(HIP, liner=HIP.liner.without_strengths(), ball=None), force=1.0)
-    )
-    stressed = MODEL.press(HIP, force=3000.0)
-    (shown,) = (line.split()[1] for line in repr(stressed).splitlines() if "utilisation" in line)
-    assert float(shown) == pytest.approx(stressed.utilisation, rel=2e-3)  # half of the last of three digits
-    table = MODEL.press(HIP, force=force)._repr_html_()
-    assert "<td style='text-align:left'>half angle</td>" in table
-    assert "<b>hess-forsbach</b>" in table
-
-
-def test_columns_convert_units():
-    contact = MODEL.press(HIP, force=3000.0)
-    by_name = {column.attribute: column for column in describe.COLUMNS}
-    assert by_name["half_angle"].values_of(contact) == pytest.approx(np.degrees(contact.half_angle))
-    assert by_name["half_angle"].name == "half_angle_deg"
-    assert (by_name["area"].head, by_name["area"].label) == ("A [mm²]", "contact area A [mm²]")
-    assert str(by_name["force"].values_of(MODEL.press(HIP, force=-0.0))) == "0.0"
-
-
-def test_exponents_of_polynomials_have_a_limited_sum():
-    exponents = closed_sphere.polynomial_exponents(2)
-    assert exponents[:4] == ((0, 0, 0), (0, 0, 1), (0, 0, 2), (0, 1, 0))
-    assert len(exponents) == 10
-    assert max(map(sum, exponents)) == 2
-
-
 def test_variables_of_the_hemisphere_estimate_are_clipped():
     angle, ratio, poisson = closed_sphere.polynomial_variables(0.5, 0.3, 4.0)
     assert (angle, ratio, poisson) == pytest.approx((0.5, np.log(4.0), np.log(0.22)))
@@ -224,17 +157,13 @@ def test_variables_of_the_hemisphere_estimate_are_clipped():
 def test_estimated_change_on_a_hemisphere_is_that_of_the_exact_solution(ball, load):
     joint = replace(bs.joints["hip-28"], ball=ball)
     contact = bs.Exact().press(joint, force=load)
-    assert closed_sphere.hemisphere_indentation_change(contact) == pytest.approx(
-        contact.hemisphere["indentation"], rel=0.3, abs=1e-4
-    )
+    change = closed_sphere.hemisphere_indentation_change(contact)
+    assert change == pytest.approx(contact.hemisphere["indentation"], rel=0.3, abs=1e-4)
     largest = max(abs(value) for value in contact.hemisphere.values())
     assert closed_sphere.max_hemisphere_change(contact) == pytest.approx(largest, rel=0.4, abs=2e-4)
     softer = replace(joint, ball=bs.Material(young=50e3, poisson=0.3))
     soft = bs.Exact().press(softer, force=load)
-    per_ratio = (
-        closed_sphere.hemisphere_indentation_change(soft) - closed_sphere.hemisphere_indentation_change(contact)
-    ) / 0.02
-    assert per_ratio > 0
+    assert closed_sphere.hemisphere_indentation_change(soft) > change
 
 
 @pytest.mark.parametrize(
@@ -245,7 +174,5 @@ def test_estimated_change_on_a_hemisphere_is_that_of_the_exact_solution(ball, lo
     ],
 )
 def test_shapes_that_do_not_broadcast_are_refused(press):
-    with pytest.raises(
-        ValueError, match=r"the shapes \(2,\), \(3,\) of joint, load and direction do not broadcast: an axis"
-    ):
+    with pytest.raises(ValueError, match=r"the shapes \(2,\), \(3,\) of joint, load and direction do not broadcast"):
         press()

@@ -1,19 +1,20 @@
-"""Contract of all models: domain, pickling, broadcasting and zero load."""
+"""All models: domain, pickling, broadcasting, delegation of a wrapped model, and validity near the rim of a cup."""
 
 import pickle
+from dataclasses import dataclass
+from math import degrees, pi, radians
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.contact import Model, ModelInfo, ModelWrapper
 
 from ..joints import HIP
 
-GOOD = {"ball_radius": 16.0, "clearance": 0.1, "liner_thickness": 6.0, "liner": bs.UHMWPE}
-
 
 def test_a_modulus_outside_its_domain_states_the_reason():
-    joint = bs.Joint(**(GOOD | {"liner": bs.Material(young=1000.0, poisson=0.5)}))
+    joint = HIP.replace(liner=bs.Material(young=1000.0, poisson=0.5))
     with pytest.raises(ValueError, match=r"spherical-vessel has no answer for ν = 0\.5: the modulus is unbounded"):
         bs.spherical_vessel(joint)
 
@@ -40,10 +41,96 @@ def test_parameters_of_models_broadcast():
             bs.polynomial(*constants)
 
 
+ATTRIBUTES = {name for cls in (Model, ModelInfo) for name in cls.__annotations__} | {
+    name for cls in (Model, ModelInfo) for name, value in vars(cls).items() if isinstance(value, property)
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Renamed(ModelWrapper):
+    @property
+    def name(self) -> str:
+        return "renamed"
+
+
+@pytest.mark.parametrize("model", [bs.Exact(), bs.Hertz(), bs.LiuReconstruction(), bs.FiniteElement()], ids=type)
+def test_a_wrapper_delegates_every_attribute_that_it_does_not_override(model):
+    wrapper = Renamed(model=model)
+    for name in ATTRIBUTES - {"name", "off_axis"}:
+        assert getattr(wrapper, name) == getattr(model, name), name
+    assert wrapper.name == "renamed"
+    assert isinstance(wrapper, Model)
+
+
+def test_a_wrapper_presses_as_the_wrapped_model():
+    model, wrapped = bs.HessForsbach(), Renamed(model=bs.HessForsbach())
+    for force in (3000.0, 1e-9):
+        assert wrapped.press(HIP, force=force).indentation == model.press(HIP, force=force).indentation
+    assert wrapped.law(HIP)(0.05) == model.law(HIP)(0.05)
+    assert wrapped.press(HIP, force=1.0).model is wrapped
+
+
+def test_a_model_info_without_a_contact_has_no_laws():
+    with pytest.raises(NotImplementedError, match="pin-in-hole has no laws of a contact"):
+        bs.PinInHole().numpy_laws(HIP, 0.1)
+
+
+NARROW = bs.Cup(arc_of_cover=radians(60.0))
+
+
 @pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
-def test_a_contact_without_load_is_zero(model):
-    contact = model.press(HIP, force=[])
-    assert contact.indentation.shape == (0,)
-    assert contact.max_pressure.shape == (0,)
-    assert contact.valid.shape == (0,)
-    assert "no answer" in repr(contact)
+def test_a_model_without_a_rim_is_invalid_where_its_contact_passes_the_rim(model):
+    contact = model.in_cup(NARROW).press(HIP, force=3000.0)
+    whole = model.press(HIP, force=3000.0)
+    assert not contact.valid
+    assert any("use fem" in note for note in contact.notes)
+    assert contact.max_pressure == pytest.approx(whole.max_pressure, rel=1e-12)  # its answer is the same
+    assert contact.model.name == model.name
+    assert model.in_cup(bs.Cup()) is model
+
+
+def test_finite_elements_end_the_contact_at_the_rim():
+    fem = bs.FiniteElement(meshes=1)
+    narrow = fem.in_cup(NARROW).press(HIP, force=3000.0)
+    assert degrees(narrow.half_angle) == pytest.approx(30.0, abs=0.01)
+    assert narrow.max_pressure > 1.3 * bs.Exact().press(HIP, force=3000.0).max_pressure
+
+
+@pytest.mark.parametrize(("gap", "trusted"), [(0.9, False), (1.1, True)])
+def test_validity_ends_a_liner_thickness_before_the_rim(gap, trusted):
+    exact = bs.Exact().press(HIP, force=3000.0)
+    rim = exact.half_angle + gap * HIP.liner_thickness / HIP.socket_radius
+    contact = bs.Exact().in_cup(bs.Cup(arc_of_cover=2 * rim)).press(HIP, force=3000.0)
+    assert contact.valid is trusted
+
+
+def test_finite_elements_agree_at_the_limit_of_validity():
+    """At one liner thickness from the rim, ν 0.46: d 2.2 % deeper than in a whole sphere, pmax 0.8 % higher."""
+    liner = bs.Material(young=1000.0, poisson=0.46)
+    joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=5.0, liner=liner)
+    exact = bs.Exact().press(joint, force=3000.0)
+    rim = exact.half_angle + joint.liner_thickness / joint.socket_radius
+    meshed = bs.FiniteElement(cup=bs.Cup(arc_of_cover=2 * rim), meshes=1).press(joint, force=3000.0)
+    assert 0.0 < meshed.indentation / exact.indentation - 1 < 0.025
+    assert 0.0 < meshed.max_pressure / exact.max_pressure - 1 < 0.01
+
+
+def test_tilt_brings_the_rim_closer_to_the_contact():
+    for tilt, valid in ((0.0, True), (45.0, False)):
+        cup = bs.Cup(arc_of_cover=radians(170.0), inclination=radians(tilt))
+        assert bs.Exact().in_cup(cup).press(HIP, force=3000.0).valid is valid
+
+
+def test_a_sliding_liner_is_valid_only_for_finite_elements():
+    sliding = bs.Cup(interface=bs.Interface.SLIDING)
+    contact = bs.Exact().in_cup(sliding).press(HIP, force=3000.0)
+    assert not contact.valid
+    assert any("slides on its backing" in note for note in contact.notes)
+    assert bs.FiniteElement().in_cup(sliding).cup is sliding
+
+
+def test_comparisons_and_studies_take_a_cup():
+    answers = bs.compare(HIP, force=np.array([300.0, 3000.0]), cup=bs.Cup(arc_of_cover=2 * pi / 3))
+    assert answers["exact"].valid.tolist() == [True, False]
+    found = bs.study(bs.Exact().in_cup(NARROW), HIP, force=[3000.0])
+    assert not found.valid.item()

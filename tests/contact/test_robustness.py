@@ -67,12 +67,8 @@ ABSURD = [(1e-200, 18.0), (1e-308, 18.0), (1.0, 1e-160), (1e-300, 1e200), (1e300
 @pytest.mark.parametrize(("young", "radius"), ABSURD)
 @pytest.mark.parametrize("load", [{"half_angle": 0.5}, {"force": 1.0}, {"indentation": 1e-3}])
 def test_extreme_joints_have_a_status_or_numbers(young, radius, load):
-    joint = bs.Joint(
-        ball_radius=radius,
-        clearance=1e-3 * radius,
-        liner_thickness=radius / 2,
-        liner=bs.Material(young=young, poisson=0.4),
-    )
+    liner = bs.Material(young=young, poisson=0.4)
+    joint = bs.Joint(ball_radius=radius, clearance=1e-3 * radius, liner_thickness=radius / 2, liner=liner)
     contact = bs.Exact().press(joint, **load)
     known = [isfinite(getattr(contact, name)) for name in NUMBERS]
     assert all(known) or (contact.status.failed and contact.notes)
@@ -95,15 +91,14 @@ def test_empty_arrays_give_empty_contacts(model):
 
 
 def test_integers_of_all_types_are_numbers():
+    sizes = {"ball_radius": 250, "clearance": 10, "liner_thickness": 100}
     small = bs.Joint(
-        ball_radius=np.array([250], dtype=np.uint8),
-        clearance=np.array([10], dtype=np.uint8),
-        liner_thickness=np.uint8(100),
+        **{name: np.array([size], dtype=np.uint8) for name, size in sizes.items()} | {"liner_thickness": np.uint8(100)},
         liner=bs.Material(young=np.int8(100), poisson=0.3),
     )
     assert small.socket_radius.tolist() == [260.0]
     assert small.thickness_ratio.tolist() == [2.6]
-    twin = bs.Joint(ball_radius=250.0, clearance=10.0, liner_thickness=100.0, liner=bs.Material(young=100, poisson=0.3))
+    twin = bs.Joint(**sizes, liner=bs.Material(young=100.0, poisson=0.3))
     force = bs.HessForsbach().press(small, indentation=np.uint8(200)).force
     assert force == pytest.approx(bs.HessForsbach().press(twin, indentation=200.0).force, rel=1e-12)
 

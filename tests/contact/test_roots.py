@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ballsocket.contact.roots import bracketed_newton_step, increasing_root, scalar_increasing_root
+from ballsocket.contact.roots import increasing_root
 
 
 def cube(x):
@@ -70,15 +70,6 @@ def test_roots_of_different_targets_converge_together():
     np.testing.assert_allclose(roots, np.cbrt(targets), rtol=1e-7)
 
 
-def test_further_arguments_reach_the_law():
-    def scaled(x, factor, offset):
-        return factor * x + offset, factor + 0.0 * x
-
-    assert increasing_root(scaled, 7.0, 0.0, 10.0, 1.0, arguments=(2.0, 1.0)) == pytest.approx(3.0)
-    found = increasing_root(scaled, np.array([7.0]), np.zeros(1), np.full(1, 10.0), np.ones(1), arguments=(2.0, 1.0))
-    assert found == pytest.approx(3.0)
-
-
 def test_the_number_of_evaluations_is_limited():
     calls = []
 
@@ -86,37 +77,18 @@ def test_the_number_of_evaluations_is_limited():
         calls.append(x)
         return cube(x)
 
-    scalar_increasing_root(counted, 5.0, 0.0, 4.0, 4.0, (), 3, 1e-8)
+    increasing_root(counted, 5.0, 0.0, 4.0, 4.0, steps=3)
     assert len(calls) == 3
     calls.clear()
-    scalar_increasing_root(counted, 5.0, 0.0, 4.0, 4.0, (), 60, 1e-8)
+    increasing_root(counted, 5.0, 0.0, 4.0, 4.0)
     assert len(calls) <= 8  # quadratic convergence
     calls.clear()
-    loose = scalar_increasing_root(counted, 5.0, 0.0, 4.0, 4.0, (), 60, 0.1)
+    loose = increasing_root(counted, 5.0, 0.0, 4.0, 4.0, tolerance=0.1)
     assert len(calls) <= 5
     assert loose == pytest.approx(5.0 ** (1 / 3), rel=0.02)
     calls.clear()
     increasing_root(counted, np.full(2, 5.0), np.zeros(2), np.full(2, 4.0), np.full(2, 4.0), steps=2)
     assert len(calls) == 2
-
-
-def test_one_step_shrinks_the_bracket():
-    x, low, high, fresh, moved = bracketed_newton_step(
-        cube, 8.0, (), 1e-8, np.array([1.0, 3.0, 2.0]), np.zeros(3), np.full(3, 4.0), np.array([True, True, True])
-    )
-    np.testing.assert_allclose(x, [1 + 7 / 3, 3 - 19 / 27, 2.0])
-    np.testing.assert_array_equal(low, [1.0, 0.0, 2.0])
-    np.testing.assert_array_equal(high, [4.0, 3.0, 2.0])
-    np.testing.assert_array_equal(moved, [True, True, False])
-    assert fresh.tolist() == [True, False, False]
-
-
-def test_steps_out_of_the_bracket_try_its_end_and_then_its_middle():
-    far = (np.array([0.1]), np.zeros(1), np.full(1, 4.0))
-    x, *_ = bracketed_newton_step(cube, 8.0, (), 1e-8, *far, np.array([True]))
-    assert x == [4.0]
-    x, *_ = bracketed_newton_step(cube, 8.0, (), 1e-8, *far, np.array([False]))
-    assert x == pytest.approx([(0.1 + 4.0) / 2])
 
 
 @pytest.mark.parametrize("steps", [2, 60], ids=["unrolled", "loop"])

@@ -1,11 +1,12 @@
-"""Force laws of all models, compared with presses."""
+"""Force laws of all models, compared with presses, and as piecewise polynomials for forces known exactly."""
 
-from math import inf, isnan, nan, radians
+from math import e, exp, inf, isnan, nan, radians
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
+from ballsocket.contact.law import CurveLaw, fit_curve_law
 
 from ..extent import either
 from ..joints import HIP
@@ -43,6 +44,7 @@ def test_a_law_ends_where_presses_fail(model):
         assert deepest == HIP.socket_radius
     for depth in (nan, inf):
         assert np.isnan(law(depth)).all()
+    assert law(-1e-3) == law(-inf) == (0.0, 0.0)
 
 
 @EVERY
@@ -53,12 +55,6 @@ def test_tangent_stiffness_is_the_slope_of_the_force(model):
         if not isnan(force):
             slope = (law(d * (1 + 1e-5))[0] - law(d * (1 - 1e-5))[0]) / (2e-5 * d)
             assert slope == pytest.approx(tangent, rel=2e-7, abs=1e-6)
-
-
-@EVERY
-def test_force_is_zero_without_contact(model):
-    law = model.law(HIP)
-    assert law(-1e-3) == law(-inf) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("name", ["exact", "tabulated", "refined", "plane-layer"])
@@ -96,3 +92,48 @@ def test_indentations_that_overflow_are_nan():
 def test_a_cup_does_not_change_the_law_of_a_model_without_a_rim(model):
     cup = bs.Cup(arc_of_cover=radians(120.0))
     assert model.in_cup(cup).law(HIP)(0.05) == model.law(HIP)(0.05)
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
+def test_a_power_law_is_reproduced(exponent):
+    law = fit_curve_law(lambda d: 7.0 * d**exponent, 1e-6, 2.0)
+    assert (law.shallowest, law.deepest) == (1e-6, 2.0)
+    for d in (1e-9, 1e-6, 3e-4, 0.1, 1.999, 2.0):
+        force, stiffness = law(d)
+        assert force == pytest.approx(7.0 * d**exponent, rel=1e-10)
+        assert stiffness == pytest.approx(exponent * 7.0 * d ** (exponent - 1), rel=1e-8)
+
+
+def test_a_smooth_law_is_reproduced():
+    law = fit_curve_law(lambda d: 3.0 * d * np.exp(d), 1e-5, 1.0)
+    for d in np.geomspace(1e-5, 1.0, 57):
+        force, stiffness = law(float(d))
+        assert force == pytest.approx(3.0 * d * np.exp(d), rel=1e-10)
+        assert stiffness == pytest.approx(3.0 * (1 + d) * np.exp(d), rel=1e-8)
+
+
+def test_a_law_is_zero_without_contact_and_nan_beyond_its_end():
+    law = fit_curve_law(lambda d: np.where(d < 0.5, d, np.nan), 1e-4, 2.0)
+    assert law.deepest == pytest.approx(0.5, rel=3e-6)
+    assert law.deepest < 0.5 * (1 - 0.9e-6)  # presses so near to the end may fail
+    assert law(0.0) == law(-1.0) == (0.0, 0.0)
+    assert all(map(isnan, law(0.5)))
+    assert all(map(isnan, law(nan)))
+
+
+def test_a_force_that_is_not_positive_has_no_law():
+    with pytest.raises(TypeError, match="no force law: the load at an indentation of 0.001 mm must be above 0 N"):
+        fit_curve_law(lambda d: 0.0 * d, 1e-3, 1.0)
+
+
+def test_pieces_are_polynomials_of_a_coordinate_from_minus_one_to_one():
+    """ln F = 2 + x on the first piece and 4 - x² on the second, with ln d from 0 to 2."""
+    pieces = np.array([[0, 1, 2], [-1, 0, 4.0]])
+    law = CurveLaw(shallowest=1.0, deepest=e**2, first=0.0, density=1.0, pieces=pieces)
+    assert law(1.0) == pytest.approx((e, 2 * e))
+    force, stiffness = law(exp(1.75))
+    assert force == pytest.approx(exp(4 - 0.25))
+    assert stiffness == pytest.approx(-2 * 0.5 * 2 * force / exp(1.75))
+    force, stiffness = law(0.5)  # a power of d below the first piece
+    assert force == pytest.approx(e * 0.5**2)
+    assert stiffness == pytest.approx(2 * force / 0.5)
