@@ -7,34 +7,28 @@ from importlib import import_module
 
 import pytest
 
-from ballsocket.core.deprecation import (
-    MOVED,
-    RenamedAttribute,
-    present_module_path,
-    renamed_arguments,
-    renamed_fields,
-    renamed_names,
-)
+from ballsocket.core import deprecation
+from ballsocket.core.deprecation import RenamedAttribute, renamed_arguments, renamed_fields, renamed_names
 
 
-@pytest.mark.parametrize(("old", "new"), [*MOVED.items()][::60])
+@pytest.mark.parametrize(("old", "new"), [*deprecation.MOVED.items()][::60])
 def test_an_old_path_imports_the_module(old, new):
     assert import_module(old) is import_module(new)
-    assert present_module_path("ballsocket.models.half_space") is None
+    assert deprecation.present_module_path("ballsocket.models.half_space") is None
 
 
 def test_imports_of_version_1_still_run():
-    lines = (
-        "import ballsocket as bs",
-        "from ballsocket.elastic.exact import Exact",
-        "from ballsocket.sphere import Sphere",
-        "from ballsocket.model import Model",
-        "import ballsocket.quantities, ballsocket.joint.joint",
-        "assert Exact is bs.Exact and Sphere is bs.Sphere and Model is bs.Model",
-        "assert bs.quantities.QUANTITIES and bs.fem.model.FiniteElement is bs.FiniteElement",
-        "assert bs.joint.joint.Joint is bs.Joint",
-    )
-    subprocess.run([sys.executable, "-W", "error", "-c", "\n".join(lines)], check=True)
+    code = """
+import ballsocket as bs
+from ballsocket.elastic.exact import Exact
+from ballsocket.sphere import Sphere
+from ballsocket.model import Model
+import ballsocket.quantities, ballsocket.joint.joint
+assert Exact is bs.Exact and Sphere is bs.Sphere and Model is bs.Model
+assert bs.quantities.QUANTITIES and bs.fem.model.FiniteElement is bs.FiniteElement
+assert bs.joint.joint.Joint is bs.Joint
+"""
+    subprocess.run([sys.executable, "-W", "error", "-c", code], check=True)
 
 
 class Cup:
@@ -50,7 +44,6 @@ class Note:
 
 @renamed_arguments(listen="progress")
 def work(*, progress):
-    """Return the argument."""
     return progress
 
 

@@ -8,6 +8,7 @@ import time
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from datetime import datetime
 from importlib import import_module
 from ipaddress import ip_address
@@ -19,7 +20,7 @@ import pytest
 from ballsocket.core.executors import Distributed, Processes, Serial
 from ballsocket.core.executors import processes as module
 from ballsocket.core.executors.dask import local_cluster
-from ballsocket.core.executors.processes import available_cores, limit_threads
+from ballsocket.core.executors.processes import available_cores
 
 KINDS = Processes, Distributed
 WORK = """
@@ -47,7 +48,7 @@ class Dies:
         if number == self.at and deaths < self.times:
             (self.folder / str(deaths)).touch()
             os.kill(os.getpid(), KILL)
-        return os.environ["OPENBLAS_NUM_THREADS"]
+        return {os.environ[f"{name}_NUM_THREADS"] for name in ("OPENBLAS", "MKL", "OMP")}
 
 
 @dataclass(frozen=True)
@@ -85,10 +86,11 @@ def test_no_pieces_start_no_worker(work, monkeypatch):
 
 def test_a_killed_process_costs_an_attempt_and_has_one_thread(tmp_path, work, monkeypatch):
     monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
     executor = Processes(workers=1, retries=1)
     results = dict(executor.run(work.Dies(tmp_path / "deaths", at=1, times=1), range(3)))
-    assert results == dict.fromkeys(range(3), "1")
-    assert "OPENBLAS_NUM_THREADS" not in os.environ
+    assert results == {number: {"1"} for number in range(3)}
+    assert (os.environ.get("OPENBLAS_NUM_THREADS"), os.environ["OMP_NUM_THREADS"]) == (None, "7")
 
 
 def test_a_piece_that_always_kills_its_process_is_an_error(tmp_path, work):
@@ -97,30 +99,21 @@ def test_a_piece_that_always_kills_its_process_is_an_error(tmp_path, work):
     assert len(list((tmp_path / "deaths").iterdir())) == 2
 
 
-WRONG_ADDRESSES = ("", "nonsense", "tcp://", "udp://10.0.0.1:1", 8786)
-ADDRESS = "address = {!r} is not allowed: a Dask scheduler has an address such as"
-
-
 @pytest.mark.parametrize(
     ("make", "options", "message"),
     [
-        *(
-            (kind, {"workers": n}, f"workers = {n} is not .*: it must be 1 to 1000")
-            for kind in KINDS
-            for n in (0, 1001)
-        ),
-        (Distributed, {"workers": 1.5}, "workers = 1.5 is not allowed: a whole number"),
-        (Distributed, {"workers": True}, "workers = True is not allowed: a whole number"),
+        *((kind, {"workers": n}, f"workers = {n} is not .* 1 to 1000") for kind in KINDS for n in (0, 1001)),
+        *((Distributed, {"workers": n}, f"workers = {n} is not allowed: a whole number") for n in (1.5, True)),
         (Distributed, {"retries": -1}, "retries = -1 is not allowed: a whole number from 0"),
         (Distributed, {"retries": "x"}, "retries = 'x' is not allowed: a whole number"),
-        (
-            Distributed,
-            {"address": "tcp://host:1", "workers": 2},
-            "workers = 2 is not allowed for the scheduler at",
-        ),
+        (Distributed, {"address": "tcp://host:1", "workers": 2}, "workers = 2 is not allowed for the scheduler at"),
         *(
-            (Distributed, {"address": a}, ADDRESS.format(a))
-            for a in ("", "nonsense", "tcp://", "udp://10.0.0.1:1", 8786)
+            (
+                Distributed,
+                {"address": address},
+                f"address = {address!r} is not allowed: a Dask scheduler has",
+            )
+            for address in ("", "nonsense", "tcp://", "udp://10.0.0.1:1", 8786)
         ),
         (Distributed, {"security": object()}, "security needs the address of a scheduler"),
     ],
@@ -138,17 +131,6 @@ def test_available_cores_are_those_of_this_process(monkeypatch):
     for count, cores in ((5, 5), (None, 1)):
         monkeypatch.setattr(os, "cpu_count", lambda count=count: count)
         assert available_cores() == cores
-    monkeypatch.setattr(module, "available_cores", lambda: 5)
-    assert (Processes()._n_workers, Processes(workers=2)._n_workers) == (5, 2)
-
-
-def test_threads_are_limited_only_within_the_block(monkeypatch):
-    monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
-    with limit_threads():
-        assert [os.environ[f"{name}_NUM_THREADS"] for name in ("OPENBLAS", "MKL", "OMP")] == ["1"] * 3
-    assert os.environ["OMP_NUM_THREADS"] == "7"
-    assert "MKL_NUM_THREADS" not in os.environ
 
 
 class FakePool:
@@ -162,32 +144,18 @@ class FakePool:
             raise BrokenProcessPool
         self.submitted.append(number)
         future = Future()
-        if number in self.dies_at:
-            future.set_exception(BrokenProcessPool())
-        else:
-            future.set_result(number)
+        future.set_exception(BrokenProcessPool()) if number in self.dies_at else future.set_result(number)
         return future
 
 
-def test_few_pieces_are_submitted_at_a_time(monkeypatch):
+def test_few_pieces_are_submitted_at_a_time():
     pool, pending = FakePool(), deque(range(10))
     results = module._submit_until_worker_dies(pool, pending, 4)
     next(results)
     assert pool.submitted == [0, 1, 2, 3]
-    finished = [number for number, _ in results]
+    assert len(list(results)) == 9
     assert pool.submitted == list(range(10))
-    assert len(finished) == 9
     assert not pending
-    limits = []
-
-    def record(pool, pending, limit):
-        limits.append(limit)
-        pending.clear()
-        return iter(())
-
-    monkeypatch.setattr(module, "_submit_until_worker_dies", record)
-    assert list(Processes(workers=3).run(abs, [1])) == []
-    assert limits == [6]  # two for each worker
 
 
 def test_a_broken_pool_leaves_the_other_pieces_pending():
@@ -195,12 +163,10 @@ def test_a_broken_pool_leaves_the_other_pieces_pending():
     results = dict(module._submit_until_worker_dies(pool, pending, 3))
     assert results[1] is module._WORKER_DIED
     assert sorted(results) == pool.submitted
-    assert sorted([*results, *pending]) == list(range(9))
     assert pending
-
+    assert sorted([*results, *pending]) == list(range(9))
     pool, pending = FakePool(refuses_at={2}), deque(range(4))
-    results = dict(module._submit_until_worker_dies(pool, pending, 3))
-    assert sorted(results) == [0, 1]
+    assert sorted(dict(module._submit_until_worker_dies(pool, pending, 3))) == [0, 1]
     assert list(pending) == [2, 3]
 
 
@@ -222,7 +188,7 @@ time.sleep(60)
 
 
 def is_running(process):
-    """Check if a process runs; an ended process of another parent may stay as a zombie."""
+    """Check if a process runs and is no zombie."""
     try:
         status = Path(f"/proc/{process}/stat").read_text(encoding="utf-8")
     except FileNotFoundError:
@@ -247,13 +213,14 @@ def test_a_worker_ends_with_its_parent(before):
 
 # Dask
 
+CLUSTER = {"threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50, "processes": False}
+
 
 @pytest.fixture(scope="module")
 def scheduler():
     """Return the address of a Dask scheduler with a worker in this process."""
     distributed = pytest.importorskip("distributed")
-    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
-    with distributed.LocalCluster(processes=False, **options) as cluster:
+    with distributed.LocalCluster(n_workers=1, **CLUSTER) as cluster:
         yield cluster.scheduler_address
 
 
@@ -300,17 +267,14 @@ def test_missing_workers_are_reported_within_seconds(monkeypatch, caplog):
     def warnings():
         return [record.getMessage() for record in caplog.records if record.name == "ballsocket.executors"]
 
-    options = {"threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50, "processes": False}
-    with distributed.LocalCluster(n_workers=0, **options) as cluster, ThreadPoolExecutor() as pool:
+    with distributed.LocalCluster(n_workers=0, **CLUSTER) as cluster, ThreadPoolExecutor() as pool:
         waiting = pool.submit(list, Distributed(address=cluster.scheduler_address).run(abs, [-1]))
         wait_until(warnings)
         assert not waiting.done()
         cluster.scale(1)
         assert waiting.result(60) == [(-1, 1)]
-    address = cluster.scheduler_address
-    assert warnings() == [
-        f"the Dask scheduler at {address} has no workers: the work waits for the first one; Ctrl-C stops it"
-    ]
+    (warning,) = warnings()
+    assert warning.startswith(f"the Dask scheduler at {cluster.scheduler_address} has no workers")
 
 
 def write_certificate(folder):
@@ -342,8 +306,7 @@ def write_certificate(folder):
 def test_tls_needs_the_certificates(tmp_path):
     dask, distributed = pytest.importorskip("dask"), pytest.importorskip("distributed")
     security = distributed.Security(**write_certificate(tmp_path))
-    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
-    with distributed.LocalCluster(security=security, protocol="tls", processes=False, **options) as cluster:
+    with distributed.LocalCluster(n_workers=1, security=security, protocol="tls", **CLUSTER) as cluster:
         address = cluster.scheduler_address
         assert address.startswith("tls://")
         assert list(Distributed(address=address, security=security).run(abs, [-1])) == [(-1, 1)]
@@ -363,19 +326,15 @@ def test_a_local_cluster_has_one_thread_a_worker_and_is_not_reachable(monkeypatc
     distributed = pytest.importorskip("distributed")
     started = {}
 
-    class Cluster:
-        def __init__(self, **options):
-            failures = dask.config.get("distributed.scheduler.allowed-failures")
-            trim = dask.config.get("distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_")
-            started.update(options, failures=failures, trim=trim)
+    @contextmanager
+    def cluster(**options):
+        failures = dask.config.get("distributed.scheduler.allowed-failures")
+        trim = dask.config.get("distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_")
+        started.update(options, failures=failures, trim=trim)
+        yield
+        started["stopped"] = True
 
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *error):
-            started["stopped"] = True
-
-    monkeypatch.setattr(distributed, "LocalCluster", Cluster)
+    monkeypatch.setattr(distributed, "LocalCluster", cluster)
     with local_cluster(3, retries=2):
         assert (started["n_workers"], started["threads_per_worker"], started["host"]) == (3, 1, "127.0.0.1")
         assert (started["failures"], started["trim"], started["dashboard_address"]) == (2, None, "127.0.0.1:0")

@@ -18,22 +18,8 @@ from ballsocket.contact.describe import COLUMNS
 from ballsocket.core import quantities
 from ballsocket.core.deprecation import RenamedAttribute
 from ballsocket.core.kinds import Unit
-from ballsocket.core.quantities import (
-    AIM,
-    BEARING,
-    CONTACT,
-    CUP,
-    DERIVED,
-    FIELD,
-    FIT,
-    JOINT,
-    LAYER,
-    LOADS,
-    MATERIAL,
-    PARTS,
-    QUANTITIES,
-    STRESS_LIMITS,
-)
+from ballsocket.core.quantities import BEARING, CONTACT, DERIVED, FIT, JOINT, QUANTITIES, STRESS_LIMITS
+from ballsocket.core.sources import Source, bibliography, find_cited_keys
 from ballsocket.files.units import parse
 from ballsocket.studies.design import check_values, grid
 from ballsocket.studies.limits import LIMITED_NAMES as LIMITED
@@ -57,23 +43,20 @@ def _numbers(thing):
 
 def test_every_quantity_of_contact_joint_and_cup_is_an_attribute_and_no_other_number_is_one():
     contact = bs.HessForsbach().press(HIP, force=3000.0)
-    assert _numbers(contact) | _numbers(HIP) == {*CONTACT, *BEARING, *DERIVED, *JOINT, *FIT, "shell"} - {
-        "edge_distance"
-    }
-    assert _numbers(replace(HIP.liner, **dict.fromkeys(STRESS_LIMITS, 1.0))) == {*MATERIAL, *STRESS_LIMITS}
-    assert _numbers(bs.Layer(thickness=3.0, material=bs.TITANIUM)) == set(LAYER)
-    assert _numbers(bs.Cup()) - {"rim"} == set(CUP)
+    known = {*CONTACT, *BEARING, *DERIVED, *JOINT, *FIT, "shell"} - {"edge_distance"}
+    assert _numbers(contact) | _numbers(HIP) == known
+    assert _numbers(replace(HIP.liner, **dict.fromkeys(STRESS_LIMITS, 1.0))) == {*quantities.MATERIAL, *STRESS_LIMITS}
+    assert _numbers(bs.Layer(thickness=3.0, material=bs.TITANIUM)) == set(quantities.LAYER)
+    assert _numbers(bs.Cup()) - {"rim"} == set(quantities.CUP)
 
 
 @cache
 def units():
-    """Make the registry of pint once; it takes 0.2 s."""
     return pint.UnitRegistry()
 
 
 @EVERY
-def test_units_are_read_and_have_the_stated_factors(quantity):
-    """A number as files give it is the number inside, and the factors are those of the units' names."""
+def test_units_are_read_and_have_the_stated_factors_and_keys_of_angles_end_in_degrees(quantity):
     for unit in (Unit(quantity.unit), quantity.written, quantity.shown):
         text = unit.text.replace("°", "deg") if unit.text not in ("", "1") else ""
         assert parse(quantity.name, f"{unit.factor!r} {text}".strip(), quantity.kind) == pytest.approx(1.0, rel=1e-15)
@@ -82,9 +65,6 @@ def test_units_are_read_and_have_the_stated_factors(quantity):
         there = inside.to((unit.text or "1").replace("°", "deg").replace("²", "**2"))
         assert there.magnitude == pytest.approx(unit.factor, rel=1e-15)
 
-
-@EVERY
-def test_keys_of_angles_end_in_degrees(quantity):
     assert (quantity.written.text == "°") == (quantity.unit == "rad") == quantity.key.endswith("_deg")
 
 
@@ -92,17 +72,17 @@ def test_tables_studies_and_json_use_the_same_quantities():
     assert [column.quantity for column in COLUMNS] == list(CONTACT.values())
     assert all(column.quantity is QUANTITIES[column.attribute] for column in COLUMNS)
     assert all(parameter is QUANTITIES[name] for name, parameter in PARAMETERS.items())
-    assert all(load is PARAMETERS[name] is CONTACT[name] for name, load in LOADS.items())
+    assert all(load is PARAMETERS[name] is CONTACT[name] for name, load in quantities.LOADS.items())
     assert set(ANSWERS) == {*CONTACT, *BEARING}
     assert set(LIMITED) <= set(QUANTITIES)
     assert all(any(head.startswith(QUANTITIES[name].symbol) for head in COLUMN_HEADS) for name in quantities.HEADLINE)
 
 
 def test_names_symbols_and_titles_are_unique():
-    assert len(QUANTITIES) == sum(
-        map(len, (CONTACT, BEARING, JOINT, FIT, MATERIAL, STRESS_LIMITS, PARTS, LAYER, CUP, AIM, FIELD, DERIVED))
-    )
-    shared = {each.symbol for each in (*MATERIAL.values(), *PARTS.values())}
+    groups = [CONTACT, BEARING, JOINT, FIT, STRESS_LIMITS, DERIVED, quantities.MATERIAL, quantities.PARTS]
+    groups += [quantities.LAYER, quantities.CUP, quantities.AIM, quantities.FIELD]
+    assert len(QUANTITIES) == sum(map(len, groups))
+    shared = {each.symbol for each in (*quantities.MATERIAL.values(), *quantities.PARTS.values())}
     symbols = [each.symbol for each in QUANTITIES.values() if each.symbol and each.symbol not in shared]
     assert sorted(symbols) == sorted(set(symbols))
     assert len({each.title.casefold() for each in QUANTITIES.values()}) == len(QUANTITIES)
@@ -119,15 +99,8 @@ def test_a_study_is_labelled_as_the_table_says():
         assert found[name].attrs == variable_attributes(name) == words
 
 
-_WRONG = {
-    "force": -1.0,
-    "indentation": inf,
-    "half_angle": pi / 2,
-    "clearance": -0.1,
-    "arc_of_cover": 0.5,
-    "anteversion": 2.0,
-    "angle": 4.0,
-}
+_WRONG = {"force": -1.0, "indentation": inf, "half_angle": pi / 2, "clearance": -0.1}
+_WRONG |= {"arc_of_cover": 0.5, "anteversion": 2.0, "angle": 4.0}
 
 
 @pytest.mark.parametrize("quantity", CHECKED, ids=attrgetter("name"))
@@ -142,16 +115,53 @@ def test_messages_of_invalid_numbers_state_what_is_allowed(quantity):
 
 
 @pytest.mark.parametrize(
-    ("name", "ends"), [("poisson", (-1.0, 0.5)), ("half_angle", (0.0, pi / 2)), ("force", (0, inf))]
+    ("name", "inside", "outside"),
+    [
+        ("poisson", (np.nextafter(-1.0, 0.0), 0.5), (-1.0, np.nextafter(0.5, 1.0))),
+        ("half_angle", (0.0, np.nextafter(pi / 2, 0.0)), (np.nextafter(0.0, -1.0), pi / 2)),
+        *((name, (0.0, 1e300), (-1e-9, inf)) for name in ("force", "clearance", "chamfer")),
+        *((name, (1e-200, inf), (0.0, 1e-301)) for name in ("liner_thickness", "thickness")),
+        *((name, (1e-200, 1e200), (0.0, inf)) for name in ("ball_radius", "young", "yield_stress")),
+        ("angle", (-pi, float(np.float32(pi))), (-pi - 1e-3, pi + 1e-3)),
+        *(
+            (name, tuple(np.radians(ends)), (np.radians(ends[0]) - 1e-6, np.radians(ends[1]) + 1e-6))
+            for name, *ends in (
+                *(("arc_of_cover", 40.0, 340.0), ("inclination", 0.0, 90.0), ("anteversion", -90.0, 90.0)),
+                *(("tilt", 0.0, 180.0), ("azimuth", 0.0, 360.0)),
+            )
+        ),
+    ],
 )
-def test_allowed_ranges_end_at_the_stated_limits(name, ends):
-    low, high = ends
+def test_allowed_ranges_end_at_the_stated_limits(name, inside, outside):
     allows = QUANTITIES[name].allows
-    assert allows(low) == (name != "poisson")
-    assert allows(high) == (name == "poisson")
-    assert allows(np.nextafter(low, 1.0))
-    assert allows(np.nextafter(high, 0.0))
-    assert not allows(np.nextafter(low, -2.0))
+    assert all(map(allows, inside))
+    assert not any(map(allows, outside))
+
+
+def test_an_angle_in_degrees_gets_a_hint_in_radians():
+    with pytest.raises(ValueError, match="half_angle = 45 is not .*; 45 degrees are 0.7854 radians"):
+        QUANTITIES["half_angle"].check(45.0)
+    assert QUANTITIES["half_angle"].radian_hint(100.0) == QUANTITIES["force"].radian_hint(1.0) == ""
+
+
+def test_columns_and_labels_have_their_unit():
+    assert [QUANTITIES[name].column for name in ("indentation", "conformity")] == ["indentation_mm", "conformity"]
+    assert (QUANTITIES["half_angle"].column, QUANTITIES["half_angle"].key) == ("half_angle_deg", "half_angle_deg")
+    assert QUANTITIES["indentation"].label() == "indentation d [µm]"
+    assert QUANTITIES["edge_distance"].label() == "edge distance [mm]"
+
+
+def test_sources_have_authors_and_year():
+    key = bs.HessForsbach().sources[0].key
+    source = Source(key, "Eq. (13)")
+    assert source.doi == "10.3390/app112311170"
+    assert source.authors_and_year == "Heß & Forsbach 2021"
+    assert str(source) == "Heß & Forsbach 2021, Eq. (13)"
+    assert str(Source(key)) == "Heß & Forsbach 2021"
+    several = [Source(key).authors_and_year for key in bibliography() if " et al. " in Source(key).authors_and_year]
+    assert several
+    assert list(find_cited_keys(f"E of {source.authors_and_year}, Table 2; doi {source.doi}")) == [key]
+    assert list(find_cited_keys("")) == []
 
 
 @pytest.mark.parametrize("name", ["ball_radius", "clearance", "liner_thickness"])
@@ -161,18 +171,6 @@ def test_joint_and_study_reject_the_same_numbers(name):
         replace(HIP, **{name: wrong})
     with pytest.raises(ValueError, match=f"is not allowed for a {JOINT[name].title}"):
         check_values(grid(**{name: [wrong]}))
-
-
-def test_only_the_liner_thickness_may_be_infinite():
-    assert {name for name, parameter in PARAMETERS.items() if parameter.allows(inf)} == {"liner_thickness"}
-
-
-def test_ranges_have_symbol_and_unit_of_their_quantity():
-    assert str(bs.Range(quantity="half_angle", high=pi / 18)) == "ε ≤ 10°"
-    assert str(bs.Range(quantity="joint.thickness_ratio", low=2.0)) == "R2/L ≥ 2"
-    assert str(bs.Range(quantity="joint.liner.poisson", low=0.3, high=0.4)) == "ν 0.3 to 0.4"
-    assert str(bs.Range(quantity="joint.roughness", high=0.1)) == "roughness ≤ 0.1"
-    assert str(bs.Range(quantity="joint.clearance", symbol="gap", high=0.1)) == "gap ≤ 0.1"
 
 
 def test_the_glossary_of_the_site_has_every_quantity(monkeypatch):

@@ -1,33 +1,9 @@
-"""Von Mises and principal stresses, from uniaxial, shear and hydrostatic states."""
+"""Von Mises and principal stresses."""
 
 import numpy as np
 import pytest
 
 from ballsocket.core.stress import Stress
-
-
-def stress(**components):
-    zero = {"radial": 0.0, "meridional": 0.0, "hoop": 0.0, "shear": 0.0}
-    return Stress(**{name: np.asarray(value) for name, value in (zero | components).items()})
-
-
-@pytest.mark.parametrize("component", ["radial", "meridional", "hoop"])
-def test_uniaxial_stress_is_its_von_mises_stress(component):
-    state = stress(**{component: -7.0})
-    assert state.von_mises == pytest.approx(7.0)
-    assert state.principal == pytest.approx((0.0, 0.0, -7.0))
-
-
-def test_pure_shear():
-    state = stress(shear=4.0)
-    assert state.von_mises == pytest.approx(4.0 * np.sqrt(3))
-    assert state.principal == pytest.approx((4.0, 0.0, -4.0))
-
-
-def test_hydrostatic_pressure_has_no_von_mises_stress():
-    state = stress(radial=-5.0, meridional=-5.0, hoop=-5.0)
-    assert state.von_mises == 0.0
-    assert state.principal == pytest.approx((-5.0, -5.0, -5.0))
 
 
 def test_principal_stresses_are_eigenvalues():
@@ -40,3 +16,10 @@ def test_principal_stresses_are_eigenvalues():
         assert [principal[number] for principal in state.principal] == pytest.approx(values[::-1].tolist(), abs=1e-12)
         deviator = values - values.mean()
         assert state.von_mises[number] == pytest.approx(np.sqrt(1.5 * np.sum(deviator**2)), rel=1e-12)
+
+
+def test_hydrostatic_pressure_has_no_von_mises_stress():
+    pressure = np.asarray(-5.0)
+    state = Stress(radial=pressure, meridional=pressure, hoop=pressure, shear=0.0 * pressure)
+    assert state.von_mises == 0.0
+    assert state.principal == pytest.approx((-5.0, -5.0, -5.0))
