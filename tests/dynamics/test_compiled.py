@@ -1,6 +1,6 @@
 """Compiled element: the same loads and steps as the element."""
 
-from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -12,16 +12,13 @@ from ..extent import either
 from ..joints import HIP
 from .test_element import LOSSY, states
 
-THROW = {"mass": 1.0, "position": (0.01, 0.02, 0.0), "velocity": (10.0, 50.0, 200.0), "step": 2e-5}
-
 numba = pytest.importorskip("numba")
+compiled = import_module("ballsocket.dynamics.compiled")
 
 
 @pytest.fixture
 def interpreted(monkeypatch):
     """Run the loops of the module in Python, without the time of their compilation."""
-    from ballsocket.dynamics import compiled
-
     cached_loops = [value for value in vars(compiled).values() if hasattr(value, "cache_clear")]
     monkeypatch.setattr(numba.config, "DISABLE_JIT", True)
     for loop in cached_loops:
@@ -32,15 +29,16 @@ def interpreted(monkeypatch):
 
 
 def check_loads(element, count):
-    from ballsocket.dynamics.compiled import CompiledElement
-
-    force, moment, energy, tangent = CompiledElement(element).loads(*states(count))
+    fast = compiled.CompiledElement(element)
+    force, moment, energy, tangent = fast.loads(*states(count))
     load = element(*states(count))
     np.testing.assert_allclose(force, load.force, atol=1e-9 * np.abs(load.force).max())
     np.testing.assert_allclose(moment, load.moment, atol=1e-9 * np.abs(load.moment).max())
     np.testing.assert_allclose(energy, load.energy, rtol=1e-8, atol=1e-12)
     six = [load.tangent[:, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))]
     np.testing.assert_allclose(tangent, np.stack(six, axis=1), atol=1e-8 * np.abs(load.tangent).max())
+    for depth in (1e-7, 1e-3, 0.05, 0.5):
+        assert fast.potential(depth) == pytest.approx(element.potential(depth), rel=1e-8)
 
 
 @pytest.mark.parametrize("cup", [None, bs.Cup()], ids=["sphere", "cup"])
@@ -52,48 +50,19 @@ def test_interpreted_loops_have_the_loads_of_the_element_in_every_block(model, c
 
 
 def test_interpreted_steps_equal_those_of_the_element(interpreted):
-    from ballsocket.dynamics.compiled import CompiledElement
-
     element = bs.ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant(viscosity=1e-5), **LOSSY)
-    throw = {**THROW, "position": (0.01, 0.02, 0.09), "duration": 5e-4}
-    plain, fast = (simulate(kind, **throw) for kind in (element, CompiledElement(element)))
+    throw = {"position": (0.01, 0.02, 0.09), "velocity": (10.0, 50.0, 200.0), "duration": 5e-4, "step": 2e-5}
+    plain, fast = (simulate(kind, mass=1.0, **throw) for kind in (element, compiled.CompiledElement(element)))
     assert plain.energy.max() > 0.0
     np.testing.assert_allclose(fast.position, plain.position, atol=1e-15)
 
 
-@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz(), bs.Tabulated()], ids=lambda model: model.name)
-def test_potential_of_a_compiled_element_is_that_of_the_element(model, interpreted):
-    from ballsocket.dynamics.compiled import CompiledElement
-
-    element = bs.ForceElement(model, HIP)
-    potential = CompiledElement(element).potential
-    for depth in (1e-7, 1e-3, 0.05, 0.5):
-        assert potential(depth) == pytest.approx(element.potential(depth), rel=1e-8)
-
-
-def test_loads_at_a_single_state_are_those_of_the_element():
-    from ballsocket.dynamics.compiled import loads_at
-
-    element = bs.ForceElement(bs.HessForsbach(), HIP, **LOSSY)
-    state = (0.02, 0.03, 0.12), (1.0, 20.0, -30.0), (0.5, 1.0, 2.0)
-    force, moment, energy, tangent = loads_at(element.potential, element.constants, *state)
-    load = element(*state)
-    assert (force, moment, energy) == (load.force, load.moment, load.energy)
-    assert tangent == tuple(load.tangent[i][j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)))
-
-
 @pytest.mark.long
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
-def test_compiled_loads_equal_those_of_the_element(model):
+def test_compiled_loads_and_steps_equal_those_of_the_element(model):
+    throw = {"mass": 1.0, "position": (0.01, 0.02, 0.0), "velocity": (10.0, 50.0, 200.0), "step": 2e-5}
     for words in ({}, {"cup": bs.Cup(), "lubricant": bs.Lubricant()}):
-        check_loads(bs.ForceElement(model, HIP, **words, **LOSSY), 500)
-
-
-@pytest.mark.long
-def test_compiled_steps_equal_those_of_the_element():
-    from ballsocket.dynamics.compiled import CompiledElement
-
-    element = bs.ForceElement(bs.HessForsbach(), HIP, **LOSSY)
-    for moving in (element, replace(element, lubricant=bs.Lubricant())):
-        plain, fast = (simulate(kind, duration=2e-3, **THROW) for kind in (moving, CompiledElement(moving)))
+        element = bs.ForceElement(model, HIP, **words, **LOSSY)
+        check_loads(element, 500)
+        plain, fast = (simulate(e, duration=2e-3, **throw) for e in (element, compiled.CompiledElement(element)))
         np.testing.assert_allclose(fast.position, plain.position, atol=1e-12)

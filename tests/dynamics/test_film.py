@@ -5,11 +5,12 @@ from math import atanh, inf, nan, pi, radians
 
 import numpy as np
 import pytest
-from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 import ballsocket as bs
 from ballsocket.dynamics import Bristles, ContactState, Damping, Friction, simulate
+from ballsocket.lubrication.balance import balance_cells
+from ballsocket.lubrication.mesh import polar_mesh
 
 from ..extent import either
 from ..joints import HIP
@@ -120,7 +121,6 @@ def test_a_free_ball_in_a_film_has_no_contact_but_a_load_and_the_squeeze_pressur
     assert load.force[2] > 0.0
     assert WET((0.0, 0.0, 0.05), (0.0, 0.0, 10.0)).force[2] < 0.0
     assert np.isnan(WET((0.0, 0.0, 0.05), (0.0, nan, 10.0)).force).any()
-    assert "lubricant Lubricant" in str(WET)
 
 
 def test_a_ball_that_orbits_at_half_its_spin_meets_no_resistance_of_the_pressure():
@@ -128,14 +128,6 @@ def test_a_ball_that_orbits_at_half_its_spin_meets_no_resistance_of_the_pressure
     position, spin = np.array([0.03, 0.0, 0.06]), np.array([0.0, 8.0, 0.0])
     load, still = WET(position, np.cross(spin / 2, position), spin), WET(position, spin=spin)
     assert np.abs(load.force).max() <= 1e-12 * np.abs(still.force).max()
-
-
-def test_a_thin_film_squeezes_as_between_spheres_of_the_reduced_radius():
-    """Taylor: 6 π η R_eff²/h with R_eff = R1 R2/c."""
-    gap = 3 * WET.constants.least_film
-    load = WET((0.0, 0.0, C - gap), (0.0, 0.0, 1.0))
-    assert load.force[2] == pytest.approx(-6 * pi * ETA * (HIP.ball_radius * HIP.socket_radius / C) ** 2 / gap, rel=0.1)
-    assert load.film_thickness == pytest.approx(gap, rel=1e-9)
 
 
 @EVERY_CUP
@@ -154,16 +146,13 @@ def test_the_film_takes_energy_in_every_state_and_its_loss_balances_the_power(cu
 
 
 @EVERY_CUP
-@pytest.mark.parametrize(
-    "losses", [{}, LOSSY, {"film_tension": 0.1}], ids=["film", "film, damping and friction", "cavitating film"]
-)
+@pytest.mark.parametrize("losses", [{}, LOSSY, {"film_tension": 0.1}], ids=["film", "lossy", "cavitating"])
 def test_the_damping_matrix_is_symmetric_and_positive_semidefinite(cup, losses):
     position, velocity, spin = states(either(500, 2000))
     load = replace(WET, cup=cup, **losses)(position, velocity, spin)
     D = load.damping_matrix
     np.testing.assert_array_equal(D, np.swapaxes(D, -1, -2))
-    # lengths scaled, so that forces and moments have one unit
-    scale = np.diag([1.0, 1.0, 1.0, 1 / RADIUS, 1 / RADIUS, 1 / RADIUS])
+    scale = np.diag([1.0, 1.0, 1.0, 1 / RADIUS, 1 / RADIUS, 1 / RADIUS])  # one unit of forces and moments
     eigenvalues = np.linalg.eigvalsh(scale @ D @ scale)
     assert (eigenvalues[:, 0] >= -1e-13 * eigenvalues[:, -1]).all()
     if not losses:
@@ -180,8 +169,7 @@ def test_the_load_is_finite_and_continuous_through_the_touch(cup):
     distance = C + np.linspace(-3 * least, 3 * least, 601)
     velocity, spin = np.array([10.0, 5.0, 30.0]), np.array([1.0, 2.0, -3.0])
     load = replace(WET, cup=cup)(distance[:, None] * direction, velocity + 0 * distance[:, None], spin)
-    assert np.isfinite(load.force).all()
-    assert np.isfinite(load.moment).all()
+    assert np.isfinite([load.force, load.moment]).all()
     step = np.abs(np.diff(load.force, axis=0)).max(axis=0)
     assert (step <= 0.02 * np.abs(load.force).max()).all()
     thickness = load.film_thickness
@@ -191,12 +179,10 @@ def test_the_load_is_finite_and_continuous_through_the_touch(cup):
 
 def test_the_film_has_its_least_thickness_in_the_contact_and_adds_to_the_dry_load():
     position, velocity = (0.0, 0.0, C + 0.03), (0.0, 0.0, 4.0)
-    least = WET.constants.least_film
-    kappa = 1 - least / C
+    kappa = 1 - WET.constants.least_film / C
     g = (atanh(kappa) - kappa) / kappa**3
     squeeze = 12 * pi * ETA * RADIUS**4 / C**3 * (1 / (1 - kappa**2) - g) * 4.0
-    expected = DRY(position, velocity).force[2] - squeeze
-    assert WET(position, velocity).force[2] == pytest.approx(expected, rel=1e-9)
+    assert WET(position, velocity).force[2] == pytest.approx(DRY(position, velocity).force[2] - squeeze, rel=1e-9)
 
 
 def capped_tension(kappa, largest, tension, cells=400):
@@ -247,29 +233,13 @@ def test_the_damping_matrix_of_a_cavitating_film_is_the_derivative_over_the_spee
     assert (np.abs(D[:, 2, 2] - WET(position, velocity, spin).damping_matrix[:, 2, 2]) > 0.1 * size[:, 0, 0]).any()
 
 
-def reynolds_damping(kappa, direction, rim, rings=50, columns=60):
-    """Damping tensor (3, 3) of a film on a cap about z with pressure 0 at its rim, by finite volumes; η = R = c = 1."""
-    dt, df = rim / rings, 2 * pi / columns
-    edges, polar, azimuth = np.arange(rings + 1) * dt, (np.arange(rings) + 0.5) * dt, (np.arange(columns) + 0.5) * df
-
-    def conductance(theta, phi):
-        """h³/12."""
-        normal = np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta) + 0 * phi], axis=-1)
-        return normal, (1 - kappa * normal @ direction) ** 3 / 12
-
-    cells = np.arange(rings * columns).reshape(rings, columns)
-    theta, phi = np.meshgrid(polar, azimuth, indexing="ij")
-    faces = np.meshgrid(edges[1:-1], azimuth, indexing="ij")
-    links = [(cells[:-1], cells[1:], conductance(*faces)[1] * np.sin(faces[0]) * df / dt)]
-    links += [(cells, np.roll(cells, -1, 1), conductance(theta, phi + df / 2)[1] * dt / np.sin(theta) / df)]
-    first, second, flow = (np.concatenate([link[i].ravel() for link in links]) for i in range(3))
-    outlet = conductance(rim + 0 * azimuth, azimuth)[1] * np.sin(rim) * 2 * df / dt
-    rows = np.concatenate([first, second, first, second, cells[-1]])
-    entries = np.concatenate([-flow, -flow, flow, flow, -outlet])
-    matrix = csc_matrix((entries, (rows, np.concatenate([first, second, second, first, cells[-1]]))))
-    normal = conductance(theta, phi)[0].reshape(-1, 3)
-    area = ((np.cos(edges[:-1]) - np.cos(edges[1:])) * df).repeat(columns)
-    return normal.T @ (area[:, None] * splu(matrix).solve(-area[:, None] * normal))
+def reynolds_damping(kappa, direction, rim):
+    """Damping tensor (3, 3) in N s/mm of a film on a cap about z with pressure 0 at its rim, by finite volumes."""
+    mesh = polar_mesh(RADIUS, np.linspace(0.0, rim, 51), 60)
+    film, empty = C * (1 - kappa * mesh.direction @ direction), np.zeros(mesh.cells)
+    balance = balance_cells(mesh, np.zeros(3), ETA, film, empty, empty, np.zeros(len(mesh.rim_cell)))
+    volume = mesh.area[:, None] * mesh.direction
+    return volume.T @ splu(balance.by_pressure.tocsc()).solve(volume)
 
 
 @pytest.mark.parametrize(("arc", "share", "polar"), [(150, 0.9, 20), (180, 0.9, 0), (180, 0.95, 50), (240, 0.9, 60)])
@@ -277,7 +247,7 @@ def test_the_film_of_a_cup_is_near_that_of_reynolds_equation(arc, share, polar):
     """Errors stated for a ball 30° and more inside the rim, at 0.9 of the clearance and more."""
     direction = np.array([np.sin(radians(polar)), 0.0, np.cos(radians(polar))])
     across = np.array([direction[2], 0.0, -direction[0]])
-    D = reynolds_damping(share, direction, radians(arc / 2)) * ETA * RADIUS**4 / C**3
+    D = reynolds_damping(share, direction, radians(arc / 2))
     element = replace(WET, cup=bs.Cup(arc_of_cover=radians(arc)))
     for way, low, high in ((direction, -0.09, 0.01), (across, -0.1, 0.15), (np.array([0.0, 1.0, 0.0]), -0.1, 0.15)):
         drag = -way @ np.array(element(tuple(share * C * direction), tuple(way)).force)
@@ -286,7 +256,7 @@ def test_the_film_of_a_cup_is_near_that_of_reynolds_equation(arc, share, polar):
 
 def test_the_film_of_a_concentric_ball_in_a_cup_has_the_mean_damping_of_reynolds_equation():
     for arc in (120.0, 180.0, 240.0):
-        D = reynolds_damping(0.0, np.array([0.0, 0.0, 1.0]), radians(arc / 2)) * ETA * RADIUS**4 / C**3
+        D = reynolds_damping(0.0, np.array([0.0, 0.0, 1.0]), radians(arc / 2))
         load = replace(WET, cup=bs.Cup(arc_of_cover=radians(arc)))((0.0, 0.0, 0.0), (0.0, 1.0, 0.0))
         assert -load.force[1] == pytest.approx(np.trace(D) / 3, rel=2e-3)
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 import ballsocket as bs
 from ballsocket.dynamics import Bristles, Damping, Friction, simulate
@@ -30,10 +31,9 @@ def test_friction_moment_equals_the_integral_of_the_contact_pressure(spin, axis)
         expected = contact.friction_torque(0.1, axis) * radius / HIP.ball_radius
         assert np.linalg.norm(moment) == pytest.approx(expected, rel=1e-3)
         assert np.dot(moment, spin) < 0
-    exact = bs.Exact().press(HIP, indentation=0.04)
-    element = replace(SMOOTH, model=bs.Exact())
-    moment = element(DEEP, spin=(0.0, 3.0, 0.0)).moment
-    assert np.linalg.norm(moment) == pytest.approx(exact.friction_torque(0.1), rel=0.01)
+    moment = replace(SMOOTH, model=bs.Exact())(DEEP, spin=(0.0, 3.0, 0.0)).moment
+    expected = bs.Exact().press(HIP, indentation=0.04).friction_torque(0.1)
+    assert np.linalg.norm(moment) == pytest.approx(expected, rel=0.01)
 
 
 PLAIN = replace(SMOOTH, friction=None)
@@ -50,10 +50,8 @@ def integrated(half_angle, velocity, spin, rings=200, meridians=400):
     nodes, weights = np.polynomial.legendre.leggauss(rings)
     phi, weights = half_angle * (nodes + 1) / 2, half_angle / 2 * weights
     theta = 2 * np.pi * (np.arange(meridians) + 0.5) / meridians
-    normal = np.stack(
-        [np.outer(np.sin(phi), np.cos(theta)), np.outer(np.sin(phi), np.sin(theta)), np.outer(np.cos(phi), theta**0)],
-        -1,
-    )
+    around = np.stack([np.cos(theta), np.sin(theta), 0 * theta], axis=-1)
+    normal = np.sin(phi)[:, None, None] * around + np.cos(phi)[:, None, None] * np.array([0.0, 0.0, 1.0])
     load = np.outer((np.cos(phi) - np.cos(half_angle)) * np.sin(phi) * weights, theta**0)
     load /= np.sum(load * normal[..., 2])
     levers = np.array([RADIUS, RADIUS, SOCKET])  # about the load the lever is that of the socket
@@ -119,8 +117,7 @@ def test_random_states_have_the_resultants_of_the_patch():
 def test_friction_rotates_with_the_state_and_reverses_with_the_motion():
     position, velocity, spin = states(200)
     element = replace(SMOOTH, friction=Friction(coefficient=0.1, static_coefficient=0.2, viscous=1e-4))
-    turn = np.linalg.qr(np.random.default_rng(2).normal(size=(3, 3)))[0]
-    turn = turn * np.linalg.det(turn)
+    turn = Rotation.from_rotvec([1.0, -2.0, 0.5]).as_matrix()
     load, turned = element(position, velocity, spin), element(position @ turn.T, velocity @ turn.T, spin @ turn.T)
     back, still = element(position, -velocity, -spin), element(position)
     np.testing.assert_allclose(turned.force, load.force @ turn.T, atol=1e-9 * np.abs(load.force).max())
@@ -132,10 +129,9 @@ def test_friction_rotates_with_the_state_and_reverses_with_the_motion():
 def test_friction_potential_is_convex():
     """The damping matrix has no negative eigenvalue."""
     position, velocity, spin = states(2000, deepest=0.3)
-    element = replace(SMOOTH, friction=Friction(coefficient=0.1))
     levers = np.array([1.0, 1.0, 1.0, RADIUS, RADIUS, RADIUS])
     for speeds in (1e-3, 1.0):
-        matrix = element(position, speeds * velocity, speeds * spin).damping_matrix / np.outer(levers, levers)
+        matrix = SMOOTH(position, speeds * velocity, speeds * spin).damping_matrix / np.outer(levers, levers)
         values = np.linalg.eigvalsh(matrix)
         assert (values[:, 0] >= -1e-9 * values[:, -1]).all()
 
@@ -153,8 +149,6 @@ def test_deflections_decay_without_contact():
     away = HELD((0.0, 0.0, 0.0), deflection=(1e-3, 0.0, 0.0, 0.0))
     assert away.deflection_rate[0] == pytest.approx(-1.0)
     assert away.force == (0.0, 0.0, 0.0)
-    with pytest.warns(DeprecationWarning, match="use bristle_dissipation"):
-        assert away.rubbed == away.bristle_dissipation
 
 
 def steady_slip(element, duration, **state):
@@ -176,7 +170,7 @@ def test_sliding_bristles_have_the_resultants_of_the_patch():
 
 
 def test_bristles_are_springs_before_they_slide_with_the_limit_of_coulomb():
-    normal = abs(replace(SMOOTH, friction=None)(DEEP).force[2])
+    normal = abs(PLAIN(DEEP).force[2])
     grip = abs(SMOOTH(DEEP, velocity=(1.0, 0.0, 0.0)).force[0]) / (0.1 * normal)
     bend = HELD(DEEP, deflection=(1e-4, 0.0, 0.0, 0.0))
     assert bend.force[0] == pytest.approx(-20.0 * 1e-4 * normal * grip, rel=1e-6)
@@ -208,7 +202,6 @@ def test_bristles_dissipate_and_balance_the_power():
 
 
 def test_bristles_hold_a_ball_below_the_limit_of_friction():
-    """The ball comes to rest on bristles, energy is balanced, and a motion that ends early names its state."""
     normal, side = 700.0, 30.0
     thrown = {"mass": 1.0, "position": (0.0, 0.0, HIP.clearance + 0.019), "duration": either(0.01, 0.02), "step": 1e-4}
     element = replace(HELD, friction=replace(HELD.friction, viscous=1e-3), damping=Damping(time=2e-4))
@@ -216,11 +209,6 @@ def test_bristles_hold_a_ball_below_the_limit_of_friction():
     assert held.drift < 1e-7
     assert held.end_reason == ""
     assert held.load.force[-1, 0] == pytest.approx(-side, rel=2e-3)
-    creeping = simulate(
-        replace(element, friction=Friction(coefficient=0.1)), pull=(side, 0.0, normal), inertia=1e9, **thrown
-    )
+    slipping = replace(element, friction=Friction(coefficient=0.1))
+    creeping = simulate(slipping, pull=(side, 0.0, normal), inertia=1e9, **thrown)
     assert abs(held.velocity[-1, 0]) < 0.01 * creeping.velocity[-1, 0]
-    ended = simulate(element, **thrown | {"position": (np.nan, 0.0, 0.0)})
-    assert "after 0 s: the state is not finite" in ended.end_reason
-    fast = simulate(element, velocity=(0.0, 0.0, 1e7), **thrown)
-    assert "exceeds the wall thickness" in fast.end_reason
