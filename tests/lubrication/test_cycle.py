@@ -25,15 +25,19 @@ EDGES = np.arange(0.0, radians(60.0), radians(2.0))
 MESH = polar_mesh(18.0, EDGES, thinned_meridians(EDGES, 120))
 
 
+def cycle_instants(mesh, contact, spins, duration, axis=AXIS, modulus=MODULUS):
+    """Instants (s) of a contact on springs under a constant load along an axis."""
+    clearance = contact.joint.clearance
+    pressure = modulus * np.maximum((clearance + contact.indentation) * (mesh.direction @ axis) - clearance, 0.0)
+    edge = SpringEdge(slope=contact.edge_slope, modulus=modulus)
+    still = CycleInstant(pressure=pressure, axis=axis, edge=edge, spin=np.zeros(3), duration=duration)
+    return [replace(still, spin=spin) for spin in spins]
+
+
 def swing(amplitude, count=40):
     """Instants of a swing of the ball by an amplitude in rad, once a second, at a constant load."""
-    phase = (np.arange(count) + 0.5) / count
-    rate = 2 * pi * amplitude * np.cos(2 * pi * phase)
-    height = MESH.direction[:, 2]
-    pressure = MODULUS * np.maximum((0.1 + CONTACT.indentation) * height - 0.1, 0.0)
-    edge = SpringEdge(slope=CONTACT.edge_slope, modulus=MODULUS)
-    still = CycleInstant(pressure=pressure, axis=AXIS, edge=edge, spin=np.zeros(3), duration=1 / count)
-    return [replace(still, spin=np.array([w, 0.0, 0.0])) for w in rate]
+    rate = 2 * pi * amplitude * np.cos(2 * pi * (np.arange(count) + 0.5) / count)
+    return cycle_instants(MESH, CONTACT, np.outer(rate, (1.0, 0.0, 0.0)), 1 / count)
 
 
 def rocking_motion(amplitude, tilt, count):
@@ -50,11 +54,15 @@ def rocking(joint=JOINT, modulus=MODULUS, force=1000.0, amplitude=0.35, tilt=35.
     contact = bs.RadialFoundation(modulus=bs.constant(modulus)).press(joint, force=force)
     rings = np.arange(0.0, radians(86.0), radians(width))
     mesh = polar_mesh(joint.socket_radius, rings, thinned_meridians(rings, round(360 / width)))
-    clearance = joint.clearance
-    pressure = modulus * np.maximum((clearance + contact.indentation) * (mesh.direction @ load) - clearance, 0.0)
-    edge = SpringEdge(slope=contact.edge_slope, modulus=modulus)
-    still = CycleInstant(pressure=pressure, axis=load, edge=edge, spin=np.zeros(3), duration=1 / count)
-    return mesh, [replace(still, spin=spin * count) for spin in spins]
+    return mesh, cycle_instants(mesh, contact, spins * count, 1 / count, load, modulus)
+
+
+def reynolds_on_springs(mesh, pressure, eccentricity, force, modulus=MODULUS, ambient=0.0, clearance=0.1):
+    """Reynolds' equation of a ball at rest on springs, and its start."""
+    gap, compliance = np.full(mesh.cells, clearance - ambient / modulus), np.full(mesh.cells, 1 / modulus)
+    outside = {"rim_pressure": np.full(len(mesh.rim_cell), ambient), "spin": np.zeros(3), "force": force}
+    problem = FilmProblem(mesh=mesh, viscosity=VISCOSITY, gap=gap, compliance=compliance, **outside)
+    return problem, FilmState(pressure=pressure, void=np.zeros(mesh.cells), eccentricity=eccentricity)
 
 
 def solve_in_frame_of_the_film(joint, modulus, force, amplitude, tilt, count, cycles, viscosity, ambient=0.1):
@@ -68,20 +76,10 @@ def solve_in_frame_of_the_film(joint, modulus, force, amplitude, tilt, count, cy
     mesh = polar_mesh(radius, np.linspace(0.0, pi / 2, 22), 32)
     depth = clearance + bs.RadialFoundation(modulus=bs.constant(modulus)).press(joint, force=force).indentation
     turned, films = Rotation.identity(), []
-    state = FilmState(
-        pressure=modulus * np.maximum(depth * (mesh.direction @ load) - clearance, 0.0) + ambient,
-        void=np.zeros(mesh.cells),
-        eccentricity=(depth - 1.5e-3) * load,
-    )
-    problem = FilmProblem(
-        mesh=mesh,
-        viscosity=viscosity,
-        spin=np.zeros(3),
-        gap=np.full(mesh.cells, clearance - ambient / modulus),
-        compliance=np.full(mesh.cells, 1 / modulus),
-        rim_pressure=np.full(32, ambient),
-        force=np.zeros(3),
-    )
+    pressure = modulus * np.maximum(depth * (mesh.direction @ load) - clearance, 0.0) + ambient
+    start = (depth - 1.5e-3) * load
+    problem, state = reynolds_on_springs(mesh, pressure, start, np.zeros(3), modulus, ambient, clearance)
+    problem = replace(problem, viscosity=viscosity)
     for _ in range(cycles):
         steps = []
         for spin in spins:
@@ -101,8 +99,8 @@ def test_a_long_swing_repeats_and_its_two_strokes_are_alike():
     assert film.settled
     assert film.refreshed_share.min() > 0.98
     half = len(film.central) // 2
-    assert film.central[half:] == pytest.approx(film.central[:half], rel=0.04)
-    assert film.minimum[half:] == pytest.approx(film.minimum[:half], rel=0.04)
+    for films in (film.central, film.minimum):
+        assert films[half:] == pytest.approx(films[:half], rel=0.04)
 
 
 def test_a_short_swing_about_one_axis_squeezes_the_middle():
@@ -182,8 +180,7 @@ def test_the_stated_error_covers_a_cycle_that_reverses_load_and_motion(width, co
 
 
 def test_a_ball_that_does_not_move_has_no_film():
-    film = carry_over_cycle(MESH, VISCOSITY, swing(0.0, 4))
-    assert film.central == pytest.approx(0.0)
+    assert carry_over_cycle(MESH, VISCOSITY, swing(0.0, 4)).central == pytest.approx(0.0)
 
 
 def springs_problem(finest, coarsest, meridians, low=1500.0, high=1500.0):
@@ -193,28 +190,15 @@ def springs_problem(finest, coarsest, meridians, low=1500.0, high=1500.0):
     rings = graded_rings(contacts[0].half_angle, last_edge=contacts[1].half_angle, **widths)
     mesh = polar_mesh(18.0, rings, meridians)
     depth = 0.1 + contacts[0].indentation
-    start = FilmState(
-        pressure=MODULUS * np.maximum(depth * mesh.direction[:, 2] - 0.1, 0.0),
-        void=np.zeros(mesh.cells),
-        eccentricity=(depth - 5e-4) * AXIS,
-    )
-    problem = FilmProblem(
-        mesh=mesh,
-        viscosity=VISCOSITY,
-        spin=np.zeros(3),
-        gap=np.full(mesh.cells, 0.1),
-        compliance=np.full(mesh.cells, 1 / MODULUS),
-        rim_pressure=np.zeros(meridians),
-        force=low * AXIS,
-    )
-    return problem, start
+    pressure = MODULUS * np.maximum(depth * mesh.direction[:, 2] - 0.1, 0.0)
+    return reynolds_on_springs(mesh, pressure, (depth - 5e-4) * AXIS, low * AXIS)
 
 
 def load_steps(forces, rates, duration):
     """Steps of axial loads in N and rotations about x in rad/s."""
+    spins = np.outer(rates, (1.0, 0.0, 0.0))
     return [
-        LoadStep(force=force * AXIS, spin=np.array([rate, 0.0, 0.0]), duration=duration)
-        for force, rate in zip(forces, rates, strict=True)
+        LoadStep(force=force * AXIS, spin=spin, duration=duration) for force, spin in zip(forces, spins, strict=True)
     ]
 
 
@@ -301,9 +285,8 @@ def test_an_elastic_start_up_ends_at_the_steady_film():
     """An axial load in a real cup, whose motion begins at once."""
     model, oil = bs.Sphere(), bs.Lubricant(viscosity=1e-2)
     steady = bs.film(model.press(JOINT, force=1500.0), spin=(5.0, 0, 0), lubricant=oil, method="reynolds")
-    film = film_over_steps(
-        model, JOINT, forces=np.full(15, 1500.0), spins=np.full((15, 3), (5.0, 0, 0)), durations=0.06, lubricant=oil
-    )
+    steps = {"forces": np.full(15, 1500.0), "spins": np.full((15, 3), (5.0, 0, 0)), "durations": 0.06}
+    film = film_over_steps(model, JOINT, **steps, lubricant=oil)
     assert film.film.converged
     assert film.central[-1] == pytest.approx(steady.central, rel=0.01)
     assert film.minimum[-1] == pytest.approx(steady.minimum, rel=0.04)  # of first order in the cells at the edge

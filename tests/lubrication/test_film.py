@@ -49,12 +49,11 @@ def solved_film(case, method):
     return bs.film(model.press(joint, force=force), **words)
 
 
+FAST = pytest.param(100.0, 1774.2, 1456.1, 64, 0.003, marks=pytest.mark.long)
+
+
 @pytest.mark.parametrize(
-    ("rate", "central", "least", "meridians", "error"),
-    [
-        (10.0, 515.2, 433.0, 24, 0.016),
-        pytest.param(100.0, 1774.2, 1456.1, 64, 0.003, marks=pytest.mark.long),
-    ],
+    ("rate", "central", "least", "meridians", "error"), [(10.0, 515.2, 433.0, 24, 0.016), FAST], ids=["slow", "fast"]
 )
 def test_reynolds_on_springs(rate, central, least, meridians, error, monkeypatch):
     """Values of quadratic finite elements, `galerkin_film.py`; finite volumes of half the width agree to 0.2 %.
@@ -76,11 +75,9 @@ def test_reynolds_on_springs(rate, central, least, meridians, error, monkeypatch
 @pytest.mark.long
 def test_finite_elements_confirm_the_finite_volumes():
     """Another discretisation, without upwinding, at another speed than those above."""
-    rate = 30.0
-    volumes = bs.film(CONTACT, spin=(rate, 0.0, 0.0), method="reynolds")
-    central, least = GalerkinFilm(rate, 0.05 * np.sqrt(rate), 1.5, 16, 1.25).solve()
-    assert volumes.central == pytest.approx(central, rel=0.003)
-    assert volumes.minimum == pytest.approx(least, rel=0.003)
+    volumes = bs.film(CONTACT, spin=(30.0, 0.0, 0.0), method="reynolds")
+    elements = GalerkinFilm(30.0, 0.05 * np.sqrt(30.0), 1.5, 16, 1.25).solve()
+    assert (volumes.central, volumes.minimum) == pytest.approx(elements, rel=0.003)
 
 
 @pytest.mark.parametrize("case", some(reversed(CASES), 1))
@@ -133,11 +130,10 @@ def test_film_at_the_exact_contact_loses_little_on_its_way():
     assert not inlet.valid
 
 
-@pytest.mark.parametrize(
-    ("surface", "axial"),
-    [(bs.Springs(modulus=bs.constant(276.67)), CONTACT), (bs.ClosedShell(), ELASTIC)],
-    ids=["springs", "shell"],
-)
+TILTED = {"springs": (bs.Springs(modulus=bs.constant(276.67)), CONTACT), "shell": (bs.ClosedShell(), ELASTIC)}
+
+
+@pytest.mark.parametrize(("surface", "axial"), TILTED.values(), ids=TILTED)
 def test_a_tilted_load_has_the_film_of_an_axial_one(surface, axial):
     """The axis of rotation is tilted with the load: the same contact, on cells that cut its edge."""
     contact = bs.Sphere(surface=surface).press(JOINT, force=1500.0, tilt=0.5)
@@ -197,10 +193,8 @@ def test_a_film_that_does_not_become_steady_is_returned_with_its_status(monkeypa
 @pytest.mark.parametrize("contact", [CONTACT, ELASTIC], ids=["springs", "elastic"])
 def test_a_film_that_circles_within_the_contact_is_not_valid(contact):
     """An axis at 20° from the load passes through the contact, one at 60° does not."""
-    near, far = (
-        bs.film(contact, spin=(1.5 * np.sin(angle), 0.0, 1.5 * np.cos(angle)), cell_width=radians(4.0))
-        for angle in np.radians([20.0, 60.0])
-    )
+    spins = [(1.5 * np.sin(angle), 0.0, 1.5 * np.cos(angle)) for angle in np.radians([20.0, 60.0])]
+    near, far = (bs.film(contact, spin=spin, cell_width=radians(4.0)) for spin in spins)
     assert not near.valid
     assert any("axis of the rotation passes through the contact" in note for note in near.notes)
     assert far.valid

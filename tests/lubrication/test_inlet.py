@@ -9,7 +9,7 @@ from ballsocket.lubrication.inlet import INLET_COEFFICIENT, OUTLET_RATIO, Elasti
 from ..extent import either
 from .inlet_problem import inlet_coefficient, solve_inlet
 from .line_contact import contact_films
-from .test_film import ELASTIC
+from .test_film import CONTACT, ELASTIC
 
 
 def test_coefficient_is_that_of_the_inlet_problem():
@@ -34,6 +34,13 @@ def test_elastic_film_of_the_exact_solution():
     for rate, expected in ((1.5, 173.8), (10.0, 542.0)):
         film = bs.film(ELASTIC, spin=(rate, 0.0, 0.0), method="inlet")
         assert 1e6 * film.central == pytest.approx(expected, rel=2e-3)
+
+
+def test_lubricant_enters_on_the_circles_of_the_motion():
+    """On springs h ~ sqrt(U); a circle at the distance x from the load enters at U = ω R sqrt(1 - (x/sin ε)²)."""
+    film = bs.film(CONTACT, spin=(10.0, 0.0, 0.0), method="inlet", cell_width=np.radians(4.0))
+    offset = film.directions[film.dry.inside, 0] / np.sin(CONTACT.half_angle)
+    assert film.thickness[film.dry.inside] == pytest.approx(film.central * (1 - offset**2) ** 0.25, rel=1e-9)
 
 
 def test_spring_film_has_the_largest_flow_that_the_edge_lets_through():

@@ -75,12 +75,8 @@ def test_central_films_of_a_tilted_load_converge_with_the_mesh(monkeypatch):
     contact, films, settings = press(45.0), [], film_problem._ELASTIC
     spin = np.array(spin_towards_rim(45.0, 10.0))
     for scale in (0.75, 1, 1.5):
-        finer = replace(
-            settings,
-            rings_of_inlet=settings.rings_of_inlet * scale,
-            coarsest=settings.coarsest / scale,
-            growth=settings.growth ** (1 / scale),
-        )
+        rings = {"rings_of_inlet": settings.rings_of_inlet * scale, "coarsest": settings.coarsest / scale}
+        finer = replace(settings, **rings, growth=settings.growth ** (1 / scale))
         monkeypatch.setattr(film_problem, "_ELASTIC", finer)
         monkeypatch.setattr(film_problem, "_meridians", lambda *words, count=int(40 * scale): count)
         case = film_problem.make_contact_film([contact], [dry_contact(contact, radians(2.0))], spin, 2.5e-9)
@@ -151,9 +147,8 @@ def test_a_mesh_that_the_rim_cuts_has_the_squeeze_pressure_of_a_hemisphere():
         film = 0.1 - 0.08 * height
         balance = balance_cells(mesh, np.zeros(3), 2.5e-9, film, empty, empty, np.zeros(len(mesh.rim_cell)))
         pressure = spsolve(balance.by_pressure.tocsc(), 2.0 * height * mesh.area)
-        exact = squeeze_pressure(
-            np.arccos(height), radius=18.0, clearance=0.1, eccentricity=0.08, speed=2.0, viscosity=2.5e-9, rim=pi / 2
-        )
+        cavity = {"radius": 18.0, "clearance": 0.1, "eccentricity": 0.08, "viscosity": 2.5e-9}
+        exact = squeeze_pressure(np.arccos(height), speed=2.0, rim=pi / 2, **cavity)
         return np.abs(pressure - exact).max() / exact.max()
 
     assert error(24) < 0.02

@@ -55,24 +55,11 @@ def test_spin_about_the_eccentricity_makes_no_pressure():
 
 def strip_mesh(edges):
     """Divide a strip of unit width along x into cells between `edges` (mm); `spin` is then the sliding velocity."""
-    centre = 0.5 * (edges[1:] + edges[:-1])
-    cells = len(centre)
-    inner = np.arange(cells - 1)
-    along = np.array([1.0, 0.0, 0.0])
-    return FilmMesh(
-        area=np.diff(edges),
-        direction=np.zeros((cells, 3)),
-        first=inner,
-        second=inner + 1,
-        width=np.ones(cells - 1),
-        first_distance=edges[1:-1] - centre[:-1],
-        second_distance=centre[1:] - edges[1:-1],
-        axis=np.tile(along, (cells - 1, 1)),
-        rim_cell=np.array([0, cells - 1]),
-        rim_width=np.ones(2),
-        rim_distance=np.array([centre[0] - edges[0], edges[-1] - centre[-1]]),
-        rim_axis=np.stack([-along, along]),
-    )
+    half, inner, along = np.diff(edges) / 2, np.arange(len(edges) - 2), np.array([1.0, 0.0, 0.0])
+    cells = {"area": 2 * half, "direction": np.zeros((len(half), 3)), "first": inner, "second": inner + 1}
+    faces = {"width": np.ones(len(inner)), "first_distance": half[:-1], "second_distance": half[1:]}
+    rim = {"rim_cell": np.array([0, len(inner)]), "rim_width": np.ones(2), "rim_distance": half[[0, -1]]}
+    return FilmMesh(**cells, **faces, axis=np.tile(along, (len(inner), 1)), **rim, rim_axis=np.stack([-along, along]))
 
 
 def pocketed_slider(cells, speed):
@@ -80,14 +67,8 @@ def pocketed_slider(cells, speed):
     points = np.linspace(0.0, 10.0, cells + 1)
     middle = (points[1:] + points[:-1]) / 2
     gap = 1.05e-3 - 0.05e-3 * middle / 10 + np.where((middle > 2) & (middle < 5), 1e-3, 0.0)
-    problem = FilmProblem(
-        mesh=strip_mesh(points),
-        viscosity=1e-8,
-        spin=np.array([speed, 0.0, 0.0]),
-        gap=gap,
-        compliance=np.zeros(cells),
-        rim_pressure=np.array([0.1, 0.1]),
-    )
+    words = {"spin": np.array([speed, 0.0, 0.0]), "compliance": np.zeros(cells), "rim_pressure": np.array([0.1, 0.1])}
+    problem = FilmProblem(mesh=strip_mesh(points), viscosity=1e-8, gap=gap, **words)
     start = FilmState(pressure=np.full(cells, 0.1), void=np.zeros(cells), eccentricity=np.zeros(3))
     return problem, solve_steady(problem, start, tolerance=1e-10), points
 
@@ -124,8 +105,7 @@ def test_lubricant_is_conserved_while_a_film_cavitates():
     problem, state, _ = pocketed_slider(200, 1000.0)
     volume = problem.thickness(state) * (1 - 0.5 * state.void)
     later = advance(problem, replace(state, void=0.5 * state.void), volume=volume, step=1e-4, tolerance=1e-10)
-    balance = balance_cells(
-        problem.mesh, problem.spin, problem.viscosity, problem.gap, later.pressure, later.void, problem.rim_pressure
-    )
+    film = problem.gap, later.pressure, later.void, problem.rim_pressure
+    balance = balance_cells(problem.mesh, problem.spin, problem.viscosity, *film)
     growth = (problem.gap * (1 - later.void) - volume) @ problem.mesh.area / 1e-4
     assert growth == pytest.approx(-balance.outflow.sum(), rel=1e-6)
