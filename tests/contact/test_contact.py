@@ -89,7 +89,8 @@ def test_area_and_ratios_follow_their_definitions():
     contact = bs.HessForsbach().press(HIP, force=0.0)
     assert contact.conformity == np.inf
     assert contact.foundation_modulus == pytest.approx(bs.hess_forsbach(HIP))
-    assert bs.Hertz().press(HIP, force=0.0).foundation_modulus == np.inf
+    for model in (bs.Hertz(), bs.PlaneLayer(), bs.Refined(), bs.Exact()):
+        assert model.press(HIP, force=[0.0]).foundation_modulus == np.inf
 
 
 @pytest.mark.parametrize(
@@ -123,9 +124,6 @@ def test_arguments_that_are_not_allowed_are_refused(call, message):
         call()
 
 
-MODELS = pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Bartel(), bs.Exact()], ids=lambda model: model.name)
-
-
 def sphere_integral(contact, function, planar=False):
     """Integrate pressure times a function of angle and azimuth over the contact by a fine midpoint rule."""
     count, turns = 2000, 720
@@ -136,13 +134,6 @@ def sphere_integral(contact, function, planar=False):
     mean = function(angle[:, None], azimuth).mean(axis=1)
     arc = angle if planar else np.sin(angle)
     return 2 * pi * contact.joint.socket_radius**2 * np.sum(contact.pressure(angle) * arc * width * mean)
-
-
-@MODELS
-def test_pressure_integral_is_that_of_the_pressure_over_the_contact(model):
-    contact = model.press(HIP, force=3000.0)
-    total = sphere_integral(contact, lambda angle, azimuth: 1.0 + 0.0 * angle * azimuth)
-    assert contact.pressure_integral == pytest.approx(total, rel=1e-4)
 
 
 @pytest.mark.parametrize("axis", [0.0, 0.4, 1.1, pi / 2, 2.5])

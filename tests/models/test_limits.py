@@ -8,12 +8,7 @@ from ballsocket.models.plane_layer import kernel_deviation
 
 from ..joints import HIP
 
-
-def hip(**changes: object) -> bs.Joint:
-    fields = {"ball_radius": 17.9, "clearance": 0.1, "liner_thickness": 6.75, "liner": bs.UHMWPE, "ball": bs.STEEL}
-    return bs.Joint(**(fields | changes))
-
-
+hip = HIP.replace
 FOUNDATIONS = [bs.HessForsbach(), bs.Vessel(), bs.BondedLayer()]
 
 
@@ -58,13 +53,11 @@ def test_half_angle_does_not_determine_the_load_without_clearance():
 def test_exact_kinematics_approach_linear_ones_in_a_large_socket(modulus):
     """Eq. (5) becomes Eq. (6) when clearance and indentation are small against the radius."""
     joint = hip(ball_radius=1e5, liner_thickness=4e4)
-    linear, exact = (
-        bs.RadialFoundation(modulus=modulus, kinematics=kinematics).press(joint, indentation=0.05)
-        for kinematics in (bs.linear_kinematics, bs.exact_kinematics)
-    )
-    assert exact.force == pytest.approx(linear.force, rel=1e-5)
-    assert exact.half_angle == pytest.approx(linear.half_angle, rel=1e-5)
-    assert exact.pressure_integral == pytest.approx(linear.pressure_integral, rel=1e-5)
+    kinds = bs.linear_kinematics, bs.exact_kinematics
+    models = [bs.RadialFoundation(modulus=modulus, kinematics=kinematics) for kinematics in kinds]
+    linear, exact = (model.press(joint, indentation=0.05) for model in models)
+    for name in ("force", "half_angle", "pressure_integral"):
+        assert getattr(exact, name) == pytest.approx(getattr(linear, name), rel=1e-5)
 
 
 def test_exact_kinematics_have_no_result_at_extreme_loads():
@@ -79,22 +72,39 @@ def test_vessel_modulus_of_a_thin_liner_is_that_of_a_bonded_layer():
     assert bs.spherical_vessel(joint) == pytest.approx(bs.bonded_layer(joint), rel=2e-4)
 
 
-def test_massive_socket_has_finite_moduli_or_is_refused():
+def test_massive_socket_has_finite_moduli():
     joint = hip(liner_thickness=np.inf)
     assert bs.spherical_vessel(joint) == pytest.approx(2 * 1000.0 / (1.4 * 18.0))
     assert bs.hess_forsbach(joint) == pytest.approx(1.06 * 1000.0 / 18.0)
-    with pytest.raises(ValueError, match="bonded-layer has no answer for L = inf: a layer of infinite thickness"):
-        bs.BondedLayer().press(joint, force=1.0)
-    with pytest.raises(ValueError, match="use hertz"):
-        bs.PlaneLayer().press(joint, force=1.0)
 
 
-def test_incompressible_liner_is_refused_by_unbounded_moduli():
-    stiff = hip(liner=bs.Material(young=1000.0, poisson=0.5))
-    for model in (bs.Vessel(), bs.Bartel(), bs.BondedLayer()):
-        with pytest.raises(ValueError, match=r"no answer for ν = 0.5: the modulus is unbounded"):
-            model.press(stiff, force=3000.0)
-    assert bs.HessForsbach().press(stiff, force=3000.0).max_pressure > 0
+STIFF = hip(liner=bs.Material(young=1000.0, poisson=0.5))
+UNBOUNDED = "no answer for ν = 0.5: the modulus is unbounded"
+
+
+@pytest.mark.parametrize(
+    ("press", "message"),
+    [
+        (lambda: bs.BondedLayer().press(hip(liner_thickness=np.inf), force=1.0), "for L = inf: a layer of infinite"),
+        (lambda: bs.PlaneLayer().press(hip(liner_thickness=np.inf), force=1.0), "use hertz"),
+        (lambda: bs.Refined().press(hip(liner_thickness=np.inf), force=1.0), "refined has no answer for L = inf"),
+        (lambda: bs.Refined().press(hip(clearance=0.0), force=1.0), "no answer for c = 0: .* use cosine-limit"),
+        (lambda: bs.Hertz().press(hip(clearance=0.0), force=1.0), "no answer for c = 0: .* infinite without clearance"),
+        (lambda: bs.PlaneLayer().press(hip(liner_thickness=0.01), force=1.0), "for R2/L = 1800: .* use bonded-layer"),
+        (lambda: bs.spherical_vessel(STIFF), f"spherical-vessel has {UNBOUNDED}"),
+        *(
+            (lambda model=model: model.press(STIFF, force=3000.0), UNBOUNDED)
+            for model in (bs.Vessel(), bs.Bartel(), bs.BondedLayer())
+        ),
+    ],
+)
+def test_joints_without_an_answer_are_refused(press, message):
+    with pytest.raises(ValueError, match=message):
+        press()
+
+
+def test_hess_forsbach_has_incompressible_liners():
+    assert bs.HessForsbach().press(STIFF, force=3000.0).max_pressure > 0
 
 
 def test_one_invalid_point_of_many_has_a_status():
@@ -124,18 +134,6 @@ def test_hertz_has_the_textbook_formulas():
     assert contact.half_angle == pytest.approx(a / 18.0)
 
 
-def test_hertz_needs_a_clearance():
-    with pytest.raises(ValueError, match=r"hertz has no answer for c = 0: .* infinite without clearance"):
-        bs.Hertz().press(hip(clearance=0.0), force=1.0)
-
-
-def test_overloaded_half_space_has_the_status_beyond_equator():
-    contact = bs.Hertz().press(HIP, force=1e6)
-    assert contact.status is bs.Status.BEYOND_EQUATOR
-    assert contact.max_pressure > 0
-    assert not contact.valid
-
-
 def test_plane_layer_of_a_narrow_contact_is_hertz():
     joint = hip(liner_thickness=3000.0, ball=None)
     layer, hertz = (model.press(joint, force=1.0) for model in (bs.PlaneLayer(), bs.Hertz()))
@@ -162,38 +160,24 @@ def test_layer_kernel_has_its_limits_at_long_and_short_waves():
 
 
 def test_adhesive_socket_without_adhesion_is_hess_forsbach():
-    sticky, paper = (
-        model.press(HIP, force=3000.0) for model in (bs.AdhesiveSocket(work_of_adhesion=0.0), bs.HessForsbach())
-    )
+    models = bs.AdhesiveSocket(work_of_adhesion=0.0), bs.HessForsbach()
+    sticky, paper = (model.press(HIP, force=3000.0) for model in models)
     for name in ("indentation", "half_angle", "max_pressure", "stiffness", "energy"):
         assert getattr(sticky, name) == pytest.approx(getattr(paper, name), rel=1e-10), name
 
 
 def test_custom_moduli_are_accepted():
     own = bs.RadialFoundation(modulus=bs.polynomial(1.06, 1.23, 0.09))
-    assert own.press(HIP, force=3000.0).indentation == pytest.approx(
-        bs.HessForsbach().press(HIP, force=3000.0).indentation
-    )
+    expected = bs.HessForsbach().press(HIP, force=3000.0).indentation
+    assert own.press(HIP, force=3000.0).indentation == pytest.approx(expected)
     fixed = bs.RadialFoundation(modulus=bs.constant(bs.hess_forsbach(HIP)))
     assert fixed.press(HIP, force=3000.0).max_pressure == pytest.approx(11.27, abs=5e-4)
-    with pytest.raises(ValueError, match="modulus = 0 is not allowed"):
-        bs.constant(0.0)
-    with pytest.raises(ValueError, match="c2 = -1 is not allowed"):
-        bs.polynomial(1.0, -1.0, 0.0)
-    with pytest.raises(ValueError, match="exponent = 0 is not allowed"):
-        bs.Steuermann(exponent=0)
-    with pytest.raises(ValueError, match="work_of_adhesion = -1 is not allowed"):
-        bs.AdhesiveSocket(work_of_adhesion=-1.0)
-    with pytest.raises(ValueError, match="coefficient = 0 is not allowed"):
-        bs.LiuReconstruction(coefficient=0.0)
 
 
-def test_plane_layer_too_thin_to_compute_is_refused_without_changing_other_points():
-    with pytest.raises(ValueError, match="plane-layer has no answer for R2/L = 1800: .* use bonded-layer"):
-        bs.PlaneLayer().press(hip(liner_thickness=0.01), force=1.0)
-    contact = bs.PlaneLayer().press(hip(liner_thickness=np.array([6.75, 0.01])), force=100.0)
+def test_plane_layer_too_thin_to_compute_does_not_change_other_points():
+    contact = bs.PlaneLayer().press(hip(liner_thickness=np.array([6.75, 0.01])), half_angle=0.3)
     np.testing.assert_array_equal(contact.status, [bs.Status.OK, bs.Status.OUTSIDE_DOMAIN])
-    assert contact.max_pressure[0] == pytest.approx(bs.PlaneLayer().press(HIP, force=100.0).max_pressure, rel=1e-9)
+    assert contact.max_pressure[0] == pytest.approx(bs.PlaneLayer().press(HIP, half_angle=0.3).max_pressure, rel=1e-9)
 
 
 @pytest.mark.parametrize("model", bs.catalogue.values(), ids=bs.catalogue)
