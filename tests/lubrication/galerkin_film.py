@@ -26,9 +26,8 @@ class GalerkinFilm:
 
     def __init__(self, rate, finest, coarsest, meridians, growth):
         rings = graded_rings(EDGE, finest=np.radians(finest), coarsest=np.radians(coarsest), growth=growth)
-        self.basis = Basis(
-            MeshQuad.init_tensor(rings, np.linspace(-np.pi / 2, np.pi / 2, meridians + 1)), ElementQuad2(), intorder=5
-        )
+        mesh = MeshQuad.init_tensor(rings, np.linspace(-np.pi / 2, np.pi / 2, meridians + 1))
+        self.basis = Basis(mesh, ElementQuad2(), intorder=5)
         self.theta, self.phi = self.basis.doflocs
         theta, phi = self.basis.global_coordinates()
         self.rate, self.sine = rate, np.sin(theta)
@@ -37,9 +36,8 @@ class GalerkinFilm:
         self.normal = np.stack([self.sine * np.sin(phi), np.cos(theta)])  # y and z
         self.pole = np.flatnonzero(self.theta < 1e-12)
         self.reduction = self.reduce()
-        self.weight = np.stack(
-            [LinearForm(lambda v, w, n=n: n * v * self.area).assemble(self.basis) for n in self.normal]
-        )
+        weights = [LinearForm(lambda v, w, n=n: n * v * self.area).assemble(self.basis) for n in self.normal]
+        self.weight = np.stack(weights)
 
     def reduce(self):
         """Matrix from unknowns to nodes: one value at the pole, and none at the rim."""
@@ -59,11 +57,8 @@ class GalerkinFilm:
 
     def film(self, pressure, shift):
         """Film thickness in mm at the points of integration."""
-        return (
-            CLEARANCE
-            - np.einsum("i,ijk->jk", shift, self.normal)
-            + np.asarray(self.basis.interpolate(pressure)) / MODULUS
-        )
+        springs = np.asarray(self.basis.interpolate(pressure)) / MODULUS
+        return CLEARANCE - np.einsum("i,ijk->jk", shift, self.normal) + springs
 
     def newton_step(self, pressure, shift, old, step):
         """Changes of pressure in MPa and of the displacement in mm in a time step."""

@@ -68,8 +68,7 @@ def reynolds_on_springs(mesh, pressure, eccentricity, force, modulus=MODULUS, am
 def solve_in_frame_of_the_film(joint, modulus, force, amplitude, tilt, count, cycles, viscosity, ambient=0.1):
     """Film at the load in mm at the end of each cycle, by Reynolds' equation.
 
-    On uniform springs the surfaces rest in the frame that turns with the film, by half of the ball's rotation. The load
-    goes around. The pressure around the joint is 0.1 MPa above that of the vapour.
+    On uniform springs the surfaces rest in the frame that turns with the film, by half of the ball's rotation.
     """
     spins, load = rocking_motion(amplitude, tilt, count)
     clearance, radius = joint.clearance, joint.socket_radius
@@ -115,10 +114,7 @@ def test_a_short_swing_about_one_axis_squeezes_the_middle():
 
 
 def test_rocking_about_two_axes_turns_the_film_and_settles_its_core():
-    """Half rotations leave a net rotation. Reynolds' equation in steps has 84.5 nm after 10 cycles and 59.5 after 25.
-
-    It was solved in the frame of the film, where nothing slides, with an ambient pressure of 0.1 MPa.
-    """
+    """Reynolds' equation in the frame of the film has 84.5 nm after 10 cycles and 59.5 after 25."""
     mesh, instants = rocking(width=either(5.0, 3.0))
     early = carry_over_cycle(mesh, VISCOSITY, instants, 10)
     assert np.degrees(early.drift) == pytest.approx(5.5, abs=0.2)
@@ -132,10 +128,7 @@ def test_rocking_about_two_axes_turns_the_film_and_settles_its_core():
 
 @pytest.mark.long
 def test_reynolds_equation_confirms_the_core_of_another_joint():
-    """A head of 28 mm, clearance 0.06 mm, another load, viscosity and rocking. Without drift 20 cycles leave 121 nm.
-
-    Reynolds' equation has 315, 164 and 168 nm after 3, 10 and 20 cycles on cells of 3°, and 315, 168 and 169 nm here.
-    """
+    """Reynolds' equation has 315, 164 and 168 nm after 3, 10 and 20 cycles. Without drift 20 cycles leave 121 nm."""
     joint = bs.Joint(ball_radius=14.0, clearance=0.06, liner_thickness=8.0, liner=LINER)
     case = {"joint": joint, "modulus": 250.0, "force": 800.0, "amplitude": 0.45, "tilt": 45.0, "count": 20}
     mesh, instants = rocking(**case)
@@ -147,11 +140,7 @@ def test_reynolds_equation_confirms_the_core_of_another_joint():
 
 REVERSING_PARTS = np.array([0.0, 0.025, 0.05, 0.1, 0.15, 0.25, 0.35, 0.4, 0.45, 0.475])
 REVERSING_FILMS = np.array([139.0, 153.0, 186.0, 233.0, 236.0, 200.0, 169.0, 156.5, 145.0, 139.0])
-"""Central film in nm by the part of the cycle, by Reynolds' equation.
-
-In the second cycle, on 92 rings of 16 cells in 640 steps. It is extrapolated to many cells from rings of 12 and 24
-cells, by up to 14 nm, and to short steps from 640 and 2560, by up to 7 nm. The uncertainty is about 3 nm.
-"""
+"""Central film in nm by the part of the cycle: Reynolds' equation, extrapolated (`docs/explanation/film.md`), ±3 nm."""
 
 
 @pytest.mark.parametrize(("width", "count"), some([(2.0, 40), (1.0, 160)], 1))
@@ -163,17 +152,12 @@ def test_the_stated_error_covers_a_cycle_that_reverses_load_and_motion(width, co
     mesh = polar_mesh(18.0, rings, thinned_meridians(rings, round(240 / width)))
     depth = 0.1 + np.asarray(contacts.indentation)
     pressures = MODULUS * (depth[:, None] * mesh.direction[:, 2] - 0.1)
-    instants = [
-        CycleInstant(
-            pressure=np.maximum(pressure, 0.0),
-            continuation=pressure,
-            axis=AXIS,
-            edge=SpringEdge(slope=slope, modulus=MODULUS),
-            spin=np.array([pi / 2 * np.cos(2 * pi * time), 0.0, 0.0]),
-            duration=6.0 / count,
-        )
-        for pressure, slope, time in zip(pressures, contacts.edge_slope, phase, strict=True)
-    ]
+    spins = np.outer(pi / 2 * np.cos(2 * pi * phase), (1.0, 0.0, 0.0))
+    instants = []
+    for pressure, slope, spin in zip(pressures, contacts.edge_slope, spins, strict=True):
+        words = {"continuation": pressure, "axis": AXIS, "spin": spin, "duration": 6.0 / count}
+        edge = SpringEdge(slope=slope, modulus=MODULUS)
+        instants.append(CycleInstant(pressure=np.maximum(pressure, 0.0), edge=edge, **words))
     film = carry_over_cycle(mesh, VISCOSITY, instants, 3)
     central, error = (np.interp(REVERSING_PARTS + 0.5, phase, values) for values in (1e6 * film.central, film.error))
     assert (np.abs(central / REVERSING_FILMS - 1) < error).all()

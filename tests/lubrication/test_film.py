@@ -56,13 +56,7 @@ FAST = pytest.param(100.0, 1774.2, 1456.1, 64, 0.003, marks=pytest.mark.long)
     ("rate", "central", "least", "meridians", "error"), [(10.0, 515.2, 433.0, 24, 0.016), FAST], ids=["slow", "fast"]
 )
 def test_reynolds_on_springs(rate, central, least, meridians, error, monkeypatch):
-    """Values of quadratic finite elements, `galerkin_film.py`; finite volumes of half the width agree to 0.2 %.
-
-    The error falls with the square of the number of meridians: the product has 64.
-
-    Upwind differences of first order have 535 and 441.6 nm, and 1857 and 1490 nm, on rings of 2 degrees. On rings of
-    0.24, 0.12, 0.06 and 0.03 degrees they have 523.3, 520.0, 518.0 and 517.0 nm, and 1793.0, 1782.9, 1777.7 and 1775.0.
-    """
+    """Values of quadratic finite elements, `galerkin_film.py`; the error of few meridians is of order two."""
     monkeypatch.setattr(film_problem, "_ON_SPRINGS", replace(film_problem._ON_SPRINGS, meridians=meridians))
     film = bs.film(CONTACT, spin=(rate, 0.0, 0.0), method="reynolds")
     assert film.status is Status.OK
@@ -74,7 +68,6 @@ def test_reynolds_on_springs(rate, central, least, meridians, error, monkeypatch
 
 @pytest.mark.long
 def test_finite_elements_confirm_the_finite_volumes():
-    """Another discretisation, without upwinding, at another speed than those above."""
     volumes = bs.film(CONTACT, spin=(30.0, 0.0, 0.0), method="reynolds")
     elements = GalerkinFilm(30.0, 0.05 * np.sqrt(30.0), 1.5, 16, 1.25).solve()
     assert (volumes.central, volumes.minimum) == pytest.approx(elements, rel=0.003)
@@ -98,12 +91,9 @@ def test_films_of_shared_cases_have_the_values_of_other_meshes():
     if extent.whole:
         springs = solved_film("springs", "reynolds")
         assert springs.valid
+        slow = solved_film("slow", "reynolds")
+        assert slow.pressure.max() == pytest.approx(CONTACT.max_pressure, rel=0.005)  # tends to the dry one
         assert 1e6 * np.array([springs.central, springs.minimum]) == pytest.approx([515.2, 433.0], rel=0.003)
-
-
-@pytest.mark.long
-def test_the_film_pressure_tends_to_the_dry_one():
-    assert solved_film("slow", "reynolds").pressure.max() == pytest.approx(CONTACT.max_pressure, rel=0.005)
 
 
 def test_wave_films_on_springs_scale_with_the_root_of_viscosity_and_speed():
@@ -124,10 +114,8 @@ def test_the_direction_of_the_motion_turns_the_map(spin, error):
 
 def test_film_at_the_exact_contact_loses_little_on_its_way():
     inlet, wave = (bs.film(ELASTIC, method=method) for method in ("inlet", "wave"))
-    assert wave.central == pytest.approx(inlet.central, rel=inlet.error)
-    assert wave.central < inlet.central
-    assert wave.valid
-    assert not inlet.valid
+    assert inlet.central * (1 - inlet.error) < wave.central < inlet.central
+    assert (wave.valid, inlet.valid) == (True, False)
 
 
 TILTED = {"springs": (bs.Springs(modulus=bs.constant(276.67)), CONTACT), "shell": (bs.ClosedShell(), ELASTIC)}
@@ -201,17 +189,12 @@ def test_a_film_that_circles_within_the_contact_is_not_valid(contact):
     assert far.notes == contact.notes
 
 
-@pytest.mark.parametrize(
-    ("words", "note"),
-    [
-        ({"lubricant": bs.Lubricant(viscosity=1e-9)}, "the smallest film is below 1 nm"),
-        ({"spin": (1e5, 0.0, 0.0)}, "of the film is above 1440: the flow is turbulent"),
-    ],
-)
-def test_films_of_few_molecules_and_turbulent_films_are_not_valid(words, note):
-    film = bs.film(CONTACT, cell_width=radians(4.0), **words)
-    assert not film.valid
-    assert any(note in text for text in film.notes)
+def test_films_of_few_molecules_and_turbulent_films_are_not_valid():
+    thin = {"lubricant": bs.Lubricant(viscosity=1e-9)}, "the smallest film is below 1 nm"
+    for words, note in (thin, ({"spin": (1e5, 0.0, 0.0)}, "of the film is above 1440: the flow is turbulent")):
+        film = bs.film(CONTACT, cell_width=radians(4.0), **words)
+        assert not film.valid
+        assert any(note in text for text in film.notes)
 
 
 def test_reynolds_number_is_that_of_a_film_of_water():

@@ -61,9 +61,8 @@ def test_films_and_errors_vanish_with_the_speed(edge):
 def point_contact_film(viscosity, speed, force, radius, modulus):
     """Central film in mm of a round isoviscous point contact by the fit of Nijenbanning, Venner and Moes.
 
-    `speed` is the sum of those of both surfaces. The fit has the similarity of the equations, and the limits of rigid
-    and of elastic bodies. Source: Wear 176 (1994) 217, doi:10.1016/0043-1648(94)90150-3. Formula and definitions were
-    read in a later program, not in the paper, and the DOI was not followed (unverified).
+    `speed` is the sum of those of both surfaces. Source: Wear 176 (1994) 217, doi:10.1016/0043-1648(94)90150-3. Formula
+    and definitions were read in a later program, not in the paper, and the DOI was not followed (unverified).
     """
     speed_number = viscosity * speed / (2 * modulus * radius)  # U of E' = 2 E*
     moes = force / (2 * modulus * radius**2) * speed_number**-0.75
@@ -88,8 +87,7 @@ def hertzian_film(speed_number, moes):
 def test_films_of_hertzian_contacts_are_similar():
     """h/(R sqrt(U)) depends on the Moes number alone, as M^(-2/15)."""
     films = [hertzian_film(*numbers)[0] for numbers in ((1e-9, 1e3), (1e-13, 1e3), (1e-17, 1e3), (1e-13, 1e4))]
-    assert films[1] == pytest.approx(films[0], rel=1e-3)
-    assert films[2] == pytest.approx(films[0], rel=1e-3)
+    assert films[1:3] == pytest.approx([films[0]] * 2, rel=1e-3)
     assert films[3] / films[1] == pytest.approx(10 ** (-2 / 15), rel=0.04)
 
 
