@@ -32,7 +32,7 @@ def test_a_contact_is_summarised_for_json():
 
 def test_contacts_are_printed_with_the_range_of_their_points():
     text = repr(PRESSED)
-    assert f"{PRESSED.max_pressure:.6g} MPa" in text
+    assert f"{PRESSED.area:.6g} mm²" in text
     assert f"{PRESSED.utilisation:.3g}" in text
     contact = bs.Bartel().press(HIP, force=np.array([1000.0, 3000.0, 1e13]))
     assert "{:.5g} to {:.5g} mm".format(*contact.indentation[:2]) in repr(contact)

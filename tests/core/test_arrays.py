@@ -8,10 +8,9 @@ import pytest
 from ballsocket.core import arrays
 
 VALUES = np.array([0.0, 0.2, 0.7, 1.0, 2.5])
-UNARY = ("exp", "log1p", "sin", "cos", "tan", "atan", "asinh", "sqrt")
 
 
-@pytest.mark.parametrize("name", UNARY)
+@pytest.mark.parametrize("name", ["exp", "log1p", "sin", "cos", "tan", "atan", "asinh", "sqrt"])
 def test_functions_of_floats_and_arrays_agree(name):
     function, expected = getattr(arrays, name), getattr(np, {"atan": "arctan", "asinh": "arcsinh"}.get(name, name))
     np.testing.assert_allclose(function(VALUES), expected(VALUES), rtol=1e-15)
@@ -21,12 +20,9 @@ def test_functions_of_floats_and_arrays_agree(name):
 
 
 def test_floats_outside_a_domain_become_nan_or_infinite():
-    assert arrays.exp(1000.0) == math.inf
-    assert arrays.log(0.0) == -math.inf
-    assert math.isnan(arrays.log(-1.0))
-    assert math.isnan(arrays.asin(1.5))
-    assert math.isnan(arrays.sqrt(-1.0))
-    assert math.isnan(arrays.power(-1.0, 1.5))
+    assert (arrays.exp(1000.0), arrays.log(0.0)) == (math.inf, -math.inf)
+    missing = arrays.log(-1.0), arrays.asin(1.5), arrays.sqrt(-1.0), arrays.power(-1.0, 1.5)
+    assert all(map(math.isnan, missing))
     assert arrays.sqrt(0.0) == arrays.power(0.0, 1.5) == 0.0
 
 
@@ -56,8 +52,7 @@ def test_common_arrays_have_the_dtype_of_the_arrays():
     assert (single.dtype, number.dtype) == (np.float32, np.float32)
     integers, number = arrays.to_common_arrays(np.array([1, 2]), 0.5)
     assert integers.dtype == number.dtype == np.float64
-    plain = arrays.to_common_arrays(1, 2.5)
-    assert [value.dtype for value in plain] == [np.float64, np.float64]
+    assert [value.dtype for value in arrays.to_common_arrays(1, 2.5)] == [np.float64, np.float64]
     assert [arrays.machine_epsilon(x) for x in (1.0, np.ones(2), single)] == [2.0**-52, 2.0**-52, 2.0**-23]
     assert [arrays.all_true(x) for x in (True, np.array([True, False]), np.ones(2) > 0)] == [True, False, True]
     with pytest.raises(TypeError, match="all arrays must be of one library, got array_api_strict.Array, n"):
@@ -75,8 +70,7 @@ def test_quadrature_is_exact_for_polynomials():
 
 def test_lists_for_json_have_no_nan_and_no_infinity():
     assert arrays.to_list(np.array([[1.0, np.nan], [np.inf, -np.inf]])) == [[1.0, None], ["inf", "inf"]]
-    assert arrays.to_list(2.5) == 2.5
-    assert arrays.to_list(np.array([True, False])) == [True, False]
+    assert [arrays.to_list(x) for x in (2.5, np.array([True, False]))] == [2.5, [True, False]]
 
 
 def test_plain_numbers_are_numbers_without_a_library():

@@ -10,10 +10,7 @@ fsspec = pytest.importorskip("fsspec")
 @pytest.fixture(params=["local", "memory"])
 def folder(request, tmp_path):
     """Return an empty folder; the store of fsspec in the memory stands for a bucket."""
-    if request.param == "local":
-        yield folder_at(tmp_path / "results")
-        return
-    yield folder_at("memory://bucket/results")
+    yield folder_at(tmp_path / "results" if request.param == "local" else "memory://bucket/results")
     system = fsspec.filesystem("memory")
     if system.exists("/bucket"):
         system.rm("/bucket", recursive=True)

@@ -25,16 +25,6 @@ def test_energy_is_conserved_over_bounces_without_losses(smoothing):
     assert motion.drift < 1e-12
 
 
-@pytest.mark.long
-def test_energy_drift_of_ten_thousand_bounces_is_small():
-    """Steps of 20 µs, compiled; a contact lasts about 22 steps."""
-    from ballsocket.dynamics.compiled import CompiledElement
-
-    motion = simulate(CompiledElement(FREE), duration=24.0, **THROW)
-    assert motion.bounces > 10_000
-    assert motion.drift < 1e-7
-
-
 ORBIT = {"mass": 0.35, "position": (0.1, 0.0, 0.0), "velocity": (20.0, 60.0, 15.0)}
 
 
