@@ -137,8 +137,9 @@ def test_allowed_ranges_end_at_the_stated_limits(name, inside, outside):
 
 
 def test_an_angle_in_degrees_gets_a_hint_in_radians():
-    with pytest.raises(ValueError, match="half_angle = 45 is not .*; 45 degrees are 0.7854 radians"):
-        QUANTITIES["half_angle"].check(45.0)
+    for angle, name in ((45.0, "half_angle"), (np.array([1.0, 45.0]), r"half_angle\[1\]")):
+        with pytest.raises(ValueError, match=f"{name} = 45 is not .*; 45 degrees are 0.7854 radians"):
+            QUANTITIES["half_angle"].check(angle)
     assert QUANTITIES["half_angle"].radian_hint(100.0) == QUANTITIES["force"].radian_hint(1.0) == ""
 
 
