@@ -86,6 +86,8 @@ def test_area_and_ratios_follow_their_definitions():
     assert thick.depth_ratio == pytest.approx(0.05 / 18.0)
     assert thick.indentation_ratio == pytest.approx(0.05 / 30.0)
 
+
+def test_conformity_and_foundation_modulus_of_a_half_space_are_infinite_without_load():
     contact = bs.HessForsbach().press(HIP, force=0.0)
     assert contact.conformity == np.inf
     assert contact.foundation_modulus == pytest.approx(bs.hess_forsbach(HIP))
@@ -97,15 +99,10 @@ def test_area_and_ratios_follow_their_definitions():
     ("call", "message"),
     [
         (lambda: bs.compare(HIP, force=-1.0), "force = -1 is not allowed"),
-        (
-            lambda: bs.Hertz().press(HIP, force=[1.0, 2.0]).plot(),
-            "a plot shows one contact for each model, got 2; draw",
-        ),
+        (lambda: bs.Hertz().press(HIP, force=[1.0, 2.0]).plot(), "a plot shows one contact for each model, got 2"),
         (lambda: bs.Exact().press(HIP, force=1e13).plot(), "there is nothing to draw: no model has an answer"),
-        *(
-            (lambda wrong=wrong: bs.HessForsbach().force_vector(HIP, wrong), "displacement of shape .* holds x, y, z")
-            for wrong in ([0.1, 0.1], 0.1, [[1.0], [2.0]])
-        ),
+        (lambda: bs.HessForsbach().force_vector(HIP, [0.1, 0.1]), r"displacement of shape \(2,\) .* holds x, y, z"),
+        (lambda: bs.HessForsbach().force_vector(HIP, 0.1), r"displacement of shape \(\) .* holds x, y, z"),
         (lambda: bs.HessForsbach().force_vector(HIP, [0.0, np.nan, 0.1]), r"displacement\[1\] = nan is not allowed"),
         (lambda: PRESSED.friction_torque(0.1, 90.0), "axis_angle = 90 is .*: it is in radians; 90 degrees are 1.571"),
         (lambda: PRESSED.friction_torque(0.1, -6.3), "axis_angle = -6.3 is not allowed"),
@@ -124,26 +121,14 @@ def test_arguments_that_are_not_allowed_are_refused(call, message):
         call()
 
 
-def sphere_integral(contact, function, planar=False):
-    """Integrate pressure times a function of angle and azimuth over the contact by a fine midpoint rule."""
-    count, turns = 2000, 720
-    s = (np.arange(count) + 0.5) / count
-    angle = contact.half_angle * np.sin(pi / 2 * s)
-    width = contact.half_angle * pi / 2 * np.cos(pi / 2 * s) / count
-    azimuth = 2 * pi * (np.arange(turns) + 0.5) / turns
-    mean = function(angle[:, None], azimuth).mean(axis=1)
-    arc = angle if planar else np.sin(angle)
-    return 2 * pi * contact.joint.socket_radius**2 * np.sum(contact.pressure(angle) * arc * width * mean)
-
-
 @pytest.mark.parametrize("axis", [0.0, 0.4, 1.1, pi / 2, 2.5])
 def test_friction_torque_is_the_integral_of_pressure_times_lever(axis):
-    def lever(angle, azimuth):
-        cosine = np.cos(angle) * cos(axis) + np.sin(angle) * np.cos(azimuth) * sin(axis)
-        return np.sqrt(1 - cosine**2)
-
-    expected = 0.1 * HIP.ball_radius * sphere_integral(PRESSED, lever)
-    assert PRESSED.friction_torque(0.1, axis) == pytest.approx(expected, rel=1e-4)
+    s = (np.arange(2000) + 0.5) / 2000
+    angle, azimuth = PRESSED.half_angle * np.sin(pi / 2 * s), 2 * pi * (np.arange(720) + 0.5) / 720
+    cosine = np.cos(angle)[:, None] * cos(axis) + np.sin(angle)[:, None] * np.cos(azimuth) * sin(axis)
+    ring = PRESSED.pressure(angle) * np.sin(angle) * PRESSED.half_angle * pi / 2 * np.cos(pi / 2 * s) / 2000
+    total = 2 * pi * HIP.socket_radius**2 * np.sum(ring * np.sqrt(1 - cosine**2).mean(axis=1))
+    assert PRESSED.friction_torque(0.1, axis) == pytest.approx(0.1 * HIP.ball_radius * total, rel=1e-4)
 
 
 def test_spin_torque_of_hertz_is_three_sixteenths_pi():

@@ -38,24 +38,15 @@ def package(tmp_path_factory):
     return folder
 
 
-def run(package, folder, *words):
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    return subprocess.run(
-        [sys.executable, *words],
-        cwd=folder,
-        capture_output=True,
-        encoding="utf-8",
-        check=False,
-        env={**environment, "PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"},
-    )
-
-
 @pytest.mark.long
 def test_a_new_file_and_a_line_of_the_catalogue_pass_the_contract(package):
     assert FILE.count("\n") <= 48
     places = [str(ROOT / "tests" / name) for name in CONTRACT]
     options = ("-n", "0", "--long", "-o", "pythonpath=", "-p", "no:cacheprovider", "-k", "mattress")
-    done = run(package, ROOT, "-m", "pytest", "-v", *options, *places)
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    environment |= {"PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"}
+    command = [sys.executable, "-m", "pytest", "-v", *options, *places]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, encoding="utf-8", check=False, env=environment)
     assert done.returncode == 0, done.stdout
     assert int(re.search(r"(\d+) passed", done.stdout)[1]) >= 30
 

@@ -83,13 +83,9 @@ def test_largest_pressure_of_steuermann_is_that_of_its_polynomial(order, angle, 
 def test_tabulated_joints_have_their_largest_pressure_at_the_pole():
     rng, size = np.random.default_rng(3), 4000
     ratio = np.exp(rng.uniform(np.log(0.2), np.log(20.0), size))
-    joint = bs.Joint(
-        ball_radius=17.9,
-        clearance=0.1,
-        liner_thickness=18.0 / ratio,
-        liner=bs.Material(young=1000.0, poisson=rng.uniform(-0.49, 0.4992, size)),
-        ball=bs.Material(young=1000.0 / np.exp(rng.uniform(np.log(1e-4), np.log(0.02), size)), poisson=0.3),
-    )
+    liner = bs.Material(young=1000.0, poisson=rng.uniform(-0.49, 0.4992, size))
+    ball = bs.Material(young=1000.0 / np.exp(rng.uniform(np.log(1e-4), np.log(0.02), size)), poisson=0.3)
+    joint = HIP.replace(liner_thickness=18.0 / ratio, liner=liner, ball=ball)
     contact = bs.Tabulated().press(joint, half_angle=np.radians(rng.uniform(0.5, 85.0, size)))
     answered = np.isfinite(contact.indentation)
     assert answered.mean() > 0.9
@@ -100,7 +96,7 @@ def test_tabulated_joints_have_their_largest_pressure_at_the_pole():
 
 # edge
 
-JOINT = bs.Joint(ball_radius=17.9, clearance=0.1, liner_thickness=6.75, liner=bs.Material(young=1000.0, poisson=0.4))
+JOINT = HIP.replace(liner=bs.Material(young=1000.0, poisson=0.4), ball=None)
 
 
 def test_slope_on_springs_is_that_of_linear_kinematics():

@@ -30,13 +30,10 @@ def wide_contacts(count: int, seed: int):
     for number in range(count):
         radius = rng.uniform(4.0, 30.0)
         clearance = radius * 10 ** rng.uniform(-3.3, -1.7)
-        joint = bs.Joint(
-            ball_radius=radius,
-            clearance=clearance,
-            liner_thickness=(radius + clearance) / 10 ** rng.uniform(-0.7, 0.3),
-            liner=bs.Material(young=rng.uniform(200.0, 3500.0), poisson=rng.uniform(0.0, 0.499)),
-            ball=bs.Material(young=2.1e5, poisson=0.3) if number % 2 else None,
-        )
+        thickness = (radius + clearance) / 10 ** rng.uniform(-0.7, 0.3)
+        liner = bs.Material(young=rng.uniform(200.0, 3500.0), poisson=rng.uniform(0.0, 0.499))
+        ball = bs.Material(young=2.1e5, poisson=0.3) if number % 2 else None
+        joint = bs.Joint(ball_radius=radius, clearance=clearance, liner_thickness=thickness, liner=liner, ball=ball)
         found = bs.Tabulated().press(joint, half_angle=np.radians(rng.uniform(79.5, 85.0, 16))).force
         yield joint, found[np.isfinite(found)]
 

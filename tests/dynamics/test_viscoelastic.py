@@ -60,8 +60,7 @@ def test_a_single_term_is_the_standard_linear_solid():
     """It loses most at ω τ = 1. g = 1 - g1 + g1 exp(-t/τ) has J = 1/g∞ - g1/g∞ exp(-g∞ t/τ)."""
     one = Prony(terms=((0.4, 0.1),))
     assert one.complex_modulus(1 / (2 * np.pi * 0.1)) == pytest.approx(0.8 + 0.2j)
-    assert abs(one.complex_modulus(1e9) - 1.0) < 1e-6
-    assert abs(one.complex_modulus(0.0) - 0.6) < 1e-12
+    assert one.complex_modulus(np.array([0.0, 1e9])) == pytest.approx([0.6, 1.0], abs=1e-6)
     losses = one.complex_modulus(np.array([0.5, 1.0, 2.0]) / (2 * np.pi * 0.1)).imag
     assert losses[0] == pytest.approx(losses[2])
     assert losses[1] > losses[0]
@@ -91,16 +90,9 @@ def test_creep_and_relaxation_agree_with_integrated_springs():
     depth = np.append(0.0, LINER.creep_indentation(3000.0, time[1:]))
     np.testing.assert_allclose(LINER.spring_force(time, depth)[1:], 3000.0, rtol=3e-5)
     assert depth[-1] > 1.4 * depth[1]
+    assert PE.creep_compliance(np.array([0.0, 1e9])) == pytest.approx([1.0, 1 / PE.long_term_share])
     held = LINER.spring_force(time, np.append(0.0, np.full(400, 0.05)))
     np.testing.assert_allclose(held[1:], LINER.relaxation_force(0.05, time[1:]), rtol=1e-4)
-
-
-def test_creep_is_the_inverse_of_relaxation():
-    time = np.linspace(0.0, 30.0, 3001)
-    rise = np.append(1.0, np.diff(PE.creep_compliance(time)))  # a step, then creep
-    stress = np.array([np.sum(rise[: n + 1] * PE.relaxation(time[n] - time[: n + 1])) for n in (0, 100, 1000, 3000)])
-    np.testing.assert_allclose(stress, 1.0, rtol=2e-3)
-    assert PE.creep_compliance(np.array([0.0, 1e9])) == pytest.approx([1.0, 1 / PE.long_term_share])
 
 
 def test_loss_of_a_small_vibration_follows_the_complex_stiffness():
