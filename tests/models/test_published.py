@@ -7,9 +7,6 @@ import ballsocket as bs
 
 from ..joints import HIP
 
-STEEP = HIP.replace(liner=bs.Material(young=1000.0, poisson=0.45))
-
-
 TABLE_3 = {0.30: (1.14, 0.97, 0.04), 0.35: (1.10, 1.07, 0.06), 0.40: (1.06, 1.23, 0.09)}
 TABLE_3 |= {0.45: (0.99, 1.51, 0.16), 0.49: (0.96, 1.79, 0.33)}
 
@@ -39,16 +36,15 @@ def test_bartel_has_the_reference_values_at_3000_newton():
     assert np.degrees(contact.half_angle) == pytest.approx(43.718, abs=5e-4)
 
 
-def test_vessel_modulus_is_that_of_a_thick_sphere():
-    """K_B = 1/c_0 of a sphere with a fixed outer surface: c_0 = 0.00330432 mm/MPa here."""
-    assert 1 / bs.spherical_vessel(HIP) == pytest.approx(0.00330432, abs=5e-9)
-
-
 def test_published_overestimates_at_high_poisson_ratio_have_their_sign():
     """Heß & Forsbach 2021, Fig. 4: Bartel's and the bonded layer's maximum pressure are far above the paper's model."""
-    paper = bs.HessForsbach().press(STEEP, force=3000.0).max_pressure
-    assert bs.Bartel().press(STEEP, force=3000.0).max_pressure > 1.08 * paper
-    assert bs.BondedLayer().press(STEEP, force=3000.0).max_pressure > 1.15 * paper
+    joint, models = (
+        HIP.replace(liner=bs.Material(young=1e3, poisson=0.45)),
+        (bs.HessForsbach(), bs.Bartel(), bs.BondedLayer()),
+    )
+    paper, bartel, bonded = (model.press(joint, force=3000.0).max_pressure for model in models)
+    assert bartel > 1.08 * paper
+    assert bonded > 1.15 * paper
 
 
 @pytest.mark.parametrize(("poisson", "indentation", "pressure"), [(0.40, 0.0333, 8.49), (0.45, 0.0293, 9.23)])
@@ -126,16 +122,3 @@ def test_pin_in_hole_has_statuses_and_notes_like_a_ball():
     assert "pin and plate of one material" in contact.notes[1]
     assert contact.valid.tolist() == [False, False]
     assert np.isnan(contact.pressure(0.0)).tolist() == [True, False]
-
-
-@pytest.mark.parametrize(
-    ("load", "message"),
-    [
-        ({"line_load": -1.0}, "line_load = -1 is not allowed"),
-        ({"half_angle": 1.5}, "below 1.480527 .perfect fit."),
-        ({}, "exactly one of line_load, half_angle is needed"),
-    ],
-)
-def test_invalid_loads_of_a_pin_are_refused(load, message):
-    with pytest.raises(ValueError, match=message):
-        bs.PinInHole().press(PLATE, **load)
