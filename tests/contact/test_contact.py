@@ -87,7 +87,7 @@ def test_area_and_ratios_follow_their_definitions():
     assert thick.indentation_ratio == pytest.approx(0.05 / 30.0)
 
 
-def test_conformity_and_foundation_modulus_of_a_half_space_are_infinite_without_load():
+def test_conformity_and_moduli_of_half_spaces_are_infinite_without_load():
     contact = bs.HessForsbach().press(HIP, force=0.0)
     assert contact.conformity == np.inf
     assert contact.foundation_modulus == pytest.approx(bs.hess_forsbach(HIP))

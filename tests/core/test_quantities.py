@@ -54,7 +54,7 @@ def units():
 
 
 @EVERY
-def test_units_are_read_and_have_the_stated_factors_and_keys_of_angles_end_in_degrees(quantity):
+def test_units_have_the_stated_factors_and_keys_of_angles_end_in_degrees(quantity):
     for unit in (Unit(quantity.unit), quantity.written, quantity.shown):
         text = unit.text.replace("°", "deg") if unit.text not in ("", "1") else ""
         assert parse(quantity.name, f"{unit.factor!r} {text}".strip(), quantity.kind) == pytest.approx(1.0, rel=1e-15)

@@ -249,7 +249,7 @@ def test_a_run_computes_and_stores_only_the_missing_pieces():
     assert list(again.compute_missing(Serial())) == []
 
 
-def test_a_run_without_a_store_computes_every_piece_and_a_failed_one_resumes_with_the_failed_piece():
+def test_runs_without_a_store_compute_every_piece_and_failed_ones_resume():
     run = PieceRun(square, [2, 1])
     assert (run.stored, run.missing) == ({}, [2, 1])
     assert list(run.compute_missing(Serial())) == [(2, 4), (1, 1)]
