@@ -104,11 +104,7 @@ def test_a_piece_that_always_kills_its_process_is_an_error(tmp_path, work):
         (Distributed, {"retries": "x"}, "retries = 'x' is not allowed: a whole number"),
         (Distributed, {"address": "tcp://host:1", "workers": 2}, "workers = 2 is not allowed for the scheduler at"),
         *(
-            (
-                Distributed,
-                {"address": address},
-                f"address = {address!r} is not allowed: a Dask scheduler has",
-            )
+            (Distributed, {"address": address}, f"address = {address!r} is not allowed: a Dask scheduler has")
             for address in ("", "nonsense", "tcp://", "udp://10.0.0.1:1", 8786)
         ),
         (Distributed, {"security": object()}, "security needs the address of a scheduler"),

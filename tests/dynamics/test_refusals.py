@@ -101,10 +101,7 @@ TYPES = [
     (preloaded(friction=dynamics.Bristles(coefficient=0.1, stiffness=1e3)), "bristles are not supported"),
     (preloaded(damping=0.1), "damping must be Damping"),
     (motion(3), "element must be a ForceElement, got 3"),
-    (
-        lambda: dynamics.Viscoelastic(bs.Hertz(), HIP, PRONY).spring_force(TIME, TIME),
-        "must be radial springs",
-    ),
+    (lambda: dynamics.Viscoelastic(bs.Hertz(), HIP, PRONY).spring_force(TIME, TIME), "must be radial springs"),
 ]
 
 

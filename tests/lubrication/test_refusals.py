@@ -41,11 +41,7 @@ REFUSALS = [
         for value in ("1", None, [1e-3, 2e-3])
     ),
     *(
-        (
-            lambda value=value: bs.Lubricant(viscosity=value),
-            ValueError,
-            r"viscosity = .*: a viscosity \(Pa s\) is pos",
-        )
+        (lambda value=value: bs.Lubricant(viscosity=value), ValueError, r"viscosity = .*: a viscosity \(Pa s\) is pos")
         for value in (np.inf, np.nan, 0.0)
     ),
     (steps(forces=[1500.0, -1.0]), ValueError, r"forces\[1\] = -1 is not allowed: a film needs a load"),
@@ -53,11 +49,7 @@ REFUSALS = [
     (steps(spins=[(1.5, 0.0, 0.0)]), ValueError, r"spins of shape \(1, 3\) .* are not allowed for 2 forces"),
     (steps(spins=[(0, 0, 1.5), (0, 0, 0)]), ValueError, "does not move across the load in any step"),
     (steps(bs.Hertz()), ValueError, "method = 'reynolds' is not possible for hertz"),
-    (
-        steps(forces=[10.0, 3000.0], lubricant=bs.Lubricant(viscosity=1e-9)),
-        ValueError,
-        "the edge of the contact moves",
-    ),
+    (steps(forces=[10.0, 3000.0], lubricant=bs.Lubricant(viscosity=1e-9)), ValueError, "the edge of the contact moves"),
 ]
 
 
