@@ -52,16 +52,10 @@ def test_unknown_names_get_the_most_similar_one(name, hint):
     assert checks.nearest(name, ["force", "max-pressure", "stiffness"]) == hint
 
 
-@pytest.mark.parametrize(
-    ("name", "known", "similar"),
-    [
-        ("forces", ["force", "forces-of-friction"], "force"),
-        ("exact-c", ["exact-curve", "exact"], "exact"),
-        ("bond", ["band", "bonded-layer"], "bonded-layer"),
-    ],
-)
-def test_similar_names_win_over_longer_ones_with_the_same_start(name, known, similar):
-    assert checks.nearest(name, known) == f"; did you mean '{similar}'?"
+def test_similar_names_win_over_longer_ones_with_the_same_start():
+    assert checks.nearest("forces", ["force", "forces-of-friction"]) == "; did you mean 'force'?"
+    assert checks.nearest("exact-c", ["exact-curve", "exact"]) == "; did you mean 'exact'?"
+    assert checks.nearest("bond", ["band", "bonded-layer"]) == "; did you mean 'bonded-layer'?"
 
 
 def test_long_lists_of_names_are_cut():
