@@ -129,9 +129,10 @@ def test_friction_rotates_with_the_state_and_reverses_with_the_motion():
 def test_friction_potential_is_convex():
     """The damping matrix has no negative eigenvalue."""
     position, velocity, spin = states(2000, deepest=0.3)
+    element = replace(SMOOTH, friction=Friction(coefficient=0.1))
     levers = np.array([1.0, 1.0, 1.0, RADIUS, RADIUS, RADIUS])
     for speeds in (1e-3, 1.0):
-        matrix = SMOOTH(position, speeds * velocity, speeds * spin).damping_matrix / np.outer(levers, levers)
+        matrix = element(position, speeds * velocity, speeds * spin).damping_matrix / np.outer(levers, levers)
         values = np.linalg.eigvalsh(matrix)
         assert (values[:, 0] >= -1e-9 * values[:, -1]).all()
 
