@@ -213,3 +213,6 @@ def test_bristles_hold_a_ball_below_the_limit_of_friction():
     slipping = replace(element, friction=Friction(coefficient=0.1))
     creeping = simulate(slipping, pull=(side, 0.0, normal), inertia=1e9, **thrown)
     assert abs(held.velocity[-1, 0]) < 0.01 * creeping.velocity[-1, 0]
+    ended = simulate(element, **thrown | {"position": (np.nan, 0.0, 0.0)})
+    assert "after 0 s: the state is not finite" in ended.end_reason
+    assert "exceeds the wall thickness" in simulate(element, velocity=(0.0, 0.0, 1e7), **thrown).end_reason
