@@ -239,6 +239,13 @@ def test_contacts_broadcast_against_arrays_of_strengths():
         assert contact.notes[-1].startswith("1 of 2: von Mises stress up to")
 
 
+def test_validity_and_notes_solve_for_no_stresses_where_bounds_decide(monkeypatch):
+    monkeypatch.setattr("ballsocket.elasticity.exact.contact.largest_von_mises", None)
+    contact = bs.Exact().press(HIP, force=np.array([0.0, 3000.0, 80e3]))
+    assert contact.valid.tolist() == [True, True, False]
+    assert [len(bs.Exact().press(HIP, force=force).notes) for force in (3000.0, 6000.0)] == [0, 1]
+
+
 def test_stresses_of_layered_sockets_are_solved():
     """A liner on bone bends: no share of the pressure tells its stress."""
     bone = bs.Layer(thickness=inf, material=bs.CANCELLOUS_BONE)

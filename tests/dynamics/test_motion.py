@@ -221,9 +221,7 @@ def test_steps_are_shortened_to_fill_the_duration(duration, step, steps):
 
 
 @pytest.mark.parametrize(
-    "friction",
-    [Friction(coefficient=0.5, transition_speed=1.0), Friction(coefficient=0, viscous=1)],
-    ids=["dry", "wet"],
+    "friction", [Friction(coefficient=0.5, transition_speed=1.0), Friction(coefficient=0, viscous=1)]
 )
 def test_steps_with_friction_stiffer_than_inertia_converge(friction):
     element = replace(FREE, friction=friction, damping=Damping(hysteresis=0.01, time=1e-3))
