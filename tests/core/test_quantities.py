@@ -160,6 +160,7 @@ def test_sources_have_authors_and_year():
     assert any(" et al. " in Source(key).authors_and_year for key in bibliography())
     assert list(find_cited_keys(f"E of {source.authors_and_year}, Table 2; doi {source.doi}")) == [key]
     assert list(find_cited_keys("")) == []
+    assert bs.cite(bs.HessForsbach(), bs.HessForsbach()) == bs.cite(bs.HessForsbach())
 
 
 @pytest.mark.parametrize("name", ["ball_radius", "clearance", "liner_thickness"])

@@ -15,7 +15,7 @@ FAILED = {"OUTSIDE_DOMAIN", "NOT_REACHED", "NOT_CONVERGED", "NOT_ROUND", "NO_JOI
 
 def test_statuses_have_the_codes_of_stored_studies_and_those_without_numbers_have_failed():
     names = "OK OUTSIDE_DOMAIN NOT_REACHED NOT_CONVERGED BEYOND_EQUATOR AT_RIM NOT_ROUND NO_JOINT DISLOCATED"
-    assert [status.name for status in sorted(Status)] == names.split()
+    assert {status.name: int(status) for status in Status} == {name: code for code, name in enumerate(names.split())}
     assert {status.name for status in Status if status.failed} == FAILED
     assert all(len(status.sentence) > 3 for status in Status)
     np.testing.assert_array_equal(validity.is_missing(np.arange(9)), [status.failed for status in sorted(Status)])
@@ -51,6 +51,7 @@ def test_an_empty_range_holds_for_no_contact():
     assert str(never) == "nothing"
     assert never.sentence == "never valid: of a test"
     assert Remark(quantity="force", high=1.0, why="a large force").sentence == "a large force"
+    assert str(Promise(within=0.025)) == "within 2.5 % in d and pmax"
     assert str(Promise(within=0.1, quantities=("stiffness",))) == "within 10 % in dF/dd"
 
 
