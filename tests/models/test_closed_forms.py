@@ -59,6 +59,14 @@ def test_pressure_integral_is_that_of_the_pressure_over_the_contact(model):
 
 
 @EVERY
+def test_there_is_no_pressure_beyond_the_edge_and_none_without_load(model):
+    contact, unloaded = model.press(HIP, indentation=0.03), model.press(HIP, force=0.0)
+    np.testing.assert_array_equal(contact.pressure(np.array([1.2 * contact.half_angle + 0.01, 2.0, 3.0])), 0.0)
+    if model.name != "adhesive":
+        assert (unloaded.pressure_integral, unloaded.stiffness) == pytest.approx((0.0, 0.0), abs=1e-12)
+
+
+@EVERY
 def test_plain_numbers_give_the_results_of_arrays(model):
     array, number = model.press(HIP, force=np.array([1500.0])), model.press(HIP, force=1500.0)
     for name in ("indentation", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral"):
