@@ -171,9 +171,8 @@ def test_smoothed_force_is_twice_differentiable_and_exact_beyond_the_smoothing()
 
 def test_force_vanishes_over_the_rim_and_the_notes_report_it():
     angles = np.radians([0.0, 30.0, 60.0, 90.0, 120.0, 130.0, 170.0])
-    load = bs.ForceElement(bs.HessForsbach(), HIP, cup=bs.Cup())(
-        (C + 0.05) * np.stack([np.sin(angles), 0 * angles, np.cos(angles)], axis=-1)
-    )
+    position = (C + 0.05) * np.stack([np.sin(angles), 0 * angles, np.cos(angles)], axis=-1)
+    load = bs.ForceElement(bs.HessForsbach(), HIP, cup=bs.Cup())(position)
     size = np.linalg.norm(load.force, axis=1)
     assert load.status.tolist() == [ContactState.CONTACT] * 2 + [ContactState.AT_RIM] * 4 + [ContactState.OVER_RIM]
     assert size[1] == pytest.approx(size[0], rel=1e-12)

@@ -180,10 +180,8 @@ def springs_problem(finest, coarsest, meridians, low=1500.0, high=1500.0):
 
 def load_steps(forces, rates, duration):
     """Steps of axial loads in N and rotations about x in rad/s."""
-    spins = np.outer(rates, (1.0, 0.0, 0.0))
-    return [
-        LoadStep(force=force * AXIS, spin=spin, duration=duration) for force, spin in zip(forces, spins, strict=True)
-    ]
+    steps = zip(forces, np.outer(rates, (1.0, 0.0, 0.0)), strict=True)
+    return [LoadStep(force=force * AXIS, spin=spin, duration=duration) for force, spin in steps]
 
 
 @pytest.mark.long

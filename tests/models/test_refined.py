@@ -105,14 +105,9 @@ def test_cubic_of_the_plane_bed_has_the_stated_error(low, high, within):
 def shell_compliance(k: mpmath.mpf, nu: float, b: float) -> mpmath.mpf:
     """c(n) E/R2 from the four powers of r with the outer surface held: 4 x 4 equations."""
     n, nu, inner = mpmath.sqrt(k * k + mpmath.mpf(1) / 4) - mpmath.mpf(1) / 2, mpmath.mpf(nu), mpmath.mpf(1)
+    tangential = (n + 1) * (n**2 - n - 2 - 2 * nu)
     columns = (  # power of r; u_r, u_φ, σ_rr r/2G, σ_rφ r/2G over r^power
-        (
-            n + 1,
-            (n + 1) * (n - 2 + 4 * nu),
-            n + 5 - 4 * nu,
-            (n + 1) * (n**2 - n - 2 - 2 * nu),
-            n**2 + 2 * n - 1 + 2 * nu,
-        ),
+        (n + 1, (n + 1) * (n - 2 + 4 * nu), n + 5 - 4 * nu, tangential, n**2 + 2 * n - 1 + 2 * nu),
         (n - 1, n, 1, n * (n - 1), n - 1),
         (-n, n * (n + 3 - 4 * nu), 4 - 4 * nu - n, -n * (n * n + 3 * n - 2 * nu), n * n - 2 + 2 * nu),
         (-n - 2, -(n + 1), 1, (n + 1) * (n + 2), -(n + 2)),
