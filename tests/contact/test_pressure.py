@@ -94,8 +94,6 @@ def test_tabulated_joints_have_their_largest_pressure_at_the_pole():
     assert np.all(profile[:, answered] < contact.max_pressure[answered])
 
 
-# edge
-
 JOINT = HIP.replace(liner=bs.Material(young=1000.0, poisson=0.4), ball=None)
 
 

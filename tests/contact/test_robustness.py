@@ -15,13 +15,9 @@ from ..joints import HIP
 NUMBERS = ("indentation", "half_angle", "max_pressure", "stiffness", "energy", "pressure_integral")
 EVERY = {**bs.catalogue, "fem": bs.FiniteElement(meshes=1)}
 
-WIDE = bs.Joint(
-    ball_radius=8.782959259849237,
-    clearance=0.006709816621781704,
-    liner_thickness=29.473051545391872,
-    liner=bs.Material(young=383.97746159934627, poisson=0.20489599454456642),
-    ball=bs.Material(young=218012.50235580927, poisson=0.3),
-)
+SIZES = {"ball_radius": 8.782959259849237, "clearance": 0.006709816621781704, "liner_thickness": 29.473051545391872}
+LINER = bs.Material(young=383.97746159934627, poisson=0.20489599454456642)
+WIDE = bs.Joint(**SIZES, liner=LINER, ball=bs.Material(young=218012.50235580927, poisson=0.3))
 
 
 def wide_contacts(count: int, seed: int):
@@ -89,10 +85,9 @@ def test_empty_arrays_give_empty_contacts(model):
 
 def test_integers_of_all_types_are_numbers():
     sizes = {"ball_radius": 250, "clearance": 10, "liner_thickness": 100}
-    small = bs.Joint(
-        **{name: np.array([size], dtype=np.uint8) for name, size in sizes.items()} | {"liner_thickness": np.uint8(100)},
-        liner=bs.Material(young=np.int8(100), poisson=0.3),
-    )
+    lengths = {name: np.array([size], dtype=np.uint8) for name, size in sizes.items()}
+    lengths["liner_thickness"] = np.uint8(100)
+    small = bs.Joint(**lengths, liner=bs.Material(young=np.int8(100), poisson=0.3))
     assert small.socket_radius.tolist() == [260.0]
     assert small.thickness_ratio.tolist() == [2.6]
     twin = bs.Joint(**sizes, liner=bs.Material(young=100.0, poisson=0.3))

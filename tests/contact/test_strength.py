@@ -224,10 +224,8 @@ def test_fatigue_and_allowable_pressure_are_noted_and_do_not_end_validity():
     weak = replace(BARE, yield_stress=8.0, fatigue_limit=5.0, allowable_pressure=10.0)
     contact = bs.HessForsbach().press(replace(HIP, liner=weak), force=3000.0)
     assert contact.valid
-    assert [note.split(" of the liner")[0] for note in contact.notes] == [
-        "von Mises stress 1.5 times the fatigue limit",
-        "pressure 1.3 times the allowable pressure",
-    ]
+    notes = [note.split(" of the liner")[0] for note in contact.notes]
+    assert notes == ["von Mises stress 1.5 times the fatigue limit", "pressure 1.3 times the allowable pressure"]
 
 
 def test_contacts_broadcast_against_arrays_of_strengths():
