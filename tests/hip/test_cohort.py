@@ -12,13 +12,7 @@ import pytest
 import ballsocket as bs
 from ballsocket.core.executors import Distributed, Processes, Serial
 from ballsocket.hip import population, read_hip
-from ballsocket.hip.cohort import (
-    CohortRun,
-    cohort_store,
-    sample_patients,
-    table_columns,
-    write_csv,
-)
+from ballsocket.hip.cohort import CohortRun, cohort_store, sample_patients, table_columns, write_csv
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.studies import LogNormal, Rectangular
 

@@ -7,17 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import (
-    Activity,
-    Cycle,
-    Frame,
-    Lubricant,
-    Mix,
-    flexion,
-    in_vivo,
-    iso_14242_1,
-    logarithmic,
-)
+from ballsocket.hip import Activity, Cycle, Frame, Lubricant, Mix, flexion, in_vivo, iso_14242_1, logarithmic
 
 from .hips import QUICK, K, hip, report_after
 

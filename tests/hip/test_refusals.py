@@ -16,7 +16,7 @@ from ballsocket.hip.cycle import check_step_count
 from ballsocket.hip.cycle_file import TableOptions
 from ballsocket.hip.in_vivo import check_body_weight
 from ballsocket.hip.wear_law import wear_factor, with_coefficient
-from ballsocket.hip.wear_laws import WEAR_LAWS, read_ball_law, read_wear_law
+from ballsocket.hip.wear_laws import read_ball_law, read_wear_law
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run
@@ -27,6 +27,10 @@ CUSTOM = bh.CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
 WALK, STAIRS = (bh.in_vivo(name, 750.0, 16) for name in ("walking", "stairs-up"))
 
 
+def each(make, values, message):
+    return [(lambda value=value: make(value), message) for value in values]
+
+
 def mix(cycle, count=1.0):
     return bh.Mix(activities=(bh.Activity(cycle=cycle, per_year=count),))
 
@@ -35,10 +39,22 @@ def custom(function):
     return hip(wear=bh.CustomWearLaw(function=function), **QUICK).after(1e4)
 
 
+def cycle_of(force, angle=lambda t: 0 * t):
+    return bh.Cycle(name="own", force=force, angles=lambda t: np.stack([angle(t)] * 3))
+
+
 def thrown(phases):
     """Force whose direction leaves a hemisphere."""
     angle = radians(95.0) * np.sin(pi * phases)
     return 1000.0 * np.stack([-np.sin(angle), 0 * phases, np.cos(angle)])
+
+
+def cup(inclination, arc):
+    return bs.Cup(inclination=radians(inclination), arc_of_cover=radians(arc))
+
+
+def chain(compliances, times=(1.0,)):
+    return bh.KelvinVoigtChain(compliances=compliances, times=times)
 
 
 def measured(**words):
@@ -47,19 +63,24 @@ def measured(**words):
 
 def patient(**values):
     rates = LogNormal(median=1e6, factor=2.0)
-    variable = variability(body_weight=WEIGHT, coefficient=COEFFICIENT, cycles_per_year=rates)
-    return variable.patient(values)
+    return variability(body_weight=WEIGHT, coefficient=COEFFICIENT, cycles_per_year=rates).patient(values)
 
 
 def bands_of(count=2, seed=0):
     return bh.uncertainty(variability(clearance=TIGHT), history(hip(**QUICK), 1e4), count=count, seed=seed)
 
 
+def sample(count, seed=0):
+    return sample_patients(variability(clearance=TIGHT), count, seed)
+
+
+TURNING = {"law": "cross-shear", "coefficient": 1, "circular": 1, "ball_coefficient": 1}
+WORN_BALL = {"ball_wear": bh.Archard(coefficient=K)}
+
+
 VALUES = [
     # wear and creep laws
-    (lambda: bh.Archard(coefficient=-1e-9), "coefficient = -1e-09 is not allowed: .*at least 0, and finite"),
-    (lambda: bh.Archard(coefficient=inf), "coefficient = inf is not allowed"),
-    (lambda: bh.Archard(coefficient=nan), "coefficient = nan is not allowed"),
+    *each(lambda value: bh.Archard(coefficient=value), (-1e-9, inf, nan), "coefficient = .*at least 0, and finite"),
     (lambda: bh.FrictionEnergyWear(coefficient=1e-6, friction=10.0), "friction = 10 is not allowed: .*below 10"),
     (lambda: bh.FrictionEnergyWear(coefficient=1e-6, friction=-0.1), "friction = -0.1 is not allowed"),
     (lambda: bh.ContactAreaWear(coefficient=-1.0), "coefficient = -1 is not allowed"),
@@ -73,30 +94,19 @@ VALUES = [
     (lambda: custom(lambda cycle: np.nan * cycle.work), "returned a depth of nan mm"),
     (lambda: custom(lambda cycle: -1e-9 * cycle.work - 1e-9), "a depth of -.* mm: a depth is at least 0, and finite"),
     (lambda: custom(lambda cycle: 1e-9), r"returned depths of shape \(\); the points need \(\d+,\)"),
-    (
-        lambda: bh.KelvinVoigtChain(compliances=(1e-3,), times=(1.0, 2.0)),
-        "as many compliances as times, .* got 1 .* and",
-    ),
-    (lambda: bh.KelvinVoigtChain(compliances=(), times=()), "at least one, got 0"),
-    (lambda: bh.KelvinVoigtChain(compliances=(1e-3, -1e-3), times=(1.0, 1.0)), "compliances = -0.001 is not allowed"),
-    (lambda: bh.KelvinVoigtChain(compliances=(1e-3,), times=(0.0,)), "times = 0 is not allowed"),
-    (lambda: bh.KelvinVoigtChain(compliances=(1e-3,), times=(inf,)), "times = inf is not allowed"),
-    (lambda: bh.LogarithmicCreep(confinement=-0.1), "confinement = -0.1 is not allowed"),
-    (lambda: bh.LogarithmicCreep(confinement=1.5), "confinement = 1.5 is not allowed"),
+    (lambda: chain((1e-3,), (1.0, 2.0)), "as many compliances as times, .* got 1 .* and"),
+    (lambda: chain((), ()), "at least one, got 0"),
+    (lambda: chain((1e-3, -1e-3), (1.0, 1.0)), "compliances = -0.001 is not allowed"),
+    *each(lambda value: chain((1e-3,), (value,)), (0.0, inf), "times = .* is not allowed"),
+    *each(lambda value: bh.LogarithmicCreep(confinement=value), (-0.1, 1.5), "confinement = .* is not allowed"),
     (lambda: constrained_share(0.6), "poisson = 0.6 is not allowed"),
     (lambda: wear_factor("k", "1e-9 mm3/Nmm"), r"is for mm of sliding: .* is 1000 mm\^3/\(N m\), so that this is"),
     (lambda: wear_factor("k", "1e-9 mm^2/N"), r"1 mm\^2/N is 1000 mm\^3/\(N m\)"),
     (lambda: wear_factor("k", "1e-9 mm^3/(kN m)"), r"for another length of sliding|is 0.001 mm\^3/\(N m\)"),
     (lambda: wear_factor("k", "1 kg"), "has the wrong unit"),
-    (lambda: wear_factor("k", "1e-6 __import__"), "is not a coefficient, such as"),
-    (lambda: wear_factor("k", "much"), "is not a coefficient, such as"),
-    (lambda: wear_factor("k", True), "is not a coefficient, such as"),
-    (lambda: wear_factor("k", "-1e-6 mm^3/(N m)"), "k = -1e-06 is not allowed"),
-    (lambda: wear_factor("k", nan), "k = nan is not allowed"),
-    (
-        lambda: read_ball_law({"law": "cross-shear", "coefficient": 1, "circular": 1, "ball_coefficient": 1}),
-        "ball_coefficient is not allowed with the law 'cross-shear'; it belongs to",
-    ),
+    *each(lambda value: wear_factor("k", value), ("1e-6 __import__", "much", True), "is not a coefficient, such as"),
+    *each(lambda value: wear_factor("k", value), ("-1e-6 mm^3/(N m)", nan), "k = .* is not allowed"),
+    (lambda: read_ball_law(TURNING), "ball_coefficient is not allowed with the law 'cross-shear'; it belongs to"),
     (lambda: read_wear_law({"material": "pom"}), "no published wear factor of 'pom' is known here: state coefficient"),
     (lambda: read_wear_law({"material": "uhmwp"}), "material 'uhmwp' is not known; did you mean 'uhmwpe'"),
     (lambda: read_wear_law({"material": "uhmwpe", "coefficient": 1e-6}), "material and coefficient exclude each other"),
@@ -105,114 +115,64 @@ VALUES = [
     (lambda: hip(ring_width=3.0), "ring_width = 3 is not allowed: 0.5 to 10 degrees"),
     (lambda: hip(tolerance=0.0), "tolerance = 0 is not allowed"),
     (lambda: hip(clearance=np.array([0.1, 0.2])), "joint must have single numbers"),
-    (lambda: hip(2.8e7), r"head_diameter = 2\.8e\+07 is not allowed: .* 1 mm to 1000 mm"),
-    (lambda: hip(1001.0), "head_diameter = 1001 is not allowed: .* 1 mm to 1000 mm"),
-    (lambda: hip(0.9), r"head_diameter = 0\.9 is not allowed: .* 1 mm to 1000 mm"),
+    *each(hip, (1001.0, 0.9), "head_diameter = .* is not allowed: .* 1 mm to 1000 mm"),
     (lambda: hip(clearance=1000.0), "bore diameter = 2028 is not allowed"),
     (lambda: hip(liner=inf, creep=bh.logarithmic()), "liner_thickness = inf is not allowed: creep needs a liner of"),
+    (lambda: hip(**WORN_BALL, creep=bh.logarithmic()), "ball_wear needs surface=Springs.. and no"),
+    (lambda: hip(**WORN_BALL, surface=bs.ClosedShell()), "ball_wear needs surface=Springs.. and"),
     (
-        lambda: hip(ball_wear=bh.Archard(coefficient=K), creep=bh.logarithmic()),
-        "ball_wear needs surface=Springs.. and no",
-    ),
-    (
-        lambda: hip(ball_wear=bh.Archard(coefficient=K), surface=bs.ClosedShell()),
-        "ball_wear needs surface=Springs.. and",
-    ),
-    (
-        lambda: hip(cycle=bh.Cycle(name="thrown", force=thrown, angles=lambda t: np.zeros((3, len(t)))), cup=bs.Cup()),
-        r"dislocated at 40\.5 % of the cycle: the load of 1000 N points 90\.\d° from",
+        lambda: hip(cycle=cycle_of(thrown), cup=bs.Cup()),
+        r"dislocated at 40\.5 % .*: the load of 1000 N points 90\.\d° fr",
     ),
     (lambda: hip(cup=replace(TILTED, arc_of_cover=radians(50.0))), r"dislocated at .*, and the bore ends at 25\.0°"),
-    (
-        lambda: hip(cycle=mix(STAIRS), cup=bs.Cup(arc_of_cover=radians(60.0), inclination=radians(45.0))),
-        r"dislocated at \d\.\d % of stairs-up",
-    ),
-    (
-        lambda: hip(
-            cycle=bh.iso_14242_4(50, mismatch=8.0), cup=bs.Cup(inclination=radians(80.0), arc_of_cover=radians(150.0))
-        ),
-        "dislocated at .* % of the cycle",
-    ),
-    (lambda: hip().after(0.0), "cycles = 0 is not allowed"),
-    (lambda: hip().after(nan), "cycles = nan"),
+    (lambda: hip(cycle=mix(STAIRS), cup=cup(45.0, 60.0)), r"dislocated at \d\.\d % of stairs-up"),
+    (lambda: hip(cycle=bh.iso_14242_4(50, mismatch=8.0), cup=cup(80.0, 150.0)), "dislocated at .* % of the cycle"),
+    *each(lambda value: hip().after(value), (0.0, nan), "cycles = .* is not allowed"),
     (lambda: hip().after(1e6, [2e6]), "report_at = 2e.06 is not allowed"),
     (lambda: hip().after(5.0, [-1]), "report_at = -1 is not allowed"),
     (lambda: hip().after(1e12), r"1e\+12 cycles at the rate of the first one would wear [.\d]+e\+05 mm away"),
     # film
-    *(
-        (lambda name=name: bh.Lubricant(**{name: -1.0}), f"{name} = -1 is not allowed")
-        for name in ("ball_roughness", "cup_roughness", "viscosity", "friction")
+    *each(
+        lambda name: bh.Lubricant(**{name: -1.0}),
+        ("ball_roughness", "cup_roughness", "viscosity", "friction"),
+        "[a-z_]+ = -1 is not allowed",
     ),
     (lambda: bh.Lubricant(viscosity=0.0), "viscosity = 0 is not allowed"),
     (lambda: bh.Lubricant(cup_roughness=inf), "cup_roughness = inf is not allowed"),
-    (lambda: bh.FilmLimit(ratio=-1.0), "film_limit = -1 is not allowed: a film ratio is at least 0"),
-    (lambda: bh.FilmLimit(ratio=nan), "film_limit = nan is not allowed: a film ratio is at least 0"),
+    *each(lambda value: bh.FilmLimit(ratio=value), (-1.0, nan), "film_limit = .* is not allowed: a film ratio is at"),
     (lambda: bh.FilmLimit(cycles=0), "cycles = 0"),
-    (
-        lambda: hip(**QUICK, clearance=0.0, film_limit=bh.FilmLimit()),
-        "clearance = 0.* is not allowed: film_limit needs",
-    ),
+    (lambda: hip(**QUICK, clearance=0.0, film_limit=bh.FilmLimit()), "clearance = 0.* not allowed: film_limit needs"),
     # cycles
-    *(
-        (lambda load=load: bh.iso_14242_4(swing_load=load), "swing_load = .* is not allowed")
-        for load in (0.0, -1.0, inf)
-    ),
-    *(
-        (lambda number=number: bh.Spring(stiffness=number, mismatch=4.0), "stiffness = .* is not allowed")
-        for number in (0.0, inf)
-    ),
-    *(
-        (lambda number=number: bh.Spring(stiffness=9.0, mismatch=number), "mismatch = .* is not allowed")
-        for number in (0.0, inf)
-    ),
+    *each(lambda load: bh.iso_14242_4(swing_load=load), (0.0, inf), "swing_load = .* is not allowed"),
+    *each(lambda value: bh.Spring(stiffness=value, mismatch=4.0), (0.0, inf), "stiffness = .* is not allowed"),
+    *each(lambda value: bh.Spring(stiffness=9.0, mismatch=value), (0.0, inf), "mismatch = .* is not allowed"),
     (lambda: bh.rocking(order="xx"), "rotation_order = 'xx' is not allowed"),
-    *(
-        (
-            lambda weight=weight: check_body_weight(weight),
-            "body_weight = .* is not allowed: a body weight is above 0 and at most 10000 N",
-        )
-        for weight in (0.0, -1.0, 10_001.0, nan)
-    ),
+    *each(check_body_weight, (0.0, 10_001.0, nan), "body_weight = .* is not allowed: .*above 0 and at most 10000 N"),
     (lambda: bh.named_cycle("jogging"), "'jogging' has loads in multiples of body weight: set body_weight"),
-    (
-        lambda: bh.named_cycle("two-axis", body_weight=750.0),
-        "'two-axis' has loads in N: it does not take a body_weight",
-    ),
+    (lambda: bh.named_cycle("two-axis", body_weight=750.0), "'two-axis' has loads in N: it does not take a body_weig"),
     (lambda: bh.named_cycle("walking", body_weight=-1.0), "body_weight = -1 is not allowed"),
     (lambda: bh.named_cycle("iso-14242"), "cycle 'iso-14242' is not known; did you mean 'iso-14242-[14]'"),
     (lambda: bh.in_vivo("waking", 800.0), "load 'waking' is not known; did you mean 'walking'"),
-    (
-        lambda: bh.Cycle(
-            name="own", force=lambda t: np.where(t > 0.5, nan, 1.0), angles=lambda t: np.zeros((3, len(t)))
-        ),
-        "force.* = nan .*is not allowed: the numbers of a cycle are finite",
-    ),
-    (
-        lambda: bh.Cycle(name="own", force=lambda t: 1 + 0 * t, angles=lambda t: np.full((3, len(t)), nan)),
-        "angle.* is not allowed",
-    ),
-    *(
-        (lambda count=count: check_step_count(count), "n_steps = .* is not allowed: a whole number from 8 to 10000")
-        for count in (7, 10_001, 72.0, True, "8", None)
-    ),
+    (lambda: cycle_of(lambda t: np.where(t > 0.5, nan, 1.0)), "force.* = nan .*: the numbers of a cycle are finite"),
+    (lambda: cycle_of(lambda t: 1 + 0 * t, lambda t: nan * t), "angle.* is not allowed"),
+    *each(check_step_count, (7, 10_001, 72.0, True, "8", None), "n_steps = .* is not allowed: .* from 8 to 10000"),
     (lambda: bh.iso_14242_1(7), "n_steps = 7 is not allowed"),
     (lambda: bh.Mix(activities=()), "a mix needs at least one activity"),
     (lambda: mix(bh.iso_14242_4(40)), "iso-14242-4 has forces in the cup's frame, or a spring: it cannot be part"),
     (lambda: mix(replace(WALK, frame=bh.Frame.CUP)), "walking has forces in the cup's frame"),
-    *((lambda count=count: mix(WALK, count), "per_year = .* is not allowed") for count in (0.0, -1.0, inf)),
+    *each(lambda count: mix(WALK, count), (0.0, inf), "per_year = .* is not allowed"),
     (lambda: TableOptions(frame="thigh"), "frame 'thigh' is not known"),
     (lambda: TableOptions(force_on="bone"), "force_on 'bone' is not known"),
-    (lambda: TableOptions(closing=0.51), "closing = 0.51 is not allowed: 0 to 0.5 of the range of a column"),
-    (lambda: TableOptions(closing=-0.01), "closing = -0.01 is not allowed"),
+    *each(
+        lambda value: TableOptions(closing=value), (0.51, -0.01), "closing = .* is not allowed: 0 to 0.5 of the range"
+    ),
     # patients
-    (lambda: sample_patients(variability(clearance=TIGHT), 0, 0), "patients = 0 is not allowed: it must be 1 to"),
-    (lambda: sample_patients(variability(clearance=TIGHT), 1_000_001, 0), "patients = 1000001 is not allowed"),
-    (lambda: sample_patients(variability(clearance=TIGHT), 1, -1), "seed = -1 is not allowed: it must be at least 0"),
+    *each(sample, (0, 1_000_001), "patients = .* is not allowed: it must be 1 to"),
+    (lambda: sample(1, -1), "seed = -1 is not allowed: it must be at least 0"),
     (lambda: bands_of(count=1), "count = 1 is not allowed: it must be at least 2"),
     (lambda: bands_of(seed=-1), "seed = -1 is not allowed: it must be at least 0"),
     (lambda: patient(coefficient=-1e-9), "coefficient = -1e-09 is not allowed: it must be at least 0"),
-    (lambda: patient(body_weight=0.0), "body_weight = 0 is not allowed: it must be positive"),
-    (lambda: patient(body_weight=inf), "body_weight = inf is not allowed: it must be positive"),
+    *each(lambda value: patient(body_weight=value), (0.0, inf), "body_weight = .* is not allowed: it must be positive"),
     (lambda: patient(cycles_per_year=-1.0), "cycles_per_year = -1 is not allowed: it must be positive"),
     (lambda: patient(coefficient=1.0).simulate([1e7]), "cycles at the rate of the first one would wear"),
     (lambda: variability(), "no quantity differs between patients: give one of coefficient, clearance"),
@@ -222,10 +182,7 @@ VALUES = [
     (lambda: variability(tilt=TIGHT, inclination=TIGHT), "tilt and inclination both orient the cup"),
     (lambda: variability(body_weight=Rectangular(low=-3.0, high=1.0)), "the median of body_weight = -1 is not allowed"),
     (lambda: variability(cycles_per_year=Rectangular(low=-1.0, high=1.0)), "the median of cycles_per_year = 0 is not"),
-    (
-        lambda: bh.population(variability(clearance=TIGHT), [1e3], patients=2, method="serie"),
-        "method 'serie' is not known; did you mean 'series'",
-    ),
+    (lambda: bh.population(variability(clearance=TIGHT), [1e3], patients=2, method="serie"), "'serie'.* mean 'series'"),
     # measured wear
     (lambda: measured(quantity="weight"), "quantity 'weight' is not known"),
     (lambda: measured(rate="final"), "rate 'final' is not known; did you mean 'initial'"),
@@ -244,11 +201,7 @@ VALUES = [
 ]
 
 
-def words_of(case):
-    return case if isinstance(case, str) else ""
-
-
-@pytest.mark.parametrize(("make", "message"), VALUES, ids=words_of)
+@pytest.mark.parametrize(("make", "message"), VALUES)
 def test_values_that_are_not_allowed_are_refused(make, message):
     with pytest.raises(ValueError, match=message):
         make()
@@ -257,29 +210,22 @@ def test_values_that_are_not_allowed_are_refused(make, message):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        *(
-            (lambda value=value: bh.Archard(coefficient=value), "coefficient must be one number, got")
-            for value in ("1e-6", True, None, [1e-6])
+        *each(
+            lambda value: bh.Archard(coefficient=value), ("1e-6", True, None, [1e-6]), "coefficient must be one numb"
         ),
         (lambda: bh.FilmLimit(ratio=[1.0, 2.0]), "film_limit must be one number"),
         (lambda: hip(**QUICK, film_limit=1.0), "film_limit must be a FilmLimit"),
     ],
-    ids=words_of,
 )
 def test_other_kinds_of_values_are_type_errors(make, message):
     with pytest.raises(TypeError, match=message):
         make()
 
 
-@pytest.mark.parametrize("words", [{"wear": CUSTOM}, {"ball_wear": CUSTOM}], ids=["socket", "ball"])
+@pytest.mark.parametrize("words", [{"wear": CUSTOM}, {"ball_wear": CUSTOM}])
 def test_a_run_by_a_custom_law_cannot_be_stored(words, tmp_path):
     with pytest.raises(ValueError, match="runs with a CustomWearLaw cannot be stored"):
         hip(**words, **QUICK).after(1e4, store=tmp_path)
-
-
-def test_unknown_laws_suggest_the_closest():
-    with pytest.raises(KeyError, match="wear law 'archart' is not known; did you mean 'archard'"):
-        WEAR_LAWS["archart"]
 
 
 # files
@@ -290,7 +236,6 @@ COUNTS = "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n"
 JOINT = TEXT[TEXT.index("[joint]") : TEXT.index("[cup]")]
 
 EDITS = [
-    ("mm^3/(N m)", "mm^3/(N mm)", r"1 mm\^3/\(N mm\) is 1000 mm\^3/\(N m\), so that this is 0.001066 mm"),
     ("mm^3/(N m)", "mm^3/N", r"has the wrong unit; expected mm\^3/\(N m\)"),
     ('coefficient = "1.066e-6 mm^3/(N m)" #', "#", "the law 'archard' needs coefficient .*such as coefficient ="),
     (LAW, 'law = "archart"', "law 'archart' is not known; did you mean 'archard'"),
@@ -300,23 +245,17 @@ EDITS = [
     (LAW, f"{LAW}\nfriction = 0.1", "friction belongs to the law 'energy'"),
     (LAW, f'{LAW}\nball_coefficient = "1 mm^3/(N mm)"', "ball_coefficient = .* is 1000"),
     (LAW, f"{LAW}\nexponent = 1", "exponent belongs to the law 'cross-shear'"),
-    (LAW, f"{LAW}\nfilm_limit = -1", "film_limit = -1.* is not allowed: a film ratio is at least 0"),
     ('contact = "springs"', 'contact = "spring"', "contact = 'spring' is not known; did you mean 'springs'"),
     ('contact = "springs"', 'model = "hertz"', "the model 'hertz' has no radial springs; models with springs:"),
     (JOINT, 'joint = "hip-28"\n[liner]\nyoung = 3\n', r"joint = 'hip-28' is a whole joint: \[liner\] belongs to a"),
-    (NAME, 'name = "iso-14242"', "cycle 'iso-14242' is not known"),
     (NAME, f'{NAME}\nfile = "x.csv"', "needs either a name or a file"),
-    (NAME, 'name = "walking"', "'walking' has loads in multiples of body weight: set body_weight"),
     (NAME, 'name = "walking"\nmismatch = 4', "'mismatch' with the name 'walking' in .cycle."),
     (NAME, "file = []", r"file = \[\] names no table"),
     (NAME, 'file = [""]', "names no table"),
     (NAME, 'file = "a.csv"\nforce = "2 N"', "'force' with a file in .cycle. is not known"),
-    (NAME, 'name = "iso-14242-4"\nswing_load = 0', "swing_load = 0 is not allowed"),
-    (INSTANTS, "instants = 3", "instants = 3 is not allowed: a whole number from 8 to 10000"),
     (INSTANTS, 'instants = 100\nforce = "2 kN"', "'force' with the name 'iso-14242-1' in .cycle. is not known"),
     (INSTANTS, 'instants = 100\nbody_weight = "8 N"', "'body_weight' with the name 'iso-14242-1' in"),
     (INSTANTS, "instants = 100\ntimes_body_weight = 2", "times_body_weight needs a body_weight"),
-    (INSTANTS, 'instants = 100\nbody_weight = "1 MN"', "body_weight = 1e.06 is not allowed"),
     (CYCLE, f"{CYCLE}[[activity]]\nname = 'walking'\n", r"both \[cycle\] and \[\[activity\]\]: remove one"),
     (CYCLE, "[activity]\nname = 'walking'\n", r"must be an array of tables: \[\[activity\]\]"),
     (CYCLE, "[[activity]]\nname = 'flexion'\n", r"needs either per_year \(cycles a year\) or share"),
@@ -331,7 +270,6 @@ EDITS = [
     (TILT, f'{TILT}\ninclination = "30 deg"', "tilt and inclination exclude each other"),
     (TILT, f"{TILT}\narc = 3", "'arc' in .cup. is not known; did you mean 'arc_of_cover'"),
     ("180 deg", "55 deg", r"dislocated at 0\.5 % of the cycle: .*30\.0° from the dome's pole.* ends at 27\.5°"),
-    ("cycles = 5e6", "cycles = 1e6", "report_at = 2e.06 is not allowed: it lies between 0 and"),
     ("cycles = 5e6", 'cycles = "many"', "cycles = 'many' must be a number, such as 5e6"),
     ("report_at = [1e6, 2e6, 5e6]", "report_at = 1e6", "report_at = 1000000.0 must be a list"),
     ("[wear]", "[waer]", "'waer' at the top is not known; did you mean 'wear'"),
@@ -342,10 +280,8 @@ TABLES = [
     ('[creep]\nlaw = "log"', "creep law 'log' is not known; did you mean 'logarithmic'"),
     ('[creep]\nlaw = "logarithmic"\ntimes = [1]', "times belongs to the law 'kelvin-voigt'"),
     ("[creep]\ntimes = [1]", "the law 'kelvin-voigt' needs compliances .*, such as compliances = .0.001, 0.002."),
-    ("[creep]\ntimes = [1]\ncompliances = [1, 2]", "as many compliances as times"),
     ('[creep]\nconfinement = "walls"', "confinement = 'walls' is not known"),
     ("[creep]\nseconds_per_cycle = 0", "seconds_per_cycle = 0 is not allowed"),
-    ("[film]\nviscosity = -1", "viscosity = -1 is not allowed"),
     ("[film]\nviscosities = 1", "'viscosities' in .film. is not known; did you mean 'viscosity'"),
 ]
 
@@ -355,19 +291,15 @@ UNCERTAIN = [
     ("clearance = { low = 0.2, high = 0.1 }", "clearance.low = 0.2 is not allowed: it is finite and below high"),
     ("clearance = { low = '0.3 mm', high = '0.5 mm' }", "clearance = 0.1 mm lies outside its tolerance of 0.3 to 0.5"),
     ("coefficient = { median = 1e-6, factor = 0.5 }", "coefficient.factor = 0.5 is not allowed: a factor of one"),
-    ("coefficient = { median = '1e-9 mm^3/(N mm)', factor = 2 }", r"1 mm\^3/\(N mm\) is 1000 mm\^3/\(N m\)"),
     ("coefficient = { median = 1e-5, factor = 1.1 }", "coefficient = 1.066e-06 lies outside its tolerance"),
     ("weight = { low = 1, high = 2 }", "'weight' in .uncertainty. is not known"),
     ("body_weight = { low = '70 kg', high = '90 kg' }", "body_weight.low = '70 kg' is not a force"),
     ("cycles_per_year = { low = -2, high = 1 }", "the median of cycles_per_year = -0.5 is not allowed"),
-    ("tilt = { low = 0, high = 9 }\ninclination = { low = 0, high = 9 }", "tilt and inclination both orient the"),
     ("inclination = { low = 70, high = 80 }", "inclination = .* lies outside its tolerance"),
-    ("count = 1\ntilt = { low = 0, high = 9 }", "count = 1 is not allowed: it must be at least 2"),
     ("count = true\ntilt = { low = 0, high = 9 }", "count = True is not allowed: a whole number"),
     ("count = 2.5\ntilt = { low = 0, high = 9 }", "count = 2.5 is not allowed: a whole number"),
-    ("seed = -1\ntilt = { low = 0, high = 9 }", "seed = -1 is not allowed: a whole number from 0"),
     ("seed = 1048577\ntilt = { low = 0, high = 9 }", "seed = 1048577 is not allowed"),
-    ("count = 8", "no quantity differs between patients: give one of coefficient, clearance"),
+    ("seed = -1\ntilt = { low = 0, high = 9 }", "seed = -1 is not allowed: a whole number from 0"),
 ]
 
 DATA = '[[data]]\nquantity = "volume"\nvalues = "38 mm^3/Mc"\nrate = "mean"\nto = 2e5\nuncertainty = "10 %"\n'

@@ -213,10 +213,7 @@ def test_count_and_seed_have_defaults(tmp_path):
 def test_the_nominal_patient_has_the_weight_and_the_years_of_the_file(tmp_path):
     start, rest = TEXT.split("[cycle]")
     walks = '[[activity]]\nname = "walking"\nper_year = 1e6\n\n[wear]' + rest.split("[wear]")[1]
-    years = (
-        "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]",
-        'years = 2\nreport_years = [1]\nbody_weight = "900 N"',
-    )
+    years = ("cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]", 'years = 2\nreport_years = [1]\nbody_weight = "900 N"')
     text = f"{start}{walks}\n[uncertainty]\nbody_weight = {{ mean = 800, deviation = 100 }}\n"
     one = read_hip(write_edited_file(tmp_path, years, text=text)).uncertain.variability
     assert one.cycles_per_year == 1e6

@@ -8,16 +8,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import (
-    Activity,
-    CrossShear,
-    Mix,
-    PatientVariability,
-    iso_14242_1,
-    iso_14242_4,
-    logarithmic,
-    rocking,
-)
+from ballsocket.hip import Activity, CrossShear, Mix, PatientVariability, iso_14242_1, iso_14242_4, logarithmic, rocking
 from ballsocket.hip.variability import RESULT_UNITS, Patient, contact_table, result_table
 from ballsocket.problem.cup import Side
 from ballsocket.studies import LogNormal, Normal, Rectangular

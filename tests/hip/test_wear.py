@@ -7,13 +7,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import (
-    Archard,
-    ContactAreaWear,
-    Cycle,
-    flexion,
-    iso_14242_1,
-)
+from ballsocket.hip import Archard, ContactAreaWear, Cycle, flexion, iso_14242_1
 
 from ..extent import some
 from .hips import INDEPENDENT, QUICK, TILTED, K, hip, history, report_after, walked

@@ -9,14 +9,7 @@ from typer.testing import CliRunner
 
 import ballsocket as bs
 from ballsocket.cli.root import app
-from ballsocket.hip import (
-    Archard,
-    FrictionEnergyWear,
-    HipSimulation,
-    MeasuredWear,
-    fit_wear_coefficient,
-    logarithmic,
-)
+from ballsocket.hip import Archard, FrictionEnergyWear, HipSimulation, MeasuredWear, fit_wear_coefficient, logarithmic
 from ballsocket.hip.config import read_wear_test
 from ballsocket.reports.hip_comparison import wear_fit_figure
 
