@@ -1,6 +1,5 @@
 """Cycles in files: text tables, tables of OpenSim and OrthoLoad, and the tables [cycle] and [[activity]]."""
 
-import re
 from math import pi, radians
 
 import numpy as np
@@ -10,9 +9,8 @@ import ballsocket as bs
 from ballsocket.hip import Frame, Mix, iso_14242_1, named_cycle
 from ballsocket.hip.config import read_hip
 from ballsocket.hip.cycle_file import TableOptions, parse_cycle, read_cycle
-from ballsocket.hip.cycle_tables import parse_head, read_table
+from ballsocket.hip.cycle_tables import parse_head
 from ballsocket.hip.kinematics import rotation_matrices
-from ballsocket.hip.schema import CycleKeys
 
 from ..cli.command import run
 from .hips import TEXT, write_edited_file
@@ -26,6 +24,8 @@ HEADS = "time [s],force [N],flexion [deg],adduction [deg],rotation [deg]"
 FORCE_COLUMN = r"needs either a column force \[N\], or force_x, force_y and force_z"
 TIME_COLUMN = r"a column time \[s\] or phase \[%\] is needed"
 LEFT = TableOptions(side=bs.Side.LEFT)
+FORCE_HEADS = {"force [kN]": 2000.0, "force [BW]": 1500.0, "Force (N)": 2.0, '"force [ % BW ]"': 15.0}
+TIME_STEPS = {"s": 0.1, "ms": 100.0, "min": 0.1 / 60}
 
 
 # text tables
@@ -70,17 +70,26 @@ def test_units_of_columns_are_converted(tmp_path):
         read_cycle(path)
 
 
-def test_units_of_force_and_time(tmp_path):
-    path = tmp_path / "load.csv"
-    forces = {"force [kN]": 2000.0, "force [BW]": 1500.0, "Force (N)": 2.0, '"force [ % BW ]"': 15.0}
-    for head, expected in forces.items():
-        write_lines(path, f"phase [%],{head}", [f"{phase},2" for phase in range(0, 101, 10)])
-        cycle = read_cycle(path, body_weight=750.0)
-        assert cycle.force_magnitudes == pytest.approx(expected)
-        assert cycle.duration == 1.0
-    for unit, seconds in {"s": 0.1, "ms": 100.0, "min": 0.1 / 60}.items():
-        lines = [f"{step * seconds:.12g},700" for step in range(11)]
-        assert read_cycle(write_lines(path, f"time [{unit}],force [N]", lines)).duration == pytest.approx(1.0)
+@pytest.mark.parametrize(
+    ("heads", "values", "force", "seconds"),
+    [
+        *((f"phase [%],{head}", (10, 2), force, 1.0) for head, force in FORCE_HEADS.items()),
+        *((f"time [{unit}],force [N]", (step, 700), 700.0, 1.0) for unit, step in TIME_STEPS.items()),
+        ("time,force\ns,(kN)", (0.1, 0.7), 700.0, 1.0),
+        ("Cycle [%],Time [s],Fx [N],Fy [N],Fz [N]", (10, 0.2, 0, 0, -700), 700.0, 2.0),
+        ("Cycle [%],Fx [N],Fy [N],Fz [N]", (10, 0, 0, -700), 700.0, 1.0),
+    ],
+)
+def test_columns_of_time_and_force_have_units(tmp_path, heads, values, force, seconds):
+    """Units may stand below the heads; the time of OrthoLoad replaces its cycle column."""
+    n_growing = len(values) - (3 if "Fx" in heads else 1)
+    rows = [
+        [number * (step if column < n_growing else 1) for column, number in enumerate(values)] for step in range(11)
+    ]
+    lines = [",".join(f"{number:.12g}" for number in row) for row in rows]
+    cycle = read_cycle(write_lines(tmp_path / "load.csv", heads, lines), body_weight=750.0)
+    assert cycle.forces == pytest.approx(np.tile([0.0, 0.0, force], (100, 1)))
+    assert cycle.duration == pytest.approx(seconds)
 
 
 def test_three_components_of_the_force(tmp_path):
@@ -106,16 +115,6 @@ def test_separators_and_decimal_commas(tmp_path, separator):
         assert cycle.force_magnitudes == pytest.approx(700.25)
 
 
-def test_units_may_stand_below_the_heads(tmp_path):
-    lines = ["s,(kN)", *(f"{step / 10},0.7" for step in range(11))]
-    path = write_lines(tmp_path / "load.csv", "time,force", lines)
-    assert read_cycle(path).force_magnitudes == pytest.approx(700.0)
-    table = read_table(path)
-    assert table.heads == ("time [s]", "force [kN]")
-    assert table.numbers("force [kN]", "force") == pytest.approx([0.7] * 11)
-    assert (table.is_opensim, table.in_degrees) == (False, None)
-
-
 def test_heads_are_names_with_units():
     pairs = {"Force [N]": ("force", "N"), '"force_x (kN)"': ("force_x", "kN"), "  time ": ("time", None)}
     for head, parsed in (pairs | {"phase[ % ]": ("phase", "%"), "Fx'": ("fx", None)}).items():
@@ -125,21 +124,22 @@ def test_heads_are_names_with_units():
             parse_head(head)
 
 
+def replaced(row, new):
+    """Change of a table in which a row has its own time and other cells."""
+    return lambda rows: [*rows[:row], f"{rows[row].split(',')[0]},{new}", *rows[row + 1 :]]
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (
-            lambda rows: [*rows[:-1], rows[100].replace(rows[100].split(",")[0], "1.2", 1)],
-            r"does not close: force begins with 300 N and ends with 3000 N",
-        ),
+        (lambda rows: [*rows[:-1], f"1.2,{rows[100].partition(',')[2]}"], "force begins with 300 N and ends with 3000"),
         (lambda rows: [*rows[:-1], rows[-1].replace(",25,", ",20,", 1)], "flexion begins with 25° and ends with 20°"),
         (lambda rows: [*rows[:50], *rows[80:]], r"time has a gap from 0\.294 to 0\.48, 31 times the median step"),
-        (lambda rows: [*rows[:7], rows[7].split(",")[0] + ",nan,0,0,0", *rows[8:]], "line 10 has 'nan' for force"),
-        (lambda rows: [*rows[:7], rows[7].split(",")[0] + ",,0,0,0", *rows[8:]], "line 10 has nothing for force"),
-        (lambda rows: [*rows[:7], rows[7].split(",")[0] + ",300,0,0", *rows[8:]], "line 10 has nothing for rotation"),
+        (replaced(7, "nan,0,0,0"), "line 10 has 'nan' for force"),
+        (replaced(7, ",0,0,0"), "line 10 has nothing for force"),
+        (replaced(7, "300,0,0"), "line 10 has nothing for rotation"),
         (lambda rows: [*rows[:9], rows[3], *rows[10:]], "time does not increase from row 9 to row 10"),
-        (lambda rows: rows[:3], "3 lines below the heads; a cycle has 5 to 100000"),
-        (lambda rows: rows[:4], "4 lines below the heads"),
+        (lambda rows: rows[:4], "4 lines below the heads; a cycle has 5 to 100000"),
         (lambda rows: [], "0 lines below the heads"),
     ],
 )
@@ -178,7 +178,7 @@ def test_heads_that_are_incomplete_are_rejected(tmp_path, heads, message):
         read_cycle(write_table(tmp_path / "walk.csv", heads=heads))
 
 
-def test_angles_and_forces_beyond_a_hip_are_rejected(tmp_path):
+def test_files_beyond_a_hip_without_text_or_too_large_are_rejected(tmp_path):
     path = tmp_path / "walk.csv"
 
     def write(unit, force, amplitude):
@@ -190,10 +190,6 @@ def test_angles_and_forces_beyond_a_hip_are_rejected(tmp_path):
     with pytest.raises(ValueError, match=r"force goes to 2e\+09 N; allowed are forces up to 1e\+09 N"):
         read_cycle(write("kN", 2e6, 3.1))
     assert read_cycle(write("N", 2e6, 3.1)).largest_force == 2e6
-
-
-def test_files_that_are_not_text_or_too_large_are_rejected(tmp_path):
-    path = tmp_path / "walk.csv"
     path.write_bytes(b"time [s],force [N]\n\xff\xfe")
     with pytest.raises(ValueError, match="not text in UTF-8: invalid start byte at byte 19"):
         read_cycle(path)
@@ -287,30 +283,15 @@ def test_one_cycle_is_cut_out_of_a_longer_record(tmp_path):
 def test_orthoload_forces_act_on_the_ball_and_rotate_with_it(tmp_path, separator, comma):
     file = orthoload(tmp_path / "h1l.csv", -in_femur(FORCE), separator, comma)
     cycle = read_cycle(file, options=TableOptions(motion=ISO))
-    assert cycle.forces[:, 2] == pytest.approx(ISO.force_magnitudes, abs=3.0)
-    assert cycle.forces[:, 0] == pytest.approx(0.1 * ISO.force_magnitudes, abs=3.0)
+    assert cycle.forces[:, ::2] == pytest.approx(np.outer(ISO.force_magnitudes, [0.1, 1.0]), abs=3.0)
     assert "the motion is that of iso-14242-1" in cycle.notes
     assert cycle.rotations == pytest.approx(ISO.rotations, abs=0)
     mirrored = orthoload(tmp_path / "left.csv", -in_femur(FORCE) * [[-1.0], [1.0], [1.0]])
     assert read_cycle(mirrored, options=LEFT).forces == pytest.approx(read_cycle(file).forces, abs=1e-3)
-
-
-def test_orthoload_time_replaces_its_cycle_column(tmp_path):
-    lines = [f"{10 * step},{step / 5},0,0,-700" for step in range(11)]
-    cycle = read_cycle(write_lines(tmp_path / "h2r.csv", "Cycle [%],Time [s],Fx [N],Fy [N],Fz [N]", lines))
-    assert cycle.duration == 2.0
-    assert cycle.forces == pytest.approx(np.tile([0.0, 0.0, 700.0], (100, 1)))
-    lines = [f"{10 * step},0,0,-700" for step in range(11)]
-    phases = read_cycle(write_lines(tmp_path / "h3r.csv", "Cycle [%],Fx [N],Fy [N],Fz [N]", lines))
-    assert phases.duration == 1.0
-
-
-def test_options_replace_frame_and_body_of_the_columns(tmp_path):
-    file = orthoload(tmp_path / "cup.csv", FORCE)
-    cycle = read_cycle(file, options=TableOptions(frame="cup", force_on="socket"))
-    assert cycle.frame is Frame.CUP
-    assert cycle.forces[:, 0] == pytest.approx(0.1 * ISO.force_magnitudes, abs=3.0)
-    assert read_cycle(file).forces == pytest.approx(-cycle.forces, abs=1e-9)
+    on_cup = read_cycle(orthoload(tmp_path / "cup.csv", FORCE), options=TableOptions(frame="cup", force_on="socket"))
+    assert on_cup.frame is Frame.CUP
+    assert on_cup.forces[:, 0] == pytest.approx(0.1 * ISO.force_magnitudes, abs=3.0)
+    assert read_cycle(tmp_path / "cup.csv").forces == pytest.approx(-on_cup.forces, abs=1e-9)
 
 
 def test_the_difference_of_the_ends_is_distributed_over_the_cycle(tmp_path):
@@ -325,23 +306,19 @@ def test_the_difference_of_the_ends_is_distributed_over_the_cycle(tmp_path):
     assert TableOptions().closing == 0.01
 
 
+MANY_ROWS = "nRows=300\ninDegrees=yes"
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
         (lambda p: coordinates(p, header="nRows=201"), "the header does not state the unit of angles"),
-        (
-            lambda p: coordinates(p, header="nRows=300\ninDegrees=yes"),
-            "the header states '300' rows, but the file has 2",
-        ),
-        (lambda p: coordinates(p, header="datarows 300\ninDegrees=yes"), "the header states '300' rows"),
+        (lambda p: coordinates(p, header=MANY_ROWS), "the header states '300' rows, but the file has 2"),
+        (lambda p: coordinates(p, header=MANY_ROWS.replace("nRows=", "datarows ")), "the header states '300' rows"),
         (lambda p: coordinates(p, "l"), "no column of the right hip, such as hip_flexion_r or hip_r_on_femur_"),
         (lambda p: reactions(p, frame="ground"), "in the ground frame: let OpenSim express it in pelvis or femur"),
         (lambda p: coordinates(p), FORCE_COLUMN),
-        (lambda p: coordinates(p, time=np.sort(np.append(1.1 * PHASES[:-1], 9))), "time has a gap from"),
-        (
-            lambda p: opensim(p, {f"hip_r_on_{part}_in_pelvis_fx": PHASES for part in ("femur_r", "pelvis")}),
-            "more than one joint reaction: on several bodies, or in several frames",
-        ),
+        (lambda p: opensim(p, {f"hip_r_on_{on}_in_pelvis_fx": PHASES for on in ("femur_r", "pelvis")}), "more than on"),
     ],
 )
 def test_opensim_files_that_are_not_a_cycle_are_rejected(tmp_path, make, message):
@@ -395,40 +372,30 @@ def test_activities_in_a_hip_file(tmp_path, short_film):
     assert (hip.cycles, hip.report_at) == (2.1e6, (1.05e6, 2.1e6))
     history = hip.use.after(hip.cycles, hip.report_at).summary()["history"]
     assert [report["years"] for report in history] == pytest.approx([1.0, 2.0])
-    printed = run("hip", str(file)).stdout
-    assert "walking + stairs-up: slide" in printed
-    assert re.search(r"^ +1 +1\.05 .*\n +2 +2\.1 ", printed, flags=re.MULTILINE)
+    assert "walking + stairs-up: slide" in run("hip", str(file)).stdout
     text = file.read_text(encoding="utf-8").replace("per_year = 1e6", "share = 0.9")
     shares = "cycles_per_year = 2e6\n" + text.replace("per_year = 5e4", "share = 0.1")
     mix = read_hip(write_edited_file(tmp_path, text=shares)).use.cycle
-    assert mix.fractions == pytest.approx((0.9, 0.1))
-    assert mix.per_year == pytest.approx(2e6)
+    assert (*mix.fractions, mix.per_year) == pytest.approx((0.9, 0.1, 2e6))
 
 
-def test_a_cycle_has_defaults_and_takes_instants_and_rotation_order():
-    cycle = parsed(name="iso-14242-1")
-    assert (cycle.n_steps, cycle.order) == (100, "xyz")
+def test_a_cycle_has_instants_a_rotation_order_and_a_body_weight():
+    assert (parsed(name="iso-14242-1").n_steps, parsed(name="iso-14242-1").order) == (100, "xyz")
     cycle = parsed(name="iso-14242-1", instants=24, rotation_order="rotation, adduction, flexion")
     assert (cycle.n_steps, cycle.order) == (24, "zyx")
-
-
-def test_body_weight_is_that_of_the_cycle_or_of_the_file():
-    assert parsed(name="walking", body_weight="1 kN").largest_force == pytest.approx(2470.0, rel=1e-6)
     content = {"body_weight": "800 N", "cycle": {"name": "walking"}}
     assert parse_cycle(content, None).largest_force == pytest.approx(1976.0, rel=1e-6)
-    content["cycle"]["body_weight"] = "900 N"
+    content["cycle"]["body_weight"] = "0.9 kN"
     assert parse_cycle(content, None).largest_force == pytest.approx(2223.0, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", ["iso-14242-1", "walking"])
 def test_loads_are_scaled_to_a_multiple_of_body_weight(name):
-    for times, force in ((0.005, 4.0), (2.5, 2000.0), (100, 8e4)):
+    for times, force in ((0.005, 4.0), (100, 8e4)):
         scaled = parsed(name=name, body_weight="800 N", times_body_weight=times)
         assert scaled.largest_force == pytest.approx(force, rel=1e-6)
-    for times in (0, -1, 101):
-        with pytest.raises(
-            ValueError, match="times_body_weight = .* is not allowed: a load is above 0 and at most 100"
-        ):
+    for times in (0, 101):
+        with pytest.raises(ValueError, match="times_body_weight = .* not allowed: a load is above 0 and at most 100"):
             parsed(name=name, body_weight="800 N", times_body_weight=times)
 
 
@@ -452,13 +419,8 @@ def test_parameters_of_simulators_have_units():
     assert parsed(name="iso-14242-4", mismatch="3 mm").spring.mismatch == 3.0
     assert parsed(name="iso-14242-4", stiffness="80 N/mm").spring.stiffness == 80.0
     assert parsed(name="iso-14242-4", swing_load="0.1 kN").force(np.zeros(1))[0] == 100.0
-    for name in ("two-axis", "biaxial-rocking", "constant-load"):
-        assert parsed(name=name, force="1 kN").largest_force == pytest.approx(1000.0, abs=1e-3)
-    rocking = parsed(name="biaxial-rocking", amplitude="10 deg")
-    assert rocking.rotations[0, 2, 2] == pytest.approx(np.cos(radians(10)), abs=1e-12)
+    assert parsed(name="two-axis", force="1 kN").largest_force == pytest.approx(1000.0, abs=1e-3)
     assert parsed(name="constant-load", amplitude="10 deg").angles(np.zeros(1))[0, 0] == pytest.approx(radians(10))
-    keys = {"mismatch", "stiffness", "swing_load", "force", "amplitude"}
-    assert keys <= set(CycleKeys.__struct_encode_fields__)
 
 
 def test_the_motion_of_a_named_cycle_is_used(tmp_path):
