@@ -1,30 +1,31 @@
-"""Film, friction and the distance to the rim over a cycle."""
+"""Film, friction and the distance to the rim over a cycle, and wear below a limit of the film ratio."""
 
 import json
 from dataclasses import replace
-from math import radians
+from math import inf, radians
 
 import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Cycle, Lubricant, flexion, iso_14242_1
+from ballsocket.hip import Cycle, FilmLimit, Lubricant, Stribeck, flexion, iso_14242_1, read_hip
 from ballsocket.hip.hamrock_dowson import film_thickness
-from ballsocket.lubrication.friction import Stribeck
+from ballsocket.hip.wear_integrator import WearIntegrator
+from ballsocket.hip.wear_laws import ContactAreaWear, CrossShear
 
-from .hips import QUICK, hip
+from ..extent import some
+from .hips import QUICK, SHORT, TEXT, K, hip, history, write_edited_file
 
 
 def test_formula_film_of_a_hip_is_that_of_hamrock_and_dowson():
-    joint = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.Material(young=1000.0, poisson=0.4))
-    force, speed, viscosity = np.array([2500.0]), np.array([1.5]), 2.5e-3
+    joint, force, speed, viscosity = hip().joint, np.array([2500.0]), np.array([1.5]), 2.5e-3
     least, central = film_thickness(joint, force, speed, viscosity)
     radius, modulus = 14.0 * 14.1 / 0.1, 2 * 1000.0 / (1 - 0.16)
     u, w = 1e-6 * viscosity * speed * 14.0 / 2 / (modulus * radius), force / (modulus * radius**2)
     assert least == pytest.approx(2.80 * radius * u**0.65 * w**-0.21, rel=1e-12)
     assert central == pytest.approx(3.34 * radius * u**0.64 * w**-0.22, rel=1e-12)
     assert (1e6 * least, 1e6 * central) == (pytest.approx(72, abs=0.5), pytest.approx(139, abs=0.5))  # as published
-    soft_ball = replace(joint, ball=bs.Material(young=1000.0, poisson=0.4))
+    soft_ball = replace(joint, ball=joint.liner)
     assert film_thickness(soft_ball, force, speed, viscosity)[0] > least
     assert np.isnan(film_thickness(replace(joint, clearance=0.0), force, speed, viscosity)).all()
 
@@ -36,6 +37,9 @@ def test_film_of_a_cycle_has_consistent_ratio_moment_power_and_heat():
     assert 1e-3 * np.einsum("tk,tk->", film.moment, use.rotation_increments) == pytest.approx(film.heat, rel=1e-12)
     assert film.heat == pytest.approx(0.1 * use.first.work, rel=1e-9)
     assert film.heat == pytest.approx((film.power * use.cycle.seconds).sum(), rel=1e-12)
+    moment = np.linalg.norm(film.moment, axis=1)  # less than μ R ∫ p dA, and about μ R F
+    assert (moment < 0.1 * 14.0 * (use.unworn.pressure @ use.foundation.areas)).all()
+    assert (moment > 0.5 * 0.1 * 14.0 * use.cycle.force_magnitudes).all()
     double = use.film(Lubricant(friction=0.2), method="hamrock-dowson")
     assert double.moment == pytest.approx(2 * film.moment, rel=1e-12)
     for ratio, regime in {0.99: "boundary", 1.0: "mixed", 2.99: "mixed", 3.0: "full"}.items():
@@ -52,22 +56,6 @@ def test_json_has_the_largest_moment_vector():
     assert abs(vector @ aside) == pytest.approx(summary["moment_Nmm"], rel=0.02)
 
 
-def test_moment_lies_between_bounds_of_force_and_pressure():
-    """μ R F for a contact that is a point, and less than μ R ∫ p dA."""
-    use = hip()
-    film, size = use.film(Lubricant(friction=0.05), method="hamrock-dowson"), use.cycle.force_magnitudes
-    moment = np.linalg.norm(film.moment, axis=1)
-    whole = (use.unworn.pressure @ use.foundation.areas) * 0.05 * 14.0
-    assert (moment < whole).all()
-    assert (moment > 0.5 * 0.05 * 14.0 * size).all()
-
-
-def test_smooth_surfaces_have_a_full_film():
-    use = hip(**QUICK)
-    assert use.film(Lubricant(ball_roughness=1e-6, cup_roughness=1e-6), cycles=8).regime == "full"
-    assert use.film(Lubricant(), cycles=8).regime == "boundary"
-
-
 def test_film_is_carried_over_the_cycle_and_compared_with_the_formula():
     use = hip(**QUICK)
     wave, formula = use.film(cycles=8), use.film(method="hamrock-dowson")
@@ -77,6 +65,8 @@ def test_film_is_carried_over_the_cycle_and_compared_with_the_formula():
     assert wave.comparison == pytest.approx(formula.least, rel=1e-12)
     assert formula.note.startswith("Hamrock and Dowson")
     assert formula.thickness is None
+    assert use.film(Lubricant(ball_roughness=1e-6, cup_roughness=1e-6), cycles=8).regime == "full"
+    assert wave.regime == "boundary"
 
 
 def test_walking_refreshes_a_part_of_the_contact_and_its_core_settles():
@@ -127,8 +117,10 @@ def test_friction_falls_from_boundary_to_full_film():
     assert share[0] == pytest.approx(1.0, rel=1e-12)
     assert (np.diff(share) < 0).all()
     heights = np.linspace(1.0, 12.0, 20001)
-    bearing = lambda start: np.trapezoid((np.maximum(heights - start, 0)) ** 2.5 * np.exp(-(heights**2) / 2), heights)  # noqa: E731
-    assert share[3] / share[2] == pytest.approx(bearing(2.0) / bearing(1.0), rel=1e-5)
+    one, two = (
+        np.trapezoid(np.maximum(heights - start, 0) ** 2.5 * np.exp(-(heights**2) / 2), heights) for start in (1.0, 2.0)
+    )
+    assert share[3] / share[2] == pytest.approx(two / one, rel=1e-5)
     rough, smooth = (Lubricant(ball_roughness=0.0, cup_roughness=ra, friction=law) for ra in (1.0, 1e-9))
     stress = [each.shear_stress(np.array(5.0), np.array(1e-4), np.array(30.0)) for each in (rough, smooth)]
     assert stress[0] == pytest.approx(0.1 * 5.0, rel=1e-3)
@@ -143,11 +135,7 @@ def test_friction_by_the_film_lies_below_that_of_touching_surfaces():
 
 
 def test_a_still_ball_has_no_film():
-    still = Cycle(
-        name="still",
-        force=lambda phase: np.stack([0 * phase, 0 * phase, 1000.0 + 0 * phase]),
-        angles=lambda phase: np.zeros((3, *phase.shape)),
-    )
+    still = Cycle(name="still", force=lambda t: 1000.0 + 0 * t, angles=lambda t: np.zeros((3, *t.shape)))
     assert hip(cycle=still, ring_width=radians(8.0)).film(cycles=3).least == pytest.approx(0.0)
 
 
@@ -191,24 +179,91 @@ def test_edge_distance_decreases_continuously_to_zero(surface):
 def test_edge_azimuth_follows_the_load():
     """Seen along the cup's axis: 40° around it, new, at every load."""
     lean = np.array([np.cos(radians(40.0)), np.sin(radians(40.0)), 1.0])
-    use = hip(
-        cycle=Cycle(name="leaning", force=lambda t: np.outer(lean, 800 + 600 * t), angles=flexion().angles),
-        cup=bs.Cup(),
-    )
+    cycle = Cycle(name="leaning", force=lambda t: np.outer(lean, 800 + 600 * t), angles=flexion().angles)
+    use = hip(cycle=cycle, cup=bs.Cup())
     edge = use.edge(use.unworn)
     assert np.degrees(edge.azimuth) == pytest.approx(40.0, abs=2.0)
     assert edge.closest_approach(use).step_description == "99.5 % of the cycle"
 
 
+ROUGHLESS = Lubricant(ball_roughness=0.0, cup_roughness=0.0)
+
+
 @pytest.mark.parametrize(
     ("words", "lubricant", "missing"),
-    [
-        ({"clearance": 0.0}, Lubricant(), "least_nm"),
-        ({}, Lubricant(ball_roughness=0.0, cup_roughness=0.0), "lambda_largest"),
-    ],
+    [({"clearance": 0.0}, Lubricant(), "least_nm"), ({}, ROUGHLESS, "lambda_largest")],
 )
 def test_missing_films_are_null_in_json(short_film, words, lubricant, missing):
     summary = hip(**QUICK, **words).after(1e4, lubricant=lubricant).summary()
     assert summary["film"][missing] is None
     assert summary["film"]["heat_J_per_cycle"] > 0
     json.dumps(summary, allow_nan=False)
+
+
+# wear only where the film ratio is below a limit
+
+SMOOTH = Lubricant(cup_roughness=1e-4)
+"""Lubricant of a smooth cup, whose film ratios are below and above 1."""
+
+
+def limited(ratio, cycles=5, **words):
+    return hip(**QUICK, film_limit=FilmLimit(ratio=ratio, lubricant=SMOOTH, cycles=cycles), **words)
+
+
+def worn(use, cycles=2e5):
+    """Run a simulation without the estimate of its error, which needs the films of finer steps."""
+    return WearIntegrator(setup=use).run_until(cycles, lambda count: None)
+
+
+LAWS = [
+    {},
+    {"wear": ContactAreaWear(coefficient=1e-9)},
+    {"wear": CrossShear(straight=K, circular=2 * K, exponent=-0.3)},
+    {"ball_wear": ContactAreaWear(coefficient=1e-9)},
+]
+
+
+@pytest.mark.parametrize("words", LAWS)
+def test_an_infinite_limit_wears_as_none_and_a_limit_of_zero_wears_nothing(words):
+    free, unlimited, nothing = (
+        worn(use) for use in (hip(**QUICK, **words), limited(inf, **words), limited(0.0, **words))
+    )
+    assert np.array_equal(free.depth, unlimited.depth)
+    assert np.array_equal(free.ball, unlimited.ball)
+    assert free.work == unlimited.work
+    assert nothing.volume == nothing.ball_volume == 0
+    assert nothing.work == pytest.approx(2e5 * 1e3 * hip(**QUICK).first.work, rel=1e-9)
+
+
+def test_wear_grows_with_the_limit():
+    uses = [limited(ratio) for ratio in some([0.0, 1.0, 2.0, inf])]
+    shares = [use.excluded_work_share for use in uses]
+    assert (np.diff([worn(use).volume for use in uses]) > 0).all()
+    assert (np.diff(shares) < 0).all()
+    assert (shares[0], shares[-1]) == (1, 0)
+
+
+def test_archard_wears_by_the_work_below_the_limit():
+    """The film of every cell and instant decides."""
+    use, free = limited(1.0), hip(**QUICK)
+    assert 0.1 < use.excluded_work_share < 0.9
+    assert use.first.volume == pytest.approx((1 - use.excluded_work_share) * free.first.volume, rel=1e-12)
+    assert use.first.work == free.first.work
+    thickness = use.film(SMOOTH, cycles=5).thickness
+    wears = use.wearing_exposure(use.exposure(use.unworn)).pressure > 0
+    assert np.array_equal(wears, (thickness < SMOOTH.roughness) & (use.unworn.pressure > 0))
+
+
+def test_json_and_notes_state_the_limit_and_the_excluded_share(short_film):
+    use = limited(1.0)
+    run, share = use.after(1e5), f"{100 * use.excluded_work_share:.3g} %"
+    limit = json.loads(json.dumps(run.summary(), allow_nan=False))["laws"]["film_limit"]
+    assert limit == {"lambda": 1.0, "excluded_work_share": use.excluded_work_share}
+    assert any(note.startswith("wear counts only where λ is below 1") and share in note for note in run.notes)
+    assert history(hip(**QUICK), 1e4).summary()["laws"]["film_limit"] is None
+
+
+def test_a_file_has_the_limit_with_its_lubricant(tmp_path):
+    limit = ("[wear]", "[wear]\nfilm_limit = 1.5")
+    file = write_edited_file(tmp_path, *SHORT, limit, text=f"{TEXT}\n[film]\nviscosity = 1e-3\n")
+    assert read_hip(file).use.film_limit == FilmLimit(ratio=1.5, lubricant=Lubricant(viscosity=1e-3))

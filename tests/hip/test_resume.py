@@ -14,7 +14,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.storage.atomic_files import read_arrays, write_arrays
-from ballsocket.hip import Activity, Archard, Mix, in_vivo, iso_14242_1, iso_14242_4, logarithmic
+from ballsocket.hip import Activity, Archard, FilmLimit, Mix, in_vivo, iso_14242_1, iso_14242_4, logarithmic
 from ballsocket.hip.simulation import make_checkpoint
 
 from ..cli.command import run
@@ -115,6 +115,7 @@ def test_the_identity_depends_on_every_input_of_the_run(tmp_path):
         hip(cycle=use.cycle.scaled(1.1)),
         replace(use, ring_width=0.06),
         replace(use, tolerance=1e-3),
+        *(replace(use, film_limit=FilmLimit(ratio=ratio)) for ratio in (1.0, 2.0)),
         replace(use, seconds_per_cycle=2.0),
         replace(use, cup=use.cup.tilted(0.1)),
     ]
