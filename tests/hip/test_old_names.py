@@ -15,7 +15,7 @@ from ballsocket.hip import (
 )
 from ballsocket.hip.cycle_file import read_cycle
 
-from . import test_bands, test_cycles, test_rim
+from . import test_cycles, test_rim, test_uncertainty
 from .hips import QUICK, hip, report_after
 from .test_cycle_file import write_table
 from .test_variability import TIGHT, variability
@@ -42,7 +42,12 @@ ATTRIBUTES = {
     },
     lambda: test_cycles.mixed((test_cycles.WALK, 1.0)): {"shares": "fractions", "instants": "n_steps"},
     test_rim.closest_approach: {"reaching": "steps_at_rim"},
-    test_bands.bands: {"lived": "cohort", "scatter": "variability", "off": "quick_run_errors", "without": "n_failed"},
+    test_uncertainty.bands: {
+        "lived": "cohort",
+        "scatter": "variability",
+        "off": "quick_run_errors",
+        "without": "n_failed",
+    },
     lambda: wear_laws: {"AreaLaw": "ContactAreaWear"},
     lambda: KelvinVoigtChain: {"advanced": "advance_strain"},
     lambda: cycle_file: {"Reading": "TableOptions"},

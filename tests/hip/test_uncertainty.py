@@ -9,8 +9,10 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.hip import iso_14242_1, population, uncertainty
+from ballsocket.hip.bands import Bands, SharedCoefficient
 from ballsocket.hip.config import read_hip
-from ballsocket.hip.uncertainty import share_coefficient
+from ballsocket.hip.uncertainty import _NominalResponse, share_coefficient
+from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.reports.hip_plots import penetration_curve
 from ballsocket.reports.hip_tables import print_bands
 from ballsocket.studies import LogNormal, Normal, Rectangular
@@ -20,7 +22,6 @@ from .hips import SHORT, TEXT, UNCERTAINTY, K, hip, history, write_edited_file
 from .test_variability import COEFFICIENT, FEW_CYCLES, TIGHT, WEIGHT, variability
 
 FULL = {"cycle": iso_14242_1(64), "ring_width": radians(4.0)}
-LIGHT = Normal(mean=800.0, deviation=80.0)
 
 
 def short_file(path, *changes, extra=UNCERTAINTY):
@@ -30,10 +31,6 @@ def short_file(path, *changes, extra=UNCERTAINTY):
 
 def few_cycles(one):
     return history(one.use, FEW_CYCLES)
-
-
-def four_patients(**distributions):
-    return population(variability(**distributions), [FEW_CYCLES], patients=4)[1]
 
 
 # bands and indices
@@ -49,9 +46,8 @@ def test_the_volume_has_the_distribution_of_the_coefficient():
 
 
 def test_indices_are_the_fractions_of_the_variance():
-    two = variability(
-        coefficient=Normal(mean=K, deviation=0.1 * K), cycles_per_year=Normal(mean=1.5e6, deviation=0.2 * 1.5e6)
-    )
+    rates = Normal(mean=1.5e6, deviation=0.2 * 1.5e6)
+    two = variability(coefficient=Normal(mean=K, deviation=0.1 * K), cycles_per_year=rates)
     for count in either(quick=(32,), long=(32, 100)):
         bands = uncertainty(two, few_cycles(two), count=count)
         for order in ("first_order", "total_order"):
@@ -59,21 +55,17 @@ def test_indices_are_the_fractions_of_the_variance():
             assert bands.indices[order].shape == (3, 2)
 
 
-def test_the_same_seed_gives_the_same_bands():
-    one = variability(clearance=TIGHT, body_weight=WEIGHT)
-    first, again, other = (uncertainty(one, few_cycles(one), count=4, seed=seed).cohort.table for seed in (1, 1, 2))
-    assert (first == again).all()
-    assert (first != other).any()
-
-
-def test_progress_counts_the_patients_of_all_sample_sets():
+def test_the_same_seed_gives_the_same_bands_and_progress_counts_the_patients_of_all_sample_sets():
     one, finished = variability(clearance=TIGHT, body_weight=WEIGHT), []
-    bands = uncertainty(one, history(one.use, 2 * FEW_CYCLES, FEW_CYCLES), count=3, progress=finished.append)
-    assert finished[0] == 0
-    assert finished[-1] == 3 * (2 + 2)
+    full = history(one.use, 2 * FEW_CYCLES, FEW_CYCLES)
+    bands = uncertainty(one, full, count=3, seed=1, progress=finished.append)
+    assert (finished[0], finished[-1]) == (0, 3 * (2 + 2))
     assert finished == sorted(finished)
     assert bands.counts == (FEW_CYCLES, 2 * FEW_CYCLES)
     assert bands.cohort.table.shape == (6, 2, 6)
+    again, other = (uncertainty(one, full, count=3, seed=seed).cohort.table for seed in (1, 2))
+    assert (bands.cohort.table == again).all()
+    assert (bands.cohort.table != other).any()
 
 
 def test_the_coarse_simulation_differs_little_from_the_full_one():
@@ -85,14 +77,9 @@ def test_the_coarse_simulation_differs_little_from_the_full_one():
     coarse = one.patient({}).simulate([1e6, 2e6])
     expected = max(abs(c.volume / r.volume - 1) for c, r in zip(coarse, full.reports, strict=True))
     assert errors["volume"] == pytest.approx(expected, rel=1e-9)
-
-
-def test_a_cohort_has_the_errors_of_the_coarse_simulation():
-    one = variability(hip(**FULL), clearance=TIGHT)
-    bands = population(one, [2e5, 1e5], patients=1)[1]
-    assert bands.counts == (1e5, 2e5)
-    full = history(one.use, 2e5, 1e5)
-    assert bands.quick_run_errors == pytest.approx(uncertainty(one, full, count=2).quick_run_errors, rel=1e-6)
+    cohort = population(one, [2e6, 1e6], patients=1)[1]
+    assert cohort.counts == (1e6, 2e6)
+    assert cohort.quick_run_errors == pytest.approx(errors, rel=1e-6)
 
 
 def test_dislocated_patients_are_counted_and_left_out():
@@ -102,7 +89,6 @@ def test_dislocated_patients_are_counted_and_left_out():
     assert np.isfinite(bands.band("volume")).all()
     assert bands.indices is None
     assert bands.summary()["sobol"] is None
-    assert any("samples have no result" in note for note in bands.notes)
 
 
 # a shared coefficient
@@ -110,79 +96,50 @@ def test_dislocated_patients_are_counted_and_left_out():
 
 def test_bands_for_one_coefficient_are_those_of_patients_with_it():
     """Converted results are those of direct simulations with the shared coefficient."""
-    one = variability(
-        coefficient=COEFFICIENT,
-        body_weight=Normal(mean=800.0, deviation=130.0),
-        cycles_per_year=LogNormal(median=1e6, factor=1.5),
-        clearance=Rectangular(low=0.08, high=0.12),
-    )
+    weights, rates = Normal(mean=800.0, deviation=130.0), LogNormal(median=1e6, factor=1.5)
+    fits = Rectangular(low=0.08, high=0.12)
+    one = variability(coefficient=COEFFICIENT, body_weight=weights, cycles_per_year=rates, clearance=fits)
     cohort_run, bands = population(one, [1e5, 5e5], patients=8)
-    results = bands.shared.results
     for name, coefficient in bands.shared.values.items():
         values = {**cohort_run.values, "coefficient": np.full(8, coefficient)}
         direct = replace(cohort_run, values=values).simulate().table[:, :, :3]
-        assert results[name][:, :, 0] == pytest.approx(direct[:, :, 0], rel=0.02)  # volume
-        assert results[name] == pytest.approx(direct, rel=0.15)
-        low, high = bands.population_band("volume", name)
-        known_low, known_high = np.quantile(direct[:, :, 0], [0.025, 0.975], axis=0)
-        assert low == pytest.approx(known_low, rel=0.01)
-        assert high == pytest.approx(known_high, rel=0.01)
-    assert bands.shared.values["high"] / bands.shared.values["median"] == pytest.approx(1.5**1.96, rel=1e-3)
-    assert bands.shared.values["median"] / bands.shared.values["low"] == pytest.approx(1.5**1.96, rel=1e-3)
+        result = bands.shared.results[name]
+        assert result[:, :, 0] == pytest.approx(direct[:, :, 0], rel=0.02)  # volume
+        assert result == pytest.approx(direct, rel=0.15)
+        expected = np.quantile(direct[:, :, 0], [0.025, 0.975], axis=0)
+        assert np.array(bands.population_band("volume", name)) == pytest.approx(expected, rel=0.01)
+    low, median, high = (bands.shared.values[name] for name in ("low", "median", "high"))
+    assert (high / median, median / low) == pytest.approx((1.5**1.96, 1.5**1.96), rel=1e-3)
 
 
-def test_there_is_no_shared_result_without_results_or_wear(monkeypatch):
-    two = variability(coefficient=COEFFICIENT, clearance=TIGHT)
+def test_there_is_no_shared_result_without_results_or_wear():
+    two, alone = variability(coefficient=COEFFICIENT, clearance=TIGHT), variability(coefficient=COEFFICIENT)
     sampled = {"coefficient": np.array([K, 2 * K]), "clearance": np.array([0.1, 0.1])}
-    words = {"level": 0.95, "engine": bs.core.executors.Serial()}
-    missing = np.full((2, 1, 6), np.nan)
-    assert share_coefficient(two, (FEW_CYCLES,), sampled, missing, **words) is None
-    unworn = {**sampled, "coefficient": np.array([0.0, K])}
-    assert share_coefficient(two, (FEW_CYCLES,), unworn, np.ones((2, 1, 6)), **words) is None
-    alone = variability(coefficient=COEFFICIENT)
-    assert share_coefficient(alone, (FEW_CYCLES,), sampled, np.ones((2, 1, 6)), **words) is None
+    unworn, ones = {**sampled, "coefficient": np.array([0.0, K])}, np.ones((2, 1, 6))
+    for one, values, table in ((two, sampled, np.nan * ones), (two, unworn, ones), (alone, sampled, ones)):
+        assert share_coefficient(one, (FEW_CYCLES,), values, table, 0.95, bs.core.executors.Serial()) is None
 
 
-def test_the_band_of_the_patients_is_narrower_than_that_of_the_predictions():
-    one = variability(coefficient=COEFFICIENT, body_weight=LIGHT)
+def test_the_band_of_the_patients_is_narrower_than_that_of_the_predictions(capsys, monkeypatch):
+    """Also in a figure; a narrow terminal shows every number of them."""
+    one = variability(coefficient=COEFFICIENT, body_weight=Normal(mean=800.0, deviation=80.0))
     bands = uncertainty(one, few_cycles(one), count=8)
     low, high = bands.population_band("volume")
     lowest, highest = bands.band("volume")
     assert lowest[-1] < low[-1] < high[-1] < highest[-1]
     assert high[-1] / low[-1] == pytest.approx(1.1 ** (2 * 1.96), rel=0.15)
-    volume = bands.summary()["bands"][-1]["volume"]
-    assert list(volume) == ["low", "median", "high", "given_coefficient"]
-    assert volume["given_coefficient"]["median"]["high"] == high[-1]
-    assert bands.summary()["uncertainty"]["coefficient"] == bands.shared.values
-
-
-def test_bands_without_an_unknown_coefficient_are_those_of_patients():
-    assert four_patients(clearance=TIGHT).subject == "patients"
-    assert four_patients(coefficient=COEFFICIENT).subject == "predictions"
-    for bands in (four_patients(clearance=TIGHT), four_patients(coefficient=COEFFICIENT)):
-        assert bands.shared is None
-        assert "given_coefficient" not in bands.summary()["bands"][0]["volume"]
-
-
-# output
-
-
-def test_a_narrow_terminal_shows_every_number_of_the_bands(capsys, monkeypatch):
+    collections = penetration_curve(few_cycles(one), bands).axes[0].collections
+    tops = [collection.get_paths()[0].get_extents().y1 for collection in collections[:2]]
+    expected = [band("penetration")[1][-1] for band in (bands.band, bands.population_band)]
+    assert tops == pytest.approx(expected)
     monkeypatch.setenv("COLUMNS", "60")
-    one = variability(coefficient=COEFFICIENT, body_weight=LIGHT)
-    print_bands(uncertainty(one, few_cycles(one), count=8))
+    print_bands(bands)
     printed = capsys.readouterr().out
     assert "coefficient" in printed
     assert "…" not in printed
 
 
-def test_a_figure_has_the_bands_of_the_predictions_and_of_the_patients():
-    one = variability(coefficient=COEFFICIENT, clearance=TIGHT)
-    bands = uncertainty(one, few_cycles(one), count=2)
-    collections = penetration_curve(few_cycles(one), bands).axes[0].collections
-    tops = [collection.get_paths()[0].get_extents().y1 for collection in collections[:2]]
-    assert tops[0] == pytest.approx(bands.band("penetration")[1][-1])
-    assert tops[1] == pytest.approx(bands.population_band("penetration")[1][-1])
+# output
 
 
 # the table [uncertainty]
@@ -191,9 +148,9 @@ def test_a_figure_has_the_bands_of_the_predictions_and_of_the_patients():
 def test_the_command_computes_bands_and_indices(solved_file):
     folder, answer = solved_file
     assert [band["cycles"] for band in answer["bands"]] == [5e3, 1e4]
-    last = answer["bands"][-1]
     for name in ("volume", "depth", "penetration"):
-        assert 0 < last[name]["low"] < last[name]["median"] < last[name]["high"]
+        band = answer["bands"][-1][name]
+        assert 0 < band["low"] < band["median"] < band["high"]
         assert set(answer["sobol"][name]) == {"coefficient", "clearance"}
     assert answer["uncertainty"]["patients"] == 4
     assert answer["valid"] is True
@@ -203,11 +160,10 @@ def test_the_command_computes_bands_and_indices(solved_file):
     assert titles[-2:] == ["patients", "matters"]
 
 
-def test_count_and_seed_have_defaults(tmp_path):
-    settings = read_hip(short_file(tmp_path)).uncertain
-    assert (settings.count, settings.seed) == (64, 0)
-    settings = read_hip(short_file(tmp_path, extra=f"{UNCERTAINTY}count = 100\nseed = 0\n")).uncertain
-    assert (settings.count, settings.seed) == (100, 0)
+@pytest.mark.parametrize(("text", "count"), [("", 64), ("count = 100\nseed = 0\n", 100)])
+def test_count_and_seed_have_defaults(tmp_path, text, count):
+    settings = read_hip(short_file(tmp_path, extra=UNCERTAINTY + text)).uncertain
+    assert (settings.count, settings.seed) == (count, 0)
 
 
 def test_the_nominal_patient_has_the_weight_and_the_years_of_the_file(tmp_path):
@@ -216,11 +172,167 @@ def test_the_nominal_patient_has_the_weight_and_the_years_of_the_file(tmp_path):
     years = ("cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]", 'years = 2\nreport_years = [1]\nbody_weight = "900 N"')
     text = f"{start}{walks}\n[uncertainty]\nbody_weight = {{ mean = 800, deviation = 100 }}\n"
     one = read_hip(write_edited_file(tmp_path, years, text=text)).uncertain.variability
-    assert one.cycles_per_year == 1e6
-    assert one.body_weight == 900.0
-    assert one.patient({"body_weight": 990.0}).use.cycle.largest_force == pytest.approx(
-        1.1 * one.coarse_simulation.cycle.largest_force
-    )
+    assert (one.cycles_per_year, one.body_weight) == (1e6, 900.0)
+    peaks = [use.cycle.largest_force for use in (one.patient({"body_weight": 990.0}).use, one.coarse_simulation)]
+    assert peaks[0] == pytest.approx(1.1 * peaks[1])
     two = text.replace("per_year = 1e6", 'per_year = 1e6\nbody_weight = "800 N"')
     with pytest.raises(ValueError, match="body_weight has several values, but patients need one"):
         read_hip(write_edited_file(tmp_path, years, text=two))
+
+
+# bands of results that are known exactly
+
+COUNTS = (1e6, 2e6)
+COLUMNS = list(RESULT_UNITS)
+
+
+def cohort(patients=101):
+    """Return results whose column c is number + 1000 c at the first report, and twice that at the second."""
+    first = np.arange(patients)[:, None] + 1000.0 * np.arange(len(COLUMNS))
+    contact = np.stack([np.full((patients, 3), 0.5), np.ones((patients, 3)), np.zeros((patients, 3))], axis=-1)
+    return CohortResult(
+        table=np.stack([first, 2 * first], axis=1), refused=np.full(patients, "", dtype="U60"), contact=contact
+    )
+
+
+def bands(result=None, use=None, level=0.9, **fields):
+    distributions = fields.pop("distributions", {"clearance": TIGHT})
+    return Bands(
+        variability=variability(use, **distributions), counts=COUNTS, cohort=result or cohort(), level=level, **fields
+    )
+
+
+def shared():
+    factors = {"low": 1, "median": 2, "high": 4}
+    results = {name: factor * cohort().table[:, :, :3] for name, factor in factors.items()}
+    return SharedCoefficient(values={name: factor * 1e-7 for name, factor in factors.items()}, results=results)
+
+
+def test_the_band_has_the_level_between_equal_tails():
+    low, high = bands().band("volume")
+    np.testing.assert_allclose(low, [5.0, 10.0])
+    np.testing.assert_allclose(high, [95.0, 190.0])
+    low, high = bands(level=0.5).band("depth")
+    np.testing.assert_allclose(low, [1025.0, 2050.0])
+    np.testing.assert_allclose(high, [1075.0, 2150.0])
+    np.testing.assert_allclose(bands().quantile("penetration", 0.3), [2030.0, 4060.0])
+
+
+def test_patients_without_a_result_are_left_out():
+    result = cohort(5)
+    table, refused = result.table.copy(), result.refused.copy()
+    table[[0, 2, 4]] = np.nan
+    refused[[0, 2, 4]] = "worn through: 9 mm", "dislocated: by 8 degrees", "dislocated: by 3 degrees"
+    some = bands(replace(result, table=table, refused=refused))
+    assert (some.n_patients, some.n_failed) == (5, 3)
+    np.testing.assert_allclose(some.quantile("volume", 0.5), [2.0, 4.0])
+    assert "3 of 5 samples have no result, most often: dislocated; the bands are for the others" in some.notes
+    assert some.edge_loading(0) == 0.0
+    assert some.valid is True
+    none = bands(replace(result, table=np.full_like(table, np.nan), refused=np.full(5, "x")))
+    assert none.n_failed == 5
+    for unknown in (none.quantile("volume", 0.5), none.edge_loading(0), none.valid_fraction(0)):
+        assert np.isnan(unknown).all()
+    assert none.valid is False
+    assert none.summary()["bands"][0]["volume"] == {"low": None, "median": None, "high": None}
+
+
+def test_edge_loading_is_the_fraction_of_patients_whose_contact_reaches_the_edge():
+    result = cohort(4)
+    result.table[:, 1, COLUMNS.index("edge_distance")] = [0.0, 0.0, 0.1, 0.0]
+    assert [report["edge_loading"] for report in bands(result).summary()["bands"]] == [0.0, 0.75]
+    result.contact[1, 2, 2] = 1.0  # the others are worn to the rim
+    assert [report["edge_loaded"] for report in bands(result).summary()["bands"]] == [0.0, 0.25]
+
+
+def test_validity_and_utilisation_are_those_since_the_first_cycle():
+    result = cohort(4)
+    result.contact[:, :, 0] = [[0.1, 0.2, 0.3], [0.9, 0.2, 0.3], [0.1, 0.5, 0.3], [0.1, 0.2, 0.3]]
+    result.contact[:, :, 1] = [[1, 1, 1], [0, 1, 1], [1, 1, 0], [1, 1, 1]]
+    np.testing.assert_array_equal(result.peak_utilisation, [[0.2, 0.3], [0.9, 0.9], [0.5, 0.5], [0.2, 0.3]])
+    np.testing.assert_array_equal(result.valid, [[1, 1], [0, 0], [1, 0], [1, 1]])
+    some = bands(result)
+    np.testing.assert_allclose([some.utilisation_quantile(level) for level in (0.0, 1.0)], [[0.2, 0.3], [0.9, 0.9]])
+    assert any(note.startswith("2 of 4 samples have contacts outside the validity") for note in some.notes)
+    assert [report["valid"] for report in some.summary()["bands"]] == [0.75, 0.5]
+    assert some.valid is False
+    assert some.summary()["bands"][0]["peak_utilisation"]["high"] == pytest.approx(0.84)
+    result.contact[3, 1, 0] = np.nan  # an unknown utilisation is left out
+    np.testing.assert_allclose(bands(result).utilisation_quantile(0.0), [0.2, 0.3])
+    result.contact[:, :, 0] = np.nan
+    assert np.isnan(bands(result).utilisation_quantile(0.5)).all()
+
+
+def test_notes_state_assumptions_and_limits():
+    result = cohort(3)
+    result.table[:, -1, COLUMNS.index("depth")] = [7.9, 8.0, 8.1]  # mm; the liner has 8
+    notes = bands(result, distributions={"clearance": TIGHT, "body_weight": WEIGHT}).notes
+    assert notes == (
+        "assumed: given and independent distributions of clearance, body_weight",
+        "1 of 3 patients wear their liner through",
+    )
+    assert "patients wear" not in " ".join(bands(cohort(1), hip(liner=1e6, clearance=0.3)).notes)
+    note = bands(distributions={"coefficient": LogNormal(median=1e-6, factor=2.0)}, level=0.95).notes[1]
+    unknown = "the wear coefficient is unknown, but the same for all samples: "
+    assert note == f"{unknown}95 % between 2.57e-07 and 3.89e-06 mm³/(N m)"
+    assert set(bands().nominal_notes) >= set(hip().notes)
+    assert any("nominal sample, in the first cycle" in note for note in bands(use=hip(liner=1.2)).nominal_notes)
+
+
+def test_members_of_a_band_are_predictions_with_an_unknown_coefficient():
+    assert bands().subject == "samples"  # of a simulator
+    assert bands(members="patients").subject == "patients"
+    assert bands(distributions={"body_weight": WEIGHT}).subject == "patients"
+    assert bands(distributions={"coefficient": COEFFICIENT}).subject == "predictions"
+
+
+def test_the_band_of_the_patients_is_that_of_one_coefficient():
+    some = bands(shared=shared())
+    for name, factor in (("low", 1.0), ("median", 2.0), ("high", 4.0)):
+        low, high = some.population_band("volume", name)
+        np.testing.assert_allclose(low, factor * np.array([5.0, 10.0]))
+        np.testing.assert_allclose(high, factor * np.array([95.0, 190.0]))
+    np.testing.assert_allclose(some.population_band("depth")[0], [2 * 1005.0, 2 * 2010.0])
+    np.testing.assert_allclose(some.shared.quantile("low", "penetration", 0.5), [2050.0, 4100.0])
+    with pytest.raises(ValueError, match="coefficient = 'middle' is not allowed: low, median, high"):
+        some.population_band("volume", "middle")
+    with pytest.raises(ValueError, match="'edge_distance' has no band for one coefficient: volume, depth, penetr"):
+        some.population_band("edge_distance")
+    with pytest.raises(ValueError, match="with coefficient and another quantity"):
+        bands().population_band("volume")
+
+
+def test_the_summary_has_bands_indices_and_distributions_with_angles_in_degrees():
+    distributions = {"tilt": Rectangular(low=0.0, high=np.pi / 4), "cycles_per_year": LogNormal(median=5e5, factor=2.0)}
+    indices = {"first_order": np.array([[0.1, 0.9], [0.2, 0.8], [0.3, np.nan]])}
+    words = {"seed": 7, "quick_run_errors": {"volume": 0.01}, "shared": shared(), "indices": indices}
+    summary = bands(distributions=distributions, **words).summary()
+    first, second = summary["bands"]
+    assert (first["cycles"], second["cycles"]) == COUNTS
+    assert (first["years"], second["years"]) == pytest.approx((2.0, 4.0))
+    assert [first["depth"][name] for name in ("low", "median", "high")] == pytest.approx([1005.0, 1050.0, 1095.0])
+    assert second["volume"]["given_coefficient"]["high"] == pytest.approx({"low": 40.0, "median": 400.0, "high": 760.0})
+    assert "given_coefficient" not in first["max_pressure"]
+    assert summary["sobol"]["volume"] == {"tilt": {"first_order": 0.1}, "cycles_per_year": {"first_order": 0.9}}
+    assert summary["sobol"]["penetration"]["cycles_per_year"] == {"first_order": None}
+    stated = summary["uncertainty"]
+    assert stated["scatter"]["tilt"] == {"distribution": "Rectangular", "low": 0.0, "high": pytest.approx(45.0)}
+    assert stated["scatter"]["cycles_per_year"] == {"distribution": "LogNormal", "median": 5e5, "factor": 2.0}
+    assert stated["coefficient"] == {"low": 1e-7, "median": 2e-7, "high": 4e-7}
+    assert stated["quick_run_off"] == {"volume": 0.01}
+    counts = {name: stated[name] for name in ("patients", "without_answer", "seed", "level")}
+    assert counts == {"patients": 101, "without_answer": 0, "seed": 7, "level": 0.9}
+    plain = bands().summary()
+    assert "years" not in plain["bands"][0]
+    assert plain["sobol"] is plain["uncertainty"]["coefficient"] is None
+
+
+def test_the_response_to_the_coefficient_follows_a_power_law_exactly():
+    exposures = np.geomspace(1e-8, 1e-6, 5)
+    table = np.stack([exposures**0.5, 3 * exposures], axis=-1)[:, None, :]
+    response = _NominalResponse(exposures=exposures, table=table)
+    points = np.array([1e-8, 3.3e-8, 7e-7])
+    np.testing.assert_allclose(response.interpolate(points)[:, 0, 0], points**0.5, rtol=1e-12)
+    np.testing.assert_allclose(response.interpolate(points)[:, 0, 1], 3 * points, rtol=1e-12)
+    unworn = _NominalResponse(exposures=exposures, table=0 * table)
+    assert np.isnan(unworn.interpolate(points)).all()
