@@ -7,21 +7,11 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import (
-    Archard,
-    ContactAreaWear,
-    CrossShear,
-    CustomWearLaw,
-    FilmLimit,
-    FrictionEnergyWear,
-    iso_14242_1,
-    iso_14242_4,
-    logarithmic,
-)
+from ballsocket.hip import FilmLimit, iso_14242_1, iso_14242_4, logarithmic
 from ballsocket.hip.similarity import Similarity, find_obstacle
 from ballsocket.hip.variability import RESULT_UNITS, result_table
 from ballsocket.hip.wear_law import CycleExposure
-from ballsocket.hip.wear_laws import WEAR_LAWS
+from ballsocket.hip.wear_laws import WEAR_LAWS, Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from .hips import QUICK, K, hip

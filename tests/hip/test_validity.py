@@ -8,18 +8,9 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.elasticity.off_axis.grid import even_grid
-from ballsocket.hip import (
-    Activity,
-    Archard,
-    HipSimulation,
-    Mix,
-    PatientVariability,
-    constant_load,
-    in_vivo,
-    iso_14242_1,
-    population,
-)
+from ballsocket.hip import Activity, Archard, HipSimulation, Mix, PatientVariability, in_vivo, population
 from ballsocket.hip.contact_checks import half_angles
+from ballsocket.hip.simulator_cycles import constant_load, iso_14242_1
 from ballsocket.studies import LogNormal
 
 UPRIGHT = bs.Cup(inclination=0.0)
