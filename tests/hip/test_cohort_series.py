@@ -3,24 +3,27 @@
 import json
 import pickle
 from dataclasses import replace
-from math import radians
+from math import log, radians
 
 import numpy as np
 import pytest
 
+import ballsocket as bs
 from ballsocket.core.executors import Processes, Serial, processes
-from ballsocket.hip import CustomWearLaw, iso_14242_1, logarithmic, population
+from ballsocket.hip import Archard, FilmLimit, iso_14242_1, iso_14242_4, logarithmic, population
 from ballsocket.hip import cohort_series as module
 from ballsocket.hip.chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
 from ballsocket.hip.cohort import CohortRun, check_cohort_memory, cohort_store, sample_patients
 from ballsocket.hip.cohort_series import CohortSeries
 from ballsocket.hip.series_accuracy import TOLERANCES, SeriesAccuracy
-from ballsocket.hip.similarity import Similarity
-from ballsocket.hip.variability import RESULT_UNITS
+from ballsocket.hip.similarity import Similarity, find_obstacle
+from ballsocket.hip.variability import RESULT_UNITS, result_table
+from ballsocket.hip.wear_law import CycleExposure
+from ballsocket.hip.wear_laws import WEAR_LAWS, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from ..cli.command import run as run_command
-from .hips import QUICK, K, hip
+from .hips import QUICK, UNCERTAINTY, K, hip
 from .test_uncertainty import short_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
 
@@ -55,7 +58,7 @@ def solve(run, **words):
 # polynomials
 
 
-def test_polynomials_of_the_degree_are_fitted_exactly():
+def test_polynomials_of_the_degree_are_fitted_and_interpolated_exactly():
     box = Box(ranges={"x": (-1.0, 3.0), "constant": (2.0, 2.0), "y": (0.0, 0.5)})
     points, exponents = box.sample(40), exponents_of([1, 2], 4)
     assert box.axes == ("x", "y")
@@ -72,11 +75,7 @@ def test_polynomials_of_the_degree_are_fitted_exactly():
     other = {"x": np.array([0.3, 2.9]), "constant": np.full(2, 2.0), "y": np.array([0.1, 0.4])}
     np.testing.assert_allclose(basis(box.scale(other), exponents) @ coefficients, polynomial(other["x"], other["y"]))
     assert [point["x"] for point in box.sample(7)] == [point["x"] for point in points[:7]]
-
-
-def test_polynomials_are_interpolated_exactly():
-    nodes = chebyshev_points(2.0, 5.0, 6)
-    at = np.array([2.0, 3.3, 5.0])
+    nodes, at = chebyshev_points(2.0, 5.0, 6), np.array([2.0, 3.3, 5.0])
     np.testing.assert_allclose(interpolation_weights(at, 2.0, 5.0, 6) @ nodes**5, at**5, rtol=1e-12)
     np.testing.assert_array_equal(interpolation_weights(at, 2.0, 2.0, 1), np.ones((3, 1)))
 
@@ -105,10 +104,9 @@ def test_a_series_agrees_with_simulations_of_held_out_patients(few_held_out):
 
 def test_a_series_has_the_indices_of_a_product(few_held_out):
     """The volume of few cycles is proportional to coefficient and cycles."""
-    two = quick(
-        coefficient=Normal(mean=K, deviation=0.1 * K), cycles_per_year=Normal(mean=1.5e6, deviation=0.2 * 1.5e6)
-    )
-    _, bands = population(two, [1e3], patients=300)
+    rates = Normal(mean=1.5e6, deviation=0.2 * 1.5e6)
+    two = quick(coefficient=Normal(mean=K, deviation=0.1 * K), cycles_per_year=rates)
+    bands = population(two, [1e3], patients=300)[1]
     assert bands.accuracy.n_simulations == 1  # the force and the cup are the same
     assert bands.accuracy.relative["volume"] < 1e-5
     for order in ("first_order", "total_order"):
@@ -146,8 +144,7 @@ def test_patients_are_simulated_where_the_error_of_their_series_is_too_large(few
     monkeypatch.setattr(module, "_MAX_MEMBERS", 15)
     bands = population(quick(), [1e3], patients=40)[1]
     assert bands.accuracy is None
-    note = "each of the patients was simulated, without a series: its error exceeds the tolerance"
-    assert note in bands.notes
+    assert "each of the patients was simulated, without a series: its error exceeds the tolerance" in bands.notes
 
 
 def test_another_edge_loading_is_stated():
@@ -164,10 +161,9 @@ def test_another_edge_loading_is_stated():
 
 def test_few_patients_are_simulated():
     bands = population(quick(), COUNTS[:1], patients=3)[1]
-    assert bands.accuracy is None
-    assert bands.obstacle == ""
-    assert bands.summary()["uncertainty"]["method"] == "runs"
-    assert bands.summary()["uncertainty"]["series"] is None
+    assert (bands.accuracy, bands.obstacle) == (None, "")
+    stated = bands.summary()["uncertainty"]
+    assert (stated["method"], stated["series"]) == ("runs", None)
 
 
 def test_patients_who_are_not_similar_are_simulated_and_the_reason_is_stated():
@@ -250,18 +246,15 @@ def test_a_series_does_not_depend_on_the_executor():
     np.testing.assert_array_equal(serial, parallel)
 
 
+TILTS = {"tilt": Normal(mean=radians(30.0), deviation=radians(7.0), low=0.0, high=radians(60.0))}
+ANGLES = {
+    "inclination": Normal(mean=radians(42.0), deviation=radians(6.0), low=radians(25.0), high=radians(60.0)),
+    "anteversion": Normal(mean=radians(15.0), deviation=radians(5.0), low=0.0, high=radians(30.0)),
+}
+
+
 @pytest.mark.long
-@pytest.mark.parametrize(
-    "angles",
-    [
-        {"tilt": Normal(mean=radians(30.0), deviation=radians(7.0), low=0.0, high=radians(60.0))},
-        {
-            "inclination": Normal(mean=radians(42.0), deviation=radians(6.0), low=radians(25.0), high=radians(60.0)),
-            "anteversion": Normal(mean=radians(15.0), deviation=radians(5.0), low=0.0, high=radians(30.0)),
-        },
-    ],
-    ids=["tilt", "both angles"],
-)
+@pytest.mark.parametrize("angles", [TILTS, ANGLES])
 def test_a_series_of_oriented_cups_is_within_its_tolerance(angles):
     weights = Normal(mean=780.0, deviation=130.0, low=400.0, high=1400.0)
     spread = {"coefficient": COEFFICIENT, "clearance": TIGHT, "body_weight": weights}
@@ -283,17 +276,123 @@ def test_a_series_of_creeping_patients_is_within_its_tolerance():
 
 
 def test_the_command_states_method_and_error(tmp_path, few_held_out, short_film):
-    file = short_file(tmp_path, extra='[uncertainty]\ncoefficient = { median = "1.066e-6 mm^3/(N m)", factor = 1.5 }\n')
+    file = short_file(tmp_path, extra=UNCERTAINTY.partition("clearance")[0])
     words = "hip", str(file), "--patients", "200"
     answer = json.loads(run_command(*words, "--json").stdout)
     series = answer["uncertainty"]["series"]
-    assert answer["uncertainty"]["method"] == "series"
-    assert series["simulations"] == 1
+    assert (answer["uncertainty"]["method"], series["simulations"], series["within_tolerance"]) == ("series", 1, True)
     assert series["error"]["volume"] <= series["tolerance"]["volume"]
-    assert series["within_tolerance"] is True
     assert set(answer["sobol"]["volume"]) == {"coefficient"}
     shown = " ".join(run_command(*words).stdout.split())
     assert f"series of 1 simulations in place of 200: 95 % of the results of {FEW} simulated" in shown
     assert "Sobol indices of volume (first and total order): coefficient " in shown
     simulated = json.loads(run_command(*words[:3], "30", "--method", "runs", "--json").stdout)
     assert simulated["uncertainty"]["series"] is None
+
+
+# similarity: dimensionless numbers, members of a family, and where they do not hold
+
+MANY = (3e5, 1e6)
+RATE = LogNormal(median=1.5e6, factor=1.5)
+
+
+def relative_difference(use, values, coefficient=K, **distributions):
+    """Largest relative difference between a patient and the family member with the same dimensionless numbers."""
+    spread = {"coefficient": LogNormal(median=coefficient, factor=1.5), "clearance": TIGHT, "body_weight": WEIGHT}
+    patients = variability(use, **spread, cycles_per_year=RATE, **distributions)
+    similarity = Similarity(variability=patients)
+    arrays = {name: np.array([value]) for name, value in values.items()}
+    numbers = {name: float(column[0]) for name, column in similarity.numbers(arrays).items()}
+    exposures = [float(similarity.log_exposure(arrays)[0]) + log(count) for count in MANY]
+    member = similarity.simulate(numbers, exposures)
+    reports = patients.patient(values).simulate(MANY)
+    units = similarity.units(np.array([values["clearance"]]))
+    worn = np.exp(member.worn[:, : len(similarity.results)])
+    scaled = worn * np.array([float(units[name][0]) for name in similarity.results])
+    columns = [list(RESULT_UNITS).index(name) for name in similarity.results]
+    assert_equal_contacts(similarity, values["clearance"], member.worn[:, len(similarity.results) :], reports)
+    return abs(scaled / result_table(reports)[:, columns] - 1).max()
+
+
+def assert_equal_contacts(similarity, clearance, numbers, reports):
+    """Compare rim distance, indentation, half angle and largest pressure with those of a patient's reports."""
+    pressure_unit = float(similarity.modulus(clearance)) * clearance
+    for (rim, _, indentation, half_angle, pressure), report in zip(numbers, reports, strict=True):
+        distance = max(rim, 0.0) * float(similarity.socket_radius(clearance))
+        assert distance == pytest.approx(report.edge_distance.min(), rel=1e-9, abs=1e-9)
+        scaled = np.exp(indentation) * clearance, half_angle, np.exp(pressure) * pressure_unit
+        assert scaled == pytest.approx(report.worst_contacts[0, 2:5], rel=1e-9)
+
+
+LAWS = [
+    (Archard(coefficient=K), K),
+    (FrictionEnergyWear(coefficient=2e-5, friction=0.05), 2e-5),
+    (CrossShear(straight=K, circular=2 * K, exponent=-0.3), K),
+    (ContactAreaWear(coefficient=1e-9), 1e-9),
+]
+
+
+@pytest.mark.parametrize(("wear", "coefficient"), LAWS, ids=lambda value: type(value).__name__)
+def test_patients_with_the_same_dimensionless_numbers_wear_alike(wear, coefficient):
+    values = {"clearance": 0.16, "body_weight": 900.0, "coefficient": coefficient / 2, "cycles_per_year": 2.1e6}
+    tilt = Rectangular(low=0.0, high=1.0)
+    assert relative_difference(hip(**QUICK, wear=wear), values | {"tilt": 0.5}, coefficient, tilt=tilt) < 1e-10
+
+
+def test_creeping_patients_wear_alike_at_the_same_time_per_exposure():
+    use = hip(**QUICK, creep=logarithmic(), seconds_per_cycle=20.0)
+    values = {"clearance": 0.06, "body_weight": 650.0, "coefficient": 2 * K, "cycles_per_year": 1e6}
+    values |= {"inclination": 0.7, "anteversion": 0.2}
+    angles = {"inclination": Rectangular(low=0.4, high=1.0), "anteversion": Rectangular(low=0.0, high=0.5)}
+    assert relative_difference(use, values, **angles) < 1e-10
+
+
+@pytest.mark.parametrize("law", WEAR_LAWS.values(), ids=lambda law: law.name)
+def test_a_law_has_its_degree_in_the_pressure(law):
+    wear = law(**{field.name: field.example for field in law.law_fields()})
+    wear = replace(wear, exponent=0.4) if isinstance(wear, CrossShear) else wear
+    use = hip(**QUICK, wear=wear)
+    exposure = use.exposure(use.unworn)
+    trebled, cells = (CycleExposure(pressure=n * exposure.pressure, sliding=exposure.sliding) for n in (3, 1))
+    np.testing.assert_allclose(wear.depth(trebled), 3**wear.pressure_degree * wear.depth(cells), rtol=1e-12)
+
+
+def test_a_family_does_not_depend_on_lengths():
+    """The numbers of a bore of twice the size and clearance, under four times the load, are the same."""
+    forces = []
+    for scale in (1.0, 2.0):
+        use = hip(28.0 * scale, 8.0 * scale, 0.1 * scale)
+        similarity = Similarity(variability=variability(use, clearance=TIGHT, body_weight=WEIGHT))
+        values = {"clearance": np.array([0.1 * scale]), "body_weight": np.array([800.0 * scale**2])}
+        forces.append(similarity.numbers(values)["force"])
+    assert forces[1] == pytest.approx(forces[0], abs=1e-12)
+
+
+CHAMFERED = bs.Cup(inclination=radians(30.0), chamfer=1.0)
+OBSTACLES = [
+    ({"wear": CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)}, "CustomWearLaw has no known degree"),
+    ({"ball_wear": Archard(coefficient=K)}, "the ball wears too"),
+    ({"film_limit": FilmLimit(ratio=1.0, lubricant=bs.Lubricant())}, "wear has a limit of the film ratio"),
+    ({"cycle": iso_14242_4()}, "the cycle has a lateral spring"),
+    ({"cup": CHAMFERED}, "the chamfer of the rim has a length"),
+]
+
+
+@pytest.mark.parametrize(("words", "message"), OBSTACLES)
+def test_patients_who_are_not_similar_have_a_reason(words, message):
+    assert message in find_obstacle(variability(hip(**(QUICK | words)), clearance=TIGHT), MANY)
+
+
+def test_similar_patients_have_no_obstacle():
+    similar = variability(hip(**QUICK), clearance=TIGHT)
+    assert find_obstacle(variability(hip(**QUICK, cup=CHAMFERED), body_weight=WEIGHT), MANY) == ""
+    assert find_obstacle(similar, MANY) == ""
+    assert "a report is at 0 cycles" in find_obstacle(similar, (0.0, 1e6))
+    closed = variability(hip(**QUICK), clearance=Normal(mean=-0.1, deviation=0.1))
+    assert "the clearance is not positive" in find_obstacle(closed, MANY)
+
+
+def test_loads_that_point_to_the_rim_are_found():
+    similarity = Similarity(variability=variability(hip(cycle=iso_14242_1(16)), tilt=Rectangular(low=0.0, high=1.5)))
+    inside = [similarity.keeps_loads_inside({"tilt": radians(tilt)}) for tilt in (0.0, 60.0, 84.0, 86.0, 95.0)]
+    assert inside == [True, True, True, False, False]
