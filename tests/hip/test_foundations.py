@@ -1,86 +1,60 @@
 """Foundations of the socket, contact shares, interpolation to the ball and film formulas in small exact cases."""
 
 from dataclasses import replace
+from importlib.util import find_spec
 from math import radians
 
 import numpy as np
 import pytest
 
 from ballsocket.elasticity.off_axis.grid import even_grid, graded_grid
+from ballsocket.hip import socket_foundation, spring_equilibrium
 from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
-from ballsocket.hip.simulation import _relative_discretization_error, check_cycles
-from ballsocket.hip.socket_foundation import contact_shares, grid_neighbours, neighbours_in_subset, spring_foundation
+from ballsocket.hip.simulation import _relative_discretization_error
+from ballsocket.hip.socket_foundation import NO_LATERAL_SPRING, grid_neighbours, neighbours_in_subset, spring_foundation
+from ballsocket.hip.spring_equilibrium import load_blocks, newton_step, solve_in_blocks, spring_solver
+from ballsocket.hip.wear_integrator import WearIntegrator
+
+from .hips import QUICK, hip, socket_force
 
 CELLS = graded_grid(radians(90.0), radians(6.0))
 SPRINGS = spring_foundation(CELLS, modulus=100.0, clearance=0.1, socket_radius=14.1)
+SPHERE = even_grid(np.pi, radians(10.0))
+UNWORN = np.zeros(len(SPRINGS.areas))
 TILTED = np.array([[0.0, 0.0, 1000.0], [300.0, 0.0, 900.0], [0.0, -200.0, 400.0]])
 
 
-def socket_force(foundation, equilibrium):
-    return np.einsum("tp,kp,p->tk", equilibrium.pressure, foundation.normals, foundation.areas)
-
-
-def test_cells_cover_the_bore():
-    assert SPRINGS.areas.sum() == pytest.approx(2 * np.pi * 14.1**2, rel=1e-12)
-    assert np.linalg.norm(SPRINGS.directions, axis=0) == pytest.approx(1.0, rel=1e-12)
-    assert (SPRINGS.max_stiffness, SPRINGS.edge_inset) == (100.0, 0.0)
-
-
 def test_pressures_of_springs_balance_the_loads():
-    depth = np.zeros(len(SPRINGS.areas))
-    solved = SPRINGS.solve_equilibrium(TILTED, depth)
+    solved = SPRINGS.solve_equilibrium(TILTED, UNWORN)
     assert solved.converged
     assert socket_force(SPRINGS, solved) == pytest.approx(TILTED, abs=1e-7 * 1000)
     overlap = solved.displacement @ SPRINGS.normals - 0.1
     assert solved.pressure == pytest.approx(100.0 * overlap.clip(0.0), rel=1e-12)
     assert solved.displacement[0, :2] == pytest.approx(0.0, abs=1e-9)
-
-
-def test_a_lateral_spring_carries_its_part_of_the_load():
+    again = SPRINGS.solve_equilibrium(TILTED, UNWORN, replace(solved, displacement=-0.2 * TILTED / 1000.0))
+    assert again.converged  # from a start without contact
+    assert again.pressure == pytest.approx(solved.pressure, rel=1e-6, abs=1e-6)
+    worn = SPRINGS.solve_equilibrium(TILTED, UNWORN + 0.05)
+    larger = replace(SPRINGS, clearance=0.15).solve_equilibrium(TILTED, UNWORN)
+    assert worn.pressure == pytest.approx(larger.pressure, rel=1e-9, abs=1e-12)
     stiffness = np.diag([500.0, 0.0, 0.0])
-    solved = SPRINGS.solve_equilibrium(TILTED, np.zeros(len(SPRINGS.areas)), None, stiffness)
+    solved = SPRINGS.solve_equilibrium(TILTED, UNWORN, None, stiffness)  # a lateral spring carries its part
     expected = TILTED - solved.displacement @ stiffness
     assert socket_force(SPRINGS, solved) == pytest.approx(expected, abs=1e-7 * 1000)
     assert solved.displacement[1, 0] * 500.0 > 10.0
 
 
-def test_an_evenly_worn_bore_is_a_larger_clearance():
-    worn = SPRINGS.solve_equilibrium(TILTED, np.full(len(SPRINGS.areas), 0.05))
-    larger = replace(SPRINGS, clearance=0.15).solve_equilibrium(TILTED, np.zeros(len(SPRINGS.areas)))
-    assert worn.pressure == pytest.approx(larger.pressure, rel=1e-9, abs=1e-12)
-
-
-def test_a_start_without_contact_reaches_the_same_equilibrium():
-    depth = np.zeros(len(SPRINGS.areas))
-    solved = SPRINGS.solve_equilibrium(TILTED, depth)
-    far = replace(solved, displacement=-0.2 * TILTED / 1000.0)
-    again = SPRINGS.solve_equilibrium(TILTED, depth, far)
-    assert again.converged
-    assert again.pressure == pytest.approx(solved.pressure, rel=1e-6, abs=1e-6)
-
-
 def test_cells_near_contact_are_bounded_by_the_margin_of_the_largest_overlap():
-    depth = np.zeros(len(SPRINGS.areas))
-    solved = SPRINGS.solve_equilibrium(TILTED, depth)
+    solved = SPRINGS.solve_equilibrium(TILTED, UNWORN)
     overlap = (solved.displacement @ SPRINGS.normals).max(axis=0) - 0.1
     for margin in (0.0, 0.3, 1.0):
         expected = overlap > -margin * overlap.max()
-        assert (SPRINGS.cells_near_contact(solved, depth, margin) == expected).all()
-    part = np.flatnonzero(SPRINGS.cells_near_contact(solved, depth, 0.3))
+        assert (SPRINGS.cells_near_contact(solved, UNWORN, margin) == expected).all()
+    part = np.flatnonzero(SPRINGS.cells_near_contact(solved, UNWORN, 0.3))
     alone = SPRINGS.select_cells(part)
-    assert alone.solve_equilibrium(TILTED, depth[part]).pressure == pytest.approx(solved.pressure[:, part], rel=1e-9)
+    assert alone.solve_equilibrium(TILTED, UNWORN[part]).pressure == pytest.approx(solved.pressure[:, part], rel=1e-9)
     assert alone.neighbours.max() < len(part)
-
-
-def test_a_straight_edge_cuts_cells_in_proportion():
-    neighbours = np.array([[[0, 0, 1, 2], [1, 2, 3, 3]], [[0, 1, 2, 3]] * 2])
-    level = np.array([[3.0, 1.0, -1.0, -3.0], [2.5, 0.5, -1.5, -3.5], [1.0, 1.0, 1.0, 1.0]])
-    shares = contact_shares(level, neighbours, 0.0)
-    assert shares[0] == pytest.approx([1.0, 1.0, 0.0, 0.0])
-    assert shares[1] == pytest.approx([1.0, 0.75, 0.0, 0.0])
-    assert shares[2] == pytest.approx(1.0)
-    assert contact_shares(level, neighbours, 0.25)[1] == pytest.approx([1.0, 0.5, 0.0, 0.0])
 
 
 def test_neighbours_cross_the_pole_and_end_at_the_rim():
@@ -99,51 +73,46 @@ def test_neighbours_cross_the_pole_and_end_at_the_rim():
 
 
 def test_interpolation_is_exact_at_centres_and_for_fields_of_the_polar_angle():
-    sphere = even_grid(np.pi, radians(10.0))
-    centres = interpolation_at(sphere, sphere.middles.reshape(3, 1, -1))
-    field = np.random.default_rng(3).normal(size=(1, sphere.rings * sphere.meridians))
+    centres = interpolation_at(SPHERE, SPHERE.middles.reshape(3, 1, -1))
+    field = np.random.default_rng(3).normal(size=(1, SPHERE.rings * SPHERE.meridians))
     assert centres.interpolate(field) == pytest.approx(field, rel=1e-9, abs=1e-9)
-    polar = np.repeat(sphere.polar, sphere.meridians)[None]
-    angles = np.linspace(0.4, 2.7, 17)
+    polar, angles = np.repeat(SPHERE.polar, SPHERE.meridians)[None], np.linspace(0.4, 2.7, 17)
     for azimuth in (0.0, 2.0, -3.0):
         points = np.stack([np.sin(angles) * np.cos(azimuth), np.sin(angles) * np.sin(azimuth), np.cos(angles)])
-        between = interpolation_at(sphere, points[:, None])
+        between = interpolation_at(SPHERE, points[:, None])
         assert between.weights.sum(axis=-1) == pytest.approx(1.0)
         assert between.interpolate(polar)[0] == pytest.approx(angles, rel=1e-12)
-
-
-def test_points_beyond_the_grid_have_no_weight():
-    low = np.array([np.sin(1.7), 0.0, np.cos(1.7)])[:, None, None]
-    assert interpolation_at(CELLS, low).weights.sum() == 0
-
-
-def test_cells_of_the_ball_have_their_axis_to_the_front():
-    sphere = even_grid(np.pi, radians(10.0))
-    directions = ball_directions(sphere)
-    x, y, z = sphere.middles.reshape(3, -1)
-    assert (directions == np.stack([y, z, x])).all()
+    beyond_the_rim = np.array([np.sin(1.7), 0.0, np.cos(1.7)])[:, None, None]
+    assert interpolation_at(CELLS, beyond_the_rim).weights.sum() == 0
+    x, y, z = SPHERE.middles.reshape(3, -1)
+    assert (ball_directions(SPHERE) == np.stack([y, z, x])).all()  # the axis of the ball's cells is to the front
 
 
 @pytest.mark.parametrize(("waves", "factor"), [(0, 1.0), (6, 0.75), (9, 0.5), (12, 0.25), (18, 0.0)])
 def test_smoothing_filters_waves_around_the_equator_by_one_two_one(waves, factor):
     """[1 2 1]/4 multiplies a wave over n cells by cos²(π/n); there are 36 cells around the equator."""
-    sphere = even_grid(np.pi, radians(10.0))
-    assert sphere.meridians == 36
-    field = np.cos(waves * sphere.azimuth + (np.pi / 4 if waves == 18 else 0.0)) * np.ones((sphere.rings, 1))
-    equator = GridSmoothing(grid=sphere)(field)[sphere.rings // 2]
+    assert SPHERE.meridians == 36
+    field = np.cos(waves * SPHERE.azimuth + (np.pi / 4 if waves == 18 else 0.0)) * np.ones((SPHERE.rings, 1))
+    equator = GridSmoothing(grid=SPHERE)(field)[SPHERE.rings // 2]
     np.testing.assert_allclose(equator, factor * field[0], atol=0.012)
 
 
-def test_smoothing_removes_alternate_rings_at_the_equator():
+def test_smoothing_conserves_volume_and_removes_waves_of_the_grid():
+    grid = even_grid(radians(90.0), radians(5.0))
+    smooth, field = GridSmoothing(grid=grid), np.random.default_rng(5).uniform(size=(grid.rings, grid.meridians))
+    assert (smooth(field) * grid.areas).sum() == pytest.approx((field * grid.areas).sum(), rel=1e-12)
+    assert smooth(np.ones_like(field)) == pytest.approx(1.0, rel=1e-12)
+    board = (-1.0) ** np.add.outer(np.arange(grid.rings), np.arange(grid.meridians))
+    assert np.abs(smooth(board)).max() < 1e-12
+    wide = np.cos(grid.polar)[:, None] + 0 * grid.azimuth
+    assert smooth(wide)[:-1] == pytest.approx(wide[:-1], abs=5e-3)
     sphere = even_grid(np.pi, radians(5.0))
     rings = (-1.0) ** np.arange(sphere.rings)[:, None] * np.ones(sphere.meridians)
-    equator = GridSmoothing(grid=sphere)(rings)[sphere.rings // 2]
-    np.testing.assert_allclose(equator, 0.0, atol=5e-3)
+    np.testing.assert_allclose(GridSmoothing(grid=sphere)(rings)[sphere.rings // 2], 0.0, atol=5e-3)
 
 
 def test_load_levels_interpolate_every_load_of_one_direction():
-    sizes = np.linspace(10.0, 3000.0, 50)
-    loads = sizes[:, None] * np.array([0.0, 0.6, 0.8])
+    loads = np.linspace(10.0, 3000.0, 50)[:, None] * np.array([0.0, 0.6, 0.8])
     levels = interpolate_loads(loads)
     assert len(levels.loads) == 12
     assert levels.weights.sum(axis=1) == pytest.approx(1.0)
@@ -152,9 +121,8 @@ def test_load_levels_interpolate_every_load_of_one_direction():
     assert (magnitudes[0], magnitudes[-1]) == pytest.approx((10.0, 3000.0))
     assert (np.diff(magnitudes, n=2) > 0).all()  # closer to each other at small loads
     assert len(interpolate_loads(loads[:12]).loads) == 12
-    turned = loads.copy()
-    turned[3] = [1.0, 0.0, 50.0]
-    assert len(interpolate_loads(turned).loads) == 50
+    loads[3] = [1.0, 0.0, 50.0]
+    assert len(interpolate_loads(loads).loads) == 50
     same = interpolate_loads(np.tile([0.0, 0.0, 500.0], (40, 1)))
     assert same.loads.tolist() == [[0.0, 0.0, 500.0]]
     assert same.interpolate(same.loads) == pytest.approx(np.tile([0.0, 0.0, 500.0], (40, 1)))
@@ -167,9 +135,88 @@ def test_numerical_errors_follow_from_halved_steps():
     assert _relative_discretization_error([0.0, 0.0, 0.0]) == 0.0
 
 
-def test_cycle_counts_are_sorted_and_end_with_the_total():
-    assert check_cycles(5.0, [3, 1, 3]) == [1.0, 3.0, 5.0]
-    assert check_cycles(5.0, [0, 5]) == [0.0, 5.0]
-    for cycles, counts in ((0.0, []), (float("inf"), []), (5.0, [5.1]), (5.0, [-1])):
-        with pytest.raises(ValueError, match="is not allowed"):
-            check_cycles(cycles, counts)
+# the compiled pass equals NumPy's, in any contact and in any blocks of loads
+
+WORN = np.random.default_rng(1).uniform(0.0, 0.02, len(SPRINGS.areas))
+CONTACTS = {
+    "unworn": (np.zeros_like(WORN), NO_LATERAL_SPRING, False),
+    "worn": (WORN, NO_LATERAL_SPRING, False),
+    "another depth under each load": (WORN * np.array([[0.5], [1.0], [2.0]]), NO_LATERAL_SPRING, False),
+    "a lateral spring": (WORN, np.diag([500.0, 0.0, 0.0]), False),
+    "a start without contact": (WORN, NO_LATERAL_SPRING, True),
+}
+
+
+def solved_by(solver, monkeypatch, depth, lateral, far):
+    monkeypatch.setattr(socket_foundation, "spring_solver", lambda: solver)
+    start = SPRINGS.solve_equilibrium(TILTED, depth)
+    start.displacement[:] *= -2.0
+    return SPRINGS.solve_equilibrium(TILTED, depth, start if far else None, lateral)
+
+
+@pytest.fixture(scope="module")
+def compiled():
+    pytest.importorskip("numba")
+    return spring_solver()
+
+
+@pytest.mark.parametrize("name", CONTACTS)
+def test_the_compiled_pass_equals_numpy(name, compiled, monkeypatch):
+    one, other = (solved_by(solver, monkeypatch, *CONTACTS[name]) for solver in (compiled, solve_in_blocks))
+    assert (one.converged, other.converged) == (True, True)
+    np.testing.assert_allclose(one.displacement, other.displacement, rtol=0, atol=1e-11 * 0.1)
+    np.testing.assert_allclose(one.pressure, other.pressure, rtol=0, atol=1e-11 * other.pressure.max())
+
+
+def test_a_load_that_no_contact_balances_is_not_converged_on_either_path(compiled, monkeypatch):
+    for solver in (compiled, solve_in_blocks):
+        assert not solved_by(solver, monkeypatch, np.nan * WORN, NO_LATERAL_SPRING, False).converged
+
+
+def test_a_million_cycles_are_the_same_on_both_paths(compiled, monkeypatch):
+    integrators = []
+    for solver in (compiled, solve_in_blocks):
+        monkeypatch.setattr(socket_foundation, "spring_solver", lambda solver=solver: solver)
+        integrators.append(WearIntegrator(setup=hip(**QUICK)).run_until(1e6, lambda cycles: None))
+    one, other = integrators
+    assert one.steps == other.steps
+    assert one.volume == pytest.approx(other.volume, rel=1e-11)
+    np.testing.assert_allclose(one.depth, other.depth, rtol=0, atol=1e-11 * other.depth.max())
+
+
+def test_blocks_of_loads_do_not_change_the_result(monkeypatch):
+    together = solved_by(solve_in_blocks, monkeypatch, *CONTACTS["another depth under each load"])
+    near = SPRINGS.cells_near_contact(together, WORN, 0.3)
+    monkeypatch.setattr(spring_equilibrium, "_BLOCK_SIZE", 2 * len(SPRINGS.areas))
+    assert list(load_blocks(3, len(SPRINGS.areas))) == [slice(0, 2), slice(2, 4)]
+    in_blocks = solved_by(solve_in_blocks, monkeypatch, *CONTACTS["another depth under each load"])
+    np.testing.assert_allclose(in_blocks.pressure, together.pressure, rtol=0, atol=1e-12 * together.pressure.max())
+    assert (SPRINGS.cells_near_contact(together, WORN, 0.3) == near).all()
+
+
+def test_numpy_solves_where_numba_is_not_installed(monkeypatch):
+    monkeypatch.setattr(spring_equilibrium, "find_spec", lambda name: None if name == "numba" else find_spec(name))
+    assert spring_solver() is solve_in_blocks
+
+
+def test_without_a_folder_for_its_cache_numba_still_compiles(monkeypatch):
+    numba = pytest.importorskip("numba")
+    plain = numba.njit
+
+    def without_folder(function, cache=False, **options):
+        if cache:
+            raise RuntimeError("cannot cache function: no locator available")
+        return plain(function, **options)
+
+    monkeypatch.setattr(numba, "njit", without_folder)
+    assert spring_equilibrium._compiled_solver.__wrapped__().py_func is spring_equilibrium._solve_one_by_one
+
+
+@pytest.mark.parametrize("softest", [1.0, 1e-12])
+def test_the_newton_step_solves_its_equations(softest):
+    """One cell in contact has a stiffness in one direction only: the regularisation holds the others."""
+    normal = np.array([0.3, -0.5, np.sqrt(1 - 0.34)])
+    stiffness = 400.0 * np.outer(normal, normal) + 400.0 * softest * np.eye(3)
+    force = np.array([20.0, -3.0, 500.0]) if softest == 1.0 else 500.0 * normal
+    step = np.array(newton_step(tuple(stiffness[np.triu_indices(3)]), tuple(force)))
+    np.testing.assert_allclose(stiffness @ step, force, rtol=0, atol=1e-9 * 500.0)

@@ -52,22 +52,22 @@ def test_a_patient_that_does_not_converge_leaves_the_others_converged():
     assert np.asarray(solved.converged).tolist() == [True, False, True]
 
 
-def test_patients_of_other_sizes_are_refused():
-    one, *_ = contacts(WORN)
-    with pytest.raises(ValueError, match="got 2 loads on .* cells, 3 loads on .* cells"):
-        join_contacts([one, SPRINGS.contact(TILTED[:2], WORN[0], NO_LATERAL_SPRING)])
-    with pytest.raises(ValueError, match="at least one patient"):
-        join_contacts([])
-
-
 def test_contacts_that_do_not_fit_are_refused():
     one, two, _ = contacts(WORN)
     start = np.broadcast_to(0.2 * TILTED / 1000.0, (2, 3, 3))
-    with pytest.raises(TypeError, match="contacts must be a list of SpringContact, got"):
-        join_contacts(one)
-    with pytest.raises(ValueError, match="a depth under each load, or one depth"):
-        join_contacts([one, SPRINGS.contact(TILTED, np.tile(WORN[0], (3, 1)), NO_LATERAL_SPRING)])
-    with pytest.raises(TypeError, match="contacts must be those of join_contacts"):
-        solve_patients(one, start)
-    with pytest.raises(ValueError, match=r"start of shape \(1, 3, 3\) is not allowed: its shape is \(2, 3, 3\)"):
-        solve_patients(join_contacts([one, two]), start[:1])
+    few = SPRINGS.contact(TILTED[:2], WORN[0], NO_LATERAL_SPRING)
+    many = SPRINGS.contact(TILTED, np.tile(WORN[0], (3, 1)), NO_LATERAL_SPRING)
+    for join, error, message in [
+        (lambda: join_contacts([]), ValueError, "at least one patient"),
+        (lambda: join_contacts([one, few]), ValueError, "got 2 loads on .* cells, 3 loads on .* cells"),
+        (lambda: join_contacts([one, many]), ValueError, "a depth under each load, or one depth"),
+        (
+            lambda: solve_patients(join_contacts([one, two]), start[:1]),
+            ValueError,
+            r"start of shape \(1, 3, 3\) is not",
+        ),
+        (lambda: join_contacts(one), TypeError, "contacts must be a list of SpringContact, got"),
+        (lambda: solve_patients(one, start), TypeError, "contacts must be those of join_contacts"),
+    ]:
+        with pytest.raises(error, match=message):
+            join()

@@ -183,7 +183,7 @@ def test_finest_steps_have_an_error_estimate():
 
 
 def test_reports_increase_with_wear_and_their_number_does_not_change_the_results():
-    often = hip(**QUICK).after(5e6, [1e5, 1e6, 3e6])
+    often = hip(**QUICK).after(5e6, [3e6, 1e5, 1e6, 1e5])
     assert often.last.volume == pytest.approx(report_after(hip(**QUICK), 5e6).volume, rel=5e-4)
     assert [report.cycles for report in often.reports] == [1e5, 1e6, 3e6, 5e6]
     for name in ("volume", "penetration"):
