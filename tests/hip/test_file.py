@@ -14,7 +14,6 @@ from ballsocket.cli.root import app
 from ballsocket.hip import Activity, Mix, constrained_share, logarithmic
 from ballsocket.hip.config import read_hip
 from ballsocket.reports import hip_plots
-from ballsocket.reports.hip_report import write_hip_report
 
 from ..cli.command import run
 from ..places import EXAMPLES
@@ -147,11 +146,6 @@ def test_a_report_has_figures_and_results_and_stands_alone(solved_file):
     assert (folder / "store" / "hip_in_use.npz").exists()
     (*_, last) = csv.DictReader((folder / "hip.csv").read_text(encoding="utf-8").splitlines())
     assert float(last["volume_mm3"]) == pytest.approx(answer["history"][-1]["volume"], rel=1e-4)
-
-
-def test_a_report_without_contact_has_no_figure(tmp_path):
-    write_hip_report(hip(cycle=walked(0.0, 0.0)).after(1e5), tmp_path / "none.html")
-    assert "data:image" not in (tmp_path / "none.html").read_text(encoding="utf-8")
 
 
 def test_results_are_printed_before_the_report_fails(tmp_path, monkeypatch, short_film):

@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from ballsocket.hip import constrained_share, logarithmic, wear_integrator
-from ballsocket.hip.creep_law import confinement_note
-from ballsocket.hip.creep_laws import CREEP_LAWS, KelvinVoigtChain, LogarithmicCreep, read_creep_law
+from ballsocket.hip import Archard, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear, wear_integrator
+from ballsocket.hip.creep_law import confinement_note, constrained_share
+from ballsocket.hip.creep_laws import CREEP_LAWS, KelvinVoigtChain, LogarithmicCreep, logarithmic, read_creep_law
 from ballsocket.hip.law_fields import law_keys, law_summary
 from ballsocket.hip.wear_law import (
     CycleExposure,
@@ -20,16 +20,7 @@ from ballsocket.hip.wear_law import (
     wear_per_slide,
     with_coefficient,
 )
-from ballsocket.hip.wear_laws import (
-    WEAR_LAWS,
-    Archard,
-    ContactAreaWear,
-    CrossShear,
-    CustomWearLaw,
-    FrictionEnergyWear,
-    read_ball_law,
-    read_wear_law,
-)
+from ballsocket.hip.wear_laws import WEAR_LAWS, read_ball_law, read_wear_law
 
 from .hips import QUICK, WALK, K, hip, report_after, socket_force
 
