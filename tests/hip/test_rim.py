@@ -9,11 +9,10 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.elasticity.off_axis.grid import even_grid
-from ballsocket.elasticity.off_axis.surfaces import ClosedShell
 from ballsocket.hip import Spring, iso_14242_1, iso_14242_4
 from ballsocket.hip.rim import Microseparation, RimDistance, SpringLoadedBall, rim_distance
 
-from .hips import hip
+from .hips import hip, socket_force
 
 # distance to the rim
 
@@ -51,28 +50,22 @@ def test_a_contact_at_the_rim_has_no_distance_and_the_mean_azimuth_of_its_cells(
     result = distance_of(cap(radians(30.0), radians(75.0), radians(60.0)), cap(radians(30.0)))
     assert result.distance == pytest.approx([0.0, RADIUS * radians(60.0)])
     assert degrees(result.azimuth[0]) == pytest.approx(60.0, abs=0.5)
-    assert result.pressure[0] == pytest.approx(radians(15.0), abs=radians(3.0))
+    assert result.pressure == pytest.approx([radians(15.0), 0.0], abs=radians(3.0))
     assert result.pressure[1] == 0.0
 
 
-def test_a_contact_between_the_last_ring_and_the_rim_is_extrapolated():
+def test_a_contact_between_the_last_ring_and_the_rim_is_extrapolated_and_an_inset_moves_the_edge():
     last, width = GRID.polar[-1], GRID.width
     result = distance_of(cap(last + 0.2 * width))
     assert result.distance[0] == pytest.approx(RADIUS * (REACH - last - 0.2 * width), rel=1e-6)
-
-
-def test_an_inset_moves_the_edge_by_a_fraction_of_a_ring():
-    edge = rim_distance(GRID, RADIUS, cap(radians(40.0)), 0 * cap(1.0), 0.0)
-    inner = rim_distance(GRID, RADIUS, cap(radians(40.0)), 0 * cap(1.0), 0.25)
-    assert inner.distance - edge.distance == pytest.approx(RADIUS * 0.25 * GRID.width, rel=1e-6)
-    at_rim = rim_distance(GRID, RADIUS, cap(GRID.polar[-1] + 1e-3), 0 * cap(1.0), 0.25)
-    assert at_rim.distance[0] == pytest.approx(0.0, abs=1e-12)
+    edge, inner = (distance_of(cap(radians(40.0)), inset=inset).distance for inset in (0.0, 0.25))
+    assert inner - edge == pytest.approx(RADIUS * 0.25 * width, rel=1e-6)
+    assert distance_of(cap(last + 1e-3), inset=0.25).distance[0] == pytest.approx(0.0, abs=1e-12)
 
 
 def loading(*forces):
-    return SimpleNamespace(
-        loads=np.outer(forces, [0.0, 0.0, 1.0]), cycle=iso_14242_1(10), loaded=np.arange(len(forces)) + 3
-    )
+    loads = np.outer(forces, [0.0, 0.0, 1.0])
+    return SimpleNamespace(loads=loads, cycle=iso_14242_1(10), loaded=np.arange(len(forces)) + 3)
 
 
 RIM = RimDistance(
@@ -90,8 +83,6 @@ def test_the_closest_approach_is_that_of_the_largest_load_among_equals():
     assert RIM.closest_index(loading(900.0, 100.0, 200.0, 800.0)) == 2
     assert RIM.closest_index(loading(900.0, 300.0, 200.0, 800.0)) == 1
     closest = closest_approach()
-    assert (closest.distance, closest.steps_at_rim, closest.pressure) == (0.0, 2, 5.0)
-    assert closest.step_description == "55.0 % of the cycle"
     assert closest.location == "55.0 % of the cycle, 30° from the cup's uppermost point"
     assert closest.summary() == {
         "distance_mm": 0.0,
@@ -102,9 +93,6 @@ def test_the_closest_approach_is_that_of_the_largest_load_among_equals():
         "kind": "edge loading",
         "instants_edge_loaded": 2,
     }
-
-
-def test_a_cycle_without_load_has_no_closest_approach():
     empty = RimDistance(distance=np.zeros(0), azimuth=np.zeros(0), pressure=np.zeros(0))
     assert empty.closest_index(loading()) is None
     assert empty.closest_approach(loading()) is None
@@ -115,22 +103,14 @@ def test_a_cycle_without_load_has_no_closest_approach():
 
 def test_the_interval_of_a_separation_may_pass_the_end_of_the_cycle():
     cycle = iso_14242_1(10)
-    displacement = np.array([[0.0, 3.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]])
-    azimuth = np.radians([-20.0, 30.0, 50.0])
+    displacement, azimuth = np.array([[0.0, 3.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), np.radians([-20, 30, 50])
     apart = Microseparation(steps=np.array([0, 8, 9]), displacement=displacement, azimuth=azimuth)
     summary = apart.summary(cycle)
-    assert summary == {
-        "from": "85.0 % of the cycle",
-        "to": "5.0 % of the cycle",
-        "largest_mm": 3.0,
-        "place_deg": pytest.approx(-20.0),
-    }
+    assert (summary["from"], summary["to"]) == ("85.0 % of the cycle", "5.0 % of the cycle")
+    assert (summary["largest_mm"], summary["place_deg"]) == (3.0, pytest.approx(-20.0))
     within = replace(apart, steps=np.array([4, 5, 6])).summary(cycle)
     assert (within["from"], within["to"]) == ("45.0 % of the cycle", "65.0 % of the cycle")
-    assert apart.describe(cycle) == (
-        "microseparation from 85.0 % of the cycle to 5.0 % of the cycle: the ball sits on the rim, with up to 3 mm "
-        "between the centres, 20° from the cup's uppermost point; wear by the contact with the rim is not included"
-    )
+    assert apart.describe(cycle).startswith("microseparation from 85.0 % of the cycle to 5.0 % of the cycle: the ball")
     assert replace(apart, steps=apart.steps[:0], displacement=displacement[:0]).largest == 0.0
 
 
@@ -143,17 +123,16 @@ def spring_ball(mismatch=4.0, stiffness=100.0):
 @pytest.mark.parametrize("mismatch", [4.0, -4.0])
 def test_a_ball_on_the_rim_balances_its_load_and_its_spring(mismatch):
     """In a hemisphere the edge is at R2 on the side: sin of the load's tilt and the displacement follow by hand."""
-    ball = spring_ball(mismatch)
-    forces = np.array([[np.sign(mismatch) * 400.0, 0.0, -50.0], [np.sign(mismatch) * 400.0, 0.0, -5.0]])
+    ball, sign = spring_ball(mismatch), np.sign(mismatch)
+    forces = np.array([[sign * 400.0, 0.0, -50.0], [sign * 400.0, 0.0, -5.0]])
     apart = ball.solve_separation(forces, np.array([7, 8]))
     assert apart.steps.tolist() == [7, 8]
     for force, centre in zip(forces, apart.displacement, strict=True):
-        load = force - [100.0 * centre[0], 0.0, 0.0]
-        edge = np.array([np.sign(mismatch) * 14.1, 0.0, 0.0])
-        assert np.linalg.norm(edge - centre) == pytest.approx(14.0, rel=1e-9)
-        assert np.cross(edge - centre, load) == pytest.approx(0.0, abs=1e-4)
-        assert 0 < centre[0] * np.sign(mismatch) < 4.0
-    assert np.cos(apart.azimuth) == pytest.approx(np.sign(mismatch))
+        arm, load = np.array([sign * 14.1, 0.0, 0.0]) - centre, force - [100.0 * centre[0], 0.0, 0.0]
+        assert np.linalg.norm(arm) == pytest.approx(14.0, rel=1e-9)
+        assert np.cross(arm, load) == pytest.approx(0.0, abs=1e-4)
+        assert 0 < centre[0] * sign < 4.0
+    assert np.cos(apart.azimuth) == pytest.approx(sign)
 
 
 @pytest.mark.parametrize("mismatch", [4.0, -4.0])
@@ -174,7 +153,7 @@ def test_a_cycle_with_mismatch_puts_the_ball_on_the_rim_in_the_swing_phase(short
     assert (use.cycle.phases[apart.steps] > 0.6).sum() > 30
     assert apart.largest < 8.0
     assert np.degrees(apart.azimuth) == pytest.approx(0.0, abs=1e-9)
-    note = next(note for note in use.notes if note.startswith("microseparation from"))
+    (note,) = (note for note in use.notes if note.startswith("microseparation from"))
     assert "wear by the contact with the rim is not included" in note
     assert len(use.loaded) + len(apart.steps) == 100
     summary = use.after(1e4).summary()["cycle"]["microseparation"]
@@ -206,22 +185,20 @@ def test_wear_is_continuous_in_the_tilt_of_a_cup_with_microseparation():
     assert abs(np.diff(volumes) / volumes[:-1]).max() < 0.01
 
 
-@pytest.mark.parametrize("surface", [bs.Springs(), ClosedShell()])
+@pytest.mark.parametrize("surface", [bs.Springs(), bs.ClosedShell()])
 def test_the_bore_carries_the_load_less_the_relaxation_of_the_spring(surface):
     cup = bs.Cup(inclination=radians(40.0), anteversion=radians(8.0))
     use = hip(36.0, 6.0, cycle=iso_14242_4(50), cup=cup, ring_width=radians(6.0), surface=surface)
-    unworn, side = use.unworn, np.array(use.placed.frame)[:, 0]
-    carried = np.einsum("tp,kp,p->tk", unworn.pressure, use.foundation.normals, use.foundation.areas)
-    expected = use.loads - 100.0 * (unworn.displacement @ side)[:, None] * side
+    side = np.array(use.placed.frame)[:, 0]
+    expected = use.loads - 100.0 * (use.unworn.displacement @ side)[:, None] * side
     assert np.linalg.norm(expected - use.loads, axis=1).max() > 5.0
-    assert carried == pytest.approx(expected, rel=2e-6, abs=2e-6 * np.linalg.norm(use.loads, axis=1).max())
+    error = 2e-6 * np.linalg.norm(use.loads, axis=1).max()
+    assert socket_force(use.foundation, use.unworn) == pytest.approx(expected, rel=2e-6, abs=error)
 
 
 def test_microseparation_of_a_left_hip_mirrors_that_of_a_right_one():
-    right, left = (
-        hip(cycle=iso_14242_4(50), cup=bs.Cup(inclination=radians(45.0), anteversion=radians(10.0), side=side))
-        for side in bs.Side
-    )
+    cups = (bs.Cup(inclination=radians(45.0), anteversion=radians(10.0), side=side) for side in bs.Side)
+    right, left = (hip(cycle=iso_14242_4(50), cup=cup) for cup in cups)
     assert left.separation.displacement == pytest.approx(right.separation.displacement * [1, -1, 1], abs=1e-9)
     assert left.first.volume == pytest.approx(right.first.volume, rel=1e-9)
 
