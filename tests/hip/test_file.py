@@ -4,83 +4,80 @@ import csv
 import json
 import re
 from dataclasses import replace
-from math import acos, degrees
+from math import acos, cos, degrees, radians, sin
+from pathlib import Path
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+import ballsocket as bs
 from ballsocket.cli.root import app
-from ballsocket.hip import Activity, Mix, constrained_share, logarithmic
+from ballsocket.hip import WEAR_FACTORS, Activity, Archard, Mix, constrained_share, logarithmic
 from ballsocket.hip.config import read_hip
+from ballsocket.hip.rim import RimDistance, mask_edge_loading
+from ballsocket.hip.wear_laws import read_wear_law
 from ballsocket.reports import hip_plots
+from ballsocket.reports.hip_comparison import wear_figure
 
 from ..cli.command import run
 from ..places import EXAMPLES
-from .hips import QUICK, SHORT, TEXT, hip, walked, write_edited_file
+from .hips import QUICK, SHORT, TEXT, TILTED, hip, walked, write_edited_file
 from .test_cycle_file import write_table
 
 # files
 
 
-def test_a_file_without_counts_runs_five_million_cycles_with_ten_equal_reports(tmp_path):
-    counts = "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n"
-    file = read_hip(write_edited_file(tmp_path, (counts, "")))
-    assert file.cycles == 5e6
-    assert file.report_at == pytest.approx([5e5 * number for number in range(1, 11)])
-    short = read_hip(write_edited_file(tmp_path, (counts, "cycles = 1e4\n")))
-    assert short.report_at == pytest.approx([1e3 * number for number in range(1, 11)])
+def read(path, *changes, text=TEXT):
+    return read_hip(write_edited_file(path, *changes, text=text))
 
 
-def test_tilt_and_inclination_orient_the_cup(tmp_path):
-    for tilt in (0, 30, 89):
-        by_tilt, by_inclination = (
-            read_hip(write_edited_file(tmp_path, ('tilt = "30 deg"', f'{name} = "{tilt} deg"'))).use.placed
-            for name in ("tilt", "inclination")
-        )
-        assert degrees(acos(by_tilt.dome[2])) == pytest.approx(tilt, abs=1e-5)
-        assert by_tilt.dome == pytest.approx(by_inclination.dome)
+@pytest.mark.parametrize(("text", "cycles"), [("", 5e6), ("cycles = 1e4\n", 1e4)])
+def test_a_file_without_counts_runs_five_million_cycles_with_ten_equal_reports(tmp_path, text, cycles):
+    file = read(tmp_path, ("cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n", text))
+    assert file.cycles == cycles
+    assert file.report_at == pytest.approx(cycles / 10 * np.arange(1, 11))
 
 
-def test_file_reads_a_cycle_table_next_to_it(tmp_path):
+@pytest.mark.parametrize("tilt", [30, 89])
+def test_tilt_and_inclination_orient_the_cup(tmp_path, tilt):
+    changes = (('tilt = "30 deg"', f'{name} = "{tilt} deg"') for name in ("tilt", "inclination"))
+    by_tilt, by_inclination = (read(tmp_path, change).use.placed.dome for change in changes)
+    assert degrees(acos(by_tilt[2])) == pytest.approx(tilt, abs=1e-5)
+    assert by_tilt == pytest.approx(by_inclination)
+
+
+def test_a_file_reads_a_cycle_table_next_to_it_and_selects_springs_and_a_named_joint(tmp_path):
     write_table(tmp_path / "walk.csv")
-    tabular = read_hip(write_edited_file(tmp_path, ('name = "iso-14242-1"', 'file = "walk.csv"')))
-    named = read_hip(write_edited_file(tmp_path))
-    assert tabular.use.first.volume == pytest.approx(named.use.first.volume, rel=5e-3)
-
-
-def test_file_selects_the_springs_of_a_model(tmp_path):
-    vessel = read_hip(write_edited_file(tmp_path, ('contact = "springs"', 'contact = "springs"\nmodel = "vessel"')))
-    assert vessel.use.first.max_pressure > 1.01 * read_hip(write_edited_file(tmp_path)).use.first.max_pressure
-
-
-def test_file_accepts_the_name_of_a_joint(tmp_path):
+    named = read(tmp_path).use.first
+    tabular = read(tmp_path, ('name = "iso-14242-1"', 'file = "walk.csv"')).use.first
+    assert tabular.volume == pytest.approx(named.volume, rel=5e-3)
+    vessel = read(tmp_path, ('contact = "springs"', 'contact = "springs"\nmodel = "vessel"')).use.first
+    assert vessel.max_pressure > 1.01 * named.max_pressure
     head, tail = TEXT.split("[joint]")[0], TEXT[TEXT.index("[cup]") :]
-    named = read_hip(write_edited_file(tmp_path, text=f'{head}joint = "hip-28"\n{tail}'))
-    assert named.use.joint.ball_radius == 14.0
+    assert read(tmp_path, text=f'{head}joint = "hip-28"\n{tail}').use.joint.ball_radius == 14.0
 
 
-def test_file_reads_the_energy_law_and_ball_wear(tmp_path):
+def test_a_file_states_laws_creep_and_film(tmp_path):
     energy = ('law = "archard"', 'law = "energy"\nfriction = 0.05\nball_coefficient = "1e-6 mm^3/J"')
-    use = read_hip(write_edited_file(tmp_path, energy, ("1.066e-6 mm^3/(N m)", "2e-2 mm^3/kJ"))).use
+    use = read(tmp_path, energy, ("1.066e-6 mm^3/(N m)", "2e-2 mm^3/kJ")).use
     assert (use.wear.coefficient, use.wear.friction) == (pytest.approx(2e-5), 0.05)
     assert use.ball_wear.coefficient == pytest.approx(1e-6)
-
-
-def test_file_reads_creep_and_film(tmp_path):
-    film = '[film]\nviscosity = 1e-3\ncup_roughness = "0.5 um"\nfriction = 0.04\n'
-    file = read_hip(write_edited_file(tmp_path, text=f"{TEXT}\n[creep]\n{film}"))
-    assert len(file.use.creep.times) == 9
-    assert file.use.creep.confinement == 1.0
+    file = read(tmp_path, text=f'{TEXT}\n[creep]\n[film]\ncup_roughness = "0.5 um"\nfriction = 0.04\n')
+    assert (len(file.use.creep.times), file.use.creep.confinement) == (9, 1.0)
     assert file.lubricant.cup_roughness == pytest.approx(5e-4)
-    walls = read_hip(write_edited_file(tmp_path, text=f'{TEXT}\n[creep]\nconfinement = "constrained"\n'))
+    walls = read(tmp_path, text=f'{TEXT}\n[creep]\nconfinement = "constrained"\n')
     assert walls.use.creep.confinement == constrained_share(0.4)
     chain = "[creep]\ncompliances = [1e-3, 2e-3]\ntimes = [60, 3600]\nseconds_per_cycle = 3\n"
-    file = read_hip(write_edited_file(tmp_path, text=f"{TEXT}\n{chain}"))
-    assert (file.use.creep.times, file.use.seconds) == ((60.0, 3600.0), 3.0)
+    use = read(tmp_path, text=f"{TEXT}\n{chain}").use
+    assert (use.creep.times, use.seconds) == ((60.0, 3600.0), 3.0)
 
 
 # results
+
+
+def read_csv(path):
+    return list(csv.DictReader(path.read_text(encoding="utf-8").splitlines()))
 
 
 def test_json_has_the_results_of_python(solved_file):
@@ -94,8 +91,9 @@ def test_json_has_the_results_of_python(solved_file):
         "crossing_angle_mean_deg": degrees(use.crossing_angle),
     }
     assert {name: answer["cycle"][name] for name in expected} == pytest.approx(expected, rel=1e-9)
-    assert answer["cycle"]["peaks"]["force_N"] == pytest.approx(use.first.max_force, rel=1e-9)
-    assert answer["cycle"]["peaks"]["speed_mm_s"] == pytest.approx(14.0 * 2 * np.pi * 0.375, rel=0.1)  # R ω of flexion
+    peaks = answer["cycle"]["peaks"]
+    assert peaks["force_N"] == pytest.approx(use.first.max_force, rel=1e-9)
+    assert peaks["speed_mm_s"] == pytest.approx(14.0 * 2 * np.pi * 0.375, rel=0.1)  # R ω of flexion
     initial = {"wear_mm3_per_Mc": use.first.volume, "depth_mm_per_Mc": use.first.depth}
     assert answer["initial"] == pytest.approx(initial, rel=1e-9)
     assert [report["cycles"] for report in answer["history"]] == [5e3, 1e4]
@@ -122,9 +120,9 @@ def test_the_table_shows_the_numbers_and_assumptions_of_the_run(solved_file, sho
     process = run("hip", str(folder / "hip.toml"), "--store", str(folder / "store"))
     assert process.returncode == 0
     text = " ".join(process.stdout.split())
-    shown = {name: re.search(rf"{name} ([0-9.]+)", text)[1] for name in ("slide", "cross-shear")}
-    assert float(shown["slide"]) == pytest.approx(answer["cycle"]["slide_mm"], rel=5e-3)
-    assert float(shown["cross-shear"]) == pytest.approx(answer["cycle"]["cross_shear_mean"], abs=1e-3)
+    slide, cross_shear = (float(re.search(rf"{name} ([0-9.]+)", text)[1]) for name in ("slide", "cross-shear"))
+    assert slide == pytest.approx(answer["cycle"]["slide_mm"], rel=5e-3)
+    assert cross_shear == pytest.approx(answer["cycle"]["cross_shear_mean"], abs=1e-3)
     rows = [line.split() for line in process.stdout.splitlines() if line.split()[:1] in (["0.005"], ["0.01"])]
     volumes = [report["volume"] for report in answer["history"]]
     assert [float(row[1]) for row in rows[:2]] == pytest.approx(volumes, rel=5e-3)
@@ -137,14 +135,16 @@ def test_a_report_has_figures_and_results_and_stands_alone(solved_file):
     folder, answer = solved_file
     page = (folder / "hip.html").read_text(encoding="utf-8")
     assert page.count("data:image/png;base64") == 7
-    assert "<h1>Wear of a hip: hip in use</h1>" in page
-    assert "<dd>Acme &lt;Ortho&gt;</dd>" in page
-    assert "<img class='logo'" in page
-    assert "Cross-shear" in page
-    assert "mm³ worn and a penetration of" in page
+    for text in (
+        "<h1>Wear of a hip: hip in use</h1>",
+        "<dd>Acme &lt;Ortho&gt;</dd>",
+        "<img class='logo'",
+        "Cross-shear",
+    ):
+        assert text in page
     assert not re.search(r"(src|href)='http", page)
     assert (folder / "store" / "hip_in_use.npz").exists()
-    (*_, last) = csv.DictReader((folder / "hip.csv").read_text(encoding="utf-8").splitlines())
+    (*_, last) = read_csv(folder / "hip.csv")
     assert float(last["volume_mm3"]) == pytest.approx(answer["history"][-1]["volume"], rel=1e-4)
 
 
@@ -153,8 +153,8 @@ def test_results_are_printed_before_the_report_fails(tmp_path, monkeypatch, shor
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("ballsocket.reports.hip_report.write_hip_report", fail)
-    words = ["hip", str(write_edited_file(tmp_path, *SHORT)), "--json"]
-    result = CliRunner().invoke(app, [*words, "--report", str(tmp_path / "hip.html")])
+    words = ["hip", str(write_edited_file(tmp_path, *SHORT)), "--json", "--report", str(tmp_path / "hip.html")]
+    result = CliRunner().invoke(app, words)
     assert isinstance(result.exception, OSError)
     assert json.loads(result.stdout)["history"][-1]["cycles"] == 1e4
 
@@ -172,3 +172,121 @@ def test_figures_show_the_results_of_the_run(short_film):
     film = history.use.film(history.lubricant)
     assert np.asarray(curves["smallest"]) == pytest.approx(1e6 * film.least)
     assert np.asarray(curves["Hamrock-Dowson, smallest"]) == pytest.approx(1e6 * film.comparison)
+
+
+# several hips in one call, and results that terminal, files and figures state
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Two hips, of which the second has a published wear factor and a scatter of the clearance."""
+    text = write_edited_file(tmp_path, *SHORT, ('name = "hip in use"', "")).read_text(encoding="utf-8")
+    (tmp_path / "a.toml").write_text(text, encoding="utf-8")
+    linked = text.replace('coefficient = "1.066e-6 mm^3/(N m)"', 'material = "crosslinked-pe"')
+    scatter = '[uncertainty]\nclearance = {low = "0.05 mm", high = "0.2 mm"}\ncount = 2\n'
+    (tmp_path / "b.toml").write_text(f"{linked}\n{scatter}", encoding="utf-8")
+    return str(tmp_path / "a.toml"), str(tmp_path / "b.toml")
+
+
+def test_two_files_are_side_by_side_in_json_table_csv_and_figure(files, tmp_path, short_film):
+    out = ["--csv", str(tmp_path / "ab.csv"), "--figure", str(tmp_path / "ab.svg")]
+    process = run("hip", *files, *out)
+    assert process.returncode == 0, process.stderr
+    lines = [line.split() for line in process.stdout.splitlines()]
+    reports = [line[:2] for line in lines if line[:1] in (["0.005"], ["0.01"])]
+    assert reports[:4] == [["0.005", "a"], ["0.005", "b"], ["0.01", "a"], ["0.01", "b"]]
+    assert "b: wear factor of crosslinked-pe: 2e-07 mm³/(N m)" in " ".join(process.stdout.split())
+    rows = read_csv(tmp_path / "ab.csv")
+    assert [row["hip"] for row in rows] == ["a", "a", "b", "b"]
+    assert float(rows[1]["volume_mm3"]) / float(rows[3]["volume_mm3"]) == pytest.approx(5.33, rel=0.05)
+    assert rows[0]["volume_low_mm3"] == ""
+    assert float(rows[3]["volume_low_mm3"]) < float(rows[3]["volume_mm3"]) < float(rows[3]["volume_high_mm3"])
+    assert (tmp_path / "ab.svg").read_text(encoding="utf-8").count("<svg") == 1
+    answer, alone = (json.loads(run("hip", *names, "--json").stdout) for names in (files, files[:1]))
+    assert [(result["name"], result["file"]) for result in answer["results"]] == [("a", files[0]), ("b", files[1])]
+    assert answer["results"][0]["history"] == alone["history"]
+    assert answer["valid"] is all(result["valid"] for result in answer["results"])
+    assert answer["results"][1]["laws"]["wear"]["source"].startswith("wear factor of crosslinked-pe")
+    assert "results" not in alone
+    assert alone["name"] == "a"
+
+
+def test_a_stated_name_stands_in_table_csv_and_figure(files, tmp_path, short_film):
+    text, paths = Path(files[0]).read_text(encoding="utf-8"), []
+    for stem, name in {"a": 'name = "conventional 28"\n', "b": 'name = "conventional 28"\n', "c": ""}.items():
+        paths.append(str(tmp_path / f"named_{stem}.toml"))
+        Path(paths[-1]).write_text(name + text, encoding="utf-8")
+    names = ["conventional 28 (named_a)", "conventional 28 (named_b)", "named_c"]
+    process = run("hip", *paths, "--csv", str(tmp_path / "n.csv"), "--figure", str(tmp_path / "n.svg"))
+    figure = (tmp_path / "n.svg").read_text(encoding="utf-8")
+    assert all(f"0.01 {name}" in process.stdout and name in figure for name in names)
+    assert list(dict.fromkeys(row["hip"] for row in read_csv(tmp_path / "n.csv"))) == names
+    assert run("hip", paths[0]).stdout.startswith("conventional 28: R1 14 mm")
+
+
+def test_a_history_is_a_frame_and_a_figure(monkeypatch):
+    history = hip(**QUICK).after(2e4, [1e4])
+    frame = history.to_frame()
+    assert frame["volume_mm3"].tolist() == [report.volume for report in history.reports]
+    assert frame["cycles"].tolist() == [1e4, 2e4]
+    assert "penetration" in history.plot().axes[1].get_ylabel()
+    assert len(wear_figure([history, history]).axes[0].lines) == 2
+    monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda name: None)
+    with pytest.raises(ImportError, match=r'pandas is not installed: pip install "ballsocket\[study\]"'):
+        history.to_frame()
+    assert len(history.table()) == 2
+
+
+def test_the_radiograph_shows_the_displacement_in_the_frontal_plane(short_film):
+    """Of an anteverted cup it lacks the part to the front; the length is that of the two other components."""
+    cup = bs.Cup(inclination=radians(45.0), anteversion=radians(30.0))
+    history = hip(cup=cup, creep=logarithmic(), **QUICK).after(1e4)
+    frame = np.array(history.use.placed.frame)
+    body = frame.T @ history.last.displacement
+    assert history.radiographic_displacement(history.last) == pytest.approx(body[[0, 2]])
+    for moved, length in (([0.0, 0.3, 0.0], 0.0), ([sin(0.4), 5.0, cos(0.4)], 1.0)):
+        report = replace(history.last, displacement=frame @ np.array(moved))
+        assert history.radiographic_penetration(report) == pytest.approx(length, abs=1e-12)
+    upright = hip(cup=TILTED, **QUICK).after(1e4)
+    lateral, upward = upright.radiographic_displacement(upright.last)
+    assert upward == pytest.approx(upright.last.penetration, rel=0.05)  # the load is upwards
+    assert abs(lateral) < 0.2 * upward
+    entry = history.summary()["history"][-1]
+    assert entry["radiographic_penetration"] == pytest.approx(np.hypot(*entry["radiographic_vector"]))
+
+
+def test_a_bore_worn_to_the_rim_is_no_edge_loading(short_film):
+    worn = hip(wear=Archard(coefficient=1e-5), **QUICK).after(1e6)
+    edge = worn.summary()["history"][-1]["edge"]
+    assert (edge["kind"], edge["instants_edge_loaded"], edge["instants_at_rim"]) == ("worn to the rim", 0, 16)
+    (note,) = (note for note in worn.notes if "rim" in note)
+    assert note.startswith("worn to the rim: after 1e+06 cycles the worn bore fits the ball")
+    assert "this is not edge loading" in note
+    steep = hip(cup=bs.Cup(inclination=radians(80.0)), **QUICK).after(1e4)
+    assert steep.worst.kind == "edge loading"
+    assert steep.summary()["history"][-1]["edge"]["instants_edge_loaded"] > 0
+    assert any(note.startswith("edge loading: in the first cycle the contact reaches the rim") for note in steep.notes)
+
+
+def test_edge_loading_is_a_load_near_the_rim_or_the_largest_pressure_there():
+    distances = ([0.0, 0.0, 1.0], 5.0), ([1.0, 0.0, 2.0], 0.0)
+    at_rim, clear = (
+        RimDistance(distance=np.array(distance), azimuth=np.zeros(3), pressure=np.full(3, pressure))
+        for distance, pressure in distances
+    )
+    assert mask_edge_loading(at_rim, clear, 9.0).tolist() == [False, True, False]
+    assert mask_edge_loading(at_rim, clear, 5.0).tolist() == [True, True, False]
+
+
+# wear factors by material
+
+
+def test_a_material_gives_its_published_factor_with_the_source():
+    law = read_wear_law({"material": "crosslinked-pe"})
+    assert law == Archard.of_material("crosslinked-pe")
+    assert law.coefficient == WEAR_FACTORS["crosslinked-pe"].value == 2e-7
+    assert "range 1e-07 to 4e-07" in law.notes[0]
+    assert law.with_coefficient(1e-7) == Archard(coefficient=1e-7)
+    for factor in WEAR_FACTORS.values():
+        assert factor.low < factor.value < factor.high
+        assert factor.source
