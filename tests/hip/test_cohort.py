@@ -41,9 +41,6 @@ def fake(monkeypatch, calls):
     monkeypatch.setattr(CohortRun, "_simulate_patient", simulate)
 
 
-# samples and pieces
-
-
 def test_more_patients_keep_the_first_ones():
     one = variability(clearance=TIGHT, body_weight=WEIGHT)
     few, more = sample_patients(one, 5, 3), sample_patients(one, 9, 3)
@@ -76,9 +73,6 @@ def test_a_patient_without_a_result_has_its_error():
 def test_a_worker_of_another_version_is_refused():
     with pytest.raises(ValueError, match="the run was started by 0.9[+]old"):
         replace(cohort_run(1), code="0.9+old")(0)
-
-
-# store
 
 
 def test_stored_patients_are_not_simulated_again(tmp_path, monkeypatch):
@@ -136,9 +130,6 @@ def test_another_cohort_is_refused(tmp_path):
             cohort_store(tmp_path, one, [FEW_CYCLES], 0)
 
 
-# table
-
-
 def test_the_table_has_a_row_for_each_patient(tmp_path):
     values = {"clearance": [0.1, 0.2], "tilt": [0.0, np.pi / 6], "cycles_per_year": [1e6, 2e6]}
     values = {name: np.array(numbers) for name, numbers in values.items()}
@@ -174,9 +165,6 @@ def test_a_cohort_with_the_real_cup_states_its_foundation(tmp_path):
     _, springs = population(replace(on_cup, surface=None), [FEW_CYCLES], patients=2)
     assert bands.cohort.table[:, 0, 0] == pytest.approx(springs.cohort.table[:, 0, 0], rel=0.01)
     assert not any("full elasticity" in note for note in springs.notes)
-
-
-# the command
 
 
 def test_the_command_stores_every_patient(tmp_path, short_film):

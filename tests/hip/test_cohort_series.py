@@ -55,9 +55,6 @@ def solve(run, **words):
     return series_of(run, **words).solve(lambda finished: None)
 
 
-# polynomials
-
-
 def test_polynomials_of_the_degree_are_fitted_and_interpolated_exactly():
     box = Box(ranges={"x": (-1.0, 3.0), "constant": (2.0, 2.0), "y": (0.0, 0.5)})
     points, exponents = box.sample(40), exponents_of([1, 2], 4)
@@ -78,9 +75,6 @@ def test_polynomials_of_the_degree_are_fitted_and_interpolated_exactly():
     nodes, at = chebyshev_points(2.0, 5.0, 6), np.array([2.0, 3.3, 5.0])
     np.testing.assert_allclose(interpolation_weights(at, 2.0, 5.0, 6) @ nodes**5, at**5, rtol=1e-12)
     np.testing.assert_array_equal(interpolation_weights(at, 2.0, 2.0, 1), np.ones((3, 1)))
-
-
-# accuracy
 
 
 def test_a_series_agrees_with_simulations_of_held_out_patients(few_held_out):
@@ -156,9 +150,6 @@ def test_another_edge_loading_is_stated():
         assert ("edge loading differs in 8 % of these results" in accuracy.notes("patients", 100)[0]) == stated
 
 
-# where it holds
-
-
 def test_few_patients_are_simulated():
     bands = population(quick(), COUNTS[:1], patients=3)[1]
     assert (bands.accuracy, bands.obstacle) == (None, "")
@@ -196,9 +187,6 @@ def test_patients_outside_the_ranges_have_the_results_of_simulations(few_held_ou
     assert solution.accuracy.n_outside == 3
     assert "would wear" in solution.result.refused[-1]
     assert solution.result.refused[-1] == outside.refused[-1]
-
-
-# store, executors and memory
 
 
 def test_a_stored_series_is_not_simulated_again(tmp_path, few_held_out, monkeypatch):
@@ -270,9 +258,6 @@ def test_a_series_of_creeping_patients_is_within_its_tolerance():
     accuracy = population(variability(creeping, coefficient=COEFFICIENT), [1e6], patients=300)[1].accuracy
     assert accuracy.within_tolerance
     assert accuracy.relative["creep_depth"] < TOLERANCES["creep_depth"]
-
-
-# the command
 
 
 def test_the_command_states_method_and_error(tmp_path, few_held_out, short_film):

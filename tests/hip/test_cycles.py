@@ -35,9 +35,6 @@ def angles_of(cycle, *phases):
     return np.degrees(cycle.angles(np.array(phases)))
 
 
-# simulators
-
-
 def test_iso_force_has_its_key_points_and_half_cosines_between():
     points = {0.0: 300, 0.12: 3000, 0.32: 1500, 0.5: 3000, 0.62: 300, 0.8: 300, 1.0: 300}
     between = {0.06: 1650, 0.22: 2250, 0.41: 2250, 0.03: 1650 - 1350 * cos(pi / 4), 0.09: 1650 + 1350 * cos(pi / 4)}
@@ -142,8 +139,6 @@ def test_constant_load_has_one_force_and_a_cosine_of_flexion():
     assert abs(constant_load(20, amplitude=0.1).rotation_increments[:, 0]).sum() == pytest.approx(0.4, rel=1e-12)
 
 
-# patients
-
 PEAKS = {
     "walking": (247, "2016", 1.0),
     "one-leg-stance": (261, "2016", 4.0),
@@ -193,9 +188,6 @@ def test_standing_up_straightens_the_hip_from_80_degrees_and_standing_does_not_m
         assert in_vivo(name, 800.0).rotation_increments == pytest.approx(0.0, abs=0)
 
 
-# registry
-
-
 @pytest.mark.parametrize("name", CYCLES)
 def test_every_named_cycle_is_periodic_has_a_source_and_its_parameters(name):
     weight = {"body_weight": 800.0} if CYCLES[name].per_body_weight else {}
@@ -212,9 +204,6 @@ def test_every_named_cycle_is_periodic_has_a_source_and_its_parameters(name):
         changed = named_cycle(name, n_steps=24, **weight, **{number.argument: values[number.kind]})
         same_force = np.array_equal(changed.forces, cycle.forces)
         assert same_force != np.array_equal(changed.rotations, cycle.rotations), number.key
-
-
-# cycles as values
 
 
 def test_phases_are_midpoints_at_which_forces_are_evaluated():
@@ -276,9 +265,6 @@ def test_mirroring_reflects_forces_rotations_and_spring_and_is_its_own_inverse()
     assert in_cup.forces == pytest.approx(cycle.forces, abs=0)
     assert in_cup.spring.mismatch == 2.0
     assert in_cup.rotations == pytest.approx(mirrored.rotations, abs=0)
-
-
-# functions of phase
 
 
 def test_periodic_interpolation_passes_its_rows_closes_and_does_not_overshoot():

@@ -25,8 +25,6 @@ from ..places import EXAMPLES
 from .hips import QUICK, SHORT, TEXT, TILTED, hip, walked, write_edited_file
 from .test_cycle_file import write_table
 
-# files
-
 
 def read(path, *changes, text=TEXT):
     return read_hip(write_edited_file(path, *changes, text=text))
@@ -71,9 +69,6 @@ def test_a_file_states_laws_creep_and_film(tmp_path):
     chain = "[creep]\ncompliances = [1e-3, 2e-3]\ntimes = [60, 3600]\nseconds_per_cycle = 3\n"
     use = read(tmp_path, text=f"{TEXT}\n{chain}").use
     assert (use.creep.times, use.seconds) == ((60.0, 3600.0), 3.0)
-
-
-# results
 
 
 def read_csv(path):
@@ -276,9 +271,6 @@ def test_edge_loading_is_a_load_near_the_rim_or_the_largest_pressure_there():
     )
     assert mask_edge_loading(at_rim, clear, 9.0).tolist() == [False, True, False]
     assert mask_edge_loading(at_rim, clear, 5.0).tolist() == [True, True, False]
-
-
-# wear factors by material
 
 
 def test_a_material_gives_its_published_factor_with_the_source():

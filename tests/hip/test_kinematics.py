@@ -30,9 +30,6 @@ def plane_rotation(angle):
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-# rotations
-
-
 def test_rotations_about_the_axes_are_right_handed():
     quarter = pi / 2
     for axis, (start, end) in enumerate([((0, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0)), ((1, 0, 0), (0, 1, 0))]):
@@ -75,9 +72,6 @@ def test_words_for_a_rotation_order():
             parse_rotation_order(text)
 
 
-# cross-shear
-
-
 def test_cross_shear_is_zero_on_a_line_and_one_half_on_a_circle():
     line = np.linspace(0.0, 3.0, 7)[:, None] * [1.0, 0.0] @ plane_rotation(0.3)
     assert track_cross_shear(np.diff(np.vstack([line, line[::-1]]), axis=0)) == pytest.approx(0.0, abs=1e-15)
@@ -94,9 +88,6 @@ def test_cross_shear_of_a_rectangle_is_the_fraction_of_its_shorter_side_weighted
     sides = np.array([[3.0, 0.0], [0.0, 1.0], [-3.0, 0.0], [0.0, -1.0]])
     assert track_cross_shear(sides, np.array([1.0, 3.0, 1.0, 3.0])) == pytest.approx(0.5)
     assert track_cross_shear(np.stack([sides, sides[:, ::-1]]), 7.0) == pytest.approx([0.25, 0.25])
-
-
-# sliding
 
 
 def test_sliding_over_the_pole_has_the_cross_shear_of_its_track():
@@ -144,9 +135,6 @@ def test_sliding_distance_follows_a_moving_point():
     assert sliding_distance(10.0, increments, np.array([1.0, 0.0, 0.0])) == pytest.approx(0.0, abs=1e-12)
     moving = np.where(np.arange(40)[:, None] < 20, UP, np.array([1.0, 0.0, 0.0]))
     assert sliding_distance(10.0, increments, moving) == pytest.approx(10.0 * 2 * 0.2, rel=1e-12)
-
-
-# tracks
 
 
 def test_the_track_of_a_point_is_as_long_as_its_sliding_distance():

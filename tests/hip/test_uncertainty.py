@@ -33,9 +33,6 @@ def few_cycles(one):
     return history(one.use, FEW_CYCLES)
 
 
-# bands and indices
-
-
 def test_the_volume_has_the_distribution_of_the_coefficient():
     one = variability(coefficient=COEFFICIENT)
     bands = uncertainty(one, few_cycles(one), count=32)
@@ -91,9 +88,6 @@ def test_dislocated_patients_are_counted_and_left_out():
     assert bands.summary()["sobol"] is None
 
 
-# a shared coefficient
-
-
 def test_bands_for_one_coefficient_are_those_of_patients_with_it():
     """Converted results are those of direct simulations with the shared coefficient."""
     weights, rates = Normal(mean=800.0, deviation=130.0), LogNormal(median=1e6, factor=1.5)
@@ -137,9 +131,6 @@ def test_the_band_of_the_patients_is_narrower_than_that_of_the_predictions(capsy
     printed = capsys.readouterr().out
     assert "coefficient" in printed
     assert "…" not in printed
-
-
-# output
 
 
 # the table [uncertainty]

@@ -69,9 +69,6 @@ def test_cycles_per_year_are_the_median_or_those_of_a_mix():
     assert mixed.patient({"cycles_per_year": 2.2e6}).cycle_ratio == pytest.approx(2.0)
 
 
-# coarse simulation
-
-
 def test_the_coarse_simulation_has_springs_wide_rings_and_few_instants():
     fine = variability(hip(surface=bs.ClosedShell(), ring_width=radians(3.0)), clearance=TIGHT).coarse_simulation
     assert isinstance(fine.surface, bs.Springs)
@@ -100,9 +97,6 @@ def test_the_coarse_hip_can_be_pickled_and_wears_as_the_full_one(cycle):
     sent = pickle.loads(pickle.dumps(variability(use, clearance=TIGHT).coarse_simulation))
     volume = Patient(use=sent, cycle_ratio=1.0).simulate([FEW_CYCLES])[0].volume
     assert 1e6 / FEW_CYCLES * volume == pytest.approx(use.first.volume, rel=2e-2)
-
-
-# results
 
 
 def test_results_are_those_of_the_reports():

@@ -17,8 +17,6 @@ from ballsocket.reports.hip_report import write_hip_report
 from ..extent import some
 from .hips import INDEPENDENT, QUICK, TILTED, K, hip, history, report_after, socket_force, walked
 
-# another program
-
 
 @pytest.mark.parametrize("run", INDEPENDENT["runs"], ids=lambda run: str(run["head_diameter"]))
 def test_first_cycle_equals_an_independent_program(run):
@@ -39,9 +37,6 @@ def test_millions_of_cycles_equal_an_independent_program(run):
         assert report.volume == pytest.approx(expected["volume"], rel=1e-2)
         assert report.depth == pytest.approx(expected["depth"], rel=2e-2)
         assert report.max_pressure == pytest.approx(expected["p0"], rel=2e-2)
-
-
-# identities
 
 
 @pytest.mark.parametrize("words", [{}, {"diameter": 36.0, "liner": 6.0}, {"clearance": 0.3}, {"cycle": flexion(16)}])
@@ -87,9 +82,6 @@ def test_left_hip_wears_as_a_right_hip():
     right, left = (hip(cycle=leaning, cup=replace(cup, side=side)) for side in bs.Side)
     assert (left.first.volume, left.slide) == pytest.approx((right.first.volume, right.slide), rel=1e-9)
     assert left.unworn.displacement == pytest.approx(right.unworn.displacement * [1, -1, 1], rel=1e-6, abs=1e-9)
-
-
-# laws
 
 
 def test_area_wear_is_proportional_to_contact_shares():
@@ -146,9 +138,6 @@ def test_contact_shares_add_up_to_the_contact_area(surface):
         assert share == pytest.approx(cap, rel=4e-3)
 
 
-# numbers that do not depend on how they are made
-
-
 def test_block_error_bounds_the_difference_to_finer_blocks():
     rough = {"ring_width": radians(4.0), "cycle": iso_14242_1(36)}
     coarse, fine, finest = (hip(tolerance=each, **rough).after(3e5) for each in (1e-2, 1e-3, 1e-5))
@@ -190,9 +179,6 @@ def test_reports_increase_with_wear_and_their_number_does_not_change_the_results
         assert values == sorted(values)
     assert 0 < often.last.penetration < often.last.depth
     assert often.last.displacement[1] == pytest.approx(0.0, abs=0.1 * often.last.penetration)  # across the load's plane
-
-
-# the edges of a cycle
 
 
 def test_unloaded_instants_do_not_wear():
