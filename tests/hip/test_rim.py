@@ -14,7 +14,6 @@ from ballsocket.hip.rim import Microseparation, RimDistance, SpringLoadedBall, r
 
 from .hips import hip, socket_force
 
-
 REACH, RADIUS = radians(90.0), 20.0
 GRID = even_grid(REACH, radians(3.0))
 
