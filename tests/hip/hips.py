@@ -35,6 +35,7 @@ UNCERTAINTY = """[uncertainty]
 coefficient = { median = "1.066e-6 mm^3/(N m)", factor = 1.5 }
 clearance = { low = "0.05 mm", high = "0.2 mm" }
 """
+WEAR_DATA = '[[data]]\nquantity = "volume"\nvalues = "38 mm^3/Mc"\nrate = "mean"\nto = 2e5\nuncertainty = "10 %"\n'
 
 
 def hip(diameter=28.0, liner=8.0, clearance=0.1, **words):

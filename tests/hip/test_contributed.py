@@ -76,51 +76,38 @@ ADDED = {
 """Page, new module, registry, new name, and the lines of the registry before which it is imported and listed."""
 
 
-@pytest.fixture(scope="module")
-def package(tmp_path_factory):
+@pytest.fixture
+def package(tmp_path):
     """Copy the package into a folder with hip files, and add the code of the pages with two lines in a registry."""
-    folder = tmp_path_factory.mktemp("added")
-    room = folder / "ballsocket" / "hip"
+    room = tmp_path / "ballsocket" / "hip"
     shutil.copytree(Path(bs.__file__).parent, room.parent, ignore=shutil.ignore_patterns("__pycache__"))
     for page, (module, registry, name, before_import, entry) in ADDED.items():
         text = (CONTRIBUTING / f"{page}.md").read_text("utf-8")
         code = re.search(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)[1]
         assert code.count("\n") <= 21
         (room / f"{module}.py").write_text(code, "utf-8")
-        text = (room / f"{registry}.py").read_text("utf-8")
-        for old, new in {
-            before_import: f"from .{module} import {name}\n{before_import}",
-            entry: f"{entry}    {name},\n",
-        }.items():
-            assert old in text
-            text = text.replace(old, new, 1)
-        (room / f"{registry}.py").write_text(text, "utf-8")
-    (folder / "hip.toml").write_text(HIP, "utf-8")
-    (folder / "uncertain.toml").write_text(HIP + UNCERTAINTY, "utf-8")
-    return folder
+        listing = (room / f"{registry}.py").read_text("utf-8")
+        assert before_import in listing
+        assert entry in listing
+        listing = listing.replace(before_import, f"from .{module} import {name}\n{before_import}", 1)
+        (room / f"{registry}.py").write_text(listing.replace(entry, f"{entry}    {name},\n", 1), "utf-8")
+    (tmp_path / "hip.toml").write_text(HIP, "utf-8")
+    (tmp_path / "uncertain.toml").write_text(HIP + UNCERTAINTY, "utf-8")
+    return tmp_path
 
 
 def run(package, *words):
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    process = subprocess.run(
-        [sys.executable, "-W", "error::DeprecationWarning:ballsocket", *words],
-        cwd=package,
-        capture_output=True,
-        encoding="utf-8",
-        check=False,
-        env={**environment, "PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"},
-    )
+    environment |= {"PYTHONPATH": str(package), "PYTHONIOENCODING": "utf-8"}
+    words = [sys.executable, "-W", "error::DeprecationWarning:ballsocket", *words]
+    process = subprocess.run(words, cwd=package, capture_output=True, encoding="utf-8", check=False, env=environment)
     assert process.returncode == 0, process.stderr
     return process.stdout
 
 
 @pytest.mark.long
-def test_a_new_cycle_and_new_laws_work_in_python_files_uncertainty_and_explorer(package):
+def test_a_new_cycle_and_new_laws_work_in_python_files_uncertainty_explorer_and_on_the_command_line(package):
     run(package, "-c", PYTHON + (EXPLORER if find_spec("tornado") else ""))
-
-
-@pytest.mark.long
-def test_a_new_cycle_and_new_laws_work_on_the_command_line_and_in_json(package):
     answer = json.loads(run(package, "-m", "ballsocket", "hip", "hip.toml", "--json"))
     assert answer["laws"]["wear"] == {"law": "threshold", "coefficient_mm3_per_Nm": 1e-6, "threshold_MPa": 0.5}
     assert answer["laws"]["creep"] == {"law": "exponential", "compliance_per_MPa": 1e-3, "time_s": 3600.0}

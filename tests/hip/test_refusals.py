@@ -20,7 +20,7 @@ from ballsocket.hip.wear_laws import read_ball_law, read_wear_law
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run
-from .hips import QUICK, SHORT, TEXT, TILTED, K, hip, history, write_edited_file
+from .hips import QUICK, SHORT, TEXT, TILTED, WEAR_DATA, K, hip, history, write_edited_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
 
 CUSTOM = bh.CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
@@ -302,7 +302,6 @@ UNCERTAIN = [
     ("seed = -1\ntilt = { low = 0, high = 9 }", "seed = -1 is not allowed: a whole number from 0"),
 ]
 
-DATA = '[[data]]\nquantity = "volume"\nvalues = "38 mm^3/Mc"\nrate = "mean"\nto = 2e5\nuncertainty = "10 %"\n'
 MEASURED = [
     ('rate = "mean"\nto = 2e5\n', "", r"'38 mm\^3/Mc' is a rate: state its kind, rate = 'initial'"),
     ("/Mc", "", r"'38 mm\^3' of a rate needs a unit such as '38 mm\^3/Mc'"),
@@ -310,7 +309,7 @@ MEASURED = [
     ("38 mm^3/Mc", "38 mm/Mc", "must be a number with a unit"),
     ('values = "38 mm^3/Mc"\n', "", "needs its values"),
     ('quantity = "volume"\n', "", "needs its quantity"),
-    (DATA, "", "no measured wear: add "),
+    (WEAR_DATA, "", "no measured wear: add "),
     ("volume", "volum", "quantity 'volum' is not known; did you mean 'volume'"),
 ]
 
@@ -335,7 +334,7 @@ def test_wrong_tables_are_refused_with_the_name_of_the_file(tmp_path, table, mes
 @pytest.mark.parametrize(("old", "new", "message"), MEASURED)
 def test_files_of_measured_wear_that_mean_nothing_are_refused(tmp_path, old, new, message):
     with pytest.raises(ValueError, match=message):
-        read_wear_test(write_edited_file(tmp_path, *SHORT[1:], (old, new), text=f"{TEXT}\n{DATA}"))
+        read_wear_test(write_edited_file(tmp_path, *SHORT[1:], (old, new), text=f"{TEXT}\n{WEAR_DATA}"))
 
 
 @pytest.mark.parametrize(

@@ -96,9 +96,7 @@ def test_checkpoints_of_other_runs_and_damaged_ones_are_refused(tmp_path):
     arrays = read_arrays(path)
     del arrays["report_0_volume"]
     write_arrays(path, **arrays)
-    with pytest.raises(ValueError, match="is not a checkpoint of a run"):
-        use.after(1e4, store=tmp_path)
-    for content in (b"", b"no archive", b"PK"):
+    for content in (path.read_bytes(), b"", b"no archive", b"PK"):
         path.write_bytes(content)
         with pytest.raises(ValueError, match="hip_in_use.npz is not a checkpoint of a run; delete it to start again"):
             use.after(1e4, store=tmp_path)
