@@ -375,9 +375,3 @@ def test_similar_patients_have_no_obstacle():
     assert "a report is at 0 cycles" in find_obstacle(similar, (0.0, 1e6))
     closed = variability(hip(**QUICK), clearance=Normal(mean=-0.1, deviation=0.1))
     assert "the clearance is not positive" in find_obstacle(closed, MANY)
-
-
-def test_loads_that_point_to_the_rim_are_found():
-    similarity = Similarity(variability=variability(hip(cycle=iso_14242_1(16)), tilt=Rectangular(low=0.0, high=1.5)))
-    inside = [similarity.keeps_loads_inside({"tilt": radians(tilt)}) for tilt in (0.0, 60.0, 84.0, 86.0, 95.0)]
-    assert inside == [True, True, True, False, False]

@@ -89,14 +89,6 @@ def test_max_stiffness_bounds_every_wave():
 
 
 @pytest.mark.long
-def test_real_cup_wears_for_five_million_cycles():
-    coarse = {"ring_width": COARSE, "cycle": iso_14242_1(50)}
-    springs, cup = report_after(hip(**coarse), 5e6), report_after(elastic("cup"), 5e6)
-    assert cup.volume == pytest.approx(springs.volume, rel=5e-3)
-    assert cup.depth == pytest.approx(springs.depth, rel=1e-2)
-
-
-@pytest.mark.long
 def test_swinging_loads_converge_in_a_worn_bore():
     """Small loads in a bore that is worn to the ball's form, where many cells touch at once."""
     use = elastic(cycle=rocking(20))

@@ -30,14 +30,11 @@ def plane_rotation(angle):
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
 
 
-def test_rotations_about_the_axes_are_right_handed():
+def test_rotations_are_right_handed_and_their_order_is_the_product_from_the_left():
     quarter = pi / 2
     for axis, (start, end) in enumerate([((0, 1, 0), (0, 0, 1)), ((0, 0, 1), (1, 0, 0)), ((1, 0, 0), (0, 1, 0))]):
         angles = quarter * (np.arange(3) == axis)
         assert rotation_matrices(angles) @ start == pytest.approx(np.array(end), abs=1e-15)
-
-
-def test_rotation_order_is_the_product_from_the_left():
     angles = np.radians([20.0, 10.0, -30.0])
     single = {name: rotation_matrices(angles * (np.arange(3) == axis)) for axis, name in enumerate("xyz")}
     for order in map("".join, permutations("xyz")):
@@ -72,16 +69,13 @@ def test_words_for_a_rotation_order():
             parse_rotation_order(text)
 
 
-def test_cross_shear_is_zero_on_a_line_and_one_half_on_a_circle():
+def test_cross_shear_is_zero_on_a_line_one_half_on_a_circle_and_the_shorter_side_of_a_rectangle():
     line = np.linspace(0.0, 3.0, 7)[:, None] * [1.0, 0.0] @ plane_rotation(0.3)
     assert track_cross_shear(np.diff(np.vstack([line, line[::-1]]), axis=0)) == pytest.approx(0.0, abs=1e-15)
     azimuth = 2 * pi * np.arange(49) / 48
     circle = np.column_stack([np.cos(azimuth), np.sin(azimuth)])
     assert track_cross_shear(np.diff(circle, axis=0)) == pytest.approx(0.5)
     assert track_cross_shear(np.zeros((4, 2))) == 0.0
-
-
-def test_cross_shear_of_a_rectangle_is_the_fraction_of_its_shorter_side_weighted_by_pressure():
     for a, b, angle in ((1.0, 1.0, 0.7), (3.0, 1.0, 0.0), (20.0, 0.5, 0.7), (1.0, 1e-7, 0.7)):
         sides = np.array([[a, 0.0], [0.0, b], [-a, 0.0], [0.0, -b]]) @ plane_rotation(angle)
         assert track_cross_shear(sides) == pytest.approx(b / (a + b), rel=1e-12 if b > 1e-3 else 1e-6)
@@ -129,15 +123,12 @@ def test_crossing_angles_of_known_tracks():
     assert sliding.cross_shear(pressed)[0] == pytest.approx(1 / 3)
 
 
-def test_sliding_distance_follows_a_moving_point():
+def test_sliding_distance_follows_a_moving_point_along_its_track():
     increments = constant_load(40, amplitude=0.2).rotation_increments
     assert sliding_distance(10.0, increments, UP) == pytest.approx(10.0 * 4 * 0.2, rel=1e-12)
     assert sliding_distance(10.0, increments, np.array([1.0, 0.0, 0.0])) == pytest.approx(0.0, abs=1e-12)
     moving = np.where(np.arange(40)[:, None] < 20, UP, np.array([1.0, 0.0, 0.0]))
     assert sliding_distance(10.0, increments, moving) == pytest.approx(10.0 * 2 * 0.2, rel=1e-12)
-
-
-def test_the_track_of_a_point_is_as_long_as_its_sliding_distance():
     cycle, point = flexion(1000), np.array([[0.0], [np.sin(0.4)], [np.cos(0.4)]])
     track = tracks(cycle.rotations, point, radius=14.0)[0]
     assert np.linalg.norm(np.diff(track, axis=0), axis=1).sum() == pytest.approx(2 * radians(43.0) * 14.0, rel=1e-4)

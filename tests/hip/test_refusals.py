@@ -241,10 +241,8 @@ EDITS = [
     (LAW, 'law = "archart"', "law 'archart' is not known; did you mean 'archard'"),
     (LAW, 'law = "area"', "has the wrong unit; expected mm/mm, a depth over a length of sliding"),
     (LAW, 'law = "cross-shear"', r"the law 'cross-shear' needs circular \(wear factor on a"),
-    (LAW, 'law = "energy"', "the law 'energy' needs friction"),
     (LAW, f"{LAW}\nfriction = 0.1", "friction belongs to the law 'energy'"),
     (LAW, f'{LAW}\nball_coefficient = "1 mm^3/(N mm)"', "ball_coefficient = .* is 1000"),
-    (LAW, f"{LAW}\nexponent = 1", "exponent belongs to the law 'cross-shear'"),
     ('contact = "springs"', 'contact = "spring"', "contact = 'spring' is not known; did you mean 'springs'"),
     ('contact = "springs"', 'model = "hertz"', "the model 'hertz' has no radial springs; models with springs:"),
     (JOINT, 'joint = "hip-28"\n[liner]\nyoung = 3\n', r"joint = 'hip-28' is a whole joint: \[liner\] belongs to a"),
@@ -253,7 +251,6 @@ EDITS = [
     (NAME, "file = []", r"file = \[\] names no table"),
     (NAME, 'file = [""]', "names no table"),
     (NAME, 'file = "a.csv"\nforce = "2 N"', "'force' with a file in .cycle. is not known"),
-    (INSTANTS, 'instants = 100\nforce = "2 kN"', "'force' with the name 'iso-14242-1' in .cycle. is not known"),
     (INSTANTS, 'instants = 100\nbody_weight = "8 N"', "'body_weight' with the name 'iso-14242-1' in"),
     (INSTANTS, "instants = 100\ntimes_body_weight = 2", "times_body_weight needs a body_weight"),
     (CYCLE, f"{CYCLE}[[activity]]\nname = 'walking'\n", r"both \[cycle\] and \[\[activity\]\]: remove one"),
@@ -268,7 +265,6 @@ EDITS = [
     (TILT, 'tilt = "90.1 deg"', "tilt = 90.1 is not allowed: a cup's tilt from the load is 0 to 90 degrees"),
     (TILT, 'tilt = "-1 deg"', "a cup's tilt from the load is 0 to 90 degrees"),
     (TILT, f'{TILT}\ninclination = "30 deg"', "tilt and inclination exclude each other"),
-    (TILT, f"{TILT}\narc = 3", "'arc' in .cup. is not known; did you mean 'arc_of_cover'"),
     ("180 deg", "55 deg", r"dislocated at 0\.5 % of the cycle: .*30\.0° from the dome's pole.* ends at 27\.5°"),
     ("cycles = 5e6", 'cycles = "many"', "cycles = 'many' must be a number, such as 5e6"),
     ("report_at = [1e6, 2e6, 5e6]", "report_at = 1e6", "report_at = 1000000.0 must be a list"),
@@ -282,7 +278,6 @@ TABLES = [
     ("[creep]\ntimes = [1]", "the law 'kelvin-voigt' needs compliances .*, such as compliances = .0.001, 0.002."),
     ('[creep]\nconfinement = "walls"', "confinement = 'walls' is not known"),
     ("[creep]\nseconds_per_cycle = 0", "seconds_per_cycle = 0 is not allowed"),
-    ("[film]\nviscosities = 1", "'viscosities' in .film. is not known; did you mean 'viscosity'"),
 ]
 
 UNCERTAIN = [

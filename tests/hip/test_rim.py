@@ -30,21 +30,15 @@ def distance_of(*fields, inset=0.0):
     return rim_distance(GRID, RADIUS, field, np.maximum(field, 0.0), inset)
 
 
-def test_the_distance_of_a_central_cap_is_exact():
+def test_the_distance_of_a_cap_is_exact_on_the_axis_along_its_azimuth_when_tilted_and_zero_at_the_rim():
     half_angles = np.radians([20.0, 33.3, 47.0, 80.0])
     result = distance_of(*map(cap, half_angles))
     assert result.distance == pytest.approx(RADIUS * (REACH - half_angles), rel=1e-9)
     assert result.pressure == pytest.approx(0.0, abs=0)
-
-
-def test_the_distance_of_a_tilted_cap_is_along_its_azimuth():
     azimuths = [0.0, 40.0, -90.0, 135.0]
     result = distance_of(*(cap(radians(30.0), radians(40.0), radians(azimuth)) for azimuth in azimuths))
     assert result.distance == pytest.approx(RADIUS * radians(20.0), abs=RADIUS * radians(0.3))
     assert np.degrees(result.azimuth) == pytest.approx(azimuths, abs=3.0)
-
-
-def test_a_contact_at_the_rim_has_no_distance_and_the_mean_azimuth_of_its_cells():
     result = distance_of(cap(radians(30.0), radians(75.0), radians(60.0)), cap(radians(30.0)))
     assert result.distance == pytest.approx([0.0, RADIUS * radians(60.0)])
     assert degrees(result.azimuth[0]) == pytest.approx(60.0, abs=0.5)

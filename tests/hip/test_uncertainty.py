@@ -11,7 +11,7 @@ import ballsocket as bs
 from ballsocket.hip import iso_14242_1, population, uncertainty
 from ballsocket.hip.bands import Bands, SharedCoefficient
 from ballsocket.hip.config import read_hip
-from ballsocket.hip.uncertainty import _NominalResponse, share_coefficient
+from ballsocket.hip.uncertainty import share_coefficient
 from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.reports.hip_plots import penetration_curve
 from ballsocket.reports.hip_tables import print_bands
@@ -316,14 +316,3 @@ def test_the_summary_has_bands_indices_and_distributions_with_angles_in_degrees(
     plain = bands().summary()
     assert "years" not in plain["bands"][0]
     assert plain["sobol"] is plain["uncertainty"]["coefficient"] is None
-
-
-def test_the_response_to_the_coefficient_follows_a_power_law_exactly():
-    exposures = np.geomspace(1e-8, 1e-6, 5)
-    table = np.stack([exposures**0.5, 3 * exposures], axis=-1)[:, None, :]
-    response = _NominalResponse(exposures=exposures, table=table)
-    points = np.array([1e-8, 3.3e-8, 7e-7])
-    np.testing.assert_allclose(response.interpolate(points)[:, 0, 0], points**0.5, rtol=1e-12)
-    np.testing.assert_allclose(response.interpolate(points)[:, 0, 1], 3 * points, rtol=1e-12)
-    unworn = _NominalResponse(exposures=exposures, table=0 * table)
-    assert np.isnan(unworn.interpolate(points)).all()
