@@ -21,7 +21,6 @@ from ballsocket.reports import hip_plots
 from ballsocket.reports.hip_comparison import wear_figure
 
 from ..cli.command import run
-from ..places import EXAMPLES
 from .hips import QUICK, SHORT, TEXT, TILTED, hip, walked, write_edited_file
 from .test_cycle_file import write_table
 
@@ -98,16 +97,6 @@ def test_json_has_the_results_of_python(solved_file):
     assert answer["error"]["volume"] == pytest.approx(history.error.volume, rel=1e-6)
     assert answer["valid"] is history.valid
     assert set(history.notes) <= set(answer["notes"])
-
-
-@pytest.mark.long
-def test_command_runs_five_million_cycles():
-    answer = json.loads(run("hip", str(EXAMPLES / "hip_in_use.toml"), "--json").stdout)
-    seen = {report["cycles"]: report for report in answer["history"]}
-    assert list(seen) == [1e6, 2e6, 5e6]
-    assert seen[5e6]["volume"] == pytest.approx(181.6, rel=1e-2)
-    assert seen[5e6]["depth"] == pytest.approx(0.392, rel=2e-2)
-    assert 0 < answer["error"]["volume"] < 5e-3
 
 
 def test_the_table_shows_the_numbers_and_assumptions_of_the_run(solved_file, short_film):

@@ -46,20 +46,27 @@ def test_old_attributes_warn_and_work(make, names):
 
 
 def test_old_arguments_warn_and_work(tmp_path):
-    seen = []
-    with pytest.warns(DeprecationWarning, match="argument 'listen' of after.* is deprecated: use 'progress'"):
-        hip(**QUICK).after(1e4, listen=seen.append)
+    seen, patients, table = [], variability(hip(**QUICK), clearance=TIGHT), write_table(tmp_path / "walk.csv")
+    points, law = iso_14242_1_key_points().angles, package.CustomWearLaw(function=np.sum)
+    for call, message in [
+        (
+            lambda: hip(**QUICK).after(1e4, listen=seen.append),
+            "argument 'listen' of after.* deprecated: use 'progress'",
+        ),
+        (lambda: population(scatter=patients, counts=[1e3], patients=1), "'scatter'"),
+        (lambda: iso_14242_1(16, key_points=points), "^argument 'key_points' of iso_14242_1"),
+        (
+            lambda: read_cycle(table, reading=cycle_file.TableOptions()),
+            r"'reading' of read_cycle\(\) .*: use 'options'",
+        ),
+    ]:
+        with pytest.warns(DeprecationWarning, match=message):
+            call()
     assert seen[-1] == 1e4
-    with pytest.warns(DeprecationWarning, match="'scatter'"):
-        population(scatter=variability(hip(**QUICK), clearance=TIGHT), counts=[1e3], patients=1)
     with pytest.warns(DeprecationWarning, match=r"^argument 'instants' of iso_14242_1\(\) is deprecated"):
         assert iso_14242_1(instants=20).n_steps == 20
-    with pytest.warns(DeprecationWarning, match="^argument 'key_points' of iso_14242_1"):
-        iso_14242_1(16, key_points=iso_14242_1_key_points().angles)
-    with pytest.warns(DeprecationWarning, match=r"'reading' of read_cycle\(\) is deprecated: use 'options'"):
-        read_cycle(write_table(tmp_path / "walk.csv"), reading=cycle_file.TableOptions())
     with pytest.warns(DeprecationWarning, match="'of' .* is deprecated: use 'function'"):
-        law = package.OwnLaw(of=np.sum)
+        assert package.OwnLaw(of=np.sum) == law
     with pytest.warns(DeprecationWarning, match="of is deprecated: use function"):
         assert law.of is np.sum
 

@@ -309,21 +309,16 @@ MEASURED = [
 ]
 
 
-def refuse_file(file, message):
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [*EDITS, *(("", *case) for case in TABLES), *(("", f"[uncertainty]\n{line}", text) for line, text in UNCERTAIN)],
+)
+def test_wrong_files_are_refused_with_their_name(tmp_path, old, new, message):
+    """Changed in one place, or with another table at the end."""
+    edits = [(old, new)] if old else []
+    file = write_edited_file(tmp_path, *edits, text=TEXT if old else f"{TEXT}\n{new}\n")
     with pytest.raises(ValueError, match=f"hip.toml: .*{message}"):
         read_hip(file)
-
-
-@pytest.mark.parametrize(("old", "new", "message"), EDITS)
-def test_wrong_files_are_refused_with_their_name(tmp_path, old, new, message):
-    refuse_file(write_edited_file(tmp_path, (old, new)), message)
-
-
-@pytest.mark.parametrize(
-    ("table", "message"), [*TABLES, *((f"[uncertainty]\n{line}", text) for line, text in UNCERTAIN)]
-)
-def test_wrong_tables_are_refused_with_the_name_of_the_file(tmp_path, table, message):
-    refuse_file(write_edited_file(tmp_path, text=f"{TEXT}\n{table}\n"), message)
 
 
 @pytest.mark.parametrize(("old", "new", "message"), MEASURED)

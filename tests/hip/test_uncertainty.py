@@ -199,7 +199,7 @@ def shared():
     return SharedCoefficient(values={name: factor * 1e-7 for name, factor in factors.items()}, results=results)
 
 
-def test_the_band_has_the_level_between_equal_tails():
+def test_a_band_has_its_level_between_equal_tails_also_for_one_coefficient():
     low, high = bands().band("volume")
     np.testing.assert_allclose(low, [5.0, 10.0])
     np.testing.assert_allclose(high, [95.0, 190.0])
@@ -207,6 +207,19 @@ def test_the_band_has_the_level_between_equal_tails():
     np.testing.assert_allclose(low, [1025.0, 2050.0])
     np.testing.assert_allclose(high, [1075.0, 2150.0])
     np.testing.assert_allclose(bands().quantile("penetration", 0.3), [2030.0, 4060.0])
+    some = bands(shared=shared())
+    for name, factor in (("low", 1.0), ("median", 2.0), ("high", 4.0)):
+        low, high = some.population_band("volume", name)
+        np.testing.assert_allclose(low, factor * np.array([5.0, 10.0]))
+        np.testing.assert_allclose(high, factor * np.array([95.0, 190.0]))
+    np.testing.assert_allclose(some.population_band("depth")[0], [2 * 1005.0, 2 * 2010.0])
+    np.testing.assert_allclose(some.shared.quantile("low", "penetration", 0.5), [2050.0, 4100.0])
+    with pytest.raises(ValueError, match="coefficient = 'middle' is not allowed: low, median, high"):
+        some.population_band("volume", "middle")
+    with pytest.raises(ValueError, match="'edge_distance' has no band for one coefficient: volume, depth, penetr"):
+        some.population_band("edge_distance")
+    with pytest.raises(ValueError, match="with coefficient and another quantity"):
+        bands().population_band("volume")
 
 
 def test_patients_without_a_result_are_left_out():
@@ -254,7 +267,7 @@ def test_validity_and_utilisation_are_those_since_the_first_cycle():
     assert np.isnan(bands(result).utilisation_quantile(0.5)).all()
 
 
-def test_notes_state_assumptions_and_limits():
+def test_notes_state_assumptions_and_limits_and_members_are_predictions_with_an_unknown_coefficient():
     result = cohort(3)
     result.table[:, -1, COLUMNS.index("depth")] = [7.9, 8.0, 8.1]  # mm; the liner has 8
     notes = bands(result, distributions={"clearance": TIGHT, "body_weight": WEIGHT}).notes
@@ -268,29 +281,10 @@ def test_notes_state_assumptions_and_limits():
     assert note == f"{unknown}95 % between 2.57e-07 and 3.89e-06 mm³/(N m)"
     assert set(bands().nominal_notes) >= set(hip().notes)
     assert any("nominal sample, in the first cycle" in note for note in bands(use=hip(liner=1.2)).nominal_notes)
-
-
-def test_members_of_a_band_are_predictions_with_an_unknown_coefficient():
     assert bands().subject == "samples"  # of a simulator
     assert bands(members="patients").subject == "patients"
     assert bands(distributions={"body_weight": WEIGHT}).subject == "patients"
     assert bands(distributions={"coefficient": COEFFICIENT}).subject == "predictions"
-
-
-def test_the_band_of_the_patients_is_that_of_one_coefficient():
-    some = bands(shared=shared())
-    for name, factor in (("low", 1.0), ("median", 2.0), ("high", 4.0)):
-        low, high = some.population_band("volume", name)
-        np.testing.assert_allclose(low, factor * np.array([5.0, 10.0]))
-        np.testing.assert_allclose(high, factor * np.array([95.0, 190.0]))
-    np.testing.assert_allclose(some.population_band("depth")[0], [2 * 1005.0, 2 * 2010.0])
-    np.testing.assert_allclose(some.shared.quantile("low", "penetration", 0.5), [2050.0, 4100.0])
-    with pytest.raises(ValueError, match="coefficient = 'middle' is not allowed: low, median, high"):
-        some.population_band("volume", "middle")
-    with pytest.raises(ValueError, match="'edge_distance' has no band for one coefficient: volume, depth, penetr"):
-        some.population_band("edge_distance")
-    with pytest.raises(ValueError, match="with coefficient and another quantity"):
-        bands().population_band("volume")
 
 
 def test_the_summary_has_bands_indices_and_distributions_with_angles_in_degrees():

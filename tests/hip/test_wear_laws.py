@@ -18,7 +18,6 @@ from ballsocket.hip.wear_law import (
     wear_factor,
     wear_per_energy,
     wear_per_slide,
-    with_coefficient,
 )
 from ballsocket.hip.wear_laws import WEAR_LAWS, read_ball_law, read_wear_law
 
@@ -69,14 +68,6 @@ def test_notes_name_wear_factors_outside_the_usual_range():
     assert CrossShear(straight=1e-6, circular=1e-3).notes[0].startswith("a wear factor of 0.001")
     for other in (FrictionEnergyWear(coefficient=1e-3, friction=0.0), ContactAreaWear(coefficient=1.0)):
         assert other.notes == ()
-
-
-def test_another_coefficient_keeps_the_other_numbers():
-    assert with_coefficient(Archard(coefficient=1e-6), 2e-6) == Archard(coefficient=2e-6)
-    energy = FrictionEnergyWear(coefficient=1e-5, friction=0.1)
-    assert with_coefficient(energy, 2e-5) == FrictionEnergyWear(coefficient=2e-5, friction=0.1)
-    scaled = with_coefficient(CrossShear(straight=2e-6, circular=6e-6, exponent=0.5), 1e-6)
-    assert (scaled.straight, scaled.circular, scaled.exponent) == pytest.approx((1e-6, 3e-6, 0.5))
 
 
 def test_registered_laws_state_names_units_and_examples():
