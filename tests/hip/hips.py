@@ -58,7 +58,6 @@ _cached_hip = cache(_make_hip)
 
 @cache
 def history(use, cycles, *report_at):
-    """Run a hip once for all tests that read its history."""
     return use.after(cycles, report_at)
 
 

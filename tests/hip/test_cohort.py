@@ -32,7 +32,6 @@ def cohort_run(n_patients, **distributions):
 
 
 def fake(monkeypatch, calls):
-    """Let patients have results that are their numbers, and note each of them."""
 
     def simulate(self, number):
         calls.append(number)

@@ -30,11 +30,11 @@ from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
 COUNTS = (2e5, 4e5)
 NARROW = {"coefficient": LogNormal(median=K, factor=1.2), "body_weight": Normal(mean=800.0, deviation=60.0)}
 FEW = 12
+CUSTOM = CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
 
 
 @pytest.fixture
 def few_held_out(monkeypatch):
-    """Hold out few patients, and take few samples for Sobol indices."""
     monkeypatch.setattr(module, "N_HELD_OUT", FEW)
     monkeypatch.setattr(module, "_SOBOL_COUNT", 512)
 
@@ -78,7 +78,6 @@ def test_polynomials_of_the_degree_are_fitted_and_interpolated_exactly():
 
 
 def test_a_series_agrees_with_simulations_of_held_out_patients(few_held_out):
-    """Patients beyond those with which the error was estimated."""
     patients = quick()
     run, bands = population(patients, COUNTS, patients=400, method="series", seed=3)
     held_out = replace(run, values={name: values[FEW:30] for name, values in run.values.items()})
@@ -150,16 +149,12 @@ def test_another_edge_loading_is_stated():
         assert ("edge loading differs in 8 % of these results" in accuracy.notes("patients", 100)[0]) == stated
 
 
-def test_few_patients_are_simulated():
+def test_few_patients_and_those_who_are_not_similar_are_simulated_and_the_reason_is_stated():
     bands = population(quick(), COUNTS[:1], patients=3)[1]
     assert (bands.accuracy, bands.obstacle) == (None, "")
     stated = bands.summary()["uncertainty"]
     assert (stated["method"], stated["series"]) == ("runs", None)
-
-
-def test_patients_who_are_not_similar_are_simulated_and_the_reason_is_stated():
-    law = CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
-    patients = variability(hip(**QUICK, wear=law), body_weight=WEIGHT)
+    patients = variability(hip(**QUICK, wear=CUSTOM), body_weight=WEIGHT)
     bands = population(patients, [1e3], patients=3)[1]
     note = "each of the patients was simulated, without a series: the wear law CustomWearLaw has no known degree"
     assert any(text.startswith(note) for text in bands.notes)
@@ -300,7 +295,6 @@ def relative_difference(use, values, coefficient=K, **distributions):
 
 
 def assert_equal_contacts(similarity, clearance, numbers, reports):
-    """Compare rim distance, indentation, half angle and largest pressure with those of a patient's reports."""
     pressure_unit = float(similarity.modulus(clearance)) * clearance
     for (rim, _, indentation, half_angle, pressure), report in zip(numbers, reports, strict=True):
         distance = max(rim, 0.0) * float(similarity.socket_radius(clearance))
@@ -327,9 +321,8 @@ def test_patients_with_the_same_dimensionless_numbers_wear_alike(wear, coefficie
 def test_creeping_patients_wear_alike_at_the_same_time_per_exposure():
     use = hip(**QUICK, creep=logarithmic(), seconds_per_cycle=20.0)
     values = {"clearance": 0.06, "body_weight": 650.0, "coefficient": 2 * K, "cycles_per_year": 1e6}
-    values |= {"inclination": 0.7, "anteversion": 0.2}
     angles = {"inclination": Rectangular(low=0.4, high=1.0), "anteversion": Rectangular(low=0.0, high=0.5)}
-    assert relative_difference(use, values, **angles) < 1e-10
+    assert relative_difference(use, values | {"inclination": 0.7, "anteversion": 0.2}, **angles) < 1e-10
 
 
 @pytest.mark.parametrize("law", WEAR_LAWS.values(), ids=lambda law: law.name)
@@ -355,7 +348,7 @@ def test_a_family_does_not_depend_on_lengths():
 
 CHAMFERED = bs.Cup(inclination=radians(30.0), chamfer=1.0)
 OBSTACLES = [
-    ({"wear": CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)}, "CustomWearLaw has no known degree"),
+    ({"wear": CUSTOM}, "CustomWearLaw has no known degree"),
     ({"ball_wear": Archard(coefficient=K)}, "the ball wears too"),
     ({"film_limit": FilmLimit(ratio=1.0, lubricant=bs.Lubricant())}, "wear has a limit of the film ratio"),
     ({"cycle": iso_14242_4()}, "the cycle has a lateral spring"),

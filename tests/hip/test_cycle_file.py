@@ -31,7 +31,6 @@ TIME_STEPS = {"s": 0.1, "ms": 100.0, "min": 0.1 / 60}
 
 
 def write_table(path, change=lambda rows: rows, heads=HEADS):
-    """Write the cycle of ISO 14242-1 as a table of 201 lines."""
     rows = np.column_stack([1.2 * PHASES, ISO.force(PHASES), *ANGLES])
     lines = [",".join(f"{number:.9g}" for number in row) for row in rows]
     return write_lines(path, f"# a comment\n{heads}", change(lines))
@@ -108,9 +107,8 @@ def test_three_components_of_the_force(tmp_path):
 @pytest.mark.parametrize("separator", [",", ";", "\t", " ", "   "])
 def test_separators_and_decimal_commas(tmp_path, separator):
     for point in ".," if separator in ";\t" else ".":
-        rows = [[10 * step + 0.5, 700.25] for step in range(11)]
-        lines = [separator.join(f"{number:.2f}".replace(".", point) for number in row) for row in rows]
-        cycle = read_cycle(write_lines(tmp_path / "load.txt", separator.join(["phase [%]", "force [N]"]), lines))
+        rows = [separator.join([f"{10 * step}.50", "700.25"]).replace(".", point) for step in range(11)]
+        cycle = read_cycle(write_lines(tmp_path / "load.txt", separator.join(["phase [%]", "force [N]"]), rows))
         assert cycle.force_magnitudes == pytest.approx(700.25)
 
 
@@ -196,7 +194,6 @@ def test_files_beyond_a_hip_without_text_or_too_large_are_rejected(tmp_path):
 
 
 def opensim(path, columns, time=1.1 * PHASES, header="nRows=201\nnColumns=4\ninDegrees=yes"):
-    """Write an OpenSim file, with a further column that wear does not need."""
     rows = np.column_stack([time, np.zeros(len(time)), *columns.values()])
     lines = ["\t".join(f"{number:.9g}" for number in row) for row in rows]
     heads = "\t".join(["time", "pelvis_tilt", *columns])
@@ -397,14 +394,14 @@ def test_tables_beside_a_hip_file(tmp_path):
     cycle = parsed(tmp_path, **words)
     assert cycle.forces == pytest.approx(read_cycle(files, options=LEFT).forces, abs=0)
     assert cycle.name == "ik"
-    for change, message in (
-        ({"from": 0.5}, "does not close"),
-        ({"to": 0.5}, "does not close"),
-        ({"closing": 0.6}, "closing = 0.6 is not allowed"),
-        ({"side": "lef"}, "side = 'lef' is not known; did you mean 'left'"),
+    for key, value, message in (
+        ("from", 0.5, "does not close"),
+        ("to", 0.5, "does not close"),
+        ("closing", 0.6, "closing = 0.6 is not allowed"),
+        ("side", "lef", "side = 'lef' is not known; did you mean 'left'"),
     ):
         with pytest.raises(ValueError, match=message):
-            parsed(tmp_path, **words | change)
+            parsed(tmp_path, **words | {key: value})
 
 
 def test_parameters_of_simulators_have_units():

@@ -33,7 +33,6 @@ def contacts(depths, lateral=NO_LATERAL_SPRING):
     ids=["worn", "a lateral spring", "another depth under each load"],
 )
 def test_every_patient_has_the_equilibrium_of_numpy(depths, lateral):
-    """From starts in contact and far from it."""
     patients = contacts(depths, lateral)
     start = np.stack([factor * TILTED / 1000.0 for factor in (0.3, 0.2, -0.2)])
     solved = solve_patients(join_contacts(patients), start)

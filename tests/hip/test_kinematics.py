@@ -59,7 +59,7 @@ def test_words_for_a_rotation_order():
         "xyz": ("flexion, adduction, rotation", "FE-AA-IER"),
         "xzy": ("flexion; rotation, abduction", "f r a", "fra"),
         "zxy": ("inward rotation, flexion-extension, abduction-adduction", ["rotation", "flexion", "adduction"]),
-        "zyx": ("zyx", " ZYX "),
+        "zyx": (" ZYX ",),
         "yxz": (("aa", "fe", "ie"),),
     }
     for axes, texts in words.items():

@@ -25,7 +25,6 @@ FULL = {"cycle": iso_14242_1(64), "ring_width": radians(4.0)}
 
 
 def short_file(path, *changes, extra=UNCERTAINTY):
-    """Write the example of a hip in use with few cycles and more text."""
     return write_edited_file(path, *SHORT, *changes, text=TEXT + extra)
 
 
