@@ -75,6 +75,7 @@ def sample(count, seed=0):
 
 
 TURNING = {"law": "cross-shear", "coefficient": 1, "circular": 1, "ball_coefficient": 1}
+LUBRICANT = ("ball_roughness", "cup_roughness", "viscosity", "friction")
 WORN_BALL = {"ball_wear": bh.Archard(coefficient=K)}
 
 
@@ -132,11 +133,7 @@ VALUES = [
     (lambda: hip().after(5.0, [-1]), "report_at = -1 is not allowed"),
     (lambda: hip().after(1e12), r"1e\+12 cycles at the rate of the first one would wear [.\d]+e\+05 mm away"),
     # film
-    *each(
-        lambda name: bh.Lubricant(**{name: -1.0}),
-        ("ball_roughness", "cup_roughness", "viscosity", "friction"),
-        "[a-z_]+ = -1 is not allowed",
-    ),
+    *each(lambda name: bh.Lubricant(**{name: -1.0}), LUBRICANT, "[a-z_]+ = -1 is not allowed"),
     (lambda: bh.Lubricant(viscosity=0.0), "viscosity = 0 is not allowed"),
     (lambda: bh.Lubricant(cup_roughness=inf), "cup_roughness = inf is not allowed"),
     *each(lambda value: bh.FilmLimit(ratio=value), (-1.0, nan), "film_limit = .* is not allowed: a film ratio is at"),
@@ -150,7 +147,6 @@ VALUES = [
     *each(check_body_weight, (0.0, 10_001.0, nan), "body_weight = .* is not allowed: .*above 0 and at most 10000 N"),
     (lambda: bh.named_cycle("jogging"), "'jogging' has loads in multiples of body weight: set body_weight"),
     (lambda: bh.named_cycle("two-axis", body_weight=750.0), "'two-axis' has loads in N: it does not take a body_weig"),
-    (lambda: bh.named_cycle("walking", body_weight=-1.0), "body_weight = -1 is not allowed"),
     (lambda: bh.named_cycle("iso-14242"), "cycle 'iso-14242' is not known; did you mean 'iso-14242-[14]'"),
     (lambda: bh.in_vivo("waking", 800.0), "load 'waking' is not known; did you mean 'walking'"),
     (lambda: cycle_of(lambda t: np.where(t > 0.5, nan, 1.0)), "force.* = nan .*: the numbers of a cycle are finite"),
@@ -179,7 +175,6 @@ VALUES = [
     (lambda: variability(weight=WEIGHT), "'weight'"),
     (lambda: variability(hip(wear=CUSTOM), coefficient=COEFFICIENT), "coefficient"),
     (lambda: variability(tilt=TIGHT, anteversion=TIGHT), "tilt and anteversion both orient the cup: give one of them"),
-    (lambda: variability(tilt=TIGHT, inclination=TIGHT), "tilt and inclination both orient the cup"),
     (lambda: variability(body_weight=Rectangular(low=-3.0, high=1.0)), "the median of body_weight = -1 is not allowed"),
     (lambda: variability(cycles_per_year=Rectangular(low=-1.0, high=1.0)), "the median of cycles_per_year = 0 is not"),
     (lambda: bh.population(variability(clearance=TIGHT), [1e3], patients=2, method="serie"), "'serie'.* mean 'series'"),
@@ -251,14 +246,12 @@ EDITS = [
     (NAME, "file = []", r"file = \[\] names no table"),
     (NAME, 'file = [""]', "names no table"),
     (NAME, 'file = "a.csv"\nforce = "2 N"', "'force' with a file in .cycle. is not known"),
-    (INSTANTS, 'instants = 100\nbody_weight = "8 N"', "'body_weight' with the name 'iso-14242-1' in"),
     (INSTANTS, "instants = 100\ntimes_body_weight = 2", "times_body_weight needs a body_weight"),
     (CYCLE, f"{CYCLE}[[activity]]\nname = 'walking'\n", r"both \[cycle\] and \[\[activity\]\]: remove one"),
     (CYCLE, "[activity]\nname = 'walking'\n", r"must be an array of tables: \[\[activity\]\]"),
     (CYCLE, "[[activity]]\nname = 'flexion'\n", r"needs either per_year \(cycles a year\) or share"),
     (CYCLE, "[[activity]]\nname = 'flexion'\nper_year = 2\nshare = 1\n", "needs either per_year"),
     (CYCLE, "[[activity]]\nname = 'flexion'\nshare = 1\n", "share needs cycles_per_year at the top of the file"),
-    (CYCLE, "[[activity]]\nname = 'flexion'\nper_yaer = 1\n", "'per_yaer' in activity.0. is not known"),
     (CYCLE, "[[activity]]\nper_year = 1\n", r"\[\[activity\]\] needs either a name or a file; names: iso-14242-1"),
     (COUNTS, "years = 3\n", "years needs activities with counts a year"),
     ("flexion, adduction", "flexion, flexion", "rotation_order = 'flexion, flexion, rotation' is not allowed"),
@@ -268,7 +261,6 @@ EDITS = [
     ("180 deg", "55 deg", r"dislocated at 0\.5 % of the cycle: .*30\.0° from the dome's pole.* ends at 27\.5°"),
     ("cycles = 5e6", 'cycles = "many"', "cycles = 'many' must be a number, such as 5e6"),
     ("report_at = [1e6, 2e6, 5e6]", "report_at = 1e6", "report_at = 1000000.0 must be a list"),
-    ("[wear]", "[waer]", "'waer' at the top is not known; did you mean 'wear'"),
     ("clearance = ", "clearence = ", "'clearence' in .joint. is not known; did you mean 'clearance'"),
 ]
 
