@@ -6,6 +6,7 @@ from functools import cache
 from math import radians
 
 import numpy as np
+import pytest
 
 import ballsocket as bs
 from ballsocket.hip import Archard, HipSimulation, iso_14242_1
@@ -85,3 +86,9 @@ def write_edited_file(path, *changes, text=TEXT):
     file = path / "hip.toml"
     file.write_text(text, encoding="utf-8")
     return file
+
+
+def refuses(message, function, *arguments, **words):
+    """Check that a call raises ValueError with a message."""
+    with pytest.raises(ValueError, match=message):
+        function(*arguments, **words)

@@ -17,7 +17,7 @@ from ballsocket.hip.variability import RESULT_UNITS, CohortResult
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run
-from .hips import QUICK, K, hip
+from .hips import QUICK, K, hip, refuses
 from .test_uncertainty import short_file
 from .test_variability import COEFFICIENT, FEW_CYCLES, TIGHT, WEIGHT, variability
 
@@ -70,8 +70,7 @@ def test_a_patient_without_a_result_has_its_error():
 
 
 def test_a_worker_of_another_version_is_refused():
-    with pytest.raises(ValueError, match="the run was started by 0.9[+]old"):
-        replace(cohort_run(1), code="0.9+old")(0)
+    refuses("the run was started by 0.9[+]old", replace(cohort_run(1), code="0.9+old"), 0)
 
 
 def test_stored_patients_are_not_simulated_again(tmp_path, monkeypatch):
@@ -121,8 +120,7 @@ def test_another_cohort_is_refused(tmp_path):
         (one, [FEW_CYCLES], 1),
     ]
     for other in others:
-        with pytest.raises(ValueError, match="has another cohort, or one of another version; choose another folder"):
-            cohort_store(tmp_path, *other)
+        refuses("has another cohort, or one of another version; choose another folder", cohort_store, tmp_path, *other)
     for content in (b"", b"[]", b"3", b"{}", b"\xff"):
         (tmp_path / "patients.json").write_bytes(content)
         with pytest.raises(ValueError, match="patients.json is not the label of a patient cohort; delete it"):

@@ -18,7 +18,7 @@ from ballsocket.hip import Activity, Archard, FilmLimit, Mix, in_vivo, iso_14242
 from ballsocket.hip.simulation import make_checkpoint
 
 from ..cli.command import run
-from .hips import QUICK, K, hip, write_edited_file
+from .hips import QUICK, K, hip, refuses, write_edited_file
 
 WIDE = {"ring_width": radians(9.0), "cycle": iso_14242_1(16)}
 PARTS = {in_vivo("walking", 750.0, 16): 9e5, in_vivo("stairs-up", 750.0, 16): 1e5}
@@ -84,8 +84,7 @@ def test_a_finished_run_is_not_repeated_and_can_be_continued(tmp_path):
     longer = use.after(4e5, [2e5], store=store)
     assert longer.reports[0].volume == first.last.volume
     assert longer.last.volume == pytest.approx(use.after(4e5).last.volume, rel=1e-3)
-    with pytest.raises(ValueError, match="400000 cycles .*100000"):
-        use.after(4e5, [1e5], store=store)
+    refuses("400000 cycles .*100000", use.after, 4e5, [1e5], store=store)
 
 
 def test_checkpoints_of_other_runs_and_damaged_ones_are_refused(tmp_path):
@@ -98,8 +97,7 @@ def test_checkpoints_of_other_runs_and_damaged_ones_are_refused(tmp_path):
     write_arrays(path, **arrays)
     for content in (path.read_bytes(), b"", b"no archive", b"PK"):
         path.write_bytes(content)
-        with pytest.raises(ValueError, match="hip_in_use.npz is not a checkpoint of a run; delete it to start again"):
-            use.after(1e4, store=tmp_path)
+        refuses("hip_in_use.npz is not a checkpoint of a run; delete it to start again", use.after, 1e4, store=tmp_path)
 
 
 def test_the_identity_depends_on_every_input_of_the_run(tmp_path):
