@@ -25,6 +25,8 @@ QUICK = {"cycle": iso_14242_1(16), "ring_width": radians(8.0)}
 """Few steps and wide rings, for facts that hold on any grid."""
 
 TEXT = (EXAMPLES / "hip_in_use.toml").read_text(encoding="utf-8")
+CYCLE = TEXT[TEXT.index("[cycle]") : TEXT.index("[wear]")]
+COUNTS = "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n"
 SHORT = (
     ("cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]", "cycles = 1e4\nreport_at = [5e3]"),
     ("instants = 100", "instants = 16"),

@@ -12,7 +12,7 @@ from ballsocket.hip.cycle_file import TableOptions, parse_cycle, read_cycle
 from ballsocket.hip.kinematics import rotation_matrices
 
 from ..cli.command import run
-from .hips import TEXT, refuses, write_edited_file
+from .hips import COUNTS, CYCLE, refuses, write_edited_file
 
 PHASES = np.linspace(0.0, 1.0, 201)
 ISO = iso_14242_1()
@@ -325,17 +325,8 @@ def test_tables_of_one_cycle_are_combined_at_the_times_of_the_first(tmp_path):
 
 # [cycle] and [[activity]]
 
-ACTIVITIES = """[[activity]]
-name = "walking"
-instants = 16
-per_year = 1e6
-[[activity]]
-name = "stairs-up"
-instants = 16
-per_year = 5e4
-"""
-CYCLE = TEXT[TEXT.index("[cycle]") : TEXT.index("[wear]")]
-COUNTS = "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n"
+ACTIVITY = '[[activity]]\nname = "{}"\ninstants = 16\nper_year = {}\n'
+ACTIVITIES = ACTIVITY.format("walking", "1e6") + ACTIVITY.format("stairs-up", "5e4")
 
 
 def parsed(folder=None, **cycle):

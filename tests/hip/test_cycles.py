@@ -8,7 +8,7 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.kinds import Kind
-from ballsocket.hip import Activity, Lubricant, Mix, logarithmic
+from ballsocket.hip import Activity, Mix, logarithmic
 from ballsocket.hip.cycle import Cycle, Frame, Spring, check_step_count
 from ballsocket.hip.cycle_registry import CYCLES, named_cycle
 from ballsocket.hip.cycle_tables import monotone_periodic
@@ -24,7 +24,7 @@ from ballsocket.hip.simulator_cycles import (
     two_axis,
 )
 
-from .hips import QUICK, K, hip, report_after
+from .hips import K, hip, report_after
 
 UP = np.array([0.0, 0.0, 1.0])
 PHASES = np.linspace(0.0, 1.0, 41)
@@ -277,15 +277,6 @@ WALK, STAND = in_vivo("walking", 750.0, 40), in_vivo("stand-up", 750.0, 24)
 
 def mixed(*parts):
     return Mix(activities=tuple(Activity(cycle=cycle, per_year=count) for cycle, count in parts))
-
-
-@pytest.mark.long
-def test_a_mix_of_one_activity_equals_that_activity(short_film):
-    coarse = {"ring_width": QUICK["ring_width"]}
-    alone, mix = hip(cycle=WALK, **coarse), hip(cycle=mixed((WALK, 1e6)), **coarse)
-    assert mix.first == alone.first
-    assert report_after(mix, 5e5).volume == pytest.approx(report_after(alone, 5e5).volume, rel=1e-12)
-    assert mix.film(Lubricant()).heat == pytest.approx(alone.film(Lubricant()).heat, rel=1e-12)
 
 
 def test_wear_of_a_mix_is_the_weighted_mean_of_its_activities():

@@ -21,7 +21,7 @@ from ballsocket.reports import hip_plots
 from ballsocket.reports.hip_comparison import wear_figure
 
 from ..cli.command import run
-from .hips import QUICK, SHORT, TEXT, TILTED, hip, walked, write_edited_file
+from .hips import COUNTS, QUICK, SHORT, TEXT, TILTED, hip, walked, write_edited_file
 from .test_cycle_file import write_table
 
 
@@ -31,7 +31,7 @@ def read(path, *changes, text=TEXT):
 
 @pytest.mark.parametrize(("text", "cycles"), [("", 5e6), ("cycles = 1e4\n", 1e4)])
 def test_a_file_without_counts_runs_five_million_cycles_with_ten_equal_reports(tmp_path, text, cycles):
-    file = read(tmp_path, ("cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n", text))
+    file = read(tmp_path, (COUNTS, text))
     assert file.cycles == cycles
     assert file.report_at == pytest.approx(cycles / 10 * np.arange(1, 11))
 

@@ -20,7 +20,7 @@ from ballsocket.hip.wear_laws import read_ball_law, read_wear_law
 from ballsocket.studies import LogNormal, Rectangular
 
 from ..cli.command import run
-from .hips import QUICK, SHORT, TEXT, TILTED, WEAR_DATA, K, hip, history, write_edited_file
+from .hips import COUNTS, CYCLE, QUICK, SHORT, TEXT, TILTED, WEAR_DATA, K, hip, history, write_edited_file
 from .test_variability import COEFFICIENT, TIGHT, WEIGHT, variability
 
 CUSTOM = bh.CustomWearLaw(function=lambda cycle: 1e-9 * cycle.work)
@@ -226,8 +226,6 @@ def test_a_run_by_a_custom_law_cannot_be_stored(words, tmp_path):
 # files
 
 NAME, INSTANTS, LAW, TILT = 'name = "iso-14242-1"', "instants = 100", 'law = "archard"', 'tilt = "30 deg"'
-CYCLE = TEXT[TEXT.index("[cycle]") : TEXT.index("[wear]")]
-COUNTS = "cycles = 5e6\nreport_at = [1e6, 2e6, 5e6]\n"
 JOINT = TEXT[TEXT.index("[joint]") : TEXT.index("[cup]")]
 
 EDITS = [
