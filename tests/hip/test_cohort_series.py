@@ -18,8 +18,7 @@ from ballsocket.hip.cohort_series import CohortSeries
 from ballsocket.hip.series_accuracy import TOLERANCES, SeriesAccuracy
 from ballsocket.hip.similarity import Similarity, find_obstacle
 from ballsocket.hip.variability import RESULT_UNITS, result_table
-from ballsocket.hip.wear_law import CycleExposure
-from ballsocket.hip.wear_laws import WEAR_LAWS, ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
+from ballsocket.hip.wear_laws import ContactAreaWear, CrossShear, CustomWearLaw, FrictionEnergyWear
 from ballsocket.studies import LogNormal, Normal, Rectangular
 
 from ..cli.command import run as run_command
@@ -323,16 +322,6 @@ def test_creeping_patients_wear_alike_at_the_same_time_per_exposure():
     values = {"clearance": 0.06, "body_weight": 650.0, "coefficient": 2 * K, "cycles_per_year": 1e6}
     angles = {"inclination": Rectangular(low=0.4, high=1.0), "anteversion": Rectangular(low=0.0, high=0.5)}
     assert relative_difference(use, values | {"inclination": 0.7, "anteversion": 0.2}, **angles) < 1e-10
-
-
-@pytest.mark.parametrize("law", WEAR_LAWS.values(), ids=lambda law: law.name)
-def test_a_law_has_its_degree_in_the_pressure(law):
-    wear = law(**{field.name: field.example for field in law.law_fields()})
-    wear = replace(wear, exponent=0.4) if isinstance(wear, CrossShear) else wear
-    use = hip(**QUICK, wear=wear)
-    exposure = use.exposure(use.unworn)
-    trebled, cells = (CycleExposure(pressure=n * exposure.pressure, sliding=exposure.sliding) for n in (3, 1))
-    np.testing.assert_allclose(wear.depth(trebled), 3**wear.pressure_degree * wear.depth(cells), rtol=1e-12)
 
 
 def test_a_family_does_not_depend_on_lengths():

@@ -41,7 +41,6 @@ def test_worn_volume_equals_the_work_of_friction_and_a_worn_bore_balances_its_lo
 
 
 def test_elasticity_changes_volume_and_depth_slightly():
-    """Full elasticity against springs: the volume within 1 %, the depth within 3 %."""
     cup, springs = report_after(elastic("cup"), 1e6), report_after(hip(cycle=iso_14242_1(50)), 1e6)
     assert cup.volume == pytest.approx(springs.volume, rel=1e-2)
     assert cup.depth == pytest.approx(springs.depth, rel=3e-2)
@@ -57,7 +56,6 @@ def test_finer_rings_give_the_same_wear():
 
 @pytest.mark.long
 def test_worn_depth_has_no_waves_of_the_grid():
-    """The depth of a worn-in bore has no differences of the fourth order."""
     use = elastic()
     wear = report_after(use, 1e6).wear
     rough = np.abs(np.diff(wear, n=4, axis=0))[wear[2:-2] > 0.5 * wear.max()]

@@ -173,7 +173,6 @@ def test_edge_distance_decreases_continuously_to_zero(surface):
 
 
 def test_edge_azimuth_follows_the_load():
-    """Seen along the cup's axis: 40° around it, new, at every load."""
     lean = np.array([np.cos(radians(40.0)), np.sin(radians(40.0)), 1.0])
     cycle = Cycle(name="leaning", force=lambda t: np.outer(lean, 800 + 600 * t), angles=flexion().angles)
     use = hip(cycle=cycle, cup=bs.Cup())
@@ -229,7 +228,6 @@ def test_an_infinite_limit_wears_as_none_and_a_limit_of_zero_wears_nothing(words
 
 
 def test_archard_wears_by_the_work_below_the_limit():
-    """The film of every cell and instant decides."""
     use, free = limited(1.0), hip(**QUICK)
     assert 0.1 < use.excluded_work_share < 0.9
     assert use.first.volume == pytest.approx((1 - use.excluded_work_share) * free.first.volume, rel=1e-12)

@@ -11,7 +11,6 @@ from ballsocket.elasticity.off_axis.grid import even_grid, graded_grid
 from ballsocket.hip import socket_foundation, spring_equilibrium
 from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
-from ballsocket.hip.simulation import _relative_discretization_error
 from ballsocket.hip.socket_foundation import NO_LATERAL_SPRING, grid_neighbours, neighbours_in_subset, spring_foundation
 from ballsocket.hip.spring_equilibrium import load_blocks, newton_step, solve_in_blocks, spring_solver
 from ballsocket.hip.wear_integrator import WearIntegrator
@@ -127,13 +126,6 @@ def test_load_levels_interpolate_every_load_of_one_direction():
     same = interpolate_loads(np.tile([0.0, 0.0, 500.0], (40, 1)))
     assert same.loads.tolist() == [[0.0, 0.0, 500.0]]
     assert same.interpolate(same.loads) == pytest.approx(np.tile([0.0, 0.0, 500.0], (40, 1)))
-
-
-def test_numerical_errors_follow_from_halved_steps():
-    ratio = 1 / (1 - 2**-1.5)
-    assert _relative_discretization_error([1.0, 1.1, 1.2]) == pytest.approx(ratio * 0.2 / 1.2)
-    assert _relative_discretization_error([1.0, 0.9, 1.0]) == pytest.approx(ratio * 0.2)
-    assert _relative_discretization_error([0.0, 0.0, 0.0]) == 0.0
 
 
 # the compiled pass equals NumPy's, in any contact and in any blocks of loads

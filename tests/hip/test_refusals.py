@@ -304,7 +304,6 @@ MEASURED = [
     [*EDITS, *(("", *case) for case in TABLES), *(("", f"[uncertainty]\n{line}", text) for line, text in UNCERTAIN)],
 )
 def test_wrong_files_are_refused_with_their_name(tmp_path, old, new, message):
-    """Changed in one place, or with another table at the end."""
     edits = [(old, new)] if old else []
     file = write_edited_file(tmp_path, *edits, text=TEXT if old else f"{TEXT}\n{new}\n")
     with pytest.raises(ValueError, match=f"hip.toml: .*{message}"):

@@ -88,7 +88,6 @@ def test_dislocated_patients_are_counted_and_left_out():
 
 
 def test_bands_for_one_coefficient_are_those_of_patients_with_it():
-    """Converted results are those of direct simulations with the shared coefficient."""
     weights, rates = Normal(mean=800.0, deviation=130.0), LogNormal(median=1e6, factor=1.5)
     fits = Rectangular(low=0.08, high=0.12)
     one = variability(coefficient=COEFFICIENT, body_weight=weights, cycles_per_year=rates, clearance=fits)

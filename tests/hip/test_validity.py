@@ -50,7 +50,6 @@ def test_a_liner_that_yields_is_not_valid_and_one_without_a_yield_stress_has_no_
 
 
 def test_springs_outside_their_range_are_not_valid():
-    """Both notes of a press are in the run, each once."""
     history, press = use_of(WIDE, iso_14242_1(24)).after(1e5, [5e4]), bs.HessForsbach().press(WIDE, force=3000.0)
     assert (press.valid, history.valid) == (False, False)
     starts = [sum(sentence.startswith(note) for sentence in history.notes) for note in press.notes]
@@ -58,7 +57,6 @@ def test_springs_outside_their_range_are_not_valid():
 
 
 def test_every_activity_is_checked():
-    """Stumbling yields; walking does not."""
     parts = [Activity(cycle=in_vivo(name, 880.0, 24), per_year=1e4) for name in ("walking", "stumbling")]
     use = use_of(HIP, Mix(activities=tuple(parts)), cup=bs.Cup(inclination=radians(20.0)))
     walking, stumbling = use.unworn_checks

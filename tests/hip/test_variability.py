@@ -129,7 +129,6 @@ def test_a_contact_that_does_not_balance_its_load_is_refused(monkeypatch):
 
 @pytest.mark.long
 def test_patients_with_the_real_cup_share_its_compliance_and_wear_as_on_springs():
-    """Elasticity changes the volume by less than 1 %, and depth and pressure by less than 3 %."""
     on_springs = variability(hip(), coefficient=COEFFICIENT, tilt=Normal(mean=0.5, deviation=0.1))
     with_cup = replace(on_springs, surface=bs.RealCup())
     values = [{"coefficient": 2 * K, "tilt": 0.4}, {"coefficient": K, "tilt": 0.6}]

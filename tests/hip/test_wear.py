@@ -73,7 +73,6 @@ def test_worn_bore_has_the_contact_of_the_off_axis_model():
 
 
 def test_left_hip_wears_as_a_right_hip():
-    """Its cup faces the other way, and the cycle is mirrored with it."""
     cup, walk = bs.Cup(inclination=radians(30.0), anteversion=radians(20.0)), iso_14242_1(72)
     leaning = replace(walk, force=lambda t: np.stack([200 + 0 * t, 100 * t, walk.force(t)]))
     right, left = (hip(cycle=leaning, cup=replace(cup, side=side)) for side in bs.Side)
