@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.core.executors import Processes, Serial, processes
+from ballsocket.core.executors import Serial, processes
 from ballsocket.hip import Archard, FilmLimit, iso_14242_1, iso_14242_4, logarithmic, population
 from ballsocket.hip import cohort_series as module
 from ballsocket.hip.chebyshev_fit import Box, basis, chebyshev_points, exponents_of, interpolation_weights
@@ -216,16 +216,6 @@ def test_workers_can_simulate_the_members_of_a_family():
     family = series_of(run_of(patients, 4, COUNTS[:1])).family
     sent = pickle.loads(pickle.dumps(family))
     np.testing.assert_array_equal(sent(0)["worn"], family(0)["worn"])
-
-
-@pytest.mark.long
-def test_a_series_does_not_depend_on_the_executor():
-    patients = quick()
-    serial, parallel = (
-        population(patients, COUNTS[:1], patients=200, method="series", engine=engine)[1].cohort.table
-        for engine in (Serial(), Processes(workers=2))
-    )
-    np.testing.assert_array_equal(serial, parallel)
 
 
 TILTS = {"tilt": Normal(mean=radians(30.0), deviation=radians(7.0), low=0.0, high=radians(60.0))}

@@ -35,9 +35,8 @@ def test_a_cup_with_an_explicit_zero_angle_is_upright():
         assert tilt_of(use) == 0
         assert not any("standard requires" in note for note in use.notes)
     assert tilt_of(hip(cup=bs.Cup(arc_of_cover=2.8))) == 30
-    scatter = PatientVariability(
-        use=replace(hip(), cup=bs.Cup()), distributions={"tilt": Normal(mean=0.2, deviation=0.05)}
-    )
+    tilts, untilted = {"tilt": Normal(mean=0.2, deviation=0.05)}, replace(hip(), cup=bs.Cup())
+    scatter = PatientVariability(use=untilted, distributions=tilts)
     assert [tilt_of(scatter.patient(sample).use) for sample in ({"tilt": 0.0}, {})] == [0, 30]
 
 

@@ -80,9 +80,7 @@ def test_units_of_columns_are_converted(tmp_path):
 def test_columns_of_time_and_force_have_units(tmp_path, heads, values, force, seconds):
     """Units may stand below the heads; the time of OrthoLoad replaces its cycle column."""
     n_growing = len(values) - (3 if "Fx" in heads else 1)
-    rows = [
-        [number * (step if column < n_growing else 1) for column, number in enumerate(values)] for step in range(11)
-    ]
+    rows = [[x * (step if place < n_growing else 1) for place, x in enumerate(values)] for step in range(11)]
     lines = [",".join(f"{number:.12g}" for number in row) for row in rows]
     cycle = read_cycle(write_lines(tmp_path / "load.csv", heads, lines), body_weight=750.0)
     assert cycle.forces == pytest.approx(np.tile([0.0, 0.0, force], (100, 1)))

@@ -109,9 +109,8 @@ def test_friction_falls_from_boundary_to_full_film():
     assert share[0] == pytest.approx(1.0, rel=1e-12)
     assert (np.diff(share) < 0).all()
     heights = np.linspace(1.0, 12.0, 20001)
-    one, two = (
-        np.trapezoid(np.maximum(heights - start, 0) ** 2.5 * np.exp(-(heights**2) / 2), heights) for start in (1.0, 2.0)
-    )
+    tail = np.exp(-(heights**2) / 2)
+    one, two = (np.trapezoid(np.maximum(heights - start, 0) ** 2.5 * tail, heights) for start in (1.0, 2.0))
     assert share[3] / share[2] == pytest.approx(two / one, rel=1e-5)
     rough, smooth = (Lubricant(ball_roughness=0.0, cup_roughness=ra, friction=law) for ra in (1.0, 1e-9))
     stress = [each.shear_stress(np.array(5.0), np.array(1e-4), np.array(30.0)) for each in (rough, smooth)]
@@ -216,9 +215,8 @@ LAWS = [
 
 @pytest.mark.parametrize("words", LAWS)
 def test_an_infinite_limit_wears_as_none_and_a_limit_of_zero_wears_nothing(words):
-    free, unlimited, nothing = (
-        worn(use) for use in (hip(**QUICK, **words), limited(inf, **words), limited(0.0, **words))
-    )
+    uses = hip(**QUICK, **words), limited(inf, **words), limited(0.0, **words)
+    free, unlimited, nothing = map(worn, uses)
     assert np.array_equal(free.depth, unlimited.depth)
     assert np.array_equal(free.ball, unlimited.ball)
     assert free.work == unlimited.work

@@ -30,7 +30,6 @@ def contacts(depths, lateral=NO_LATERAL_SPRING):
 @pytest.mark.parametrize(
     ("depths", "lateral"),
     [(WORN, NO_LATERAL_SPRING), (WORN, LATERAL), (WORN[:, None] * np.array([[0.5], [1.0], [2.0]]), LATERAL)],
-    ids=["worn", "a lateral spring", "another depth under each load"],
 )
 def test_every_patient_has_the_equilibrium_of_numpy(depths, lateral):
     patients = contacts(depths, lateral)

@@ -205,9 +205,7 @@ def test_values_that_are_not_allowed_are_refused(make, message):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        *each(
-            lambda value: bh.Archard(coefficient=value), ("1e-6", True, None, [1e-6]), "coefficient must be one numb"
-        ),
+        *each(lambda value: bh.Archard(coefficient=value), ("1e-6", True, None, [1e-6]), "coefficient must be one"),
         (lambda: bh.FilmLimit(ratio=[1.0, 2.0]), "film_limit must be one number"),
         (lambda: hip(**QUICK, film_limit=1.0), "film_limit must be a FilmLimit"),
     ],

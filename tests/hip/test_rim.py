@@ -60,11 +60,8 @@ def loading(*forces):
     return SimpleNamespace(loads=loads, cycle=iso_14242_1(10), loaded=np.arange(len(forces)) + 3)
 
 
-RIM = RimDistance(
-    distance=np.array([3.0, 0.0, 0.0, 1.0]),
-    azimuth=np.radians([10.0, 20.0, -30.0, 40.0]),
-    pressure=np.array([5.0, 1.0, 2.0, 0.0]),
-)
+AZIMUTHS = np.radians([10.0, 20.0, -30.0, 40.0])
+RIM = RimDistance(distance=np.array([3.0, 0, 0, 1]), azimuth=AZIMUTHS, pressure=np.array([5.0, 1, 2, 0]))
 
 
 def closest_approach():

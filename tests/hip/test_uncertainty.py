@@ -179,16 +179,14 @@ def cohort(patients=101):
     """Return results whose column c is number + 1000 c at the first report, and twice that at the second."""
     first = np.arange(patients)[:, None] + 1000.0 * np.arange(len(COLUMNS))
     contact = np.stack([np.full((patients, 3), 0.5), np.ones((patients, 3)), np.zeros((patients, 3))], axis=-1)
-    return CohortResult(
-        table=np.stack([first, 2 * first], axis=1), refused=np.full(patients, "", dtype="U60"), contact=contact
-    )
+    table, refused = np.stack([first, 2 * first], axis=1), np.full(patients, "", dtype="U60")
+    return CohortResult(table=table, refused=refused, contact=contact)
 
 
 def bands(result=None, use=None, level=0.9, **fields):
     distributions = fields.pop("distributions", {"clearance": TIGHT})
-    return Bands(
-        variability=variability(use, **distributions), counts=COUNTS, cohort=result or cohort(), level=level, **fields
-    )
+    one = variability(use, **distributions)
+    return Bands(variability=one, counts=COUNTS, cohort=result or cohort(), level=level, **fields)
 
 
 def shared():
@@ -267,10 +265,8 @@ def test_notes_state_assumptions_and_limits_and_members_are_predictions_with_an_
     result = cohort(3)
     result.table[:, -1, COLUMNS.index("depth")] = [7.9, 8.0, 8.1]  # mm; the liner has 8
     notes = bands(result, distributions={"clearance": TIGHT, "body_weight": WEIGHT}).notes
-    assert notes == (
-        "assumed: given and independent distributions of clearance, body_weight",
-        "1 of 3 patients wear their liner through",
-    )
+    assumed = "assumed: given and independent distributions of clearance, body_weight"
+    assert notes == (assumed, "1 of 3 patients wear their liner through")
     assert "patients wear" not in " ".join(bands(cohort(1), hip(liner=1e6, clearance=0.3)).notes)
     note = bands(distributions={"coefficient": LogNormal(median=1e-6, factor=2.0)}, level=0.95).notes[1]
     unknown = "the wear coefficient is unknown, but the same for all samples: "

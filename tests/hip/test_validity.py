@@ -17,12 +17,8 @@ from ballsocket.studies import LogNormal
 UPRIGHT = bs.Cup(inclination=0.0)
 QUICK = {"ring_width": radians(5.0), "wear": Archard(coefficient=1e-6), "cup": UPRIGHT}
 HIP = bs.Joint(ball_radius=14.0, clearance=0.1, liner_thickness=8.0, liner=bs.UHMWPE)
-WIDE = bs.Joint(
-    ball_radius=18.0,
-    clearance=0.1,
-    liner_thickness=2.0,
-    liner=bs.Material(young=800.0, poisson=0.49, yield_stress=21.0),
-)
+STIFF = bs.Material(young=800.0, poisson=0.49, yield_stress=21.0)
+WIDE = bs.Joint(ball_radius=18.0, clearance=0.1, liner_thickness=2.0, liner=STIFF)
 
 
 def use_of(joint, cycle, **words):
