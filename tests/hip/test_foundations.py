@@ -1,4 +1,4 @@
-"""Foundations of the socket, contact shares, interpolation to the ball and film formulas in small exact cases."""
+"""Foundations of the socket, interpolation to the ball, and springs solved by NumPy, numba and JAX, in small cases."""
 
 from dataclasses import replace
 from importlib.util import find_spec
@@ -11,6 +11,7 @@ from ballsocket.elasticity.off_axis.grid import even_grid, graded_grid
 from ballsocket.hip import socket_foundation, spring_equilibrium
 from ballsocket.hip.ball_wear import ball_directions, interpolation_at
 from ballsocket.hip.elastic_foundation import GridSmoothing, interpolate_loads
+from ballsocket.hip.jax_springs import join_contacts, solve_patients
 from ballsocket.hip.socket_foundation import NO_LATERAL_SPRING, grid_neighbours, neighbours_in_subset, spring_foundation
 from ballsocket.hip.spring_equilibrium import load_blocks, newton_step, solve_in_blocks, spring_solver
 from ballsocket.hip.wear_integrator import WearIntegrator
@@ -212,3 +213,67 @@ def test_the_newton_step_solves_its_equations(softest):
     force = np.array([20.0, -3.0, 500.0]) if softest == 1.0 else 500.0 * normal
     step = np.array(newton_step(tuple(stiffness[np.triu_indices(3)]), tuple(force)))
     np.testing.assert_allclose(stiffness @ step, force, rtol=0, atol=1e-9 * 500.0)
+
+
+# springs of many patients in JAX
+
+LATERAL = np.diag([500.0, 0.0, 0.0])
+DEPTHS = np.random.default_rng(2).uniform(0.0, 0.02, (3, len(SPRINGS.areas)))
+
+
+@pytest.fixture
+def jax():
+    pytest.importorskip("jax")
+
+
+def contacts(depths, lateral=NO_LATERAL_SPRING):
+    """Contacts of three patients: another clearance, modulus, load and worn depth each."""
+    patients = zip((0.05, 0.1, 0.2), (80.0, 100.0, 300.0), (0.5, 1.0, 2.0), depths, strict=True)
+    return [
+        replace(SPRINGS, clearance=clearance, modulus=modulus).contact(factor * TILTED, depth, lateral)
+        for clearance, modulus, factor, depth in patients
+    ]
+
+
+@pytest.mark.parametrize(
+    ("depths", "lateral"),
+    [(DEPTHS, NO_LATERAL_SPRING), (DEPTHS, LATERAL), (DEPTHS[:, None] * np.array([[0.5], [1.0], [2.0]]), LATERAL)],
+)
+def test_every_patient_has_the_equilibrium_of_numpy(jax, depths, lateral):
+    patients = contacts(depths, lateral)
+    start = np.stack([factor * TILTED / 1000.0 for factor in (0.3, 0.2, -0.2)])
+    solved = solve_patients(join_contacts(patients), start)
+    assert solved.displacement.dtype == np.float64
+    assert np.asarray(solved.converged).all()
+    for patient, contact in enumerate(patients):
+        displacement, pressure = start[patient].copy(), np.empty((3, len(SPRINGS.areas)))
+        assert solve_in_blocks(contact, displacement, pressure)
+        np.testing.assert_allclose(solved.displacement[patient], displacement, rtol=0, atol=1e-12)
+        np.testing.assert_allclose(solved.pressure[patient], pressure, rtol=0, atol=1e-11 * pressure.max())
+
+
+def test_a_patient_that_does_not_converge_leaves_the_others_converged(jax):
+    patients = contacts(np.stack([DEPTHS[0], np.full_like(DEPTHS[0], np.nan), DEPTHS[2]]))
+    solved = solve_patients(join_contacts(patients), np.broadcast_to(0.2 * TILTED / 1000.0, (3, 3, 3)))
+    assert np.asarray(solved.converged).tolist() == [True, False, True]
+
+
+def test_contacts_that_do_not_fit_are_refused(jax):
+    one, two, _ = contacts(DEPTHS)
+    start = np.broadcast_to(0.2 * TILTED / 1000.0, (2, 3, 3))
+    few = SPRINGS.contact(TILTED[:2], DEPTHS[0], NO_LATERAL_SPRING)
+    many = SPRINGS.contact(TILTED, np.tile(DEPTHS[0], (3, 1)), NO_LATERAL_SPRING)
+    for join, error, message in [
+        (lambda: join_contacts([]), ValueError, "at least one patient"),
+        (lambda: join_contacts([one, few]), ValueError, "got 2 loads on .* cells, 3 loads on .* cells"),
+        (lambda: join_contacts([one, many]), ValueError, "a depth under each load, or one depth"),
+        (
+            lambda: solve_patients(join_contacts([one, two]), start[:1]),
+            ValueError,
+            r"start of shape \(1, 3, 3\) is not",
+        ),
+        (lambda: join_contacts(one), TypeError, "contacts must be a list of SpringContact, got"),
+        (lambda: solve_patients(one, start), TypeError, "contacts must be those of join_contacts"),
+    ]:
+        with pytest.raises(error, match=message):
+            join()
