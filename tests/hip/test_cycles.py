@@ -8,21 +8,13 @@ import pytest
 
 import ballsocket as bs
 from ballsocket.core.kinds import Kind
-from ballsocket.hip import Activity, Mix, logarithmic
+from ballsocket.hip import Activity, Mix, iso_14242_1_key_points, iso_14242_4, logarithmic, rocking, two_axis
 from ballsocket.hip.cycle import Cycle, Frame, Spring, check_step_count
 from ballsocket.hip.cycle_registry import CYCLES, named_cycle
 from ballsocket.hip.cycle_tables import monotone_periodic
 from ballsocket.hip.in_vivo import check_body_weight, in_vivo
 from ballsocket.hip.kinematics import sliding_distance
-from ballsocket.hip.simulator_cycles import (
-    constant_load,
-    flexion,
-    iso_14242_1,
-    iso_14242_1_key_points,
-    iso_14242_4,
-    rocking,
-    two_axis,
-)
+from ballsocket.hip.simulator_cycles import constant_load, flexion, iso_14242_1
 
 from .hips import K, hip, report_after
 

@@ -23,6 +23,7 @@ SPRINGS = spring_foundation(CELLS, modulus=100.0, clearance=0.1, socket_radius=1
 SPHERE = even_grid(np.pi, radians(10.0))
 UNWORN = np.zeros(len(SPRINGS.areas))
 WORN = np.random.default_rng(1).uniform(0.0, 0.02, len(SPRINGS.areas))
+LATERAL = np.diag([500.0, 0.0, 0.0])
 TILTED = np.array([[0.0, 0.0, 1000.0], [300.0, 0.0, 900.0], [0.0, -200.0, 400.0]])
 
 
@@ -39,9 +40,8 @@ def test_pressures_of_springs_balance_the_loads():
     worn = SPRINGS.solve_equilibrium(TILTED, UNWORN + 0.05)
     larger = replace(SPRINGS, clearance=0.15).solve_equilibrium(TILTED, UNWORN)
     assert worn.pressure == pytest.approx(larger.pressure, rel=1e-9, abs=1e-12)
-    stiffness = np.diag([500.0, 0.0, 0.0])
-    solved = SPRINGS.solve_equilibrium(TILTED, UNWORN, None, stiffness)  # a lateral spring carries its part
-    expected = TILTED - solved.displacement @ stiffness
+    solved = SPRINGS.solve_equilibrium(TILTED, UNWORN, None, LATERAL)  # a lateral spring carries its part
+    expected = TILTED - solved.displacement @ LATERAL
     assert socket_force(SPRINGS, solved) == pytest.approx(expected, abs=1e-7 * 1000)
     assert solved.displacement[1, 0] * 500.0 > 10.0
 
@@ -135,7 +135,7 @@ CONTACTS = {
     "unworn": (np.zeros_like(WORN), NO_LATERAL_SPRING, False),
     "worn": (WORN, NO_LATERAL_SPRING, False),
     "another depth under each load": (WORN * np.array([[0.5], [1.0], [2.0]]), NO_LATERAL_SPRING, False),
-    "a lateral spring": (WORN, np.diag([500.0, 0.0, 0.0]), False),
+    "a lateral spring": (WORN, LATERAL, False),
     "a start without contact": (WORN, NO_LATERAL_SPRING, True),
 }
 
@@ -217,7 +217,6 @@ def test_the_newton_step_solves_its_equations(softest):
 
 # springs of many patients in JAX
 
-LATERAL = np.diag([500.0, 0.0, 0.0])
 DEPTHS = np.random.default_rng(2).uniform(0.0, 0.02, (3, len(SPRINGS.areas)))
 
 

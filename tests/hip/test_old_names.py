@@ -4,15 +4,7 @@ import numpy as np
 import pytest
 
 from ballsocket import hip as package
-from ballsocket.hip import (
-    KelvinVoigtChain,
-    cycle_file,
-    iso_14242_1,
-    iso_14242_1_key_points,
-    population,
-    wear_law,
-    wear_laws,
-)
+from ballsocket.hip import KelvinVoigtChain, cycle_file, iso_14242_1, population, wear_law, wear_laws
 from ballsocket.hip.cycle_file import read_cycle
 
 from . import test_cycles, test_rim, test_uncertainty
@@ -47,7 +39,7 @@ def test_old_attributes_warn_and_work(make, names):
 
 def test_old_arguments_warn_and_work(tmp_path):
     seen, patients, table = [], variability(hip(**QUICK), clearance=TIGHT), write_table(tmp_path / "walk.csv")
-    points, law = iso_14242_1_key_points().angles, package.CustomWearLaw(function=np.sum)
+    points, law = package.iso_14242_1_key_points().angles, package.CustomWearLaw(function=np.sum)
     for call, message in [
         (
             lambda: hip(**QUICK).after(1e4, listen=seen.append),
