@@ -1,19 +1,25 @@
-"""Answers of the explorer's server to requests that are not from its own pages."""
+"""Answers of the explorer's server to strangers: other names, other pages, and hostile messages, names and links."""
 
-import asyncio
 import gzip
 import json
+import os
+import time
+from contextlib import ExitStack, closing, suppress
 from http.client import HTTPConnection
-from urllib.parse import urlsplit
+from pathlib import Path
+from threading import Thread
+from urllib.parse import quote, urlsplit
 
 import pytest
 
+from .browser import explorer_process
+from .user import User, opened_profile
+from .wire import BINARY, TEXT, Wire, opened_wire
+
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
-from tornado.httpclient import HTTPClientError, HTTPRequest
-from tornado.websocket import websocket_connect
-
 from ballsocket.app.server import HostNames
+from ballsocket.app.state.screen import VIEWS
 
 STRICT = {
     "X-Content-Type-Options": "nosniff",
@@ -22,34 +28,29 @@ STRICT = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cache-Control": "no-cache",
 }
+needs_proc = pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="memory is read from /proc")
 
 
-@pytest.fixture(scope="module")
-def place(address):
-    return urlsplit(address)
-
-
-def answer(place, path="/", method="GET", host=None, **headers):
-    connection = HTTPConnection(place.hostname, place.port, timeout=60)
-    connection.request(method, path, headers=headers if host is None else {"Host": host, **headers})
-    found = connection.getresponse()
-    body = found.read()
-    connection.close()
-    return found, body
+def answer(address, path="/", method="GET", host=None, **headers):
+    place = urlsplit(address)
+    with closing(HTTPConnection(place.hostname, place.port, timeout=60)) as connection:
+        connection.request(method, path, headers=headers if host is None else {"Host": host, **headers})
+        response = connection.getresponse()
+        return response, response.read()
 
 
 @pytest.mark.parametrize("host", ["evil.example", "evil.example:5006", "127.0.0.1.evil.example"])
 @pytest.mark.parametrize("path", ["/", "/socket", "/assets/page.js", "/nothing"])
-def test_names_that_are_not_ours_are_refused(place, path, host):
+def test_names_that_are_not_ours_are_refused(address, path, host):
     """A page elsewhere whose name leads to this machine reads nothing from it."""
-    found, body = answer(place, path, host=host)
-    assert found.status == 403
+    response, body = answer(address, path, host=host)
+    assert response.status == 403
     assert body == b"this server does not answer to that name; see --origin\n"
 
 
 @pytest.mark.parametrize("host", ["localhost", "LOCALHOST:1", "127.0.0.1", "hips.example.org", "hips.example.org:8443"])
-def test_our_own_names_are_answered(place, host):
-    assert answer(place, host=host)[0].status == 200
+def test_our_own_names_are_answered(address, host):
+    assert answer(address, host=host)[0].status == 200
 
 
 @pytest.mark.parametrize(
@@ -62,134 +63,75 @@ def test_our_own_names_are_answered(place, host):
         ("/socket", "GET", 400),
     ],
 )
-def test_every_answer_bids_browsers_be_strict(place, path, method, status):
-    found, _ = answer(place, path, method)
-    assert found.status == status
-    assert {name: found.headers[name] for name in STRICT} == STRICT
-    assert "Server" not in found.headers
-    rules = dict(rule.split(" ", 1) for rule in found.headers["Content-Security-Policy"].split("; "))
+def test_every_answer_bids_browsers_be_strict(address, path, method, status):
+    headers = (response := answer(address, path, method)[0]).headers
+    assert response.status == status
+    assert {name: headers[name] for name in STRICT} == STRICT
+    assert "Server" not in headers
+    rules = dict(rule.split(" ", 1) for rule in headers["Content-Security-Policy"].split("; "))
     assert rules["default-src"] == rules["base-uri"] == rules["frame-ancestors"] == "'none'"
     assert rules["script-src"] == rules["style-src"] == "'self'"
-    assert "unsafe-eval" not in found.headers["Content-Security-Policy"]
+    assert "unsafe-eval" not in headers["Content-Security-Policy"]
 
 
-def test_a_name_in_the_request_cannot_add_a_rule(place):
-    found, _ = answer(place, host="localhost:1; script-src *")
-    assert found.status in (400, 403)
-    assert (found.headers["Content-Security-Policy"] or "").count("script-src") <= 1
+def test_a_name_in_the_request_cannot_add_a_rule(address):
+    response, _ = answer(address, host="localhost:1; script-src *")
+    assert response.status in (400, 403)
+    assert (response.headers["Content-Security-Policy"] or "").count("script-src") <= 1
 
 
-def test_no_script_stands_in_the_page(place):
-    _, body = answer(place)
+def test_no_script_stands_in_the_page(address):
+    _, body = answer(address)
     for script in body.decode().split("<script")[1:]:
         assert script.startswith(' type="module" src="assets/')
         assert script.partition(">")[2].startswith("</script>")
     assert b"style=" not in body
 
 
-def test_files_are_compressed_and_are_sent_once(place):
-    found, body = answer(place, "/assets/page.css", **{"Accept-Encoding": "gzip"})
-    assert found.headers["Content-Encoding"] == "gzip"
-    assert gzip.decompress(body) == answer(place, "/assets/page.css")[1]
-    again, nothing = answer(place, "/assets/page.css", **{"If-None-Match": found.headers["ETag"]})
+def test_files_are_compressed_and_are_sent_once(address):
+    response, body = answer(address, "/assets/page.css", **{"Accept-Encoding": "gzip"})
+    assert response.headers["Content-Encoding"] == "gzip"
+    assert gzip.decompress(body) == answer(address, "/assets/page.css")[1]
+    again, nothing = answer(address, "/assets/page.css", **{"If-None-Match": response.headers["ETag"]})
     assert (again.status, nothing) == (304, b"")
 
 
 @pytest.mark.parametrize(
     "path",
     [
-        "/components/ballsocket.__main__/x/y/z",
-        "/components/this/x/y/z",
-        "/%63omponents/this/x/y/z",
-        "//components/this/x/y/z",
-        "/assets/../components/this/x/y/z",
+        "/components/this/x",
+        "//components/this/x",
+        "/assets/../components/this/x",
         "/assets/..%2f..%2fserver.py",
         "/assets/../../server.py",
         "/assets/server.py",
         "/assets/",
-        "/ws",
-        "/static/js/bokeh.min.js",
-        "/autoload.js",
-        "/metadata",
         "/favicon.ico",
     ],
 )
 @pytest.mark.parametrize("method", ["GET", "POST"])
-def test_other_addresses_are_refused(place, path, method):
-    found, body = answer(place, path, method)
-    assert found.status in (404, 405)
+def test_other_addresses_are_refused(address, path, method):
+    response, body = answer(address, path, method)
+    assert response.status in (404, 405)
     assert b"Traceback" not in body
     assert b"/" not in body
-    assert answer(place)[0].status == 200
-
-
-async def close(connection):
-    """Close a connection, and wait until the server has closed it too."""
-    connection.close()
-    while await connection.read_message() is not None:
-        pass
-
-
-def connect(place, origin=None):
-    headers = {"Origin": origin or f"http://{place.netloc}"}
-    return websocket_connect(HTTPRequest(f"ws://{place.netloc}/socket", headers=headers))
 
 
 @pytest.mark.parametrize(
-    ("origin", "let"),
+    ("origin", "status"),
     [
-        (None, True),
-        ("https://hips.example.org:8443", True),
-        ("http://evil.example", False),
-        ("http://127.0.0.1:1", False),
-        ("https://hips.example.org", False),
-        ("null", False),
-        ("http://[", False),
+        (None, 101),
+        ("https://hips.example.org:8443", 101),
+        ("http://evil.example", 403),
+        ("http://127.0.0.1:1", 403),
+        ("https://hips.example.org", 403),
+        ("null", 403),
+        ("http://[", 403),
     ],
 )
-def test_a_page_of_another_server_opens_no_socket(place, origin, let):
-    async def tried():
-        await close(await connect(place, origin))
-
-    if let:
-        asyncio.run(tried())
-    else:
-        with pytest.raises(HTTPClientError, match="403"):
-            asyncio.run(tried())
-
-
-def test_an_error_that_is_sent_to_a_browser_shows_no_path(place):
-    """A request that no page of ours makes is refused in one sentence, and the page goes on."""
-    requests = [
-        {"n": 1, "do": "open", "query": ["no text"]},
-        {"n": 2, "do": "edit", "name": "load", "value": {"deep": [1e400, None]}},
-        {"n": 3, "do": "edit", "name": "cup.pick", "value": "x" * 9000},
-        {"n": 4, "do": "upload", "text": None},
-        {"n": 5, "do": "save", "kind": "../../etc/passwd"},
-        {"n": 6, "do": "leave"},
-        {"n": 7, "do": "edit", "name": "load", "value": 2900},
-    ]
-
-    async def answered():
-        connection = await connect(place)
-        texts = []
-        for request in requests:
-            await connection.write_message(json.dumps(request))
-            while not texts or json.loads(texts[-1])["n"] < request["n"]:
-                texts.append(await asyncio.wait_for(connection.read_message(), 60))
-        await close(connection)
-        return texts
-
-    texts = asyncio.run(answered())
-    assert "data-value='2900.0'" in texts[-1]
-    assert not any(word in text for text in texts for word in ("Traceback", ".py", "site-packages"))
-
-
-def test_importing_the_module_of_the_command_runs_nothing(capsys):
-    import ballsocket.__main__
-
-    assert callable(ballsocket.__main__.main)
-    assert capsys.readouterr().out == ""
+def test_a_page_of_another_server_opens_no_socket(address, origin, status):
+    with closing(Wire(address, origin)) as wire:
+        assert wire.status == status
 
 
 @pytest.mark.parametrize(
@@ -205,3 +147,143 @@ def test_importing_the_module_of_the_command_runs_nothing(capsys):
 def test_a_star_stands_for_any_part_of_a_name(names, host, let):
     assert HostNames(names).answer_to(host) == let
     assert HostNames(names).trust(f"http://{host}", "127.0.0.1") == let
+
+
+def test_importing_the_module_of_the_command_runs_nothing(capsys):
+    import ballsocket.__main__
+
+    assert callable(ballsocket.__main__.main)
+    assert capsys.readouterr().out == ""
+
+
+def moves_load(wire, number=2):
+    """Whether a page takes an edit."""
+    wire.ask(number, "edit", name="load", value=2900)
+    return wire.answer(number)["=load"]["value"] == 2900
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"[]",
+        b"{",
+        b'{"do": 3, "n": 1}',
+        b'{"do": "edit"}',
+        b"[" * 100_000,
+        b'"' + b"x" * 390_000,
+        b'{"n": 2, "do": "edit", "name": "load", "value": ' + b"[" * 50_000 + b"]" * 50_000 + b"}",
+        b'{"n": 1e999, "do": "edit"}',
+        b'{"n": NaN, "do": "edit", "name": "load", "value": NaN}',
+    ],
+    ids=lambda content: content[:22].decode(),
+)
+@pytest.mark.parametrize("kind", [TEXT, BINARY])
+def test_what_is_no_request_is_ignored(address, content, kind):
+    with opened_wire(address) as wire:
+        wire.send(content, kind)
+        assert moves_load(wire)
+
+
+def test_requests_before_the_first_page_are_ignored(address):
+    with closing(Wire(address)) as wire:
+        wire.ask(1, "edit", name="load", value=2900)
+        wire.ask(2, "open", query="")
+        assert wire.answer(2)["=load"]["value"] == 3000
+
+
+@pytest.mark.parametrize("content", [b'"' + b"x" * 500_000 + b'"', b"{" + b" " * 3_000_000, b"\xff\xfe\xfd"])
+def test_a_message_that_is_too_large_or_no_text_ends_its_own_connection(address, content):
+    with opened_wire(address) as wire, opened_wire(address) as other:
+        wire.send(content)
+        assert wire.is_closed()
+        assert moves_load(other)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        {"do": "__init__"},
+        {"do": "choose", "name": "__class__", "value": "x"},
+        {"do": "choose", "name": "file", "value": "x"},
+        {"do": "choose", "name": "view", "value": ["press"]},
+        {"do": "edit", "name": "load.__class__", "value": 1},
+        {"do": "edit", "name": "cup." + "x" * 10_000, "value": 1},
+        {"do": "edit", "name": "load", "value": {"deep": [1e400, None]}},
+        {"do": "edit", "name": "load", "value": 1e308},
+        {"do": "edit", "name": ["load"], "value": 1},
+        {"do": "edit", "name": "load", "value": "\ud800"},
+        {"do": "edit", "name": "\ud800", "value": 1},
+        {"do": "edit", "name": "layer" + "9" * 5000, "value": 1},
+        {"do": "upload", "text": 3},
+        {"do": "upload", "text": "a=" + "[" * 90_000},
+        {"do": "open", "query": "x" * 100_000},
+        {"do": "open", "query": ["no text"]},
+        {"do": "save", "kind": "../../etc/passwd"},
+    ],
+    ids=lambda words: f"{words['do']} {str(words.get('name', ''))[:12]}",
+)
+def test_unknown_actions_and_values_get_a_sentence_that_shows_no_path(address, words):
+    with opened_wire(address) as wire:
+        wire.send(json.dumps({"n": 2, **words}).encode())
+        texts = wire.answer(2)
+        while not (sentence := texts.get("#trouble") or texts.get("=load", {}).get("error")):
+            texts |= json.loads(wire.receive()[1])
+        assert "<p" in sentence or "stays in use" in sentence
+        assert not any(word in sentence for word in ("Traceback", ".py", "site-packages"))
+        assert moves_load(wire, 3)
+
+
+def clearance_of(number):
+    """One of a hundred clearances in mm."""
+    return 0.05 + 0.001 * (number % 100)
+
+
+@pytest.mark.long
+@needs_proc
+def test_a_client_that_never_reads_does_not_grow_the_server():
+    """Answers of the edits are many times the memory that the server may gain, and another user goes on."""
+
+    def memory():
+        return int(Path(f"/proc/{process.pid}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+
+    def edit_often():
+        with suppress(OSError):  # the connection ends
+            for number in range(3000):
+                deaf.ask(number + 2, "edit", name="clearance", value=clearance_of(number))
+
+    with explorer_process() as (address, process), opened_wire(address) as user, opened_wire(address) as deaf:
+        for number in range(2, 102):  # caches fill first
+            user.ask(number, "edit", name="clearance", value=clearance_of(number))
+            user.answer(number)
+        before = memory()
+        sender = Thread(target=edit_often)
+        sender.start()
+        time.sleep(3)
+        assert moves_load(user, 102)
+        assert memory() - before < 15
+        deaf.shut()
+        sender.join()
+
+
+@pytest.mark.long
+def test_a_thousand_idle_connections_leave_room_for_a_user(address):
+    with ExitStack() as stack:
+        for _ in range(1000):
+            stack.callback(Wire(address).close)
+        assert moves_load(stack.enter_context(opened_wire(address)))
+
+
+_SCRIPT = "<img src=x onerror='window.ran=1'><script>window.ran=1</script>"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("view", VIEWS)
+def test_script_in_names_is_text_in_every_view(browser, address, view):
+    joint = f"name={quote(_SCRIPT)}&joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=pom"
+    other = "&".join(f"beside1.{part}" for part in joint.split("&"))
+    with opened_profile(browser, address, bypass_csp=True) as profile:
+        user = User(profile, address).open(f"?view={view}&{joint}&{other}")
+        user.page.wait_for_timeout(500)
+        assert user.page.evaluate("window.ran") is None
+        assert user.page.locator("img[src=x]").count() == 0

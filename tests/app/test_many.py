@@ -16,7 +16,6 @@ from tornado.websocket import websocket_connect
 from ballsocket.app import server as serve
 from ballsocket.app.channel import Channel
 from ballsocket.app.jobs import PageThread, run_in_thread
-from ballsocket.app.server import PageSockets
 
 LINES = []
 """Open connections of a test."""
@@ -148,47 +147,19 @@ def test_a_closed_page_is_forgotten_at_once(served, broken):
 
 
 def test_a_page_counts_when_its_browser_asks_for_it(served, monkeypatch):
-    """Sockets that ask for nothing are not pages, and the oldest of them are closed."""
+    """Sockets that ask for nothing are not pages, and the oldest of them are closed when there are too many."""
     monkeypatch.setattr(serve, "MAX_SESSIONS", 2)
 
     async def whole():
         silent = [await Someone(served).connect() for _ in range(4)]
-        users = [Someone(served) for _ in range(3)]
-        answers = [await user.open() for user in users]
-        assert "2 pages are open here already: try again later" in answers[2]["#trouble"]
+        assert [await asyncio.wait_for(one.line.read_message(), 10) for one in silent[:2]] == [None, None]
+        for user in silent[2:]:
+            assert "#press-numbers" in await user.asks("open", query="")
+        assert "2 pages are open here already: try again later" in (await Someone(served).open())["#trouble"]
         assert len(served.pages) == 2
-        assert await asyncio.wait_for(silent[0].line.read_message(), 10) is None
-        users[0].line.close()
+        silent[2].line.close()
         await until(lambda: len(served.pages) == 1)
         assert "#press-numbers" in await Someone(served).open()
-
-    run(served, whole)
-
-
-def test_the_oldest_socket_that_waits_is_closed_first(monkeypatch):
-    class Waiting:
-        closed = False
-
-        def close(self):
-            self.closed = True
-
-    monkeypatch.setattr(serve, "MAX_SESSIONS", 2)
-    sockets, waiting = PageSockets(), [Waiting() for _ in range(3)]
-    for one in waiting:
-        sockets.connect(one)
-    assert [one.closed for one in waiting] == [True, False, False]
-    assert len(sockets.pages) == 0
-
-
-@pytest.mark.parametrize(
-    "text", ["", "[]", "{", '{"do": 3, "n": 1}', '{"do": "edit"}', "[" * 100_000, '"' + "x" * 390_000]
-)
-def test_text_that_is_no_request_is_ignored(served, text):
-    async def whole():
-        user = Someone(served)
-        await user.open()
-        await user.line.write_message(text)
-        assert (await user.asks("edit", name="load", value=2900))["=load"]["value"] == 2900
 
     run(served, whole)
 

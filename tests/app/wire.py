@@ -22,22 +22,14 @@ class Wire:
         words = _HANDSHAKE.format(parts.netloc, origin or f"http://{parts.netloc}")
         self._line.sendall(words.encode())
         head = b""
-        while not head.endswith(b"\r\n\r\n"):
-            if not (byte := self._line.recv(1)):
-                break
+        while not head.endswith(b"\r\n\r\n") and (byte := self._line.recv(1)):
             head += byte
         self.status = int(head.split()[1])
 
     def send(self, content, kind=TEXT):
         """Send one frame."""
         size = len(content)
-        length = (
-            bytes([0x80 | size])
-            if size < 126
-            else b"\xfe" + struct.pack(">H", size)
-            if size < 65536
-            else b"\xff" + struct.pack(">Q", size)
-        )
+        length = bytes([0x80 | size]) if size < 126 else b"\xff" + struct.pack(">Q", size)
         self._line.sendall(bytes([0x80 | kind]) + length + bytes(4) + content)
 
     def ask(self, number, action, **words):
@@ -67,19 +59,15 @@ class Wire:
 
     def is_closed(self):
         """Read until the server closes the connection."""
-        try:
-            while (frame := self.receive()) is not None:
-                if frame[0] == CLOSE:
-                    return True
-        except OSError:
-            return True
+        with suppress(OSError):
+            while (frame := self.receive()) is not None and frame[0] != CLOSE:
+                pass
         return True
 
     def _read(self, size):
         content = b""
         while len(content) < size:
-            part = self._line.recv(size - len(content))
-            if not part:
+            if not (part := self._line.recv(size - len(content))):
                 return None
             content += part
         return content
