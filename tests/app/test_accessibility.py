@@ -2,11 +2,12 @@
 
 import gzip
 from itertools import cycle
+from pathlib import Path
 
 import pytest
 
 from ..places import ROOT
-from .user import AT_REST, NARROW, WIDE, User, opened_profile
+from .user import AT_REST, NARROW, PICTURES, WIDE, User, opened_profile
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.state.screen import VIEWS
@@ -27,7 +28,7 @@ def violations(user):
 
 @pytest.mark.long
 @pytest.mark.parametrize(("view", "looks"), list(zip(VIEWS, cycle(_LOOKS), strict=False)))
-def test_axe_finds_no_violation(browser, address, view, looks):
+def test_a_page_fits_and_axe_finds_no_violation(browser, address, view, looks, tmp_path):
     """One page takes two looks: its size and its theme change while it is open."""
     with opened_profile(browser, address, bypass_csp=True) as profile:
         user = User(profile, address).open(f"?view={view}&beside1.preset=hip-36&use.cycle=iso-14242-1")
@@ -37,7 +38,9 @@ def test_axe_finds_no_violation(browser, address, view, looks):
             if not user.page.locator(f".app.{theme}").count():
                 user.page.get_by_role("button", name="Light or dark").click()
             assert user.page.evaluate(AT_REST) == width
+            user.page.screenshot(path=Path(PICTURES or tmp_path) / f"{view}_{width}_{theme}.png", full_page=True)
             assert violations(user) == [], (width, theme)
+        assert not user.errors
 
 
 _REACH = """() => {
@@ -82,6 +85,7 @@ def test_everything_that_a_pointer_can_do_has_a_key(user, view):
     """Each element to click or drag is a stop of Tab, or has a twin that is; an arrow key moves each handle."""
     user.open(f"?view={view}&beside1.preset=hip-36&limit=outer_diameter<=52")
     reach_all(user)
+    assert user.page.locator("[data-reached]").first.text_content() == "Go to the results"
     assert user.page.locator("[data-reached]").count() > 10
     assert user.page.evaluate(_UNREACHED) == []
     handles = user.page.locator("[data-drag][tabindex]:visible")
