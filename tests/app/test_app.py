@@ -1,12 +1,14 @@
 """The explorer in a real browser: files, handles, undo and redo, and a narrow screen."""
 
+import tomllib
+
 import pytest
 
 import ballsocket as bs
 from ballsocket.files.joint_file import parse_joint
 
 from ..places import EXAMPLES
-from .user import pressure
+from .user import User, pressure
 
 pytestmark = pytest.mark.long
 
@@ -117,3 +119,90 @@ def test_a_drag_is_one_step_and_the_theme_is_none(user):
     page.locator(".app.dark").wait_for()
     assert page.locator("[data-name=tilt] input[type=text]").input_value() != "0"
     assert page.locator("[data-name=load] input[type=text]").input_value() == "3000"
+
+
+def names(user):
+    return user.page.locator("#design-list li > button:not([data-design])").all_text_contents()
+
+
+def does(user, action):
+    user.page.locator(f"[data-design={action}]").click()
+    return user.answered()
+
+
+def test_designs_are_named_kept_compared_saved_and_opened(user, profile, tmp_path):
+    page = user.open().page
+    user.types("name", "hip 36 a")
+    user.answered()
+    page.locator("#designs summary").click()
+    assert names(user) == ["hip 36 a"]
+    does(user, "duplicate")
+    user.types("ball_radius", "36")
+    user.answered()
+    assert names(user) == ["hip 36 a", "hip 36 a copy"]
+    assert user.link()["joint.ball_radius"] == "18.0"
+
+    other = User(profile, user.address).open()  # a second window adds one, and changes no other
+    other.page.locator("#designs summary").click()
+    other.types("name", "from the other window")
+    other.answered()
+    other.page.close()
+    page.locator("#design-list li", has_text="from the other window").wait_for()
+    user.types("clearance", "0.3")
+    user.answered()
+
+    page.locator("#design-list button", has_text="hip 36 a").first.click()
+    user.answered()
+    assert user.link()["joint.ball_radius"] == "14.0"
+    page.get_by_label("Compare hip 36 a copy").check()
+    does(user, "compare")
+    compared = user.link()
+    assert (compared["view"], compared["beside1.name"]) == ("compare", "hip 36 a copy")
+    assert (compared["beside1.joint.ball_radius"], compared["beside1.joint.clearance"]) == ("18.0", "0.15")
+    page.go_back()
+    page.wait_for_function("!location.search.includes('beside1')")
+    user.answered()
+
+    with page.expect_download() as coming:
+        page.locator(".files button", has_text="TOML").click()
+    assert coming.value.suggested_filename == "hip-36-a.toml"
+    with page.expect_download() as coming:
+        page.locator("[data-design=save]").click()
+    assert coming.value.suggested_filename == "designs.toml"
+    saved = tmp_path / "designs.toml"
+    coming.value.save_as(saved)
+    assert [design["name"] for design in tomllib.loads(saved.read_text("utf-8"))["design"]] == names(user)
+
+    does(user, "remove")
+    assert names(user) == ["hip 36 a copy", "from the other window"]
+    page.reload()
+    user.answered()
+    page.locator("#designs summary").click()
+    assert names(user) == ["hip 36 a copy", "from the other window"]
+    page.locator("#joint-file").set_input_files(saved)
+    page.locator("#design-list button[aria-current]", has_text="hip 36 a").wait_for()
+    user.answered()
+    assert names(user) == ["hip 36 a copy", "from the other window", "hip 36 a"]  # two were still there
+    assert user.link()["name"] == "hip 36 a"
+
+
+def test_a_refused_number_stays_in_its_box_with_the_reason(user):
+    page = user.open().page
+    box = user.types("ball_radius", "-5")
+    error = page.locator("#error-ball_radius")
+    error.wait_for()
+    assert error.text_content() == "Head diameter must be positive, got -5 mm; 28 mm stays in use"
+    user.types("clearance", "0,3")
+    user.answered()
+    assert box.input_value() == "-5"
+    assert (box.get_attribute("aria-invalid"), box.get_attribute("aria-describedby")) == ("true", "error-ball_radius")
+    assert user.link()["joint.ball_radius"] == "14.0"
+    box.fill("")
+    box.press("Enter")
+    error.wait_for(state="hidden")
+    assert box.input_value() == "28"
+    box.press("ArrowUp")
+    user.answered()
+    assert user.link()["joint.ball_radius"] == "14.1"
+    sliders = page.locator(".side input[type=range]:visible")
+    assert {slider.get_attribute("tabindex") for slider in sliders.all()} == {"-1"}

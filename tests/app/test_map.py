@@ -18,7 +18,7 @@ pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.pictures import svg
 from ballsocket.app.pictures.contour_map import MapPlane
 from ballsocket.app.session import Page
-from ballsocket.app.state.screen import AXES, START, MapAxis, read_link
+from ballsocket.app.state.screen import AXES, START, MapAxis
 from ballsocket.app.views.design_map import view as map_view
 from ballsocket.app.views.design_map.worker import catalogue_sizes, mapped, models_of
 from ballsocket.app.widgets.limit_rows import LimitRows, present_value
@@ -259,10 +259,6 @@ def test_a_picked_point_is_in_the_link_and_leaves_with_its_axes():
     assert part(again, "point") == part(page, "point")
     edits(again, "map.up", "clearance")
     assert again.screen.picked is None
-    with pytest.raises(ValueError, match="two numbers with a comma"):
-        read_link({"picked": ["30"]})
-    with pytest.raises(ValueError, match="two finite numbers"):
-        read_link({"picked": ["30,nan"]})
     assert "the point of the map: " in part(Page("view=map&preset=hip-28&picked=46,-300"), "point")
 
 

@@ -1,7 +1,6 @@
-"""The explorer's page without a browser: what goes wrong inside is said on it."""
+"""The explorer's page without a browser: its messages, files, layers of a socket, and designs that are compared."""
 
 import re
-from html import unescape
 from itertools import product
 
 import pytest
@@ -15,38 +14,14 @@ pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
 from ballsocket.app import server as serve
 from ballsocket.app.session import Page
-from ballsocket.app.view import make_file
 from ballsocket.app.views.contact.view import Press
 from ballsocket.app.views.design_map.worker import mapped
+from ballsocket.app.widgets.joint_fields import layers_edited
+from ballsocket.files.joint_file import JointFile, parse_joint
 from ballsocket.files.joint_toml import toml_of
-
-
-def test_a_view_that_fails_says_so_and_is_logged(monkeypatch, caplog):
-    page = Page("")
-
-    def show(self, screen):
-        raise RuntimeError("no <luck>")
-
-    monkeypatch.setattr(Press, "show", show)
-    page.ask(shown=("exact",))
-    assert "This cannot be shown: no &lt;luck&gt;" in trouble(page)
-    assert "a view failed" in caplog.text
-
-
-def test_a_file_that_cannot_be_made_says_why():
-    page = Page("view=judge")
-    assert "file" not in does(page, "save", kind="CSV")
-    assert "press 'Run finite elements' first" in unescape(trouble(page))
-
-
-def test_what_does_not_change_is_not_shown_again(monkeypatch):
-    page, shown = Page(""), []
-    monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen))
-    page.ask(view="press")
-    assert not shown
-    page.ask(size="radius")
-    assert [screen.size for screen in shown] == ["radius"]
-
+from ballsocket.problem import Support
+from ballsocket.problem.cup import Cup
+from ballsocket.reports.check_table import checks_of
 
 LOADS = ("force=500", "indentation=0.01", "half_angle=20")
 EACH_ONCE = [(preset, LOADS[number % 3]) for number, preset in enumerate(bs.joints)]
@@ -61,6 +36,14 @@ def test_every_preset_can_be_seen_under_every_load(preset, load):
         assert page.view.document(page.screen).rows()
 
 
+@pytest.mark.parametrize("link", ["load.force=1e-320", "view=compare&load.force=0&beside1.preset=hip-36"])
+def test_the_smallest_loads_that_a_link_can_state_are_shown(link, caplog):
+    page = Page(f"{link}&preset=hip-28")
+    assert trouble(page) == ""
+    assert page.view.document(page.screen).rows()
+    assert not caplog.records
+
+
 @pytest.mark.parametrize(("angle", "unit", "factor"), [("degrees", "°", 57.29577951308232), ("radians", "rad", 1.0)])
 def test_a_map_of_angles_has_the_unit_that_is_chosen(angle, unit, factor):
     page = Page(f"view=map&quantity=half_angle&angle={angle}&preset=hip-28")
@@ -70,20 +53,11 @@ def test_a_map_of_angles_has_the_unit_that_is_chosen(angle, unit, factor):
     assert f"Minimum of the half angle: <b>{least:.4g}{gap}{unit}</b>" in page.channel.shown_value("#map-note")
 
 
-def test_a_load_of_zero_is_compared_without_shares():
-    page = Page("view=compare&preset=hip-28&load.force=0&beside1.preset=hip-36")
-    assert trouble(page) == ""
-    assert page.view.document(page.screen).rows()
-
-
 def test_what_is_too_long_for_a_link_does_not_come_on_the_screen():
     page = Page("")
     before = page.screen
-    does(
-        page,
-        "upload",
-        text='name = "' + "€" * 999 + '"\n' + toml_of(before.file).partition("source")[2].partition("\n")[2],
-    )
+    unnamed = toml_of(before.file).partition("source")[2].partition("\n")[2]
+    does(page, "upload", text=f'name = "{"€" * 999}"\n{unnamed}')
     assert page.screen == before
     assert "a link to this would be longer than 8000 characters" in trouble(page)
 
@@ -98,15 +72,17 @@ def test_names_that_are_formulas_elsewhere_are_text_in_files():
     assert saved(page, "PNG").startswith(b"\x89PNG")
 
 
-def test_a_port_that_is_none_is_refused():
-    with pytest.raises(ValueError, match="port = 70000 is not allowed: a port is 0 to 65535"):
-        serve.server(70000)
-
-
-@pytest.mark.parametrize("address", ["nowhere.invalid", "a" * 300])
-def test_an_address_that_is_none_is_refused(address):
-    with pytest.raises(ValueError, match="address = 'nowhere.invalid' is not allowed|address = 'aaa.* is not allowed"):
-        serve.server(0, address)
+@pytest.mark.parametrize(
+    ("where", "sentence"),
+    [
+        ((70000,), "port = 70000 is not allowed: a port is 0 to 65535"),
+        ((0, "nowhere.invalid"), "address = 'nowhere.invalid' is not allowed"),
+        ((0, "a" * 300), "address = 'aaa.* is not allowed"),
+    ],
+)
+def test_a_port_or_an_address_that_is_none_is_refused(where, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        serve.server(*where)
 
 
 def test_a_map_is_drawn_and_clicked_in_the_unit_that_its_axis_names():
@@ -131,42 +107,120 @@ def test_the_exact_curve_lies_below_those_through_which_it_can_be_seen():
     assert set(re.findall('data-name="([^"]+)"', page.channel.shown_value("#press-charts"))) == {"exact", "hertz"}
 
 
-def test_only_what_has_changed_is_sent():
-    page = Page("")
+def test_only_what_has_changed_is_shown_and_sent(monkeypatch):
+    page, shown = Page(""), []
     answer = edits(page, "load", 2900)
     assert answer["=load"]["value"] == 2900
     assert "data-value='2900.0'" in answer["#press-numbers"]
     assert not {"=clearance", "order", "view", "#trouble"} & set(answer)
     assert set(edits(page, "load", 2900)) == {"n", "question"}
+    monkeypatch.setattr(Press, "show", lambda self, screen: shown.append(screen.size))
+    page.ask(view="press")
+    page.ask(size="radius")
+    assert shown == ["radius"]
 
 
-@pytest.mark.parametrize(
-    ("text", "meant"), [("0,2", 0.2), ("0.2", 0.2), (" 0,2 mm", 0.2), ("200 um", 0.2), (",2", 0.2), (0.2, 0.2)]
-)
-def test_a_number_is_understood_as_people_write_it(text, meant):
+@pytest.mark.parametrize("text", ["0,2", "0.2", " 0,2 mm", "200 um", ",2", 0.2])
+def test_a_number_is_understood_as_people_write_it(text):
     page = Page("size=radius")
     edits(page, "clearance", text)
-    assert trouble(page) == ""
-    assert page.screen.file.joint.clearance == pytest.approx(meant, rel=1e-12)
+    assert page.screen.file.joint.clearance == pytest.approx(0.2, rel=1e-12)
 
 
 @pytest.mark.parametrize("view", ["press", "compare"])
-def test_a_report_has_the_joint_its_inputs_and_no_machine(view):
-    name, page = make_file(Page(f"view={view}").seen(), "HTML")
-    text = page.decode()
-    assert name.endswith(".html")
+def test_files_have_the_joint_and_reports_its_inputs_and_no_machine(view):
+    page = Page(f"view={view}&preset=hip-32&load.force=2500")
+    text = saved(page, "HTML").decode()
     for part in ("Drawing", "Inputs", "head diameter", "SHA-256", "In the explorer: <code>/?"):
         assert part in text, part
     assert ("<span class='holds'>Passes: " in text) == (view == "press")
+    assert "data:image/png;base64" in text
     assert "localhost" not in text
     assert "http" not in text.replace("http://www.w3.org", "")
+    assert saved(page, "PNG").startswith(b"\x89PNG")
+    assert b"<svg" in saved(page, "SVG")
+    assert parse_joint(saved(page, "TOML"), "saved") == JointFile(bs.joints["hip-32"], {"force": 2500.0})
 
 
-def test_a_refusal_goes_with_the_next_change():
-    page = Page("view=judge")
-    assert edits(page, "judge.arc_of_cover", "20")["reset"]
-    assert "20" in trouble(page)
-    assert page.screen == Page("view=judge").screen
-    edits(page, "judge.arc_of_cover", "150")
-    assert trouble(page) == ""
-    assert page.channel.shown_value("=judge.arc_of_cover")["value"] == pytest.approx(150)
+HIP = "preset=hip-28&load.force=3000"
+
+
+def test_a_backing_is_built_from_bone_to_shell():
+    page = Page(HIP)
+    page._refresh()
+    edits(page, "behind.add", "titanium")
+    edits(page, "behind.add", "bone-cement")
+    shell, cement = page.screen.file.joint.backing
+    assert (shell.material, cement.material) == (bs.TITANIUM, bs.BONE_CEMENT)
+    assert shell.thickness == cement.thickness == 3.0
+    edits(page, "behind.1", "cancellous-bone")
+    edits(page, "layer1", "8")
+    edits(page, "behind.support", "free")
+    joint = page.screen.file.joint
+    assert joint.backing[1] == bs.Layer(thickness=8.0, material=bs.CANCELLOUS_BONE)
+    assert (joint.support, joint.name, joint.source) == (Support.FREE, "hip-28 (changed)", "")
+    assert Page(page.channel.shown_value("link")).screen == page.screen
+    expected = bs.Exact().press(joint, force=3000.0).max_pressure
+    assert f"{float(expected):.4g}" in page.channel.shown_value("#press-numbers")
+    edits(page, "behind.0", "away")
+    edits(page, "behind.0", "away")
+    joint = page.screen.file.joint
+    assert joint == bs.joints["hip-28"]  # nothing is left to be free, or to be changed
+    assert "behind.0" not in page.channel.shown_value("order")
+
+
+def test_a_wall_of_layers_ends():
+    file = JointFile(bs.joints["hip-28"], {"force": 3000.0})
+    for _ in range(20):
+        file = layers_edited(file, "add", "titanium")
+    assert len(file.joint.backing) == 20
+    with pytest.raises(ValueError, match="'titanium' is one layer too many: at most 20"):
+        layers_edited(file, "add", "titanium")
+
+
+def test_joints_are_compared_with_the_one_that_is_chosen():
+    page = Page(f"view=compare&{HIP}&beside1.preset=hip-36&beside2.preset=hip-32")
+    assert "the difference from hip-36" in page.channel.shown_value("#compare-note")
+    options = page.channel.shown_value("=compare.base")["options"]
+    assert options == [["0", "this design"], ["1", "hip-36"], ["2", "hip-32"]]
+    edits(page, "compare.base", "0")
+    assert "the difference from this design" in page.channel.shown_value("#compare-note")
+    mine, other = (bs.Exact().press(bs.joints[name], force=3000.0).max_pressure for name in ("hip-28", "hip-36"))
+    table = page.channel.shown_value("#compare-table")
+    assert f"{float(other):.4g}" in table
+    assert f"{100 * (other / mine - 1):+.0f} %" in table
+    assert "base=0" in page.channel.shown_value("link")
+    assert Page(f"view=compare&{HIP}").screen.base == "1"  # nothing has been chosen by looking
+
+
+def test_a_base_remains_the_same_design_when_another_is_removed():
+    page = Page(f"view=compare&{HIP}&beside1.preset=hip-36")
+    edits(page, "compare.preset", "hip-32")
+    edits(page, "compare.base", "2")
+    edits(page, "compare.remove", "hip-36")
+    assert "the difference from hip-32" in page.channel.shown_value("#compare-note")
+    edits(page, "compare.remove", "hip-32")
+    assert page.screen.beside == ()
+    assert "the difference from hip-36" in page.channel.shown_value("#compare-note")  # the example
+    edits(page, "compare.keep", True)
+    assert page.screen.beside == (page.screen.file,)
+
+
+def test_six_designs_are_compared_by_the_checks_of_contact():
+    """The von Mises stress of the checks is that of the model itself, as in Contact."""
+    names = [name for name in bs.joints if name not in ("hip-28", "hess-forsbach")][:6]
+    beside = "&".join(f"beside{number}.preset={name}" for number, name in enumerate(names, start=1))
+    page = Page(f"view=compare&{HIP}&{beside}")
+    assert page.channel.shown_value("=compare.base")["options"][-1][0] == "6"
+    table = page.channel.shown_value("#compare-table")
+    contact = bs.Exact().press(page.screen.file.joint, force=3000.0)
+    (check,) = [
+        row for row in checks_of(contact, Cup(), float(contact.von_mises)) if "stress in the liner" in row.title
+    ]
+    row = re.search(rf"<th scope='row'>{check.title} / {check.limit}</th><td class='\w*'>(.*?)</td>", table)
+    assert row[1] == f"✓ {100 * check.ratio:.0f} %"
+    does(page, "choose", name="view", value="press")
+    assert f"{100 * check.ratio:.0f} %" in page.channel.shown_value("#press-numbers")
+    does(page, "choose", name="view", value="compare")
+    edits(page, "compare.keep", True)
+    assert "6 designs are compared with this one already" in trouble(page)

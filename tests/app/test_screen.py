@@ -1,5 +1,7 @@
-"""What is on the explorer's screen, as a link and as a joint file: what goes in comes out."""
+"""The screen as a link, as a joint file and as a session file of designs: what goes in comes out."""
 
+import json
+import tomllib
 from dataclasses import replace
 from math import inf, pi
 from urllib.parse import parse_qs
@@ -17,18 +19,13 @@ from ballsocket.problem.presets import materials
 
 pytest.importorskip("tomli_w")
 pytest.importorskip("xarray")
-from ballsocket.app.state.screen import (
-    ANGLES,
-    MAP_MODELS,
-    SIZES,
-    START,
-    THEMES,
-    VIEWS,
-    MapAxis,
-    Screen,
-    link_of,
-    read_link,
-)
+from ballsocket.app.state import screen as screen_module
+from ballsocket.app.state.designs import MAX_DESIGNS, file_stem, read_upload, session_text
+from ballsocket.app.state.screen import START, MapAxis, Screen, link_of, read_link
+from ballsocket.files.joint_file import read_joint
+from ballsocket.files.toml import MAX_FILE_SIZE
+
+from ..places import EXAMPLES
 
 
 def screen_with(query="preset=hip-28", **changes):
@@ -36,16 +33,13 @@ def screen_with(query="preset=hip-28", **changes):
     return replace(read_link(parse_qs(query)), **changes)
 
 
-REST = "joint.clearance=1&joint.liner_thickness=2&liner.material=pom"
 lengths = st.floats(1e-3, 1e3)
 names = st.text(st.characters(exclude_categories=("Cc", "Cs")), max_size=8)
-presets = st.sampled_from(list(materials.values()))
+presets, moduli = st.sampled_from(list(materials.values())), st.floats(1.0, 1e6)
 made_materials = st.one_of(
     presets,
-    st.builds(bs.Material, young=st.floats(1.0, 1e6), poisson=st.floats(-0.9, 0.5)),
-    st.builds(
-        lambda one, young: replace(one, young=young), st.sampled_from(list(materials.values())), st.floats(1.0, 1e6)
-    ),
+    st.builds(bs.Material, young=moduli, poisson=st.floats(-0.9, 0.5)),
+    st.builds(lambda one, young: replace(one, young=young), presets, moduli),
 )
 layers = st.builds(bs.Layer, thickness=lengths, material=made_materials)
 made_joints = st.builds(
@@ -80,42 +74,39 @@ made_files = st.builds(JointFile, made_joints, loads, cups, aims)
 axes = st.sampled_from([("ball_radius", "liner_thickness"), ("clearance", "force"), ("liner_poisson", "outer_radius")])
 
 
-ANGLES_OF_CUP = ("arc_of_cover", "inclination", "anteversion")
-
-
 @st.composite
 def screens(draw):
     ends = st.tuples(lengths, lengths).filter(lambda pair: pair[0] < pair[1])
     across, up = (MapAxis(**dict(zip(("low", "high"), draw(ends), strict=True)), name=name) for name in draw(axes))
     return Screen(
-        view=draw(st.sampled_from(VIEWS)),
+        view=draw(st.sampled_from(screen_module.VIEWS)),
         file=draw(made_files),
         beside=tuple(draw(st.lists(made_files, max_size=2))),
         shown=tuple(draw(st.lists(st.sampled_from(list(bs.catalogue)), max_size=3, unique=True))),
         answered_by=draw(st.sampled_from(list(bs.catalogue))),
         across=across,
         up=up,
-        map_model=draw(st.sampled_from(MAP_MODELS)),
-        angle=draw(st.sampled_from(ANGLES)),
-        size=draw(st.sampled_from(SIZES)),
-        theme=draw(st.sampled_from(THEMES)),
+        map_model=draw(st.sampled_from(screen_module.MAP_MODELS)),
+        angle=draw(st.sampled_from(screen_module.ANGLES)),
+        size=draw(st.sampled_from(screen_module.SIZES)),
+        theme=draw(st.sampled_from(screen_module.THEMES)),
     )
 
 
 def near(one, other):
     """Angles turn to degrees and back; all else is the same."""
-    (kind, value), (_, again) = *one.load.items(), *other.load.items()
+    angles = {name: getattr(one.cup, name) for name in ("arc_of_cover", "inclination", "anteversion")}
     return (
-        one.joint == other.joint
-        and one.aim == other.aim
-        and kind in other.load
-        and again == pytest.approx(value, rel=1e-14)
-        and (one.cup.interface, one.cup.side, one.cup.chamfer)
-        == (other.cup.interface, other.cup.side, other.cup.chamfer)
-        and all(
-            getattr(other.cup, angle) == pytest.approx(getattr(one.cup, angle), rel=1e-14) for angle in ANGLES_OF_CUP
-        )
+        one == replace(other, load=one.load, cup=replace(other.cup, **angles))
+        and other.load == pytest.approx(one.load, rel=1e-14)
+        and {name: getattr(other.cup, name) for name in angles} == pytest.approx(angles, rel=1e-14)
     )
+
+
+def assert_same(screen, again):
+    assert near(screen.file, again.file)
+    assert all(near(*pair) for pair in zip(screen.beside, again.beside, strict=True))
+    assert replace(screen, file=START.file, beside=()) == replace(again, file=START.file, beside=())
 
 
 @given(made_files)
@@ -125,20 +116,13 @@ def test_a_joint_file_that_is_written_is_read(file):
 
 @given(screens())
 def test_a_link_leads_back(screen):
-    again = read_link(parse_qs(link_of(screen), keep_blank_values=True))
-    assert near(screen.file, again.file)
-    assert all(near(*pair) for pair in zip(screen.beside, again.beside, strict=True))
-    assert replace(screen, file=START.file, beside=()) == replace(again, file=START.file, beside=())
+    assert_same(screen, read_link(parse_qs(link_of(screen), keep_blank_values=True)))
 
 
 def test_a_page_without_curves_has_a_link_that_can_be_read():
     """A reload lost the design after the last curve was unticked."""
     screen = replace(START, shown=())
     assert read_link(parse_qs(screen.link, keep_blank_values=True)) == screen
-
-
-def test_a_load_alone_presses_the_joint_of_the_start():
-    assert read_link({"load.force": ["5000"]}) == replace(START, file=replace(START.file, load={"force": 5000.0}))
 
 
 def test_a_massive_socket_is_written():
@@ -150,6 +134,7 @@ def test_a_massive_socket_is_written():
 def test_presets_make_short_links():
     assert link_of(START) == "preset=hip-28&load.force=3000.0&theme=light"
     assert read_link(parse_qs(link_of(START))) == START
+    assert read_link({"load.force": ["5000"]}) == replace(START, file=replace(START.file, load={"force": 5000.0}))
 
 
 def test_arrays_are_no_joint_file():
@@ -158,24 +143,24 @@ def test_arrays_are_no_joint_file():
         toml_of(JointFile(many, {}))
 
 
+REST = "joint.clearance=1&joint.liner_thickness=2&liner.material=pom"
+
+
 @pytest.mark.parametrize(
     ("link", "message"),
     [
         ("view=pres", "'pres' as view is not known; did you mean 'press'?"),
         ("frob=2", "'frob' in the link is not known"),
         ("joint.ball_radiuss=3", "'ball_radiuss' in .joint. is not known; did you mean 'ball_radius'?"),
-        (
-            "joint.ball_radius=-1&joint.clearance=1&joint.liner_thickness=2&liner.material=pom",
-            "ball_radius = '-1' is not",
-        ),
+        (f"joint.ball_radius=-1&{REST}", "ball_radius = '-1' is not"),
         ("preset=hip-29", "'hip-29' as preset is not known; did you mean"),
         ("preset=hip-28&liner.young=3", "'liner' beside a preset is not known"),
         ("backing.thickness=2", "a layer is 'backing.0.thickness' and so on"),
         ("limit=3", "'3' is not a limit"),
         ("limit=frob<=3", "'frob' among what can be limited is not known"),
         ("joint=2", "joint = '2' must be a table"),
-        ("joint.ball_radius=" + "1" * 7000 + "!", "joint.ball_radius|a length|the liner needs"),
         ("backing.1111111111.thickness=2", "a layer is 'backing.0.thickness' and so on"),
+        ("joint.ball_radius=" + "1" * 7000 + "!", "joint.ball_radius|a length|the liner needs"),
         ("a" * 7900 + "=1", "'aaaa.* in the link is not known"),
         ("limit=force<=1&" * 21, "a map has at most 20 limits, got 21"),
         ("across=force=" + " .." * 1500 + "%0a", "is not a range"),
@@ -187,15 +172,116 @@ def test_arrays_are_no_joint_file():
         ("load.force=1&load.force=2", "'load.force' is given 2 times in the link"),
         ("load.force=1&load.indentation=2&preset=hip-28", "one load is needed, got force, indentation"),
         ("shown=exact,frob", "'frob' as shown is not known"),
+        ("picked=30", "two numbers with a comma"),
+        ("picked=30,nan", "two finite numbers"),
         ("map_model=fem", "'fem' as map_model is not known"),
         ("name=" + "x" * 9000, "the link is longer than 8000 characters"),
         ("joint.ball_radius=1e999", "ball_radius = '1e999' is too large a number"),
-        (
-            "joint.ball_radius=__import__('os')&joint.clearance=1&joint.liner_thickness=2&liner.material=pom",
-            "is not a length",
-        ),
+        (f"joint.ball_radius=__import__('os')&{REST}", "is not a length"),
     ],
 )
 def test_a_bad_link_is_one_sentence(link, message):
     with pytest.raises(ValueError, match=message):
         read_link(parse_qs(link))
+
+
+EXAMPLE = EXAMPLES / "designs.toml"
+JOINT = (
+    '[[design]]\njoint = {ball_radius = "14 mm", clearance = 0.1, liner_thickness = 5}\nliner = {material = "pom"}\n'
+)
+
+
+@given(st.lists(screens(), min_size=1, max_size=3))
+def test_a_session_file_brings_every_design_back(designs):
+    again = read_upload(session_text([link_of(screen) for screen in designs]), START)
+    for screen, read in zip(designs, again, strict=True):
+        assert_same(replace(screen, theme="light"), read)
+
+
+def test_a_session_file_is_no_joint_file():
+    with pytest.raises(ValueError, match=r"^designs.toml: one joint is needed, .* session file with 2 of"):
+        read_joint(EXAMPLE)
+
+
+def test_the_example_has_two_hips_and_the_settings_of_their_pages_as_toml_and_as_json():
+    text = EXAMPLE.read_text(encoding="utf-8")
+    small, large = read_upload(text, START)
+    assert read_upload(json.dumps(tomllib.loads(text)), START) == [small, large]
+    assert [float(screen.file.joint.ball_radius) for screen in (small, large)] == [14.0, 18.0]
+    assert (small.view, large.view, large.units) == ("press", "map", "imperial")
+    assert [limit.name for limit in large.limits] == ["outer_diameter", "max_pressure"]
+
+
+def test_a_joint_file_keeps_the_page_and_names_no_picture_of_the_server():
+    text = '[joint]\nball_radius = 18\nclearance = 0.1\nliner_thickness = 6\n[liner]\nmaterial = "pom"\n'
+    screen = read_link(parse_qs("preset=hip-28&load.force=900&units=imperial"))
+    (read,) = read_upload(f'{text}[report]\nlogo = "/etc/secret.png"\ncustomer = "A"\n', screen)
+    assert (read.units, read.file.load, read.file.report.logo) == ("imperial", {"force": 900.0}, "")
+    assert read.file.joint.liner == bs.POM
+    assert read_link(parse_qs(link_of(read), keep_blank_values=True)) == read
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("", "the file is empty"),
+        ("{", "the file is not JSON"),
+        ("[" * 50_000, "the file is not TOML|nested"),
+        ('{"a":' * 19_000, "the file is not JSON"),
+        ("x" * (MAX_FILE_SIZE + 1), f"the file is larger than {MAX_FILE_SIZE} bytes"),
+        ("design = 3", r"the file: design = 3 must be tables \[\[design\]\]"),
+        ('{"design": []}', f"the file: a session has 1 to {MAX_DESIGNS} designs, got 0"),
+        ("[[design]]\n" * (MAX_DESIGNS + 1), f"a session has 1 to {MAX_DESIGNS} designs, got {MAX_DESIGNS + 1}"),
+        (f"name = 'all'\n{JOINT}", "'name' in a session file is not known"),
+        ("[[design]]\nname = 'a'\n", "the file: design 1 .'a'.: "),
+        (f"{JOINT}\n[[design]]\njoint = 3\n", "the file: design 2: joint = 3 must be a table"),
+        (JOINT.replace("14 mm", "-14 mm"), "design 1: ball_radius = '-14 mm' is not allowed"),
+        (f"{JOINT}page = 3", r"design 1: page = 3 must be a table"),
+        (f"{JOINT}page = {{vew = 'map'}}", r"design 1: 'vew' in \[page\] is not known; did you mean 'view'"),
+        (f"{JOINT}page = {{view = 'pres'}}", "design 1: 'pres' as view is not known"),
+        (f"{JOINT}page = {{view = ['map', 'cup']}}", r"design 1: 'view' is given 2 times in \[page\]"),
+        (f"{JOINT}page = {{load = {{force = 3}}}}", r"design 1: 'load' in \[page\] belongs to the design"),
+        (f"{JOINT}page = {{use = {{cycle = 'jog'}}}}", "design 1: 'jog' as cycle is not known"),
+    ],
+)
+def test_a_bad_session_file_is_one_sentence(text, sentence):
+    with pytest.raises(ValueError, match=sentence) as refused:
+        read_upload(text, START)
+    assert len(str(refused.value)) < 400
+
+
+def test_what_could_not_be_read_is_not_written():
+    link = link_of(replace(START, file=replace(START.file, joint=replace(START.file.joint, name="ü" * 900))))
+    with pytest.raises(ValueError, match=f"the session file would be larger than {MAX_FILE_SIZE} bytes"):
+        session_text([link + "&ask.context=" + "y" * 999] * MAX_DESIGNS)
+    with pytest.raises(ValueError, match=f"a session has 1 to {MAX_DESIGNS} designs, got 0"):
+        session_text([])
+    with pytest.raises(ValueError, match="'frob' in the link is not known"):
+        session_text(["frob=1"])
+
+
+@pytest.mark.parametrize(
+    ("name", "stem"),
+    [
+        ("hip 36 a", "hip-36-a"),
+        ("hip-28 (changed)", "hip-28-changed"),
+        ("../../etc/passwd", "etc-passwd"),
+        ("a<b>:c|d?*", "a-b-c-d"),
+        ("Hüfte 3", "Hüfte-3"),
+        ("nul.txt", "design-nul.txt"),
+        ("", "ballsocket"),
+    ],
+)
+def test_a_file_has_the_name_of_its_design(name, stem):
+    assert file_stem(name) == stem
+
+
+@pytest.mark.long
+@given(st.text(max_size=100))
+def test_a_file_name_is_one_that_every_system_takes(name):
+    stem = file_stem(name)
+    assert stem
+    assert len(stem.encode()) < 250
+    assert not set(stem) & set('<>:"/\\|?*\0 ')
+    assert stem[0] not in ".-"
+    assert stem[-1] not in ". "
