@@ -1,6 +1,7 @@
 """One server and one browser for all tests of a process; people who use them."""
 
 import asyncio
+from types import SimpleNamespace
 from urllib.parse import urlsplit
 
 import pytest
@@ -69,23 +70,29 @@ def user(profile, address):
 
 @pytest.fixture
 def at_once(monkeypatch):
-    """Do the work of a process here and now, and keep what it tells; films and maps of orientations are not made."""
-    pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-    from ballsocket.app.jobs import Job
-    from ballsocket.app.running import RunFinished, RunRefused
-
-    heard = []
+    """Work of a process is done here and now, except that of the functions in `left`; keys and news of all work."""
+    jobs = pytest.importorskip("ballsocket.app.jobs", exc_type=ImportError)
+    works = SimpleNamespace(asked=[], news=[], left={"simulate_film", "map_orientations"})
 
     def ask(self, key, work):
-        if work.func.__name__ in ("simulate_film", "map_orientations"):
+        works.asked.append(key)
+        if work.func.__name__ in works.left:
             return
         try:
-            self._heard(key, RunFinished(work(lambda news: heard.append(news) or self._heard(key, news))))
+            self._heard(key, jobs.RunFinished(work(lambda news: works.news.append(news) or self._heard(key, news))))
         except ValueError as error:
-            self._heard(key, RunRefused(why=str(error)))
+            self._heard(key, jobs.RunRefused(why=str(error)))
 
-    monkeypatch.setattr(Job, "ask", ask)
-    return heard
+    monkeypatch.setattr(jobs.Job, "ask", ask)
+    return works
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Keys of the work that was asked for, none of which is done."""
+    jobs, keys = pytest.importorskip("ballsocket.app.jobs", exc_type=ImportError), []
+    monkeypatch.setattr(jobs.Job, "ask", lambda self, key, work: keys.append(key))
+    return keys
 
 
 @pytest.fixture

@@ -34,20 +34,6 @@ LINK = "view=cup&preset=hip-36&cup.inclination=45&cup.anteversion=15&load.force=
 JOINT = bs.joints["hip-36"]
 
 
-@pytest.fixture
-def at_once(monkeypatch):
-    """A bore is set up here and now, in place of in a process; the map of orientations is only asked for."""
-    asked = []
-
-    def ask(self, key, work):
-        asked.append(key[0])
-        if key[0] == "cup":
-            self._heard(key, RunFinished(work(lambda news: self._heard(key, news))))
-
-    monkeypatch.setattr(Job, "ask", ask)
-    return asked
-
-
 def test_the_view_says_what_the_sphere_says(at_once):
     page = opened(LINK)
     contact = bs.Sphere(cup=page.screen.file.cup).press(JOINT, force=3000.0)
@@ -71,7 +57,7 @@ def test_the_view_says_what_the_sphere_says(at_once):
     assert checks_html(checks_of(contact, page.screen.file.cup), page.screen.reading.with_unit) in report
     listed = re.sub("<[^>]*>", "", report.split(">Contact in the cup<")[1].split("</table>")[0])
     assert "_" not in listed
-    assert at_once[-1] == "cup-stood"  # the orientations follow
+    assert at_once.asked[-1][0] == "cup-stood"  # the orientations follow
 
     edits(page, "cup.inwards", "20")
     way = page.screen.file.aim["direction"]
@@ -105,8 +91,7 @@ def test_an_orientation_of_zero_is_shown_and_not_replaced():
     assert ">anterior</text>" not in pressed_bore(default)
 
 
-def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(monkeypatch):
-    monkeypatch.setattr(Job, "ask", lambda *words: None)
+def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(asked):
     page = opened(LINK)
     assert page.channel.shown_value("=cup.tilt")["hidden"]
     assert not page.channel.shown_value("=cup.inclination")["hidden"]
@@ -123,29 +108,13 @@ def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(monkeypatch):
     assert page.screen.file.aim == {}
 
 
-def test_work_can_be_stopped_and_begun_again(monkeypatch):
-    asked, ended = [], []
-    monkeypatch.setattr(worker, "_are_rings_cached", lambda joint, cup: False)
-    monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key[0]))
-    monkeypatch.setattr(Job, "stop", lambda self: ended.append(True))
-    page = opened(LINK.replace("hip-36", "hip-32"))
-    edits(page, "cup.run", False)
-    assert ended
-    assert page.channel.shown_value("=cup.run")["words"] == "Cancelled."
-    count = len(asked)
-    edits(page, "cup.run", True)
-    assert asked[count:] == ["cup"]
-
-
-def test_a_bore_whose_rings_are_on_disk_is_pressed_at_once(monkeypatch):
+def test_a_bore_whose_rings_are_on_disk_is_pressed_at_once(monkeypatch, asked):
     bs.Sphere(cup=Cup()).press(JOINT, force=1.0)
     monkeypatch.setattr(worker, "RESULTS", ResultStore())
     monkeypatch.setattr(long_view.results, "RESULTS", worker.RESULTS)
-    asked = []
-    monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key[0]))
     page = opened(LINK)
     assert "MPa" in told(page, "cup-numbers")
-    assert set(asked) == {"cup-stood"}
+    assert {name for name, *_ in asked} == {"cup-stood"}
 
 
 def test_a_bore_is_prepared_by_one_process_for_all_who_wait(monkeypatch):

@@ -82,7 +82,6 @@ def test_a_question_is_read_as_it_is_typed():
         ("accuracy", "half", "accuracy"),
         ("friction", "5", "a coefficient of friction is 0 to 2"),
         ("question", "/etc/passwd", "is a path, and words are needed"),
-        ("context", "../../secret.toml", "is a path, and words are needed"),
     ],
 )
 def test_what_is_wrong_with_a_question_is_said_in_the_view(name, value, sentence):
@@ -108,9 +107,7 @@ def test_limits_are_rows():
     assert "did you mean 'max_pressure'" in unescape(trouble(page))
 
 
-def test_a_limit_is_asked_for_before_anything_runs(monkeypatch):
-    asked = []
-    monkeypatch.setattr(Job, "ask", lambda self, key, work: asked.append(key))
+def test_a_limit_is_asked_for_before_anything_runs(asked):
     page = opened(LINK)
     assert "✗ No limit is stated" in told(page, "found")
     edits(page, "evidence.run", True)

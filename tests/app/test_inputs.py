@@ -5,7 +5,6 @@ import pytest
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 pytest.importorskip("tomli_w")
 from ballsocket.app import session
-from ballsocket.app.jobs import Job
 from ballsocket.app.session import Page
 from ballsocket.app.state.screen import START
 from ballsocket.app.widgets.cup_fields import cup_edited, cup_fields
@@ -187,8 +186,7 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
     ],
     ids=lambda value: str(value)[-20:],
 )
-def test_a_value_that_no_input_takes_gets_one_sentence_and_stays_in_its_box(monkeypatch, link, name, value, sentence):
-    monkeypatch.setattr(Job, "ask", lambda *words: None)
+def test_a_value_that_no_input_takes_gets_one_sentence_and_stays_in_its_box(asked, link, name, value, sentence):
     page = Page(link)
     link = page.screen.link
     assert refuses(page, name, value, sentence)

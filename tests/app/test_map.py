@@ -11,8 +11,6 @@ import pytest
 import ballsocket as bs
 from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup
-from ballsocket.reports.unit_systems import Units
-from ballsocket.studies.limits import Limit
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.pictures import svg
@@ -21,8 +19,7 @@ from ballsocket.app.session import Page
 from ballsocket.app.state.screen import AXES, START, MapAxis
 from ballsocket.app.views.design_map import view as map_view
 from ballsocket.app.views.design_map.worker import catalogue_sizes, mapped, models_of
-from ballsocket.app.widgets.limit_rows import LimitRows, present_value
-from ballsocket.app.widgets.reading import Reading
+from ballsocket.app.widgets.limit_rows import present_value
 from ballsocket.core.quantities import QUANTITIES
 
 from .asking import edits, trouble
@@ -55,17 +52,19 @@ def handles(page):
     }
 
 
+def pressure_at(radius, thickness):
+    joint = bs.joints["hip-28"].replace(ball_radius=radius, liner_thickness=thickness)
+    return float(bs.catalogue["tabulated"].press(joint, force=3000.0).max_pressure)
+
+
 def test_contours_and_the_value_under_the_pointer_are_those_of_the_study():
     page, study = Page(LINK), found(Page(LINK)).max_pressure
-    labels = re.findall(
-        r'<text x="([\d.]+)" y="([\d.]+)" text-anchor="middle" class="on">([\d.]+)<', part(page, "picture")
-    )
-    for x, y, words in labels:
-        radius, thickness = on_axes(float(x), float(y) - 4)
-        assert float(study.interp(ball_radius=radius, liner_thickness=thickness)) == pytest.approx(
-            float(words), rel=0.01
-        )
+    label = r'<text x="([\d.]+)" y="([\d.]+)" text-anchor="middle" class="on">([\d.]+)<'
+    labels = [map(float, numbers) for numbers in re.findall(label, part(page, "picture"))]
     assert len(labels) >= 4
+    for x, y, value in labels:
+        radius, thickness = on_axes(x, y - 4)
+        assert study.interp(ball_radius=radius, liner_thickness=thickness) == pytest.approx(value, rel=0.01)
     values = np.array(json.loads(re.search(r'data-values="([^"]+)"', part(page, "picture"))[1]))
     assert values == pytest.approx(study.transpose("liner_thickness", "ball_radius").values[::2, ::2], rel=1e-3)
 
@@ -77,10 +76,7 @@ def test_a_limit_is_moved_by_its_line():
     assert squares[0][0] == "outer radius at most 26 mm"
     assert squares[0][1] + 0.1 + squares[0][2] == pytest.approx(26.0, abs=0.02)
     edits(page, "map.drag", [1, 20.0, 8.0])
-    there = bs.catalogue["tabulated"].press(
-        bs.joints["hip-28"].replace(ball_radius=20.0, liner_thickness=8.0), force=3000.0
-    )
-    assert page.screen.limits[1].high == pytest.approx(float(there.max_pressure), rel=0.01)
+    assert page.screen.limits[1].high == pytest.approx(pressure_at(20.0, 8.0), rel=0.01)
     assert [limit.name for limit in page.screen.limits] == ["outer_radius", "max_pressure", "liner_thickness"]
     assert "limit=max_pressure" in page.channel.shown_value("link")
 
@@ -90,16 +86,19 @@ def test_a_picked_point_is_shown_beside_the_design_and_used_in_one_step():
     edits(page, "map.pick", [15.3, 6.7])
     assert "picked=15.3%2C6.7" in page.channel.shown_value("link")
     assert 'class="picked"' in part(page, "picture")
-    pressure = bs.catalogue["tabulated"].press(
-        bs.joints["hip-28"].replace(ball_radius=15.3, liner_thickness=6.7), force=3000.0
-    )
-    assert f"<td class=''>{pressure.max_pressure:.4g}<small>" in part(page, "point")
+    assert f"<td class=''>{pressure_at(15.3, 6.7):.4g}<small>" in part(page, "point")
+    again = Page(page.channel.shown_value("link"))
+    assert again.screen == page.screen
+    assert (part(again, "point"), part(again, "picture")) == (part(page, "point"), part(page, "picture"))
+    edits(again, "map.up", "clearance")
+    assert again.screen.picked is None
     edits(page, "map.use", True)
     assert (page.screen.view, page.screen.file.joint.ball_radius) == ("map", 15.3)
     assert 'class="picked"' not in part(page, "picture")
     assert "picked" not in page.channel.shown_value("link")
     edits(page, "map.use", True)
     assert "no point of the map is chosen" in trouble(page)
+    assert "the point of the map: " in part(Page("view=map&preset=hip-28&picked=46,-300"), "point")
 
 
 def test_the_design_with_the_smallest_value_is_the_best_of_the_allowed():
@@ -160,32 +159,17 @@ def test_rows_of_limits_are_edited_and_a_refused_row_stays_as_typed():
     edits(page, "map.quantity", "area")  # another change keeps what was typed
     assert page.channel.shown_value("=map.limits")["value"][0][2] == "wide"
     edits(page, "map.limits", [["max_pressure", "<=", ""]])  # a new row starts at the present design
-    present = bs.catalogue["tabulated"].press(bs.joints["hip-28"], force=3000.0).max_pressure
+    present = pressure_at(14.0, 5.0)
     (limit,) = page.screen.limits
     assert present <= limit.high == pytest.approx(present, rel=0.01)
     assert limit.high == float(f"{limit.high:.3g}")
 
 
 def test_a_limit_that_the_joint_does_not_have_is_refused_beside_the_rows():
-    page = Page("view=map&joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=UHMWPE")
+    page = Page(f"view=map&{OWN}")
     answer = edits(page, "map.limits", [["ball_young", "<=", "200000"]])
     assert "has no ball_young" in answer["=map.limits"]["error"]
     assert page.screen.limits == ()
-
-
-def test_rows_go_to_limits_and_back_in_every_unit():
-    reading = Reading(angle="radians", units=Units.IMPERIAL)
-    limits = (
-        Limit(name="half_angle", low=0.6),
-        Limit(name="max_pressure", high=15.0),
-        Limit(name="force", high=3000.0),
-    )
-    input_rows = LimitRows("map.limits", [])
-    rows = input_rows.field(limits, reading)["value"]
-    read = input_rows.read(rows, limits, reading, lambda name: 0.0)
-    assert read is not None
-    for limit, other in zip(limits, read, strict=True):
-        assert (other.low, other.high) == (pytest.approx(limit.low, rel=1e-5), pytest.approx(limit.high, rel=1e-5))
 
 
 def test_the_present_numbers_of_a_design():
@@ -218,15 +202,12 @@ def test_crosses_mark_some_of_the_doubtful_points():
     assert min(places) == pytest.approx(plane.across(40 / 60), abs=0.06)
 
 
-BACKED = (
-    "view=map&joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=UHMWPE"
-    "&backing.0.thickness=3&backing.0.material=titanium&backing.1.thickness=2&backing.1.material=bone-cement"
-    "&load.force=3000&map_model=exact"
-)
+OWN = "joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=UHMWPE"
+BACKING = "backing.0.thickness=3&backing.0.material=titanium&backing.1.thickness=2&backing.1.material=bone-cement"
 
 
 def test_models_that_know_the_joint_are_offered_and_exact_is_one_of_them():
-    offered = models_of(Page(BACKED.replace("view=map&", "")).screen)
+    offered = models_of(Page(f"{OWN}&{BACKING}").screen)
     assert "exact" in offered
     assert "tabulated" not in offered  # its tables have one layer at most
     assert set(models_of(Page(LINK).screen)) >= {"exact", "tabulated", "refined", "plane-layer", "hertz"}
@@ -234,7 +215,7 @@ def test_models_that_know_the_joint_are_offered_and_exact_is_one_of_them():
 
 @pytest.mark.long
 def test_a_backed_joint_is_mapped_by_the_exact_solution():
-    page = Page(BACKED)
+    page = Page(f"view=map&{OWN}&{BACKING}&load.force=3000&map_model=exact")
     assert "Minimum of the largest pressure" in part(page, "note")
     assert "exact" in [name for name, _ in page.channel.shown_value("=map.model")["options"]]
     assert found(page).attrs["model"] == "exact"
@@ -249,25 +230,16 @@ def test_a_map_that_would_take_minutes_is_refused():
     assert page.screen.map_model == "refined"
 
 
-def test_a_picked_point_is_in_the_link_and_leaves_with_its_axes():
-    page = Page("view=map&preset=hip-28&load.force=3000")
-    edits(page, "map.pick", [30.0, 8.0])
-    again = Page(page.channel.shown_value("link"))
-    assert again.screen == page.screen
-    assert again.screen.picked == (30.0, 8.0)
-    assert 'class="picked"' in part(again, "picture")
-    assert part(again, "point") == part(page, "point")
-    edits(again, "map.up", "clearance")
-    assert again.screen.picked is None
-    assert "the point of the map: " in part(Page("view=map&preset=hip-28&picked=46,-300"), "point")
+def test_an_unexpected_failure_of_a_drawing_is_logged_and_a_sentence_and_the_page_is_idle(monkeypatch, caplog):
+    def fail(*words):
+        raise RuntimeError("no <luck>")
 
-
-def test_an_unexpected_failure_of_a_drawing_is_a_sentence_and_the_page_is_idle(monkeypatch):
     page = Page("view=map&preset=hip-28&load.force=3000")
     assert "<svg" in part(page, "picture")
-    monkeypatch.setattr(map_view, "map_picture", lambda *arguments: 1 / 0)
+    monkeypatch.setattr(map_view, "map_picture", fail)
     edits(page, "ball_radius", 32)
-    assert "This cannot be shown: division by zero" in page.channel.shown_value("#trouble")
+    assert "This cannot be shown: no &lt;luck&gt;" in trouble(page)
+    assert "a view failed" in caplog.text
     assert part(page, "picture") == part(page, "note") == ""
     assert page.channel.shown_value("expected") is None
     monkeypatch.undo()
