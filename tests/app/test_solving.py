@@ -1,11 +1,14 @@
-"""A page whose answer takes long: others go on, a process of its own solves it, and there is an end to that."""
+"""Answers that take long: a process of its own solves them, waits its turn, and can be ended."""
 
 import time
+from functools import partial
 
 import pytest
 
 import ballsocket as bs
+from ballsocket.catalogue import judge
 from ballsocket.files.joint_file import JointFile
+from ballsocket.problem.cup import Cup
 
 from ..extent import some
 from .asking import saved
@@ -16,12 +19,15 @@ from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 
 from ballsocket.app import running, solving
 from ballsocket.app.pressing import pressed
+from ballsocket.app.running import Reached, Run, RunFinished, RunRefused
 from ballsocket.app.session import Page
 from ballsocket.app.solving import heavy, solved_curve
 from ballsocket.app.views.contact.view import Press
 from ballsocket.compare import THIN_LINER_RATIO
 from ballsocket.elasticity.exact.model import Exact
 from ballsocket.models.plane_layer import PlaneLayer
+
+HIP = bs.joints["hip-28"]
 
 
 def link(ratio, poisson=0.3, clearance=0.1, **more):
@@ -129,7 +135,7 @@ def test_only_what_is_on_the_screen_is_solved():
     page.ask(file=JointFile(page.screen.file.joint, {"force": 100.0}))
     assert page._slow_presses.job._run is not first
     assert not first._process.is_alive()
-    page.ask(file=JointFile(bs.joints["hip-28"], {"force": 100.0}))
+    page.ask(file=JointFile(HIP, {"force": 100.0}))
     assert not page._slow_presses.job.works
 
 
@@ -144,3 +150,73 @@ def test_a_client_that_only_looks_makes_nothing_work(served, monkeypatch):
     assert not served.pages
     assert not shown
     assert not seen
+
+
+def until_the_end(run):
+    heard, end = [], time.monotonic() + 600
+    while time.monotonic() < end:
+        if (news := run.news()) is not None:
+            heard.append(news)
+        if isinstance(news, RunFinished | RunRefused):
+            return heard
+        time.sleep(0.02)
+    pytest.fail("the run said nothing for ten minutes")
+
+
+def judging(force, **cup):
+    pytest.importorskip("skfem")
+    from ballsocket.app.views.finite_elements.worker import run_finite_elements
+
+    return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup))))
+
+
+@pytest.mark.long
+def test_a_run_answers_what_a_press_answers():
+    *on_the_way, last = until_the_end(judging(3000.0))
+    found = last.value
+    shares = [news.share for news in on_the_way]
+    assert shares == sorted(shares)
+    assert all(isinstance(news, Reached) for news in on_the_way)
+    contact = bs.FiniteElement().press(HIP, force=3000.0)
+    assert found.numbers["max_pressure"] == pytest.approx(contact.max_pressure, rel=1e-3)
+    assert found.exact["max_pressure"] == pytest.approx(bs.Exact().press(HIP, force=3000.0).max_pressure)
+    angle, pressure = found.pressures[judge.name]
+    assert pressure[0] == pytest.approx(contact.pressure(0.0), rel=1e-3)
+    assert angle[-1] == pytest.approx(contact.half_angle, rel=1e-3)
+    assert found.png.startswith(b"\x89PNG")
+    assert b"<svg" in found.svg
+    wide = until_the_end(judging(3e4, arc_of_cover=0.75))[-1].value
+    assert any("rim" in note for note in wide.notes)
+    refused = until_the_end(judging(3000.0, arc_of_cover=0.75, chamfer=9.0))[-1]  # cannot be meshed
+    assert isinstance(refused, RunRefused)
+    assert "chamfer" in refused.why
+
+
+def test_a_run_whose_process_dies_says_so_and_one_that_is_stopped_gives_its_place_back():
+    died, stopped = (Run(callable) for _ in range(2))  # work of an instant: it returns True
+    died.news()
+    died._process.kill()
+    assert "the process ended unexpectedly, perhaps for lack of memory" in until_the_end(died)[-1].why
+    stopped.news()
+    stopped.stop()
+    stopped.stop()
+    assert not stopped._process.is_alive()
+
+
+def test_runs_wait_their_turn_in_the_order_in_which_they_came(monkeypatch):
+    monkeypatch.setattr(running, "QUEUE", running.RunQueue(1))
+    first, second, third = (Run(callable) for _ in range(3))
+    first.news()
+    for run in (second, third):
+        assert run.news().words == "waiting: other computations are running"
+    second.stop()
+    assert isinstance(until_the_end(first)[-1], RunFinished)
+    assert isinstance(until_the_end(third)[-1], RunFinished)
+
+
+def test_a_process_that_cannot_be_started_is_said(monkeypatch):
+    def begin(self):
+        raise OSError(11, "Resource temporarily unavailable")
+
+    monkeypatch.setattr(Run, "_begin", begin)
+    assert Run(callable).news() == RunRefused(why="no process could be started: Resource temporarily unavailable")
