@@ -1,4 +1,7 @@
-"""A browser and a running explorer for tests; on a machine without a browser these tests skip."""
+"""A browser and a running explorer, and somebody who uses them: what they do, and what they see.
+
+On a machine without a browser these tests skip.
+"""
 
 import asyncio
 import os
@@ -6,19 +9,28 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from urllib.parse import parse_qs, urlsplit
 
 import pytest
 
-from .user import WAIT
+import ballsocket as bs
 
+PICTURES = os.environ.get("BALLSOCKET_SCREENSHOTS")
+"""Folder for pictures of the pages; None keeps none."""
+
+WIDE, NARROW = 1280, 390
+WAIT = 90_000
+"""Milliseconds until something that does not happen is taken for a fault: a machine may be slow."""
 ARGUMENTS = ["--no-sandbox", "--disable-gpu", "--disable-background-networking", "--disable-component-update"]
 NEEDED = os.environ.get("BALLSOCKET_BROWSER") == "needed"
 """Set where a browser must be there: then nothing is skipped."""
 
 
 def skip_or_fail(reason):
-    """Skip a test for want of a program; fail where the program is needed."""
     (pytest.fail if NEEDED else pytest.skip)(reason)
 
 
@@ -55,13 +67,6 @@ main()
 
 
 @contextmanager
-def served_explorer(*words):
-    """The address of an explorer in a process of its own."""
-    with explorer_process(*words) as (address, _):
-        yield address
-
-
-@contextmanager
 def explorer_process(*words):
     """The address of an explorer, and its process."""
     process = subprocess.Popen(
@@ -83,3 +88,126 @@ def explorer_process(*words):
     finally:
         process.terminate()
         process.communicate(timeout=90)  # a slow machine may take its time
+
+
+def pressure(preset="hip-28", force=3000.0, **changes):
+    """Largest pressure that the page is to show."""
+    return float(bs.Exact().press(replace(bs.joints[preset], **changes), force=force).max_pressure)
+
+
+@contextmanager
+def served_explorer(*words):
+    """The address of an explorer in a process of its own."""
+    with explorer_process(*words) as (address, _):
+        yield address
+
+
+def expect(locator):
+    """What Playwright waits for."""
+    from playwright.sync_api import expect
+
+    return expect(locator)
+
+
+@contextmanager
+def opened_profile(browser, address, width=WIDE, dark=False, **more):
+    """A browser of one user, who has opened nothing yet."""
+    look = {"viewport": {"width": width, "height": 900}, "color_scheme": "dark" if dark else "light"}
+    profile = browser.new_context(**look, accept_downloads=True, **more)
+    profile.grant_permissions(["clipboard-read", "clipboard-write"], origin=address)
+    profile.set_default_timeout(WAIT)
+    yield profile
+    profile.close()
+
+
+class User:
+    """One browser window, which notes every request and every error of the page."""
+
+    def __init__(self, profile, address):
+        self.page, self.address = profile.new_page(), address
+        self.requests, self.errors = [], []
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+
+    def open(self, query=""):
+        self.page.goto(self.address + query)
+        return self.answered()
+
+    def answered(self):
+        """Wait until the page is complete, and nothing that was asked is on its way."""
+        self.page.locator(".app[data-idle=yes][data-shown]:not([data-lost], :has([data-expected]))").wait_for()
+        return self
+
+    def number(self, name):
+        return float(self.page.locator(f"dd[data-name={name}]").get_attribute("data-value"))
+
+    def shows(self, name, value):
+        """Wait until a number on the page is this one."""
+        deadline = time.monotonic() + WAIT / 1000
+        while time.monotonic() < deadline:
+            if self.number(name) == pytest.approx(value, rel=1e-9):
+                return True
+            time.sleep(0.02)
+        return False
+
+    def until(self, condition):
+        """Wait until an expression in the page is true; the page's own policy forbids to evaluate text inside it."""
+        deadline = time.monotonic() + WAIT / 1000
+        while not self.page.evaluate(condition):
+            assert time.monotonic() < deadline, f"never true: {condition} at {self.page.url}"
+            time.sleep(0.02)
+
+    def nudge(self, slider, key="ArrowRight", times=1):
+        handle = self.page.locator(f"[data-name={slider}] input[type=range]")
+        handle.focus()
+        for _ in range(times):
+            handle.press(key)
+
+    def view(self, title):
+        self.page.locator("nav button", has_text=title).click()
+        self.answered()
+
+    def types(self, name, text):
+        """Fill the box of a number, and confirm it."""
+        box = self.page.locator(f"[data-name={name}] input[type=text]")
+        box.fill(text)
+        box.press("Enter")
+        return box
+
+    def says(self, words):
+        self.page.locator(f"text={words}").first.wait_for()
+        return True
+
+    def drags(self, handle, *moves):
+        """Drag a handle from its middle over some points, each relative to the one before."""
+        box = self.page.locator(handle).bounding_box()
+        x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+        self.page.mouse.move(x, y)
+        self.page.mouse.down()
+        for across, down in moves:
+            x, y = x + across, y + down
+            self.page.mouse.move(x, y, steps=4)
+        self.page.mouse.up()
+        return self.answered()
+
+    def link(self):
+        """Names and values in the address."""
+        query = parse_qs(urlsplit(self.page.url).query, keep_blank_values=True)
+        return {name: values[0] for name, values in query.items()}
+
+    def saved(self, kind):
+        with self.page.expect_download() as coming:
+            self.page.locator(".files button", has_text=kind).click()
+        return Path(coming.value.path()).read_bytes()
+
+
+AT_REST = """async () => {
+  const frame = () => new Promise(requestAnimationFrame);
+  const place = document.documentElement;
+  const size = () => `${place.scrollWidth} ${place.scrollHeight} ${document.body.dataset.idle}`;
+  for (let same = 0, last = ""; same < 20; await frame()) {
+    [same, last] = size() === last ? [same + 1, last] : [0, size()];
+  }
+  return place.scrollWidth;
+}"""
+"""The width of what is on the page, once twenty frames have changed nothing."""

@@ -6,8 +6,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from .browser import opened_browser, served_explorer
-from .user import NARROW, User, opened_profile
+from .browser import User, opened_browser, opened_profile, served_explorer
 
 _LOOP = pytest.StashKey()
 
@@ -41,20 +40,6 @@ def address():
 def profile(browser, address):
     """One for all tests of a single user: it reads the scripts of the page once, and ends with the browser."""
     return opened_profile(browser, address).__enter__()
-
-
-@pytest.fixture
-def other(browser, address):
-    """Somebody else, on another machine as far as the explorer can tell."""
-    with opened_profile(browser, address) as one:
-        yield User(one, address)
-
-
-@pytest.fixture
-def reader(browser, address):
-    """Whoever holds a telephone, in the dark."""
-    with opened_profile(browser, address, NARROW, dark=True) as one:
-        yield User(one, address)
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from ..places import ROOT
-from .user import AT_REST, NARROW, PICTURES, WIDE, User, opened_profile
+from .browser import AT_REST, NARROW, PICTURES, WIDE, User, opened_profile
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.state.screen import VIEWS

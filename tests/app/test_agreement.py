@@ -11,8 +11,8 @@ import pytest
 
 import ballsocket as bs
 
+from .browser import WAIT, User, opened_profile
 from .proxy import opened_proxy
-from .user import WAIT, User, opened_profile
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.pressing import tilt_of

@@ -8,7 +8,7 @@ import ballsocket as bs
 from ballsocket.files.joint_file import parse_joint
 
 from ..places import EXAMPLES
-from .user import User, pressure
+from .browser import NARROW, User, opened_profile, pressure
 
 pytestmark = pytest.mark.long
 
@@ -44,20 +44,22 @@ def test_the_arrow_can_be_dragged_and_moved_by_keys(user):
     assert user.shows("force", force - 100.0)
 
 
-def test_on_a_narrow_screen_the_answers_come_first_and_no_column_lies_beside_it(reader):
-    page, largest = reader.open().page, reader.page.locator("dd[data-name=max_pressure]")
-    page.locator(".app.dark").wait_for()  # as the reader's system is
-    assert largest.bounding_box()["y"] < 400
-    page.locator("summary", has_text="The joint").click()
-    reader.nudge("clearance")
-    assert reader.answered().shows("max_pressure", pressure(clearance=0.105))
-    assert largest.bounding_box()["y"] < 800
-    table = page.locator(".models")
-    table.wait_for()
-    assert table.evaluate("(one) => one.scrollWidth <= one.clientWidth")
-    head = table.locator("td[data-head*=pmax]").first.evaluate("(one) => getComputedStyle(one, '::before').content")
-    assert "pmax" in head
-    assert not reader.errors
+def test_on_a_narrow_screen_the_answers_come_first_and_no_column_lies_beside_it(browser, address):
+    with opened_profile(browser, address, NARROW, dark=True) as profile:
+        reader = User(profile, address).open()
+        page, largest = reader.page, reader.page.locator("dd[data-name=max_pressure]")
+        page.locator(".app.dark").wait_for()  # as the reader's system is
+        assert largest.bounding_box()["y"] < 400
+        page.locator("summary", has_text="The joint").click()
+        reader.nudge("clearance")
+        assert reader.answered().shows("max_pressure", pressure(clearance=0.105))
+        assert largest.bounding_box()["y"] < 800
+        table = page.locator(".models")
+        table.wait_for()
+        assert table.evaluate("(one) => one.scrollWidth <= one.clientWidth")
+        cell = table.locator("td[data-head*=pmax]").first
+        assert "pmax" in cell.evaluate("(one) => getComputedStyle(one, '::before').content")
+        assert not reader.errors
 
 
 _SLOW_CLOCK = "performance.now = ((now) => () => now() / 10)(performance.now.bind(performance))"

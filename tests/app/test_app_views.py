@@ -10,7 +10,7 @@ from PIL import Image
 
 import ballsocket as bs
 
-from .user import WAIT, expect, pressure
+from .browser import WAIT, User, expect, pressure
 
 pytestmark = pytest.mark.long
 MAP = "?view=map&limit=outer_radius<=26"
@@ -101,11 +101,11 @@ def test_rows_of_limits_are_added_refused_and_taken_away(user):
     assert row.count() == 0
 
 
-def test_elements_run_beside_others_who_go_on(user, other):
+def test_elements_run_beside_others_who_go_on(user, profile, address):
     """A run answers, another is cancelled, and somebody else's page answers before the run does."""
     pytest.importorskip("skfem")
     user.open("?view=judge")
-    other.open()
+    other = User(profile, address).open()
     button = user.page.locator("[data-name='judge.run'] button")
     button.click()
     expect(button).to_have_text("Cancel")

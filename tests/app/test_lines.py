@@ -7,9 +7,8 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from .browser import explorer_process
+from .browser import User, explorer_process, opened_profile, pressure
 from .proxy import opened_proxy
-from .user import User, opened_profile, pressure
 
 pytestmark = pytest.mark.long
 _SLACK = 1000

@@ -3,7 +3,7 @@
 import asyncio
 import json
 import os
-from functools import partial
+from functools import partial, wraps
 from pathlib import Path
 from threading import Event
 
@@ -21,6 +21,20 @@ LINES = []
 """Open connections of a test."""
 
 
+def in_loop(test):
+    """Run a test in the loop of the server, and close the connections of its users."""
+
+    @wraps(test)
+    def run(served, **fixtures):
+        try:
+            served.io_loop.run_sync(partial(test, served, **fixtures), timeout=100)
+        finally:
+            while LINES:
+                served.io_loop.run_sync(partial(close, LINES.pop()), timeout=100)
+
+    return run
+
+
 class Someone:
     """One user, as the script of the page would be."""
 
@@ -33,9 +47,9 @@ class Someone:
         LINES.append(self.line)
         return self
 
-    async def open(self, query=""):
+    async def open(self):
         await self.connect()
-        return await self.asks("open", query=query)
+        return await self.asks("open", query="")
 
     async def says(self, what, **words):
         self.number += 1
@@ -50,15 +64,6 @@ class Someone:
             message = json.loads(text)
             if message.get("n") == self.number:
                 return message
-
-
-def run(served, work, timeout=100):
-    """Run a test in the loop of the server, and close the connections of its users."""
-    try:
-        return served.io_loop.run_sync(work, timeout=timeout)
-    finally:
-        while LINES:
-            served.io_loop.run_sync(partial(close, LINES.pop()), timeout=timeout)
 
 
 async def close(line):
@@ -77,139 +82,114 @@ async def until(condition):
     pytest.fail("it did not happen")
 
 
-def test_work_in_a_thread_does_not_hold_the_server(served):
+@in_loop
+async def test_work_in_a_thread_does_not_hold_the_server(served):
     """Work that waits for the server to go on comes to its end."""
     went_on, found = Event(), []
-
-    async def whole():
-        PageThread.current.set(PageThread())
-        run_in_thread(lambda: went_on.wait(60), lambda outcome: found.append(outcome.result()))
-        await asyncio.sleep(0)
-        went_on.set()
-        await until(lambda: found)
-
-    run(served, whole)
+    PageThread.current.set(PageThread())
+    run_in_thread(lambda: went_on.wait(60), lambda outcome: found.append(outcome.result()))
+    await asyncio.sleep(0)
+    went_on.set()
+    await until(lambda: found)
     assert found == [True]
 
 
-def test_work_for_a_page_that_was_closed_meanwhile_is_dropped(served):
-    closed, found = Event(), []
-
-    async def whole():
-        thread = PageThread()
-        PageThread.current.set(thread)
-        for _ in range(3):
-            run_in_thread(closed.wait, found.append)
-        thread.close()
-        closed.set()
-        await asyncio.sleep(0.1)
-
-    run(served, whole)
+@in_loop
+async def test_work_for_a_page_that_was_closed_meanwhile_is_dropped(served):
+    closed, found, thread = Event(), [], PageThread()
+    PageThread.current.set(thread)
+    for _ in range(3):
+        run_in_thread(closed.wait, found.append)
+    thread.close()
+    closed.set()
+    await asyncio.sleep(0.1)
     assert found == []
 
 
-def test_pages_take_turns_in_the_thread(served):
+@in_loop
+async def test_pages_take_turns_in_the_thread(served):
     """A page with much to draw lets another page draw after one of its drawings."""
     order, begin = [], Event()
-
-    async def whole():
-        for name, count in (("many", 8), ("one", 1)):
-            PageThread.current.set(PageThread())
-            for _ in range(count):
-                run_in_thread(lambda name=name: begin.wait(60) and order.append(name), lambda outcome: None)
-        for _ in range(8):
-            run_in_thread(lambda: None, lambda outcome: None)
-        with pytest.raises(ValueError, match="8 drawings of this page wait already"):
-            run_in_thread(lambda: None, lambda outcome: None)
-        begin.set()
-        await until(lambda: len(order) >= 9)
-
-    run(served, whole)
+    for name, count in (("many", 8), ("one", 1)):
+        PageThread.current.set(PageThread())
+        for _ in range(count):
+            run_in_thread(lambda name=name: begin.wait(60) and order.append(name), lambda outcome: None)
+    for _ in range(8):
+        run_in_thread(lambda: None, lambda outcome: None)
+    with pytest.raises(ValueError, match="8 drawings of this page wait already"):
+        run_in_thread(lambda: None, lambda outcome: None)
+    begin.set()
+    await until(lambda: len(order) >= 9)
     assert order[:2] == ["many", "one"]
 
 
 @pytest.mark.parametrize("broken", [False, True])
-def test_a_closed_page_is_forgotten_at_once(served, broken):
-    async def whole():
-        user = Someone(served)
-        await user.open()
-        assert len(served.pages) == 1
-        stopped = []
-        served.pages[0].view.leave = lambda: stopped.append(True)
-        if broken:
-            user.line.protocol.stream.close()
-        else:
-            user.line.close()
-        await until(lambda: not served.pages)
-        assert stopped == [True]
-
-    run(served, whole)
+@in_loop
+async def test_a_closed_page_is_forgotten_at_once(served, broken):
+    user, stopped = Someone(served), []
+    await user.open()
+    assert len(served.pages) == 1
+    served.pages[0].view.leave = lambda: stopped.append(True)
+    (user.line.protocol.stream if broken else user.line).close()
+    await until(lambda: not served.pages)
+    assert stopped == [True]
 
 
-def test_a_page_counts_when_its_browser_asks_for_it(served, monkeypatch):
+@in_loop
+async def test_a_page_counts_when_its_browser_asks_for_it(served, monkeypatch):
     """Sockets that ask for nothing are not pages, and the oldest of them are closed when there are too many."""
     monkeypatch.setattr(serve, "MAX_SESSIONS", 2)
-
-    async def whole():
-        silent = [await Someone(served).connect() for _ in range(4)]
-        assert [await asyncio.wait_for(one.line.read_message(), 10) for one in silent[:2]] == [None, None]
-        for user in silent[2:]:
-            assert "#press-numbers" in await user.asks("open", query="")
-        assert "2 pages are open here already: try again later" in (await Someone(served).open())["#trouble"]
-        assert len(served.pages) == 2
-        silent[2].line.close()
-        await until(lambda: len(served.pages) == 1)
-        assert "#press-numbers" in await Someone(served).open()
-
-    run(served, whole)
+    silent = [await Someone(served).connect() for _ in range(4)]
+    assert [await asyncio.wait_for(one.line.read_message(), 10) for one in silent[:2]] == [None, None]
+    for user in silent[2:]:
+        assert "#press-numbers" in await user.asks("open", query="")
+    assert "2 pages are open here already: try again later" in (await Someone(served).open())["#trouble"]
+    assert len(served.pages) == 2
+    silent[2].line.close()
+    await until(lambda: len(served.pages) == 1)
+    assert "#press-numbers" in await Someone(served).open()
 
 
-def test_a_flood_of_requests_holds_up_its_sender_alone(served, monkeypatch):
-    """While 10 000 requests of one browser and many silent sockets wait, another user's request is among the next."""
-    handled = []
+@in_loop
+async def test_a_flood_of_requests_holds_up_its_sender_alone(served, monkeypatch):
+    """While 2000 requests of one browser and many silent sockets wait, another user's request is among the next."""
+    handled, before = [], []
     receive = Channel.receive
     monkeypatch.setattr(Channel, "receive", lambda self, words: handled.append(words["n"]) or receive(self, words))
+    flooder, user = Someone(served), Someone(served)
+    await flooder.open()
+    await user.open()
+    for _ in range(100):
+        await Someone(served).connect()
 
-    async def whole():
-        flooder, user = Someone(served), Someone(served)
-        await flooder.open()
-        await user.open()
-        silent = [await Someone(served).connect() for _ in range(100)]
+    async def flood():
+        for number in range(2000):
+            await flooder.says("edit", name="load", value=1000 + number)
+            await asyncio.sleep(0)  # both ends share this loop
 
-        async def flood():
-            for number in range(10_000):
-                await flooder.says("edit", name="load", value=1000 + number)
-                await asyncio.sleep(0)  # both ends share this loop
-
-        task = asyncio.ensure_future(flood())
-        await until(lambda: len(handled) > 5)
-        before = []
-        for force in range(2000, 2010):
-            before.append(len(handled))
-            await user.asks("edit", name="load", value=force)
-            before[-1] = len(handled) - before[-1]
-        task.cancel()
-        flooder.line.close()
-        assert max(before) <= 4
-        assert len(silent) == 100
-
-    run(served, whole)
+    task = asyncio.ensure_future(flood())
+    await until(lambda: len(handled) > 5)
+    for force in range(2000, 2010):
+        before.append(len(handled))
+        await user.asks("edit", name="load", value=force)
+        before[-1] = len(handled) - before[-1]
+    task.cancel()
+    flooder.line.close()
+    assert max(before) <= 4
 
 
 @pytest.mark.long
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="the memory of a process is read from /proc")
-def test_further_pages_take_little_memory(served):
+@in_loop
+async def test_further_pages_take_little_memory(served):
     """300 pages may take at most 100 MB more than the first."""
 
     def megabytes():
         return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
 
-    async def whole():
-        for _ in range(3):
-            await Someone(served).open()
-        before = megabytes()
-        for _ in range(60):
-            await Someone(served).open()
-        return megabytes() - before
-
-    assert run(served, whole) < 100 * 60 / 300
+    for _ in range(3):
+        await Someone(served).open()
+    before = megabytes()
+    for _ in range(60):
+        await Someone(served).open()
+    assert megabytes() - before < 100 * 60 / 300

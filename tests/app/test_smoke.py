@@ -1,7 +1,7 @@
 """The explorer in a browser, in short; its other tests with a browser run with --long."""
 
+from .browser import User, opened_profile, pressure
 from .test_accessibility import violations
-from .user import User, opened_profile, pressure
 
 
 def test_a_slider_moves_the_answer_and_a_link_brings_it_back_on_a_page_for_all(browser, address):
