@@ -12,7 +12,6 @@ import sys
 import time
 from contextlib import contextmanager
 from dataclasses import replace
-from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
 import pytest
@@ -174,6 +173,12 @@ class User:
         box.press("Enter")
         return box
 
+    def enters(self, name, text):
+        """Type a number, and wait for the answer."""
+        box = self.types(name, text)
+        self.answered()
+        return box
+
     def says(self, words):
         self.page.locator(f"text={words}").first.wait_for()
         return True
@@ -195,10 +200,12 @@ class User:
         query = parse_qs(urlsplit(self.page.url).query, keep_blank_values=True)
         return {name: values[0] for name, values in query.items()}
 
-    def saved(self, kind):
+    def saves(self, button, path):
+        """Take the file that a button offers under the name of a path."""
         with self.page.expect_download() as coming:
-            self.page.locator(".files button", has_text=kind).click()
-        return Path(coming.value.path()).read_bytes()
+            self.page.locator(button).click()
+        assert coming.value.suggested_filename == path.name
+        coming.value.save_as(path)
 
 
 AT_REST = """async () => {

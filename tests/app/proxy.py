@@ -46,18 +46,11 @@ class Proxy:
         lines = {writer, server_writer}
         self._lines |= lines
         with suppress(OSError):
-            await asyncio.gather(self._copy(reader, server_writer), self._copy_late(server_reader, writer))
+            await asyncio.gather(self._copy(reader, server_writer), self._copy(server_reader, writer, late=True))
         self._lines -= lines
 
-    async def _copy(self, reader, writer):
-        while data := await reader.read(65536):
-            await self._open.wait()
-            writer.write(data)
-            await writer.drain()
-        writer.close()
-
-    async def _copy_late(self, reader, writer):
-        """Copy to the browser; each piece of data waits for the delay, and the order stays."""
+    async def _copy(self, reader, writer, late=False):
+        """Copy in order; each piece of data to the browser waits for the delay."""
         waiting = asyncio.Queue()
 
         async def send():
@@ -71,7 +64,7 @@ class Proxy:
 
         sender = asyncio.ensure_future(send())
         while data := await reader.read(65536):
-            waiting.put_nowait((self._loop.time() + self.delay, data))
+            waiting.put_nowait((self._loop.time() + late * self.delay, data))
         waiting.put_nowait(None)
         await sender
 

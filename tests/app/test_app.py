@@ -25,8 +25,7 @@ def test_joint_files_are_read_by_the_strict_reader(user):
         file = {"name": f"{name}.toml", "mimeType": "text/plain", "buffer": content}
         user.page.locator("#joint-file").set_input_files(file)
         assert user.says(words)
-    joint = parse_joint(good, "good").joint
-    assert user.shows("max_pressure", bs.Exact().press(joint, force=3000.0).max_pressure)
+    assert user.shows("max_pressure", bs.Exact().press(parse_joint(good, "good").joint, force=3000.0).max_pressure)
 
 
 def test_the_arrow_can_be_dragged_and_moved_by_keys(user):
@@ -134,24 +133,20 @@ def does(user, action):
 
 def test_designs_are_named_kept_compared_saved_and_opened(user, profile, tmp_path):
     page = user.open().page
-    user.types("name", "hip 36 a")
-    user.answered()
+    user.enters("name", "hip 36 a")
     page.locator("#designs summary").click()
     assert names(user) == ["hip 36 a"]
     does(user, "duplicate")
-    user.types("ball_radius", "36")
-    user.answered()
+    user.enters("ball_radius", "36")
     assert names(user) == ["hip 36 a", "hip 36 a copy"]
     assert user.link()["joint.ball_radius"] == "18.0"
 
     other = User(profile, user.address).open()  # a second window adds one, and changes no other
     other.page.locator("#designs summary").click()
-    other.types("name", "from the other window")
-    other.answered()
+    other.enters("name", "from the other window")
     other.page.close()
     page.locator("#design-list li", has_text="from the other window").wait_for()
-    user.types("clearance", "0.3")
-    user.answered()
+    user.enters("clearance", "0.3")
 
     page.locator("#design-list button", has_text="hip 36 a").first.click()
     user.answered()
@@ -165,18 +160,11 @@ def test_designs_are_named_kept_compared_saved_and_opened(user, profile, tmp_pat
     page.wait_for_function("!location.search.includes('beside1')")
     user.answered()
 
-    with page.expect_download() as coming:
-        page.locator(".files button", has_text="TOML").click()
-    assert coming.value.suggested_filename == "hip-36-a.toml"
-    with page.expect_download() as coming:
-        page.locator("[data-design=save]").click()
-    assert coming.value.suggested_filename == "designs.toml"
-    saved = tmp_path / "designs.toml"
-    coming.value.save_as(saved)
+    user.saves(".files button:has-text('TOML')", tmp_path / "hip-36-a.toml")
+    user.saves("[data-design=save]", saved := tmp_path / "designs.toml")
     assert [design["name"] for design in tomllib.loads(saved.read_text("utf-8"))["design"]] == names(user)
 
     does(user, "remove")
-    assert names(user) == ["hip 36 a copy", "from the other window"]
     page.reload()
     user.answered()
     page.locator("#designs summary").click()
@@ -189,13 +177,11 @@ def test_designs_are_named_kept_compared_saved_and_opened(user, profile, tmp_pat
 
 
 def test_a_refused_number_stays_in_its_box_with_the_reason(user):
-    page = user.open().page
-    box = user.types("ball_radius", "-5")
+    page, box = user.open().page, user.types("ball_radius", "-5")
     error = page.locator("#error-ball_radius")
     error.wait_for()
     assert error.text_content() == "Head diameter must be positive, got -5 mm; 28 mm stays in use"
-    user.types("clearance", "0,3")
-    user.answered()
+    user.enters("clearance", "0,3")
     assert box.input_value() == "-5"
     assert (box.get_attribute("aria-invalid"), box.get_attribute("aria-describedby")) == ("true", "error-ball_radius")
     assert user.link()["joint.ball_radius"] == "14.0"

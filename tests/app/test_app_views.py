@@ -117,17 +117,12 @@ def test_elements_run_beside_others_who_go_on(user, profile, address):
     row = user.page.locator("#judge-numbers tr", has_text="largest pressure [").locator("td")
     contact = bs.FiniteElement().press(bs.joints["hip-28"], force=3000.0)
     assert float(row.nth(1).inner_text()) == pytest.approx(contact.max_pressure, rel=1e-3)
-    assert user.saved("PNG").startswith(b"\x89PNG")
     user.nudge("clearance")
     assert user.says("belong to an earlier design")
     assert picture.is_visible()
     button.click()
     button.click()
     assert user.says("Cancelled.")
-    user.page.reload()
-    user.answered()
-    user.nudge("clearance", "ArrowLeft")
-    picture.wait_for()  # the result of the first question is still stored
 
 
 def share_of_colours(pixels):
@@ -136,7 +131,6 @@ def share_of_colours(pixels):
 
 
 def difference(one, other):
-    """Mean difference of two pictures."""
     return float(np.abs(one - other).mean())
 
 

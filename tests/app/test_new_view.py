@@ -35,20 +35,12 @@ def test_a_new_view_is_a_folder_and_a_line(tmp_path):
     text = (CONTRIBUTING / "view.md").read_text("utf-8")
     code = re.search(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)[1]
     assert code.count("\n") <= 31
-    folder = copy / "app" / "views" / "volume"
-    folder.mkdir()
-    (folder / "__init__.py").touch()
-    (folder / "view.py").write_text(code, "utf-8")
-    registry = copy / "app" / "views" / "registry.py"
-    lines = registry.read_text("utf-8")
+    views = copy / "app" / "views"
+    (views / "volume").mkdir()
+    (views / "volume" / "__init__.py").touch()
+    (views / "volume" / "view.py").write_text(code, "utf-8")
+    lines = (views / "registry.py").read_text("utf-8")
     assert LAST in lines
-    registry.write_text(lines.replace(LAST, f'{LAST}    "volume": "volume.Volume",\n'), "utf-8")
-    python = subprocess.run(
-        [sys.executable, "-c", OPENED],
-        cwd=tmp_path,
-        capture_output=True,
-        encoding="utf-8",
-        check=False,
-        env={**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONIOENCODING": "utf-8"},
-    )
-    assert python.returncode == 0, python.stderr
+    (views / "registry.py").write_text(lines.replace(LAST, f'{LAST}    "volume": "volume.Volume",\n'), "utf-8")
+    env = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONIOENCODING": "utf-8"}
+    subprocess.run([sys.executable, "-c", OPENED], cwd=tmp_path, env=env, check=True)
