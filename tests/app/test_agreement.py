@@ -185,12 +185,9 @@ def settled_page(user):
 def answer_of(screen, in_real_cup):
     """Return largest pressure in the unit of the page and reason for its absence, by the model or by the real cup."""
     file, model = screen.file, bs.catalogue[screen.answered_by].in_cup(screen.file.cup)
+    model, aim = (bs.Sphere(cup=file.cup), file.aim) if in_real_cup else (model, {})
     try:
-        contact = (
-            bs.Sphere(cup=file.cup).press(file.joint, **file.load, **file.aim)
-            if in_real_cup
-            else model.press(file.joint, **file.load)
-        )
+        contact = model.press(file.joint, **file.load, **aim)
     except OutsideDomainError as error:
         return None, str(error)
     if contact.status.failed:

@@ -6,6 +6,7 @@ from base64 import b64decode
 from dataclasses import replace
 from functools import partial
 from math import degrees, radians
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -119,54 +120,39 @@ def test_a_bore_whose_rings_are_on_disk_is_pressed_at_once(monkeypatch, asked):
 
 def test_a_bore_is_prepared_by_one_process_for_all_who_wait(monkeypatch):
     """Contact and Cup share it; it ends with the last of them, and its news go to each by its own key."""
-    heard, runs = [], []
-
-    class Run:
-        def __init__(self, work, longest):
-            runs.append(self)
-            self.stopped = False
-
-        def news(self):
-            return RunFinished(True)
-
-        def stop(self):
-            self.stopped = True
-
-    monkeypatch.setattr(jobs, "Run", Run)
+    heard, runs = [], [Mock(news=lambda: RunFinished(True)) for _ in range(4)]
+    begun = Mock(side_effect=runs)
+    monkeypatch.setattr(jobs, "Run", begun)
     first, second = (Job(lambda key, news: heard.append((key, news.value))) for _ in range(2))
-    first.ask("press", partial(worker.set_up, JOINT, Cup()))
-    second.ask("cup", partial(worker.set_up, JOINT, Cup()))
-    assert len(runs) == 1
+    work, other = (partial(worker.set_up, JOINT, Cup(arc_of_cover=arc)) for arc in (3.0, 2.5))
+    first.ask("press", work)
+    second.ask("cup", work)
+    assert begun.call_count == 1
     first.stop()
     assert second.works
-    assert not runs[0].stopped
-    first.ask("press", partial(worker.set_up, JOINT, Cup()))
+    assert not runs[0].stop.called
+    first.ask("press", work)
     first.hear()
     assert sorted(heard) == [("cup", True), ("press", True)]
-    assert runs[0].stopped
-    first.ask("press", partial(worker.set_up, JOINT, Cup()))
-    second.ask("cup", partial(worker.set_up, JOINT, Cup(arc_of_cover=radians(160.0))))
-    assert len(runs) == 3
-
-
-def made(**changes):
-    x, y = np.radians([20.0, 40.0, 60.0]), np.radians([0.0, 20.0])
-    apart = np.array([[5.0, 4.0], [2.0, 1.0], [-2.0, -3.0]])
-    held = np.ones((3, 2), dtype=bool)
-    known = {"edge_distance": apart, "max_pressure": 10 + apart**2, "held": held, "figure": b""}
-    return replace(OrientationMap(inclination=x, anteversion=y, **known), **changes)
+    assert runs[0].stop.called
+    first.ask("press", work)
+    second.ask("cup", other)
+    assert begun.call_count == 3
 
 
 def test_a_map_of_orientations_says_how_many_keep_off_the_rim():
-    picture = angle_map(made(), Cup(inclination=radians(40.0)), "edge_distance")
+    angles = {"inclination": np.radians([20.0, 40.0, 60.0]), "anteversion": np.radians([0.0, 20.0])}
+    apart, held = np.array([[5.0, 4.0], [2.0, 1.0], [-2.0, -3.0]]), np.ones((3, 2), dtype=bool)
+    made = OrientationMap(**angles, edge_distance=apart, max_pressure=10 + apart**2, held=held, figure=b"")
+    picture = angle_map(made, Cup(inclination=radians(40.0)), "edge_distance")
     assert "67 % of the orientations keep the contact off the rim" in picture
     assert "furthest, 5 mm, at inclination 20°, anteversion 0°" in picture
     assert 'class="here"' in picture
     ends = re.search(r'class="limit" d="M([\d.]+),.*L([\d.]+),', picture).groups()
     assert {float(x) for x in ends} == {58 + 368 * 0.75, 58 + 368 * 0.625}  # at 50° without anteversion, 45° with 20°
-    assert 'class="here"' not in angle_map(made(), Cup(), "edge_distance")
-    assert "edge distance [in]" in angle_map(made(), Cup(), "edge_distance", Reading(units=Units.IMPERIAL))
-    lost = made(held=np.zeros((3, 2), dtype=bool))
+    assert 'class="here"' not in angle_map(made, Cup(), "edge_distance")
+    assert "edge distance [in]" in angle_map(made, Cup(), "edge_distance", Reading(units=Units.IMPERIAL))
+    lost = replace(made, held=~held)
     assert "in every orientation of the map the contact reaches the rim" in angle_map(lost, Cup(), "max_pressure")
 
 

@@ -31,24 +31,18 @@ HIP = bs.joints["hip-28"]
 
 
 def link(ratio, poisson=0.3, clearance=0.1, **more):
-    words = {
-        "joint.ball_radius": 20 - clearance,
-        "joint.clearance": clearance,
-        "joint.liner_thickness": 20 / ratio,
-        "liner.young": 800,
-        "liner.poisson": poisson,
-        "load.half_angle": 60,
-        **more,
-    }
+    joint = {"ball_radius": 20 - clearance, "clearance": clearance, "liner_thickness": 20 / ratio}
+    words = {f"joint.{name}": value for name, value in joint.items()}
+    words |= {"liner.young": 800, "liner.poisson": poisson, "load.half_angle": 60, **more}
     return "&".join(f"{name}={value}" for name, value in words.items())
 
 
-def waited_for(page, seconds=300.0):
+def waited_for(page):
     """Until nothing is being solved for a page."""
-    start = time.monotonic()
+    end = time.monotonic() + 300
     while page._slow_presses.job.works:
         page._slow_presses.job.hear()
-        assert time.monotonic() - start < seconds, "nothing more was heard for minutes"
+        assert time.monotonic() < end, "nothing more was heard for minutes"
         time.sleep(0.02)
 
 
@@ -64,9 +58,8 @@ def presses_of(monkeypatch):
     seen = []
     for kind in (Exact, PlaneLayer):
         own = kind._solve
-        monkeypatch.setattr(
-            kind, "_solve", lambda self, joint, *rest, own=own: seen.append(joint) or own(self, joint, *rest)
-        )
+        noted = lambda self, joint, *rest, own=own: seen.append(joint) or own(self, joint, *rest)  # noqa: E731
+        monkeypatch.setattr(kind, "_solve", noted)
     return seen
 
 

@@ -47,8 +47,7 @@ def test_the_verdict_is_that_of_the_strength_alone_where_the_rim_is_far(strength
 
 def test_a_contact_outside_the_range_of_its_model_has_no_verdict_but_may_fail():
     doubtful = bs.Hertz().press(liner(allowable_pressure=1e3), force=3000.0)
-    no_verdict = "No verdict: this result is outside the range of its model"
-    assert verdict_of(checks_of(doubtful, CUP)) == (None, no_verdict)
+    assert verdict_of(checks_of(doubtful, CUP)) == (None, "No verdict: this result is outside the range of its model")
     overloaded = bs.Hertz().press(liner(allowable_pressure=4.0), force=3000.0)
     passes, sentence = verdict_of(checks_of(overloaded, CUP))
     assert passes is False

@@ -22,14 +22,8 @@ def row(diameter, clearance, force, pressure):
 CASES = [(d, c, f) for d in (28.0, 32.0) for c in (0.05, 0.1) for f in (1000.0, 2000.0, 3000.0)]
 ROWS = [row(*case, pressure) for case, pressure in zip(CASES, numpy.linspace(8.0, 19.0, 12), strict=True)]
 METHODS = [
-    {
-        "name": name,
-        "numbers": {"max_pressure": value, "area": 100 * value},
-        "errors": {},
-        "valid": True,
-        "aligned": True,
-    }
-    for name, value in (("exact", 10.0), ("sphere", 10.1), ("finite elements", 9.8))
+    {"name": name, "numbers": {"max_pressure": p, "area": 100 * p}, "errors": {}, "valid": True, "aligned": True}
+    for name, p in (("exact", 10.0), ("sphere", 10.1), ("finite elements", 9.8))
 ]
 RECORD = {
     "matrix": ROWS,
@@ -55,14 +49,13 @@ def texts(axes):
 
 def test_the_matrix_marks_the_worst_cell_and_what_is_beyond_a_limit():
     axes = figures.matrix_figure(RECORD).axes[0]
-    assert sorted(map(float, texts(axes))) == pytest.approx(
-        sorted(r["numbers"]["max_pressure"] for r in ROWS), abs=0.05
-    )
+    pressures = [row["numbers"]["max_pressure"] for row in ROWS]
+    assert sorted(map(float, texts(axes))) == pytest.approx(sorted(pressures), abs=0.05)
     (frame,) = [patch for patch in axes.patches if not patch.fill]
     corner = numpy.round(numpy.add(frame.get_xy(), 0.47)).astype(int)
     assert axes.images[0].get_array()[corner[1], corner[0]] == pytest.approx(19.0)
     crosses = [line for line in axes.lines if line.get_marker() == "x"]
-    assert len(crosses) == sum(r["numbers"]["max_pressure"] > 15 for r in ROWS)
+    assert len(crosses) == sum(pressure > 15 for pressure in pressures)
     assert axes.get_ylabel() == "head diameter [mm]"
     assert axes.get_xlabel() == "radial clearance [mm] | normal force [N]"
 

@@ -8,14 +8,13 @@ from dataclasses import replace
 from datetime import date
 from hashlib import sha256
 from html import unescape
-from math import radians
 
 import pytest
 
 import ballsocket as bs
 from ballsocket.files.joint_file import JointFile, ReportDetails, parse_joint
 from ballsocket.reports.pages import table, write_page
-from ballsocket.reports.press_report import PressedDesign, _rim_words, designs_report, press_lede, press_report
+from ballsocket.reports.press_report import PressedDesign, designs_report, press_lede, press_report
 from ballsocket.reports.section_plots import gap_factor, joint_section
 from ballsocket.reports.unit_systems import Units
 from ballsocket.studies import tolerance
@@ -36,7 +35,7 @@ def pages():
     return {units: press_report(comparison, FILE, "exact", units, near, date(2026, 1, 2)) for units in Units}, near
 
 
-def test_the_page_has_the_verdict_the_drawing_and_every_input(pages):
+def test_the_page_has_the_verdict_the_drawing_and_every_input_in_the_units_that_are_chosen(pages):
     text = unescape(pages[0][Units.SI])
     assert re.search(r"<strong>11\.1\d MPa</strong> largest pressure under 3000 N, by the model exact", text)
     assert re.search(r"Passes: reach of the contact is \d+ % of the arc from pole to rim, the highest ratio", text)
@@ -45,6 +44,10 @@ def test_the_page_has_the_verdict_the_drawing_and_every_input(pages):
     assert text.count("data:image/svg+xml;base64,") == 2
     assert text.index("<h2 id='checks'>") < text.index("<h2 id='drawing'>")
     assert bs.materials["crosslinked-pe"].source in text
+    imperial = unescape(pages[0][Units.IMPERIAL])
+    assert re.search(r"<strong>16[12]\d psi</strong> largest pressure under 674.4 lbf", imperial)
+    assert "1.417 in" in imperial
+    assert not re.search(r"\d (mm|MPa|N)\b", imperial.split("<h2 id='origin'>")[0].split("<h2 id='inputs'>")[1])
 
 
 def test_one_verdict_is_about_all_checks():
@@ -53,9 +56,7 @@ def test_one_verdict_is_about_all_checks():
     wide, narrow = (unescape(press_lede(contact, bs.Cup(arc_of_cover=arc))) for arc in (3.0, 1.0))
     share = f"{100 * contact.half_angle / 1.5:.0f} %"
     assert f"<span class='holds'>Passes: reach of the contact is {share} of the arc from pole to rim" in wide
-    assert re.search(
-        r"<span class='fails'>Fails: reach of the contact is [\d.]+ times the arc from pole to rim", narrow
-    )
+    assert re.search(r"class='fails'>Fails: reach of the contact is [\d.]+ times the arc from pole to rim", narrow)
     assert "holds" not in narrow
 
 
@@ -64,10 +65,8 @@ def test_heads_that_differ_stand_with_their_design(tmp_path, monkeypatch):
     comparison = bs.compare(HIP, models=TWO, force=3000.0)
 
     def page(*heads):
-        files = [
-            replace(FILE, joint=HIP.replace(name=f"cup {number}"), report=ReportDetails(**head))
-            for number, head in enumerate(heads, 1)
-        ]
+        named = {f"cup {number}": ReportDetails(**head) for number, head in enumerate(heads, 1)}
+        files = [replace(FILE, joint=HIP.replace(name=name), report=head) for name, head in named.items()]
         return designs_report([PressedDesign(comparison=comparison, file=file, leading="exact") for file in files])
 
     differing = page({"customer": "Acme", "author": "A. B."}, {"customer": "Other", "author": "A. B."})
@@ -80,13 +79,6 @@ def test_heads_that_differ_stand_with_their_design(tmp_path, monkeypatch):
         logo.write_text(f"<svg xmlns='http://www.w3.org/2000/svg' id='{logo.stem}'></svg>")
     with pytest.raises(ValueError, match="different logos"):
         page(*({"logo": str(logo)} for logo in logos))
-
-
-def test_imperial_holds_for_every_number(pages):
-    text = unescape(pages[0][Units.IMPERIAL])
-    assert re.search(r"<strong>16[12]\d psi</strong> largest pressure under 674.4 lbf", text)
-    assert "1.417 in" in text
-    assert not re.search(r"\d (mm|MPa|N)\b", text.split("<h2 id='origin'>")[0].split("<h2 id='inputs'>")[1])
 
 
 def test_a_joint_outside_its_tolerance_is_refused():
@@ -114,26 +106,13 @@ def test_a_page_loads_nothing_and_has_the_joint_file_of_its_checksum(pages):
 
 CUP = """
 name = "cup <52>"
-[joint]
-head_diameter = "36 mm"
-diametral_clearance = "0.3 mm"
-liner_thickness = "6.5 mm"
-[liner]
-material = "crosslinked-pe"
-allowable_pressure = "20 MPa"
-[ball]
-material = "cocr"
-[[backing]]
-material = "titanium"
-thickness = "1.35 mm"
-[cup]
-inclination = "50 deg"
-anteversion = "20 deg"
-[load]
-force = "2.5 kN"
-[report]
-customer = "<b>Bones</b> & Sons"
-logo = "logo.svg"
+joint = {head_diameter = "36 mm", diametral_clearance = "0.3 mm", liner_thickness = "6.5 mm"}
+liner = {material = "crosslinked-pe", allowable_pressure = "20 MPa"}
+ball = {material = "cocr"}
+backing = [{material = "titanium", thickness = "1.35 mm"}]
+cup = {inclination = "50 deg", anteversion = "20 deg"}
+load = {force = "2.5 kN"}
+report = {customer = "<b>Bones</b> & Sons", logo = "logo.svg"}
 """
 TILTED = ("--ring-width", "6 deg", "--tolerance", "inclination=50+-6 deg")
 
@@ -175,13 +154,6 @@ def test_the_report_of_a_tilted_cup_has_its_head_the_place_of_the_contact_and_to
 
 
 @pytest.mark.long
-def test_contact_at_the_rim_is_no_failure_of_a_preloaded_joint():
-    joint = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
-    contact = bs.Sphere(cup=bs.Cup(arc_of_cover=radians(240.0)), ring_width=radians(5.0)).press(joint, force=0.0)
-    assert _rim_words(contact, Units.SI) == ["the contact reaches the rim, as is normal in a preloaded joint"]
-
-
-@pytest.mark.long
 def test_designs_are_compared_on_one_page_in_inches_and_pounds(tilted):
     folder, _ = tilted
     words = ("--force", "2 kN", "--units", "imperial", "--ring-width", "6 deg", "--report", str(folder / "both.html"))
@@ -194,32 +166,21 @@ def test_designs_are_compared_on_one_page_in_inches_and_pounds(tilted):
         assert re.findall(r"\d (?:mm|µm|MPa|N)\b", part) == []
 
 
-SHEETS = {"letter": 612, "A4": 595}
-"""Widths of sheets in points."""
-
-
-def test_a_page_is_printed_as_pdf(tmp_path):
+@pytest.mark.parametrize(("paper", "width"), some([("letter", 612), ("A4", 595)], 1))
+def test_a_page_is_printed_as_pdf(tmp_path, paper, width):
     try:
         import weasyprint  # noqa: F401
     except (ImportError, OSError):  # without the library Pango
         pytest.skip("WeasyPrint cannot be imported")
-    paths = {paper: tmp_path / f"{paper}.pdf" for paper in some(SHEETS, 1)}
-    for paper, path in paths.items():
-        write_page(table(["head"], [["cell"]]), path, paper)
-        assert _sheet_width(path.read_bytes()) == SHEETS[paper]
-
-
-def _sheet_width(document):
-    """Return the width of the sheets of a PDF in points."""
-    streams = [document, *re.findall(rb"stream\r?\n(.*?)endstream", document, flags=re.DOTALL)]
-    texts = [part if part is document else zlib.decompressobj().decompress(part) for part in streams]
-    return round(float(re.search(rb"/MediaBox ?\[ ?0 0 ([\d.]+)", b"".join(texts))[1]))
+    write_page(table(["head"], [["cell"]]), path := tmp_path / "a.pdf", paper)
+    streams = re.findall(rb"stream\r?\n(.*?)endstream", path.read_bytes(), flags=re.DOTALL)
+    text = b"".join([path.read_bytes(), *(zlib.decompressobj().decompress(part) for part in streams)])
+    assert round(float(re.search(rb"/MediaBox ?\[ ?0 0 ([\d.]+)", text)[1])) == width  # in points
 
 
 def test_what_a_percent_does_is_the_slope(pages):
     near = pages[1]
-    more = bs.Tabulated().press(HIP, force=3000.0 * 1.01).max_pressure
-    less = bs.Tabulated().press(HIP, force=3000.0 / 1.01).max_pressure
+    more, less = (bs.Tabulated().press(HIP, force=force).max_pressure for force in (3000.0 * 1.01, 3000.0 / 1.01))
     assert near.changes["max_pressure"]["force"] == pytest.approx((more / less - 1) / 0.02, rel=2e-2)
 
 

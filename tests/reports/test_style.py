@@ -2,6 +2,7 @@
 
 import re
 from importlib.util import find_spec
+from itertools import combinations
 
 import pytest
 from matplotlib.colors import to_hex, to_rgb
@@ -35,21 +36,12 @@ def lightness(line):
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
 
-def test_every_model_has_a_line_of_its_own_and_the_exact_one_is_drawn_in_ink():
-    assert len({line_of(name) for name in MODELS}) == len(MODELS)
+def test_every_model_has_a_line_of_its_own_that_is_told_apart_in_grey_and_the_exact_one_is_drawn_in_ink():
     assert [name for name in MODELS if line_of(name).colour == INK] == ["exact"]
-
-
-def test_the_models_of_the_papers_figures_are_told_apart_by_colour_and_in_grey():
     lines = [line_of(name) for name in PAPERS]
     assert len({line.colour for line in lines}) == len({line.dash for line in lines}) == len(PAPERS)
-
-
-def test_lines_of_one_dash_differ_in_grey():
-    for name in MODELS:
-        for other in MODELS[: MODELS.index(name)]:
-            if line_of(name).dash == line_of(other).dash:
-                assert abs(lightness(line_of(name)) - lightness(line_of(other))) > 0.05, (name, other)
+    for one, other in combinations(map(line_of, MODELS), 2):
+        assert one.dash != other.dash or abs(lightness(one) - lightness(other)) > 0.05, (one, other)
 
 
 def test_a_model_of_ones_own_keeps_a_line_that_no_other_has():
@@ -75,8 +67,7 @@ def test_a_curve_of_a_thin_liner_is_short(monkeypatch):
     joint = HIP.replace(liner_thickness=HIP.socket_radius / 40)
     own = {name: bs.catalogue[name] for name in ("exact", "hertz")}
     found = bs.compare(joint, models=own, force=3000.0)
-    asked = []
-    solve = bs.Exact._solve
+    asked, solve = [], bs.Exact._solve
     monkeypatch.setattr(bs.Exact, "_solve", lambda self, *words: asked.append(words[1:]) or solve(self, *words))
     curves = force_curves(found, own)
     ((kind, loads),) = asked
@@ -89,6 +80,9 @@ def test_a_curve_of_a_thin_liner_is_short(monkeypatch):
 def test_the_papers_figures_draw_a_model_as_the_press_does(contacts, pressed):
     panel = draw(figure_3_or_4(3, {name: bs.catalogue[name] for name in contacts})).axes[1]
     assert [as_drawn(curve) for curve in panel.lines] == list(pressed.values())
+    # the exact model stands for the finite elements, whose figure is made in no time
+    (curve,) = draw(figure_3_or_4(3, {ELEMENTS: bs.Exact()})).axes[0].lines
+    assert (as_drawn(curve).colour, curve.get_marker()) == (line_of(judge.name).colour, "o")
 
 
 @pytest.mark.skipif(find_spec("tornado") is None, reason="the explorer's extra is not installed")
@@ -106,10 +100,3 @@ def test_the_explorer_draws_a_model_as_the_press_does(pressed):
         line = pressed[name]
         assert colour == ("var(--text)" if line.colour == INK else line.colour)
         assert dash == " ".join(f"{2 * length:g}" for length in line.dash)
-
-
-def test_the_finite_elements_are_circles_of_their_own_colour_in_the_papers_figures(contacts):
-    # their name there is another; the exact model stands for them, whose figure is made in no time
-    (curve,) = draw(figure_3_or_4(3, {ELEMENTS: bs.Exact()})).axes[0].lines
-    assert as_drawn(curve).colour == line_of(judge.name).colour
-    assert curve.get_marker() == "o"
