@@ -1,4 +1,4 @@
-"""Accessibility of every view: axe-core in light, dark and narrow pages; a key for everything that a pointer can do."""
+"""The explorer in a browser, in short; with --long its accessibility: axe-core, and keys for what a pointer does."""
 
 import gzip
 from itertools import cycle
@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from ..places import ROOT
-from .browser import AT_REST, NARROW, PICTURES, WIDE, User, opened_profile
+from .browser import AT_REST, NARROW, PICTURES, WIDE, User, opened_profile, pressure
 
 pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.state.screen import VIEWS
@@ -95,3 +95,18 @@ def test_everything_that_a_pointer_can_do_has_a_key(user, view):
         user.page.keyboard.press("ArrowUp")
         user.answered()
         assert user.page.url != before, name
+
+
+def test_a_slider_moves_the_answer_and_a_link_brings_it_back_on_a_page_for_all(browser, address):
+    with opened_profile(browser, address, bypass_csp=True) as profile:
+        user = User(profile, address).open()
+        assert user.shows("max_pressure", pressure())
+        user.nudge("clearance")
+        assert user.answered().shows("max_pressure", pressure(clearance=0.105))
+        user.page.locator("#share").click()
+        assert user.says("copied")
+        link = user.page.evaluate("navigator.clipboard.readText()")
+        user.open(link.removeprefix(address))
+        assert user.shows("max_pressure", pressure(clearance=0.105))
+        assert violations(user) == []
+        assert not user.errors
