@@ -2,7 +2,7 @@
 
 import json
 from base64 import b64decode
-from html import escape, unescape
+from html import escape
 
 import pytest
 
@@ -41,10 +41,3 @@ def trouble(page):
 def told(page, name):
     """Return a part of a page, such as "wear-numbers"; empty before it is shown."""
     return page.channel.shown_value(f"#{name}") or ""
-
-
-def refuses(page, name, value, sentence):
-    """Return True if an edit is refused in a sentence and changes nothing."""
-    before = page.screen
-    edits(page, name, value)
-    return sentence in unescape(trouble(page)) and page.screen == before

@@ -22,7 +22,7 @@ from ballsocket.app.widgets.reading import Reading, box_text, handy_step, number
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.reports.unit_systems import Units
 
-from .asking import does, edits, refuses, saved, told, trouble
+from .asking import does, edits, saved, told, trouble
 from .test_screen import screen_with
 
 INCHES = screen_with(units="imperial")
@@ -55,6 +55,8 @@ def test_moduli_have_the_units_of_engineers():
     assert (liner["unit"], ball["unit"]) == ("ksi", "Mpsi")
     assert 25 < float(ball["text"]) < 40  # a metal
     assert typed("liner_young", "109", INCHES).joint.liner.young == pytest.approx(109 * 6.894757293168)
+    assert typed("load", "700", INCHES).load == {"force": pytest.approx(700 / LBF)}
+    assert typed("allowable", 3000, INCHES).joint.liner.allowable_pressure == pytest.approx(3000 / PSI)
 
 
 @pytest.mark.parametrize("name", [*NUMBERS, "load", "tilt", "allowable"])
@@ -79,6 +81,12 @@ def test_no_box_of_a_cup_takes_what_no_cup_has(name):
         (START, "ball_radius", "-5", "Head diameter must be positive, got -5 mm"),
         (screen_with(size="radius"), "ball_radius", "-5", "Ball radius must be positive, got -5 mm"),
         (INCHES, "ball_radius", "4000", "Head diameter must be 7.9e-05 to 787.4 in .*, got 4000 in"),
+        (
+            INCHES,
+            "ball_radius",
+            "wide",
+            "Head diameter must be a number in inches, or a length such as '16 mm', got 'wide'",
+        ),
         (INCHES, "ball_radius", "1,125", "Head diameter '1,125' could be two numbers: write 1125 or 1.125"),
         (START, "clearance", "-0.1", "Diametral clearance must be zero or positive, got -0.1 mm"),
     ],
@@ -157,7 +165,7 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
         ("view=cup", "cup.inclination", "91", "Inclination must be 0 to 90° (from an upright axis to a level one)"),
         ("view=cup", "cup.arc_of_cover", "0", "Arc of cover must be 40 to 340° (the ball must stay in its socket)"),
         ("view=cup", "cup.inwards", "85", "Load direction, medial must be -80 to 80° (the load must press into the"),
-        ("view=cup", "cup.chamfer", "wide", "Chamfer must be a number in mm, or a length such as '16 mm', got 'wide'"),
+        ("view=cup", "cup.chamfer", "wide", "Chamfer must be a number in mm, or a length such as '16 mm', .*'"),
         ("view=cup", "cup.side", "middle", "side = 'middle' is not allowed"),
         ("view=cup", "cup.aim", "up", "'up' as aim is not known"),
         ("view=cup", "cup.pick", [1.0], "is not a point of the map"),
@@ -179,9 +187,10 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
 )
 def test_a_value_that_no_input_takes_gets_one_sentence_and_stays_in_its_box(asked, link, name, value, sentence):
     page = Page(link)
-    link = page.screen.link
-    assert refuses(page, name, value, sentence)
-    assert page.screen.link == link
+    before = page.screen
+    edits(page, name, value)
+    assert sentence in unescape(trouble(page))
+    assert (page.screen, page.screen.link) == (before, before.link)
     edits(page, name, (page.channel.shown_value(f"={name}") or {}).get("text"))  # the box as it was
     edits(page, "load", 2900)
     assert page.screen.file.load["force"] == 2900
@@ -299,19 +308,6 @@ def test_inches_and_pounds_hold_on_the_whole_page_and_come_back_as_they_were():
     edits(page, "load", "3 kN")
     does(page, "choose", name="units", value="SI")
     assert page.screen == before
-
-
-def test_what_is_typed_is_in_the_unit_beside_the_box_or_in_its_own():
-    page = Page(IMPERIAL)
-    edits(page, "ball_radius", "1,25")
-    assert page.screen.file.joint.ball_radius == pytest.approx(25.4 * 1.25 / 2)
-    edits(page, "load", "700")
-    assert page.screen.file.load == {"force": pytest.approx(700 / LBF)}
-    edits(page, "allowable", 3000)
-    assert page.screen.file.joint.liner.allowable_pressure == pytest.approx(3000 / PSI)
-    edits(page, "ball_radius", "wide")
-    sentence = "Head diameter must be a number in inches, or a length such as '16 mm', got 'wide'"
-    assert sentence in unescape(trouble(page))
 
 
 def test_files_are_in_the_units_of_the_page():
