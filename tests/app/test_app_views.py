@@ -111,6 +111,7 @@ def test_elements_run_beside_others_who_go_on(user, profile, address):
     expect(button).to_have_text("Cancel")
     other.nudge("clearance")
     assert other.shows("max_pressure", pressure(clearance=0.105))
+    other.page.close()
     picture = user.page.locator("svg[aria-label^='mesh and von Mises']")
     assert not picture.is_visible()
     picture.wait_for()

@@ -292,7 +292,7 @@ def test_an_orientation_of_zero_is_shown_and_not_replaced():
     assert ">anterior</text>" not in pressed_bore(default)
 
 
-def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(asked):
+def test_a_load_is_aimed_in_the_body_or_from_the_cups_axis(at_once):
     page = opened(CUP_LINK)
     assert page.channel.shown_value("=cup.tilt")["hidden"]
     assert not page.channel.shown_value("=cup.inclination")["hidden"]
