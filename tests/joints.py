@@ -34,11 +34,7 @@ joints = st.builds(
 
 
 def random_joint(
-    size: int,
-    seed: int,
-    *,
-    clearance: tuple[float, float] = (-6.0, -1.0),
-    thickness: tuple[float, float] = (-1.5, 1.5),
+    size: int, seed: int, *, clearance: tuple[float, float] = (-6.0, -1.0), thickness: tuple[float, float] = (-1.5, 1.5)
 ) -> bs.Joint:
     """Wildly different joints in one: log-uniform sizes and moduli; clearance and thickness as powers of the radius."""
     rng = np.random.default_rng(seed)

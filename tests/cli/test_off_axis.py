@@ -1,6 +1,5 @@
 """Tilted loads from the command line and from files."""
 
-import json
 import re
 
 import numpy as np
@@ -9,57 +8,24 @@ import pytest
 import ballsocket as bs
 
 from ..places import EXAMPLES
-from .command import run
+from .command import answer, run
 
-NUMBERS = (
-    "--ball-radius",
-    "17.9",
-    "--clearance",
-    "0.1",
-    "--liner-thickness",
-    "6.75",
-    "--young",
-    "1GPa",
-    "--poisson",
-    "0.4",
-)
+NUMBERS = ("--ball-radius=17.9", "--clearance=0.1", "--liner-thickness=6.75", "--young=1GPa", "--poisson=0.4")
 COARSE = ("--ring-width", "4 deg")
-KEYS = {
-    "force",
-    "force_vector",
-    "max_pressure",
-    "max_pressure_at_deg",
-    "edge_distance",
-    "edge_loaded",
-    "status",
-    "valid",
-}
 
 
 def answered(*words):
-    done = run("press", *words, "--json")
-    assert done.returncode == 0, done.stderr
-    return {result["model"]: result for result in json.loads(done.stdout)["results"]}
+    return {result["model"]: result for result in answer("press", *words)["results"]}
 
 
 def test_a_tilt_selects_the_model_sphere():
     sphere = answered(*NUMBERS, "--model", "sphere", "--tilt", "45", "--indentation", "0.04")["sphere"]
-    assert set(sphere) >= KEYS
-    assert sphere["status"] == "OK"
     lateral, across, axial = sphere["force_vector"]
     assert (lateral, axial) == pytest.approx((2101, 2134), rel=2e-3)
     assert across == pytest.approx(0, abs=1e-3)
     assert sphere["max_pressure_at_deg"][0] == pytest.approx(45, abs=0.5)
-    assert not sphere["edge_loaded"]
+    assert (sphere["status"], sphere["edge_loaded"]) == ("OK", False)
     assert "sphere" in answered(*NUMBERS, *COARSE, "--tilt", "45 deg", "--force", "1kN")
-
-
-@pytest.mark.long
-def test_an_interference_selects_the_model_sphere():
-    results = answered(
-        "suspension-ball-joint", "--interference", "0.02", *COARSE, "--arc-of-cover", "300", "--force", "1kN"
-    )
-    assert results["sphere"]["status"] == "OK"
 
 
 @pytest.mark.long
@@ -69,8 +35,7 @@ def test_direction_options_replace_the_direction_of_the_file():
     direction = np.array(bs.read_joint(path).aim["direction"])
     assert inside["force_vector_in_body"] == pytest.approx(3000 * direction / np.linalg.norm(direction), abs=0.01)
     assert inside["force"] == over["force"] == 3000
-    assert not inside["edge_loaded"]
-    assert over["edge_loaded"]
+    assert (inside["edge_loaded"], over["edge_loaded"]) == (False, True)
     assert over["edge_distance"] < 0 < inside["edge_distance"]
 
 
@@ -89,8 +54,7 @@ def test_a_cup_that_opens_downwards_has_its_load_in_the_body(tmp_path):
 @pytest.mark.long
 def test_models_without_a_rim_are_invalid_near_it():
     results = answered("hip-36", *COARSE, "--force", "3kN", "--tilt", "60", "--model", "sphere", "--model", "refined")
-    assert results["sphere"]["valid"]
-    assert not results["refined"]["valid"]
+    assert (results["sphere"]["valid"], results["refined"]["valid"]) == (True, False)
 
 
 def test_a_load_out_of_the_bore_gives_status_3_and_its_tilt():
@@ -118,8 +82,7 @@ def test_a_tilted_load_writes_figures_and_vtk_files(tmp_path):
     import meshio
 
     cup, vtk, both = (tmp_path / name for name in ("cup.svg", "cup.vtu", "both.svg"))
-    done = run("press", "hip-36", "--force", "3kN", "--tilt", "45", *COARSE, "--figure", str(cup), "--vtk", str(vtk))
-    assert done.returncode == 0
+    run("press", "hip-36", "--force", "3kN", "--tilt", "45", *COARSE, "--figure", str(cup), "--vtk", str(vtk))
     assert "the cup seen from its opening" in cup.read_text("utf-8")
     assert "pressure" in meshio.read(vtk).cell_data
     models = ("--model", "refined", "--model", "sphere")  # where sphere does not lead, curves are compared
@@ -130,13 +93,12 @@ def test_a_tilted_load_writes_figures_and_vtk_files(tmp_path):
 def test_orient_maps_edge_distance_and_pressure(tmp_path):
     path, figure = str(EXAMPLES / "tilted_hip.toml"), tmp_path / "map.svg"
     words = ("orient", path, *COARSE, "--points", "3", "--inclination", "30..60", "--figure", str(figure))
-    told = run(*words)
-    assert told.returncode == 0
-    assert "furthest from the rim: 5." in told.stdout
-    assert "mm at inclination 30°, anteversion 0°" in told.stdout
-    assert "sphere: rings of 4°, 9 orientations in " in told.stdout
+    told = run(*words).stdout
+    assert "furthest from the rim: 5." in told
+    assert "mm at inclination 30°, anteversion 0°" in told
+    assert "sphere: rings of 4°, 9 orientations in " in told
     assert "edge distance" in figure.read_text("utf-8")
-    stood = json.loads(run(*words, "--json").stdout)
+    stood = answer(*words)
     assert stood["inclination_deg"] == pytest.approx([30, 45, 60])
     assert stood["anteversion_deg"] == pytest.approx([0, 15, 30])
     alone = answered(path, *COARSE)["sphere"]  # the file's cup is that of the middle
@@ -152,19 +114,18 @@ def test_orient_prints_every_orientation_and_the_limits():
     for angle in range(30, 71, 5):
         assert printed.count(f" {angle}°  ") + printed.count(f" {angle}°\n") >= 2
     assert printed.count("\n20°") >= 2
-    assert re.search(
-        r"at 20° anteversion the limit holds up to \d\d° inclination \(steps of 5°\)", " ".join(printed.split())
-    )
+    end = r"at 20° anteversion the limit holds up to \d\d° inclination \(steps of 5°\)"
+    assert re.search(end, " ".join(printed.split()))
     alone = run(*words, "--inclination", "45", "--anteversion", "20", "--figure", "a.png")
     assert (alone.returncode, alone.stdout) == (2, "")
     assert "--figure needs a range of an angle" in alone.stderr
-    answer = json.loads(run(*words, "--inclination", "41..52", "--step", "5", "--anteversion", "20", "--json").stdout)
-    assert answer["inclination_deg"] == pytest.approx([41, 45, 50, 52])
-    assert answer["anteversion_deg"] == pytest.approx([20])
-    distances = [row[0] for row in answer["edge_distance"]]
-    assert answer["within_limits"] == [[distance >= 1.0] for distance in distances]
-    assert answer["limits"] == ["edge_distance >= 1 mm"]
-    (ends,) = answer["inclination_ranges"]
+    said = answer(*words, "--inclination", "41..52", "--step", "5", "--anteversion", "20")
+    assert said["inclination_deg"] == pytest.approx([41, 45, 50, 52])
+    assert said["anteversion_deg"] == pytest.approx([20])
+    distances = [row[0] for row in said["edge_distance"]]
+    assert said["within_limits"] == [[distance >= 1.0] for distance in distances]
+    assert said["limits"] == ["edge_distance >= 1 mm"]
+    (ends,) = said["inclination_ranges"]
     assert ends["inclination_deg"] == [41.0, [41.0, 45.0, 50.0, 52.0][sum(d >= 1.0 for d in distances) - 1]]
 
 
@@ -176,7 +137,7 @@ def test_a_cup_is_oriented_by_options_as_by_its_file(tmp_path):
     (tmp_path / "cup.toml").write_text(f"{text}{table}", encoding="utf-8")
     options = [word for key, value in angles.items() for word in (f"--{key}", value)]
     from_file, from_options = (
-        json.loads(run(*call, *COARSE, "--force", "3 kN", "--json", folder=tmp_path).stdout)
+        answer(*call, *COARSE, "--force", "3 kN", folder=tmp_path)
         for call in (("press", "cup.toml"), (*words, *options))
     )
     assert from_file["results"] == from_options["results"]
@@ -211,11 +172,14 @@ def test_a_preloaded_joint_gets_a_socket_that_holds_it_and_its_friction_torques(
 
 def test_a_preloaded_joint_without_a_load_is_at_rest_and_states_the_wear_that_loosens_it():
     words = ("press", *TIGHT, *COARSE)
-    printed, at_rest = run(*words, columns=200).stdout, json.loads(run(*words, "--json").stdout)
-    assert "uniform wear of the bore by 0.03 mm ends the preload" in printed
-    assert "force 0 assumed, the ball is at rest in its socket; set --force" in printed
-    assert "sphere: the contact reaches the rim, as is normal in a preloaded joint" in printed
-    assert "p, 0° to 120°" in printed
+    printed, at_rest = run(*words, columns=200).stdout, answer(*words)
+    for text in (
+        "uniform wear of the bore by 0.03 mm ends the preload",
+        "force 0 assumed, the ball is at rest in its socket; set --force",
+        "sphere: the contact reaches the rim, as is normal in a preloaded joint",
+        "p, 0° to 120°",
+    ):
+        assert text in printed
     assert "edge loading" not in printed
     assert at_rest["preload"]["wear_depth_to_loosen"] == pytest.approx(0.03, rel=1e-3)
     assert at_rest["results"][0]["force"] == pytest.approx(0.0, abs=1.0)
@@ -225,7 +189,7 @@ def test_a_preloaded_joint_without_a_load_is_at_rest_and_states_the_wear_that_lo
 @pytest.mark.long
 def test_friction_of_several_models_stands_beside_each():
     words = ("hip-28", "--force", "1 kN", "--friction", "0.05")
-    results = json.loads(run("press", *words, "--json").stdout)["results"]
+    results = answer("press", *words)["results"]
     assert [result["model"] for result in results] == ["hess-forsbach", "exact"]
     contact = bs.HessForsbach().press(bs.joints["hip-28"], force=1000.0)
     assert results[0]["friction"]["running_torque"] == pytest.approx(contact.friction_torque(0.05))
@@ -236,10 +200,10 @@ def test_friction_of_several_models_stands_beside_each():
 @pytest.mark.long
 def test_the_pull_out_force_is_printed_with_its_limits():
     words = ("press", *HELD, "--pull-out", "--friction", "0.1", "--arc-of-cover", "200")
-    finished, pulled = run(*words, columns=200), json.loads(run(*words, "--json").stdout)["pull_out"]
+    finished, pulled = run(*words, columns=200), answer(*words)["pull_out"]
     assert pulled["force"] > 0
     assert f"pull-out force {pulled['force']:.4g} N, {pulled['displacement']:.4g} mm" in finished.stdout
     assert "a housing that widens as a ring makes the force smaller" in finished.stdout
-    wide = json.loads(run("press", *HELD, "--pull-out", "--arc-of-cover", "240", "--json").stdout)["pull_out"]
+    wide = answer("press", *HELD, "--pull-out", "--arc-of-cover", "240")["pull_out"]
     assert wide["force"] is None
     assert "not computed" in wide["notes"][0]

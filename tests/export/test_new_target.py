@@ -17,10 +17,7 @@ from ..places import CONTRIBUTING
 
 PAGE = (CONTRIBUTING / "export_target.md").read_text("utf-8")
 FUNCTION, LINE = re.findall(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
-ADDITIONS = {
-    "TARGETS: Mapping[str, Target] = {": FUNCTION + "\n\n",
-    '        Target(\n            name="table"': LINE,
-}
+ADDITIONS = {"TARGETS: Mapping[str, Target] = {": FUNCTION + "\n\n", '        Target(\n            name="table"': LINE}
 
 
 @pytest.fixture(scope="module")

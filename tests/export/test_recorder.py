@@ -127,8 +127,7 @@ def test_a_tunable_parameter_is_in_general_above_zero_and_a_state_is_not_compare
 
 
 @pytest.mark.parametrize(
-    ("value", "text"),
-    [(0.1, "0.1"), (-2.0, "(-2.0)"), (1e-300, "1e-300"), (3, "3.0"), (0.0, "0.0"), (math.nan, "NAN")],
+    ("value", "text"), [(0.1, "0.1"), (-2.0, "(-2.0)"), (1e-300, "1e-300"), (3, "3.0"), (0.0, "0.0"), (math.nan, "NAN")]
 )
 def test_numbers_in_c_have_all_digits(value, text):
     assert c_number(value) == text

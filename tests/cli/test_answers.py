@@ -1,0 +1,174 @@
+"""Every command that answers: fields of its JSON, next steps that it suggests, and tables in narrow terminals."""
+
+import re
+import shlex
+from inspect import signature
+
+import pytest
+
+from ballsocket.cli.root import load_commands
+from ballsocket.core.quantities import CONTACT
+
+from ..extent import some
+from ..places import EXAMPLES
+from .command import answer, run
+
+FIELDS = ("valid", "error", "notes", "sources", "next")
+HIP = ("hip-36", "--force", "3 kN")
+SPRINGS = ("--model", "hess-forsbach")
+PLANNING = EXAMPLES / "planning"
+STUDY = f"""
+joint = "{(EXAMPLES / "hip.toml").as_posix()}"
+model = "tabulated"
+[axes]
+ball_radius = {{ from = "11 mm", to = "20 mm", count = 2 }}
+liner = ["uhmwpe", "crosslinked-pe"]
+force = [1000, 3000]
+"""
+CALLS = {
+    "press": (*HIP, "--all"),
+    "film": (*HIP, *SPRINGS, "--model", "exact"),
+    "curve": (*HIP, "--points", "3"),
+    "map": (*HIP, "--points", "3", *SPRINGS, "--limit", "max_pressure<=20 MPa"),
+    "optimise": (
+        *(*HIP, "--vary", "clearance=50..200 um", "--points", "3", *SPRINGS),
+        *("--minimise", "max_pressure", "--minimise", "indentation"),
+    ),
+    "sensitivity": (*HIP, "--spread", "clearance=0.1+-0.05 mm", "--count", "16", *SPRINGS),
+    "orient": (f"{EXAMPLES / 'tilted_hip.toml'}", "--points", "3", "--ring-width", "6"),
+    "study": ("study.toml",),
+    "identify": (f"{EXAMPLES / 'measured_areas.toml'}",),
+    "calibrate": ("hip-36",),
+    "models": ("exact",),
+    "presets": ("hip-36",),
+}
+"""Commands with JSON, and arguments that take little time."""
+
+TABLES = CALLS | {
+    "planning": (
+        *("--landmarks", f"{PLANNING / 'pelvis.mrk.json'}", "--vertical", "0,0,1"),
+        *("--liner", f"{PLANNING / 'liner.stl'}", "--head", f"{PLANNING / 'head.stl'}"),
+    ),
+    "hip": (f"{EXAMPLES / 'hip_in_use.toml'}",),
+    "calibrate": (),
+    "models": (),
+    "presets": (),
+}
+SLOW = {"hip", "calibrate"}
+WITHOUT_TABLE = {
+    *("app", "serve-mcp"),  # servers
+    *("cite", "schema", "build-tables"),  # BibTeX, JSON
+    *("deck", "fmu", "export", "evidence", "reproduce"),  # names of files
+}
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "study.toml").write_text(STUDY, encoding="utf-8")
+    return tmp_path
+
+
+def test_all_commands_are_tested_here_or_in_their_room():
+    spoken = {name for name, command in load_commands().items() if "as_json" in signature(command).parameters}
+    assert spoken == {*CALLS, "hip", "evidence", "planning"}  # these take seconds: their own tests look
+    assert {*TABLES, *WITHOUT_TABLE} == {*load_commands()}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_an_answer_has_validity_sources_and_next_steps(name, folder):
+    said = answer(name, *CALLS[name], folder=folder)
+    assert [each for each in FIELDS if each not in said] == []
+    assert said["sources"]
+    assert all(each["key"] and each["text"] for each in said["sources"])
+    for step in said["next"]:
+        command, *words = shlex.split(step["command"])
+        assert (command, step["why"] != "") == ("ballsocket", True)
+        assert words[0] in load_commands()
+
+
+@pytest.mark.parametrize(
+    "command", [pytest.param(name, marks=pytest.mark.long if name in SLOW else ()) for name in TABLES]
+)
+def test_tables_fit_narrow_terminals_without_cut_numbers(command, folder):
+    for columns in some((60, 80), 1):
+        done = run(command, *TABLES[command], columns=columns, folder=folder)
+        assert done.returncode == 0, done.stderr
+        assert max(map(len, done.stdout.splitlines())) <= columns
+        assert "…" not in done.stdout
+
+
+@pytest.mark.long
+def test_all_numbers_of_a_wide_table_are_in_a_narrow_one(folder):
+    for command in ("curve", "study", "calibrate", "identify"):
+        wide, narrow = (run(command, *TABLES[command], columns=width, folder=folder).stdout for width in (200, 40))
+        assert {*re.findall(r"\d\S*", wide)} <= {*re.findall(r"\d\S*", narrow)}
+
+
+@pytest.mark.long
+def test_a_narrow_press_table_names_the_columns_that_it_omits():
+    symbols = {quantity.symbol for quantity in CONTACT.values()} - {"p0", "φmax"}  # same as pmax, and zero
+    for columns in (80, 60, 40):
+        text = run("press", "hip-36", "--force", "3 kN", columns=columns).stdout
+        heads = next(line.split() for line in text.splitlines() if line.startswith("model "))
+        omitted = " ".join(text.split()).partition("not shown, the terminal is too narrow: ")[2]
+        assert all((symbol in heads) != (f"{symbol} " in omitted) for symbol in symbols)
+        assert (omitted == "") == (columns == 80)
+
+
+def test_heads_keep_their_units_in_brackets():
+    assert "F [N]  d [mm] ε [°] pmax [MPa] A [mm²] dF/dd [N/mm] valid\n" in run("curve", *CALLS["curve"]).stdout
+
+
+def test_the_next_step_after_an_invalid_model_gives_a_valid_result():
+    said = answer("press", "hip-36", "--force", "3 kN", "--model", "hertz")
+    assert not said["valid"]
+    assert any("half-space" in note for note in said["notes"])
+    words = shlex.split(said["next"][0]["command"])[1:]
+    assert words == ["press", "hip-36", "--force", "3 kN", "--model", "exact"]
+    better = answer(*words)
+    assert better["valid"]
+    assert 0 < better["error"]["exact"]["max_pressure"] < 1e-6
+
+
+@pytest.mark.long
+def test_the_next_step_after_optimise_presses_the_best_joint():
+    said = answer("optimise", "hip-36", "--force", "3 kN", "--vary", "clearance=50..200 um")
+    step = shlex.split(said["next"][0]["command"])[1:]
+    exact = next(each for each in answer(*step)["results"] if each["model"] == "exact")
+    assert exact["max_pressure"] == pytest.approx(said["value"], rel=1e-3)
+
+
+def test_validity_of_a_tilted_load_is_that_of_sphere_not_of_exact():
+    said = answer("press", "hip-36", "--force", "3 kN", "--tilt", "45 deg", "--ring-width", "6 deg")
+    assert said["valid"]
+    assert not next(each["valid"] for each in said["results"] if each["model"] == "exact")
+
+
+def test_the_last_point_of_a_curve_equals_a_press():
+    said = answer("curve", "hip-36", "--force", "3 kN", "--points", "4", "--model", "hertz")
+    assert said["force"] == [0.0, 1000.0, 2000.0, 3000.0]
+    assert said["valid"] is all(said["valid_at"]) is False
+    last = answer("press", "hip-36", "--force", "3 kN", "--model", "hertz")["results"][0]
+    assert said["max_pressure"][-1] == pytest.approx(last["max_pressure"], rel=1e-12)
+    assert "Hertz 1882" in [each["text"] for each in said["sources"]]
+
+
+def test_json_of_a_small_study_has_extremes_and_all_values(folder):
+    said = answer("study", "study.toml", folder=folder)
+    assert said["values"]["force"] == 4 * [1000.0, 3000.0]
+    largest = said["quantities"]["max_pressure"]["largest"]
+    assert largest["at"]["force"] == 3000.0
+    assert largest["value"] == max(said["values"]["max_pressure"])
+
+
+@pytest.mark.long
+def test_several_joints_have_an_answer_and_next_steps_each():
+    names = ("hip-32", "hip-36")
+    said = answer("press", *names, "--force", "3 kN")
+    assert [each for each in FIELDS if each not in said] == []
+    for name, joint in zip(names, said["joints"], strict=True):
+        alone = answer("press", name, "--force", "3 kN")
+        assert joint == alone
+        assert all(step in said["next"] for step in alone["next"])
+        assert all(f"{name}: {note}" in said["notes"] for note in alone["notes"])
+    assert said["sources"]
