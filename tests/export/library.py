@@ -42,6 +42,11 @@ def set_compiler(monkeypatch, folder, lines):
     monkeypatch.setenv("CC", str(script))
 
 
+def writes(header):
+    """Line of a compiler that writes the header of a library."""
+    return f"open(sys.argv[sys.argv.index('-o') + 1], 'wb').write({header!r})"
+
+
 def python_header():
     """First bytes of the program of this Python; that of a universal one of macOS has no single platform."""
     header = Path(sys.executable).resolve().read_bytes()[:4096]
