@@ -1,4 +1,4 @@
-"""A host of FMI with no more than what tests ask: it loads the binary of a unit and calls its functions."""
+"""A host of FMI that loads the binary of a unit and calls its functions."""
 
 import ctypes as c
 import zipfile

@@ -55,6 +55,10 @@ def python_header():
     return header
 
 
+def table(path):
+    return np.genfromtxt(path, delimiter=",", names=True, deletechars="")
+
+
 class Library:
     """The functions of an element in C, on triples of numbers."""
 

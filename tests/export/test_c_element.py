@@ -41,7 +41,7 @@ def library(element, tmp_path_factory):
     return Library(element, tmp_path_factory.mktemp("library"))
 
 
-def states(count, seed=1):
+def drawn_states(count, seed=1):
     """Apart, touching lightly and deep, at the rim and beyond it; in all directions."""
     draw = np.random.default_rng(seed)
     way = draw.normal(size=(count, 3))
@@ -56,7 +56,7 @@ def close(got, wanted, scale):
 
 def test_random_states_have_the_load_contact_and_tangent_of_the_python_element(element, library):
     touched = 0
-    for state in zip(*states(either(300, 1000)), strict=True):
+    for state in zip(*drawn_states(either(300, 1000)), strict=True):
         wanted = element(*(tuple(map(float, part)) for part in state))
         status, force, moment, energy = library.load(*state)
         assert status == wanted.status
@@ -74,7 +74,7 @@ def test_random_states_have_the_load_contact_and_tangent_of_the_python_element(e
 
 def test_slopes_equal_finite_differences(library):
     draw = np.random.default_rng(2)
-    for state in zip(*states(30, seed=3), strict=True):
+    for state in zip(*drawn_states(30, seed=3), strict=True):
         if library.load(*state)[0] not in (ContactState.CONTACT, ContactState.AT_RIM):
             continue
         way = draw.normal(size=9) * [1, 1, 1, 100, 100, 100, 10, 10, 10]
@@ -99,7 +99,7 @@ def test_a_state_of_nan_has_a_status(library, place):
     status, force, moment, energy = library.load(*state.reshape(3, 3))
     assert status == ContactState.NO_NUMBER
     assert np.isnan([*force, *moment, *energy]).all()
-    far = (0.0, 0.0, 1e200), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)  # too large to square
+    far = (0.0, 0.0, 1e200), (0.0,) * 3, (0.0,) * 3  # too large to square
     for turned in (0, 1, 2):
         assert library.load(*far[-turned:], *far[:-turned])[0] == ContactState.NO_NUMBER
     assert library.contact(far[0])[0] == library.tangent(far[0])[0] == ContactState.NO_NUMBER
@@ -128,20 +128,15 @@ def plain(tmp_path_factory):
     return Library(ForceElement(bs.HessForsbach(), HIP), tmp_path_factory.mktemp("plain"))
 
 
-def test_losses_can_be_tuned(plain):
+def test_losses_can_be_tuned_to_parameters_that_are_allowed(plain):
     tuned = ELEMENTS["springs"]()
-    losses = (0.004, 0.002, 0.05, 0.08, 0.1, 10.0, 1e-4)
     state = (0.0, 0.03, 0.12), (5.0, 1.0, 20.0), (0.0, 1.0, 2.0)
-    plain.parameters[:] = losses
+    plain.parameters[:] = (0.004, 0.002, 0.05, 0.08, 0.1, 10.0, 1e-4)
     close(np.concatenate(plain.load(*state)[1:3]), np.concatenate(tuned(*state)[:2]), 1e3)
     plain.parameters[:] = plain.defaults
     assert plain.load(*state)[2].tolist() == [0.0, 0.0, 0.0]
-
-
-def test_parameters_that_are_not_allowed_are_reported(plain):
-    complaint = plain.functions.joint_complaint
+    complaint, given = plain.functions.joint_complaint, (ctypes.c_double * 7)(*plain.defaults)
     complaint.restype = ctypes.c_char_p
-    given = (ctypes.c_double * 7)(*plain.defaults)
     assert complaint(ctypes.byref(given)) is None
     given[2] = -0.1
     assert complaint(ctypes.byref(given)) == b"friction_coefficient must be finite and 0 or more"

@@ -14,14 +14,12 @@ from ballsocket.export.fmu import Fmu
 
 from ..cli.command import run
 from ..joints import HIP
-from .library import needs_compiler, needs_scripts, python_header, set_compiler
+from .library import needs_compiler, needs_scripts, python_header, set_compiler, writes
 
 ELEMENT = ForceElement(bs.HessForsbach(), HIP)
 MINGW = "x86_64-w64-mingw32-gcc"
 WINDOWS_HEADER = b"MZ".ljust(0x3C, b"\0") + (0x80).to_bytes(4, "little")
 WINDOWS_HEADER = WINDOWS_HEADER.ljust(0x80, b"\0") + b"PE\0\0" + (0x8664).to_bytes(2, "little")
-
-
 FAR_HEADER = b"MZ".ljust(0x3C, b"\xff") + (0x1F0).to_bytes(4, "little")
 FAR_HEADER = FAR_HEADER.ljust(0x1F0, b"\xff") + b"PE\0\0\x4c\x01\xff\xff"
 
@@ -47,10 +45,7 @@ def test_the_platform_of_a_library_is_read_from_its_header(header, name, ending,
     """e_machine of ELF has byte 18, cputype of Mach-O byte 4, Machine of PE the fourth byte after its start."""
     platform = library_platform(header)
     assert (str(platform), platform.library_ending, platform.bits) == (name, ending, bits)
-
-
-def test_an_unlisted_processor_of_64_bits_has_them():
-    assert Platform(system="linux", processor="riscv").bits == 64
+    assert Platform(system="linux", processor="riscv").bits == 64  # an unlisted one
 
 
 @pytest.mark.parametrize(
@@ -73,7 +68,7 @@ def test_this_python_runs_on_the_platform_that_its_own_header_states():
 @pytest.fixture
 def cross_compiler(tmp_path, monkeypatch):
     """A compiler that writes the header of a Windows library."""
-    set_compiler(monkeypatch, tmp_path, [f"open(sys.argv[sys.argv.index('-o') + 1], 'wb').write({WINDOWS_HEADER!r})"])
+    set_compiler(monkeypatch, tmp_path, [writes(WINDOWS_HEADER)])
 
 
 @needs_scripts
@@ -83,9 +78,8 @@ def test_an_fmu_files_the_binary_of_a_cross_compiler_under_its_platform(version,
     with zipfile.ZipFile(written.path) as archive:
         binaries = [name for name in archive.namelist() if name.startswith("binaries/")]
     assert binaries == [f"binaries/{folder}/hip.dll"]
-    assert written.missing == (
-        f"the binary is for x86_64-windows, the platform of its compiler; the binary for {THIS_PLATFORM} is missing"
-    )
+    assert written.missing.startswith("the binary is for x86_64-windows, the platform of its compiler")
+    assert written.missing.endswith(f"; the binary for {THIS_PLATFORM} is missing")
 
 
 @needs_scripts
@@ -100,13 +94,15 @@ def test_a_library_for_another_platform_is_not_left_for_a_program_of_this_machin
 @pytest.mark.parametrize(
     ("lines", "message"),
     [
+        (None, "script gcc wrote no usable library"),
         ((), "script gcc ended with 3: it printed no message"),
         (("note: first", "note: second"), "script gcc ended with 3: note: first"),
         (("note: first", "one.c: error: second", "error: third"), "script gcc ended with 3: one.c: error: second"),
     ],
 )
 def test_the_first_error_of_a_failing_compiler_is_reported(lines, message, tmp_path, monkeypatch):
-    set_compiler(monkeypatch, tmp_path, [*(f"print({line!r}, file=sys.stderr)" for line in lines), "sys.exit(3)"])
+    lines = () if lines is None else (*(f"print({line!r}, file=sys.stderr)" for line in lines), "sys.exit(3)")
+    set_compiler(monkeypatch, tmp_path, lines)
     with pytest.raises(NoCompiler, match=message):
         compile_library(["one.c"], tmp_path / "one.so", tmp_path)
 
@@ -121,18 +117,10 @@ def test_a_compiler_that_cannot_be_run_is_named(tmp_path, monkeypatch):
         compile_library(["one.c"], tmp_path / "one.so", tmp_path)
 
 
-@pytest.mark.skipif(shutil.which("true") is None, reason="there is no command that writes nothing")
-def test_a_compiler_that_writes_nothing_is_reported(tmp_path, monkeypatch):
-    monkeypatch.setenv("CC", "true")
-    with pytest.raises(NoCompiler, match="true wrote no usable library"):
-        compile_library(["one.c"], tmp_path / "one.so", tmp_path)
-
-
 @pytest.mark.skipif(shutil.which(MINGW) is None, reason=f"{MINGW} is not installed")
 def test_a_real_cross_compiler_builds_a_windows_library(tmp_path, monkeypatch):
     monkeypatch.setenv("CC", MINGW)
-    finished = run("fmu", "hip-28", "--out", "hip.fmu", folder=tmp_path)
-    assert finished.returncode == 0
+    assert run("fmu", "hip-28", "--out", "hip.fmu", folder=tmp_path).returncode == 0
     with zipfile.ZipFile(tmp_path / "hip.fmu") as archive:
         binary = archive.read("binaries/x86_64-windows/hip.dll")
     assert library_platform(binary) == Platform(system="windows", processor="x86_64")

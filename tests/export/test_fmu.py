@@ -18,7 +18,7 @@ from ballsocket.export.fmu.variables import reference_loads, states_in_si, traje
 from ..cli.command import run
 from ..joints import HIP
 from .host import Host
-from .library import needs_compiler
+from .library import needs_compiler, table
 
 LOSSES = {"damping": Damping(hysteresis=0.004), "friction": Friction(coefficient=0.05)}
 ELEMENT = ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant(), **LOSSES)
@@ -37,10 +37,6 @@ def folder(tmp_path_factory):
 def description(path):
     with zipfile.ZipFile(path) as archive:
         return fromstring(archive.read("modelDescription.xml"))
-
-
-def table(path):
-    return np.genfromtxt(path, delimiter=",", names=True, deletechars="")
 
 
 def test_equal_elements_give_equal_archives(folder):

@@ -17,13 +17,12 @@ def bar():
     return SimpleNamespace(**run_path(str(EXAMPLES / "what_does_clearance_do_to_a_four_bar.py"), run_name="four_bar"))
 
 
-def energy(bar, y):
-    position = bar.at_joint(y.tolist())[0]
-    return float(bar.mechanical(y[:, None])[0]) + bar.ELEMENT(position).energy
-
-
 def test_energy_loss_of_the_mechanism_equals_the_dissipation_of_its_joint(bar, monkeypatch):
     """dE/dt along the equations of motion, wherever the links are and however they turn."""
+
+    def energy(y):
+        return float(bar.mechanical(y[:, None])[0]) + bar.ELEMENT(bar.at_joint(y.tolist())[0]).energy
+
     random = np.random.default_rng(5)
     for depth in (-0.1, 0.01, 0.02):
         y = np.array(bar.START) + np.append(0.02 * random.normal(size=11), 0.0)
@@ -34,7 +33,7 @@ def test_energy_loss_of_the_mechanism_equals_the_dissipation_of_its_joint(bar, m
         pivot = tuple(np.array(bar.PIVOT) + away)  # the rocker is moved until they touch as wanted
         monkeypatch.setitem(bar.at_joint.__globals__, "PIVOT", pivot)
         rate = np.array(bar.rates(bar.ask, bar.ELEMENT, y.tolist()))
-        fall = -(energy(bar, y + 1e-7 * rate) - energy(bar, y - 1e-7 * rate)) / 2e-7
+        fall = -(energy(y + 1e-7 * rate) - energy(y - 1e-7 * rate)) / 2e-7
         assert fall == pytest.approx(rate[11], rel=1e-4, abs=1e-6 * abs(rate[10]))
         assert (rate[11] > 0) == (depth > 0)
         monkeypatch.undo()

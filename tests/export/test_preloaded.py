@@ -1,5 +1,6 @@
 """A preloaded joint as C sources and as an FMU, against its element in Python."""
 
+import re
 from math import radians
 from xml.etree.ElementTree import fromstring
 from zipfile import ZipFile
@@ -15,7 +16,7 @@ from ballsocket.export.fmu import Fmu, write_cross_check
 from ..cli.command import run
 from ..extent import some
 from .host import Host
-from .library import Library, needs_compiler
+from .library import Library, needs_compiler, table
 
 PRELOADED = ("--ball-radius", "13.5", "--interference", "0.03", "--liner-thickness", "2.5", "--liner", "pom")
 JOINT = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)
@@ -84,25 +85,32 @@ def test_a_host_receives_force_and_friction_of_the_preload(element, version, tmp
     assert status == 0
     assert_allclose((force, moment), (load.force[0], 1e-3 * load.moment[2]), rtol=1e-11)
     assert host.messages == []
-    reference = np.genfromtxt(tmp_path / "rod_ref.csv", delimiter=",", names=True, deletechars="")
+    reference = table(tmp_path / "rod_ref.csv")
     assert np.isfinite(reference["force[1]"]).all()
     assert np.ptp(reference["energy"]) > 0
 
 
 @needs_compiler
-def test_fmpy_validates_and_simulates_the_unit(element, tmp_path):
-    fmpy = pytest.importorskip("fmpy", reason="fmpy is not installed")
+def test_fmpy_validates_and_simulates_the_unit(element, fmpy, tmp_path):
     from fmpy.validation import validate_fmu
 
-    path = str(tmp_path / "rod.fmu")
-    Fmu(element=element, name="rod").write(tmp_path / "rod.fmu")
-    write_cross_check(element, tmp_path / "rod.fmu")
-    assert validate_fmu(path) == []
-    given, reference = (
-        np.genfromtxt(tmp_path / f"rod_{end}.csv", delimiter=",", names=True, deletechars="") for end in ("in", "ref")
-    )
-    loads = fmpy.simulate_fmu(path, fmi_type="ModelExchange", input=given, stop_time=0.1, output_interval=1e-3)
+    path = tmp_path / "rod.fmu"
+    Fmu(element=element, name="rod").write(path)
+    write_cross_check(element, path)
+    assert validate_fmu(str(path)) == []
+    given, reference = table(tmp_path / "rod_in.csv"), table(tmp_path / "rod_ref.csv")
+    loads = fmpy.simulate_fmu(str(path), fmi_type="ModelExchange", input=given, stop_time=0.1, output_interval=1e-3)
     assert_allclose(loads["force[3]"], reference["force[3]"], rtol=1e-10, atol=1e-6)
+
+
+@pytest.mark.long
+def test_the_commands_export_an_interference_but_not_as_a_table(tmp_path):
+    finished = run("export", "c", *PRELOADED, "--out", "rod", folder=tmp_path)
+    assert finished.stderr == "ballsocket: arc of cover 240° assumed for a preloaded joint; set --arc-of-cover\n"
+    assert "int rod_load(" in (tmp_path / "rod" / "rod.h").read_text("utf-8")
+    refused = run("export", "table", *PRELOADED, "--arc-of-cover", "240", "--out", "rod", folder=tmp_path)
+    assert refused.returncode == 2
+    assert re.fullmatch("ballsocket: .*export c, drake, modelica or mujoco.*\n", refused.stderr)
 
 
 @pytest.mark.long

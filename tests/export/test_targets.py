@@ -23,7 +23,7 @@ from ballsocket.files.joint_file import JointFile
 from ..cli.command import run
 from ..joints import HIP
 from ..places import EXAMPLES, ROOT
-from .library import needs_compiler, needs_scripts, python_header, set_compiler, skip_without, writes
+from .library import needs_compiler, needs_scripts, python_header, set_compiler, skip_without, table, writes
 
 PLAIN = ForceElement(bs.HessForsbach(), HIP)
 DAMPED = ForceElement(bs.HessForsbach(), HIP, damping=Damping(hysteresis=0.004))
@@ -169,7 +169,7 @@ def test_a_table_has_the_values_of_the_model_up_to_the_load_of_the_file(tmp_path
     done = run("export", "table", str(EXAMPLES / "hip.toml"), "--out", "new/parts/hip", folder=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.endswith(": hip_law.csv, hip_power.txt\n")
-    rows = np.genfromtxt(tmp_path / "new" / "parts" / "hip" / "hip_law.csv", delimiter=",", names=True, deletechars="")
+    rows = table(tmp_path / "new" / "parts" / "hip" / "hip_law.csv")
     assert_allclose(rows["force_N"][-1], 3000.0, rtol=1e-6)
     contact = bs.Tabulated().press(bs.read_joint(EXAMPLES / "hip.toml").joint, force=3000.0)
     assert_allclose(rows["max_pressure_MPa"][-1], contact.max_pressure, rtol=1e-6)
@@ -303,8 +303,7 @@ def test_the_text_of_a_power_law_has_its_numbers_for_every_program():
 
 
 def test_a_table_of_the_law_begins_without_contact_and_ends_at_its_depth():
-    text = TARGETS["table"].texts(ExportJob(element=PLAIN, name="hip", depth=0.05))["hip_law.csv"]
-    rows = np.genfromtxt(text.splitlines(), delimiter=",", names=True, deletechars="")
+    rows = table(TARGETS["table"].texts(ExportJob(element=PLAIN, name="hip", depth=0.05))["hip_law.csv"].splitlines())
     assert len(rows) == 201
     assert_allclose((rows["indentation_mm"][0], rows["indentation_mm"][-1]), (0.0, 0.05))
     contact = PLAIN.model.press(HIP, indentation=rows["indentation_mm"][1:])
