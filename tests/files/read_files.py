@@ -55,37 +55,25 @@ def numbers(value):
         return [value]
     if isinstance(value, Enum):
         return [value.value]
-    if isinstance(value, str):
-        return [value]
-    if isinstance(value, Path):
-        return [value.name]
+    if isinstance(value, str | Path):
+        return [value if isinstance(value, str) else value.name]
     if isinstance(value, int | float | numpy.number):
         return [float(value)]
     if isinstance(value, numpy.ndarray):
-        return [
-            list(value.shape),
-            float(numpy.nansum(value)),
-            float(numpy.nansum(value * numpy.arange(value.size).reshape(value.shape))),
-        ]
+        weighted = value * numpy.arange(value.size).reshape(value.shape)
+        return [list(value.shape), float(numpy.nansum(value)), float(numpy.nansum(weighted))]
     if isinstance(value, dict):
         return [part for key, entry in value.items() for part in (key, *numbers(entry))]
     if isinstance(value, list | tuple):
         return [part for entry in value for part in numbers(entry)]
     if is_dataclass(value):
         return [part for field in fields(value) for part in numbers(getattr(value, field.name))]
-    if callable(value):
-        return []
-    return [repr(type(value).__name__)]
-
-
-def _layers(joint):
-    return [
-        [float(layer.thickness), float(layer.material.young), float(layer.material.poisson)] for layer in joint.backing
-    ]
+    return [] if callable(value) else [repr(type(value).__name__)]
 
 
 def _joint(joint):
-    return [list(map(float, joint.numbers())), joint.name, joint.support.value, joint.liner.name, _layers(joint)]
+    layers = [list(map(float, (each.thickness, each.material.young, each.material.poisson))) for each in joint.backing]
+    return [list(map(float, joint.numbers())), joint.name, joint.support.value, joint.liner.name, layers]
 
 
 def _creep(law):
@@ -100,65 +88,37 @@ def _wear(law):
 
 
 def _hip(file):
-    use = file.use
-    surface = use.surface
+    use, surface = file.use, file.use.surface
+    modulus = float(surface.modulus(use.joint)) if hasattr(surface, "modulus") else type(surface).__name__
     return [
-        _joint(use.joint),
-        numbers(use.cup),
-        numbers(use.cycle.forces),
-        numbers(use.forces),
-        _wear(use.wear),
-        _creep(use.creep),
-        float(surface.modulus(use.joint)) if hasattr(surface, "modulus") else type(surface).__name__,
-        use.seconds,
-        use.ring_width,
-        file.cycles,
-        list(file.report_at),
-        numbers(file.lubricant),
+        *(_joint(use.joint), numbers(use.cup), numbers(use.cycle.forces), numbers(use.forces)),
+        *(_wear(use.wear), _creep(use.creep), modulus, use.seconds, use.ring_width),
+        *(file.cycles, list(file.report_at), numbers(file.lubricant)),
         *([] if file.uncertain is None else [file.uncertain.count, file.uncertain.seed]),
     ]
 
 
 def _study(file):
-    design = file.design
+    design, engine = file.design, file.engine
     return [
-        file.model.name,
-        _joint(file.joint),
-        list(design.names),
-        design.size,
-        list(file.quantities),
-        numbers(file.store),
-        type(file.engine).__name__,
-        numbers(getattr(file.engine, "workers", None)),
+        *(file.model.name, _joint(file.joint), list(design.names), design.size, list(file.quantities)),
+        *(numbers(file.store), type(engine).__name__, numbers(getattr(engine, "workers", None))),
     ]
 
 
 def _identify(file):
     data = [
-        [
-            each.quantity,
-            numbers(each.values),
-            numbers(each.uncertainty),
-            numbers(each.force),
-            numbers(each.machine.name),
-        ]
+        [each.quantity, *map(numbers, (each.values, each.uncertainty, each.force, each.machine.name))]
         for each in file.data
     ]
     return [file.model.name, _joint(file.joint), numbers(dict(file.free)), data, type(file.scatter).__name__]
 
 
 def _question(file):
-    texts = [file.text, file.context, file.influence, file.consequence]
     parts = (file.limits, dict(file.tolerances), dict(file.sources))
     return [
-        *texts,
-        file.accuracy,
-        _joint(file.file.joint),
-        numbers(dict(file.axes)),
-        *map(numbers, parts),
-        file.friction,
-        numbers(file.hip),
-        file.finite_elements,
+        *(file.text, file.context, file.influence, file.consequence, file.accuracy, _joint(file.file.joint)),
+        *(numbers(dict(file.axes)), *map(numbers, parts), file.friction, numbers(file.hip), file.finite_elements),
         sorted(path.name for path in file.files),
     ]
 

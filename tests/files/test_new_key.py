@@ -22,16 +22,7 @@ def test_reading_schema_and_documentation_follow_a_new_key():
     assert (key.values, key.meaning) == ("a length, such as '16 mm'", "depth of a groove in the cup")
     described = {"$ref": "#/$defs/Length", "description": "depth of a groove in the cup"}
     assert json_schema(GroovedFilm)["properties"]["groove_depth"] == described
-
-
-@pytest.mark.parametrize(
-    ("film", "message"),
-    [
-        ({"groove_depth": "3 N"}, "groove_depth = '3 N' is not a length, such as '16 mm'"),
-        ({"groove_depth": [1]}, r"groove_depth = \[1\] is not a length, such as '16 mm'"),
-        ({"grove_depth": 1}, "'grove_depth' .* is not known; did you mean 'groove_depth'?"),
-    ],
-)
-def test_wrong_values_of_a_new_key_are_refused(film, message):
-    with pytest.raises(ValueError, match=message):
-        read_table(film, GroovedFilm)
+    with pytest.raises(ValueError, match="groove_depth = '3 N' is not a length, such as '16 mm'"):
+        read_table({"groove_depth": "3 N"}, GroovedFilm)
+    with pytest.raises(ValueError, match="'grove_depth' .* is not known; did you mean 'groove_depth'?"):
+        read_table({"grove_depth": 1}, GroovedFilm)
