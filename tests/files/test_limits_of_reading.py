@@ -18,14 +18,12 @@ def test_an_angle_is_written_with_the_digits_that_were_typed_and_read_back_to_th
 
 
 def test_a_head_may_be_a_unit_alone():
-    """A head that begins with its bracket has an empty name."""
     assert split_head("[N]") == ("", "N")
     assert split_head("Force [N]") == ("Force", "N")
     assert split_head("Force") == ("Force", "")
 
 
 def test_the_rows_of_an_opensim_file_are_counted(tmp_path):
-    """Blank lines and the line of heads are no rows."""
     path = tmp_path / "gait.mot"
     path.write_text("gait\nendheader\ntime flexion\n0 1\n\n1 2\n")
     counts = []
@@ -38,7 +36,6 @@ def test_the_rows_of_an_opensim_file_are_counted(tmp_path):
 
 
 def test_a_head_line_that_ends_with_a_digit_is_a_row(tmp_path):
-    """A line that begins with a known word and ends with a number is a remark above the heads."""
     path = tmp_path / "gait.csv"
     path.write_text("time, run 7\ntime, flexion\n0, 1\n1, 2\n")
     table = read_text_table(path, ["time"], [].append)
@@ -46,7 +43,6 @@ def test_a_head_line_that_ends_with_a_digit_is_a_row(tmp_path):
 
 
 def test_a_load_may_have_a_short_direction():
-    """Only the direction of the three numbers counts, not their length."""
     assert Direction.read("direction", [0, 0.3, 0.4]) == (0.0, 0.3, 0.4)
     with pytest.raises(ValueError, match="length of direction"):
         Direction.read("direction", [0, 0, 0])
