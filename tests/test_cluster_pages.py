@@ -50,16 +50,10 @@ def test_the_submit_script_is_that_of_the_page():
     assert plain(script) == plain(SLURM_SCRIPT)
 
 
-SBATCH = """#!/bin/sh
-cp "$1" submitted.sh
-sh "$1" > worker.log 2>&1 &
-echo $! >> jobs
-echo "Submitted batch job 7"
-"""
-
-SCANCEL = """#!/bin/sh
-kill $(cat jobs) 2> /dev/null
-"""
+PROGRAMS = {
+    "sbatch": 'cp "$1" submitted.sh\nsh "$1" > worker.log 2>&1 &\necho $! >> jobs\necho "Submitted batch job 7"\n',
+    "scancel": "kill $(cat jobs) 2> /dev/null\n",
+}
 
 
 def encrypted(folder):
@@ -68,11 +62,9 @@ def encrypted(folder):
     lines = re.search(r"^  ```text\n(.*?)^  ```$", page, flags=re.MULTILINE | re.DOTALL)[1]
     security, cluster, engine = (line.strip() for line in lines.splitlines())
     options = cluster.removeprefix("cluster = SLURMCluster(").removesuffix(", ...)").replace("/home/me", str(folder))
-    program = SLURM_PROGRAM.replace(
-        "    cluster = SLURMCluster(", f"    {security}\n    cluster = SLURMCluster({options},"
-    )
-    program = re.sub(r"engine = Distributed\(.*\)", engine, program)
-    return f"import distributed\n{program}"
+    start = "    cluster = SLURMCluster("
+    program = SLURM_PROGRAM.replace(start, f"    {security}\n{start}{options},")
+    return "import distributed\n" + re.sub(r"engine = Distributed\(.*\)", engine, program)
 
 
 @pytest.mark.long
@@ -82,19 +74,17 @@ def encrypted(folder):
 def test_the_program_of_the_page_runs_where_sbatch_is_a_shell(tmp_path, program, protocol):
     """A job starts at once, as a process of this machine, with one core and few points."""
     pytest.importorskip("dask_jobqueue")
-    for name, text in (("sbatch", SBATCH), ("scancel", SCANCEL)):
-        (tmp_path / name).write_text(text, encoding="utf-8")
+    for name, text in PROGRAMS.items():
+        (tmp_path / name).write_text(f"#!/bin/sh\n{text}", encoding="utf-8")
         (tmp_path / name).chmod(stat.S_IRWXU)
     (tmp_path / "certificates").mkdir()
     text = program(tmp_path).replace("cores=32", "cores=1").replace("processes=32", "processes=1")
     text = text.replace("jobs=8", "jobs=1").replace(", 100)", ", 3)").replace("64GB", "1GB")
     text = text.replace("walltime=", "scheduler_options={'host': '127.0.0.1'}, walltime=")
     (tmp_path / "run_study.py").write_text(text, encoding="utf-8")
-    path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
-    words = [sys.executable, "run_study.py"]
-    done = subprocess.run(
-        words, cwd=tmp_path, env={**os.environ, "PATH": path}, capture_output=True, text=True, timeout=120
-    )
+    variables = {**os.environ, "PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}"}
+    words, pipes = [sys.executable, "run_study.py"], {"capture_output": True, "text": True}
+    done = subprocess.run(words, cwd=tmp_path, env=variables, timeout=120, **pipes)
     assert done.returncode == 0, done.stderr
     assert "Traceback" not in done.stderr
     submitted = (tmp_path / "submitted.sh").read_text(encoding="utf-8")
@@ -107,26 +97,18 @@ def test_the_manifest_of_kubernetes_is_complete(tmp_path):
     yaml = pytest.importorskip("yaml")
     parts = list(yaml.safe_load_all(blocks("kubernetes.md", "yaml")[0]))
     kinds = {(part["kind"], part["metadata"]["name"]): part for part in parts}
-    assert list(kinds) == [
-        ("PersistentVolumeClaim", "hips"),
-        ("Service", "scheduler"),
-        ("Deployment", "scheduler"),
-        ("Deployment", "worker"),
-        ("Job", "study"),
-    ]
+    deployments = {("Deployment", "scheduler"), ("Deployment", "worker")}
+    assert set(kinds) == {("PersistentVolumeClaim", "hips"), ("Service", "scheduler"), ("Job", "study"), *deployments}
     pods = {name: part["spec"]["template"]["spec"] for name, part in kinds.items() if "template" in part["spec"]}
     images = {container["image"] for pod in pods.values() for container in pod["containers"]}
     assert images == {"registry.example.org/ballsocket:1"}
-    for deployment in ("scheduler", "worker"):
-        spec = kinds["Deployment", deployment]["spec"]
+    for deployment in deployments:
+        spec = kinds[deployment]["spec"]
         assert spec["selector"]["matchLabels"] == spec["template"]["metadata"]["labels"]
     assert kinds["Service", "scheduler"]["spec"]["selector"] == {"app": "scheduler"}
-    mounts = {
-        name: {mount["name"]: mount["mountPath"] for mount in pod["containers"][0].get("volumeMounts", ())}
-        for name, pod in pods.items()
-    }
-    assert mounts["Deployment", "worker"]["hips"] == mounts["Job", "study"]["hips"] == "/hips"
-
+    for name in (("Deployment", "worker"), ("Job", "study")):
+        mounts = {mount["name"]: mount["mountPath"] for mount in pods[name]["containers"][0]["volumeMounts"]}
+        assert mounts["hips"] == "/hips"
     file = tmp_path / "study.toml"
     file.write_text(blocks("kubernetes.md", "toml")[0], encoding="utf-8")
     port = kinds["Service", "scheduler"]["spec"]["ports"][0]["port"]

