@@ -39,6 +39,20 @@ def written(target, element, folder, name="bouncing", depth=0.05):
     return TARGETS[target].write(ExportJob(element=element, name=name, depth=depth), folder)
 
 
+def texts(target, element=DAMPED):
+    return TARGETS[target].texts(ExportJob(element=element, name="hip", depth=0.05))
+
+
+def check_loads(force, moment, energy, half_angle, max_pressure):
+    """Compare loads in SI units with those of the element."""
+    wanted = LOSSY(*IN_MM)
+    assert_allclose(force, wanted.force, rtol=1e-12, atol=1e-9)
+    assert_allclose(moment, 1e-3 * np.array(wanted.moment), rtol=1e-12, atol=1e-12)
+    assert_allclose(
+        (energy, half_angle, max_pressure), (1e-3 * wanted.energy, wanted.half_angle, 1e6 * wanted.max_pressure), 1e-12
+    )
+
+
 @pytest.fixture(scope="module")
 def tools():
     """The benchmark that runs one bounce in every program."""
@@ -57,13 +71,8 @@ def fit():
 def test_the_python_module_has_the_loads_of_the_element_and_needs_no_package(tools, tmp_path):
     assert written("exudyn", LOSSY, tmp_path)[1] == ""
     assert "import ballsocket" not in (tmp_path / "bouncing.py").read_text()
-    wanted = LOSSY(*IN_MM)
     with tools.module(tmp_path, "bouncing") as joint:
-        force, moment, energy = joint.load(*STATE)
-        assert_allclose(force, wanted.force, rtol=1e-12, atol=1e-9)
-        assert_allclose(moment, 1e-3 * np.array(wanted.moment), rtol=1e-12, atol=1e-12)
-        assert_allclose(energy, 1e-3 * wanted.energy, rtol=1e-12)
-        assert_allclose(joint.contact(STATE[0]), (wanted.half_angle, 1e6 * wanted.max_pressure), rtol=1e-12)
+        check_loads(*joint.load(*STATE), *joint.contact(STATE[0]))
         with pytest.raises(joint.NoForce, match="the indentation exceeds the wall thickness"):
             joint.load((0.0, 0.0, 0.1))
         joint.parameters[0] = -1.0
@@ -82,10 +91,7 @@ def test_the_modelica_function_has_the_loads_of_the_element(tmp_path):
     load = (ctypes.c_double * 9)()
     tuned = (ctypes.c_double * 7)(4.0, 0.0, 0.05, 0.05, 1e-4, 1e-2, 0.0)
     ctypes.CDLL(str(path)).bouncing_modelica(*((ctypes.c_double * 3)(*part) for part in STATE), tuned, load)
-    wanted = LOSSY(*IN_MM)
-    assert_allclose(load[:3], wanted.force, rtol=1e-12, atol=1e-9)
-    assert_allclose(load[3:7], 1e-3 * np.array([*wanted.moment, wanted.energy]), rtol=1e-12, atol=1e-12)
-    assert_allclose(load[7:], (wanted.half_angle, 1e6 * wanted.max_pressure), rtol=1e-12)
+    check_loads(load[:3], load[3:6], *load[6:])
 
 
 def test_a_parser_of_modelica_reads_the_package_and_each_unknown_has_one_equation(tmp_path):
@@ -99,6 +105,14 @@ def test_a_parser_of_modelica_reads_the_package_and_each_unknown_has_one_equatio
     own.remove("turn")  # it is bound where it is declared
     assert sorted(str(each.left) for each in joint.equations) == sorted(own + flows)
     assert [each.name for each in package.classes["load"].symbols.values()][-1] == "load"
+
+
+def check_text(text, element, near):
+    """The text of a law in m and m/s has the damped force of an element, and none apart."""
+    formula, words = text.replace("^", "**"), {"max": max, "min": min, "sqrt": sqrt, "exp": exp, "ddot": 0.02}
+    force = -element((0.0, 0.0, 0.13), (0.0, 0.0, 20.0)).force[2]
+    assert_allclose(eval(formula, words | {"d": 1.3e-4}), force, rtol=near)
+    assert eval(formula, words | {"d": 5e-5}) == 0.0
 
 
 def test_the_expression_of_a_closed_form_is_the_closed_form():
@@ -115,6 +129,7 @@ def test_one_expression_fits_any_law_within_the_validity_of_its_model(fit):
     depths = np.array([2e-4, 0.011, 0.049, 0.99e3 * fit.depth])
     forces = fit(1e-3 * (HIP.clearance + depths))
     assert_allclose(forces, TABULATED.potential(depths)[1], rtol=2 * fit.error)
+    check_text(fit.text("d", "ddot", 4.0), TABULATED, 1e-5)
 
 
 def test_beyond_its_fit_an_expression_continues_with_its_slope_and_notes_its_error_and_depth(fit):
@@ -136,19 +151,6 @@ def test_the_terminal_and_the_file_state_the_range_of_an_expression(tmp_path):
     note = expression_fit(ForceElement(bs.Tabulated(), bs.joints["hip-28"]), 0.0).range_note
     assert note in finished.stderr.replace("\n", " ")
     assert note in (tmp_path / "hip" / "hip.osim").read_text()
-
-
-def check_text(text, element, near):
-    """The text of a law in m and m/s has the damped force of an element, and none apart."""
-    formula, words = text.replace("^", "**"), {"max": max, "min": min, "sqrt": sqrt, "exp": exp, "ddot": 0.02}
-    force = -element((0.0, 0.0, 0.13), (0.0, 0.0, 20.0)).force[2]
-    assert_allclose(eval(formula, words | {"d": 1.3e-4}), force, rtol=near)
-    assert eval(formula, words | {"d": 5e-5}) == 0.0
-
-
-@pytest.mark.parametrize(("element", "near"), [(DAMPED, 1e-12), (TABULATED, 1e-5)])
-def test_the_text_of_an_expression_is_the_law_with_its_damping(element, near):
-    check_text(expression_fit(element, 0.05).text("d", "ddot", 4.0), element, near)
 
 
 def test_the_best_power_law_is_balanced_and_no_other_is_better():
@@ -256,46 +258,34 @@ def test_features_that_a_target_cannot_represent_are_reported(tmp_path):
     assert written("opensim", DAMPED, tmp_path)[1] == written("table", PLAIN, tmp_path)[1] == ""
 
 
-def test_files_of_other_programs_have_the_law_and_the_radii_in_metres_and_the_inertia_of_a_solid_ball(tmp_path):
+def test_files_of_other_programs_have_the_law_and_the_radii_in_metres_and_the_inertia_of_a_solid_ball():
     """A ball of 17.9 mm and 1 kg has 0.4 m R² = 1.28e-4 kg m²."""
-    for target in ("mujoco", "opensim", "exudyn"):
-        folder = tmp_path / target
-        folder.mkdir()
-        for name, text in TARGETS[target].texts(ExportJob(element=DAMPED, name="hip", depth=0.05)).items():
-            (folder / name).write_text(text)
-    scene = fromstring((tmp_path / "mujoco" / "hip.xml").read_bytes())
+    scene, text = fromstring(texts("mujoco")["hip.xml"]), texts("opensim")["hip.osim"]
     assert float(scene.find(".//geom").get("size")) == pytest.approx(0.0179)
-    model = fromstring((tmp_path / "opensim" / "hip.osim").read_bytes())
-    text = (tmp_path / "opensim" / "hip.osim").read_text()
+    model = fromstring(text)
     check_text(model.find(".//expression").text, DAMPED, 1e-12)
     assert float(re.search(r"Accuracy: within (\S+) % of the law", text)[1]) <= 1e-10
-    plain = TARGETS["opensim"].texts(ExportJob(element=PLAIN, name="hip", depth=0.05))["hip.osim"]
-    assert "ddot" not in plain
+    assert "ddot" not in texts("opensim", PLAIN)["hip.osim"]
     inertia = [float(number) for number in model.find(".//inertia").text.split()]
     assert inertia == pytest.approx([0.4 * 0.0179**2] * 3 + [0.0] * 3)
     assert float(model.find(".//mass").text) == 1.0
-    program = (tmp_path / "exudyn" / "hip_exudyn.py").read_text()
-    ball, socket = re.search(r"BALL_RADIUS, SOCKET_RADIUS = (\S+), (\S+)", program).groups()
+    ball, socket = re.search(r"BALL_RADIUS, SOCKET_RADIUS = (\S+), (\S+)", texts("exudyn")["hip_exudyn.py"]).groups()
     assert (float(ball), float(socket)) == pytest.approx((0.0179, 0.018))
 
 
-def test_the_power_law_of_exudyn_is_the_law_in_newtons_and_metres():
-    job = ExportJob(element=DAMPED, name="hip", depth=0.05)
-    program, error = TARGETS["exudyn"].texts(job)["hip_exudyn.py"], job.fitted_power_law.error
+def test_a_power_law_is_in_newtons_and_metres_for_exudyn_and_in_millimetres_for_others():
+    law = ExportJob(element=DAMPED, name="hip", depth=0.05).fitted_power_law
+    program, text = texts("exudyn")["hip_exudyn.py"], texts("table")["hip_power.txt"]
     stiffness, exponent = map(float, re.search(r"STIFFNESS, EXPONENT = (\S+), (\S+)", program).groups())
     forces = DAMPED.potential(np.array([0.01, 0.05]))[1]
-    assert_allclose(stiffness * np.array([1e-5, 5e-5]) ** exponent, forces, atol=1.01 * error * forces[1])
-    stated = re.search(r"indentation of (\S+) m: at most (\S+) % of the force", program).groups()
-    assert tuple(map(float, stated)) == (5e-5, pytest.approx(100 * error, rel=0.05))
-
-
-def test_the_text_of_a_power_law_has_its_numbers_for_every_program():
-    job = ExportJob(element=DAMPED, name="hip", depth=0.05)
-    text, law = TARGETS["table"].texts(job)["hip_power.txt"], job.fitted_power_law
+    assert_allclose(stiffness * np.array([1e-5, 5e-5]) ** exponent, forces, atol=1.01 * law.error * forces[1])
     numbers = {name: float(value) for name, value in re.findall(r"^(\w+) = (\S+)$", text, re.MULTILINE)}
     assert numbers == {"k": law.stiffness, "n": law.exponent, "clearance": pytest.approx(0.1)}
-    stated = re.search(r"error up to (\S+) mm at most (\S+) % of the force", text).groups()
-    assert tuple(map(float, stated)) == (0.05, pytest.approx(100 * law.error, rel=0.05))
+    for stated, depth in (
+        (re.search(r"indentation of (\S+) m: at most (\S+) % of the force", program), 5e-5),
+        (re.search(r"error up to (\S+) mm at most (\S+) % of the force", text), 0.05),
+    ):
+        assert tuple(map(float, stated.groups())) == (depth, pytest.approx(100 * law.error, rel=0.05))
     adams, simpack = [line for line in text.splitlines() if line.startswith("-")]
     words = {"MAX": max, "DM": lambda ball, socket: 0.13, "ball": 0, "socket": 0, "x": 0.13}
     expected = -numbers["k"] * 0.03 ** numbers["n"]
@@ -303,31 +293,25 @@ def test_the_text_of_a_power_law_has_its_numbers_for_every_program():
 
 
 def test_a_table_of_the_law_begins_without_contact_and_ends_at_its_depth():
-    rows = table(TARGETS["table"].texts(ExportJob(element=PLAIN, name="hip", depth=0.05))["hip_law.csv"].splitlines())
+    rows = table(texts("table", PLAIN)["hip_law.csv"].splitlines())
     assert len(rows) == 201
     assert_allclose((rows["indentation_mm"][0], rows["indentation_mm"][-1]), (0.0, 0.05))
     contact = PLAIN.model.press(HIP, indentation=rows["indentation_mm"][1:])
-    for column, values in {
-        "force_N": contact.force,
-        "stiffness_N/mm": contact.stiffness,
-        "energy_N_mm": contact.energy,
-        "half_angle_deg": np.degrees(contact.half_angle),
-        "max_pressure_MPa": contact.max_pressure,
-    }.items():
+    columns = {"force_N": contact.force, "stiffness_N/mm": contact.stiffness, "energy_N_mm": contact.energy}
+    columns |= {"half_angle_deg": np.degrees(contact.half_angle), "max_pressure_MPa": contact.max_pressure}
+    for column, values in columns.items():
         assert rows[column][0] == 0.0
         assert_allclose(rows[column][1:], values, rtol=1e-8)
 
 
 def test_a_power_law_with_a_small_stiffness_is_found():
     """The search for k is relative to the force: it holds for newtons and for micronewtons."""
-    soft = ForceElement(bs.Hertz(), HIP.replace(liner=bs.Material(young=1e-6, poisson=0.4)))
-    stiff = ForceElement(bs.Hertz(), HIP.replace(liner=bs.Material(young=1.0, poisson=0.4)))
-    fits = [power_fit(element, 0.02) for element in (soft, stiff)]
-    for fit, element in zip(fits, (soft, stiff), strict=True):
-        assert fit.exponent == pytest.approx(1.5, abs=1e-6)
-        assert fit.error < 1e-6
-        assert_allclose(fit.stiffness * 0.02**fit.exponent, element.potential(np.array([0.02]))[1][0], rtol=1e-6)
-    assert fits[0].stiffness == pytest.approx(1e-6 * fits[1].stiffness, rel=1e-3)
+    for young in (1e-6, 1.0):
+        element = ForceElement(bs.Hertz(), HIP.replace(liner=bs.Material(young=young, poisson=0.4)))
+        law = power_fit(element, 0.02)
+        assert law.exponent == pytest.approx(1.5, abs=1e-6)
+        assert law.error < 1e-6
+        assert_allclose(law.stiffness * 0.02**law.exponent, element.potential(np.array([0.02]))[1][0], rtol=1e-6)
 
 
 def test_an_expression_covers_a_socket_without_clearance():
@@ -425,24 +409,32 @@ def mujoco_momentum(tools, folder):
         yield np.concatenate([1.7 * data.subtree_linvel[0], data.subtree_angmom[0]]), data.qvel[6:9].copy()
 
 
-def drake_momentum(tools, folder):
+def drake_simulator(tools, folder, name, inertias, joints):
+    """Simulator, plant and context of bodies in drake, and of joints between two bodies or a body and the world."""
     from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
-    from pydrake.multibody.tree import SpatialInertia
     from pydrake.systems.analysis import Simulator
     from pydrake.systems.framework import DiagramBuilder
 
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
-    ball = plant.AddRigidBody("ball", SpatialInertia.SolidSphereWithMass(1.0, 0.018))
-    cup = plant.AddRigidBody("cup", SpatialInertia.SolidBoxWithMass(0.7, 0.06, 0.04, 0.02))
+    bodies = [plant.AddRigidBody(f"body{number}", inertia) for number, inertia in enumerate(inertias)]
     plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
     plant.Finalize()
-    with tools.module(folder, "meeting_drake") as made:
-        made.add_joint(builder, plant, ball, cup, socket_centre=(-0.01, 0.0, 0.0))
+    with tools.module(folder, name) as made:
+        for numbers, options in joints:
+            made.add_joint(builder, plant, *(bodies[number] for number in numbers), **options)
     simulator = Simulator(builder.Build())
     simulator.get_mutable_integrator().request_initial_step_size_target(1e-5)
     simulator.get_mutable_integrator().set_target_accuracy(1e-9)
-    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    return simulator, plant, plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+
+
+def drake_momentum(tools, folder):
+    from pydrake.multibody.tree import SpatialInertia
+
+    ball, cup = SpatialInertia.SolidSphereWithMass(1.0, 0.018), SpatialInertia.SolidBoxWithMass(0.7, 0.06, 0.04, 0.02)
+    joint = (0, 1), {"socket_centre": (-0.01, 0.0, 0.0)}
+    simulator, plant, context = drake_simulator(tools, folder, "meeting_drake", (ball, cup), [joint])
     plant.SetPositions(context, [1, 0, 0, 0, 5e-5, 0, 2e-5, 1, 0, 0, 0, 0.01, 0, 0])
     plant.SetVelocities(context, [3, -2, 1, 0.06, 0.02, 0.08, 0.5, 1, -2, 0, 0, 0])
     for time in (0.0, 0.005):
@@ -548,26 +540,14 @@ def test_ball_and_free_socket_conserve_linear_and_angular_momentum(momentum, too
 @needs_compiler
 def test_two_joints_on_one_plant_of_drake_act_independently(tools, tmp_path):
     skip_without("pydrake")
-    from pydrake.multibody.plant import AddMultibodyPlantSceneGraph
     from pydrake.multibody.tree import SpatialInertia
-    from pydrake.systems.analysis import Simulator
-    from pydrake.systems.framework import DiagramBuilder
 
     written("drake", LOSSY, tmp_path, name="pair")
 
     def final_positions(starts):
-        builder = DiagramBuilder()
-        plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
-        inertia = SpatialInertia.SolidSphereWithMass(1.0, 0.018)
-        balls = [plant.AddRigidBody(f"ball{number}", inertia) for number in range(len(starts))]
-        plant.Finalize()
-        with tools.module(tmp_path, "pair_drake") as made:
-            for ball in balls:
-                made.add_joint(builder, plant, ball)
-        simulator = Simulator(builder.Build())
-        simulator.get_mutable_integrator().request_initial_step_size_target(1e-5)
-        simulator.get_mutable_integrator().set_target_accuracy(1e-9)
-        context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+        balls = [SpatialInertia.SolidSphereWithMass(1.0, 0.018)] * len(starts)
+        joints = [((number,), {}) for number in range(len(starts))]
+        simulator, plant, context = drake_simulator(tools, tmp_path, "pair_drake", balls, joints)
         plant.SetPositions(context, np.concatenate([[1, 0, 0, 0, *start] for start in starts]))
         simulator.AdvanceTo(0.003)
         return plant.GetPositions(context).reshape(-1, 7)[:, 4:]
