@@ -322,13 +322,6 @@ def test_an_iteration_without_convergence_gives_status_3(monkeypatch, capsys):
     assert "no convergence of unsettled" in capsys.readouterr().err
 
 
-def test_numbers_near_the_float_limit_are_reported_in_one_line():
-    numbers = ["--ball-radius", "1e308", "--clearance", "0.1", "--liner-thickness", "6", "--liner", "uhmwpe"]
-    done = run("press", *numbers, "--force", "1")
-    assert done.returncode in (0, 3)
-    assert "Traceback" not in done.stderr
-
-
 def test_lists_references_and_version_are_printed():
     models, presets, cited = run("models", columns=140).stdout, run("presets").stdout, run("cite").stdout
     for words in (*bs.catalogue, "pin-in-hole", "ν 0.3 to 0.49", "Heß & Forsbach 2021"):
@@ -364,24 +357,6 @@ def test_cup_options_and_vtk_files_of_the_finite_elements(tmp_path):
     assert "the contact fills the socket and reaches its rim" in done.stdout
     assert all(path.stat().st_size > 20_000 for path in files)
     assert "reaches its rim" not in run(*words, "--arc-of-cover", "180 deg", columns=160).stdout
-
-
-@pytest.mark.long
-def test_deck_writes_input_files_and_expected_results(tmp_path):
-    deck = ("deck", EXAMPLE, "--out", str(tmp_path))
-    done = run(*deck, "--steps", "2", "--force", "1 kN")
-    assert done.returncode == 0
-    assert re.search(r"ballsocket\.inp: \d+ elements, 2 steps", done.stdout.replace("\n", ""))
-    assert (tmp_path / "ballsocket.inp").read_text(encoding="ascii").count("*END STEP") == 2
-    for option, value, message in (
-        ("--steps", "0", "--steps"),
-        ("--steps", "1000000", "less than or equal to 1000"),
-        ("--scale", "7", "scale = 7 is not allowed"),
-        ("--force", "0", "need a contact under load"),
-    ):
-        wrong = run(*deck, option, value)
-        assert wrong.returncode == 2
-        assert message in wrong.stderr
 
 
 def test_the_exact_result_is_first_and_deviations_follow():

@@ -46,9 +46,6 @@ def test_an_identifiable_unknown_has_a_value_and_a_band(folder):
 
 
 def test_areas_alone_identify_only_the_product(folder):
-    shown = " ".join(run("identify", "area.toml", folder=folder).stdout.split())
-    for words in ("not identifiable", "clearance · liner_young", "measure indentation or free play"):
-        assert words in shown
     said = answer("identify", "area.toml", folder=folder)
     assert said["valid"] is False
     assert said["products"][0]["value"] == pytest.approx(HIP.clearance * HIP.liner.young, rel=1e-2)

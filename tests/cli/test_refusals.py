@@ -74,6 +74,11 @@ press {hip} --model fem --element-size '0.0005 mm' => GiB of memory
 press {hip} --model fem --vtk a.txt => 'a.txt' must end in .vtu, .vtk
 press {hip} --model fem --section a.txt => must end in .png, .svg, .pdf
 
+deck {hip} --out a --steps 0 => --steps
+deck {hip} --out a --steps 1000000 => less than or equal to 1000
+deck {hip} --out a --scale 7 => scale = 7 is not allowed
+deck {hip} --out a --force 0 => need a contact under load
+
 film {hip} --viscosity '-1 mPa s' => a viscosity (Pa s) is positive and finite
 film {hip} --spin inf => a rotation rate (rad/s) is finite
 film {hip} --spin '3 mm' => is not a rotation rate
