@@ -1,10 +1,12 @@
-"""An exported element, compiled and called."""
+"""An exported element, compiled and called; a host of FMI that loads the binary of a unit and calls its functions."""
 
-import ctypes
+import ctypes as c
 import sys
+import zipfile
 from importlib.util import find_spec
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from xml.etree.ElementTree import fromstring
 
 import numpy as np
 import pytest
@@ -18,7 +20,7 @@ def _compiles():
     with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         Path(folder, "one.c").write_text("int one(void) { return 1; }\n")
         try:
-            ctypes.CDLL(str(shared_library(["one.c"], Path(folder, f"one{LIBRARY_ENDING}"), Path(folder))))
+            c.CDLL(str(shared_library(["one.c"], Path(folder, f"one{LIBRARY_ENDING}"), Path(folder))))
         except (NoCompiler, OSError):
             return False
     return True
@@ -66,9 +68,9 @@ class Library:
         CElement(element=element, name=name).write(folder)
         strict = ("-pedantic-errors", "-Wall", "-Wextra", "-Werror")
         path = shared_library([f"{name}.c"], folder / f"{name}{LIBRARY_ENDING}", folder, strict)
-        self.functions, self.name = ctypes.CDLL(str(path)), name
-        self.defaults = tuple((ctypes.c_double * 7).in_dll(self.functions, f"{name}_defaults"))
-        self.parameters = (ctypes.c_double * 7)(*self.defaults)
+        self.functions, self.name = c.CDLL(str(path)), name
+        self.defaults = tuple((c.c_double * 7).in_dll(self.functions, f"{name}_defaults"))
+        self.parameters = (c.c_double * 7)(*self.defaults)
 
     def _call(self, function, given, *sizes):
         out = [np.full(size, -1.0) for size in sizes]
@@ -77,7 +79,7 @@ class Library:
         return status, *out
 
     def _first(self, function):
-        return (ctypes.byref(self.parameters),) if function in ("load", "slope") else ()
+        return (c.byref(self.parameters),) if function in ("load", "slope") else ()
 
     def load(self, *state):
         return self._call("load", state, 3, 3, 1)
@@ -93,4 +95,72 @@ class Library:
 
 
 def _at(numbers):
-    return numbers.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+    return numbers.ctypes.data_as(c.POINTER(c.c_double))
+
+
+LOG3 = c.CFUNCTYPE(None, c.c_void_p, c.c_int, c.c_char_p, c.c_char_p)
+LOG2 = c.CFUNCTYPE(None, c.c_void_p, c.c_char_p, c.c_int, c.c_char_p, c.c_char_p, c.c_char_p)
+
+
+class _Callbacks(c.Structure):
+    _fields_ = (("log", LOG2), *((name, c.c_void_p) for name in ("allocate", "free", "finished", "host")))
+
+
+class Host:
+    """An instance of a unit; `messages` are its log."""
+
+    def __init__(self, path, folder):
+        with zipfile.ZipFile(path) as archive:
+            about = fromstring(archive.read("modelDescription.xml"))
+            binary = next(name for name in archive.namelist() if name.startswith("binaries/"))
+            self.functions = c.CDLL(archive.extract(binary, folder))
+        self.version = int(about.get("fmiVersion")[0])
+        listed = about.find("ModelVariables")
+        self.references = {each.get("name"): int(each.get("valueReference")) for each in listed}
+        self.messages = []
+        self._begin(about.get("guid") or about.get("instantiationToken"))
+
+    def _begin(self, token):
+        made = self._function("Instantiate" if self.version == 2 else "InstantiateModelExchange")
+        made.restype = c.c_void_p
+        if self.version == 2:
+            log = LOG2(lambda env, name, status, category, form, text: self.messages.append((status, text.decode())))
+            self.callbacks = _Callbacks(log=log), log
+            self.unit = made(b"joint", 0, token.encode(), None, c.byref(self.callbacks[0]), 0, 0)
+        else:
+            self.callbacks = LOG3(lambda env, status, category, text: self.messages.append((status, text.decode())))
+            self.unit = made(b"joint", token.encode(), None, c.c_bool(), c.c_bool(), None, self.callbacks)
+
+    def _function(self, name):
+        return getattr(self.functions, f"fmi{self.version}{name}")
+
+    def _call(self, name, names, values):
+        references = (c.c_uint * len(names))(*(self.references[each] for each in names))
+        count = (c.c_size_t(len(names)),)
+        more = () if self.version == 2 else count
+        return self._function(name)(c.c_void_p(self.unit), references, *count, values, *more)
+
+    def set(self, **values):
+        """Set numbers and return the status; vectors such as `position` take three."""
+        flat = {name: value for name, value in values.items() if not isinstance(value, tuple)}
+        for name, value in values.items():
+            if isinstance(value, tuple):
+                flat |= {f"{name}[{axis}]": part for axis, part in enumerate(value, 1)}
+        kind = "SetReal" if self.version == 2 else "SetFloat64"
+        return self._call(kind, list(flat), (c.c_double * len(flat))(*flat.values()))
+
+    def get(self, *names):
+        """Status and numbers."""
+        values = (c.c_double * len(names))()
+        status = self._call("GetReal" if self.version == 2 else "GetFloat64", names, values)
+        return status, list(values)
+
+    def directional(self, unknown, known):
+        """Return the status and the derivative of one number with respect to another."""
+        one, found = (c.c_double * 1)(1.0), (c.c_double * 1)()
+        places = [(c.c_uint * 1)(self.references[name]) for name in (unknown, known)]
+        count = c.c_size_t(1)
+        sizes = ((), ()) if self.version == 2 else ((count,), (count,))
+        asked = (places[0], count, places[1], count, one, *sizes[0], found, *sizes[1])
+        status = self._function("GetDirectionalDerivative")(c.c_void_p(self.unit), *asked)
+        return status, found[0]

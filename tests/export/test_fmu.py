@@ -17,8 +17,7 @@ from ballsocket.export.fmu.variables import reference_loads, states_in_si, traje
 
 from ..cli.command import run
 from ..joints import HIP
-from .host import Host
-from .library import needs_compiler, table
+from .library import Host, needs_compiler, table
 
 LOSSES = {"damping": Damping(hysteresis=0.004), "friction": Friction(coefficient=0.05)}
 ELEMENT = ForceElement(bs.HessForsbach(), HIP, lubricant=bs.Lubricant(), **LOSSES)

@@ -15,8 +15,7 @@ from ballsocket.export.fmu import Fmu, write_cross_check
 
 from ..cli.command import run
 from ..extent import some
-from .host import Host
-from .library import Library, needs_compiler, table
+from .library import Host, Library, needs_compiler, table
 
 PRELOADED = ("--ball-radius", "13.5", "--interference", "0.03", "--liner-thickness", "2.5", "--liner", "pom")
 JOINT = bs.Joint(ball_radius=13.5, interference=0.03, liner_thickness=2.5, liner=bs.POM)

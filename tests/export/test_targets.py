@@ -453,19 +453,18 @@ def exudyn_momentum(tools, folder):
     from exudyn.utilities import RigidBodyInertia
 
     mbs = exu.SystemContainer().AddSystem()
-    quantities = exu.OutputVariableType
-
-    def body(mass, inertia, position, velocity, spin):
-        return mbs.CreateRigidBody(
+    kinds = exu.OutputVariableType
+    masses, inertias = (0.7, 1.0), (BOX_INERTIA, BALL_INERTIA)
+    starts = ([0.01, 0, 0], [0, 0, 0], [0.5, 1, -2]), ([5e-5, 0, 2e-5], [0.06, 0.02, 0.08], [3, -2, 1])
+    names = ("referencePosition", "initialVelocity", "initialAngularVelocity")
+    cup, ball = (
+        mbs.CreateRigidBody(
             inertia=RigidBodyInertia(mass=mass, inertiaTensor=inertia),
             nodeType=exu.NodeType.RotationRotationVector,
-            referencePosition=position,
-            initialVelocity=velocity,
-            initialAngularVelocity=spin,
+            **dict(zip(names, start, strict=True)),
         )
-
-    cup = body(0.7, BOX_INERTIA, [0.01, 0, 0], [0, 0, 0], [0.5, 1, -2])
-    ball = body(1.0, BALL_INERTIA, [5e-5, 0, 2e-5], [0.06, 0.02, 0.08], [3, -2, 1])
+        for mass, inertia, start in zip(masses, inertias, starts, strict=True)
+    )
     markers = [
         mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=number, localPosition=centre))
         for number, centre in ((cup, [-0.01, 0, 0]), (ball, [0, 0, 0]))
@@ -476,10 +475,9 @@ def exudyn_momentum(tools, folder):
 
     def momentum():
         linear, angular = np.zeros(3), np.zeros(3)
-        for number, mass, inertia in ((cup, 0.7, BOX_INERTIA), (ball, 1.0, BALL_INERTIA)):
-            names = (quantities.Position, quantities.Velocity, quantities.RotationMatrix)
-            position, velocity, axes = (mbs.GetObjectOutputBody(number, name, [0, 0, 0]) for name in names)
-            spin = mbs.GetObjectOutputBody(number, quantities.AngularVelocityLocal, [0, 0, 0])
+        for number, mass, inertia in zip((cup, ball), masses, inertias, strict=True):
+            names = (kinds.Position, kinds.Velocity, kinds.AngularVelocityLocal, kinds.RotationMatrix)
+            position, velocity, spin, axes = (mbs.GetObjectOutputBody(number, name, [0, 0, 0]) for name in names)
             linear += mass * velocity
             angular += mass * np.cross(position, velocity) + axes.reshape(3, 3) @ inertia @ spin
         return np.concatenate([linear, angular]), np.array(velocity)
