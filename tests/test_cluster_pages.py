@@ -19,9 +19,8 @@ HOW_TO = ROOT / "docs" / "how-to"
 
 
 def blocks(page, language):
-    return re.findall(
-        rf"^```{language}\n(.*?)^```$", (HOW_TO / page).read_text("utf-8"), flags=re.MULTILINE | re.DOTALL
-    )
+    text = (HOW_TO / page).read_text("utf-8")
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
 
 
 SLURM_PROGRAM, _, SLURM_SCRIPT = blocks("slurm.md", "text")[:3]

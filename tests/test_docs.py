@@ -145,14 +145,12 @@ def test_the_picture_of_the_rooms_has_every_floor_and_the_data_flow(monkeypatch,
     monkeypatch.syspath_prepend(DOCS / "_ext")
     import rooms
 
-    levels, steps = rooms.floors(), rooms.data_flow()
-    assert {room for level in levels for room in level} == {
-        path.stem for path in rooms.PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").is_file()
-    } - {"__init__", "__main__", "version"}
-    assert [step.title for step in steps] == ["joint", "model", "contact", "study", "figure"]
+    titles = ["joint", "model", "contact", "study", "figure"]
+    names = [room for level in rooms.floors() for room in level]
+    modules = [path for path in rooms.PACKAGE.iterdir() if path.suffix == ".py" or (path / "__init__.py").is_file()]
+    assert {*names} == {path.stem for path in modules} - {"__init__", "__main__", "version"}
+    assert [step.title for step in rooms.data_flow()] == titles
     rooms.write_pictures(tmp_path)
     for theme in rooms.THEMES:
-        tree = ElementTree.parse(tmp_path / f"rooms.{theme}.svg")
-        texts = tree.iter("{http://www.w3.org/2000/svg}text")
-        names = [element.text for element in texts if element.get("font-weight") == "600"]
-        assert names == [*(room for level in levels for room in level), *(step.title for step in steps)]
+        texts = ElementTree.parse(tmp_path / f"rooms.{theme}.svg").iter("{http://www.w3.org/2000/svg}text")
+        assert [element.text for element in texts if element.get("font-weight") == "600"] == names + titles

@@ -61,11 +61,10 @@ GALLERY = {
 """Examples that take long: the gallery of the documentation runs them, and its build fails where one fails."""
 
 
-@pytest.mark.parametrize(
-    "path",
-    some(sorted(path for path in (ROOT / "examples").glob("*.py") if path.stem not in GALLERY), 2),
-    ids=lambda path: path.stem,
-)
+EXAMPLES = sorted(path for path in (ROOT / "examples").glob("*.py") if path.stem not in GALLERY)
+
+
+@pytest.mark.parametrize("path", some(EXAMPLES, 2), ids=lambda path: path.stem)
 def test_examples_run(path, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     runpy.run_path(str(path), run_name="__main__")

@@ -26,8 +26,7 @@ class DataFrame:
 
 
 def matrix(*values):
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", PendingDeprecationWarning)
+    with warnings.catch_warnings(action="ignore", category=PendingDeprecationWarning):
         return numpy.matrix([values])
 
 
@@ -93,9 +92,6 @@ def test_a_scan_with_huge_coordinates_is_refused(tmp_path, capfd):
     (tmp_path / "bore.obj").write_text("\n".join([*rows, *faces]), encoding="ascii")
     with pytest.raises(ValueError, match=r"points of bore.obj.* is not allowed: coordinates \(mm\) are at most 1e\+06"):
         read_scan(tmp_path / "bore.obj")
-    (tmp_path / "bore.stl").write_bytes(b"solid \xff")
-    with pytest.raises(ValueError, match="bore.stl cannot be read as a mesh"):
-        read_scan(tmp_path / "bore.stl")
     assert capfd.readouterr() == ("", "")
 
 
@@ -156,9 +152,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize(
-    ("error", "ask", "message"), [(error, *row) for error, rows in REFUSED.items() for row in rows]
-)
+@pytest.mark.parametrize(("error", "ask", "message"), [(each, *row) for each in REFUSED for row in REFUSED[each]])
 def test_wrong_types_names_and_units_are_refused_in_one_sentence(error, ask, message):
     """An angle that can only be in degrees gets a hint in radians."""
     with pytest.raises(error, match=message):
