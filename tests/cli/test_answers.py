@@ -115,10 +115,6 @@ def test_a_narrow_press_table_names_the_columns_that_it_omits():
         assert (omitted == "") == (columns == 80)
 
 
-def test_heads_keep_their_units_in_brackets():
-    assert "F [N]  d [mm] ε [°] pmax [MPa] A [mm²] dF/dd [N/mm] valid\n" in run("curve", *CALLS["curve"]).stdout
-
-
 def test_the_next_step_after_an_invalid_model_gives_a_valid_result():
     said = answer("press", "hip-36", "--force", "3 kN", "--model", "hertz")
     assert not said["valid"]

@@ -49,6 +49,8 @@ press {sizes} --young 1GPa --poisson 0.5 --force 1 --model bonded-layer => bonde
 evidence => a question file is needed, or --check with the folder of a pack
 evidence --check . => holds no pack of evidence: checksums.txt is missing
 press {hip} --units inch => 'inch' is not one of 'si', 'imperial'
+press 'C:\\Users\\me\\hip.toml' => ballsocket: 'C:\\Users\\me\\hip.toml'
+pres => No such command 'pres'.
 study => Missing argument
 press {hip} --model fem --meshes 0 => --meshes
 --foo => No such option: --foo; ballsocket -h lists them
@@ -86,7 +88,7 @@ film {hip} --spin-axis 1,2 => spin_axis = '1,2' must be three numbers 'x,y,z'
 film {hip} --spin-axis 0,0,0 => an axis has a positive and finite length
 film {hip} --method magic => method
 film {hip} --clearance 0 => without clearance no lubricant enters
-film {hip} --interference '0.02 mm' --model sphere => interference = 0.02 mm is not allowed
+film {hip} --interference '0.02 mm' --model sphere --ring-width 6 => interference = 0.02 mm is not allowed
 film {hip} --model refined --method reynolds => springs
 
 press {hip-36} --tilt '200 deg' => tilt = 200
@@ -111,7 +113,7 @@ orient {hip-36} --points 2 --inclination 30..100 => inclination is 0 to 90 degre
 
 press suspension-ball-joint --interference 0.03 --force 9 --pull-out => --pull-out needs the arc of cover: add
 press hip-28 --force 9 --pull-out --model exact => --pull-out is solved by the model sphere
-press hip-28 --force 9 --pull-out => a socket of 180 deg does not hold its ball
+press hip-28 --force 9 --pull-out --ring-width 6 => a socket of 180 deg does not hold its ball
 press hip-28 --force 9 --static-friction 0.1 => --static-friction needs the coefficient of sliding
 press hip-28 --force 9 --friction 0.2 --static-friction 0.1 => static_coefficient = 0.1
 press hip-28 --force 9 --friction -1 => coefficient = -1 is not allowed
