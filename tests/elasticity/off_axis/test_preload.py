@@ -60,6 +60,16 @@ def test_uniform_wear_loosens_a_socket_with_an_open_dome_at_the_interference(arc
     assert fitted.equilibrium.notes[-1] == "the contact reaches the rim, as is normal in a preloaded joint"
 
 
+@pytest.mark.parametrize("rings", some([1.5, 2.0, 3.0, 4.0], 2))
+def test_the_ball_is_loose_where_it_fits_through_the_worn_bore(rings):
+    """A shifted bore holds the ball as a centred one, and an oval bore as long as its narrow diameter is too small."""
+    shifted, oval = (lambda n: 0.02 * n[0]), (lambda n: 0.02 * (n[0] ** 2 - n[1] ** 2) / 2)
+    for depth, expected in ((None, 0.05), (shifted, 0.05), (oval, 0.06), (lambda n: 0.07 + 0.0 * n[0], 0.0)):
+        worn = None if depth is None else bs.BoreDeviation(of=depth)
+        fitted = bs.Preload(model=held(240.0, worn=worn, ring_width=radians(rings)), joint=TIGHT)
+        assert fitted.wear_depth_to_loosen() == pytest.approx(expected, rel=2e-3, abs=1e-9)
+
+
 def test_preloaded_joint_resists_push_and_pull():
     pressed, pulled = (WRAPPED.press(TIGHT, indentation=indentation) for indentation in (0.06, 0.03))
     unloaded = WRAPPED.press(TIGHT, force=0.0)

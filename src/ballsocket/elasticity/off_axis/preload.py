@@ -17,7 +17,6 @@ from ...core.checks import check_number, require
 from ...core.deprecation import RenamedAttribute
 from ...problem import Joint
 from ...problem.gaps import CircularGap
-from .bore_shapes import BoreDeviation
 from .directions import check_direction
 from .model import Sphere, check_sphere
 
@@ -29,10 +28,7 @@ _MAX_BISECTIONS = 40
 _RELATIVE_TOLERANCE = 1e-4
 
 _MAX_INTERFERENCES = 4.0
-"""Displacement or wear, as a multiple of the interference, at which every preload is lost."""
-
-_MIN_PRESSURE_RATIO = 1e-4
-"""Smallest pressure of an unloaded ball over that in the unworn bore that counts as a preload."""
+"""Displacement, as a multiple of the interference, at which a part of every contact is open."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,27 +118,28 @@ class Preload:
         return self._bisect_length(is_closed)
 
     def wear_depth_to_loosen(self) -> float:
-        """Compute the uniform wear of the bore in mm at which the unloaded ball loses its preload.
+        """Compute the uniform wear of the bore in mm at which the ball loses its preload.
 
-        Pressure and friction torque of the unloaded ball vanish at this depth, and the ball has play beyond it. In a
-        bore without `worn` it is the interference, for every arc of cover. Wear adds to the depth of `worn`.
+        Pressure and friction torque of the unloaded ball vanish at this depth, and the ball has play beyond it. That
+        is geometry: the smallest depth t at which the ball fits freely at some displacement e, with overlaps
+        e·n - c - w(n) - t ≤ 0 in all cells. In a bore without `worn` it is the interference, for every arc of cover,
+        load and mesh. Wear adds to the depth w of `worn`, and t is 0 where the ball is already free.
         """
-        unworn_pressure = self._unloaded_pressure(0.0)
-        return self._bisect_length(
-            lambda depth: self._unloaded_pressure(depth) > _MIN_PRESSURE_RATIO * unworn_pressure,
-        )
+        from scipy.optimize import linprog  # slow to import
 
-    def _unloaded_pressure(self, depth: float) -> float:
-        """Compute the largest pressure in MPa of the unloaded ball in any cell at a uniform wear depth in mm."""
+        polar, azimuth, _ = self.equilibrium.pressure_map
+        across = numpy.sin(polar)[:, None]
+        height = numpy.broadcast_to(numpy.cos(polar)[:, None], (len(polar), len(azimuth)))
+        directions = numpy.array([across * numpy.cos(azimuth), across * numpy.sin(azimuth), height]).reshape(3, -1)
         worn = self.model.worn
-
-        def total_depth(directions: Numbers) -> Numbers:
-            """Add the uniform wear to the depth of the model's bore."""
-            return depth + (0.0 * directions[2] if worn is None else worn.depth(directions))
-
-        model = replace(self.model, worn=BoreDeviation(of=total_depth))
-        contact: OffAxisContact = model.press(self.joint, force=0.0)  # type: ignore[assignment]
-        return float(contact.pressure_map[2].max())
+        overlap = float(self.joint.interference) - (0.0 if worn is None else worn.depth(directions))
+        fitted = linprog(
+            [0.0, 0.0, 0.0, 1.0],
+            A_ub=numpy.column_stack([directions.T, -numpy.ones(directions.shape[1])]),
+            b_ub=-overlap * numpy.ones(directions.shape[1]),
+            bounds=[(None, None)] * 3 + [(0.0, None)],
+        )
+        return float(fitted.x[3])
 
     def _bisect_length(self, holds: Callable[[float], bool]) -> float:
         """Find the largest length in mm up to which a condition holds, or 0 if it does not hold at 0."""
