@@ -39,6 +39,21 @@ def test_contacts_are_printed_with_the_range_of_their_points():
     assert "2 of 3" in repr(contact)
 
 
+@pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Tabulated(), bs.Hertz(), bs.Exact()], ids=lambda one: one.name)
+def test_a_finished_contact_is_independent_of_the_arrays_of_the_caller(model):
+    radius, young, force = np.array([14.0, 16.0]), np.array([800.0, 900.0]), np.array([100.0, 200.0])
+    liner = bs.Material(young=young, poisson=0.4)
+    joint = bs.Joint(ball_radius=radius, clearance=0.1, liner_thickness=8.0, liner=liner)
+    contact, again = (model.press(joint, force=force) for _ in range(2))
+    expected = np.array(again.max_pressure)
+    radius[:], young[:], force[:] = 20.0, 5.0, 1.0
+    np.testing.assert_array_equal(contact.max_pressure, expected)
+    np.testing.assert_array_equal(contact.force, [100.0, 200.0])
+    for array in (joint.ball_radius, liner.young, contact.force, contact.status, contact.valid, contact.max_pressure):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 7
+
+
 def test_a_comparison_has_a_row_per_model_and_reasons_of_missing_models():
     answers = bs.compare(bs.joints["tilting-pad-pivot"], force=1000.0)
     assert "use hertz" in answers.missing["plane-layer"]

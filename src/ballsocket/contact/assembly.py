@@ -157,6 +157,8 @@ def make_contact(
     F, d = where(solved | (kind == "force"), F, xp.nan), where(solved | (kind == "indentation"), d, xp.nan)
     if plain:
         F, d, status = float(F), float(d), Status(int(status))
+    else:
+        F, d, status = map(arrays.read_only, (F, d, status))
     return contact_type(model=model, laws=result.laws, joint=joint, force=F, indentation=d, status=status)
 
 

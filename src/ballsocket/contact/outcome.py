@@ -109,7 +109,7 @@ class Outcome(ABC):
         for limit in self._validity_ranges:
             valid_mask = valid_mask & limit.holds(self)
         valid_mask = arrays.broadcast(valid_mask, self._load) if hasattr(valid_mask, "shape") else valid_mask
-        return bool(valid_mask) if self._is_plain else valid_mask
+        return bool(valid_mask) if self._is_plain else arrays.read_only(valid_mask)
 
     @property
     def _validity_ranges(self) -> tuple[Range, ...]:
@@ -161,13 +161,16 @@ class Outcome(ABC):
         return self.joint.with_numbers(arrays.to_common_arrays(*self.joint.numbers())) if self._is_plain else self.joint
 
     def _match_load(self, value: Array) -> Array:
-        """Convert values to the type and the shape of the load; a load of one number gives a float."""
+        """Convert values to the type and the shape of the load; a load of one number gives a float.
+
+        Arrays are read-only: a contact is a record, and its quantities are stored.
+        """
         if type(value) is float:
             return value
         if self._is_plain and getattr(value, "shape", ()) == () and arrays.namespace(value) is numpy:
             return float(value)
         if hasattr(self._load, "shape"):
-            return arrays.broadcast(value, self._load)
+            return arrays.read_only(arrays.broadcast(value, self._load))
         return value
 
 

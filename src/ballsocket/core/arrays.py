@@ -308,6 +308,25 @@ def to_common_arrays(*values: Array) -> tuple[Array, ...]:
     return tuple(convert_value(value) for value in converted)
 
 
+def owned(x: Array) -> Array:
+    """Return a copy of an array that nobody else changes: read-only in NumPy, whose writable arrays are copied."""
+    if type(x) is numpy.ndarray:
+        if x.flags.writeable or x.base is not None:
+            x = x.copy()
+            x.flags.writeable = False
+        return x
+    return x.clone() if array_api_compat.is_torch_array(x) else x
+
+
+def read_only(x: Array) -> Array:
+    """Return a view of a NumPy array whose elements cannot be changed, and any other value itself."""
+    if type(x) is not numpy.ndarray or not x.flags.writeable:
+        return x
+    view = x.view()
+    view.flags.writeable = False
+    return view
+
+
 def broadcast(x: Array, *values: Array) -> Array:
     """Broadcast `x` to the common shape of `x` and other values; return a float if all are floats."""
     if type(x) is float and all(type(value) is float for value in values):

@@ -12,7 +12,7 @@ from unicodedata import category
 
 import numpy
 
-from .arrays import Array, all_true, is_plain_number, namespace, to_common_arrays
+from .arrays import Array, all_true, is_plain_number, namespace, owned, to_common_arrays
 from .display import html_list
 
 Value = TypeVar("Value")
@@ -86,7 +86,9 @@ def _find_first_false(valid: Array) -> tuple[int, int]:
 
 
 def check_numeric(name: str, value: Any) -> Array:
-    """Check that a value is a number or an array of real numbers; return lists as arrays.
+    """Check that a value is a number or an array of real numbers; return a copy of an array, and lists as arrays.
+
+    The caller may reuse the array without a change of what was made from it.
 
     Raises
     ------
@@ -105,7 +107,7 @@ def check_numeric(name: str, value: Any) -> Array:
         or not _has_real_numbers(value)
     ):
         raise TypeError(_format_type_error(name, value))
-    return to_common_arrays(value)[0]  # sums of small integers would overflow
+    return owned(to_common_arrays(value)[0])  # of floats: sums of small integers would overflow
 
 
 def check_number(name: str, value: Any) -> float:

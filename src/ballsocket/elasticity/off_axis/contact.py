@@ -61,7 +61,8 @@ class OffAxisContact(SolvedContact):
     @cached_property
     def moment(self) -> Array:
         """Moment of the contact on the ball about the ball's centre, without friction, in N mm."""
-        return arrays.namespace(self.force_vector).linalg.cross(self.displacement, self.force_vector)
+        moment = arrays.namespace(self.force_vector).linalg.cross(self.displacement, self.force_vector)
+        return arrays.read_only(moment)
 
     @cached_property
     def edge_slope(self) -> Array:
@@ -111,7 +112,7 @@ class OffAxisContact(SolvedContact):
         """Tangent stiffness: derivative of the force vector by the displacement in N/mm, (..., 3, 3), symmetric."""
         rows = self.laws.combine(lambda contacts: contacts.state.tangent.reshape(9, -1), (9,))
         rows = arrays.where(self._failed, numpy.nan, rows)
-        return arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3))
+        return arrays.read_only(arrays.namespace(rows).moveaxis(rows, 0, -1).reshape((*rows.shape[1:], 3, 3)))
 
     @cached_property
     def max_pressure_at(self) -> Array:
@@ -122,7 +123,7 @@ class OffAxisContact(SolvedContact):
     def edge_loaded(self) -> Array:
         """True where the contact reaches the end of the bore."""
         loaded = self.laws.combine(lambda contacts: contacts.state.edge_loaded) == 1
-        return bool(loaded) if self._is_plain else loaded
+        return bool(loaded) if self._is_plain else arrays.read_only(loaded)
 
     @cached_property
     def edge_margin(self) -> Array:
@@ -231,7 +232,7 @@ class OffAxisContact(SolvedContact):
         """Collect a named vector of all contacts: (..., 3), NaN where there is no solution."""
         rows = self.laws.combine(lambda contacts: getattr(contacts.state, name), (3,))
         rows = arrays.where(self._failed, numpy.nan, rows)
-        return arrays.namespace(rows).moveaxis(rows, 0, -1)
+        return arrays.read_only(arrays.namespace(rows).moveaxis(rows, 0, -1))
 
     def summary(self) -> dict[str, Any]:
         """Return the contact as a dictionary for JSON, with vectors in the cup's frame.
