@@ -57,6 +57,16 @@ def test_interpreted_steps_equal_those_of_the_element(interpreted):
     np.testing.assert_allclose(fast.position, plain.position, atol=1e-15)
 
 
+@pytest.mark.parametrize("shapes", [(2, 1, 2), (2, 2, 3), (0, 2, 2)])
+def test_states_of_different_lengths_are_refused(shapes):
+    """A compiled loop would read beyond the end of the shorter array."""
+    element = compiled.CompiledElement(bs.ForceElement(bs.HessForsbach(), HIP))
+    with pytest.raises(ValueError, match=r"(velocity|spin) of shape \(\d, 3\) is not allowed: its shape is"):
+        element.loads(*(np.zeros((states, 3)) for states in shapes))
+    with pytest.raises(ValueError, match=r"position of shape \(3,\) is not allowed: each state is a row"):
+        element.loads(*np.zeros((3, 3)))
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("model", [bs.HessForsbach(), bs.Hertz()], ids=lambda model: model.name)
 def test_compiled_loads_and_steps_equal_those_of_the_element(model):

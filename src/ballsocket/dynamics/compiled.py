@@ -17,7 +17,7 @@ from ..compiled.law import CompiledLaw
 from ..compiled.overloads import inline_formula, jit_formula
 from ..contact.law import ForceLaw
 from ..core.arrays import Numbers
-from ..core.checks import shown
+from ..core.checks import check_shape, check_vectors, shown
 from ..core.deprecation import renamed_names
 from ..models import kinematics
 from ..models.kinematics import Kinematics
@@ -104,8 +104,21 @@ class CompiledElement:
         Returns
         -------
         arrays (states, 3), (states, 3), (states,), (states, 6)
+
+        Raises
+        ------
+        ValueError
+            Arrays of another shape, or of different lengths.
+        TypeError
+            Other values than real numbers.
         """
-        state = [numpy.ascontiguousarray(values, dtype=float) for values in (position, velocity, spin)]
+        position = check_vectors("position", position, "x, y, z (mm)")
+        if position.ndim != 2:
+            raise ValueError(f"position of shape {position.shape} is not allowed: each state is a row x, y, z")
+        motion = [
+            check_shape(name, values, (position.shape,)) for name, values in [("velocity", velocity), ("spin", spin)]
+        ]
+        state = [numpy.ascontiguousarray(values, dtype=float) for values in (position, *motion)]
         state_count = len(position)
         outputs = (
             numpy.empty((state_count, 3)),
