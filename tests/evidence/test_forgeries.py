@@ -157,6 +157,7 @@ FORGERIES = {
     "a level of a factor": (updated("credibility", 7, reached="d"), r"credibility\[7\].reached: written 'd', now 'a'"),
     "gaps that were left out": (in_record(without_gaps), "requirements: written"),
     "an empty word more": (updated(approved=None), "approved: written None, now 'absent'"),
+    "the word for nothing": (updated("limits", 0, certified="absent"), r"limits\[0\].certified: written 'absent'"),
     "a word less": (in_record(lambda record: record.pop("recentred")), "recentred: written 'absent'"),
     "another order": (in_record(reorder), "worst: has its keys in another order"),
     "a number as text": (updated("limits", 0, beyond="1"), r"limits\[0\].beyond: written '1', now 1"),

@@ -174,7 +174,13 @@ def compare(
 
 
 _FOREIGN = "does not belong to the pack"
-_ABSENT = "absent"
+
+
+class _Absent(str):
+    """Text in the place of an entry that a record lacks; of another type than each text of a record."""
+
+
+_ABSENT = _Absent("absent")
 
 
 def contradictions(record: Mapping[str, Any], files: Mapping[str, bytes], page: PageMaker) -> Iterator[Difference]:
