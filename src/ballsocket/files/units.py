@@ -246,6 +246,8 @@ def _unit_name(text: str) -> str:
         name = str(_registry().get_name("degree" if text == "\u00b0" else text))
     except (pint.PintError, ValueError) as error:
         raise ValueError(f"{shown(text)} is not a known unit") from error
+    if not name:  # "dimensionless"
+        raise ValueError(f"{shown(text)} is no unit: leave it out")
     if not _registry()._is_multiplicative(name):  # decibels, degrees of Celsius
         raise ValueError(f"{shown(text)} is logarithmic or has an offset: use a unit that is a factor")
     return name
