@@ -248,6 +248,7 @@ def test_texts_of_joints():
 def test_an_interference_is_a_negative_clearance():
     joint = bs.Joint(ball_radius=17.0, interference=0.05, liner_thickness=5.5, liner=bs.UHMWPE)
     assert (joint.clearance, joint.interference) == (-0.05, 0.05)
+    assert "R1 17 mm, interference 0.05 mm, liner 5.5 mm" in str(joint)
     assert joint.replace(liner_thickness=4.0).interference == 0.05
     assert bs.Joint(ball_radius=10.0, interference=1.0, liner_thickness=5.5, liner=bs.UHMWPE).socket_radius == 9.0
 

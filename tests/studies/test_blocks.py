@@ -58,7 +58,7 @@ def test_the_time_left_is_the_rest_over_the_rate():
     progress = Progress(n_done=50, n_points=100, n_stored=10, seconds=8.0)
     assert (progress.rate, progress.seconds_left) == (5.0, 10.0)
     assert Progress(n_done=0, n_points=100, n_stored=0, seconds=8.0).seconds_left == inf
-    texts = {1 / 3600: "1 s", 1 / 60.5: "60 s", 1 / 59.5: "1 minutes", 0.5: "30 minutes", 2.0: "2 hours"}
+    texts = {1 / 3600: "1 s", 1 / 60.5: "60 s", 1 / 59.5: "1 min", 0.5: "30 min", 2.0: "2 hours"}
     assert {hours: _duration_text(hours) for hours in texts} == texts
     described = _describe_array(np.arange(100_000.0) + 3)  # in the identity of a stored study
     assert (described["count"], described["first"], described["last"]) == (100_000, 3.0, 100_002.0)

@@ -117,7 +117,7 @@ def _file(tool: Tool, arguments: Mapping[str, Any], folder: Path) -> Path:
     else:
         path = _stored_content(_toml(content) if isinstance(content, Mapping) else content, folder)
     for key in tool.forbidden:
-        if key in read_toml(path, tool.file, dict):
+        if key in read_toml(path, tool.command, dict):
             raise ValueError(f"{key} is not for this server: leave it out of the file")
     return path
 

@@ -268,9 +268,10 @@ class Joint(OneLine, Dimensions):
 
     @property
     def dimensions(self) -> str:
-        """Text of ball radius, clearance and liner thickness, with units."""
-        liner = _thickness_text(self.liner_thickness)
-        return f"R1 {short_text(self.ball_radius)} mm, clearance {short_text(self.clearance)} mm, {liner}"
+        """Text of ball radius, clearance or interference, and liner thickness, with units."""
+        preloaded = is_plain_number(self.clearance) and self.clearance < 0
+        fit = f"interference {self.interference:g} mm" if preloaded else f"clearance {short_text(self.clearance)} mm"
+        return f"R1 {short_text(self.ball_radius)} mm, {fit}, {_thickness_text(self.liner_thickness)}"
 
     def _repr_html_(self) -> str:
         lengths = ("ball_radius", "socket_radius", "clearance", "liner_thickness")

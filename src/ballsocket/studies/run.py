@@ -245,7 +245,7 @@ def _duration_text(hours: float) -> str:
     if hours < 1 / 60:
         return f"{3600 * hours:.2g} s"
     if hours < 1:
-        return f"{60 * hours:.2g} minutes"
+        return f"{60 * hours:.2g} min"
     return f"{hours:.3g} hours" if hours < _MANY_HOURS else f"{count_text(round(hours))} hours"
 
 
