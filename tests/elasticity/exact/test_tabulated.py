@@ -8,7 +8,7 @@ from numpy.polynomial.chebyshev import chebval, chebvander
 
 import ballsocket as bs
 from ballsocket.core import arrays
-from ballsocket.core.chebyshev import chebyshev_points, traced_series
+from ballsocket.core.chebyshev import chebyshev_points
 from ballsocket.elasticity.exact.tabulated import build as build_tables
 from ballsocket.elasticity.exact.tabulated import chebyshev
 
@@ -125,10 +125,6 @@ def test_every_field_has_derivatives_in_jax():
         np.testing.assert_allclose(slopes[:, k] * number, expected * number, rtol=1e-6, atol=tolerance)
 
 
-def test_the_tables_are_smaller_than_two_megabytes():
-    assert build_tables.SHIPPED.stat().st_size < 2_000_000
-
-
 def test_the_report_has_the_largest_error_of_each_quantity_and_its_joint():
     report = build_tables.check_tables(points=8, workers=1)
     assert max(worst.error for worst in report.rigid) < 1e-5
@@ -205,13 +201,6 @@ def test_orders_of_products_are_limited():
     assert abs(stored[2, 0]).max() > 0
 
 
-def test_balls_are_interpolated_in_their_shrinkage():
-    balls = (0.15, 0.27, 0.38)
-    values = np.array([[1.0 + 2.0 * chebyshev.ball_shrinkage(nu)] for nu in balls])
-    series = build_tables._shrinkage_coefficients(balls, values)
-    np.testing.assert_allclose(series[:, 0], [1.0, 2.0, 0.0], atol=1e-12)
-
-
 def test_random_contacts_lie_in_their_ranges():
     angle, poisson, ratio, softness, ball = build_tables.random_contacts(2000, seed=4, elastic=True)
     limits = [(2, 80), (0, 0.499), (0.2, 20), (0, 0.02), (0.2, 0.35)]
@@ -255,20 +244,6 @@ def test_few_steps_from_the_start_solve_loads_of_all_sizes(kind, elastic):
     assert np.all(found.status[reached] == bs.Status.OK)
     np.testing.assert_allclose(found.half_angle[reached], angle[reached], rtol=1e-12)
     np.testing.assert_allclose(found.force[reached], known.force[reached], rtol=2e-12)
-
-
-def test_traced_series_have_the_derivatives_of_the_polynomial():
-    jax = pytest.importorskip("jax")
-    coefficients, x = np.random.default_rng(2).normal(size=(6, 1)), 0.3
-    polynomial = np.polynomial.chebyshev.Chebyshev(coefficients[:, 0])
-    with jax.enable_x64(True):
-        values = jax.jit(lambda c, x: traced_series(c, x[None]))(coefficients, x)
-        np.testing.assert_allclose(np.ravel(values), [polynomial(x), polynomial.deriv()(x)], rtol=1e-13)
-        bend = jax.jit(jax.grad(jax.grad(lambda x: traced_series(jax.numpy.asarray(coefficients), x[None])[1][0])))(x)
-        assert float(bend) == pytest.approx(polynomial.deriv(3)(x), rel=1e-10)
-        by_coefficient = jax.jit(jax.grad(lambda c: traced_series(c, jax.numpy.asarray([x]))[1][0]))(coefficients)
-        expected = [np.polynomial.chebyshev.Chebyshev.basis(k).deriv()(x) for k in range(6)]
-        np.testing.assert_allclose(by_coefficient[:, 0], expected, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("model", [bs.Tabulated(), bs.Refined()], ids=lambda model: model.name)
