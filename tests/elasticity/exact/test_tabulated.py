@@ -8,7 +8,7 @@ from numpy.polynomial.chebyshev import chebval, chebvander
 
 import ballsocket as bs
 from ballsocket.core import arrays
-from ballsocket.core.chebyshev import chebyshev_points
+from ballsocket.core.chebyshev import chebyshev_points, traced_series
 from ballsocket.elasticity.exact.tabulated import build as build_tables
 from ballsocket.elasticity.exact.tabulated import chebyshev
 
@@ -244,6 +244,20 @@ def test_few_steps_from_the_start_solve_loads_of_all_sizes(kind, elastic):
     assert np.all(found.status[reached] == bs.Status.OK)
     np.testing.assert_allclose(found.half_angle[reached], angle[reached], rtol=1e-12)
     np.testing.assert_allclose(found.force[reached], known.force[reached], rtol=2e-12)
+
+
+def test_traced_series_have_the_derivatives_of_the_polynomial():
+    jax = pytest.importorskip("jax")
+    coefficients, x = np.random.default_rng(2).normal(size=(6, 1)), 0.3
+    polynomial = np.polynomial.chebyshev.Chebyshev(coefficients[:, 0])
+    with jax.enable_x64(True):
+        values = jax.jit(lambda c, x: traced_series(c, x[None]))(coefficients, x)
+        np.testing.assert_allclose(np.ravel(values), [polynomial(x), polynomial.deriv()(x)], rtol=1e-13)
+        bend = jax.jit(jax.grad(jax.grad(lambda x: traced_series(jax.numpy.asarray(coefficients), x[None])[1][0])))(x)
+        assert float(bend) == pytest.approx(polynomial.deriv(3)(x), rel=1e-10)
+        by_coefficient = jax.jit(jax.grad(lambda c: traced_series(c, jax.numpy.asarray([x]))[1][0]))(coefficients)
+        expected = [np.polynomial.chebyshev.Chebyshev.basis(k).deriv()(x) for k in range(6)]
+        np.testing.assert_allclose(by_coefficient[:, 0], expected, rtol=1e-12, atol=1e-12)
 
 
 @pytest.mark.parametrize("model", [bs.Tabulated(), bs.Refined()], ids=lambda model: model.name)

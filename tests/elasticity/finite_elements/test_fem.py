@@ -306,9 +306,8 @@ def test_results_scale_with_lengths_and_moduli():
     liner, ball = (bs.Material(young=b * part.young, poisson=part.poisson) for part in (HIP.liner, HIP.ball))
     one = ONE_MESH.press(HIP, force=3000.0)
     other = ONE_MESH.press(bs.Joint(**lengths, liner=liner, ball=ball), force=3000.0 * a * a * b)
-    assert other.indentation == pytest.approx(a * one.indentation, rel=1e-9)
-    assert other.half_angle == pytest.approx(one.half_angle, rel=1e-9)
-    assert other.max_pressure == pytest.approx(b * one.max_pressure, rel=1e-9)
+    for name, scale in {"indentation": a, "half_angle": 1.0, "max_pressure": b}.items():
+        assert getattr(other, name) == pytest.approx(scale * getattr(one, name), rel=1e-9)
     assert other.stiffness == pytest.approx(a * b * one.stiffness, rel=1e-6)
 
 
@@ -389,12 +388,6 @@ def test_joints_that_cannot_be_meshed_are_refused(call, message):
         call()
 
 
-def test_a_missing_extra_is_reported_with_its_install_command(monkeypatch):
-    monkeypatch.setattr("ballsocket.core.checks.find_spec", lambda module: None)
-    with pytest.raises(ImportError, match=r'skfem is not installed: pip install "ballsocket\[fem\]"'):
-        bs.FiniteElement().press(HIP, force=1000.0)
-
-
 def test_contacts_wider_than_88_degrees_have_no_result():
     for load in ({"half_angle": np.radians(89.0)}, {"indentation": 1e6}):
         contact = WHOLE.press(HIP, **load)
@@ -413,7 +406,6 @@ def test_the_stated_mesh_size_equals_that_of_the_mesh(hip):
     along = np.sort(parts[0].angle[parts[0].radius < 18.0 + 1e-9])
     assert hip.mesh.element_size == pytest.approx(18.0 * along[2])  # an element has a node in its middle
     assert hip.summary()["mesh"] == vars(hip.mesh)
-
     assert bytes_needed(2048, 2) == 2048 * (2 * 12 * 8 * 2 * 11 + 1000 * 2)
     with pytest.raises(KeyError, match="part 'cement' is not known; known parts: liner, ball"):
         _ = hip.section["cement"]
@@ -429,7 +421,7 @@ def test_a_section_names_its_parts_and_has_a_scale_for_each_kind():
     assert len({bar.get_ylim()[1] for bar in bars}) == 3
 
 
-def test_a_vtk_file_has_the_mesh_and_its_stresses(hip, tmp_path):
+def test_a_vtk_file_has_the_mesh_and_its_stresses_or_does_not_exist(hip, tmp_path, monkeypatch):
     import meshio
 
     write_vtk(hip.section, tmp_path / "hip.vtu")
@@ -444,15 +436,11 @@ def test_a_vtk_file_has_the_mesh_and_its_stresses(hip, tmp_path):
     with pytest.raises(ValueError, match="must end in"):
         write_vtk(hip.section, tmp_path / "hip.txt")
 
-
-def test_an_interrupted_write_leaves_no_file(hip, tmp_path, monkeypatch):
-    import meshio
-
     def interrupted(self, path):
         path.write_text("half of")
         raise KeyboardInterrupt
 
     monkeypatch.setattr(meshio.Mesh, "write", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        write_vtk(hip.section, tmp_path / "hip.vtu")
-    assert list(tmp_path.iterdir()) == []
+        write_vtk(hip.section, tmp_path / "other.vtu")
+    assert [path.name for path in tmp_path.iterdir()] == ["hip.vtu"]

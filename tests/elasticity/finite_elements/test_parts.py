@@ -1,4 +1,4 @@
-"""Parts of the finite element model: meshes, harmonics, full contacts and error estimates."""
+"""Parts of the finite element model: meshes, harmonics, full contacts, error estimates and elements."""
 
 from dataclasses import replace
 from itertools import product
@@ -8,24 +8,26 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.optimize import bisect
+from scipy.sparse.linalg import spsolve
 
 import ballsocket as bs
 from ballsocket.elasticity.exact.model import curve_of
 from ballsocket.elasticity.exact.modes import Shell, Socket
-from ballsocket.elasticity.finite_elements import load_search, mesh, solver
+from ballsocket.elasticity.finite_elements import load_search, solver
 from ballsocket.elasticity.finite_elements.bodies import ball_body, socket_body
 from ballsocket.elasticity.finite_elements.elasticity import shape_functions
 from ballsocket.elasticity.finite_elements.harmonics import Harmonics, socket_harmonics
 from ballsocket.elasticity.finite_elements.load_search import ContactBracket
-from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, socket_shape
+from ballsocket.elasticity.finite_elements.mesh import Resolution, SocketShape, graded_points, socket_shape
 from ballsocket.elasticity.finite_elements.pair_contact import FullContact, partial_contact, pressure_at_pole
 from ballsocket.elasticity.finite_elements.section import _superconvergent_points as superconvergent_points
 from ballsocket.elasticity.finite_elements.solver import Settings, load_curve_of
-from ballsocket.elasticity.finite_elements.surfaces import ContactSurface, lagrange
+from ballsocket.evidence.code_checks import polar_components, shell_block, strain_energy_error, thick_sphere_error
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Interface
 from ballsocket.problem.gaps import CircularGap, LinearGap
 
+from ...extent import some
 from ...joints import HIP
 
 RIGID = replace(HIP, ball=None)
@@ -169,19 +171,6 @@ def test_stresses_are_extrapolated_bilinearly_to_the_nodes():
     assert (np.array([3.0]) @ extrapolation).tolist() == [3.0] * 4
 
 
-def test_lagrange_polynomials_interpolate():
-    corners = np.array([0.0, 0.1, 0.3, 0.6])
-    angle = np.array([0.0, 0.05, 0.1, 0.23, 0.6])
-    for order in (1, 2):
-        nodes = mesh.add_midpoints(corners, order)
-        shapes = lagrange(corners, order, angle).toarray()
-        np.testing.assert_allclose(shapes.sum(axis=1), 1.0, rtol=1e-14)
-        np.testing.assert_allclose(shapes @ nodes**order, angle**order, atol=1e-14)
-        surface = ContactSurface(angle=nodes, order=order, compliance=np.eye(len(nodes)))
-        np.testing.assert_array_equal(surface.corners, corners)
-        np.testing.assert_allclose(surface.nodal_sums(angle, np.arange(5.0)), shapes.T @ np.arange(5.0), atol=1e-14)
-
-
 def test_resolutions_of_adapted_and_uniform_elements():
     classes = COARSE.classes(1.5, 18.0)
     assert len(classes) == 25
@@ -293,15 +282,6 @@ def test_the_gap_of_a_solved_contact_is_open_and_its_pressure_positive(pair, con
     assert squeezed.overlap > 1e-3
 
 
-def test_a_bracket_spans_its_class_and_the_next_four(curve):
-    for number in (0, 3):
-        bracket = curve._contact_bracket(number, solver.COARSE)
-        assert curve.classes[number + 5] < bracket.low < curve.classes[number + 4]
-        assert curve.classes[number] <= bracket.high <= 1.12 * curve.classes[number]
-    assert curve._contact_bracket(0, solver.COARSE).high == curve.classes[0]
-    assert curve._contact_bracket(3, solver.COARSE) is curve._contact_bracket(3, solver.COARSE)
-
-
 def test_loads_are_solved_on_the_mesh_of_their_class(curve):
     angles = [contact_class * 0.99 for contact_class in curve.classes[1:6]]
     assert [curve._mesh_class("half_angle", angle) for angle in angles] == [1, 2, 3, 4, 5]
@@ -329,9 +309,8 @@ def test_a_bracket_ends_before_the_perfect_fit(soft_pair, count):
     fit = bisect(lambda angle: (partial_contact(soft_pair, GAP, angle).indentation > 0) - 0.5, 0.5, last, xtol=2e-9)
     widest = curve_of(bs.Exact(), replace(RIGID, liner_thickness=inf)).widest_angle
     assert fit == pytest.approx(widest, abs=radians(0.3))
-    ratio = 1.001
-    low = fit / ratio ** (count - 0.5)
-    bracket = ContactBracket(pair=soft_pair, gap=GAP, low=low, high=low * ratio**9)
+    low = fit / 1.001 ** (count - 0.5)
+    bracket = ContactBracket(pair=soft_pair, gap=GAP, low=low, high=low * 1.001**9)
     assert len(bracket._samples) == count
     assert not bracket.lies_below("force", 1e12)
     if count == 1:
@@ -388,3 +367,102 @@ def test_sliding_liners_and_free_shells_are_softer_for_every_load_of_each_harmon
         assert np.linalg.eigvalsh(tight).min() > 0
         assert np.linalg.eigvalsh(loose - tight).min() > -1e-9
         assert np.trace(loose) > 1.005 * np.trace(tight)
+
+
+# --- elements ---
+
+ORDERS = pytest.mark.parametrize("order", [1, 2], ids=["bilinear", "biquadratic"])
+BACKED = ((1.3, 1.0, 0.4), (1.5, 20.0, 0.3))
+
+
+def resolution(size=0.1, *, reach=0.8, growth=1.3, deepest=0.5, order=2, halvings=0):
+    sizes = {"size": size, "reach": reach, "growth": growth, "widest": 0.3, "deepest": deepest}
+    return Resolution(**sizes, order=order, halvings=halvings)
+
+
+def solve_sliding(support):
+    """Return mesh and displacements of a sliding liner under unit forces, and the last grid line of the liner."""
+    body = socket_body(socket(BACKED, rim=1.5, interface=Interface.SLIDING, support=support), resolution())
+    return body.elastic.block, body.displacements(np.ones(len(body.contact))), *body.elastic.block.sliding
+
+
+@ORDERS
+def test_a_translation_along_the_axis_has_no_energy(order):
+    elastic = shell_block(order, end=1.1)
+    K = elastic.stiffness_matrix()
+    moved = polar_components(elastic, np.zeros(elastic.block.number.size), np.ones(elastic.block.number.size))
+    assert abs(K @ moved).max() < 1e-12 * abs(K).max()
+    assert abs(K - K.T).max() < 1e-12 * abs(K).max()
+
+
+@ORDERS
+def test_a_uniform_strain_has_its_energy(order):
+    """u_ρ = a ρ, u_z = b z: the patch test. The meshed volume is that of the elements, chords or parabolas."""
+    assert strain_energy_error(order) < (5e-3 if order == 1 else 1e-4)
+
+
+@pytest.mark.parametrize("poisson", some([0.4999, 0.49, 0.3, 0.0], 1))
+@pytest.mark.parametrize(("order", "elements", "least"), [(1, 32, 1.9), (2, 8, 3.9)], ids=["bilinear", "biquadratic"])
+def test_a_thick_sphere_under_pressure_converges_and_does_not_lock(order, elements, least, poisson):
+    """Displacement by Bartel's modulus K_B = E/R2 (2(1-2ν) + (1+ν)k³)/((1+ν)(1-2ν)(1-k³)), k = R2/b."""
+    coarse, fine = (thick_sphere_error(order, elements, poisson) for elements in (elements, 2 * elements))
+    assert np.log2(coarse / fine) > least
+    assert fine < (2e-5 if order == 1 else 1e-7)
+
+
+@pytest.mark.parametrize("interface", Interface)
+@ORDERS
+def test_condensed_compliance_equals_that_of_the_complete_system(order, interface):
+    """Against the plain solution of all equations, for a liner on a stiffer layer."""
+    backed = socket(BACKED, rim=pi / 2, chamfer=0.05, interface=interface)
+    body = socket_body(backed, resolution(0.2, order=order, halvings=1))
+    forces = np.random.default_rng(1).normal(size=len(body.contact))
+    K = body.elastic.stiffness_matrix().tolil()
+    load = np.zeros(K.shape[0])
+    load[body.normal_unknowns] = forces
+    fixed = np.flatnonzero(body.fixed_unknowns | (K.tocsr().diagonal() == 0))
+    K[fixed], K[fixed, fixed], load[fixed] = 0, 1, 0
+    whole = spsolve(K.tocsc(), load)
+    normal, rounding = whole[body.normal_unknowns], 1e-9 * abs(whole).max()
+    np.testing.assert_allclose(body.compliance() @ forces, normal, rtol=1e-8, atol=rounding)
+    np.testing.assert_allclose(body.displacements(forces)[body.contact, 1], normal, atol=rounding)
+
+
+def test_sliding_layers_move_together_across_and_freely_along_the_interface():
+    mesh, moved, inner = solve_sliding(Support.FIXED)
+    one, other = moved[mesh.number[:, inner]], moved[mesh.number[:, inner + 1]]
+    np.testing.assert_array_equal(one[:, 1], other[:, 1])
+    assert abs(one[1:, 0] - other[1:, 0]).max() > 1e-3 * abs(one[:, 1]).max()
+
+
+def test_a_sliding_liner_in_a_free_shell_is_free_at_its_rim():
+    """The shell sits on its rim; the liner in it does not."""
+    mesh, moved, inner = solve_sliding(Support.FREE)
+    along = moved[mesh.number[-1], 0]
+    assert np.all(along[: inner + 1] != 0)
+    np.testing.assert_array_equal(along[inner + 1 :], 0.0)
+
+
+def test_a_chamfer_removes_only_the_edge_of_the_bore():
+    mesh = socket_body(socket(LINER, rim=1.5, chamfer=0.1), resolution(reach=2.0, growth=1.2)).elastic.block
+    bore = mesh.radius[:, 0]
+    np.testing.assert_allclose(bore[mesh.angle <= 1.4 + 1e-12], 1.0)
+    assert bore[-1] == pytest.approx(1.1)
+    np.testing.assert_allclose(mesh.radius[:, -1], 1.3)
+
+
+def test_the_equator_of_the_ball_is_fixed_axially_and_free_radially():
+    body = ball_body(0.3, resolution())
+    mesh = body.elastic.block
+    moved = body.displacements(np.ones(len(body.contact)))
+    np.testing.assert_array_equal(moved[mesh.number[-1], 0], 0.0)  # u_φ is the axial displacement there
+    assert abs(moved[mesh.number[-1, 1:], 1]).min() > 0
+
+
+@pytest.mark.parametrize("end", [3.0, -1.0])
+def test_graded_points_have_the_stated_ends_and_growing_steps(end):
+    places = graded_points(1.0, end, 0.1, 1.3, 0.5)
+    assert places[[0, -1]] == pytest.approx((1.0, end), rel=1e-14)
+    steps = abs(np.diff(places))
+    assert np.all(np.diff(steps) > -1e-12)
+    assert steps[0] == pytest.approx(0.1, rel=0.35)
