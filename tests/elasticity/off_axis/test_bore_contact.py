@@ -12,13 +12,7 @@ import ballsocket as bs
 from ballsocket.elasticity.off_axis import bore_contact, equilibrium
 from ballsocket.elasticity.off_axis.bore_contact import BoreContact, initial_displacement, make_bore_arrays
 from ballsocket.elasticity.off_axis.compliance import cached_compliance, make_compliance
-from ballsocket.elasticity.off_axis.coupled_search import (
-    TANGENT_ITERATIONS,
-    make_predictor,
-    newton_step,
-    solve_sensitivity,
-    start_coarse,
-)
+from ballsocket.elasticity.off_axis.coupled_search import TANGENT_ITERATIONS, solve_sensitivity
 from ballsocket.elasticity.off_axis.equilibrium import solve_force
 from ballsocket.elasticity.off_axis.grid import Grid, even_grid
 from ballsocket.elasticity.off_axis.lane_solver import coarser_lanes, solve_lanes, solve_tangents
@@ -262,20 +256,6 @@ def test_lanes_do_not_depend_on_each_other():
     together, alone = solve(LANES, np.arange(4)), solve(LANES, np.array([2]))
     assert together.displacement[2] == pytest.approx(alone.displacement[0], abs=1e-8)
     assert together.pressure[2] == pytest.approx(alone.pressure[0], abs=2e-5 * alone.pressure.max())
-
-
-def test_newton_step_anticipates_pressures_that_have_not_converged():
-    """The step from rough pressures is close to the way to equilibrium; the force alone would mislead it."""
-    bore = coarser_lanes(LANES)
-    arrays = make_bore_arrays(bore, np.float64)
-    start = initial_displacement(bore.gap, ELASTIC.uniform_stiffness, bore.gap.depth, FORCES, AXES)
-    lanes = start_coarse(arrays, (AXES * FORCES[:, None]).T, FORCES, start.T)
-    predictor = make_predictor(solve_sensitivity(arrays, lanes.pressure > 0, 3))
-    step = newton_step(arrays, lanes, predictor)
-    solved = bore.solve_displaced((lanes.displacement + step).T)
-    error = np.linalg.norm(bore.force(solved.pressure) - AXES * FORCES[:, None], axis=1)
-    before = bore.solve_displaced(lanes.displacement.T)
-    assert (error < 0.35 * np.linalg.norm(bore.force(before.pressure) - AXES * FORCES[:, None], axis=1)).all()
 
 
 def test_bores_without_lanes():

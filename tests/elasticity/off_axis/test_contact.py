@@ -11,7 +11,6 @@ import pytest
 import ballsocket as bs
 from ballsocket.elasticity.off_axis.bore_contact import BoreContact
 from ballsocket.elasticity.off_axis.directions import unit_vectors
-from ballsocket.elasticity.off_axis.grid import even_grid
 from ballsocket.elasticity.off_axis.vtk import BALL, BORE, EDGE, write_vtk
 
 from .shapes import COARSE, RIGID, TIGHT, WRAPPED
@@ -169,14 +168,6 @@ def test_preloaded_force_and_indentation_are_components_along_the_load():
     assert contact.half_angle > pi / 2  # of the cells of a full contact
 
 
-def test_uniform_depth_of_a_bore_has_one_value_per_cell():
-    directions = even_grid(pi / 2, 0.3).centroids
-    for model, depth in ((COARSE, 0.0), (replace(COARSE, worn=bs.BoreDeviation(of=lambda n: 0.02)), 0.02)):
-        cells = model.worn_depth(directions, 18.0)
-        assert cells.shape == directions.shape[1:]
-        assert (cells == depth).all()
-
-
 @pytest.mark.parametrize(("radius", "valid"), [(9.1, True), (26.9, True), (8.9, False), (27.1, False)])
 def test_scan_of_another_radius_is_limited_to_half_the_socket(radius, valid):
     worn = SimpleNamespace(radius=radius, depth=lambda directions: 0.0 * directions[2])
@@ -214,7 +205,7 @@ def body(mesh, part):
     raise AssertionError(f"no cells of part {part}")
 
 
-def test_surfaces_are_the_bore_and_the_displaced_ball(tilted, mesh):
+def test_surfaces_are_the_bore_and_the_displaced_ball_and_a_closed_line_around_the_contact(tilted, mesh):
     assert (BORE, BALL, EDGE) == (0, 1, 2)
     rings, meridians = tilted.pressure_map[2].shape
     assert [len(body(mesh, part)[0]) for part in range(3)] == [rings * meridians, 90 * 180, 90]
@@ -222,9 +213,6 @@ def test_surfaces_are_the_bore_and_the_displaced_ball(tilted, mesh):
     assert np.linalg.norm(bore, axis=1) == pytest.approx(RIGID.socket_radius)
     assert bore[:, 2].min() == pytest.approx(0.0, abs=1e-9)
     assert np.linalg.norm(ball - tilted.displacement, axis=1) == pytest.approx(RIGID.ball_radius)
-
-
-def test_edge_is_a_closed_line_around_the_contact(tilted, mesh):
     links = body(mesh, EDGE)[0]
     assert (links[:, 1] == np.roll(links[:, 0], -1)).all()
     assert mesh.points[links[:, 0]] == pytest.approx(RIGID.socket_radius * tilted.outline)

@@ -64,12 +64,8 @@ def test_command_writes_a_tilted_deck_or_needs_an_indentation(tmp_path):
 
 
 def test_bricks_and_wedges_share_nodes_and_have_positive_volume():
-    block = SphericalBlock(
-        polar=np.linspace(0.0, pi / 2, 4),
-        azimuth=np.linspace(0.0, pi, 5),
-        radius=np.array([1.0, 1.2]),
-        centre=np.zeros(3),
-    )
+    angles = {"polar": np.linspace(0.0, pi / 2, 4), "azimuth": np.linspace(0.0, pi, 5)}
+    block = SphericalBlock(**angles, radius=np.array([1.0, 1.2]), centre=np.zeros(3))
     points = {int(number): block.points[:, *index] for index, number in np.ndenumerate(block.number) if number}
     for _, kind, _, nodes in block.elements():
         corners, count = (4, 20) if kind == "C3D20R" else (3, 15)
@@ -94,11 +90,8 @@ def test_deck_has_the_geometry_of_cup_and_ball():
 
 
 def test_deck_scales_the_displacement_and_the_contact_stiffness():
-    x, z = (
-        float(line.rsplit(",", 1)[1])
-        for line in deck_text().splitlines()
-        if line.startswith("PUSHED, ") and "." in line
-    )
+    pushed = [line for line in deck_text().splitlines() if line.startswith("PUSHED, ") and "." in line]
+    x, z = (float(line.rsplit(",", 1)[1]) for line in pushed)
     assert (x, z) == pytest.approx((4e-5 * np.sin(0.5), 4e-5 * np.cos(0.5)))
     stiffness = section("*SURFACE BEHAVIOR")[0][0]
     assert stiffness == pytest.approx(500 * DECK.expected["max_pressure"] / 0.04, rel=1e-5)

@@ -122,12 +122,8 @@ def test_half_angle_is_resolved_between_the_cells():
     assert abs(np.array(errors)).max() < 0.25
 
 
-LOADS = [
-    (180.0, {"force": 2000.0}),
-    (200.0, {"force": 9000.0}),
-    (150.0, {"indentation": 0.05}),
-    (70.0, {"force": 3000.0}),
-]
+LOADS = [(arc, {"force": force}) for arc, force in ((180.0, 2000.0), (200.0, 9000.0), (70.0, 3000.0))]
+LOADS.insert(2, (150.0, {"indentation": 0.05}))
 
 
 @pytest.mark.parametrize(("arc", "load"), some(LOADS, 2))

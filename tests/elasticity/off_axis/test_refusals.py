@@ -66,11 +66,7 @@ VALUE_ERRORS = [
     (press_worn, {"of": lambda n: NAN * n[2]}, "worn depth.* a depth .mm. is finite"),
     (press_worn, {"of": lambda n: np.zeros(7)}, r"worn depth of shape \(7,\)"),
     (bs.OvalBore, {"squeeze": 0.06, "direction": 90.0}, RIGHT_ANGLE),
-    (
-        TABLE,
-        {"polar": [0.0, 0.5, pi + 0.005]},
-        r"polar\[2\] = .* an angle is in radians, at most 3.142",
-    ),
+    (TABLE, {"polar": [0.0, 0.5, pi + 0.005]}, r"polar\[2\] = .* an angle is in radians, at most 3.142"),
     (TABLE, {"azimuth": [0.0, 1.5, 3.0, 2 * pi + 0.005]}, r"azimuth\[3\] = .* radians, at most 6.283"),
     (TABLE, {"azimuth": [-2 * pi - 0.005, 1.5, 3.0, 4.0]}, r"azimuth\[0\] = .* is not allowed: an angle is in radians"),
     (TABLE, {"polar": [0.0, 0.5, 0.2]}, r"polar\[2\] = 0.2 is not allowed: angles ascend"),
