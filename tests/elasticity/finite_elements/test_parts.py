@@ -282,6 +282,17 @@ def test_the_gap_of_a_solved_contact_is_open_and_its_pressure_positive(pair, con
     assert squeezed.overlap > 1e-3
 
 
+def test_loads_are_solved_on_the_mesh_of_their_class(curve):
+    angles = [contact_class * 0.99 for contact_class in curve.classes[1:6]]
+    assert [curve._mesh_class("half_angle", angle) for angle in angles] == [1, 2, 3, 4, 5]
+    ends = ("half_angle", curve.classes[0]), ("half_angle", 1e-9), ("force", 1e9)
+    assert [curve._mesh_class(*load) for load in ends] == [0, len(curve.classes) - 2, 0]
+    for angle in angles[:3]:
+        contact = partial_contact(curve.pairs(0, solver.COARSE), curve.gap, 0.93 * angle)
+        for kind in ("force", "indentation"):
+            assert curve._mesh_class(kind, getattr(contact, kind)) == curve._mesh_class("half_angle", 0.93 * angle)
+
+
 @pytest.fixture(scope="module")
 def soft_pair():
     return coarse_curve(replace(RIGID, liner_thickness=inf), 340.0).pairs(0, solver.COARSE)
