@@ -46,8 +46,7 @@ def test_indentation_pressure_and_half_angle_equal_an_independent_solution(case)
     np.testing.assert_allclose(np.degrees(contact.half_angle), angle, rtol=1e-6)
 
 
-def test_a_sphere_in_an_infinite_cavity_has_the_published_values():
-    """A rigid ball, and one of the cavity's material (Goodman and Keers)."""
+def test_a_sphere_in_an_infinite_cavity_has_the_values_of_goodman_and_keers():
     R, c, angle = 100.0, 1e-4, np.radians([20.0, 40.0, 60.0])
     for ball, bodies, force, pressure in (
         (None, 1, [0.0620483, 0.6224408, 3.307897], [0.2545104, 0.7271863, 2.116084]),
@@ -125,7 +124,6 @@ def test_pressure_vanishes_at_the_edge_as_a_square_root():
 
 @pytest.mark.parametrize("tolerance", some([1e-6, 1e-9, 1e-3], 1))
 def test_the_error_estimate_holds(tolerance):
-    """On random joints the true error (against a much finer solution) is below the estimate, or below rounding."""
     rng = np.random.default_rng(11)
     for _ in range(12):
         thickness, liner = 18.0 / 10 ** rng.uniform(-1, 1.2), plastic(rng.uniform(-0.3, 0.4999))

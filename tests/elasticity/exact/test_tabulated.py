@@ -167,8 +167,6 @@ def test_an_unwritable_file_of_tables_is_refused_before_any_computation(tmp_path
 
 
 def test_a_small_table_interpolates_its_function():
-    """A specification with few points reproduces a polynomial of the coordinates."""
-
     def sample(liner):
         x, y = chebyshev.poisson_coordinate(liner[0]), chebyshev.thickness_coordinate(liner[1])
         return np.array([[x + 2 * y, 0.5 * x * y], [1.0 + x, y]])  # (functions, angles)
@@ -259,7 +257,6 @@ def test_traced_series_have_the_derivatives_of_the_polynomial():
 
 @pytest.mark.parametrize("model", [bs.Tabulated(), bs.Refined()], ids=lambda model: model.name)
 def test_blocks_inside_jit_equal_one_block(model, monkeypatch):
-    """Two full blocks and a part of a third, with a joint for each load."""
     jax = pytest.importorskip("jax")
     monkeypatch.setitem(arrays._JAX_BLOCKS, "cpu", 40)
     thickness, force = np.linspace(4.0, 12.0, 100), np.linspace(0.0, 4000.0, 100)

@@ -38,7 +38,6 @@ def assert_close(one, other, rtol, names=QUANTITIES):
 
 @pytest.fixture(scope="module")
 def hip():
-    """Solved contact with error bars, for tests that only read it."""
     return bs.FiniteElement().press(HIP, force=3000.0)
 
 
@@ -198,7 +197,6 @@ def test_the_observed_order_of_convergence(element):
 
 @pytest.mark.long
 def test_the_true_error_lies_within_the_error_bar():
-    """At random contacts of whole spheres: 94 %, each quantity by itself, and none far beyond."""
     rng = np.random.default_rng(3)
     beyond = {name: [] for name in QUANTITIES[1:]}
     for _ in range(34):
@@ -238,7 +236,6 @@ def test_the_meshes_of_ball_and_socket_need_not_match(ball):
 
 @pytest.mark.parametrize("element", some(reversed(bs.Element), 1))
 def test_error_bars_hold_for_both_kinds_of_elements(element):
-    """Bilinear elements converge more slowly, as their error bars show."""
     loads = np.linspace(300.0, 3500.0, 16)
     ours = bs.FiniteElement(cup=FULL, element=element).press(RIGID, force=loads)
     exact = bs.Exact().press(RIGID, force=loads)

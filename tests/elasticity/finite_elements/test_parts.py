@@ -408,7 +408,6 @@ def test_a_thick_sphere_under_pressure_converges_and_does_not_lock(order, elemen
 @pytest.mark.parametrize("interface", Interface)
 @ORDERS
 def test_condensed_compliance_equals_that_of_the_complete_system(order, interface):
-    """Against the plain solution of all equations, for a liner on a stiffer layer."""
     backed = socket(BACKED, rim=pi / 2, chamfer=0.05, interface=interface)
     body = socket_body(backed, resolution(0.2, order=order, halvings=1))
     forces = np.random.default_rng(1).normal(size=len(body.contact))

@@ -173,7 +173,6 @@ def test_balls_excluded_from_the_search_stay_at_their_start():
 @SEARCHES
 @pytest.mark.parametrize("factor", some([0.2, 0.6, 3.0], 2))
 def test_bad_starts_and_the_solution_itself_reach_the_same_equilibrium(bore, factor):
-    """The ball begins outside the contact, or pressed in too far."""
     expected = solve_force(bore, LOADS, START, HELD)
     for start, pressure in ((factor * START, None), (expected.displacement, expected.pressure)):
         solution = solve_force(bore, LOADS, start, HELD, pressure)
@@ -259,7 +258,6 @@ def test_lanes_do_not_depend_on_each_other():
 
 
 def test_bores_without_lanes():
-    """Springs and circular gaps have no coupled search."""
     springs = cached_compliance(bs.Springs(), RIGID, bs.Cup(), radians(3.0))
     assert coarser_lanes(bore_of(springs)) is None
     assert coarser_lanes(bore_of(ELASTIC, kind=bs.CircularGap)) is None

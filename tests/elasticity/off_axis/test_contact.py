@@ -60,7 +60,6 @@ def test_contact_lies_around_its_load(tilted):
 
 @pytest.mark.parametrize(("name", "load"), [("force", 100.0), ("indentation", 0.03), ("half_angle", 0.4)])
 def test_zero_load_has_no_contact(name, load):
-    """A zero among other loads gives zeros and leaves the others as they are."""
     both = COARSE.press(RIGID, tilt=0.2, **{name: [0.0, load]})
     alone = COARSE.press(RIGID, tilt=0.2, **{name: load})
     for quantity in ("force", "indentation", "half_angle", "max_pressure", "energy", "edge_margin"):
@@ -85,7 +84,6 @@ def test_stiffness_of_a_tilted_contact_is_the_slope_of_its_force():
 
 @pytest.mark.parametrize("width", [radians(4.0), radians(2.0)])
 def test_error_estimates_follow_the_width_of_the_contact(width):
-    """Errors grow with the square of ring width over half angle, those of edges with their ratio."""
     contact = replace(SPRINGS, ring_width=width).press(RIGID, force=1000.0)
     ratio = width / contact.half_angle
     for name, error in {

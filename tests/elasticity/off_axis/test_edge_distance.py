@@ -32,7 +32,6 @@ CUPS = {
 @pytest.mark.long
 @pytest.mark.parametrize("name", CUPS)
 def test_edge_distance_decreases_smoothly_with_tilt_at_the_rim(name):
-    """Steps of half a degree reduce it by 0.03 to 0.2 mm, and differ by less than 0.1 mm."""
     joint, cup, force, first_touch = CUPS[name]
     tilt = np.radians(first_touch + np.arange(-3.0, 2.1, 0.5))
     contact = bs.Sphere(cup=cup).press(joint, force=force, tilt=tilt)
@@ -46,7 +45,6 @@ def test_edge_distance_decreases_smoothly_with_tilt_at_the_rim(name):
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["thin and soft", "thick with a chamfer"])
 def test_edge_distance_is_independent_of_ring_width(name):
-    """Rings of 2° within 0.1 mm, far from the rim, near it, and beyond it."""
     joint, cup, force, first_touch = CUPS[name]
     tilt = np.radians(first_touch + np.array([-25.0, -9.0, -3.5, -0.7, 0.7, 6.0]))
     wide, narrow = (
@@ -79,7 +77,6 @@ def test_edge_distance_of_a_cut_contact_needs_few_presses(name):
 
 @pytest.mark.long
 def test_edge_distances_of_many_cut_contacts_need_the_presses_of_a_few():
-    """The tilts at first rim contact of 40 loads follow from those of 8, within 0.03°."""
     model, force = bs.Sphere(ring_width=radians(4.0)), np.geomspace(800.0, 5000.0, 40)
     margins, sizes = edge_margins_and_sizes(model.press(HIP, force=force, tilt=radians(75.0)))
     each = [float(model.press(HIP, force=value, tilt=radians(75.0)).edge_margin) for value in force[3::9]]
@@ -90,7 +87,6 @@ def test_edge_distances_of_many_cut_contacts_need_the_presses_of_a_few():
 
 @pytest.mark.parametrize("load", some([{"force": [400.0, 2000.0]}, {"indentation": [0.01, 0.04]}], 1))
 def test_contacts_leave_the_rim_at_the_tilt_that_their_curve_states(load):
-    """They end before the rim at a tilt 0.1° below it, and reach it 0.1° above."""
     model = bs.Sphere(ring_width=radians(3.0))
     touching = radians(80.0) + model.press(HIP, **load, tilt=radians(80.0)).edge_margin
     near = touching + np.radians([[-0.1], [0.1]])
@@ -109,7 +105,6 @@ def test_edge_distances_of_an_unworn_bore_need_no_presses(monkeypatch):
 
 @pytest.mark.long
 def test_half_angle_is_resolved_between_the_cells():
-    """Half angles of closed shells at rings of 2°: within 0.25° of the exact ones, of random joints."""
     random, errors = np.random.default_rng(11), []
     model = bs.Sphere(surface=bs.ClosedShell(), ring_width=radians(2.0))
     for poisson in (0.0, 0.3, 0.4, 0.45, 0.48):
@@ -143,7 +138,6 @@ def test_edge_margin_follows_the_rotation_of_the_load(arc, load):
 
 
 def test_edge_margin_passes_the_rings_evenly():
-    """In rings of 2° a degree of tilt reduces the margin by half a degree to two degrees."""
     tilt = np.radians(np.arange(30.0, 52.0))
     margin = bs.Sphere(ring_width=radians(2.0)).press(HIP, force=2000.0, tilt=tilt).edge_margin
     decrease = -np.degrees(np.diff(margin[margin > radians(2.0)]))
@@ -162,7 +156,6 @@ def test_bore_narrower_than_its_axial_contact_misses_the_overlap():
 @pytest.mark.long
 @pytest.mark.parametrize("poisson", [0.45, 0.3])
 def test_error_estimates_hold_for_edge_loading(poisson):
-    """Contacts that the rim cuts off, in rings of 4° and of 2°."""
     tilt = np.radians([45.0, 60.0, 68.0, 75.0])
     wide, narrow = (
         bs.Sphere(ring_width=radians(width)).press(lined(poisson), force=2000.0, tilt=tilt) for width in (4.0, 2.0)

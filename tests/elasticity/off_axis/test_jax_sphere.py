@@ -84,7 +84,6 @@ class FixedContact:
         self.inverse, self.weights, self.inside = np.linalg.inv(matrix), weights, inside
 
     def press(self, load, gap):
-        """Return displacement, force, pressure field, largest pressure and margin."""
         gap = gap.ravel()
         solution = self.inverse @ np.concatenate([-gap[self.inside], load])
         pressure, displacement = solution[:-3], solution[-3:]
@@ -118,7 +117,6 @@ class FixedCells:
         return outputs | {"pressure": (outputs["pressure"] * self.weights).sum()}
 
     def differences(self, values, name):
-        """Return the central differences of the outputs by one number."""
         step = 1e-6 * max(abs(values[name]), 0.1)
         low, high = (self.press(values | {name: values[name] + change}) for change in (-step, step))
         return {output: (high[output] - low[output]) / (2 * step) for output in OUTPUTS}

@@ -26,10 +26,6 @@ def pressure_at(direction):
     return FORCE().pressure_at(direction)
 
 
-def separate(direction):
-    return PRELOAD().separation_displacement(direction)
-
-
 def press_scan(points):
     return replace(COARSE, worn=scan_from_points(points)).press(RIGID, force=2000.0)
 
@@ -46,6 +42,8 @@ DECK = partial(TiltedDeck, joint=lined(), cup=bs.Cup(), indentation=0.04, tilt=0
 SCAN = partial(scan_from_points, points=scanned_points())
 CLOUD = np.random.default_rng(1).normal(size=(1000, 3))
 RIGHT_ANGLE = "90 degrees are 1.571 radians"
+
+AXIAL = bs.Exact(), bs.HessForsbach(), bs.Tabulated()
 
 VALUE_ERRORS = [
     (FORCE, {"tilt": 45.0}, "45 degrees are 0.7854 radians"),
@@ -96,7 +94,7 @@ VALUE_ERRORS = [
     (partial(bs.study, bs.Exact(), RIGID, force=1.0), {"tilt": [0.0, 0.5]}, "use sphere"),
     (PRELOAD, {"model": bs.Sphere()}, "beyond the equator"),
     (PRELOAD, {"joint": RIGID}, "interference"),
-    (separate, {"direction": np.eye(3)}, "give one direction"),
+    (lambda: PRELOAD().separation_displacement(np.eye(3)), {}, "give one direction"),
     (PULL, {"model": replace(WRAPPED, cup=bs.Cup())}, "a socket of 180 deg does not hold its ball"),
     (PULL, {"friction": -0.1}, "friction = -0.1 is not allowed"),
     (FIT, {"clearance": 0.1}, "one too many"),
@@ -109,10 +107,7 @@ VALUE_ERRORS = [
     (DECK, {"element_size": radians(15.1)}, "an element is 0.5 to 15 degrees wide"),
     (DECK, {"scale": 0.0}, "a scale lies above 0 and is at most 1"),
     (DECK, {"scale": 1.05}, "a scale lies above 0 and is at most 1"),
-    *(
-        (partial(model.press, TIGHT), {"force": 1.0}, "sphere")
-        for model in (bs.Exact(), bs.HessForsbach(), bs.Tabulated())
-    ),
+    *((partial(model.press, TIGHT), {"force": 1.0}, "sphere") for model in AXIAL),
 ]
 TYPE_ERRORS = [
     (bs.Sphere, {"ring_width": "2 deg"}, "ring_width must be a number"),
