@@ -285,7 +285,7 @@ def test_edge_lies_between_the_last_loaded_and_the_first_open_cell():
     assert patch.edge_margin == pytest.approx(CAP_GRID.reach - edge, abs=1e-9)
 
 
-def test_contact_that_reaches_the_rim_ends_there():
+def test_contact_that_reaches_the_rim_ends_there_with_an_extrapolated_pressure():
     patch = cap(direction(radians(75.0)), radians(30.0))
     assert patch.edge_loaded
     assert patch.edge_margin == 0.0
@@ -295,10 +295,6 @@ def test_contact_that_reaches_the_rim_ends_there():
     cut = np.arccos(patch.outline @ patch.axis)
     assert cut.min() == pytest.approx(radians(15.0), abs=1e-9)
     assert cut.max() == pytest.approx(radians(30.0), abs=radians(0.6))
-
-
-def test_pressure_beyond_the_last_middle_is_extrapolated_to_the_rim():
-    patch = cap(direction(radians(75.0)), radians(30.0))
     middle, end = CAP_GRID.polar[-1], CAP_GRID.reach
     last, before = (patch.pressure_at(direction(polar)) for polar in CAP_GRID.polar[[-1, -2]])
     expected = last + (last - before) * (end - middle) / (middle - CAP_GRID.polar[-2])

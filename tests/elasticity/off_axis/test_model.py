@@ -300,24 +300,19 @@ def draw_model(random, joint):
     )
 
 
-def draw_load(random, joint):
-    """Draw loads from far below to far above those that make a contact of this joint."""
-    size = float(joint.liner.young) * float(joint.ball_radius) ** 2
-    kind = random.choice(["force", "force", "indentation", "half_angle"])
-    return kind, {
-        "force": size * 10 ** random.uniform(-8.0, -0.5, LOADS),
-        "indentation": float(joint.clearance) * 10 ** random.uniform(-2.0, 1.2, LOADS),
-        "half_angle": random.uniform(0.05, 1.5, LOADS),
-    }[kind]
-
-
 def draw(seed):
     random = np.random.default_rng(seed)
     joint = draw_joint(random)
     model = draw_model(random, joint)
     spread = random.choice([0.3, 1.0, 10.0])  # from about the dome to anywhere
     direction = random.normal(size=(LOADS, 3)) * spread + np.array(model.cup.dome)
-    return model, joint, *draw_load(random, joint), direction
+    kind = random.choice(["force", "force", "indentation", "half_angle"])
+    loads = {  # from far below to far above those that make a contact of this joint
+        "force": joint.liner.young * joint.ball_radius**2 * 10 ** random.uniform(-8.0, -0.5, LOADS),
+        "indentation": joint.clearance * 10 ** random.uniform(-2.0, 1.2, LOADS),
+        "half_angle": random.uniform(0.05, 1.5, LOADS),
+    }
+    return model, joint, kind, loads[kind], direction
 
 
 @pytest.mark.parametrize("tenth", range(min(COUNT, 10)))
