@@ -180,10 +180,7 @@ ORDERS = {
 @pytest.mark.long
 @pytest.mark.parametrize("element", bs.Element)
 def test_the_observed_order_of_convergence(element):
-    """Indentation at given force like the energy, peak pressure like its linear shapes, the edge more slowly.
-
-    In the mean over a few loads, since the edge lies differently in its element each time.
-    """
+    """In the mean over a few loads, since the edge lies differently in its element each time."""
     loads = np.linspace(800.0, 1600.0, 9)
     exact = bs.Exact(tolerance=1e-9).press(RIGID, force=loads)
     coarse, fine = (

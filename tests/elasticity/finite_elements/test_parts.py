@@ -299,10 +299,7 @@ def soft_pair():
 
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_a_bracket_ends_before_the_perfect_fit(soft_pair, count):
-    """Samples end there, and larger loads are solved between the last sample and the fit; one sample is no bracket.
-
-    In a massive socket that is nearly a whole sphere the fit is that of the exact solution.
-    """
+    """In a massive socket that is nearly a whole sphere the fit is the exact one; a single sample is no bracket."""
     last = float(soft_pair.angle[-1])
     fit = bisect(lambda angle: (partial_contact(soft_pair, GAP, angle).indentation > 0) - 0.5, 0.5, last, xtol=2e-9)
     widest = curve_of(bs.Exact(), replace(RIGID, liner_thickness=inf)).widest_angle

@@ -56,10 +56,7 @@ OUTPUTS = ("displacement", "force_vector", "pressure", "max_pressure", "half_ang
 
 
 def slope_scale(output, name, difference):
-    """Return the slope to which an error is relative: the largest component, or a physical one where it vanishes.
-
-    The force follows the load alone. Far from the rim a contact moves with the load, and keeps its largest pressure.
-    """
+    """Return the largest slope, or a physical one where it vanishes: far from the rim a contact moves with the load."""
     vanishing = {"force_vector": 100.0}
     if name in (*"xyz", "inclination", "anteversion"):
         vanishing = {"max_pressure": 10.0, "half_angle": 0.1, "edge_margin": 0.1}
