@@ -4,13 +4,12 @@ import json
 from base64 import b64decode
 from html import escape
 
-import pytest
+from ballsocket.app.session import Page
 
 
 def opened(link):
     """A page as a browser has it after loading."""
-    session = pytest.importorskip("ballsocket.app.session", exc_type=ImportError)
-    page = session.Page(link)
+    page = Page(link)
     page._refresh()
     return page
 

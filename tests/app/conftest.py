@@ -11,6 +11,12 @@ from .browser import User, opened_browser, opened_profile, served_explorer
 _LOOP = pytest.StashKey()
 
 
+def pytest_pycollect_makemodule():
+    """Skip the room where the explorer cannot be imported."""
+    for package in ("tornado", "tomli_w", "xarray", "skfem"):
+        pytest.importorskip(package, reason="the explorer's extra is not installed")
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item):
     """Let the event loop of Playwright count as running only in tests that name a fixture with a browser."""
@@ -31,7 +37,6 @@ def browser():
 
 @pytest.fixture(scope="session")
 def address():
-    pytest.importorskip("tornado", reason="the explorer's extra is not installed")
     with served_explorer("--origin", "hips.example.org:8443") as served:
         yield served
 
@@ -56,7 +61,8 @@ def user(profile, address):
 @pytest.fixture
 def at_once(monkeypatch):
     """Work of a process is done here and now, except that of the functions in `left`; keys and news of all work."""
-    jobs = pytest.importorskip("ballsocket.app.jobs", exc_type=ImportError)
+    from ballsocket.app import jobs
+
     works = SimpleNamespace(asked=[], news=[], left={"simulate_film", "map_orientations"})
 
     def ask(self, key, work):
@@ -75,15 +81,16 @@ def at_once(monkeypatch):
 @pytest.fixture
 def asked(monkeypatch):
     """Keys of the work that was asked for, none of which is done."""
-    jobs, keys = pytest.importorskip("ballsocket.app.jobs", exc_type=ImportError), []
-    monkeypatch.setattr(jobs.Job, "ask", lambda self, key, work: keys.append(key))
+    from ballsocket.app.jobs import Job
+
+    keys = []
+    monkeypatch.setattr(Job, "ask", lambda self, key, work: keys.append(key))
     return keys
 
 
 @pytest.fixture
 def served():
     """A server in this process, whose loop turns while it is asked."""
-    pytest.importorskip("tornado", reason="the explorer's extra is not installed")
     from ballsocket.app import server as serve
 
     loop = asyncio.new_event_loop()

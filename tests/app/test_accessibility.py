@@ -6,11 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from ballsocket.app.state.screen import VIEWS
+
 from ..places import ROOT
 from .browser import AT_REST, NARROW, PICTURES, WIDE, User, opened_profile, pressure
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-from ballsocket.app.state.screen import VIEWS
 
 AXE = ROOT / "tests" / "data" / "axe" / "axe.min.js.gz"
 _VIOLATIONS = """async () => (await axe.run(document, { resultTypes: ["violations"] })).violations

@@ -10,16 +10,14 @@ from urllib.parse import parse_qs
 import pytest
 
 import ballsocket as bs
-
-from .browser import WAIT, User, opened_profile
-from .proxy import opened_proxy
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.pressing import tilt_of
 from ballsocket.app.state.screen import read_link
 from ballsocket.app.widgets.joint_fields import joint_inputs
 from ballsocket.core.quantities import QUANTITIES
 from ballsocket.core.validity import OutsideDomainError
+
+from .browser import WAIT, User, opened_profile
+from .proxy import opened_proxy
 
 pytestmark = pytest.mark.long
 _NUMBERS = ("load", "clearance", "ball_radius", "liner_thickness")

@@ -103,7 +103,6 @@ def test_rows_of_limits_are_added_refused_and_taken_away(user):
 
 def test_elements_run_beside_others_who_go_on(user, profile, address):
     """A run answers, another is cancelled, and somebody else's page answers before the run does."""
-    pytest.importorskip("skfem")
     user.open("?view=judge")
     other = User(profile, address).open()
     button = user.page.locator("[data-name='judge.run'] button")

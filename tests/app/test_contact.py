@@ -12,11 +12,6 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.files.joint_file import JointFile
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-pytest.importorskip("tomli_w")
-pytest.importorskip("skfem")
 from ballsocket.app import jobs, long_view, results
 from ballsocket.app.jobs import Job
 from ballsocket.app.pictures.bore import pressed_bore
@@ -31,6 +26,7 @@ from ballsocket.app.views.cup.view import _hint
 from ballsocket.app.views.cup.worker import OrientationMap
 from ballsocket.app.widgets.reading import Reading
 from ballsocket.app.widgets.words import accuracy_sentence
+from ballsocket.files.joint_file import JointFile
 from ballsocket.problem.cup import Cup, Side
 from ballsocket.reports.check_table import checks_html, checks_of
 from ballsocket.reports.section_plots import gap_factor

@@ -9,14 +9,6 @@ from pathlib import Path
 import pytest
 
 import ballsocket as bs
-from ballsocket.evidence.question import read_question
-from ballsocket.files.joint_file import JointFile
-from ballsocket.hip.config import read_hip
-
-from .asking import does, edits, opened, saved, trouble
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-pytest.importorskip("tomli_w")
 from ballsocket.app import results
 from ballsocket.app.jobs import Job
 from ballsocket.app.running import RunFinished
@@ -24,6 +16,11 @@ from ballsocket.app.state.evidence_question import DEFAULT_QUESTION, EvidenceQue
 from ballsocket.app.state.use import DEFAULT_USE, Use
 from ballsocket.app.views.evidence import view as evidence
 from ballsocket.app.views.evidence.worker import EvidencePack, gather_pack, write_question
+from ballsocket.evidence.question import read_question
+from ballsocket.files.joint_file import JointFile
+from ballsocket.hip.config import read_hip
+
+from .asking import does, edits, opened, saved, trouble
 
 LINK = "view=evidence&preset=hip-36&load.force=3000"
 CUP = bs.Cup(inclination=radians(40.0))

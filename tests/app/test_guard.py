@@ -12,13 +12,11 @@ from urllib.parse import quote, urlsplit
 
 import pytest
 
-from .browser import User, explorer_process, opened_profile
-from .wire import BINARY, TEXT, Wire, opened_wire
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-pytest.importorskip("tomli_w")
 from ballsocket.app.server import HostNames
 from ballsocket.app.state.screen import VIEWS
+
+from .browser import User, explorer_process, opened_profile
+from .wire import BINARY, TEXT, Wire, opened_wire
 
 STRICT = {
     "X-Content-Type-Options": "nosniff",

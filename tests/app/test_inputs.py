@@ -8,9 +8,6 @@ from html import unescape
 import pytest
 
 import ballsocket as bs
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-pytest.importorskip("tomli_w")
 from ballsocket.app import session
 from ballsocket.app.session import Page
 from ballsocket.app.state.screen import START

@@ -6,16 +6,9 @@ from dataclasses import replace
 from functools import partial
 
 import pytest
-
-import ballsocket as bs
-from ballsocket.catalogue import judge
-from ballsocket.files.joint_file import JointFile
-from ballsocket.problem.cup import Cup
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-pytest.importorskip("tomli_w")
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest
 
+import ballsocket as bs
 from ballsocket.app import long_view, results, running, session, solving
 from ballsocket.app.jobs import Job
 from ballsocket.app.long_view import LongView, long_body
@@ -30,9 +23,12 @@ from ballsocket.app.views.contact.view import Press
 from ballsocket.app.views.cup.worker import bore_of, orientation_key
 from ballsocket.app.views.gait.worker import gait_key
 from ballsocket.app.views.wear.worker import wear_key
+from ballsocket.catalogue import judge
 from ballsocket.compare import THIN_LINER_RATIO
 from ballsocket.elasticity.exact.model import Exact
+from ballsocket.files.joint_file import JointFile
 from ballsocket.models.plane_layer import PlaneLayer
+from ballsocket.problem.cup import Cup
 
 from ..extent import some
 from .asking import does, edits, saved
@@ -167,7 +163,6 @@ def until_the_end(run):
 
 
 def judging(force, **cup):
-    pytest.importorskip("skfem")
     from ballsocket.app.views.finite_elements.worker import run_finite_elements
 
     return Run(partial(run_finite_elements, JointFile(HIP, {"force": force}, Cup(**cup))))

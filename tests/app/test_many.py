@@ -8,8 +8,6 @@ from pathlib import Path
 from threading import Event
 
 import pytest
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from tornado.httpclient import HTTPRequest
 from tornado.websocket import websocket_connect
 

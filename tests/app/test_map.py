@@ -9,10 +9,6 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.files.joint_file import JointFile
-from ballsocket.problem.cup import Cup
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app.pictures import svg
 from ballsocket.app.pictures.contour_map import MapPlane
 from ballsocket.app.session import Page
@@ -21,6 +17,8 @@ from ballsocket.app.views.design_map import view as map_view
 from ballsocket.app.views.design_map.worker import catalogue_sizes, mapped, models_of
 from ballsocket.app.widgets.limit_rows import present_value
 from ballsocket.core.quantities import QUANTITIES
+from ballsocket.files.joint_file import JointFile
+from ballsocket.problem.cup import Cup
 
 from .asking import edits, trouble
 

@@ -13,7 +13,6 @@ import ballsocket as bs
 
 from ..places import CONTRIBUTING
 
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 LAST = '    "evidence": "evidence.Evidence",\n'
 OPENED = """
 from ballsocket.app.page import page_files

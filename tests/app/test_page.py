@@ -6,12 +6,6 @@ from itertools import product
 import pytest
 
 import ballsocket as bs
-
-from ..extent import either
-from .asking import does, edits, saved, trouble
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
-pytest.importorskip("tomli_w")
 from ballsocket.app import server as serve
 from ballsocket.app.session import Page
 from ballsocket.app.views.contact.view import Press
@@ -22,6 +16,9 @@ from ballsocket.files.joint_toml import toml_of
 from ballsocket.problem import Support
 from ballsocket.problem.cup import Cup
 from ballsocket.reports.check_table import checks_of
+
+from ..extent import either
+from .asking import does, edits, saved, trouble
 
 LOADS = ("force=500", "indentation=0.01", "half_angle=20")
 EACH_ONCE = [(preset, LOADS[number % 3]) for number, preset in enumerate(bs.joints)]

@@ -12,18 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import ballsocket as bs
-from ballsocket.files.joint_file import JointFile, parse_joint
-from ballsocket.files.joint_toml import toml_of
-from ballsocket.problem.cup import Cup, Interface, Side
-from ballsocket.problem.presets import materials
-
-pytest.importorskip("tomli_w")
-pytest.importorskip("xarray")
 from ballsocket.app.state import screen as screen_module
 from ballsocket.app.state.designs import MAX_DESIGNS, file_stem, read_upload, session_text
 from ballsocket.app.state.screen import START, MapAxis, Screen, link_of, read_link
-from ballsocket.files.joint_file import read_joint
+from ballsocket.files.joint_file import JointFile, parse_joint, read_joint
+from ballsocket.files.joint_toml import toml_of
 from ballsocket.files.toml import MAX_FILE_SIZE
+from ballsocket.problem.cup import Cup, Interface, Side
+from ballsocket.problem.presets import materials
 
 from ..places import EXAMPLES
 

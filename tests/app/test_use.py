@@ -11,9 +11,6 @@ import numpy as np
 import pytest
 
 import ballsocket as bs
-from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
-
-pytest.importorskip("tornado", reason="the explorer's extra is not installed")
 from ballsocket.app import results
 from ballsocket.app.results import ResultStore
 from ballsocket.app.state.use import DEFAULT_USE
@@ -22,6 +19,7 @@ from ballsocket.app.views.wear import view as wear_view
 from ballsocket.app.views.wear import worker
 from ballsocket.app.views.wear.charts import depth_maps, penetration_chart, wear_numbers
 from ballsocket.app.widgets.reading import Reading
+from ballsocket.hip import Archard, HipSimulation, Lubricant, iso_14242_1, named_cycle
 from ballsocket.reports.check_table import wear_check
 from ballsocket.reports.unit_systems import Units
 
