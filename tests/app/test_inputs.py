@@ -15,9 +15,8 @@ from ballsocket.app.widgets.cup_fields import cup_edited, cup_fields
 from ballsocket.app.widgets.fields import in_words_of
 from ballsocket.app.widgets.joint_fields import joint_inputs
 from ballsocket.app.widgets.numbers import CUP_NUMBERS, NUMBERS
-from ballsocket.app.widgets.reading import Reading, box_text, handy_step, number_text
+from ballsocket.app.widgets.reading import box_text, handy_step, number_text
 from ballsocket.core.quantities import QUANTITIES
-from ballsocket.reports.unit_systems import Units
 
 from .asking import does, edits, saved, told, trouble
 from .test_screen import screen_with
@@ -59,17 +58,14 @@ def test_moduli_have_the_units_of_engineers():
 @pytest.mark.parametrize("name", [*NUMBERS, "load", "tilt", "allowable"])
 def test_no_box_takes_what_no_joint_has(name):
     for value in ("1e12", "-1e12", "inf", "nan", "x" * 5000, *[""] * (name != "allowable")):
-        with pytest.raises(ValueError, match=" must be ") as refused:
+        with pytest.raises(ValueError, match=f"^{re.escape(field_of(name)['label'])}.* must be .{{1,150}}$"):
             typed(name, value)
-        assert str(refused.value).startswith(field_of(name)["label"])
-        assert len(str(refused.value)) < 200
 
 
-@pytest.mark.parametrize("name", [*CUP_NUMBERS])
+@pytest.mark.parametrize("name", CUP_NUMBERS)
 def test_no_box_of_a_cup_takes_what_no_cup_has(name):
-    with pytest.raises(ValueError, match=" must be ") as refused:
+    with pytest.raises(ValueError, match=f"^{re.escape(cup_fields(START)[f'cup.{name}']['label'])} must be "):
         cup_edited(START, name, 1e9)
-    assert str(refused.value).startswith(cup_fields(START)[f"cup.{name}"]["label"])
 
 
 @pytest.mark.parametrize(
@@ -92,9 +88,8 @@ def test_a_refusal_of_the_mechanics_has_the_words_of_the_field_too():
     field = field_of("outer_radius")
     with pytest.raises(ValueError, match="outer_radius = 5.0 is not allowed") as refused:
         typed("outer_radius", "10")
-    worded = in_words_of(field, str(refused.value), "10 mm")
-    assert worded.startswith("Outer diameter 10 mm is not allowed: it must leave a liner")
-    assert worded.endswith(f"; {field['text']} mm stays in use")
+    sentence = rf"Outer diameter 10 mm is not allowed: it must leave a liner.*; {field['text']} mm stays in use"
+    assert re.fullmatch(sentence, in_words_of(field, str(refused.value), "10 mm"))
 
 
 def test_a_changed_preset_keeps_its_name_but_not_its_source():
@@ -129,14 +124,11 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
         ("", "clearence", "1", "'clearence' among the inputs is not known"),
         ("", "liner", 3, "liner = 3 is not a material"),
         ("", "preset", "hip-29", "'hip-29' as preset is not known"),
-        ("", "preset", {}, "as preset is not known"),
         ("", "kind", ["force"], "as load is not known"),
         ("", "massive", "yes", "must be true or false"),
-        ("", "behind.add", ["uhmwpe"], "as material is not known"),
         ("", "behind.add", "cheese", "'cheese' as material is not known"),
         ("", "behind.0", "titanium", "'0' among the layers is not known"),
         ("", "behind.support", "loose", "'loose' as support is not known"),
-        ("view=compare", "compare.x", 1, "among the inputs of Compare is not known"),
         (MAP, "map.pick", [HUGE, 1], "the integer is too large"),
         (f"{LIMITED}&up=outer_radius=15..30", "map.drag", [0, 22.0, 16.0], "<p"),
         (LIMITED, "map.drag", [0, 1], "<p"),
@@ -147,17 +139,13 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
         (MAP, "map.limits", [["frob", "<=", "3"]], "<p"),
         (MAP, "map.limits", [["force", "=", "3"]], "<p"),
         ("view=wear", "wear.coefficient", "much", "coefficient = 'much'"),
-        ("view=wear", "wear.coefficient", "-1", "Coefficient [mm³/(N m)] -1 is not allowed"),
         ("view=wear", "wear.millions", "0", "Million cycles 0"),
         ("view=wear", "wear.spread", "0.5", "Patient-to-patient factor 0.5"),
         ("view=wear", "wear.law", "magic", "'magic' as law is not known"),
         ("view=wear", "wear.creep", True, "creep = True is not a choice"),
         ("view=wear", "wear.beside", "my hip", "'my hip' as design is not known"),
-        ("view=wear", "wear.colour", "red", "'colour' among the inputs of Wear"),
         ("view=cup", "cup.inclination", "91", "Inclination must be 0 to 90° (from an upright axis to a level one)"),
         ("view=cup", "cup.arc_of_cover", "0", "Arc of cover must be 40 to 340° (the ball must stay in its socket)"),
-        ("view=cup", "cup.inwards", "85", "Load direction, medial must be -80 to 80° (the load must press into the"),
-        ("view=cup", "cup.chamfer", "wide", "Chamfer must be a number in mm, or a length such as '16 mm', got 'wide'"),
         ("view=cup", "cup.side", "middle", "side = 'middle' is not allowed"),
         ("view=cup", "cup.aim", "up", "'up' as aim is not known"),
         ("view=cup", "cup.pick", [1.0], "is not a point of the map"),
@@ -166,14 +154,12 @@ WALK = "phase [%], force [N], flexion [deg]\n0, 300, 20\n25, 2000, 0\n100, 300, 
         ("view=cup", "cup.colour", "red", "'colour' among the inputs of a cup"),
         ("view=gait", "gait.cycle", "dancing", "'dancing' as cycle is not known"),
         ("view=gait", "gait.body_weight", "0", "Body weight must be positive, got 0 N"),
-        ("view=gait", "gait.contact", "steel", "'steel' as contact is not known"),
         ("view=gait", "gait.instant", "seven", "an instant of a cycle is a whole number"),
         ("view=gait", "gait.instant", -1, "instant = -1"),
         ("view=gait", "gait.own", {"name": "walk.exe", "text": WALK}, "'walk.exe' is not a table of a cycle"),
         ("view=gait", "gait.own", {"name": "a.csv", "text": "", "size": 10**9}, "longer than 100000 characters"),
         ("view=gait", "gait.own", "walk.csv", "has a name and a text"),
         ("view=evidence", "evidence.influence", "huge", "influence"),
-        ("view=evidence", "evidence.elements", True, "elements"),
     ],
     ids=lambda value: str(value)[-20:],
 )
@@ -245,6 +231,9 @@ def test_a_page_speaks_of_diameters_and_of_what_makers_offer():
     assert {"22.225", "28", "32", "36"} <= set(heads["sizes"])
     assert "52" in shells["sizes"]
     assert field(page, "clearance")["label"] == "Diametral clearance"
+    fields = {name: said for name, said in page.inputs.items() if said["kind"] == "number"}
+    assert {name for name, said in fields.items() if not said["unit"]} == {"liner_poisson", "ball_poisson"}
+    assert len({said["label"] for said in fields.values()}) == len(fields)
     edits(page, "ball_radius", "3,2 cm")
     assert page.screen.file.joint.ball_radius == pytest.approx(16.0, rel=1e-12)
 
@@ -274,12 +263,6 @@ def test_a_body_weight_is_in_the_units_of_the_page():
     assert "lbf" in trouble(page)
 
 
-def test_every_number_beside_a_box_has_its_label_and_its_unit():
-    fields = {name: said for name, said in Page("").inputs.items() if said["kind"] == "number"}
-    assert {name for name, said in fields.items() if not said["unit"]} == {"liner_poisson", "ball_poisson"}
-    assert len({said["label"] for said in fields.values()}) == len(fields)
-
-
 def test_inches_and_pounds_hold_on_the_whole_page_and_come_back_as_they_were():
     page = Page("preset=hip-28&load.force=3000")
     before = page.screen
@@ -302,34 +285,27 @@ def test_inches_and_pounds_hold_on_the_whole_page_and_come_back_as_they_were():
     assert page.screen == before
 
 
-def test_files_are_in_the_units_of_the_page():
+def test_files_and_compared_designs_are_in_the_units_of_the_page():
     page = Page(IMPERIAL)
     rows = list(csv.DictReader(io.StringIO(saved(page, "CSV").decode())))
     exact = next(row for row in rows if row["model"] == "exact")
     assert float(exact["max_pressure_psi"]) == pytest.approx(bs.Exact().press(HIP, force=3000.0).max_pressure * PSI)
     assert {"force_lbf", "indentation_mil", "half_angle_deg", "area_in2", "stiffness_kip_per_in"} <= set(exact)
-    report = saved(page, "HTML").decode()
-    assert "psi" in report
-    assert "head diameter</td><td>1.102 in" in report
+    assert "head diameter</td><td>1.102 in" in saved(page, "HTML").decode()
     page = Page(f"{IMPERIAL}&view=map")
     row = next(csv.DictReader(io.StringIO(saved(page, "CSV").decode())))
     assert float(row["head_diameter_in"]) == pytest.approx(22 / 25.4)
     assert float(row["half_angle_deg"]) > 5.0
     assert {"max_pressure_psi", "area_in2", "force_lbf"} <= set(row)
-
-
-def test_compared_designs_are_in_the_units_of_the_page():
     page = Page(f"{IMPERIAL}&view=compare&beside1.preset=hip-36")
     assert METRIC.findall(told(page, "compare-table") + told(page, "compare-charts")) == []
     assert "head ⌀ 1.417 in" in told(page, "compare-table")
 
 
 def test_units_of_every_quantity_are_pounds_and_inches_or_have_none():
-    reading = Reading(units=Units.IMPERIAL)
-    left = {each.kind: reading.unit(each).text for each in QUANTITIES.values()}
-    assert not {"mm", "µm", "N", "kN", "MPa", "N/mm", "mm2", "mm²"} & set(left.values())
+    left = {INCHES.reading.unit(each).text for each in QUANTITIES.values()}
+    assert not {"mm", "µm", "N", "kN", "MPa", "N/mm", "mm2", "mm²"} & left
 
 
-@pytest.mark.parametrize(("step", "round_one"), [(0.0039, 0.002), (0.2, 0.2), (11.24, 10.0), (1450.0, 1000.0)])
-def test_steps_are_round(step, round_one):
-    assert handy_step(step) == pytest.approx(round_one)
+def test_steps_are_round():
+    assert list(map(handy_step, (0.0039, 0.2, 11.24, 1450.0))) == pytest.approx([0.002, 0.2, 10.0, 1000.0])
