@@ -1,16 +1,26 @@
-"""The explorer's page without a browser: its messages, files, layers of a socket, and designs that are compared."""
+"""The explorer's page without a browser: messages, files, layers of a socket, compared designs, and the design map."""
 
+import json
 import re
+from dataclasses import replace
 from itertools import product
+from math import degrees, radians
 
+import numpy as np
 import pytest
 
 import ballsocket as bs
 from ballsocket.app import server as serve
+from ballsocket.app.pictures import svg
+from ballsocket.app.pictures.contour_map import MapPlane
 from ballsocket.app.session import Page
+from ballsocket.app.state.screen import AXES, START, MapAxis
 from ballsocket.app.views.contact.view import Press
-from ballsocket.app.views.design_map.worker import mapped
+from ballsocket.app.views.design_map import view as map_view
+from ballsocket.app.views.design_map.worker import catalogue_sizes, mapped, models_of
 from ballsocket.app.widgets.joint_fields import layers_edited
+from ballsocket.app.widgets.limit_rows import present_value
+from ballsocket.core.quantities import QUANTITIES
 from ballsocket.files.joint_file import JointFile, parse_joint
 from ballsocket.files.joint_toml import toml_of
 from ballsocket.problem import Support
@@ -221,3 +231,227 @@ def test_six_designs_are_compared_by_the_checks_of_contact():
     does(page, "choose", name="view", value="compare")
     edits(page, "compare.keep", True)
     assert "6 designs are compared with this one already" in trouble(page)
+
+
+MAP = "view=map&preset=hip-28&load.force=3000&across=ball_radius=11..23"
+FRAME = (58.0, 12.0, 426.0, 308.0)
+"""Left, top, right and foot of the map in its picture."""
+
+
+def part(page, name):
+    return page.channel.shown_value(f"#map-{name}") or ""
+
+
+def found(page):
+    return mapped(page.screen.file, page.screen.across, page.screen.up, page.screen.map_model)
+
+
+def on_axes(x, y):
+    """The numbers of a point of the picture, for the axes of MAP."""
+    left, top, right, foot = FRAME
+    return 11 + 12 * (x - left) / (right - left), 3 + 12 * (foot - y) / (foot - top)
+
+
+def handles(page):
+    """Text and point of each square of a limit."""
+    pattern = r'aria-valuetext="([^"]+)" data-limit="(\d)"[^>]+translate\(([\d.]+) ([\d.]+)\)'
+    return {
+        int(number): (text, *on_axes(float(x), float(y)))
+        for text, number, x, y in re.findall(pattern, part(page, "picture"))
+    }
+
+
+def pressure_at(radius, thickness):
+    joint = bs.joints["hip-28"].replace(ball_radius=radius, liner_thickness=thickness)
+    return float(bs.catalogue["tabulated"].press(joint, force=3000.0).max_pressure)
+
+
+def test_contours_and_the_value_under_the_pointer_are_those_of_the_study():
+    page, study = Page(MAP), found(Page(MAP)).max_pressure
+    label = r'<text x="([\d.]+)" y="([\d.]+)" text-anchor="middle" class="on">([\d.]+)<'
+    labels = [map(float, numbers) for numbers in re.findall(label, part(page, "picture"))]
+    assert len(labels) >= 4
+    for x, y, value in labels:
+        radius, thickness = on_axes(x, y - 4)
+        assert study.interp(ball_radius=radius, liner_thickness=thickness) == pytest.approx(value, rel=0.01)
+    values = np.array(json.loads(re.search(r'data-values="([^"]+)"', part(page, "picture"))[1]))
+    assert values == pytest.approx(study.transpose("liner_thickness", "ball_radius").values[::2, ::2], rel=1e-3)
+
+
+def test_a_limit_is_moved_by_its_line():
+    page = Page(f"{MAP}&limit=outer_radius<=26&limit=max_pressure<=12&limit=liner_thickness>=1")
+    squares = handles(page)
+    assert list(squares) == [0, 1]  # the line of the last one is beside the map
+    assert squares[0][0] == "outer radius at most 26 mm"
+    assert squares[0][1] + 0.1 + squares[0][2] == pytest.approx(26.0, abs=0.02)
+    edits(page, "map.drag", [1, 20.0, 8.0])
+    assert page.screen.limits[1].high == pytest.approx(pressure_at(20.0, 8.0), rel=0.01)
+    assert [limit.name for limit in page.screen.limits] == ["outer_radius", "max_pressure", "liner_thickness"]
+    assert "limit=max_pressure" in page.channel.shown_value("link")
+
+
+def test_a_picked_point_is_shown_beside_the_design_and_used_in_one_step():
+    page = Page(MAP)
+    edits(page, "map.pick", [15.3, 6.7])
+    assert "picked=15.3%2C6.7" in page.channel.shown_value("link")
+    assert 'class="picked"' in part(page, "picture")
+    assert f"<td class=''>{pressure_at(15.3, 6.7):.4g}<small>" in part(page, "point")
+    again = Page(page.channel.shown_value("link"))
+    assert again.screen == page.screen
+    assert (part(again, "point"), part(again, "picture")) == (part(page, "point"), part(page, "picture"))
+    edits(again, "map.up", "clearance")
+    assert again.screen.picked is None
+    edits(page, "map.use", True)
+    assert (page.screen.view, page.screen.file.joint.ball_radius) == ("map", 15.3)
+    assert 'class="picked"' not in part(page, "picture")
+    assert "picked" not in page.channel.shown_value("link")
+    edits(page, "map.use", True)
+    assert "no point of the map is chosen" in trouble(page)
+    assert "the point of the map: " in part(Page("view=map&preset=hip-28&picked=46,-300"), "point")
+
+
+def test_the_design_with_the_smallest_value_is_the_best_of_the_allowed():
+    page = Page(f"{MAP}&limit=outer_radius<=26")
+    edits(page, "map.best", True)
+    edits(page, "map.compare", True)
+    (best,) = page.screen.beside
+    study = found(page)
+    fine = study.max_pressure.where(study.ball_radius + 0.1 + study.liner_thickness <= 26)
+    pressed = bs.catalogue["tabulated"].press(best.joint, force=3000.0)
+    assert pressed.max_pressure == pytest.approx(float(fine.min()), rel=1e-3)
+
+
+def test_a_click_takes_sizes_of_a_catalogue():
+    page = Page(f"{MAP}&sizes=catalogue")
+    edits(page, "map.pick", [15.3, 6.7])
+    edits(page, "map.use", True)
+    joint = page.screen.file.joint
+    assert (2 * joint.ball_radius, joint.liner_thickness) == (32.0, 7.0)
+    assert catalogue_sizes({"head_diameter": 100.0, "clearance": 0.123}) == {"head_diameter": 44.0, "clearance": 0.123}
+
+
+def test_ranges_are_two_fields_in_the_units_of_the_page():
+    page = Page(f"{MAP}&units=imperial")
+    field = page.channel.shown_value("=map.across_low")
+    assert (field["text"], field["unit"]) == ("0.4331", "in")
+    edits(page, "map.across_low", "12 mm")
+    edits(page, "map.across_high", "1")
+    assert (page.screen.across.low, page.screen.across.high) == (12.0, pytest.approx(25.4))
+    edits(page, "map.across_low", "2")
+    assert "ball radius from 2 in to 1 in is not a range" in trouble(page)
+    assert page.screen.across.low == 12.0
+
+
+@pytest.mark.parametrize("name", AXES)
+def test_no_range_ends_where_no_joint_is(name):
+    """A map to 1e9 mm offered a ball of 1e9 mm as the best design."""
+    up = START.across if name == START.up.name else START.up
+    screen = replace(START, across=MapAxis(name=name, low=0.0, high=0.2), up=up)
+    high = map_view._end_setting("across_high")
+    for value in ("1e12", "-1e12"):
+        with pytest.raises(ValueError, match="^x to must be "):
+            high.read(screen, value)
+    assert high.read(screen, "0.3")["across"].high == pytest.approx(0.3 / screen.reading.unit(QUANTITIES[name]).factor)
+
+
+def test_rows_of_limits_are_edited_and_a_refused_row_stays_as_typed():
+    page = Page(f"{MAP}&limit=outer_diameter<=52")
+    row = ["outer_diameter", "<=", "52"]
+    assert page.channel.shown_value("=map.limits")["value"] == [row]
+    edits(page, "map.limits", [row, ["half_angle", ">=", "40,5"]])
+    assert page.screen.limits[1].low == pytest.approx(radians(40.5))
+    answer = edits(page, "map.limits", [["outer_diameter", "<=", "wide"], ["half_angle", ">=", "40.5"]])
+    field = answer["=map.limits"]
+    assert (field["value"][0][2], field["wrong"]) == ("wide", 0)
+    assert field["error"].startswith("Outer diameter must be a number in mm")
+    assert page.screen.limits[0].high == 52.0
+    edits(page, "map.quantity", "area")  # another change keeps what was typed
+    assert page.channel.shown_value("=map.limits")["value"][0][2] == "wide"
+    edits(page, "map.limits", [["max_pressure", "<=", ""]])  # a new row starts at the present design
+    present = pressure_at(14.0, 5.0)
+    (limit,) = page.screen.limits
+    assert present <= limit.high == pytest.approx(present, rel=0.01)
+    assert limit.high == float(f"{limit.high:.3g}")
+
+
+def test_a_limit_that_the_joint_does_not_have_is_refused_beside_the_rows():
+    page = Page(f"view=map&{OWN}")
+    answer = edits(page, "map.limits", [["ball_young", "<=", "200000"]])
+    assert "has no ball_young" in answer["=map.limits"]["error"]
+    assert page.screen.limits == ()
+
+
+def test_the_present_numbers_of_a_design():
+    file = JointFile(bs.joints["hip-28"], {"force": 3000.0}, Cup(arc_of_cover=radians(170.0)))
+    contact = bs.HessForsbach().press(file.joint, force=3000.0)
+    assert present_value(file, "force") == 3000.0
+    assert present_value(file, "outer_diameter") == pytest.approx(38.2)
+    assert present_value(file, "liner_young") == 1000.0
+    arc = 14.1 * radians(85.0 - degrees(contact.half_angle))
+    assert present_value(file, "edge_distance", contact) == pytest.approx(arc)
+    assert np.isnan(present_value(file, "indentation"))
+
+
+def test_ticks_and_levels_are_round_and_enclose_the_values():
+    assert svg.ticks_between(22.0, 46.0) == [25.0, 30.0, 35.0, 40.0, 45.0]
+    assert svg.ticks_between(-10.0, 40.0) == [-10.0, 0.0, 10.0, 20.0, 30.0, 40.0]
+    assert svg.levels_between(-3.2, 4.1, 8) == [-4.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
+    assert svg.levels_between(3.0, 3.0) == [3.0, 3.5]
+
+
+def test_crosses_mark_some_of_the_doubtful_points():
+    line = np.linspace(0.0, 1.0, 61)
+    plane = MapPlane(x=line, y=line, x_label="x", y_label="y")
+    marked = np.zeros((61, 61), dtype=bool)
+    assert list(plane.crosses(marked)) == []
+    marked[:, 40:] = True
+    (drawn,) = plane.crosses(marked)
+    places = [float(x) + 3 for x in re.findall(r"M([\d.]+),", drawn)]
+    assert len(places) == 2 * 16 * 6  # a light cross below each dark one
+    assert min(places) == pytest.approx(plane.across(40 / 60), abs=0.06)
+
+
+OWN = "joint.ball_radius=14&joint.clearance=.1&joint.liner_thickness=5&liner.material=UHMWPE"
+BACKING = "backing.0.thickness=3&backing.0.material=titanium&backing.1.thickness=2&backing.1.material=bone-cement"
+
+
+def test_models_that_know_the_joint_are_offered_and_exact_is_one_of_them():
+    offered = models_of(Page(f"{OWN}&{BACKING}&map_model=exact").screen)
+    assert "exact" in offered
+    assert "tabulated" not in offered  # its tables have one layer at most
+    assert set(models_of(Page(MAP).screen)) >= {"exact", "tabulated", "refined", "plane-layer", "hertz"}
+
+
+@pytest.mark.long
+def test_a_backed_joint_is_mapped_by_the_exact_solution():
+    page = Page(f"view=map&{OWN}&{BACKING}&load.force=3000&map_model=exact")
+    assert "Minimum of the largest pressure" in part(page, "note")
+    assert "exact" in [name for name, _ in page.channel.shown_value("=map.model")["options"]]
+    assert found(page).attrs["model"] == "exact"
+
+
+def test_a_map_that_would_take_minutes_is_refused():
+    page = Page(f"{MAP}&map_model=exact&up=liner_thickness=0.1..1")
+    assert "exact takes minutes where R2/L is above" in part(page, "trouble")
+    page = Page(f"{MAP}&up=liner_thickness=0.1..1&map_model=refined")
+    edits(page, "map.model", "exact")
+    assert "exact takes minutes where R2/L is above" in trouble(page)
+    assert page.screen.map_model == "refined"
+
+
+def test_an_unexpected_failure_of_a_drawing_is_logged_and_a_sentence_and_the_page_is_idle(monkeypatch, caplog):
+    def fail(*words):
+        raise RuntimeError("no <luck>")
+
+    page = Page("view=map&preset=hip-28&load.force=3000")
+    assert "<svg" in part(page, "picture")
+    monkeypatch.setattr(map_view, "map_picture", fail)
+    edits(page, "ball_radius", 32)
+    assert "This cannot be shown: no &lt;luck&gt;" in trouble(page)
+    assert "a view failed" in caplog.text
+    assert part(page, "picture") == part(page, "note") == ""
+    assert page.channel.shown_value("expected") is None
+    monkeypatch.undo()
+    edits(page, "ball_radius", 30)
+    assert "<svg" in part(page, "picture")
+    assert page.channel.shown_value("#trouble") == ""
